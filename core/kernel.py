@@ -1,0 +1,97 @@
+"""Marking and registering kernels, folds and drivers.
+
+A *kernel* is a plain typed function in the subset of `core.subset`. A *fold* runs a kernel step
+over data of run-time length. A *driver* is a map, a fold or a search whose output a proved kernel
+re-checks. All three are registered here by name, so that the ledger can be held against them.
+The decorators return the function itself: CPython runs exactly what is written.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any, Generic, NamedTuple, TypeVar
+
+F = TypeVar("F", bound=Callable[..., Any])
+Acc = TypeVar("Acc")
+
+
+class Vec2(NamedTuple):
+    """A vector in the horizontal plane: north and east (or x and y), one unit for both."""
+
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One registered function: what it is, what it implements, and the function."""
+
+    name: str
+    kind: str
+    implements: str
+    function: Callable[..., Any]
+    uses: tuple[str, ...] = ()
+
+
+REGISTRY: dict[str, Entry] = {}
+
+
+def _register(entry: Entry) -> None:
+    old = REGISTRY.get(entry.name)
+    if old is not None and old.function.__module__ != entry.function.__module__:
+        raise ValueError(
+            f"two kernels are called {entry.name!r}: in {old.function.__module__} "
+            f"and in {entry.function.__module__}"
+        )
+    REGISTRY[entry.name] = entry
+
+
+def kernel(*, implements: str) -> Callable[[F], F]:
+    """Register a kernel under its function name; `implements` names its definition in `spec`."""
+
+    def mark(function: F) -> F:
+        _register(Entry(function.__name__, "kernel", implements, function))
+        return function
+
+    return mark
+
+
+def driver(*, checked_by: tuple[str, ...]) -> Callable[[F], F]:
+    """Register a search or map; `checked_by` names the kernels that re-check its output."""
+
+    def mark(function: F) -> F:
+        _register(Entry(function.__name__, "driver", "", function, checked_by))
+        return function
+
+    return mark
+
+
+@dataclass(frozen=True)
+class Fold(Generic[Acc]):
+    """`finish(step(... step(step(start, item0, *context), item1, *context) ..., *context))`.
+
+    step and finish are kernels; start is a tuple of integers or booleans. The prover turns each
+    fold into three obligations (base, step, use), so its theorem holds for every number of items.
+    """
+
+    name: str
+    implements: str
+    step: Callable[..., Acc]
+    start: Acc
+    finish: Callable[..., Any]
+
+    def __call__(self, items: Iterable[tuple[Any, ...]], *context: Any) -> Any:
+        acc = self.start
+        for item in items:
+            acc = self.step(acc, *item, *context)
+        return self.finish(acc)
+
+
+def fold(
+    *, name: str, implements: str, step: Callable[..., Acc], start: Acc, finish: Callable[..., Any]
+) -> Fold[Acc]:
+    """Make and register a fold over a proved step."""
+    made = Fold(name, implements, step, start, finish)
+    _register(Entry(name, "fold", implements, made, (step.__name__, finish.__name__)))
+    return made

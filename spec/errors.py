@@ -1,0 +1,58 @@
+"""The errors that users see: each says what, where, what was expected and what was got."""
+
+from __future__ import annotations
+
+
+class CratousError(Exception):
+    """Base of all errors that a user can act on. `exit_code` is what the command line returns."""
+
+    exit_code = 2
+
+
+class BadInput(CratousError):
+    """Input that cannot be used.
+
+    where: file (and line) or text it stands in; item: path inside it, e.g. `vehicles[1].id`.
+    """
+
+    def __init__(
+        self, what: str, *, where: str = "", item: str = "", expected: str = "", got: str = ""
+    ) -> None:
+        self.what, self.where, self.item = what, where, item
+        self.expected, self.got = expected, got
+        super().__init__(str(self))
+
+    def __str__(self) -> str:
+        place = ": ".join(part for part in (self.where, self.item) if part)
+        text = f"{place}: {self.what}" if place else self.what
+        if self.expected:
+            text += f"; expected {self.expected}"
+        if self.got:
+            text += f"; got {self.got}"
+        return text
+
+    def data(self) -> dict[str, str]:
+        """The same as a dictionary, for `--json`."""
+        return {
+            "error": self.what,
+            "where": self.where,
+            "item": self.item,
+            "expected": self.expected,
+            "got": self.got,
+        }
+
+
+class NoPlan(CratousError):
+    """The input is well formed but no plan exists; `reasons` in the user's terms."""
+
+    exit_code = 1
+
+    def __init__(self, reasons: tuple[str, ...]) -> None:
+        self.reasons = reasons
+        super().__init__("no plan exists, because " + "; ".join(reasons))
+
+
+class Refused(CratousError):
+    """The product refuses to act, e.g. because a kernel's proof does not match its source."""
+
+    exit_code = 2
