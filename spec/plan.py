@@ -54,15 +54,16 @@ class PlanItem:
 
 
 class Row(NamedTuple):
-    """One constraint on two tasks' (or one task's) times, as the checker kernel reads it.
+    """One constraint on the times of task `i`, as the checker kernel reads it.
 
-    kind is one of the codes of `spec.schedule`; i is the task bound, j the reference task (or 0);
-    lo and hi are in ms. `text` says in the user's words where it comes from.
+    kind: a code of `spec.schedule`; group: the reference tasks (empty for kinds 5 and 6), whose
+    latest end (1, 3) or earliest start (2, 4) counts; lo, hi: bounds [ms]; text: where it comes
+    from, in the user's words.
     """
 
     kind: int
     i: int
-    j: int
+    group: tuple[int, ...]
     lo: int
     hi: int
     text: str

@@ -1,0 +1,136 @@
+"""Points, legs and polygons in the plane: orientation, containment, contact. No division.
+
+Definitions: `spec.geofence`. A polygon is the tuple of its edges (a, b) in order, simple, either
+orientation. Containment is even-odd with half-open edges, after the boundary is set apart; it is
+exact in the exact reading for any number of vertices.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from cratous.core.kernel import Vec2, fold, kernel
+
+OUTSIDE, BOUNDARY, INSIDE = -1, 0, 1
+
+
+class Seen(NamedTuple):
+    """What a pass over the edges has seen: on an edge? an odd number of ray crossings?"""
+
+    on: bool
+    odd: bool
+
+
+@kernel(implements="geofence.turn")
+def orient(a: Vec2, b: Vec2, c: Vec2) -> float:
+    """Twice the signed area of the triangle a, b, c; its sign is the direction of the turn."""
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)
+
+
+@kernel(implements="geofence.on_segment")
+def on_segment(p: Vec2, a: Vec2, b: Vec2) -> bool:
+    """True iff p is a point of the closed segment from a to b."""
+    if orient(a, b, p) != 0:
+        return False
+    return (p.x - a.x) * (p.x - b.x) <= 0 and (p.y - a.y) * (p.y - b.y) <= 0
+
+
+@kernel(implements="geofence.crosses_ray")
+def crosses_ray(p: Vec2, a: Vec2, b: Vec2) -> bool:
+    """True iff the edge a-b, without its upper end, meets the open ray from p towards +x."""
+    if a.y <= p.y and b.y > p.y:
+        return orient(a, b, p) > 0
+    if b.y <= p.y and a.y > p.y:
+        return orient(a, b, p) < 0
+    return False
+
+
+@kernel(implements="geofence.location_step")
+def location_step(seen: Seen, a: Vec2, b: Vec2, p: Vec2) -> Seen:
+    """Add the edge a-b to what has been seen from p."""
+    return Seen(seen.on or on_segment(p, a, b), seen.odd != crosses_ray(p, a, b))
+
+
+@kernel(implements="geofence.location_result")
+def location_result(seen: Seen) -> int:
+    """BOUNDARY (0) if on an edge, else INSIDE (1) for an odd number of crossings, else -1."""
+    if seen.on:
+        return 0
+    if seen.odd:
+        return 1
+    return -1
+
+
+locate = fold(
+    name="locate",
+    implements="geofence.location",
+    step=location_step,
+    start=Seen(False, False),
+    finish=location_result,
+)
+
+
+@kernel(implements="geofence.segments_meet")
+def segments_meet(p: Vec2, q: Vec2, a: Vec2, b: Vec2) -> bool:
+    """True iff the closed segments p-q and a-b have a point in common."""
+    if min(p.x, q.x) > max(a.x, b.x) or min(a.x, b.x) > max(p.x, q.x):
+        return False
+    if min(p.y, q.y) > max(a.y, b.y) or min(a.y, b.y) > max(p.y, q.y):
+        return False
+    return straddles(orient(a, b, p), orient(a, b, q)) and straddles(
+        orient(p, q, a), orient(p, q, b)
+    )
+
+
+@kernel(implements="geofence.opposite_or_zero")
+def straddles(one: float, other: float) -> bool:
+    """True iff the two are not strictly on the same side of zero."""
+    return (one <= 0 or other <= 0) and (one >= 0 or other >= 0)
+
+
+@kernel(implements="geofence.contact_step")
+def contact_step(met: bool, a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> bool:
+    """Add the edge a-b to whether the leg p-q has met the boundary."""
+    return met or segments_meet(p, q, a, b)
+
+
+@kernel(implements="geofence.contact_result")
+def contact_result(met: bool) -> bool:
+    """Whether any edge was met."""
+    return met
+
+
+meets_boundary = fold(
+    name="meets_boundary",
+    implements="geofence.meets_boundary",
+    step=contact_step,
+    start=False,
+    finish=contact_result,
+)
+
+
+@kernel(implements="geofence.keep_out_leg_holds")
+def keep_out_leg_ok(
+    where: int, meets: bool, low_m: float, high_m: float, floor_m: float, ceiling_m: float
+) -> bool:
+    """True iff a leg avoids a keep-out, boundary included.
+
+    where: location of the leg's first point; meets: whether the leg meets the boundary;
+    low_m, high_m: its lowest and highest altitude; floor_m, ceiling_m: the zone's. MSL [m].
+    """
+    if high_m < floor_m or low_m > ceiling_m:
+        return True
+    return where < 0 and not meets
+
+
+@kernel(implements="geofence.keep_in_leg_holds")
+def keep_in_leg_ok(
+    where: int, meets: bool, low_m: float, high_m: float, floor_m: float, ceiling_m: float
+) -> bool:
+    """True iff a leg stays strictly inside a keep-in, between its floor and ceiling."""
+    return where > 0 and not meets and low_m > floor_m and high_m < ceiling_m
+
+
+def edges_of(vertices: Sequence[tuple[float, float]]) -> tuple[tuple[Vec2, Vec2], ...]:
+    """The closed polygon's edges, from its vertices in order."""
+    points = [Vec2(*vertex) for vertex in vertices]
+    return tuple(zip(points, points[1:] + points[:1], strict=True))
