@@ -37,12 +37,16 @@ class Entry:
 REGISTRY: dict[str, Entry] = {}
 
 
+def _home(function: Callable[..., Any]) -> str:
+    return function.step.__module__ if isinstance(function, Fold) else function.__module__
+
+
 def _register(entry: Entry) -> None:
     old = REGISTRY.get(entry.name)
-    if old is not None and old.function.__module__ != entry.function.__module__:
+    if old is not None and _home(old.function) != _home(entry.function):
         raise ValueError(
-            f"two kernels are called {entry.name!r}: in {old.function.__module__} "
-            f"and in {entry.function.__module__}"
+            f"two kernels are called {entry.name!r}: in {_home(old.function)} "
+            f"and in {_home(entry.function)}"
         )
     REGISTRY[entry.name] = entry
 
@@ -80,6 +84,10 @@ class Fold(Generic[Acc]):
     step: Callable[..., Acc]
     start: Acc
     finish: Callable[..., Any]
+
+    @property
+    def __name__(self) -> str:
+        return self.name
 
     def __call__(self, items: Iterable[tuple[Any, ...]], *context: Any) -> Any:
         acc = self.start

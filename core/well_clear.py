@@ -5,6 +5,8 @@ the Integration of UAS in the NAS", AIAA 2014. Relative state is ownship minus i
 test is multiplied out, so that no kernel divides and the exact reading exists.
 """
 
+from typing import NamedTuple
+
 from cratous.core.kernel import Vec2, kernel
 
 
@@ -95,7 +97,34 @@ def horizontal_violation_within(
     )
 
 
-@kernel(implements="well_clear.violation_within")
+class Window(NamedTuple):
+    """A time window in scaled time: it holds the instants t with first <= t * scale <= last."""
+
+    scale: float
+    first: float
+    last: float
+
+
+@kernel(implements="well_clear.vertical_violation_at")
+def vertical_window(sz: float, vz: float, zthr_m: float, tcoa_s: float, h_s: float) -> Window:
+    """When within [0, h_s] the vertical volume is violated; first > last means never.
+
+    Time is scaled by |vz| where that is not zero, so that nothing is divided.
+    """
+    if vz == 0:
+        if abs(sz) <= zthr_m:
+            return Window(1, 0, h_s)
+        return Window(1, 1, 0)
+    w = abs(vz)
+    z = sz
+    if vz < 0:
+        z = 0 - sz
+    # z grows with rate w; violated from -max(ZTHR, w TCOA) to ZTHR
+    first = max(0 - max(zthr_m, tcoa_s * w) - z, 0)
+    return Window(w, first, min(zthr_m - z, h_s * w))
+
+
+@kernel(implements="well_clear.violation_at")
 def violation_within(
     s: Vec2,
     v: Vec2,
@@ -107,19 +136,10 @@ def violation_within(
     tcoa_s: float,
     h_s: float,
 ) -> bool:
-    """True iff well clear is lost at some t in [0, h_s] if both fly straight on.
-
-    Time is scaled by |vz| where it is not zero, so that the vertical window needs no division.
-    """
-    if vz == 0:
-        return abs(sz) <= zthr_m and horizontal_violation_within(s, v, dthr_m, tthr_s, h_s)
-    w = abs(vz)
-    z = sz
-    if vz < 0:
-        z = 0 - sz
-    first = max(0 - max(zthr_m, tcoa_s * w) - z, 0)
-    last = min(zthr_m - z, h_s * w)
+    """True iff well clear is lost at some t in [0, h_s] if both fly straight on."""
+    k, first, last = vertical_window(sz, vz, zthr_m, tcoa_s, h_s)
     if first > last:
         return False
-    at = Vec2(s.x * w + first * v.x, s.y * w + first * v.y)
-    return horizontal_violation_within(at, v, dthr_m * w, tthr_s * w, last - first)
+    # in scaled time the relative position is k times as far away, and so are the thresholds
+    at = Vec2(s.x * k + first * v.x, s.y * k + first * v.y)
+    return horizontal_violation_within(at, v, dthr_m * k, tthr_s * k, last - first)

@@ -1,0 +1,135 @@
+"""When a piecewise straight flight first loses well clear of straight-flying traffic.
+
+A trajectory is a sequence of pieces of constant velocity. Each piece is checked against each
+intruder by the kernel `violation_within`, which is exact over the whole piece: no time between
+samples is missed. Only the *instant* of the first violation is found by halving, to a fraction of
+the piece, and always rounded towards the earlier side.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from cratous.core.kernel import Vec2, driver
+from cratous.core.well_clear import violation, violation_within
+from cratous.spec.mission import Position, Velocity, WellClear
+
+
+class Piece(NamedTuple):
+    """Straight flight: from start_s [s] for duration_s [s], from a position at a velocity."""
+
+    start_s: float
+    duration_s: float
+    position: Position
+    velocity: Velocity
+
+
+class Intruder(NamedTuple):
+    """Another aircraft, as seen now; cooperates: it too is flown by one of our instances."""
+
+    id: int
+    position: Position
+    velocity: Velocity
+    cooperates: bool = False
+
+
+def buffered(volume: WellClear, buffer: float) -> WellClear:
+    """The same volume with every threshold multiplied by `buffer` (>= 1)."""
+    return WellClear(
+        volume.dthr_m * buffer,
+        volume.zthr_m * buffer,
+        volume.tthr_s * buffer,
+        volume.tcoa_s * buffer,
+    )
+
+
+def straight(p: Position, v: Velocity, start_s: float, duration_s: float) -> Piece:
+    """One piece of straight flight."""
+    return Piece(start_s, duration_s, p, v)
+
+
+def after(piece: Piece, t_s: float) -> Position:
+    """Where the piece is t_s after its start."""
+    p, v = piece.position, piece.velocity
+    return Position(
+        p.north_m + v.north_m_s * t_s, p.east_m + v.east_m_s * t_s, p.alt_m - v.down_m_s * t_s
+    )
+
+
+def _relative(piece: Piece, other: Intruder, t_s: float) -> tuple[Vec2, Vec2, float, float]:
+    """Position and velocity of ownship minus intruder, t_s after the start of the piece."""
+    p, v, w = after(piece, t_s), piece.velocity, other.velocity
+    at = piece.start_s + t_s
+    s = Vec2(
+        p.north_m - other.position.north_m - w.north_m_s * at,
+        p.east_m - other.position.east_m - w.east_m_s * at,
+    )
+    sz = p.alt_m - (other.position.alt_m - w.down_m_s * at)
+    return (
+        s,
+        Vec2(v.north_m_s - w.north_m_s, v.east_m_s - w.east_m_s),
+        sz,
+        w.down_m_s - v.down_m_s,
+    )
+
+
+def out_of_reach(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
+    """True only if no piece can lose well clear: a bound on range and closing speed.
+
+    A violation needs |s| <= DTHR + TTHR |v|, and |s| shrinks by at most |v| per second.
+    """
+    first, last = pieces[0], pieces[-1]
+    closing = max(math.hypot(p.velocity.north_m_s, p.velocity.east_m_s) for p in pieces)
+    closing += math.hypot(other.velocity.north_m_s, other.velocity.east_m_s)
+    far = math.hypot(
+        first.position.north_m - other.position.north_m,
+        first.position.east_m - other.position.east_m,
+    )
+    reach = last.start_s + last.duration_s + volume.tthr_s
+    return far > 1 + volume.dthr_m + closing * reach
+
+
+@driver(checked_by=("violation_within",))
+def first_violation_s(
+    pieces: Sequence[Piece], other: Intruder, volume: WellClear, halvings: int = 6
+) -> float | None:
+    """When the first violation begins [s from now], or None if there is none on any piece.
+
+    The instant is early by at most the piece's duration / 2^halvings.
+    """
+    if not pieces or out_of_reach(pieces, other, volume):
+        return None
+    for piece in pieces:
+        s, v, sz, vz = _relative(piece, other, 0.0)
+        if not violation_within(s, v, sz, vz, *_thresholds(volume), piece.duration_s):
+            continue
+        low, high = 0.0, piece.duration_s
+        for _ in range(halvings):
+            middle = (low + high) / 2
+            if violation_within(s, v, sz, vz, *_thresholds(volume), middle):
+                high = middle
+            else:
+                low = middle
+        return piece.start_s + low
+    return None
+
+
+@driver(checked_by=("violation",))
+def violated_s(
+    pieces: Sequence[Piece], other: Intruder, volume: WellClear, grid_s: float = 1.0
+) -> float:
+    """About how long well clear is lost [s]: only to rank manoeuvres that all lose it."""
+    lost = 0.0
+    for piece in pieces:
+        count = max(1, math.ceil(piece.duration_s / grid_s))
+        for k in range(count):
+            s, v, sz, vz = _relative(piece, other, (k + 0.5) * piece.duration_s / count)
+            if violation(s, v, sz, vz, *_thresholds(volume)):
+                lost += piece.duration_s / count
+    return lost
+
+
+def _thresholds(volume: WellClear) -> tuple[float, float, float, float]:
+    return volume.dthr_m, volume.zthr_m, volume.tthr_s, volume.tcoa_s

@@ -1,0 +1,299 @@
+"""Writing a theorem: any input of this kind, these premises, one use of the kernel, this holds.
+
+A theorem is a file in `proofs/theorems/` whose docstring is the sentence that reports print and
+whose function `claim(c: Claim)` states it. `c.real`, `c.integer`, ... introduce arbitrary values;
+`c.premise` restricts them; `c.use` runs a kernel and `c.define` a definition of `spec`;
+`c.show` states what must follow. `c.lemma` uses a theorem proved elsewhere: its premises become
+obligations here. `c.fold` proves a fold for every number of items by induction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, get_type_hints
+
+import z3
+
+from cratous.core.kernel import Fold, Vec2
+from cratous.proofs.lift import OPAQUE, join, lift
+from cratous.proofs.symbolic import PATHS, Sym, SymBool, SymInt, SymMask, SymReal, _raw, wrap
+
+
+@dataclass(frozen=True)
+class Obligation:
+    """Something to prove: under `given`, `goal`. kind: goal, defined, base, step, use, lemma."""
+
+    kind: str
+    text: str
+    given: tuple[z3.BoolRef, ...]
+    goal: z3.BoolRef
+
+
+class Stub:
+    """Stands for a function that is not looked into: same arguments, same unknown result."""
+
+    def __init__(self, name: str, function: Callable[..., Any]) -> None:
+        self.name = name
+        self.result = get_type_hints(function)["return"]
+        self.calls: list[tuple[Any, ...]] = []
+        self.results: dict[str, Any] = {}
+
+    def __call__(self, *args: Any) -> Any:
+        key = "; ".join(_normal(arg) for arg in args)
+        if key not in self.results:
+            self.results[key] = _fresh(f"{self.name}#{len(self.calls)}", self.result)
+            self.calls.append(args)
+        return self.results[key]
+
+
+def _normal(value: Any) -> str:
+    """A normal form of an argument: polynomials expanded and sorted."""
+    if isinstance(value, tuple):
+        return ", ".join(_normal(part) for part in value)
+    return str(z3.simplify(_known(value), som=True).sexpr())
+
+
+def _fresh(name: str, kind: Any) -> Any:
+    if kind is bool:
+        return SymBool(z3.Bool(name))
+    if kind is int:
+        return SymInt(z3.Int(name))
+    if kind is float:
+        return SymReal(z3.Real(name))
+    fields = get_type_hints(kind)
+    return kind(*[_fresh(f"{name}.{part}", fields[part]) for part in fields])
+
+
+@dataclass
+class Claim:
+    """The theorem under construction."""
+
+    prefix: str = ""
+    fixed: dict[str, Any] = field(default_factory=dict)
+    load: Callable[[str], Callable[[Claim], None]] | None = None
+    premises: list[z3.BoolRef] = field(default_factory=list)
+    facts: list[z3.BoolRef] = field(default_factory=list)
+    obligations: list[Obligation] = field(default_factory=list)
+    kernels: list[str] = field(default_factory=list)
+    lemmas: list[str] = field(default_factory=list)
+    assumptions: list[tuple[str, str, str]] = field(default_factory=list)
+    goals: list[z3.BoolRef] = field(default_factory=list)
+    stubs: dict[Callable[..., Any], Stub] = field(default_factory=dict)
+
+    # -- arbitrary values ---------------------------------------------------------------
+    def _value(self, name: str, make: Callable[[str], Any]) -> Any:
+        return self.fixed[name] if name in self.fixed else make(self.prefix + name)
+
+    def real(self, name: str) -> Any:
+        """An arbitrary real number."""
+        return self._value(name, lambda n: SymReal(z3.Real(n)))
+
+    def reals(self, names: str) -> list[Any]:
+        """Several, from names separated by blanks."""
+        return [self.real(name) for name in names.split()]
+
+    def integer(self, name: str) -> Any:
+        """An arbitrary integer of at most 62 bits (a premise that the run time checks)."""
+        value = self._value(name, lambda n: SymInt(z3.Int(n)))
+        if name not in self.fixed:
+            self.premises.append(z3.And(value.term >= -(2**61), value.term <= 2**61))
+        return value
+
+    def boolean(self, name: str) -> Any:
+        """An arbitrary truth value."""
+        return self._value(name, lambda n: SymBool(z3.Bool(n)))
+
+    def mask(self, name: str) -> Any:
+        """An arbitrary mask of 64 bits."""
+        return self._value(name, lambda n: SymMask(z3.BitVec(n, 64)))
+
+    def bits(self, value: int) -> Any:
+        """A known mask."""
+        return SymMask(z3.BitVecVal(value, 64))
+
+    def vector(self, name: str) -> Vec2:
+        """An arbitrary vector in the plane."""
+        return Vec2(self.real(name + ".x"), self.real(name + ".y"))
+
+    # -- statements ---------------------------------------------------------------------
+    def premise(self, condition: Any) -> None:
+        """Restrict the theorem to values that satisfy `condition`."""
+        self.premises.append(_term(condition))
+
+    def assume(self, condition: Any, *, owner: str, reason: str) -> None:
+        """Take something for granted; it stays in the ledger, with owner and reason, for ever."""
+        self.facts.append(_term(condition))
+        self.assumptions.append((str(condition), owner, reason))
+
+    def use(self, kernel: Callable[..., Any], *args: Any) -> Any:
+        """Run a kernel of `core` on these values; the theorem is about it."""
+        if kernel.__name__ not in self.kernels:
+            self.kernels.append(kernel.__name__)
+        return self._lift(kernel, args)
+
+    def define(self, definition: Callable[..., Any], *args: Any) -> Any:
+        """Evaluate a definition of `spec` on these values."""
+        return self._lift(definition, args)
+
+    def opaque(self, *functions: Callable[..., Any]) -> None:
+        """Do not look into these functions: equal arguments give equal, otherwise unknown results.
+
+        What is known about them then comes from `lemma` alone, whose premises are owed for the
+        very arguments of the call, so a contract cannot ignore them.
+        """
+        for function in functions:
+            self.stubs[function] = Stub(self.prefix + function.__name__, function)
+
+    def calls(self, function: Callable[..., Any]) -> list[tuple[Any, ...]]:
+        """The arguments of every call of an opaque function so far."""
+        return list(self.stubs[function].calls)
+
+    def congruence(
+        self, function: Callable[..., Any], one: tuple[Any, ...], other: tuple[Any, ...]
+    ) -> None:
+        """For an opaque function: where the two argument lists are equal, so are the results."""
+        stub = self.stubs[function]
+        equal = self.all_of(*[self.same(a, b) for a, b in zip(one, other, strict=True)])
+        self.facts.append(z3.Implies(equal.term, _term(self.same(stub(*one), stub(*other)))))
+
+    def _lift(self, function: Callable[..., Any], args: tuple[Any, ...]) -> Any:
+        before = dict(OPAQUE)
+        OPAQUE.update(self.stubs)
+        try:
+            lifted = lift(function, *args)
+        finally:
+            OPAQUE.clear()
+            OPAQUE.update(before)
+        for text, condition in lifted.obligations:
+            self._owe("defined", f"{function.__name__}: {text}", condition)
+        return lifted.value
+
+    def _owe(self, kind: str, text: str, goal: z3.BoolRef) -> None:
+        given = (*self.premises, *self.facts)
+        self.obligations.append(Obligation(kind, text, given, goal))
+
+    def show(self, goal: Any, text: str = "the claim") -> None:
+        """What must follow; later statements may use it."""
+        term = _term(goal)
+        self._owe("goal", text, term)
+        self.goals.append(term)
+        self.facts.append(term)
+
+    def cases(self, *conditions: Any, goal: Any, text: str = "the claim") -> None:
+        """Show the goal case by case; that the cases cover everything is shown as well."""
+        terms = [_term(c) for c in conditions]
+        self._owe("goal", f"{text}: the cases cover everything", z3.Or(*terms))
+        for number, term in enumerate(terms, 1):
+            self._owe("goal", f"{text}: case {number}", z3.Implies(term, _term(goal)))
+        self.goals.append(_term(goal))
+        self.facts.append(_term(goal))
+
+    def lemma(self, name: str, *, when: Any = True, **values: Any) -> None:
+        """Use the theorem `name` for these values where `when` holds.
+
+        Its premises are owed there, and its goals are known there. What is opaque here is opaque
+        in the lemma too.
+        """
+        if self.load is None:
+            raise RuntimeError("lemmas need a loader")
+        number = sum(other == name for other in self.lemmas)
+        prefix = f"{self.prefix}{name}!{number}!"
+        inner = Claim(prefix=prefix, fixed=_flatten(values), load=self.load, stubs=self.stubs)
+        self.load(name)(inner)
+        given = _term(when)
+        self.lemmas.append(name)
+        for premise in inner.premises:
+            self._owe("lemma", f"premise of {name}", z3.Implies(given, premise))
+        self.facts += [z3.Implies(given, goal) for goal in inner.goals]
+
+    def implies(self, if_: Any, then: Any) -> Any:
+        """If the one then the other."""
+        return SymBool(z3.Implies(_term(if_), _term(then)))
+
+    def all_of(self, *conditions: Any) -> Any:
+        """All of them."""
+        return SymBool(z3.And(*[_term(c) for c in conditions]))
+
+    def any_of(self, *conditions: Any) -> Any:
+        """At least one of them."""
+        return SymBool(z3.Or(*[_term(c) for c in conditions]))
+
+    def negation(self, condition: Any) -> Any:
+        """Not."""
+        return SymBool(z3.Not(_term(condition)))
+
+    def when(self, condition: Any, yes: Any, no: Any) -> Any:
+        """One value or the other."""
+        term = _term(condition)
+        return join([(term, yes), (z3.Not(term), no)])
+
+    def same(self, a: Any, b: Any) -> Any:
+        """Equality of two values; of tuples, field by field."""
+        if isinstance(a, tuple):
+            return self.all_of(*[self.same(x, y) for x, y in zip(a, b, strict=True)])
+        if not isinstance(a, Sym) and not isinstance(b, Sym):
+            return a == b
+        return SymBool(_raw(a) == _raw(b))
+
+    def fold(
+        self,
+        kernel_fold: Fold[Any],
+        *,
+        acc: Any,
+        model: Any,
+        item: tuple[Any, ...],
+        context: tuple[Any, ...],
+        model_start: Any,
+        model_step: Callable[..., Any],
+        model_finish: Callable[..., Any],
+        relation: Callable[[Any, Any], Any],
+    ) -> None:
+        """The fold equals its definition for every number of items, by induction on it.
+
+        acc and model are arbitrary accumulators of kernel and definition. Base: `relation` holds
+        at the start. Step: if it holds before any item it holds after it. Use: where it holds the
+        results are equal. The three together are the induction; nothing is left to a comment.
+        """
+        if kernel_fold.name not in self.kernels:
+            self.kernels.append(kernel_fold.name)
+        self._owe("base", "relation at the start", _term(relation(kernel_fold.start, model_start)))
+        before = _term(relation(acc, model))
+        after = self.use(kernel_fold.step, acc, *item, *context)
+        model_after = self.define(model_step, model, *item, *context)
+        self._owe(
+            "step", "relation is kept", z3.Implies(before, _term(relation(after, model_after)))
+        )
+        result = self.use(kernel_fold.finish, acc)
+        wanted = self.define(model_finish, model)
+        self._owe("use", "results are equal", z3.Implies(before, _term(self.same(result, wanted))))
+
+
+def _flatten(values: dict[str, Any]) -> dict[str, Any]:
+    flat: dict[str, Any] = {}
+    for name, value in values.items():
+        if isinstance(value, Vec2):
+            flat[name + ".x"], flat[name + ".y"] = value.x, value.y
+        else:
+            flat[name] = value
+    # a literal is as good as a term
+    return {k: v if isinstance(v, Sym) else wrap(_known(v)) for k, v in flat.items()}
+
+
+def _known(value: Any) -> z3.ExprRef:
+    term = _raw(value)
+    if term is None:
+        raise TypeError(f"{value!r} is no value of the kernel subset")
+    return term
+
+
+def _term(value: Any) -> z3.BoolRef:
+    if PATHS:
+        raise RuntimeError("a theorem's statement was evaluated inside a lifted function")
+    if isinstance(value, bool):
+        return z3.BoolVal(value)
+    if isinstance(value, SymBool):
+        return value.term
+    if z3.is_expr(value) and z3.is_bool(value):
+        return value
+    raise TypeError(f"{value!r} is no statement")

@@ -1,0 +1,26 @@
+"""If the kernel says that the horizontal volume is violated during [0, h] of straight flight, then
+it is violated at an instant of [0, h] that can be named: 0, h, the closest approach, or the
+instant of least modified-tau margin."""
+
+from cratous.core.well_clear import horizontal_violation_within
+from cratous.proofs.claim import Claim
+from cratous.spec import well_clear
+
+
+def claim(c: Claim) -> None:
+    s, v = c.vector("s"), c.vector("v")
+    dthr, tthr, h = c.reals("dthr tthr h")
+    closest, least = c.reals("closest least")
+    vv, sv = v.x * v.x + v.y * v.y, s.x * v.x + s.y * v.y
+    c.premise(dthr >= 0)
+    c.premise(tthr >= 0)
+    c.premise(h >= 0)
+    c.premise(c.implies(vv > 0, vv * closest + sv == 0))
+    c.premise(c.implies(vv > 0, 2 * vv * least + 2 * sv + tthr * vv == 0))
+    predicted = c.use(horizontal_violation_within, s, v, dthr, tthr, h)
+
+    def violated(t: object) -> object:
+        at = c.define(well_clear.horizontal_violation_at, s, v, dthr, tthr, t)
+        return c.all_of(t >= 0, t <= h, at)  # type: ignore[operator]
+
+    c.show(c.implies(predicted, c.any_of(*[violated(t) for t in (h - h, h, closest, least)])))

@@ -1,0 +1,17 @@
+"""A task's times are an interval for the kernel exactly when the task runs at some instant and at
+none before mission start."""
+
+from cratous.core.timing import runs_forward
+from cratous.proofs.claim import Claim
+from cratous.spec import schedule
+
+
+def claim(c: Claim) -> None:
+    start, end, t, u = (c.integer(name) for name in "start end t u".split())
+    ordered = c.use(runs_forward, start, end)
+    witness = c.define(schedule.interval_is_ordered, start, u, start, end)
+    c.show(c.implies(ordered, witness), "if it is, it runs at its start and never before 0")
+    # some t at which it runs, and the two instants that would show a start before 0
+    at_start = c.define(schedule.interval_is_ordered, t, start, start, end)
+    at_end = c.define(schedule.interval_is_ordered, t, end, start, end)
+    c.show(c.implies(c.all_of(at_start, at_end), ordered), "if it runs so, it is")

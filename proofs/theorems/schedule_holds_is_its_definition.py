@@ -1,0 +1,30 @@
+"""The schedule checker accepts a schedule exactly when every row holds and every task's times are an
+interval, for every number of rows."""
+
+from typing import Any
+
+from cratous.core.timing import row_holds, runs_forward, schedule_holds
+from cratous.proofs.claim import Claim
+from cratous.spec.schedule import rows_hold_result
+
+
+def model_step(
+    ok: Any, kind: Any, start: Any, end: Any, ref: Any, lo: Any, hi: Any
+) -> Any:
+    return ok and runs_forward(start, end) and row_holds(kind, start, end, ref, lo, hi)
+
+
+def claim(c: Claim) -> None:
+    values = tuple(c.integer(name) for name in "kind start end ref lo hi".split())
+    c.opaque(row_holds, runs_forward)
+    c.fold(
+        schedule_holds,
+        acc=c.boolean("ok"),
+        model=c.boolean("all_hold"),
+        item=values,
+        context=(),
+        model_start=True,
+        model_step=model_step,
+        model_finish=rows_hold_result,
+        relation=c.same,
+    )

@@ -1,0 +1,16 @@
+"""The combined kernel says that well clear is lost exactly when the horizontal and the vertical
+volume of the definition are violated at once."""
+
+from cratous.core.well_clear import violation
+from cratous.proofs.claim import Claim
+from cratous.spec import well_clear
+
+
+def claim(c: Claim) -> None:
+    s, v = c.vector("s"), c.vector("v")
+    sz, vz, dthr, zthr, tthr, tcoa = c.reals("sz vz dthr zthr tthr tcoa")
+    for threshold in (dthr, zthr, tthr, tcoa):
+        c.premise(threshold >= 0)
+    arguments = (s, v, sz, vz, dthr, zthr, tthr, tcoa)
+    verdict = c.use(violation, *arguments)
+    c.show(c.same(verdict, c.define(well_clear.violation, *arguments)))

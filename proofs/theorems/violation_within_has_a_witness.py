@@ -1,0 +1,61 @@
+"""If the kernel says that well clear is lost during [0, h] of straight flight, then it is lost at an
+instant of [0, h] that can be named: an end of the vertical window, the closest approach, or the
+instant of least modified-tau margin."""
+
+from cratous.core.kernel import Vec2
+from cratous.core.well_clear import horizontal_violation_within, vertical_window, violation_within
+from cratous.proofs.claim import Claim
+from cratous.spec import well_clear
+
+
+def claim(c: Claim) -> None:
+    s, v = c.vector("s"), c.vector("v")
+    sz, vz, dthr, zthr, tthr, tcoa, h = c.reals("sz vz dthr zthr tthr tcoa h")
+    for nonnegative in (dthr, zthr, tthr, tcoa, h):
+        c.premise(nonnegative >= 0)
+    c.opaque(
+        horizontal_violation_within,
+        vertical_window,
+        well_clear.horizontal_violation,
+        well_clear.vertical_violation_at,
+    )
+    predicted = c.use(violation_within, s, v, sz, vz, dthr, zthr, tthr, tcoa, h)
+    k, first, last = c.use(vertical_window, sz, vz, zthr, tcoa, h)
+    window = {"sz": sz, "vz": vz, "zthr": zthr, "tcoa": tcoa, "h": h}
+    c.lemma("vertical_window_is_exact", t=h - h, **window)
+
+    # the two inner candidates, named by the equations that define them
+    at = Vec2(s.x * k + first * v.x, s.y * k + first * v.y)
+    vv, sv = v.x * v.x + v.y * v.y, at.x * v.x + at.y * v.y
+    closest, least = c.reals("closest least")
+    c.premise(c.implies(vv > 0, vv * closest + sv == 0))
+    c.premise(c.implies(vv > 0, 2 * vv * least + 2 * sv + tthr * k * vv == 0))
+    c.lemma(
+        "horizontal_violation_within_has_a_witness",
+        when=first <= last,
+        s=at,
+        v=v,
+        dthr=dthr * k,
+        tthr=tthr * k,
+        h=last - first,
+        closest=closest,
+        least=least,
+    )
+
+    lost = []
+    length = last - first
+    for number, scaled in enumerate((length - length, length, closest, least)):
+        t = c.real(f"t{number}")
+        c.premise(k * t == first + scaled)
+        inside = c.all_of(t >= 0, t <= h)
+        there = Vec2(s.x + t * v.x, s.y + t * v.y)
+        c.lemma("vertical_window_is_exact", when=inside, t=t, **window)
+        c.lemma("horizontal_violation_scales", s=there, v=v, dthr=dthr, tthr=tthr, k=k)
+        c.congruence(
+            well_clear.horizontal_violation,
+            (Vec2(at.x + scaled * v.x, at.y + scaled * v.y), v, dthr * k, tthr * k),
+            (Vec2(k * there.x, k * there.y), v, k * dthr, k * tthr),
+        )
+        violated = c.define(well_clear.violation_at, s, v, sz, vz, dthr, zthr, tthr, tcoa, t)
+        lost.append(c.all_of(inside, violated))
+    c.show(c.implies(predicted, c.any_of(*lost)))
