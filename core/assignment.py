@@ -8,14 +8,13 @@ kernels (`schedule_holds`, `eligible`) accept it. No clock: work is bounded by c
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from cratous.core.earliest import (
     Visit,
     earliest,
-    first_broken_row,
     next_wait_ms,
     reference_ms,
     rows_hold,
@@ -25,7 +24,7 @@ from cratous.core.timing import eligible, runs_forward
 from cratous.spec.plan import Row
 from cratous.spec.schedule import AFTER_END, AFTER_START, NOT_AFTER, NOT_BEFORE
 
-NODE_LIMIT = 20_000
+NODE_LIMIT = 50_000
 START = -1
 
 
@@ -41,11 +40,11 @@ class Candidate(NamedTuple):
 
 @dataclass(frozen=True)
 class Branch:
-    """One choice of `+`: its tasks, its rows, and which tasks may follow those already placed."""
+    """One choice of `+`: its tasks, its rows, and which tasks may come next after some, in order."""
 
     tasks: tuple[int, ...]
     rows: tuple[Row, ...]
-    allowed: Callable[[frozenset[int]], Sequence[int]]
+    allowed: Callable[[tuple[int, ...]], Iterable[int]]
 
 
 class Fixed(NamedTuple):
@@ -62,8 +61,8 @@ class Problem:
 
     ready_ms: per vehicle (bit k is vehicle k), when it can set off; travel_ms(vehicle, from, to)
     gives the time from one candidate's end (or START) to another's start, or None if there is no
-    way; eligible: mask of vehicles per task; cost: "MINMAX" (latest end) or "CUMULATIVE" (sum of
-    the vehicles' last ends).
+    way; eligible: mask of vehicles per task; cost: "MINMAX" (latest end), "CUMULATIVE" (sum of
+    the vehicles' last ends) or "END:<task>" (the end of one task).
     """
 
     ready_ms: tuple[int, ...]
@@ -117,6 +116,8 @@ class _Search:
         self.nodes = 0
         self.best: tuple[int, int, tuple[Placed, ...]] | None = None
         self.stopped = False
+        _, _, goal = problem.cost.partition("END:")
+        self.goal = int(goal) if goal else None
         self.of_task: dict[int, list[int]] = {}
         for k, candidate in enumerate(problem.candidates):
             self.of_task.setdefault(candidate.task_id, []).append(k)
@@ -146,16 +147,22 @@ class _Search:
             self.problem.eligible.get(candidate.task_id, 0), 1 << vehicle
         )
 
-    def cost(self, free_ms: tuple[int, ...], used: set[int]) -> int:
-        ends = [free_ms[v] for v in sorted(used)]
+    def cost(self, placed: Sequence[Placed]) -> int:
+        """Cost of what is placed; it never falls when more is placed."""
+        last: dict[int, int] = {}
+        for p in placed:
+            last[p.vehicle] = p.end_ms
+            if self.goal == self.problem.candidates[p.candidate].task_id:
+                return p.end_ms
+        if self.goal is not None:
+            return 0
         if self.problem.cost == "CUMULATIVE":
-            return sum(ends)
-        return max(ends, default=0)
+            return sum(last.values())
+        return max(last.values(), default=0)
 
-    def bound(self, state: _State, left: Sequence[int]) -> int | None:
-        """No completion costs less; None if some task left cannot be flown by anybody."""
-        used = {placed.vehicle for placed in state.placed}
-        least, work = self.cost(state.free_ms, used), 0
+    def bound(self, state: _State, left: Sequence[int], due: dict[int, int]) -> int | None:
+        """No completion costs less; None if some task left cannot be flown, or not when due."""
+        least, work = self.cost(state.placed), 0
         for task in left:
             soonest = shortest = None
             for k in self.of_task.get(task, ()):
@@ -167,11 +174,13 @@ class _Search:
                     end = state.free_ms[v] + effort
                     soonest = end if soonest is None or end < soonest else soonest
                     shortest = effort if shortest is None or effort < shortest else shortest
-            if soonest is None or shortest is None:
+            if soonest is None or shortest is None or soonest > due.get(task, soonest):
                 return None
             work += shortest
-            if self.problem.cost != "CUMULATIVE":
+            if self.problem.cost == "MINMAX" or self.goal == task:
                 least = max(least, soonest)
+        if self.goal is not None:
+            return least
         if self.problem.cost == "CUMULATIVE":
             return least + work
         return max(least, -(-(sum(state.free_ms) + work) // len(state.free_ms)))
@@ -227,17 +236,14 @@ class _Search:
             self.may(p.vehicle, p.candidate) and runs_forward(p.start_ms, p.end_ms) for p in placed
         ):
             return
-        free = list(self.problem.ready_ms)
-        for p in placed:
-            free[p.vehicle] = p.end_ms
-        cost = self.cost(tuple(free), {p.vehicle for p in placed})
+        cost = self.cost(placed)
         if self.best is None or cost < self.best[0]:
             self.best = (cost, branch, placed)
 
     def run(self, branch_index: int) -> None:
         """Search one branch depth first."""
         problem, branch = self.problem, self.problem.branches[branch_index]
-        fixed = {f.task_id for f in problem.fixed}
+        fixed = sorted(problem.fixed, key=lambda f: (f.start_ms, f.end_ms, f.task_id))
         start = _State(
             problem.ready_ms,
             (START,) * len(problem.ready_ms),
@@ -246,12 +252,12 @@ class _Search:
             {f.task_id: f.end_ms for f in problem.fixed},
         )
         seen: set[tuple[tuple[int, ...], ...]] = set()
-        self._descend(start, frozenset(fixed), branch_index, branch, seen)
+        self._descend(start, tuple(f.task_id for f in fixed), branch_index, branch, seen)
 
     def _descend(
         self,
         state: _State,
-        done: frozenset[int],
+        done: tuple[int, ...],
         branch_index: int,
         branch: Branch,
         seen: set[tuple[tuple[int, ...], ...]],
@@ -260,9 +266,10 @@ class _Search:
         if not left:
             self.leaf(state, branch_index, branch.rows)
             return
-        allowed = branch.allowed(done)
+        allowed = set(branch.allowed(done))
+        due = {row.i: row.hi for row in branch.rows if row.kind == NOT_AFTER}
         children: list[tuple[int, int, int, int, int, _State]] = []
-        for task in sorted(set(allowed) & set(left)):
+        for task in sorted(allowed & set(left)):
             after = [other for other in left if other != task]
             for k in self.of_task.get(task, ()):
                 for vehicle in range(len(state.free_ms)):
@@ -272,7 +279,7 @@ class _Search:
                     child = self.place(state, vehicle, k, branch.rows)
                     if child is None:
                         continue
-                    bound = self.bound(child, after)
+                    bound = self.bound(child, after, due)
                     if bound is None:
                         continue
                     end = child.placed[-1].end_ms
@@ -293,14 +300,12 @@ class _Search:
             if chains in seen:
                 continue
             seen.add(chains)
-            self._descend(child, done | {task}, branch_index, branch, seen)
+            self._descend(child, (*done, task), branch_index, branch, seen)
             if self.stopped:
                 return
 
 
-def times_of(
-    problem: Problem, placed: Sequence[Placed]
-) -> tuple[dict[int, int], dict[int, int]]:
+def times_of(problem: Problem, placed: Sequence[Placed]) -> tuple[dict[int, int], dict[int, int]]:
     """Starts and ends per task [ms], the fixed ones included."""
     starts = {f.task_id: f.start_ms for f in problem.fixed}
     ends = {f.task_id: f.end_ms for f in problem.fixed}
@@ -370,20 +375,3 @@ def assign(problem: Problem) -> Assignment:
 def without_order(rows: Sequence[Row]) -> tuple[Row, ...]:
     """The rows under the weaker reading `order`: plain precedence binds no times."""
     return tuple(row for row in rows if not (row.kind in (AFTER_END, AFTER_START) and row.lo == 0))
-
-
-__all__ = [
-    "NODE_LIMIT",
-    "START",
-    "Assignment",
-    "Branch",
-    "Candidate",
-    "Fixed",
-    "Placed",
-    "Problem",
-    "assign",
-    "first_broken_row",
-    "settle",
-    "times_of",
-    "without_order",
-]

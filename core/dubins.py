@@ -135,6 +135,20 @@ def cut(path: DubinsPath, end: Pose, chord_error_m: float = 0.5) -> tuple[Positi
     return tuple(points)
 
 
+def cut_length_m(path: DubinsPath, chord_error_m: float = 0.5) -> float:
+    """Length [m] of the polyline that `cut` makes, without making it."""
+    r = path.radius_m
+    step = 2 * math.acos(max(0.0, 1 - chord_error_m / r)) * r
+    total = 0.0
+    for kind, length in zip(path.kinds, path.lengths_m, strict=True):
+        if kind == STRAIGHT or length <= 1e-6:
+            total += length
+        else:
+            count = max(1, math.ceil(length / step))
+            total += count * 2 * r * math.sin(length / (2 * r * count))
+    return total
+
+
 def polyline_length_m(points: tuple[Position, ...]) -> float:
     """Horizontal length of a polyline [m]."""
     return sum(

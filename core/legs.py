@@ -17,8 +17,13 @@ Edges = tuple[tuple[Vec2, Vec2], ...]
 
 
 @lru_cache(maxsize=512)
-def _shape(vertices: tuple[tuple[float, float], ...]) -> tuple[Edges, float, float, float, float]:
-    """Edges and bounding box (lowest and highest north, lowest and highest east)."""
+def _shape(
+    vertices: tuple[tuple[float, float], ...], number: type
+) -> tuple[Edges, float, float, float, float]:
+    """Edges and bounding box (lowest and highest north, lowest and highest east).
+
+    number: type of the coordinates, so that floats and equal rationals are remembered apart.
+    """
     norths, easts = [v[0] for v in vertices], [v[1] for v in vertices]
     return edges_of(vertices), min(norths), max(norths), min(easts), max(easts)
 
@@ -32,7 +37,7 @@ def leg_ok(p: Position, q: Position, zone: Zone) -> bool:
     """
     if zone.padding_m != 0:
         raise ValueError(f"zone {zone.id}: padding must be turned into vertices first")
-    edges, low_n, high_n, low_e, high_e = _shape(zone.vertices)
+    edges, low_n, high_n, low_e, high_e = _shape(zone.vertices, type(zone.vertices[0][0]))
     low, high = min(p.alt_m, q.alt_m), max(p.alt_m, q.alt_m)
     keep_out = zone.kind is ZoneKind.KEEP_OUT
     apart = (
@@ -49,9 +54,7 @@ def leg_ok(p: Position, q: Position, zone: Zone) -> bool:
     return holds(where, meets, low, high, zone.floor_m, zone.ceiling_m)
 
 
-def first_bad_leg(
-    path: Sequence[Position], zones: Sequence[Zone]
-) -> tuple[int, Zone] | None:
+def first_bad_leg(path: Sequence[Position], zones: Sequence[Zone]) -> tuple[int, Zone] | None:
     """Index of the first leg (path[i], path[i + 1]) that breaks a zone, and the zone; else None.
 
     A path of one point is a leg from that point to itself.

@@ -79,9 +79,14 @@ def turn_back_s(now: Motion, ability: Ability) -> float:
 
 @driver(checked_by=("violation_within", "violation", "keep_out_leg_ok", "keep_in_leg_ok"))
 def resolve(
-    now: Motion, ability: Ability, scene: Scene, course_rad: float, held: Choice | None
+    now: Motion,
+    ability: Ability,
+    scene: Scene,
+    course_rad: float,
+    speed_m_s: float,
+    held: Choice | None,
 ) -> Choice:
-    """The manoeuvre to fly now; `held` is the one flown until now.
+    """The manoeuvre to fly now, at speed_m_s if it can be; `held` is the one flown until now.
 
     A heading that is free of traffic over the whole look-ahead but meets a zone in it is used
     when no heading is free of both and the zone is farther than a half circle takes to fly:
@@ -90,7 +95,7 @@ def resolve(
     near_s = turn_back_s(now, ability)
     fallback: tuple[tuple[float, float], Choice] | None = None
     later: Choice | None = None
-    for candidate in _candidates(now, ability, scene, course_rad, held):
+    for candidate in _candidates(now, ability, scene, course_rad, speed_m_s, held):
         pieces = _pieces(now, ability, candidate, scene.lookahead_s)
         traffic_s = first_conflict_s(pieces, scene)
         zone_s = first_zone_s(pieces, scene.zones, near_s) if scene.zones else None
@@ -151,9 +156,13 @@ def _headings(course_rad: float, held: Choice | None) -> Iterator[float]:
 
 
 def _candidates(
-    now: Motion, ability: Ability, scene: Scene, course_rad: float, held: Choice | None
+    now: Motion,
+    ability: Ability,
+    scene: Scene,
+    course_rad: float,
+    speed: float,
+    held: Choice | None,
 ) -> Iterator[Choice]:
-    speed = held.speed_m_s if held is not None else now.speed_m_s
     level = Choice("heading", course_rad, speed, 0.0, 0.0, False, None)
     for heading in _headings(course_rad, held):
         yield level._replace(heading_rad=heading)

@@ -104,9 +104,9 @@ def _ask(given: list[z3.BoolRef], rlimit: int) -> tuple[str, int, str, z3.ModelR
 
 def _rlimit_count(solver: z3.Solver) -> int:
     statistics = solver.statistics()
-    for key in statistics.keys():
+    for key, value in statistics:
         if key == "rlimit count":
-            return int(statistics.get_key_value(key))
+            return int(value)
     return 0
 
 
@@ -116,7 +116,7 @@ def _decide(obligation: Obligation, rlimit: int) -> Outcome:
     status = {"unsat": "proved", "sat": "refuted"}.get(answer, "unknown")
     example: tuple[tuple[str, str], ...] = ()
     if model is not None:
-        values = [(str(d.name()), str(model[d])) for d in model.decls()]
+        values = [(str(d.name()), str(model[d])) for d in model.decls() if d.arity() == 0]
         example = tuple(sorted(values))
     return Outcome(obligation, status, spent, logic, example)
 

@@ -17,7 +17,10 @@ def claim(c: Claim) -> None:
     c.lemma("horizontal_violation_is_its_definition", s=s, v=v, dthr=dthr, tthr=tthr)
     c.lemma(
         "horizontal_violation_is_its_definition",
-        s=scaled, v=v, dthr=k * dthr, tthr=k * tthr,
+        s=scaled,
+        v=v,
+        dthr=k * dthr,
+        tthr=k * tthr,
     )
     near = c.use(horizontal_violation, s, v, dthr, tthr)
     far = c.use(horizontal_violation, scaled, v, k * dthr, k * tthr)

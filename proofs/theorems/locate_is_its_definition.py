@@ -4,7 +4,12 @@ the point meets."""
 
 from typing import Any
 
-from cratous.core.polygon import Seen, crosses_ray, locate, location_result, location_step, on_segment
+from cratous.core.polygon import (
+    Seen,
+    crosses_ray,
+    locate,
+    on_segment,
+)
 from cratous.proofs.claim import Claim
 from cratous.spec.geofence import Count, count_step, location
 

@@ -8,7 +8,7 @@ from cratous.spec import schedule
 
 def claim(c: Claim) -> None:
     kind, start, end, ref, lo, hi, t = (
-        c.integer(name) for name in "kind start end ref lo hi t".split()
+        c.integer(name) for name in ["kind", "start", "end", "ref", "lo", "hi", "t"]
     )
     c.premise(start <= end)
     holds = c.use(row_holds, kind, start, end, ref, lo, hi)

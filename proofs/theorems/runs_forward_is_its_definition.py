@@ -7,7 +7,7 @@ from cratous.spec import schedule
 
 
 def claim(c: Claim) -> None:
-    start, end, t, u = (c.integer(name) for name in "start end t u".split())
+    start, end, t, u = (c.integer(name) for name in ["start", "end", "t", "u"])
     ordered = c.use(runs_forward, start, end)
     witness = c.define(schedule.interval_is_ordered, start, u, start, end)
     c.show(c.implies(ordered, witness), "if it is, it runs at its start and never before 0")

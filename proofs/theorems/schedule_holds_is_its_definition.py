@@ -8,14 +8,12 @@ from cratous.proofs.claim import Claim
 from cratous.spec.schedule import rows_hold_result
 
 
-def model_step(
-    ok: Any, kind: Any, start: Any, end: Any, ref: Any, lo: Any, hi: Any
-) -> Any:
+def model_step(ok: Any, kind: Any, start: Any, end: Any, ref: Any, lo: Any, hi: Any) -> Any:
     return ok and runs_forward(start, end) and row_holds(kind, start, end, ref, lo, hi)
 
 
 def claim(c: Claim) -> None:
-    values = tuple(c.integer(name) for name in "kind start end ref lo hi".split())
+    values = tuple(c.integer(name) for name in ["kind", "start", "end", "ref", "lo", "hi"])
     c.opaque(row_holds, runs_forward)
     c.fold(
         schedule_holds,

@@ -1,0 +1,58 @@
+# make demo and make test are all that a newcomer needs; both set up everything first.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.ready
+
+.PHONY: help venv demo test test-fast lint types prove bench docs lock clean
+
+help:
+	@echo "make demo      set up, then plan, prove, fly, monitor and certify the crossing mission"
+	@echo "make test      set up, then run all tests"
+	@echo "make venv      only set up (.venv, pinned dependencies, compiled kernels)"
+	@echo "make lint      style, types, kernel subset"
+	@echo "make prove     prove every kernel anew and hold the ledger against it"
+	@echo "make bench     benchmarks (ratios, see bench/README.md)"
+	@echo "make docs      regenerate the generated documents"
+
+venv: $(STAMP)
+
+$(STAMP): requirements.lock pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	$(BIN)/python -m cratous.services.warm
+	@touch $(STAMP)
+
+demo: venv
+	$(BIN)/cratous run examples/crossing/mission.yaml
+	@echo "open out/crossing/report.html in a browser"
+
+test: venv
+	$(BIN)/python -m pytest
+
+test-fast: venv
+	$(BIN)/python -m pytest -m "not slow"
+
+lint: venv
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: venv
+	$(BIN)/mypy
+
+prove: venv
+	$(BIN)/cratous prove --check
+
+bench: venv
+	$(BIN)/python bench/run.py
+
+docs: venv
+	$(BIN)/python docs/generate.py
+
+lock:
+	$(BIN)/python -m pip install --quiet pip-tools
+	$(BIN)/pip-compile --quiet --generate-hashes --allow-unsafe --strip-extras --no-header --no-emit-index-url --no-emit-trusted-host --no-emit-find-links --output-file requirements.lock requirements.in
+
+clean:
+	rm -rf $(VENV) out build dist *.egg-info src/*.egg-info .pytest_cache .mypy_cache .ruff_cache

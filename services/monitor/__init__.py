@@ -1,0 +1,115 @@
+"""The runtime safety monitor: G1 to G5 from the messages alone, while they are published.
+
+It imports no planner and no flight code (ASTM F3269: the monitor is independent of what it
+watches). Between two samples an aircraft is taken to fly straight, which is exactly what the
+simulator does; for another source that is an assumption, and the report says so. Every decision
+is that of a proved kernel, on rational numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from cratous.services.monitor.authority import AuthorityWatch
+from cratous.services.monitor.bridge import BridgeWatch
+from cratous.services.monitor.completion import CompletionWatch
+from cratous.services.monitor.constraints import ConstraintWatch
+from cratous.services.monitor.samples import Sample, Sampler
+from cratous.services.monitor.separation import SeparationWatch
+from cratous.spec.guarantees import REQUIREMENTS, Kind, Verdict, worst
+from cratous.spec.mission import Mission
+from cratous.spec.plan import Plan
+
+__all__ = ["Monitor"]
+
+
+class Monitor:
+    """Watches one mission. Feed it envelopes with `tap`, ask for `verdicts` at the end.
+
+    on_violation is called once for each new violation, at the moment it is seen.
+    """
+
+    def __init__(
+        self, mission: Mission, plan: Plan, on_violation: Callable[[Verdict], None] | None = None
+    ) -> None:
+        self.mission = mission
+        self.not_covered = tuple(v.id for v in mission.vehicles if not v.protected)
+        self._sampler = Sampler(frozenset(v.id for v in mission.vehicles))
+        self.constraints = ConstraintWatch(mission, plan)
+        self.separation = SeparationWatch(mission)
+        self.completion = CompletionWatch(mission, plan)
+        self.authority = AuthorityWatch(mission)
+        self.bridge = BridgeWatch(mission)
+        self._tell = on_violation
+        self._told = 0
+
+    def tap(self, envelope: Any) -> None:
+        """One message of the bus or of a log: anything with `topic`, `time_ms` and `body`."""
+        short = envelope.topic.rpartition(".")[2]
+        body = envelope.body
+        if short == "TruthState":
+            for step in self._sampler.add(body):
+                self._step(*step)
+        elif short == "TaskProgress":
+            self.constraints.progress(body)
+            self.completion.progress(body)
+        elif short in ("AuthorityChange", "GatedCommand", "CommandDropped"):
+            self.authority.message(short, body, envelope.time_ms)
+        elif short == "Heartbeat":
+            self.bridge.heartbeat(body)
+        elif short == "BridgeStatus":
+            self.bridge.status(body)
+        elif short == "MissionEnd":
+            for step in self._sampler.flush():
+                self._step(*step)
+            self.completion.end(body)
+            self.authority.end(body)
+            self.bridge.end(body)
+        if self._tell is not None:
+            events = self.separation.violations + self.constraints.violations
+            for verdict in events[self._told :]:
+                self._tell(verdict)
+            self._told = len(events)
+
+    def _step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
+        self.constraints.step(before, after)
+        self.separation.step(before, after)
+        self.completion.step(before, after)
+
+    def details(self) -> list[Verdict]:
+        """One verdict for each single constraint, pair, task, vehicle."""
+        parts = (self.constraints, self.separation, self.completion, self.authority, self.bridge)
+        return [verdict for part in parts for verdict in part.verdicts()]
+
+    def verdicts(self) -> list[Verdict]:
+        """One verdict for each of G1 to G5, followed by all details."""
+        details = self.details()
+        return [
+            _whole(r.id, [v for v in details if v.requirement == r.id]) for r in REQUIREMENTS
+        ] + details
+
+
+def _whole(requirement: str, parts: list[Verdict]) -> Verdict:
+    """The verdict on a requirement from those on its parts: the worst one, the least margin."""
+    outcome = worst([v.outcome for v in parts])
+    telling = [v for v in parts if v.outcome is outcome]
+    measured = [v for v in telling if v.margin is not None]
+    chosen = min(measured, key=lambda v: v.margin or 0.0, default=telling[0] if telling else None)
+    if chosen is None:
+        return Verdict(requirement, "", outcome, Kind.OBSERVED, "nothing was observed")
+    kinds = {v.kind for v in parts}
+    kind = Kind.EXACT if kinds == {Kind.EXACT} else Kind.OBSERVED
+    return Verdict(
+        requirement,
+        "",
+        outcome,
+        kind,
+        f"{chosen.item}: {chosen.note}" if chosen.item else chosen.note,
+        time_ms=chosen.time_ms,
+        vehicles=chosen.vehicles,
+        margin=chosen.margin,
+        unit=chosen.unit,
+        checks=sum(v.checks for v in parts),
+        method=", ".join(sorted({v.method for v in parts if v.method})),
+    )

@@ -1,0 +1,90 @@
+"""G5: heartbeats in both directions at their period, for every protected vehicle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from cratous.spec.guarantees import Kind, Outcome, Verdict
+from cratous.spec.mission import Mission
+
+PERIODS = 2
+"""A heartbeat is late when it has not come after this many periods."""
+
+
+@dataclass
+class Beat:
+    """Heartbeats of one vehicle in one direction."""
+
+    count: int = 0
+    last_ms: int = 0
+    longest_ms: int = 0
+    at_ms: int = 0
+
+    def come(self, time_ms: int) -> None:
+        gap = time_ms - self.last_ms
+        if gap > self.longest_ms:
+            self.longest_ms, self.at_ms = gap, time_ms
+        self.last_ms = time_ms
+        self.count += 1
+
+
+class BridgeWatch:
+    """Liveness of the bridge of every protected vehicle."""
+
+    def __init__(self, mission: Mission) -> None:
+        self._bound_ms = PERIODS * mission.simulation.heartbeat_ms
+        self._instances = set(mission.instances)
+        self._beats = {
+            (v.id, way): Beat() for v in mission.vehicles if v.protected for way in ("Down", "Up")
+        }
+        self._downs: dict[int, str] = {}
+        self._end_ms: int | None = None
+
+    def heartbeat(self, body: Any) -> None:
+        """A heartbeat came."""
+        beat = self._beats.get((body.VehicleID, body.Direction.name))
+        if beat is not None:
+            beat.come(body.Time)
+
+    def status(self, body: Any) -> None:
+        """The bridge said that it is alive or not."""
+        if not body.Alive and body.VehicleID not in self._downs:
+            self._downs[body.VehicleID] = f"down at {body.Time / 1000:.2f} s: {body.Note}"
+
+    def end(self, body: Any) -> None:
+        """The mission ended: the time since the last heartbeat counts too."""
+        self._end_ms = body.Time
+        for beat in self._beats.values():
+            if beat.count:
+                beat.longest_ms = max(beat.longest_ms, body.Time - beat.last_ms)
+
+    def verdicts(self) -> list[Verdict]:
+        """One verdict a protected vehicle and direction."""
+        return [self._verdict(*key, beat) for key, beat in sorted(self._beats.items())]
+
+    def _verdict(self, vehicle: int, way: str, beat: Beat) -> Verdict:
+        margin: float | None = (self._bound_ms - beat.longest_ms) / 1000
+        note = f"{beat.count} heartbeats, longest gap {beat.longest_ms / 1000:.2f} s"
+        outcome = Outcome.HOLDS if beat.longest_ms <= self._bound_ms else Outcome.VIOLATED
+        if vehicle not in self._instances:
+            outcome, margin = Outcome.UNKNOWN, None
+            note = "the vehicle has no ICAROUS instance: there is no bridge to judge"
+        elif not beat.count or self._end_ms is None:
+            outcome, margin = Outcome.UNKNOWN, None
+            note = "no heartbeat seen" if not beat.count else "the messages stop too early"
+        elif vehicle in self._downs:
+            outcome = Outcome.VIOLATED
+            note = self._downs[vehicle]
+        return Verdict(
+            "G5",
+            f"heartbeat {'to' if way == 'Down' else 'from'} the ICAROUS instance of {vehicle}",
+            outcome,
+            Kind.OBSERVED,
+            note,
+            time_ms=beat.at_ms,
+            vehicles=(vehicle,),
+            margin=margin,
+            unit="s" if margin is not None else "",
+            checks=beat.count,
+        )

@@ -1,0 +1,49 @@
+"""Truth states put together into steps: who was where at two successive instants."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from cratous.spec.mission import Position
+
+
+class Sample(NamedTuple):
+    """One aircraft at one instant, in the mission frame."""
+
+    time_ms: int
+    position: Position
+    heading_rad: float
+    ours: bool
+    sequence: int
+
+
+Step = tuple[dict[int, Sample], dict[int, Sample]]
+
+
+class Sampler:
+    """Collects the states of one instant; a state of a later one completes the step."""
+
+    def __init__(self, ours: frozenset[int]) -> None:
+        self._ours = ours
+        self._before: dict[int, Sample] = {}
+        self._now: dict[int, Sample] = {}
+        self._sequence = 0
+
+    def add(self, body: Any) -> list[Step]:
+        """One TruthState; returns the step that it completes, if it does."""
+        done = []
+        if self._now and body.Time != next(iter(self._now.values())).time_ms:
+            done = self.flush()
+        position = Position(body.North, body.East, body.Altitude)
+        ours = body.VehicleID in self._ours
+        self._now[body.VehicleID] = Sample(body.Time, position, body.Heading, ours, self._sequence)
+        return done
+
+    def flush(self) -> list[Step]:
+        """Complete the present instant."""
+        if not self._now:
+            return []
+        step = (self._before, self._now)
+        self._before, self._now = self._now, {}
+        self._sequence += 1
+        return [step] if step[0] else []

@@ -1,0 +1,148 @@
+"""G2: well clear between every protected vehicle and every other aircraft, at every instant.
+
+Each pair and step is one question to the kernel `violation_within`: is well clear lost at any
+instant of the step, if both fly straight during it? Positions are taken as the rationals that
+the doubles are, so the answer is exact, between the samples too.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from cratous.core.kernel import Vec2
+from cratous.core.well_clear import violation_within
+from cratous.services.monitor.samples import Sample
+from cratous.spec.guarantees import Kind, Outcome, Verdict
+from cratous.spec.mission import Mission
+
+
+@dataclass
+class Pair:
+    """What has been seen of one pair of aircraft."""
+
+    checks: int = 0
+    lost_ms: int | None = None
+    lost_steps: int = 0
+    nearest_m: float = math.inf
+    nearest_ms: int = 0
+    level: bool = False
+
+
+def _relative(own: Sample, other: Sample) -> tuple[Fraction, Fraction, Fraction]:
+    a, b = own.position, other.position
+    return (
+        Fraction(a.north_m) - Fraction(b.north_m),
+        Fraction(a.east_m) - Fraction(b.east_m),
+        Fraction(a.alt_m) - Fraction(b.alt_m),
+    )
+
+
+class SeparationWatch:
+    """Well clear of every protected vehicle."""
+
+    def __init__(self, mission: Mission) -> None:
+        self._protected = sorted(v.id for v in mission.vehicles if v.protected)
+        volume = mission.daa.well_clear
+        self._volume = volume
+        exact: Any = Fraction
+        self._thresholds = (
+            exact(volume.dthr_m),
+            exact(volume.zthr_m),
+            exact(volume.tthr_s),
+            exact(volume.tcoa_s),
+        )
+        self.pairs: dict[tuple[int, int], Pair] = {}
+        self.violations: list[Verdict] = []
+
+    def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
+        """Check every pair that was in the air at both ends of the step."""
+        for own in self._protected:
+            for other in sorted(after):
+                mutual = other in self._protected and other < own
+                if (
+                    other == own
+                    or mutual
+                    or not all(i in before and i in after for i in (own, other))
+                ):
+                    continue
+                self._check(own, other, before, after)
+
+    def _check(
+        self, own: int, other: int, before: dict[int, Sample], after: dict[int, Sample]
+    ) -> None:
+        pair = self.pairs.setdefault((own, other), Pair())
+        s0, s1 = _relative(before[own], before[other]), _relative(after[own], after[other])
+        h = Fraction(after[own].time_ms - before[own].time_ms, 1000)
+        v = [(b - a) / h for a, b in zip(s0, s1, strict=True)]
+        s_h: Any = Vec2(*s0[:2])  # type: ignore[arg-type]
+        v_h: Any = Vec2(*v[:2])  # type: ignore[arg-type]
+        sz, vz, span = (_any(x) for x in (s0[2], v[2], h))
+        lost = violation_within(s_h, v_h, sz, vz, *self._thresholds, span)
+        pair.checks += 1
+        self._measure(pair, before[own], before[other])
+        self._measure(pair, after[own], after[other])
+        if lost:
+            pair.lost_steps += 1
+            if pair.lost_ms is None:
+                pair.lost_ms = before[own].time_ms
+                self.violations.append(self._verdict(own, other, pair))
+
+    def _measure(self, pair: Pair, own: Sample, other: Sample) -> None:
+        """Least horizontal distance while within ZTHR; for display only."""
+        a, b = own.position, other.position
+        if abs(a.alt_m - b.alt_m) <= self._volume.zthr_m:
+            distance = math.dist(a[:2], b[:2])
+            if distance < pair.nearest_m:
+                pair.nearest_m, pair.nearest_ms = distance, own.time_ms
+
+    def _verdict(self, own: int, other: int, pair: Pair) -> Verdict:
+        lost = pair.lost_ms is not None
+        margin = None
+        note = f"never within ZTHR {self._volume.zthr_m:g} m of altitude"
+        if pair.nearest_m < math.inf:
+            margin = pair.nearest_m - self._volume.dthr_m
+            note = f"nearest {pair.nearest_m:.1f} m at {pair.nearest_ms / 1000:.2f} s"
+        if lost:
+            note = (
+                f"lost at {(pair.lost_ms or 0) / 1000:.2f} s, in {pair.lost_steps} steps; {note}; "
+                "no evidence that no way out existed"
+            )
+        return Verdict(
+            "G2",
+            f"well clear of {own} and {other}",
+            Outcome.VIOLATED if lost else Outcome.HOLDS,
+            Kind.EXACT,
+            note,
+            time_ms=pair.lost_ms if lost else pair.nearest_ms,
+            vehicles=(own, other),
+            margin=margin,
+            unit="m" if margin is not None else "",
+            checks=pair.checks,
+            method="violation_within",
+        )
+
+    def verdicts(self) -> list[Verdict]:
+        """One verdict a pair; a protected vehicle that met nobody is said to have met nobody."""
+        found = [self._verdict(*key, pair) for key, pair in sorted(self.pairs.items())]
+        met = {i for key in self.pairs for i in key}
+        for own in self._protected:
+            if own not in met:
+                note = "no other aircraft was in the air"
+                found.append(
+                    Verdict(
+                        "G2",
+                        f"well clear of {own}",
+                        Outcome.HOLDS,
+                        Kind.EXACT,
+                        note,
+                        vehicles=(own,),
+                    )
+                )
+        return found
+
+
+def _any(value: Fraction) -> Any:
+    return value

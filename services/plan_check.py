@@ -1,0 +1,177 @@
+"""Checks a plan against its mission with the proved kernels, and measures the margins.
+
+Nothing is taken from the planner but its result: constraint rows are made anew from the mission's
+process-algebra text, routes are checked leg by leg, times are recomputed from lengths and speeds.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+
+from cratous.core.timing import eligible, row_holds
+from cratous.services.times import all_hold, row_verdict
+from cratous.services.zones import distance_m, exact_leg_ok
+from cratous.spec.algebra import parallel_of, parse
+from cratous.spec.algebra_meaning import branches, rows, tasks
+from cratous.spec.guarantees import Kind, Outcome, Verdict
+from cratous.spec.mission import Mission, Position, Zone
+from cratous.spec.plan import Plan, PlanItem, Row
+from cratous.spec.schedule import AFTER_END
+
+SPEED_TOLERANCE_MS = 2
+"""Rounding of a route's flight time to whole milliseconds, at both of its ends."""
+
+
+def check_plan(mission: Mission, plan: Plan) -> list[Verdict]:
+    """One verdict for each constraint that the plan has to satisfy."""
+    found = [_complete(mission, plan)]
+    found += _eligibility(mission, plan)
+    found += _chains(mission, plan)
+    found += _relations(mission, plan)
+    found += _zones(mission, plan)
+    return found
+
+
+def term_rows(mission: Mission, chosen: frozenset[int]) -> tuple[Row, ...] | None:
+    """The constraint rows of the branch that consists of the chosen tasks; None if there is none."""
+    known = frozenset(task.id for task in mission.tasks)
+    text = mission.relations.strip()
+    term = parse(text, known) if text else parallel_of(sorted(known))
+    for branch in branches(term):
+        if frozenset(tasks(branch)) == chosen:
+            return rows(branch)
+    return None
+
+
+def _verdict(item: str, good: bool, note: str, method: str, **more: object) -> Verdict:
+    outcome = Outcome.HOLDS if good else Outcome.VIOLATED
+    return Verdict("G1", item, outcome, Kind.EXACT, note, method=method, **more)  # type: ignore[arg-type]
+
+
+def _complete(mission: Mission, plan: Plan) -> Verdict:
+    """Every task of one branch is planned exactly once, and no other."""
+    planned = sorted(item.task_id for item in plan.items)
+    twice = sorted({task for task in planned if planned.count(task) > 1})
+    branch = term_rows(mission, frozenset(planned))
+    good = branch is not None and not twice
+    note = f"tasks planned: {', '.join(map(str, planned)) or 'none'}"
+    if twice:
+        note += f"; planned twice: {', '.join(map(str, twice))}"
+    if branch is None:
+        note += "; they are no complete choice of the mission's relations"
+    return _verdict("plan: every task of one choice, once", good, note, "branches", checks=1)
+
+
+def _eligibility(mission: Mission, plan: Plan) -> Iterator[Verdict]:
+    bits = {vehicle.id: 1 << k for k, vehicle in enumerate(mission.vehicles[:63])}
+    for item in plan.items:
+        allowed = mission.task(item.task_id).eligible or tuple(bits)
+        mask = sum(bits.get(vehicle, 0) for vehicle in set(allowed))
+        good = eligible(mask, bits.get(item.vehicle_id, 0))
+        names = "every vehicle" if len(allowed) == len(bits) else ", ".join(map(str, allowed))
+        yield _verdict(
+            f"eligibility: task {item.task_id}",
+            good,
+            f"assigned to vehicle {item.vehicle_id}; eligible: {names}",
+            "eligible",
+            checks=1,
+            vehicles=(item.vehicle_id,),
+        )
+
+
+def _length_m(path: tuple[Position, ...]) -> float:
+    return math.fsum(math.dist(p[:2], q[:2]) for p, q in pairwise(path))
+
+
+def _chains(mission: Mission, plan: Plan) -> Iterator[Verdict]:
+    """Each vehicle flies its items one after the other, no faster than planned and than it can."""
+    for vehicle in mission.vehicles:
+        free_ms, margins = 0, []
+        chain = plan.chain(vehicle.id)
+        if not chain:
+            continue
+        faults = []
+        for item in chain:
+            ways = ((item.transit, item.depart_ms, item.arrive_ms),)
+            ways += ((item.path, item.start_ms, item.end_ms),)
+            for way, begin_ms, end_ms in ways:
+                speed = min(item.speed_m_s, vehicle.max_speed_m_s)
+                need_ms = math.floor(_length_m(way) / speed * 1000) - SPEED_TOLERANCE_MS
+                margins.append(end_ms - begin_ms - need_ms)
+                if not row_holds(AFTER_END, end_ms, end_ms, begin_ms, need_ms, 0):
+                    faults.append(f"task {item.task_id}: {end_ms - begin_ms} ms, needs {need_ms}")
+            if not (free_ms <= item.depart_ms and item.start_ms == item.arrive_ms + item.wait_ms):
+                faults.append(f"task {item.task_id}: its times do not follow on each other")
+            free_ms = item.end_ms
+        yield _verdict(
+            f"chain: vehicle {vehicle.id}",
+            not faults,
+            "; ".join(faults) or f"{len(chain)} tasks, done at {free_ms / 1000:.3f} s",
+            "row_holds",
+            checks=2 * len(chain),
+            vehicles=(vehicle.id,),
+            margin=min(margins) / 1000,
+            unit="s",
+        )
+
+
+def _relations(mission: Mission, plan: Plan) -> Iterator[Verdict]:
+    times = {item.task_id: (item.start_ms, item.end_ms) for item in plan.items}
+    wanted = term_rows(mission, frozenset(times))
+    if wanted is None:
+        return
+    for row in wanted:
+        yield row_verdict(row, times, "plan")
+    yield _verdict(
+        "plan: all order and timing rows at once",
+        all_hold(wanted, times),
+        f"{len(wanted)} rows",
+        "schedule_holds",
+        checks=len(wanted),
+    )
+
+
+def _legs(item: PlanItem) -> list[tuple[Position, ...]]:
+    ways = [item.transit, item.path]
+    if item.hold is not None and item.wait_ms > 0:
+        h = item.hold
+        steps = [2 * math.pi * k / 36 for k in range(37)]
+        # a polygon around the circle: what is flown lies within it
+        r = h.radius_m / math.cos(math.pi / 36)
+        ways.append(
+            tuple(
+                Position(h.north_m + r * math.cos(a), h.east_m + r * math.sin(a), h.alt_m)
+                for a in steps
+            )
+        )
+    return [way for way in ways if way]
+
+
+def _zones(mission: Mission, plan: Plan) -> Iterator[Verdict]:
+    for zone in mission.zones:
+        for vehicle in mission.vehicles:
+            ways = [way for item in plan.chain(vehicle.id) for way in _legs(item)]
+            if ways:
+                yield _zone_verdict(zone, vehicle.id, ways)
+
+
+def _zone_verdict(zone: Zone, vehicle_id: int, ways: list[tuple[Position, ...]]) -> Verdict:
+    checks, bad = 0, ""
+    for way in ways:
+        for p, q in zip(way, way[1:] or way, strict=False):
+            checks += 1
+            if not bad and not exact_leg_ok(p, q, zone):
+                bad = f"leg ({p.north_m:.1f}, {p.east_m:.1f}) to ({q.north_m:.1f}, {q.east_m:.1f})"
+    distance = min(distance_m(way, zone) for way in ways)
+    return _verdict(
+        f"zone: {zone.kind.value} {zone.id}, planned route of vehicle {vehicle_id}",
+        not bad,
+        bad or f"{checks} legs",
+        "leg_ok: locate, meets_boundary",
+        checks=checks,
+        vehicles=(vehicle_id,),
+        margin=-distance if bad else distance,
+        unit="m",
+    )

@@ -1,0 +1,130 @@
+"""Who may import whom, and that a wheel holds what the repository holds."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ALLOWED = {
+    "spec": set(),
+    "core": {"spec"},
+    "proofs": {"spec", "core"},
+    "bridge": {"spec", "core"},
+    "services": {"spec", "core", "bridge"},
+}
+SPEC_DATA = {"cratous.spec.mission", "cratous.spec.plan", "cratous.spec.errors"}
+CORE_OUTSIDE = {"numpy", "numba"}
+PROOF_COMMANDS = {"services/cli/prove.py", "services/cli/certify.py"}
+
+
+def _imports(file: Path) -> set[str]:
+    names = set()
+    for node in ast.walk(ast.parse(file.read_text())):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            assert node.level == 0, f"{file}: relative import"
+            names.add(node.module)
+            if node.module in ("cratous", *(f"cratous.{p}" for p in ALLOWED)):
+                names |= {f"{node.module}.{alias.name}" for alias in node.names}
+        elif isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+    return names
+
+
+@pytest.mark.parametrize("part", sorted(ALLOWED))
+def test_imports_follow_the_table(part: str, root: Path) -> None:
+    wrong = []
+    for file in sorted((root / part).rglob("*.py")):
+        place = file.relative_to(root).as_posix()
+        for name in _imports(file):
+            if not name.startswith("cratous."):
+                top = name.split(".")[0]
+                if part == "core" and top not in sys.stdlib_module_names | CORE_OUTSIDE | {"cratous"}:
+                    wrong.append(f"{place} imports {name}")
+                continue
+            target = name.split(".")[1]
+            if target in {part, "__version__"} | ALLOWED[part]:
+                continue
+            if target == "proofs" and place in PROOF_COMMANDS:
+                continue
+            wrong.append(f"{place} imports {name}")
+    assert not wrong
+
+
+def test_core_uses_only_data_of_spec(root: Path) -> None:
+    wrong = [
+        f"{file.name} imports {name}"
+        for file in sorted((root / "core").rglob("*.py"))
+        for name in _imports(file)
+        if name.startswith("cratous.spec.") and name not in SPEC_DATA
+    ]
+    assert not wrong
+
+
+def _module(root: Path, name: str) -> Path | None:
+    file = root.joinpath(*name.split(".")[1:])
+    for candidate in (file.with_suffix(".py"), file / "__init__.py"):
+        if candidate.is_file():
+            return candidate
+    return None
+
+
+def test_no_circular_imports(root: Path) -> None:
+    graph: dict[Path, set[Path]] = {}
+    for part in ALLOWED:
+        for file in (root / part).rglob("*.py"):
+            found: set[Path | None] = set()
+            for node in ast.parse(file.read_text()).body:
+                if isinstance(node, ast.ImportFrom) and str(node.module).startswith("cratous."):
+                    for alias in node.names:
+                        inner = _module(root, f"{node.module}.{alias.name}")
+                        found.add(inner or _module(root, str(node.module)))
+            graph[file] = {f for f in found if f is not None and f != file}
+    state: dict[Path, int] = {}
+
+    def visit(file: Path, trail: tuple[Path, ...]) -> None:
+        if state.get(file) == 2:
+            return
+        assert state.get(file) != 1, " -> ".join(f.name for f in (*trail, file))
+        state[file] = 1
+        for other in sorted(graph.get(file, ())):
+            visit(other, (*trail, file))
+        state[file] = 2
+
+    for file in sorted(graph):
+        visit(file, ())
+
+
+def test_folders_refuse_another_name(root: Path) -> None:
+    code = "import sys; sys.path.insert(0, '.'); import core"
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=root, capture_output=True, text=True, timeout=60
+    )
+    assert done.returncode != 0
+    assert "cratous.core" in done.stderr
+
+
+@pytest.mark.slow
+def test_wheel_holds_what_git_tracks(root: Path, tmp_path: Path) -> None:
+    copy = tmp_path / "tree"
+    clone = subprocess.run(
+        ["git", "clone", "--quiet", str(root), str(copy)], capture_output=True, text=True, timeout=120
+    )
+    if clone.returncode != 0:
+        pytest.skip(f"no git checkout to build from: {clone.stderr.strip()}")
+    subprocess.run(
+        [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation",
+         "--wheel-dir", str(tmp_path), str(copy)],
+        check=True, capture_output=True, timeout=300,
+    )  # fmt: skip
+    wheel = next(tmp_path.glob("cratous-*.whl"))
+    inside = {n for n in zipfile.ZipFile(wheel).namelist() if n.startswith("cratous/")}
+    tracked = subprocess.run(
+        ["git", "ls-files", *ALLOWED], cwd=copy, check=True, capture_output=True, text=True
+    ).stdout.split()
+    wanted = {f"cratous/{name}" for name in tracked}
+    assert wanted <= inside, sorted(wanted - inside)[:10]
