@@ -1,0 +1,249 @@
+"""TCP over loopback without threads, timers or blocking, for virtual time.
+
+A `Link` is one end of a connection. When both ends live in this process they know each other as
+`peer`, and `pump` moves bytes until every byte that one end sent has reached the other, so what a
+step delivers does not depend on the operating system's timing. The wall clock serves only as a
+watchdog that gives up. A link that ends says so in `ended`; nothing here raises because a peer
+went away.
+"""
+
+from __future__ import annotations
+
+import select
+import socket
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from cratous.spec.errors import BadInput, CratousError
+
+_CHUNK = 65536
+MAX_PENDING = 16 * 1024 * 1024
+
+
+class LinkStalled(CratousError):
+    """Bytes that were sent did not arrive before the watchdog's time was over."""
+
+    exit_code = 3
+
+
+@dataclass(frozen=True)
+class LinkEvent:
+    """The end of a link: `eof` when the peer closed it, `error` with what the system said."""
+
+    kind: str
+    detail: str = ""
+
+
+class Link:
+    """One end of a TCP connection; `sent` and `received` count bytes."""
+
+    def __init__(self, sock: socket.socket) -> None:
+        sock.setblocking(False)
+        sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._sock = sock
+        self._out = bytearray()
+        self._in = bytearray()
+        self.peer: Link | None = None
+        self.sent = 0  # accepted by `send`; those still in our buffer included
+        self.received = 0
+        self.ended: LinkEvent | None = None
+        self.closed = False
+
+    @property
+    def alive(self) -> bool:
+        """True while bytes can still be sent."""
+        return not self.closed and self.ended is None
+
+    @property
+    def local(self) -> tuple[str, int]:
+        """Its own address."""
+        host, port = self._sock.getsockname()[:2]
+        return host, port
+
+    @property
+    def remote(self) -> tuple[str, int]:
+        """The other end's address."""
+        host, port = self._sock.getpeername()[:2]
+        return host, port
+
+    def send(self, data: bytes) -> bool:
+        """Queue bytes, and hand to the system what it takes now; False if the link is dead."""
+        if not self.alive:
+            return False
+        if len(self._out) + len(data) > MAX_PENDING:
+            self._end("error", f"the peer does not read: {len(self._out)} bytes are waiting")
+            return False
+        self._out += data
+        self.sent += len(data)
+        self.flush()
+        return True
+
+    def flush(self) -> bool:
+        """Hand queued bytes to the system; True if any went."""
+        if not self._out or not self.alive:
+            return False
+        try:
+            count = self._sock.send(self._out, socket.MSG_NOSIGNAL)
+        except (BlockingIOError, InterruptedError):
+            return False
+        except OSError as err:
+            self._end("error", err.strerror or str(err))
+            return False
+        del self._out[:count]
+        return count > 0
+
+    def drain(self) -> bool:
+        """Take all that has arrived into the inbox; True if anything did, the end included."""
+        moved = False
+        while self.alive and self.expects_more():
+            try:
+                data = self._sock.recv(_CHUNK)
+            except (BlockingIOError, InterruptedError):
+                return moved
+            except OSError as err:
+                self._end("error", err.strerror or str(err))
+                return True
+            if not data:
+                self._end("eof", "closed by the peer")
+                return True
+            self._in += data
+            self.received += len(data)
+            moved = True
+        return moved
+
+    def take(self) -> bytes:
+        """The bytes of the inbox, which is empty afterwards."""
+        data = bytes(self._in)
+        self._in.clear()
+        return data
+
+    def expects_more(self) -> bool:
+        """True if something may still arrive; exact when the peer is in this process."""
+        if not self.alive:
+            return False
+        if self.peer is None or not self.peer.alive:
+            return True  # unknown, or its end is still to be seen
+        return self.received < self.peer.sent
+
+    def close(self) -> None:
+        """Close this end; the peer sees the end of file. Safe to call twice."""
+        if not self.closed:
+            self.closed = True
+            self._sock.close()
+
+    def fileno(self) -> int:
+        """For select and poll."""
+        return self._sock.fileno()
+
+    def poll_mask(self) -> int:
+        """What `pump` has to wait for."""
+        return select.POLLIN | (select.POLLOUT if self._out else 0)
+
+    def _end(self, kind: str, detail: str) -> None:
+        self.ended = LinkEvent(kind, detail)
+        self.sent -= len(self._out)  # what the system did not take will never arrive
+        self._out.clear()
+
+
+class Listener:
+    """A listening socket; port 0 lets the system choose one."""
+
+    def __init__(self, host: str = "127.0.0.1", port: int = 0, backlog: int = 128) -> None:
+        self._sock = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        try:
+            self._sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            self._sock.bind((host, port))
+            self._sock.listen(backlog)
+        except (OSError, OverflowError) as err:
+            self._sock.close()
+            raise BadInput(
+                "cannot listen",
+                where=f"{host}:{port}",
+                expected="a free port",
+                got=getattr(err, "strerror", None) or str(err),
+            ) from None
+        self._sock.setblocking(False)
+
+    @property
+    def address(self) -> tuple[str, int]:
+        """Host and port on which it listens."""
+        host, port = self._sock.getsockname()[:2]
+        return host, port
+
+    def accept(self) -> Link | None:
+        """The next connection that waits, or None."""
+        try:
+            sock, _ = self._sock.accept()
+        except (BlockingIOError, InterruptedError, ConnectionError):
+            return None
+        return Link(sock)
+
+    def wait(self, timeout_s: float) -> bool:
+        """True as soon as a connection waits, False when the time is over."""
+        return bool(select.select([self._sock], [], [], timeout_s)[0])
+
+    def close(self) -> None:
+        """Stop listening."""
+        self._sock.close()
+
+
+def connect(address: tuple[str, int], timeout_s: float = 10.0) -> Link:
+    """The client end of a new connection; BadInput if nobody listens there."""
+    try:
+        return Link(socket.create_connection(address, timeout=timeout_s))
+    except OSError as err:
+        raise BadInput(
+            "cannot connect",
+            where=f"{address[0]}:{address[1]}",
+            expected="a listening peer",
+            got=err.strerror or str(err),
+        ) from None
+
+
+def connect_pair(listener: Listener, timeout_s: float = 10.0) -> tuple[Link, Link]:
+    """(server end, client end) of a new connection to our own listener, known to each other.
+
+    Connections of strangers that come in between are closed.
+    """
+    client = connect(listener.address, timeout_s)
+    deadline = time.monotonic() + timeout_s
+    while True:
+        server = listener.accept()
+        if server is None:
+            if not listener.wait(max(0.0, deadline - time.monotonic())):
+                client.close()
+                raise LinkStalled(f"our own connection was not accepted in {timeout_s:g} s")
+        elif server.remote == client.local:
+            server.peer, client.peer = client, server
+            return server, client
+        else:
+            server.close()
+
+
+def pump(links: Iterable[Link], watchdog_s: float = 10.0) -> None:
+    """Move bytes until every byte sent by one end has reached its peer in this process.
+
+    LinkStalled if nothing at all moves for `watchdog_s` of wall time.
+    """
+    ends = list(links)
+    while True:
+        moved = False
+        for link in ends:
+            moved |= link.flush()
+        for link in ends:
+            moved |= link.drain()
+        waiting = [link for link in ends if link.peer is not None and link.expects_more()]
+        if not waiting:
+            return
+        if moved:
+            continue
+        poll = select.poll()
+        for link in ends:
+            if link.alive:
+                poll.register(link.fileno(), link.poll_mask())
+        if not poll.poll(watchdog_s * 1000):
+            missing = sum(max(0, link.peer.sent - link.received) for link in waiting if link.peer)
+            raise LinkStalled(
+                f"{missing} bytes on {len(waiting)} links did not arrive in {watchdog_s:g} s"
+            )

@@ -1,0 +1,140 @@
+"""The canonical JSON form of LMCP objects: the log's form, so it is fast and deterministic.
+
+`{"$type": "CMASI/AirVehicleState", "ID": 400, ...}`: all fields, in the order of the wire, no
+blanks, enums by name, shortest digits that give back the same double. JSON has no numbers for
+not-a-number and the infinities: they stand as "NaN", "Infinity" and "-Infinity".
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from functools import cache
+from typing import Any
+
+from cratous.bridge.lmcp.objects import (
+    LmcpEnum,
+    LmcpObject,
+    real,
+    types,
+    unknown_field,
+    within,
+)
+from cratous.spec.errors import BadInput
+
+_encode = json.JSONEncoder(
+    separators=(",", ":"), ensure_ascii=False, allow_nan=False, check_circular=False
+).encode
+_NON_FINITE = ("NaN", "Infinity", "-Infinity")
+_MAX_DEPTH = 64
+
+
+@cache
+def _plan(cls: Any) -> tuple[tuple[int, ...], tuple[int, ...], tuple[str, ...]]:
+    """Positions (in the wire's order, `$type` being 0) of the reals and of the non-primitives."""
+    reals, others = [], []
+    for i, field in enumerate(cls.fields, 1):
+        if field.array is not None or field.kind in ("enum", "struct", "any"):
+            others.append(i)
+        elif field.kind.startswith("real"):
+            reals.append(i)
+    return tuple(reals), tuple(others), ("$type", *cls.names)
+
+
+def _plain(value: Any) -> Any:
+    kind = type(value)
+    if kind is list:
+        return [_plain(v) for v in value]
+    if isinstance(value, LmcpEnum):
+        return value.name
+    if isinstance(value, LmcpObject):
+        return to_dict(value)
+    return value
+
+
+def to_dict(obj: LmcpObject) -> dict[str, Any]:
+    """The JSON form as a dictionary; non-finite numbers are still floats in it."""
+    cls: Any = type(obj)
+    reals, others, keys = _plan(cls)
+    values = [cls.type_name, *cls.values_of(obj)]
+    for i in reals:
+        if type(values[i]) is not float:
+            values[i] = real(values[i])
+    for i in others:
+        values[i] = _plain(values[i])
+    return dict(zip(keys, values, strict=True))
+
+
+def _spell_non_finite(value: Any) -> Any:
+    if isinstance(value, float) and not math.isfinite(value):
+        return "NaN" if math.isnan(value) else "Infinity" if value > 0 else "-Infinity"
+    if isinstance(value, list):
+        return [_spell_non_finite(v) for v in value]
+    if isinstance(value, dict):
+        return {k: _spell_non_finite(v) for k, v in value.items()}
+    return value
+
+
+def to_json(obj: LmcpObject) -> str:
+    """One line of canonical JSON; BadInput if a field holds a value that is not of its type."""
+    try:
+        return _encode(to_dict(obj))
+    except (ValueError, TypeError):  # a non-finite number, or a wrong or a numpy value
+        return _encode(_spell_non_finite(to_dict(obj.copy().checked())))
+
+
+def from_json(text: str | bytes, where: str = "") -> Any:
+    """The object of a JSON text; BadInput (with `where`) for anything that is not one."""
+    try:
+        data = json.loads(text, parse_constant=_refuse_constant)
+    except (ValueError, RecursionError) as err:
+        raise BadInput("not JSON", where=where, got=str(err)) from None
+    return from_dict(data, where)
+
+
+def _refuse_constant(text: str) -> float:
+    raise ValueError(f"{text} is not a JSON number")
+
+
+def from_dict(data: Any, where: str = "") -> Any:
+    """The object of a dictionary in the JSON form; fields that are missing keep the default."""
+    try:
+        return _object(data, 0)
+    except BadInput as err:
+        err = within(err, "") if not where else err
+        raise BadInput(
+            err.what, where=where, item=err.item, expected=err.expected, got=err.got
+        ) from None
+
+
+def _object(data: Any, depth: int) -> LmcpObject:
+    if not isinstance(data, dict) or not isinstance(data.get("$type"), str):
+        raise BadInput("not an LMCP object", expected='{"$type": ...}', got=repr(data)[:60])
+    if depth > _MAX_DEPTH:
+        raise BadInput("nested too deeply", expected=f"at most {_MAX_DEPTH} levels")
+    cls = types[data["$type"]]
+    kinds = {f.name: f for f in cls.fields}
+    values = {}
+    for name, value in data.items():
+        if name == "$type":
+            continue
+        field = kinds.get(name)
+        if field is None:
+            raise unknown_field(cls, name)
+        try:
+            values[name] = _value(field.kind, value, depth)
+        except BadInput as err:
+            raise within(err, f"{cls.__name__}.{name}") from None
+    return cls(**values)
+
+
+def _value(kind: str, value: Any, depth: int) -> Any:
+    if isinstance(value, list):
+        return [_value(kind, v, depth) for v in value]
+    if kind in ("struct", "any"):
+        return None if value is None else _object(value, depth + 1)
+    if kind.startswith("real") and isinstance(value, str) and value in _NON_FINITE:
+        return float(value)
+    if kind == "enum" and not isinstance(value, str):
+        raise BadInput("wrong value", expected="the enum's name", got=repr(value)[:60])
+    return value

@@ -1,0 +1,359 @@
+"""LMCP objects: a real Python class for each struct, made from its model on first use.
+
+Classes inherit as the structs do, so `isinstance(task, lmcp.types["afrl.cmasi.Task"])` works.
+Fields are slots; numbers are int or float, enums IntEnum members, arrays lists, structs objects
+or None. The constructor takes fields by name, checks them and refuses names it does not know;
+later assignments are not checked until the object is written out. An object that has been
+published on the bus is a value: copy it before changing it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from enum import IntEnum
+from functools import cache
+from operator import attrgetter, index
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+from cratous.bridge.lmcp import model
+from cratous.spec.errors import BadInput
+
+Self = TypeVar("Self", bound="LmcpObject")
+Check = Callable[[Any], Any]
+
+
+class LmcpEnum(IntEnum):
+    """Base of the enums: an int that prints by its name."""
+
+    def __repr__(self) -> str:
+        return self.name
+
+    __str__ = __repr__
+
+
+class LmcpObject:
+    """Base of every message and part of a message."""
+
+    __slots__ = ()
+    series: ClassVar[str] = ""
+    type_name: ClassVar[str] = ""  # as in `CMASI/AirVehicleState`
+    type_id: ClassVar[int] = 0
+    all_names: ClassVar[tuple[str, ...]] = ()  # full names: its own, then those of its bases
+    fields: ClassVar[tuple[model.Field, ...]] = ()  # oldest ancestor first: the wire's order
+    names: ClassVar[tuple[str, ...]] = ()
+    values_of: ClassVar[Any] = staticmethod(lambda _obj: ())  # all values, in that order
+    _makers: ClassVar[tuple[tuple[str, Callable[[], Any] | None, Any], ...]] = ()
+    _checks: ClassVar[dict[str, Check]] = {}
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any: ...
+
+        def __setattr__(self, name: str, value: Any) -> None: ...
+
+    def __init__(self, **given: Any) -> None:
+        for name, make, constant in self._makers:
+            if name not in given:
+                setattr(self, name, constant if make is None else make())
+        for name, value in given.items():
+            check = self._checks.get(name)
+            if check is None:
+                raise unknown_field(type(self), name)
+            try:
+                setattr(self, name, check(value))
+            except BadInput as err:
+                raise within(err, f"{type(self).__name__}.{name}") from None
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        return bool(self.values_of(self) == self.values_of(other))
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        """Only what differs from the default, so that long messages stay readable."""
+        plain = type(self)()
+        shown = [
+            f"{name}={getattr(self, name)!r}"
+            for name in self.names
+            if getattr(self, name) != getattr(plain, name)
+        ]
+        return f"{type(self).__name__}({', '.join(shown)})"
+
+    def copy(self: Self, **changes: Any) -> Self:
+        """A deep copy, with some fields changed."""
+        kept = {n: _copied(getattr(self, n)) for n in self.names if n not in changes}
+        return type(self)(**kept, **changes)
+
+    def checked(self: Self, where: str = "") -> Self:
+        """Itself, after all its values are found (or made) to be of their types; else BadInput."""
+        for name, check in self._checks.items():
+            try:
+                value = check(getattr(self, name))
+                for i, part in enumerate(value if type(value) is list else (value,)):
+                    if isinstance(part, LmcpObject):
+                        part.checked(f"[{i}]" if type(value) is list else "")
+            except BadInput as err:
+                raise within(err, f"{where}{type(self).__name__}.{name}") from None
+            setattr(self, name, value)
+        return self
+
+
+def within(err: BadInput, item: str) -> BadInput:
+    """The same error, with `item` put before the path of the part it speaks of."""
+    path = item if not err.item else f"{item}{'' if err.item[0] == '[' else '.'}{err.item}"
+    return BadInput(err.what, where=err.where, item=path, expected=err.expected, got=err.got)
+
+
+def unknown_field(cls: type[LmcpObject], name: str, where: str = "") -> BadInput:
+    """The error for a field that a class does not have, with the nearest names it does have."""
+    from difflib import get_close_matches
+
+    by_lower = {n.lower(): n for n in cls.names}
+    near = [by_lower[n] for n in get_close_matches(name.lower(), by_lower, 3)]
+    if not near:
+        near = list(cls.names) if len(cls.names) <= 8 else [f"one of its {len(cls.names)} fields"]
+    return BadInput(
+        "unknown field",
+        where=where,
+        item=f"{cls.__name__}.{name}",
+        expected=" or ".join(near) or "no field at all",
+        got=name,
+    )
+
+
+def _copied(value: Any) -> Any:
+    if isinstance(value, LmcpObject):
+        return value.copy()
+    return [_copied(v) for v in value] if type(value) is list else value
+
+
+def _wrong(expected: str, got: Any) -> BadInput:
+    return BadInput("wrong value", expected=expected, got=repr(got)[:80])
+
+
+def real(value: Any) -> float:
+    """A number as float; bool, text and other things are refused."""
+    if type(value) is float:
+        return value
+    if isinstance(value, (bool, str, bytes)) or not hasattr(value, "__float__"):
+        raise _wrong("a number", value)
+    try:
+        return float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise _wrong("a number", value) from None
+
+
+def real32(value: Any) -> float:
+    """A number that fits 32 bits; kept as given, rounded to 32 bits only on the wire."""
+    number = real(value)
+    # Half a step above the largest real32, where rounding to nearest would overflow.
+    if abs(number) >= 3.4028235677973366e38 and not math.isinf(number):
+        raise _wrong("a number within real32", value)
+    return number
+
+
+def _integer(kind: str) -> Check:
+    low, high = model.INTEGER_RANGES[kind]
+
+    def check(value: Any) -> int:
+        try:
+            number = index(value)
+        except TypeError:
+            raise _wrong(kind, value) from None
+        if isinstance(value, bool) or not low <= number <= high:
+            raise _wrong(f"{kind} from {low} to {high}", value)
+        return int(number)
+
+    return check
+
+
+def _boolean(value: Any) -> bool:
+    if type(value) is not bool:
+        if type(value).__name__ in ("bool_", "bool"):  # numpy's own
+            return bool(value)
+        raise _wrong("true or false", value)
+    return value
+
+
+def _text(value: Any) -> str:
+    if not isinstance(value, str):
+        raise _wrong("text", value)
+    return str(value)
+
+
+def _char(value: Any) -> str:
+    if not isinstance(value, str) or len(value) != 1 or ord(value) > 255:
+        raise _wrong("one character", value)
+    return value
+
+
+def _enum(type_name: str) -> Check:
+    def check(value: Any) -> LmcpEnum:
+        members = enums[type_name]
+        if type(value) is members:
+            return value
+        if isinstance(value, str) and value in members.__members__:
+            return members[value]
+        if type(value) is int:
+            try:
+                return members(value)
+            except ValueError:
+                pass
+        raise _wrong(f"{members.__name__}: {' or '.join(members.__members__)}", value)
+
+    return check
+
+
+def _object(type_name: str, nullable: bool) -> Check:
+    def check(value: Any) -> LmcpObject | None:
+        if value is None and nullable:
+            return None
+        base = LmcpObject if type_name == model.ANY else types[type_name]
+        if not isinstance(value, base):
+            raise _wrong(base.__name__ + (" or null" if nullable else ""), value)
+        return value
+
+    return check
+
+
+def _array(field: model.Field, one: Check) -> Check:
+    def check(value: Any) -> list[Any]:
+        if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
+            raise _wrong("a list", value)
+        result = []
+        for i, element in enumerate(value):
+            try:
+                result.append(one(element))
+            except BadInput as err:
+                raise within(err, f"[{i}]") from None
+        if field.array and len(result) != field.array:
+            raise _wrong(f"{field.array} elements", value)
+        return result
+
+    return check
+
+
+_PRIMITIVES: dict[str, tuple[Check, Any]] = {
+    "real32": (real32, 0.0),
+    "real64": (real, 0.0),
+    "bool": (_boolean, False),
+    "string": (_text, ""),
+    "char": (_char, "\0"),
+    **{kind: (_integer(kind), 0) for kind in model.INTEGER_RANGES},
+}
+
+
+def element_check(field: model.Field) -> Check:
+    """What one value, or one element of the array, must be."""
+    if field.kind == "enum":
+        return _enum(field.type)
+    if field.kind in ("struct", "any"):
+        # null is a legal element of an array on the wire
+        return _object(field.type, field.nullable or field.array is not None)
+    return _PRIMITIVES[field.kind][0]
+
+
+def _maker(field: model.Field) -> tuple[str, Callable[[], Any] | None, Any]:
+    """(name, None, the constant default) or (name, what makes a fresh default, None)."""
+    if field.kind == "enum":
+        members = enums[field.type]
+        constant: Any = members[field.default] if field.has_default else next(iter(members))
+    elif field.kind in ("struct", "any"):
+        constant = None
+    else:
+        constant = field.default if field.has_default else _PRIMITIVES[field.kind][1]
+    if field.array is not None:
+        count = field.array
+        return field.name, (lambda: [constant] * count), None
+    if field.kind == "struct" and not field.has_default:
+        return field.name, (lambda: types[field.type]()), None
+    return field.name, None, constant
+
+
+@cache
+def _class(series: str, name: str) -> type[LmcpObject]:
+    loaded = model.load(series)
+    if name not in loaded.structs:
+        raise BadInput("not a struct", item=f"{series}/{name}", expected="a struct's name")
+    struct = loaded.structs[name]
+    base = types[struct.extends] if struct.extends else LmcpObject
+    own = struct.fields
+    fields = base.fields + own
+    names = tuple(f.name for f in fields)
+    getter: Any = attrgetter(*names) if len(names) > 1 else None
+    if getter is None:
+        getter = (lambda obj: (getattr(obj, names[0]),)) if names else (lambda _obj: ())
+    checks = {}
+    for field in own:
+        one = element_check(field)
+        checks[field.name] = one if field.array is None else _array(field, one)
+    body = {
+        "__slots__": tuple(f.name for f in own),
+        "__module__": __name__,
+        "__doc__": f"{loaded.full_name(name)}: {', '.join(names) or 'no fields'}.",
+        "series": series,
+        "type_name": f"{series}/{name}",
+        "type_id": struct.id,
+        "all_names": (loaded.full_name(name), *base.all_names),
+        "fields": fields,
+        "names": names,
+        "values_of": staticmethod(getter),
+        "_makers": base._makers + tuple(_maker(f) for f in own),
+        "_checks": {**base._checks, **checks},
+    }
+    return type(name, (base,), body)
+
+
+@cache
+def _enum_class(series: str, name: str) -> Any:
+    loaded = model.load(series)
+    if name not in loaded.enums:
+        raise BadInput("not an enum", item=f"{series}/{name}", expected="an enum's name")
+    make: Any = LmcpEnum  # the functional form makes a subclass
+    return make(name, loaded.enums[name])
+
+
+class _Registry(Mapping[str, Any]):
+    """Types by full name, `SERIES/Name` or short name; they are made when first asked for."""
+
+    def __init__(self, make: Callable[[str, str], Any], part: str) -> None:
+        self._make, self._part = make, part
+        self._found: dict[str, Any] = {}
+
+    def __getitem__(self, name: str) -> Any:
+        found = self._found.get(name)
+        if found is None:
+            found = self._found[name] = self._make(*model.resolve(name))
+        return found
+
+    def __contains__(self, name: object) -> bool:
+        try:
+            return isinstance(name, str) and self[name] is not None
+        except BadInput:
+            return False
+
+    def __iter__(self) -> Iterator[str]:
+        for series in model.SERIES:
+            loaded = model.load(series)
+            for name in getattr(loaded, self._part):
+                yield loaded.full_name(name)
+
+    def __len__(self) -> int:
+        return sum(len(getattr(model.load(s), self._part)) for s in model.SERIES)
+
+
+types: Mapping[str, type[Any]] = _Registry(_class, "structs")
+enums: Mapping[str, Any] = _Registry(_enum_class, "enums")
+
+
+def new(name: str, **fields: Any) -> Any:
+    """A new object of the named type; the other fields have their defaults."""
+    return types[name](**fields)
+
+
+def full_names(obj: LmcpObject) -> tuple[str, ...]:
+    """The object's full type name, then those of its bases: the bus' topics."""
+    return obj.all_names

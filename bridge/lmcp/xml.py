@@ -1,0 +1,362 @@
+"""LMCP in XML: reading (in any order of fields, strictly checked) and writing.
+
+`<Name Series="CMASI"> <Field>...</Field> ... </Name>`. Elements of primitive and enum arrays stand
+in tags of their type (`<int64>1</int64>`; another width of integer is accepted), structs in tags of theirs, null as `<null/>`, enums by
+name. A field that is missing keeps its default. A field that is given twice: the last one counts
+and a note says so, and the same for a field that the type does not have: OpenUxAS's own files do
+both. `strict` makes the second an error. No entities, no network.
+"""
+
+from __future__ import annotations
+
+import re
+import struct as _struct
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from cratous.bridge.lmcp import model
+from cratous.bridge.lmcp.objects import LmcpObject, enums, types, unknown_field
+from cratous.spec.errors import BadInput
+
+_INTEGER = re.compile(r"[+-]?[0-9]{1,20}\Z")
+_REAL = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?\Z")
+_NON_FINITE = {"NaN", "Infinity", "-Infinity", "nan", "inf", "-inf", "-nan", "Inf", "-Inf", "INF"}
+# OpenUxAS's own files write int64 elements as <uint32>; the range of the field's type counts.
+_TAGS: dict[str, set[str]] = {kind: set(model.INTEGER_RANGES) for kind in model.INTEGER_RANGES}
+_TAGS |= {kind: {"real32", "real64"} for kind in ("real32", "real64")}
+_ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", "\r": "&#13;"})
+_ILLEGAL = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+class LmcpNote(UserWarning):
+    """Something in an XML file that is legal but that its author may not have meant."""
+
+
+@dataclass(frozen=True)
+class _Source:
+    """Where an element stands, and what to do with what is odd about it."""
+
+    where: str
+    notes: list[str]
+    strict: bool
+    finite: bool
+
+    def place(self, element: Any) -> str:
+        return f"{self.where}:{element.sourceline or 1}"
+
+    def note(self, element: Any, text: str) -> None:
+        self.notes.append(f"{self.place(element)}: {text}")
+
+
+def read_file(
+    path: str | Path,
+    notes: list[str] | None = None,
+    *,
+    strict: bool = False,
+    finite: bool = True,
+) -> list[Any]:
+    """The objects of an XML file: of its root, or of the children of a root that is no struct.
+
+    Notes go to `notes`, or become LmcpNote warnings. BadInput for anything that is not right;
+    also for NaN and the infinities, unless `finite` is False.
+    """
+    where = str(path)
+    try:
+        data = Path(path).read_bytes()
+    except OSError as err:
+        raise BadInput(
+            "file cannot be read", where=where, expected="a file", got=err.strerror or str(err)
+        ) from None
+    return loads(data, where, notes, strict=strict, finite=finite)
+
+
+def loads(
+    text: str | bytes,
+    where: str = "text",
+    notes: list[str] | None = None,
+    *,
+    strict: bool = False,
+    finite: bool = True,
+) -> list[Any]:
+    """The objects of an XML text; see `read_file`."""
+    source = _Source(where, [], strict, finite)
+    root = parse(text, where)
+    if root.get("Series") is not None or len(model.series_with(root.tag)) > 0:
+        objects = [_object(root, source)]
+    else:
+        objects = [_object(child, source) for child in root]
+        if not objects:
+            raise BadInput("no LMCP object", where=source.place(root), got=f"<{root.tag}/>")
+    if notes is not None:
+        notes.extend(source.notes)
+    else:
+        for note in source.notes:
+            warnings.warn(LmcpNote(note), stacklevel=2)
+    return objects
+
+
+def parse(text: str | bytes, where: str = "text") -> Any:
+    """The root element of an XML text, read without entities, network or comments."""
+    from lxml import etree
+
+    parser = etree.XMLParser(
+        resolve_entities=False,
+        no_network=True,
+        huge_tree=False,
+        load_dtd=False,
+        remove_comments=True,
+        remove_pis=True,
+    )
+    data = text.encode("utf-8") if isinstance(text, str) else text
+    if isinstance(text, str):  # a declared encoding no longer holds for text that is decoded
+        data = re.sub(rb"\A(<\?xml[^>]*?)\s+encoding=(\"[^\"]*\"|'[^']*')", rb"\1", data)
+    try:
+        root = etree.fromstring(data, parser)
+    except etree.XMLSyntaxError as err:
+        line = err.lineno or 1
+        raise BadInput(
+            "not well-formed XML", where=f"{where}:{line}", expected="XML", got=err.msg or str(err)
+        ) from None
+    for node in root.iter():
+        if not isinstance(node.tag, str):
+            raise BadInput(
+                "entity in XML",
+                where=f"{where}:{node.sourceline or 1}",
+                expected="no entities but the five of XML",
+                got=str(node.text),
+            )
+    return root
+
+
+def read_element(
+    element: Any,
+    where: str = "text",
+    notes: list[str] | None = None,
+    *,
+    strict: bool = False,
+    finite: bool = True,
+) -> Any:
+    """The object of one element (of `parse`); the attribute Time of AMASE is left to the caller."""
+    return _object(element, _Source(where, [] if notes is None else notes, strict, finite))
+
+
+def _object(element: Any, source: _Source) -> Any:
+    cls = _class_of(element, source)
+    fields = {f.name: f for f in cls.fields}
+    values: dict[str, Any] = {}
+    _no_text(element, source)
+    for name in element.keys():  # noqa: SIM118 (an lxml element, not a dictionary)
+        if name not in ("Series", "Time"):
+            source.note(element, f"attribute {name} of {element.tag} is not used")
+    for child in element:
+        field = fields.get(child.tag)
+        if field is None:
+            unknown = unknown_field(cls, child.tag, source.place(child))
+            if source.strict:
+                raise unknown
+            source.notes.append(f"{unknown}; not used")
+            continue
+        if field.name in values:
+            source.note(
+                child,
+                f"{cls.__name__}.{field.name} is given twice; the last one counts",
+            )
+        values[field.name] = _field_value(field, child, source)
+    try:
+        return cls(**values)
+    except BadInput as err:
+        raise BadInput(
+            err.what,
+            where=source.place(element),
+            item=err.item,
+            expected=err.expected,
+            got=err.got,
+        ) from None
+
+
+def _no_text(element: Any, source: _Source) -> None:
+    pieces = [element.text, *(child.tail for child in element)]
+    for text in pieces:
+        if text and text.strip():
+            raise BadInput(
+                "text between elements",
+                where=source.place(element),
+                item=element.tag,
+                expected="elements only",
+                got=repr(text.strip())[:60],
+            )
+
+
+def _class_of(element: Any, source: _Source) -> type[LmcpObject]:
+    series, name = element.get("Series"), element.tag
+    known = model.series_with(name)
+    if series is None and len(known) > 1:
+        raise BadInput(
+            "type of several series",
+            where=source.place(element),
+            item=name,
+            expected=" or ".join(f'Series="{s}"' for s in known),
+            got="no Series",
+        )
+    full = f"{series or (known[0] if known else '')}/{name}"
+    if full not in types:
+        raise BadInput(
+            "unknown message type",
+            where=source.place(element),
+            item=name,
+            expected=" or ".join(f'{name} of Series="{s}"' for s in known) or "a known type",
+            got=full.strip("/"),
+        )
+    return types[full]
+
+
+def _field_value(field: model.Field, element: Any, source: _Source) -> Any:
+    if element.attrib:
+        source.note(element, f"attributes of field {field.name} are not used")
+    if field.array is not None:
+        _no_text(element, source)
+        if field.kind in ("struct", "any"):
+            return [_struct_or_null(child, source) for child in element]
+        tag = field.type.rpartition("/")[2]
+        for child in element:
+            if child.tag not in _TAGS.get(field.kind, {tag}):
+                raise BadInput(
+                    "wrong element in an array",
+                    where=source.place(child),
+                    item=field.name,
+                    expected=f"<{tag}>",
+                    got=f"<{child.tag}>",
+                )
+        return [_primitive(field, child, source) for child in element]
+    if field.kind in ("struct", "any"):
+        _no_text(element, source)
+        if len(element) > 1:
+            raise BadInput(
+                "more than one object in a field",
+                where=source.place(element[1]),
+                item=field.name,
+                expected="one object",
+                got=f"{len(element)}",
+            )
+        value = _struct_or_null(element[0], source) if len(element) else None
+        if value is None and not field.nullable:
+            raise BadInput(
+                "required field is null",
+                where=source.place(element),
+                item=field.name,
+                expected=field.type,
+                got="null",
+            )
+        return value
+    return _primitive(field, element, source)
+
+
+def _struct_or_null(element: Any, source: _Source) -> Any:
+    if element.tag == "null":
+        return None
+    return _object(element, source)
+
+
+def _primitive(field: model.Field, element: Any, source: _Source) -> Any:
+    def wrong(expected: str) -> BadInput:
+        return BadInput(
+            "wrong value",
+            where=source.place(element),
+            item=field.name,
+            expected=expected,
+            got=repr(text[:60]),
+        )
+
+    text = element.text or ""
+    if len(element):
+        text = f"<{element[0].tag}>"
+        raise wrong(f"one value ({field.kind})")
+    if field.kind == "string":
+        return text
+    if field.kind == "char":
+        return text
+    text = text.strip()
+    if field.kind == "enum":
+        members = enums[field.type]
+        if text not in members.__members__:
+            raise wrong(f"{members.__name__}: {' or '.join(members.__members__)}")
+        return members[text]
+    if field.kind == "bool":
+        if text.lower() not in ("true", "false", "1", "0"):
+            raise wrong("true or false")
+        return text.lower() in ("true", "1")
+    if field.kind in ("real32", "real64"):
+        if not _REAL.match(text) and (source.finite or text not in _NON_FINITE):
+            raise wrong("a number")
+        value = float(text)
+        if source.finite and value - value != 0:  # too large for a double
+            raise wrong("a number within real64")
+        if field.kind == "real64" or value != value:
+            return value
+        try:
+            # The field's own precision, so that a file means what it means to the other tools.
+            return float(_struct.unpack(">f", _struct.pack(">f", value))[0])
+        except OverflowError:
+            raise wrong("a number within real32") from None
+    if not _INTEGER.match(text):
+        raise wrong(field.kind)
+    low, high = model.INTEGER_RANGES[field.kind]
+    if not low <= int(text) <= high:
+        raise wrong(f"{field.kind} from {low} to {high}")
+    return int(text)
+
+
+def dumps(obj: LmcpObject) -> str:
+    """XML text of an object, fields in the order of the wire, two blanks of indentation."""
+    lines: list[str] = []
+    _write(obj.copy().checked(), lines, "")
+    return "\n".join(lines) + "\n"
+
+
+def _write(obj: LmcpObject | None, lines: list[str], pad: str) -> None:
+    if obj is None:
+        lines.append(f"{pad}<null/>")
+        return
+    name = type(obj).__name__
+    lines.append(f'{pad}<{name} Series="{obj.series}">')
+    for field in obj.fields:
+        value = getattr(obj, field.name)
+        if field.array is not None:
+            lines.append(f"{pad}  <{field.name}>")
+            tag = field.type.rpartition("/")[2]
+            for element in value:
+                if field.kind in ("struct", "any"):
+                    _write(element, lines, pad + "    ")
+                else:
+                    lines.append(f"{pad}    <{tag}>{_text_of(field, element)}</{tag}>")
+            lines.append(f"{pad}  </{field.name}>")
+        elif field.kind in ("struct", "any"):
+            lines.append(f"{pad}  <{field.name}>")
+            _write(value, lines, pad + "    ")
+            lines.append(f"{pad}  </{field.name}>")
+        else:
+            lines.append(f"{pad}  <{field.name}>{_text_of(field, value)}</{field.name}>")
+    lines.append(f"{pad}</{name}>")
+
+
+def _text_of(field: model.Field, value: Any) -> str:
+    if field.kind == "enum":
+        return str(value.name)
+    if field.kind == "bool":
+        return "true" if value else "false"
+    if field.kind in ("string", "char"):
+        bad = _ILLEGAL.search(value)
+        if bad:
+            raise BadInput(
+                "text that XML cannot hold",
+                item=field.name,
+                expected="no control characters",
+                got=repr(bad.group()),
+            )
+        return str(value).translate(_ESCAPES)
+    if isinstance(value, float):
+        text = repr(value)
+        return {"nan": "NaN", "inf": "Infinity", "-inf": "-Infinity"}.get(text, text)
+    return str(value)

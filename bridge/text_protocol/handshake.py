@@ -1,0 +1,99 @@
+"""The handshake that opens a CRATOUS connection, as two machines that take bytes in any pieces.
+
+1. server: `ICAROUS-UxAS_LMCP`; 2. client: 64 hexadecimal characters; 3. server: `ok ` or `error`.
+No newlines. Messages may follow at once, glued to the last step; `rest` holds them. The secret
+only tells a wrong program from the right one: it travels in clear and is no security measure.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from hmac import compare_digest
+
+HELLO = b"ICAROUS-UxAS_LMCP"
+ACCEPT = b"ok "
+REFUSE = b"error"
+SECRET_LENGTH = 64
+# A constant of this product; not a security measure, see above.
+DEFAULT_SECRET = "c7a705" + "0a11ce5afe" * 5 + "facade42"
+
+
+@dataclass
+class Handshake:
+    """What both ends share: `done`, or `failed` with the reason; bytes not used yet in `rest`."""
+
+    secret: str = DEFAULT_SECRET
+    done: bool = False
+    failed: str = ""
+    rest: bytes = b""
+
+    def __post_init__(self) -> None:
+        text = self.secret
+        if len(text) != SECRET_LENGTH or not set(text) <= set("0123456789abcdefABCDEF"):
+            raise ValueError(f"a secret is {SECRET_LENGTH} hexadecimal characters")
+
+    def start(self) -> bytes:
+        """What to send at once."""
+        return b""
+
+    def feed(self, data: bytes) -> bytes:
+        """Take bytes from the other end; gives what to send now."""
+        self.rest += data
+        return b"" if self.done or self.failed else self._step()
+
+    def _step(self) -> bytes:
+        raise NotImplementedError
+
+    def _expect(self, wanted: bytes) -> bool:
+        """True when `wanted` stands at the front, whole, and is taken; fails on another text."""
+        got = self.rest[: len(wanted)]
+        if not wanted.startswith(got):
+            self.failed = f"expected {wanted.decode('ascii')!r}, got {ascii(got)[1:]}"
+            return False
+        if len(got) < len(wanted):
+            return False
+        self.rest = self.rest[len(wanted) :]
+        return True
+
+
+@dataclass
+class ServerHandshake(Handshake):
+    """The end that listens (UxAS)."""
+
+    def start(self) -> bytes:
+        """The server speaks first."""
+        return HELLO
+
+    def _step(self) -> bytes:
+        # Waits for all 64: closing with bytes unread would destroy the answer on its way.
+        if len(self.rest) < SECRET_LENGTH:
+            return b""
+        given, self.rest = self.rest[:SECRET_LENGTH], self.rest[SECRET_LENGTH:]
+        if not compare_digest(given, self.secret.encode("ascii")):
+            self.failed = "the client's secret is not ours"  # never shown in a log
+            return REFUSE
+        self.done = True
+        return ACCEPT
+
+
+@dataclass
+class ClientHandshake(Handshake):
+    """The end that connects (ICAROUS)."""
+
+    greeted: bool = False
+
+    def _step(self) -> bytes:
+        if not self.greeted:
+            if not self._expect(HELLO):
+                return b""
+            self.greeted = True
+            return self.secret.encode("ascii") + self._answer()
+        return self._answer()
+
+    def _answer(self) -> bytes:
+        if self.rest and REFUSE.startswith(self.rest[: len(REFUSE)]):
+            if len(self.rest) >= len(REFUSE):
+                self.failed = "the server refused our secret"
+        elif self.rest:
+            self.done = self._expect(ACCEPT)
+        return b""

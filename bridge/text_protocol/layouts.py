@@ -1,0 +1,239 @@
+"""How each message is laid out on its line, as data that the writer and the parser share.
+
+A line is `TAG,` then fields `label` `value` `,` and a newline; `LAYOUTS` holds, per message, the
+fields in the order in which they are sent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from enum import Enum
+
+from cratous.bridge.text_protocol.messages import (
+    Attitude,
+    Direction,
+    FenceDone,
+    FenceVertex,
+    GoToWaypoint,
+    HardReset,
+    Heartbeat,
+    Hello,
+    Message,
+    OwnPosition,
+    RouteEnd,
+    RoutePoint,
+    RouteRequest,
+    RouteStart,
+    SetMode,
+    SetPosition,
+    SetVelocity,
+    SoftReset,
+    StartMission,
+    Traffic,
+    Waypoint,
+    WaypointReached,
+)
+
+
+class Kind(Enum):
+    """How a value is written."""
+
+    REAL = "%f"
+    DEGREES = "%f of a latitude or longitude"
+    COUNT = "%d.0"  # the .0 keeps the original's parser from reading the field before
+    BARE = "%d"  # read with or without .0
+    WORD = "one of the words"
+
+
+@dataclass(frozen=True)
+class FieldLayout:
+    """One field: its label on the wire, the attribute that holds it, and what it may be."""
+
+    label: str
+    attribute: str
+    kind: Kind
+    words: tuple[str, ...] = ()
+    low: int | None = None
+    high: str = ""  # the name of the limit in Limits
+    optional: bool = False
+
+
+@dataclass(frozen=True)
+class Layout:
+    """One form of a message: COMND and RPRSP have a form for each word of their `type`."""
+
+    tag: str
+    direction: Direction
+    message: type[Message]
+    fields: tuple[FieldLayout, ...]
+    form: str = ""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Largest counts on the wire; the defaults are the sizes of the original's arrays."""
+
+    waypoints: int = 50
+    vertices: int = 50
+    zones: int = 64
+    last_reached: int = 255
+    waypoint_index: int = 49
+
+
+ORIGINAL_LIMITS = Limits()
+WIDE_LIMITS = Limits(100_000, 100_000, 100_000, 99_999, 99_999)
+
+
+def _real(label: str, attribute: str, optional: bool = False) -> FieldLayout:
+    return FieldLayout(label, attribute, Kind.REAL, optional=optional)
+
+
+def _deg(label: str, attribute: str, optional: bool = False) -> FieldLayout:
+    return FieldLayout(label, attribute, Kind.DEGREES, optional=optional)
+
+
+def _count(
+    label: str,
+    attribute: str,
+    low: int | None = None,
+    high: str = "",
+    kind: Kind = Kind.COUNT,
+    optional: bool = False,
+) -> FieldLayout:
+    return FieldLayout(label, attribute, kind, low=low, high=high, optional=optional)
+
+
+def _word(attribute: str, *words: str) -> FieldLayout:
+    return FieldLayout("type", attribute, Kind.WORD, words)
+
+
+_PLACE = (_deg("lat", "lat_deg"), _deg("long", "long_deg"))
+_VELOCITY = (_real("north", "north_mps"), _real("east", "east_mps"), _real("down", "down_mps"))
+_DOWN, _UP = Direction.DOWN, Direction.UP
+
+LAYOUTS: tuple[Layout, ...] = (
+    Layout(
+        "WAYPT",
+        _DOWN,
+        Waypoint,
+        (
+            _count("total", "total", 1, "waypoints"),
+            _real("speed", "speed_mps"),
+            *_PLACE,
+            _real("alt", "alt_m"),
+            _count("index", "index", 0, "waypoint_index"),
+        ),
+    ),
+    Layout(
+        "GEOFN",
+        _DOWN,
+        FenceVertex,
+        (
+            _word("fence", "_KEEPIN_", "_KEEPOUT_"),
+            _count("totalvert", "total", 1, "vertices"),
+            _count("vertIndex", "vertex", 1, "vertices", Kind.BARE),
+            *_PLACE,
+            _real("floor", "floor_m"),
+            _real("ceil", "ceiling_m"),
+            _count("index", "zone", 1, "zones"),
+        ),
+    ),
+    Layout(
+        "COMND",
+        _DOWN,
+        FenceDone,
+        (_count("id", "zone", 1, "zones", optional=True),),
+        "GEOFN_SEND",
+    ),
+    Layout("COMND", _DOWN, StartMission, (), "START_MISSION"),
+    Layout(
+        "COMND",
+        _DOWN,
+        SoftReset,
+        (
+            _deg("lat", "lat_deg", True),
+            _deg("long", "long_deg", True),
+            _real("alt", "alt_m", True),
+        ),
+        "RESET_SFT",
+    ),
+    Layout("COMND", _DOWN, HardReset, (), "RESET_HRD"),
+    Layout(
+        "POSTN",
+        _DOWN,
+        OwnPosition,
+        (
+            _real("timegps", "time_s"),
+            *_PLACE,
+            _real("altabs", "alt_abs_m"),
+            _real("altrel", "alt_rel_m"),
+            *_VELOCITY,
+            _real("hdop", "hdop"),
+            _real("vdop", "vdop"),
+            _count("numsats", "satellites", 0),
+            _count("id", "vehicle_id", 0),
+        ),
+    ),
+    Layout(
+        "ATTUD",
+        _DOWN,
+        Attitude,
+        (_real("roll", "roll_deg"), _real("pitch", "pitch_deg"), _real("yaw", "yaw_deg")),
+    ),
+    Layout(
+        "OBJCT",
+        _DOWN,
+        Traffic,
+        (
+            _word("what", "_TRAFFIC_", "_OBSTACLE_"),
+            *_PLACE,
+            _real("alt", "alt_m"),
+            *_VELOCITY,
+            _count("index", "index", 0),
+        ),
+    ),
+    Layout("WPRCH", _DOWN, WaypointReached, (_count("id", "index", 0, "last_reached"),)),
+    Layout(
+        "WPREQ",
+        _DOWN,
+        RouteRequest,
+        (
+            _word("planner", "GRID", "ASTAR", "RRT", "SPLINE"),
+            _deg("slat", "start_lat_deg"),
+            _deg("slong", "start_long_deg"),
+            _real("salt", "start_alt_m"),
+            _deg("elat", "end_lat_deg"),
+            _deg("elong", "end_long_deg"),
+            _real("ealt", "end_alt_m"),
+            _real("track", "track_deg"),
+            _real("vh", "horizontal_mps"),
+            _real("vv", "vertical_mps"),
+        ),
+    ),
+    Layout(
+        "SETMOD",
+        _UP,
+        SetMode,
+        (_word("mode", "_ACTIVE_", "_PASSIVE_"), _count("epoch", "epoch", 0, optional=True)),
+    ),
+    Layout("SETVEL", _UP, SetVelocity, _VELOCITY),
+    Layout("SETPOS", _UP, SetPosition, (*_PLACE, _real("alt", "alt_m"))),
+    Layout("GOTOWP", _UP, GoToWaypoint, (_count("id", "index", kind=Kind.BARE),)),
+    Layout("RPRSP", _UP, RouteStart, (), "ST"),
+    Layout(
+        "RPRSP",
+        _UP,
+        RoutePoint,
+        (*_PLACE, _real("alt", "alt_m"), _real("spd", "speed_mps")),
+        "WP",
+    ),
+    Layout("RPRSP", _UP, RouteEnd, (), "ED"),
+    Layout("HBEAT", _UP, Heartbeat, (_count("seq", "sequence", 0), _real("time", "time_s"))),
+    Layout("HELLO", _UP, Hello, (_count("id", "vehicle_id", 0),)),
+)
+
+LAYOUT_OF: dict[type[Message], Layout] = {layout.message: layout for layout in LAYOUTS}
+assert all(
+    {f.attribute for f in layout.fields} == {f.name for f in fields(layout.message)}
+    for layout in LAYOUTS
+)

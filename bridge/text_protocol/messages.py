@@ -1,0 +1,237 @@
+"""The messages of the CRATOUS text protocol, as values.
+
+Angles are degrees, lengths metres, speeds metres per second, times seconds, as on the wire;
+`down_mps` is positive downward, always.
+
+Three things are of our own dialect: HELLO (which vehicle a connection speaks for, so that the
+order of accepting does not matter), HBEAT (ICAROUS is alive) and `epoch` on SETMOD (the authority
+that the sender believes in). Original peers skip unknown fields and unknown tags.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import ClassVar
+
+
+class Direction(Enum):
+    """Which way a message goes; DOWN sorts before UP."""
+
+    DOWN = "UxAS->ICAROUS"
+    UP = "ICAROUS->UxAS"
+
+
+@dataclass(frozen=True)
+class Message:
+    """Base of all messages."""
+
+    tag: ClassVar[str] = ""
+
+
+@dataclass(frozen=True)
+class Waypoint(Message):
+    """WAYPT: one waypoint of the plan; `total` is a running count, `index` starts at 0."""
+
+    tag: ClassVar[str] = "WAYPT"
+    total: int
+    speed_mps: float
+    lat_deg: float
+    long_deg: float
+    alt_m: float
+    index: int
+
+
+@dataclass(frozen=True)
+class FenceVertex(Message):
+    """GEOFN: one vertex of a zone; `vertex` and `zone` start at 1. `fence`: KEEPIN or KEEPOUT."""
+
+    tag: ClassVar[str] = "GEOFN"
+    fence: str
+    total: int
+    vertex: int
+    lat_deg: float
+    long_deg: float
+    floor_m: float
+    ceiling_m: float
+    zone: int
+
+
+@dataclass(frozen=True)
+class FenceDone(Message):
+    """COMND GEOFN_SEND: the zone is complete."""
+
+    tag: ClassVar[str] = "COMND"
+    zone: int | None = None
+
+
+@dataclass(frozen=True)
+class StartMission(Message):
+    """COMND START_MISSION."""
+
+    tag: ClassVar[str] = "COMND"
+
+
+@dataclass(frozen=True)
+class SoftReset(Message):
+    """COMND RESET_SFT: start again from here, with the waypoints that are left."""
+
+    tag: ClassVar[str] = "COMND"
+    lat_deg: float | None = None
+    long_deg: float | None = None
+    alt_m: float | None = None
+
+
+@dataclass(frozen=True)
+class HardReset(Message):
+    """COMND RESET_HRD: forget the fences and the count of waypoints."""
+
+    tag: ClassVar[str] = "COMND"
+
+
+@dataclass(frozen=True)
+class OwnPosition(Message):
+    """POSTN: position and velocity of the vehicle itself; altitudes above mean sea level."""
+
+    tag: ClassVar[str] = "POSTN"
+    time_s: float
+    lat_deg: float
+    long_deg: float
+    alt_abs_m: float
+    alt_rel_m: float
+    north_mps: float
+    east_mps: float
+    down_mps: float
+    hdop: float = 0.1
+    vdop: float = 0.1
+    satellites: int = 25
+    vehicle_id: int = 0
+
+
+@dataclass(frozen=True)
+class Attitude(Message):
+    """ATTUD."""
+
+    tag: ClassVar[str] = "ATTUD"
+    roll_deg: float
+    pitch_deg: float
+    yaw_deg: float
+
+
+@dataclass(frozen=True)
+class Traffic(Message):
+    """OBJCT: another aircraft (TRAFFIC) or a thing (OBSTACLE)."""
+
+    tag: ClassVar[str] = "OBJCT"
+    what: str
+    lat_deg: float
+    long_deg: float
+    alt_m: float
+    north_mps: float
+    east_mps: float
+    down_mps: float
+    index: int
+
+
+@dataclass(frozen=True)
+class WaypointReached(Message):
+    """WPRCH: the waypoint with this index (from 0) was just reached."""
+
+    tag: ClassVar[str] = "WPRCH"
+    index: int
+
+
+@dataclass(frozen=True)
+class RouteRequest(Message):
+    """WPREQ: plan a route with the planner GRID, ASTAR, RRT or SPLINE."""
+
+    tag: ClassVar[str] = "WPREQ"
+    planner: str
+    start_lat_deg: float
+    start_long_deg: float
+    start_alt_m: float
+    end_lat_deg: float
+    end_long_deg: float
+    end_alt_m: float
+    track_deg: float
+    horizontal_mps: float
+    vertical_mps: float
+
+
+@dataclass(frozen=True)
+class SetMode(Message):
+    """SETMOD: ICAROUS takes over (ACTIVE) or hands back (PASSIVE)."""
+
+    tag: ClassVar[str] = "SETMOD"
+    mode: str
+    epoch: int | None = None
+
+
+@dataclass(frozen=True)
+class SetVelocity(Message):
+    """SETVEL: fly this velocity; zero north and east mean stay here."""
+
+    tag: ClassVar[str] = "SETVEL"
+    north_mps: float
+    east_mps: float
+    down_mps: float
+
+
+@dataclass(frozen=True)
+class SetPosition(Message):
+    """SETPOS: go to this place and stay."""
+
+    tag: ClassVar[str] = "SETPOS"
+    lat_deg: float
+    long_deg: float
+    alt_m: float
+
+
+@dataclass(frozen=True)
+class GoToWaypoint(Message):
+    """GOTOWP: go on with this waypoint; from the original the number is noise."""
+
+    tag: ClassVar[str] = "GOTOWP"
+    index: int
+
+
+@dataclass(frozen=True)
+class RouteStart(Message):
+    """RPRSP ST: a route follows."""
+
+    tag: ClassVar[str] = "RPRSP"
+
+
+@dataclass(frozen=True)
+class RoutePoint(Message):
+    """RPRSP WP: one point of the route; speed 0 means the nominal one."""
+
+    tag: ClassVar[str] = "RPRSP"
+    lat_deg: float
+    long_deg: float
+    alt_m: float
+    speed_mps: float
+
+
+@dataclass(frozen=True)
+class RouteEnd(Message):
+    """RPRSP ED: the route is complete."""
+
+    tag: ClassVar[str] = "RPRSP"
+
+
+@dataclass(frozen=True)
+class Heartbeat(Message):
+    """HBEAT (our dialect): ICAROUS is alive; a sequence number and its virtual time."""
+
+    tag: ClassVar[str] = "HBEAT"
+    sequence: int
+    time_s: float
+
+
+@dataclass(frozen=True)
+class Hello(Message):
+    """HELLO (our dialect): the first message of a client says which vehicle it speaks for."""
+
+    tag: ClassVar[str] = "HELLO"
+    vehicle_id: int

@@ -1,0 +1,244 @@
+"""Lines to messages, from bytes that arrive in any pieces.
+
+The parser never raises on input: `feed` gives messages, `Skipped` for what is legal but not for
+us, and `WireError` values. It refuses what the original reads otherwise than it is written (a
+label inside a longer one, a label twice, an integer without `.0`, a tag that only begins like a
+known one), for two ends that understand one line differently are worse than a line lost by name.
+Memory is bounded: a line longer than `max_line` bytes is an error and is dropped up to the next
+newline.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from cratous.bridge.text_protocol.format import LARGEST_NUMBER
+from cratous.bridge.text_protocol.layouts import (
+    LAYOUTS,
+    ORIGINAL_LIMITS,
+    FieldLayout,
+    Kind,
+    Layout,
+    Limits,
+)
+from cratous.bridge.text_protocol.messages import (
+    Direction,
+    Message,
+)
+
+MAX_LINE = 4096
+_MAX_NUMBER = 64
+_NUMBER = re.compile(r" *([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)\Z")
+_PRINTABLE = re.compile(rb"[\x20-\x7e]*\Z")
+
+
+@dataclass(frozen=True)
+class WireError:
+    """A line that is refused: its number and the column (both from 1) where it goes wrong."""
+
+    line: int
+    column: int
+    what: str
+    expected: str
+    got: str
+
+    def __str__(self) -> str:
+        text = f"line {self.line}, column {self.column}: {self.what}"
+        if self.expected:
+            text += f"; expected {self.expected}"
+        return text + (f"; got {self.got}" if self.got else "")
+
+
+@dataclass(frozen=True)
+class Skipped:
+    """A line, or a field of an accepted message, that we do not know; legal, but recorded."""
+
+    line: int
+    column: int
+    text: str
+
+
+Record = Message | WireError | Skipped
+
+
+class _Bad(Exception):
+    """Inside this module only: what is wrong with the line at hand."""
+
+    def __init__(self, column: int, what: str, expected: str, got: str) -> None:
+        super().__init__(what)
+        self.column, self.what, self.expected, self.got = column, what, expected, got
+
+
+class StreamParser:
+    """Parses the bytes that come from one peer.
+
+    direction: the way the messages go. original_peer: accept a `vertIndex` without `.0` also
+    where the original's own client misreads it. limits: largest counts.
+    """
+
+    def __init__(
+        self,
+        direction: Direction,
+        *,
+        limits: Limits = ORIGINAL_LIMITS,
+        max_line: int = MAX_LINE,
+        original_peer: bool = False,
+    ) -> None:
+        self._layouts: dict[str, list[Layout]] = {}
+        for layout in LAYOUTS:
+            if layout.direction is direction:
+                self._layouts.setdefault(layout.tag, []).append(layout)
+        self._limits, self._max_line, self._original_peer = limits, max_line, original_peer
+        self._pending = bytearray()
+        self._dropping = False
+        self._line = 1
+
+    def feed(self, data: bytes) -> list[Record]:
+        """The records of all lines that are complete now."""
+        records: list[Record] = []
+        start = 0
+        while (end := data.find(b"\n", start)) >= 0:
+            self._extend(data[start:end], records)
+            if not self._dropping:
+                self._parse(bytes(self._pending), records)
+            self._pending.clear()
+            self._dropping = False
+            self._line += 1
+            start = end + 1
+        self._extend(data[start:], records)
+        return records
+
+    def finish(self) -> list[Record]:
+        """The stream has ended: a message that began but has no newline is an error."""
+        records: list[Record] = []
+        if self._pending and not self._dropping:
+            got = ascii(bytes(self._pending[:40]))[1:]
+            records.append(
+                WireError(self._line, len(self._pending) + 1, "message cut off", "a newline", got)
+            )
+        self._pending.clear()
+        return records
+
+    def _extend(self, piece: bytes, records: list[Record]) -> None:
+        if self._dropping:
+            return
+        room = self._max_line - len(self._pending)
+        self._pending += piece[:room]
+        if len(piece) > room:
+            got = ascii(bytes(self._pending[:40]))[1:]
+            records.append(
+                WireError(
+                    self._line,
+                    self._max_line + 1,
+                    "line too long",
+                    f"at most {self._max_line} bytes",
+                    got,
+                )
+            )
+            self._pending.clear()
+            self._dropping = True
+
+    def _parse(self, line: bytes, records: list[Record]) -> None:
+        try:
+            if not _PRINTABLE.match(line):
+                at = next(i for i, byte in enumerate(line) if not 0x20 <= byte <= 0x7E)
+                raise _Bad(at + 1, "byte that is not printable", "ASCII text", f"{line[at]:#04x}")
+            records.extend(self._message(line.decode("ascii")))
+        except _Bad as bad:
+            records.append(WireError(self._line, bad.column, bad.what, bad.expected, bad.got))
+
+    def _message(self, line: str) -> list[Record]:
+        tag, _, rest = line.partition(",")
+        layouts = self._layouts.get(tag)
+        if layouts is None:
+            for known in self._layouts:
+                if tag.upper().startswith(known):
+                    raise _Bad(1, "unknown tag", f"{known} and a comma", repr(tag[:40]))
+            return [Skipped(self._line, 1, line[:80])]
+        if rest and not rest.endswith(","):
+            raise _Bad(len(line) + 1, "field is not ended", "a comma", repr(line[-20:]))
+        pieces = rest[:-1].split(",") if rest else []
+        places = [len(tag) + 2]
+        for piece in pieces:
+            places.append(places[-1] + len(piece) + 1)
+        if len(layouts) > 1 or layouts[0].form:
+            layout = self._form(layouts, pieces, places)
+            own = "type" + layout.form
+        else:
+            layout, own = layouts[0], ""
+        return self._fill(layout, own, pieces, places)
+
+    def _form(self, layouts: list[Layout], pieces: list[str], places: list[int]) -> Layout:
+        """The form that the `type` field of a COMND or RPRSP names."""
+        forms = {"type" + layout.form: layout for layout in layouts}
+        for piece, place in zip(pieces, places, strict=False):
+            if piece.startswith("type"):
+                if piece in forms:
+                    return forms[piece]
+                expected = " or ".join(layout.form for layout in layouts)
+                raise _Bad(place + 4, "unknown type", expected, repr(piece[4:44]))
+        raise _Bad(places[-1], "field missing", "type", "")
+
+    def _fill(self, layout: Layout, own: str, pieces: list[str], places: list[int]) -> list[Record]:
+        labels = {field.label: field for field in layout.fields}
+        known = sorted([*labels, *(["type"] if own else [])], key=len, reverse=True)
+        texts: dict[str, tuple[str, int]] = {}
+        skipped: list[Record] = []
+        for piece, place in zip(pieces, places, strict=False):
+            label = next((name for name in known if piece.startswith(name)), None)
+            if label is None:
+                inside = next((name for name in known if name in piece), None)
+                if inside:
+                    raise _Bad(
+                        place, "label inside another", f"a label without {inside!r}", repr(piece)
+                    )
+                skipped.append(Skipped(self._line, place, piece[:80]))
+            elif label in texts:
+                raise _Bad(place, "field given twice", f"one {label}", repr(piece[:40]))
+            else:
+                texts[label] = (piece[len(label) :], place + len(label))
+        values = {}
+        for field in layout.fields:
+            if field.label in texts:
+                text, column = texts[field.label]
+                values[field.attribute] = self._value(field, text, column)
+            elif not field.optional:
+                raise _Bad(places[-1], "field missing", field.label, "")
+        self._bare_vertex(texts)
+        given = [field for field in layout.fields if field.label in texts]
+        if layout.form == "RESET_SFT" and 0 < len(given) < 3:
+            raise _Bad(places[-1], "field missing", "lat, long and alt, or none of them", "")
+        return [layout.message(**values), *skipped]
+
+    def _bare_vertex(self, texts: dict[str, tuple[str, int]]) -> None:
+        """The original reads a bare vertIndex after a two-digit totalvert as another number."""
+        text, column = texts.get("vertIndex", ("", 0))
+        total = texts.get("totalvert", ("", 0))[0]
+        if text.isdigit() and float(total or 0) >= 10 and not self._original_peer:
+            raise _Bad(column, "integer without .0", f"{text}.0", repr(text))
+
+    def _value(self, field: FieldLayout, text: str, column: int) -> object:
+        if field.kind is Kind.WORD:
+            if text not in field.words:
+                raise _Bad(column, "unknown word", " or ".join(field.words), repr(text[:40]))
+            return text.strip("_")
+        match = _NUMBER.match(text) if len(text) <= _MAX_NUMBER else None
+        if match is None:
+            what = "number too long" if len(text) > _MAX_NUMBER else "not a number"
+            raise _Bad(column, what, f"a decimal number after {field.label}", repr(text[:40]))
+        digits = match.group(1)
+        if field.kind is not Kind.BARE and digits.lstrip("+-").isdigit():
+            raise _Bad(column, "integer without .0", f"{digits}.0", repr(text))
+        number = float(digits)
+        if not abs(number) < LARGEST_NUMBER:
+            raise _Bad(column, "number too large", "below 1e15", repr(text))
+        if field.kind is Kind.DEGREES and abs(number) > (90 if "lat" in field.label else 180):
+            raise _Bad(column, "angle out of range", "degrees of latitude or longitude", text)
+        if field.kind in (Kind.REAL, Kind.DEGREES):
+            return number
+        high = getattr(self._limits, field.high) if field.high else LARGEST_NUMBER
+        low = -LARGEST_NUMBER if field.low is None else field.low
+        if not number.is_integer() or not low <= number <= high:
+            raise _Bad(column, "number out of range", f"an integer from {low} to {high}", text)
+        return int(number)
