@@ -1,7 +1,13 @@
 """What it means that times of tasks satisfy a constraint. Milliseconds after mission start.
 
 A task runs at every instant from its start to its end, both included. The definitions speak of
-instants; the kernels (`core.timing`) of starts and ends.
+instants; the kernels (`core.timing`) of starts and ends. A definition takes the instants that it
+quantifies over as its first arguments, and its docstring says how they are quantified; instants
+are integers. All of them use comparisons, `and`, `or`, `not` and `if` alone, so they can be run
+on numbers and on symbolic values alike.
+
+All times and bounds lie strictly between -2**61 and 2**61 (`TIME_LIMIT_MS`): the range for which
+the kernels are proved, where the sum of two stays in 64 bits.
 """
 
 from __future__ import annotations
@@ -12,3 +18,96 @@ AFTER_END, AFTER_START, WITHIN_END, WITHIN_START, NOT_BEFORE, NOT_AFTER = 1, 2, 
 1, 2: the task starts at ref + lo or later; 3, 4: it ends at ref + hi or earlier;
 5: it starts at lo or later; 6: it ends at hi or earlier.
 """
+
+TIME_LIMIT_MS = 2**61
+"""No time and no bound reaches this: 73 million years. It is the premise of the proofs."""
+
+
+def runs_at(t: int, start: int, end: int) -> bool:
+    """The task that runs from start to end runs at the instant t."""
+    return start <= t and t <= end
+
+
+def not_before(t: int, start: int, end: int, bound: int) -> bool:
+    """If the task runs at t then t is not before the bound. FOR ALL t."""
+    return not (runs_at(t, start, end) and t < bound)
+
+
+def not_after(t: int, start: int, end: int, bound: int) -> bool:
+    """If the task runs at t then t is not after the bound. FOR ALL t."""
+    return not (runs_at(t, start, end) and t > bound)
+
+
+def row_holds(t: int, kind: int, start: int, end: int, ref: int, lo: int, hi: int) -> bool:
+    """At the instant t the task does not run outside what the row allows.
+
+    FOR ALL t: the row holds. Premise: start <= end (see `interval_is_ordered`), for otherwise the
+    task runs at no instant and every row would hold. An unknown kind never holds.
+    """
+    if kind == AFTER_END:
+        return not_before(t, start, end, ref + lo)
+    if kind == AFTER_START:
+        return not_before(t, start, end, ref + lo)
+    if kind == WITHIN_END:
+        return not_after(t, start, end, ref + hi)
+    if kind == WITHIN_START:
+        return not_after(t, start, end, ref + hi)
+    if kind == NOT_BEFORE:
+        return not_before(t, start, end, lo)
+    if kind == NOT_AFTER:
+        return not_after(t, start, end, hi)
+    return False
+
+
+def interval_is_ordered(t: int, u: int, start: int, end: int) -> bool:
+    """The task runs at t, and if it runs at u then u is not before mission start.
+
+    THERE IS a t such that FOR ALL u: the task runs at some instant, and at none before 0.
+    """
+    return runs_at(t, start, end) and not (runs_at(u, start, end) and u < 0)
+
+
+def vehicle_is_eligible(k: int, mask: int, bit: int) -> bool:
+    """Vehicle number k is in the set `mask` and in the set `bit` (bit k of a mask is vehicle k).
+
+    THERE IS a k in 0..63: the vehicle whose one-bit mask is `bit` is one of the eligible ones.
+    """
+    return (mask >> k) & 1 == 1 and (bit >> k) & 1 == 1
+
+
+def all_rows_hold(
+    t: int, u: int, kind: int, start: int, end: int, ref: int, lo: int, hi: int
+) -> bool:
+    """One row and the interval of its task are as they must be, seen at the instants t and u.
+
+    FOR ALL rows THERE IS a t such that FOR ALL u: the whole schedule holds.
+    """
+    return interval_is_ordered(t, u, start, end) and row_holds(u, kind, start, end, ref, lo, hi)
+
+
+def rows_hold_step(
+    t: int, u: int, ok: bool, kind: int, start: int, end: int, ref: int, lo: int, hi: int
+) -> bool:
+    """All rows so far held (`ok`) and this one does. THERE IS a t such that FOR ALL u."""
+    return ok and all_rows_hold(t, u, kind, start, end, ref, lo, hi)
+
+
+def rows_hold_result(ok: bool) -> bool:
+    """After the last row: all rows held. Nothing is quantified."""
+    return ok
+
+
+def later_of(t: int, best: int, value: int) -> bool:
+    """The instant t is no later than one of the two.
+
+    FOR ALL t: this equals `t <= m` exactly for m the later of best and value.
+    """
+    return t <= best or t <= value
+
+
+def earlier_of(t: int, best: int, value: int) -> bool:
+    """The instant t is no earlier than one of the two.
+
+    FOR ALL t: this equals `t >= m` exactly for m the earlier of best and value.
+    """
+    return t >= best or t >= value

@@ -51,6 +51,8 @@ class Monitor:
         if short == "TruthState":
             for step in self._sampler.add(body):
                 self._step(*step)
+        elif short == "AirVehicleState":
+            self.completion.state(body)
         elif short == "TaskProgress":
             self.constraints.progress(body)
             self.completion.progress(body)
@@ -75,7 +77,6 @@ class Monitor:
     def _step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
         self.constraints.step(before, after)
         self.separation.step(before, after)
-        self.completion.step(before, after)
 
     def details(self) -> list[Verdict]:
         """One verdict for each single constraint, pair, task, vehicle."""

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
-from cratous.services.monitor.samples import Sample
-from cratous.services.sensor import seen_by_tracks
+from cratous.services.monitor.coverage import CoverageWatch
 from cratous.spec.guarantees import Kind, Outcome, Verdict
-from cratous.spec.mission import Mission, Position, TaskKind
+from cratous.spec.mission import Mission
 from cratous.spec.plan import Plan
 
 SERVED = 0.99
@@ -23,14 +22,13 @@ class Doing:
     active: bool = False
     complete_ms: int | None = None
     failed: str = ""
-    tracks: list[list[Position]] = field(default_factory=list)
 
 
 class CompletionWatch:
     """Completion and service of every chosen task."""
 
     def __init__(self, mission: Mission, plan: Plan) -> None:
-        self._mission = mission
+        self._coverage = CoverageWatch(mission)
         self._tasks = {item.task_id: Doing(item.vehicle_id) for item in plan.items}
         self._outcome: str | None = None
         self._end_ms: int | None = None
@@ -42,38 +40,20 @@ class CompletionWatch:
             return
         doing.vehicle = body.VehicleID
         phase = body.Phase.name
-        if phase == "Active" and not doing.active:
-            doing.tracks.append([])
         doing.active = phase == "Active"
         if phase == "Complete":
             doing.complete_ms = body.Time
         elif phase == "Failed":
             doing.failed = body.Note or "failed"
 
-    def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
-        """Remember where the sensor was while a task was active."""
-        for doing in self._tasks.values():
-            if doing.active and doing.vehicle in before and doing.vehicle in after:
-                track = doing.tracks[-1]
-                if not track:
-                    track.append(before[doing.vehicle].position)
-                track.append(after[doing.vehicle].position)
+    def state(self, body: Any) -> None:
+        """A vehicle's state: what its sensors see counts for the tasks that it is doing."""
+        active = [t for t, d in self._tasks.items() if d.active and d.vehicle == body.ID]
+        self._coverage.state(body, active)
 
     def end(self, body: Any) -> None:
         """The mission ended."""
         self._outcome, self._end_ms = body.Outcome, body.Time
-
-    def coverage(self, task_id: int) -> float | None:
-        """Fraction of a search task's line or point that the footprints covered; None if no search."""
-        task, doing = self._mission.task(task_id), self._tasks[task_id]
-        if task.kind not in (TaskKind.LINE_SEARCH, TaskKind.POINT_SEARCH):
-            return None
-        cameras = self._mission.vehicle(doing.vehicle).cameras
-        tracks = [track for track in doing.tracks if len(track) > 1]
-        if not tracks or not cameras:
-            return 0.0
-        terrain = self._mission.frame.terrain_m
-        return max(seen_by_tracks(tracks, task, camera, terrain) for camera in cameras)
 
     def verdicts(self) -> list[Verdict]:
         """One verdict a task, and one on the mission's end."""
@@ -91,7 +71,7 @@ class CompletionWatch:
 
     def _task_verdict(self, task: int) -> Verdict:
         doing = self._tasks[task]
-        covered = self.coverage(task)
+        covered = self._coverage.fraction(task)
         outcome, margin = Outcome.HOLDS, None
         note = "flown to its end"
         if doing.complete_ms is None:
