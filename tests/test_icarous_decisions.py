@@ -1,0 +1,400 @@
+"""Detection, resolution, return and the state machine of one ICAROUS instance."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cratous.bridge.text_protocol import (
+    FenceDone,
+    FenceVertex,
+    Message,
+    SetMode,
+    SetVelocity,
+    SoftReset,
+    StartMission,
+    Waypoint,
+    WaypointReached,
+)
+from cratous.core.gate import ICAROUS, UXAS, Gate
+from cratous.core.legs import leg_ok
+from cratous.core.manoeuvre import Ability, Motion, along, fly_to, velocity_of
+from cratous.core.prediction import Intruder, Piece, after, buffered, first_violation_s
+from cratous.core.resolution import Scene, first_conflict_s, resolve
+from cratous.services.frames import Projection
+from cratous.services.icarous import instance
+from cratous.services.icarous.inbox import Told, hear
+from cratous.services.icarous.return_to_path import goal_index, persistence_ms
+from cratous.services.icarous.traffic_monitor import (
+    PERSIST_MS,
+    hard_limit_s,
+    last_time_s,
+    most_urgent,
+    threats,
+)
+from cratous.spec.mission import Daa, Frame, Position, Velocity, WellClear, Zone, ZoneKind
+
+VOLUME = WellClear(150.0, 30.0, 15.0, 0.0)
+WIDE = buffered(VOLUME, 1.25)
+ABILITY = Ability(0.26, 15.0, 33.0, 4.0, 1.0, 60.0)
+NORTH = Motion(Position(0.0, 0.0, 300.0), 0.0, 22.0, 0.0)
+PROJECTION = Projection(Frame(45.0, -121.0, 0.0))
+
+
+def head_on(distance_m: float, vid: int = 9, cooperates: bool = False) -> Intruder:
+    return Intruder(vid, Position(distance_m, 0.0, 300.0), Velocity(-22.0, 0.0, 0.0), cooperates)
+
+
+def straight(duration_s: float = 60.0) -> tuple[Piece, ...]:
+    return (Piece(0.0, duration_s, NORTH.position, velocity_of(0.0, 22.0, 0.0)),)
+
+
+def test_time_of_the_first_violation() -> None:
+    # closing at 44 m/s; tau_mod = (range^2 - DTHR^2) / (range v) <= TTHR from this range on
+    v, d, tau = 44.0, VOLUME.dthr_m, VOLUME.tthr_s
+    entry = (tau * v + math.sqrt((tau * v) ** 2 + 4 * d * d)) / 2
+    found = first_violation_s(straight(), head_on(2500.0), VOLUME, halvings=20)
+    assert found == pytest.approx((2500.0 - entry) / v, abs=1e-3)
+
+
+def test_no_violation_beyond_reach_or_in_another_layer() -> None:
+    assert first_violation_s(straight(), head_on(9000.0), VOLUME) is None
+    other = head_on(2500.0)
+    other = other._replace(position=other.position._replace(alt_m=340.0))
+    assert first_violation_s(straight(), other, VOLUME) is None
+
+
+@given(
+    st.floats(-3000, 3000),
+    st.floats(-3000, 3000),
+    st.floats(-40, 40),
+    st.floats(-40, 40),
+)
+def test_pieces_of_one_flight_find_what_the_whole_finds(
+    north: float, east: float, vn: float, ve: float
+) -> None:
+    """Cutting a straight flight into pieces changes neither whether nor (much) when."""
+    other = Intruder(9, Position(north, east, 300.0), Velocity(vn, ve, 0.0))
+    whole = first_violation_s(straight(), other, VOLUME, halvings=20)
+    v = velocity_of(0.0, 22.0, 0.0)
+    cut = tuple(Piece(k * 1.0, 1.0, Position(22.0 * k, 0.0, 300.0), v) for k in range(60))
+    pieces = first_violation_s(cut, other, VOLUME, halvings=20)
+    if whole is not None and pieces is not None:
+        assert whole == pytest.approx(pieces, abs=1e-2)
+    elif whole != pieces:
+        # only at the very edge of the volume may rounding tell them apart
+        grown = WellClear(150.001, 30.0, 15.001, 0.0)
+        shrunk = WellClear(149.999, 30.0, 14.999, 0.0)
+        assert first_violation_s(straight(), other, grown) is not None
+        assert first_violation_s(straight(), other, shrunk) is None
+
+
+@given(st.floats(-math.pi, math.pi), st.floats(15, 33), st.floats(-4, 4))
+def test_manoeuvre_is_connected_and_within_the_limits(
+    heading: float, speed: float, climb: float
+) -> None:
+    pieces = fly_to(NORTH, ABILITY, heading, speed, climb, 10.0, 60.0)
+    assert sum(p.duration_s for p in pieces) == pytest.approx(60.0)
+    for a, b in zip(pieces, pieces[1:], strict=False):
+        assert after(a, a.duration_s) == pytest.approx(b.position, abs=1e-9)
+        assert a.start_s + a.duration_s == pytest.approx(b.start_s)
+        turn = math.remainder(
+            math.atan2(b.velocity.east_m_s, b.velocity.north_m_s)
+            - math.atan2(a.velocity.east_m_s, a.velocity.north_m_s),
+            2 * math.pi,
+        )
+        assert abs(turn) <= ABILITY.turn_rate_rad_s * 0.5 + 1e-6
+    v = pieces[-1].velocity
+    assert math.hypot(v.north_m_s, v.east_m_s) == pytest.approx(speed)
+
+
+def test_along_passes_the_points_in_time() -> None:
+    points = (Position(440.0, 0.0, 300.0), Position(440.0, 220.0, 320.0))
+    pieces = along(NORTH, points, 60.0)
+    assert pieces[1].start_s == pytest.approx(20.0)
+    assert pieces[2].position == pytest.approx(points[1])
+    assert pieces[2].velocity.down_m_s == 0.0
+    assert sum(p.duration_s for p in pieces) == pytest.approx(60.0)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.floats(0, 2 * math.pi),
+    st.floats(15, 30),
+    st.floats(35, 60),
+    st.floats(-200, 200),
+)
+def test_a_clear_choice_is_clear_and_the_nearest_to_the_course(
+    course: float, speed: float, meet_s: float, miss_m: float
+) -> None:
+    """Whatever comes from wherever, far enough away: the choice holds when it is checked again."""
+    at = Position(22.0 * meet_s, miss_m, 300.0)
+    v = velocity_of(course, speed, 0.0)
+    start = Position(at.north_m - v.north_m_s * meet_s, at.east_m - v.east_m_s * meet_s, 300.0)
+    other = Intruder(9, start, v)
+    scene = Scene((other,), (), WIDE, 60.0)
+    choice = resolve(NORTH, ABILITY, scene, 0.0, 22.0, None)
+    flown = fly_to(
+        NORTH,
+        ABILITY,
+        choice.heading_rad,
+        choice.speed_m_s,
+        choice.climb_m_s,
+        choice.climb_for_s,
+        60.0,
+    )
+    if choice.clear:
+        assert first_conflict_s(flown, scene) is None
+    else:
+        assert first_conflict_s(flown, scene) == pytest.approx(choice.first_violation_s)
+    if choice.clear and choice.kind == "heading":
+        for k in range(int(round(abs(math.degrees(choice.heading_rad)) / 5))):
+            for side in (1, -1):
+                nearer = fly_to(NORTH, ABILITY, side * math.radians(5 * k), 22.0, 0.0, 0.0, 60.0)
+                assert first_conflict_s(nearer, scene) is not None
+
+
+def test_no_conflict_no_deviation() -> None:
+    choice = resolve(NORTH, ABILITY, Scene((), (), WIDE, 60.0), 0.3, 22.0, None)
+    assert (choice.heading_rad, choice.clear) == (0.3, True)
+
+
+def test_manoeuvre_keeps_off_a_zone_beside() -> None:
+    """A wall to the right: the turn goes left, though a turn to the right would come first."""
+    wall = Zone(
+        1,
+        ZoneKind.KEEP_OUT,
+        ((-200.0, 40.0), (3000.0, 40.0), (3000.0, 2000.0), (-200.0, 2000.0)),
+        0.0,
+        1000.0,
+    )
+    scene = Scene((head_on(2000.0),), (wall,), WIDE, 60.0)
+    choice = resolve(NORTH, ABILITY, scene, 0.0, 22.0, None)
+    assert choice.clear
+    assert math.remainder(choice.heading_rad, 2 * math.pi) < 0
+    pieces = fly_to(NORTH, ABILITY, choice.heading_rad, 22.0, 0.0, 0.0, 60.0)
+    assert all(leg_ok(p.position, after(p, p.duration_s), wall) for p in pieces)
+
+
+def test_between_walls_it_climbs() -> None:
+    walls = tuple(
+        Zone(
+            k,
+            ZoneKind.KEEP_OUT,
+            ((-900.0, a), (4000.0, a), (4000.0, b), (-900.0, b)),
+            0.0,
+            1000.0,
+        )
+        for k, a, b in ((1, 30.0, 2000.0), (2, -2000.0, -30.0))
+    )
+    behind = Intruder(8, Position(-1500.0, 0.0, 300.0), Velocity(30.0, 0.0, 0.0))
+    scene = Scene((head_on(2400.0), behind), walls, WIDE, 60.0)
+    choice = resolve(NORTH, ABILITY, scene, 0.0, 22.0, None)
+    assert (choice.kind, choice.clear) == ("altitude", True)
+
+
+def test_when_nothing_is_free_it_says_so() -> None:
+    ring = tuple(
+        Intruder(
+            20 + k,
+            Position(300 * math.cos(a), 300 * math.sin(a), 300.0),
+            velocity_of(a + math.pi, 22.0, 0.0),
+        )
+        for k, a in enumerate(math.radians(30 * k) for k in range(12))
+    )
+    stuck = ABILITY._replace(max_climb_m_s=0.0)
+    choice = resolve(NORTH, stuck, Scene(ring, (), WIDE, 60.0), 0.0, 22.0, None)
+    assert not choice.clear
+    assert "no manoeuvre is free" in instance.describe(choice)
+
+
+# who acts, and when ------------------------------------------------------------------------
+
+LAST_S = last_time_s(ABILITY, WIDE, 500)
+HARD_S = hard_limit_s(ABILITY, 500)
+
+
+def seen(own: int, other: Intruder, since_ms: int | None, in_turn: bool = False) -> bool:
+    """Whether vehicle `own` acts now on a threat first seen at since_ms (None: just now)."""
+    before = threats(own, straight(), (other,), WIDE, (), since_ms or 0, LAST_S, HARD_S)
+    now_ms = 10_000
+    found = threats(
+        own,
+        straight(),
+        (other,),
+        WIDE,
+        before if since_ms is not None else (),
+        now_ms,
+        LAST_S,
+        HARD_S,
+        frozenset({other.id}) if in_turn else frozenset(),
+    )
+    assert found
+    return most_urgent(found) is not None
+
+
+def test_a_far_threat_must_persist() -> None:
+    far = head_on(2900.0)
+    assert not seen(2, far, None)
+    assert seen(2, far, 10_000 - PERSIST_MS)
+
+
+def test_a_near_threat_counts_at_once() -> None:
+    assert seen(2, head_on(1900.0), None)
+
+
+def test_the_one_with_the_right_of_way_waits_until_the_last_time() -> None:
+    far, near = head_on(2900.0, 9, True), head_on(1900.0, 9, True)
+    assert seen(12, far, 0)
+    assert not seen(2, far, 0)
+    assert seen(2, near, None)
+
+
+def test_an_intruder_in_a_turn_is_given_time_to_turn_past() -> None:
+    near, very_near = head_on(1900.0), head_on(1100.0)
+    assert not seen(2, near, None, in_turn=True)
+    assert seen(2, very_near, None, in_turn=True)
+    assert seen(2, near, 0, in_turn=True)
+
+
+def test_last_time_is_the_derivation() -> None:
+    assert last_time_s(ABILITY, WIDE, 500) == pytest.approx(math.pi / 2 / 0.26 + 18.75 + 1.0)
+
+
+def test_persistence_doubles_with_relapses() -> None:
+    assert [persistence_ms(k) for k in (0, 1, 2, 9)] == [1500, 3000, 6000, 24000]
+
+
+def test_goal_is_ahead_and_not_too_near() -> None:
+    line = tuple(Position(100.0 * k, 0.0, 300.0) for k in range(10))
+    assert goal_index(NORTH, 85.0, line, 1) == 3
+    past = NORTH._replace(position=Position(450.0, 300.0, 300.0))
+    assert goal_index(past, 85.0, line, 1) == 5
+    assert goal_index(NORTH._replace(position=Position(2000.0, 0.0, 300.0)), 85.0, line, 1) == 9
+
+
+# the inbox ---------------------------------------------------------------------------------
+
+
+def waypoints(*places: Position) -> list[Message]:
+    out: list[Message] = []
+    for k, p in enumerate(places):
+        lat, lon = PROJECTION.to_geodetic(p.north_m, p.east_m)
+        out.append(Waypoint(k + 1, 22.0, lat, lon, p.alt_m, k))
+    return [*out, StartMission()]
+
+
+def vertices(count: int) -> list[Message]:
+    out: list[Message] = []
+    for k in range(count):
+        lat, lon = PROJECTION.to_geodetic(
+            500 * math.cos(2 * math.pi * k / count), 500 * math.sin(2 * math.pi * k / count)
+        )
+        out.append(FenceVertex("KEEPOUT", count, k + 1, lat, lon, 0.0, 500.0, 1))
+    return out
+
+
+def test_inbox_takes_waypoints_only_when_started() -> None:
+    lines = waypoints(Position(0, 0, 300), Position(900, 0, 300))
+    told = hear(Told(), tuple(lines[:-1]), PROJECTION, 0)
+    assert told.waypoints == ()
+    told = hear(told, (lines[-1], WaypointReached(0)), PROJECTION, 500)
+    assert len(told.waypoints) == 2
+    assert (told.next_index, told.heard_ms) == (1, 500)
+
+
+def test_a_zone_counts_only_when_it_is_whole() -> None:
+    told = hear(Told(), (*vertices(5), FenceDone(1)), PROJECTION, 0)
+    assert [len(z.vertices) for z in told.zones] == [5]
+    broken = [v for k, v in enumerate(vertices(5)) if k != 3]
+    assert hear(Told(), (*broken, FenceDone(1)), PROJECTION, 0).zones == ()
+
+
+# the state machine -------------------------------------------------------------------------
+
+CONFIG = instance.Config(2, Daa(VOLUME), PROJECTION, 500)
+
+
+def inputs(
+    now_ms: int, gate: Gate, intruders: tuple[Intruder, ...], messages: list[Message] | None = None
+) -> instance.Inputs:
+    return instance.Inputs(now_ms, NORTH, ABILITY, intruders, gate, tuple(messages or ()))
+
+
+def started() -> instance.State:
+    way = waypoints(Position(-100, 0, 300), Position(3000, 0, 300), Position(4000, 0, 300))
+    state, out = instance.step(
+        CONFIG, instance.State(), inputs(0, Gate(UXAS, 0, False), (), [*way, WaypointReached(0)])
+    )
+    assert out.authority == ""
+    return state
+
+
+def test_cycle_of_takeover_offer_and_handback() -> None:
+    state = started()
+    state, out = instance.step(CONFIG, state, inputs(500, Gate(UXAS, 0, False), (head_on(1800.0),)))
+    assert (out.authority, out.intruder_id, state.mode) == ("takeover", 9, instance.Mode.AVOID)
+    assert SetMode("ACTIVE", 1) in out.messages
+    assert any(isinstance(m, SetVelocity) for m in out.messages)
+    owned, now = Gate(ICAROUS, 1, False), 500
+    for _ in range(10):
+        now += 500
+        state, out = instance.step(CONFIG, state, inputs(now, owned, (), [SoftReset()]))
+        assert out.velocity is not None
+        if out.authority == "offer":
+            break
+    assert out.authority == "offer"
+    assert SetMode("PASSIVE", 2) in out.messages
+    assert now - 1000 >= persistence_ms(0)
+    state, out = instance.step(CONFIG, state, inputs(now + 500, Gate(UXAS, 2, False), ()))
+    assert state.mode is instance.Mode.MONITOR
+    assert out.velocity is None
+
+
+def test_offer_is_withdrawn_when_a_conflict_comes_up() -> None:
+    state = started()
+    state, _ = instance.step(CONFIG, state, inputs(500, Gate(UXAS, 0, False), (head_on(1800.0),)))
+    for k in range(2, 12):
+        state, out = instance.step(
+            CONFIG, state, inputs(500 * k, Gate(ICAROUS, 1, False), (), [SoftReset()])
+        )
+        if out.authority == "offer":
+            break
+    assert state.mode is instance.Mode.HANDBACK
+    state, out = instance.step(
+        CONFIG, state, inputs(500 * k + 500, Gate(ICAROUS, 2, True), (head_on(1500.0),))
+    )
+    assert (out.authority, state.mode) == ("takeover", instance.Mode.AVOID)
+    assert SetMode("ACTIVE", 3) in out.messages
+
+
+def test_without_the_link_it_flies_on_and_offers_nothing() -> None:
+    state = started()
+    state, _ = instance.step(CONFIG, state, inputs(500, Gate(UXAS, 0, False), (head_on(1800.0),)))
+    for k in range(6, 40):
+        state, out = instance.step(CONFIG, state, inputs(500 * k, Gate(ICAROUS, 1, False), ()))
+        assert out.authority == ""
+        assert out.velocity is not None
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.lists(st.tuples(st.booleans(), st.booleans(), st.floats(900, 4000)), max_size=12))
+def test_authority_wishes_fit_the_gate(history: list[tuple[bool, bool, float]]) -> None:
+    """Whatever happens: commands only while in command, offers only from command."""
+    from cratous.core.gate import gate_after, gate_offer, gate_takeover
+
+    state, gate = started(), Gate(UXAS, 0, False)
+    for k, (traffic, answer, distance) in enumerate(history, 1):
+        there = (head_on(distance),) if traffic else ()
+        state, out = instance.step(CONFIG, state, inputs(500 * k, gate, there, [SoftReset()]))
+        if out.authority == "takeover":
+            gate = gate_takeover(gate)
+        elif out.authority == "offer":
+            assert gate.owner == ICAROUS
+            gate = gate_offer(gate)
+        assert (out.velocity is not None) == (gate.owner == ICAROUS)
+        if answer:
+            gate = gate_after(gate, UXAS, gate.epoch)

@@ -1,0 +1,203 @@
+"""The monitor: each guarantee's violation is seen, named, timed and measured; unknown stays so."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import pytest
+
+from cratous.bridge import lmcp
+from cratous.services.monitor import Monitor
+from cratous.spec.guarantees import Outcome
+from cratous.spec.mission import (
+    Daa,
+    Frame,
+    Mission,
+    Position,
+    Task,
+    TaskKind,
+    Vehicle,
+    WellClear,
+    Zone,
+    ZoneKind,
+)
+from cratous.spec.plan import Plan, PlanItem
+
+
+@dataclass
+class Envelope:
+    topic: str
+    time_ms: int
+    body: Any
+
+
+def vehicle(number: int, protected: bool = True) -> Vehicle:
+    at = Position(0.0, 0.0, 100.0)
+    return Vehicle(number, "", at, 0.0, 20.0, 15.0, 30.0, 0.5, 5.0, protected)
+
+
+def item(task: int, number: int, start: int, end: int) -> PlanItem:
+    here = (Position(0.0, 0.0, 100.0),)
+    return PlanItem(task, 1, number, here, here, None, 20.0, 0, start, 0, start, end, 0.0)
+
+
+def mission(**more: Any) -> Mission:
+    basis: dict[str, Any] = {
+        "name": "test",
+        "source": "",
+        "frame": Frame(45.0, -121.0),
+        "vehicles": (vehicle(1), vehicle(2)),
+        "tasks": (
+            Task(1, TaskKind.MUST_FLY, "", (Position(0.0, 0.0, 100.0),)),
+            Task(2, TaskKind.MUST_FLY, "", (Position(0.0, 0.0, 100.0),)),
+        ),
+        "daa": Daa(WellClear(100.0, 30.0, 10.0, 0.0)),
+        "relations": ".(p1 p2)",
+        "instances": (1, 2),
+    }
+    return Mission(**{**basis, **more})
+
+
+PLAN = Plan("test", (item(1, 1, 0, 1000), item(2, 2, 2000, 3000)), (), (1, 2), 3000, "MINMAX", 1, True)
+
+
+def watch(m: Mission, messages: list[tuple[int, Any]]) -> dict[str, Any]:
+    monitor = Monitor(m, PLAN)
+    for time_ms, body in messages:
+        monitor.tap(Envelope(lmcp.full_names(body)[0], time_ms, body))
+    return {v.requirement + (":" + v.item if v.item else ""): v for v in monitor.verdicts()}
+
+
+def truth(number: int, ms: int, north: float, east: float, alt: float = 100.0) -> tuple[int, Any]:
+    body = lmcp.new("TruthState", VehicleID=number, Time=ms, North=north, East=east, Altitude=alt)
+    return ms, body
+
+
+def progress(task: int, number: int, ms: int, phase: str) -> tuple[int, Any]:
+    name = "cratous.TaskProgress"
+    return ms, lmcp.new(name, TaskID=task, VehicleID=number, Time=ms, Phase=phase)
+
+
+def beats(until: int, every: int = 500) -> list[tuple[int, Any]]:
+    return [
+        (ms, lmcp.new("Heartbeat", VehicleID=v, Time=ms, Direction=way, Sequence=ms // every))
+        for ms in range(0, until + 1, every)
+        for v in (1, 2)
+        for way in ("Down", "Up")
+    ]
+
+
+def done(until: int = 3000) -> list[tuple[int, Any]]:
+    return [
+        progress(1, 1, 0, "Active"),
+        progress(1, 1, 1000, "Complete"),
+        progress(2, 2, 2000, "Active"),
+        progress(2, 2, 3000, "Complete"),
+        (until, lmcp.new("MissionEnd", Time=until, Outcome="complete")),
+    ]
+
+
+def apart(until: int = 3000) -> list[tuple[int, Any]]:
+    return [
+        truth(v, ms, ms / 50, 5000.0 * v) for ms in range(0, until + 1, 250) for v in (1, 2)
+    ]
+
+
+def test_a_good_flight_holds_in_everything():
+    seen = watch(mission(), [*apart(), *beats(3000), *done()])
+    assert {k: v.outcome for k, v in seen.items() if v.outcome is not Outcome.HOLDS} == {}
+    assert seen["G2"].checks == 12
+
+
+def test_loss_of_well_clear_between_two_samples_is_seen():
+    # 600 m apart at both samples, through each other in between
+    fast = [truth(1, 0, -300, 0), truth(2, 0, 300, 0), truth(1, 250, 300, 0), truth(2, 250, -300, 0)]
+    verdict = watch(mission(), [*fast, *beats(3000), *done()])["G2"]
+    assert verdict.outcome is Outcome.VIOLATED
+    assert verdict.vehicles == (1, 2)
+    assert verdict.time_ms == 0
+    assert "no evidence that no way out existed" in verdict.note
+
+
+def test_traffic_counts_and_an_unprotected_vehicle_is_not_covered():
+    m = mission(vehicles=(vehicle(1), vehicle(2, protected=False)))
+    near = [truth(2, ms, 0, 0) for ms in (0, 250)] + [truth(9, ms, 10, 0) for ms in (0, 250)]
+    assert watch(m, [*near, *done()])["G2"].outcome is Outcome.HOLDS
+    near = [truth(1, ms, 0, 0) for ms in (0, 250)] + [truth(9, ms, 10, 0) for ms in (0, 250)]
+    assert watch(m, sorted([*near, *done()], key=lambda x: x[0]))["G2"].vehicles == (1, 9)
+    assert Monitor(m, PLAN).not_covered == (2,)
+
+
+def test_entering_a_keep_out_between_samples_is_seen():
+    zone = Zone(7, ZoneKind.KEEP_OUT, ((10.0, -5.0), (12.0, -5.0), (12.0, 5.0), (10.0, 5.0)), 0.0, 500.0)
+    flight = [truth(1, 0, 0, 0), truth(1, 250, 20, 0), truth(1, 500, 40, 0)]
+    seen = watch(mission(zones=(zone,)), [*flight, *done()])
+    verdict = seen["G1:zone: keep_out 7, flight of vehicle 1"]
+    assert verdict.outcome is Outcome.VIOLATED
+    assert verdict.time_ms == 0
+    over = [truth(1, 0, 0, 0, 600), truth(1, 250, 20, 0, 600)]
+    seen = watch(mission(zones=(zone,)), [*over, *done()])
+    assert seen["G1:zone: keep_out 7, flight of vehicle 1"].outcome is Outcome.HOLDS
+
+
+def test_order_is_judged_by_real_times():
+    early = [progress(2, 2, 900, "Active") if m[0] == 2000 else m for m in done()]
+    verdict = watch(mission(), [*apart(), *beats(3000), *early])["G1"]
+    assert verdict.outcome is Outcome.VIOLATED
+    assert verdict.margin == pytest.approx(-0.1)
+    assert "p2" in verdict.note
+
+
+def test_a_task_that_was_not_flown_is_not_complete_and_its_order_is_unknown():
+    short = [m for m in done() if m[0] != 3000] + [done()[-1]]
+    seen = watch(mission(), [*apart(), *beats(3000), *short])
+    assert seen["G3"].outcome is Outcome.VIOLATED
+    assert seen["G1"].outcome is Outcome.UNKNOWN
+
+
+def test_a_search_must_be_covered_by_footprints():
+    line = (Position(0.0, 0.0, 0.0), Position(100.0, 0.0, 0.0))
+    m = mission(tasks=(Task(1, TaskKind.LINE_SEARCH, "", line), mission().tasks[1]))
+    seen = watch(m, [*apart(), *beats(3000), *done()])
+    assert seen["G3:task 1 served"].outcome is Outcome.VIOLATED
+    assert "0.00 %" in seen["G3:task 1 served"].note
+
+
+def test_a_takeover_must_be_handed_back():
+    name = "AuthorityChange"
+    taken = (600, lmcp.new(name, VehicleID=1, Time=600, Owner="ICAROUS", Epoch=1))
+    back = (900, lmcp.new(name, VehicleID=1, Time=900, Owner="UxAS", Epoch=2))
+    basis = [*apart(), *beats(3000)]
+    assert watch(mission(), [*basis, taken, back, *done()])["G4"].outcome is Outcome.HOLDS
+    left = watch(mission(), [*basis, taken, *done()])["G4"]
+    assert left.outcome is Outcome.VIOLATED
+    assert "never handed back" in left.note
+    stale = (900, lmcp.new(name, VehicleID=1, Time=900, Owner="UxAS", Epoch=1))
+    assert watch(mission(), [*basis, taken, stale, *done()])["G4"].outcome is Outcome.VIOLATED
+
+
+def test_a_silent_bridge_is_seen_and_a_missing_one_is_unknown():
+    gap = [m for m in beats(3000) if not 700 < m[0] < 2300]
+    verdict = watch(mission(), [*apart(), *gap, *done()])["G5"]
+    assert verdict.outcome is Outcome.VIOLATED
+    assert verdict.margin == pytest.approx(-1.0)
+    none = watch(mission(instances=()), [*apart(), *done()])["G5"]
+    assert none.outcome is Outcome.UNKNOWN
+
+
+def test_messages_that_stop_leave_it_unknown():
+    seen = watch(mission(), [*apart(), *beats(3000), *done()[:-1]])
+    assert seen["G4"].outcome is Outcome.UNKNOWN
+    assert seen["G3"].outcome is Outcome.UNKNOWN
+
+
+def test_a_violation_is_told_when_it_happens():
+    told: list[Any] = []
+    monitor = Monitor(mission(), PLAN, told.append)
+    for ms, body in [truth(1, 0, 0, 0), truth(2, 0, 10, 0), truth(1, 250, 0, 0), truth(2, 250, 10, 0)]:
+        monitor.tap(Envelope(lmcp.full_names(body)[0], ms, body))
+    assert told == []
+    ms, body = truth(1, 500, 0, 0)
+    monitor.tap(Envelope(lmcp.full_names(body)[0], ms, body))
+    assert [v.requirement for v in told] == ["G2"]
