@@ -1,0 +1,48 @@
+"""`report.html` from report.json alone: one page, nothing loaded from elsewhere."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from cratous.services.certify.picture import map_view, separation_view, time_view
+
+
+@cache
+def _template() -> Any:
+    from jinja2 import Environment, StrictUndefined
+
+    environment = Environment(
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.filters["seconds"] = seconds
+    environment.filters["margin"] = margin
+    text = files("cratous.services.certify").joinpath("report.html").read_text("utf-8")
+    return environment.from_string(text)
+
+
+def seconds(time_ms: float | None) -> str:
+    """Milliseconds as `mm:ss.s`, or a dash."""
+    if time_ms is None:
+        return "–"
+    minutes, rest = divmod(round(time_ms / 100), 600)
+    return f"{minutes}:{rest / 10:04.1f}"
+
+
+def margin(row: dict[str, Any]) -> str:
+    """A margin with its unit, or a dash."""
+    if row["margin"] is None:
+        return "–"
+    unit = row["unit"]
+    if unit == "ms":
+        return f"{row['margin'] / 1000:.1f} s"
+    return f"{row['margin']:.4g} {unit}".strip()
+
+
+def render(report: dict[str, Any]) -> str:
+    """The page; every text from the report is escaped."""
+    text: str = _template().render(
+        r=report, map=map_view(report), time=time_view(report), near=separation_view(report)
+    )
+    return text

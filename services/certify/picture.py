@@ -1,0 +1,262 @@
+"""Map and time line of a report as shapes in drawing units, for the template to write as SVG.
+
+Everything comes from report.json; nothing is decided here. North is up, one scale in both
+directions; y grows downwards as SVG has it.
+"""
+
+from __future__ import annotations
+
+from math import ceil, cos, floor, hypot, log10, pi, sin
+from typing import Any
+
+MAP_WIDTH, MAP_HEIGHT, MAP_EDGE = 1000.0, 640.0, 46.0
+BAR_LEFT, BAR_WIDTH, BAR_ROW = 110.0, 860.0, 46.0
+
+
+class Scale:
+    """From the mission frame [m] to the drawing."""
+
+    def __init__(self, points: list[tuple[float, float]]) -> None:
+        norths = [point[0] for point in points] or [0.0]
+        easts = [point[1] for point in points] or [0.0]
+        span_n = max(max(norths) - min(norths), 1.0)
+        span_e = max(max(easts) - min(easts), 1.0)
+        self.factor = min((MAP_WIDTH - 2 * MAP_EDGE) / span_e, (MAP_HEIGHT - 2 * MAP_EDGE) / span_n)
+        self._north = (max(norths) + min(norths)) / 2
+        self._east = (max(easts) + min(easts)) / 2
+
+    def xy(self, north: float, east: float) -> tuple[float, float]:
+        """Drawing coordinates of a place."""
+        return (
+            round(MAP_WIDTH / 2 + (east - self._east) * self.factor, 1),
+            round(MAP_HEIGHT / 2 - (north - self._north) * self.factor, 1),
+        )
+
+    def line(self, places: list[Any]) -> str:
+        """The `points` attribute of a polyline through places that begin with north and east."""
+        return " ".join("{},{}".format(*self.xy(place[0], place[1])) for place in places)
+
+
+def _places(shape: list[dict[str, Any]]) -> list[tuple[float, float]]:
+    return [(place["north_m"], place["east_m"]) for place in shape]
+
+
+def _planned(report: dict[str, Any]) -> dict[int, list[tuple[float, float]]]:
+    routes: dict[int, list[tuple[float, float]]] = {}
+    for item in report["plan"]["items"]:
+        route = routes.setdefault(item["vehicle_id"], [])
+        route += _places(item["transit"]) + _places(item["path"])
+    return routes
+
+
+def map_view(report: dict[str, Any]) -> dict[str, Any]:
+    """Zones, tasks, planned routes, flown tracks by who commanded, takeovers, scale and names."""
+    mission, flight = report["mission"], report["flight"]
+    ours = [vehicle["id"] for vehicle in mission["vehicles"]]
+    planned = _planned(report)
+    tracks = {int(number): track for number, track in flight["tracks"].items()}
+    flown = {number: [(row[1], row[2]) for row in track] for number, track in tracks.items()}
+    shown = [place for route in planned.values() for place in route]
+    shown += [place for number in ours for place in flown.get(number, [])]
+    shown += [
+        (point["north_m"], point["east_m"]) for task in mission["tasks"] for point in task["points"]
+    ]
+    shown += [(v["position"]["north_m"], v["position"]["east_m"]) for v in mission["vehicles"]]
+    for zone in mission["zones"]:
+        if zone["kind"] == "keep_out":
+            shown += [(corner[0], corner[1]) for corner in zone["vertices"]]
+    scale = Scale(shown)
+    return {
+        "width": MAP_WIDTH,
+        "height": MAP_HEIGHT,
+        "zones": [
+            {"kind": zone["kind"], "id": zone["id"], "points": scale.line(zone["vertices"])}
+            for zone in mission["zones"]
+        ],
+        "tasks": [_task(task, scale) for task in mission["tasks"]],
+        "planned": [
+            {"color": ours.index(number) % 6, "points": scale.line(route)}
+            for number, route in sorted(planned.items())
+        ],
+        "holds": [_hold(item["hold"], scale) for item in report["plan"]["items"] if item["hold"]],
+        "tracks": [
+            _track(number, ours.index(number) % 6, tracks[number], scale)
+            for number in ours
+            if number in tracks
+        ],
+        "traffic": [
+            {"id": number, "points": scale.line(_inside(flown[number], scale))}
+            for number in sorted(flown)
+            if number not in ours
+        ],
+        "takeovers": [
+            {"x": x, "y": y, "vehicle": t["vehicle"], "time_s": t["from_ms"] / 1000}
+            for t in flight["takeovers"]
+            for x, y in [scale.xy(t["north_m"], t["east_m"])]
+        ],
+        "starts": [_start(vehicle, k % 6, scale) for k, vehicle in enumerate(mission["vehicles"])],
+        "bar": _scale_bar(scale.factor),
+    }
+
+
+def _inside(places: list[tuple[float, float]], scale: Scale) -> list[tuple[float, float]]:
+    """The part of a foreign track on or near the sheet."""
+    kept = []
+    for place in places:
+        x, y = scale.xy(*place)
+        if -MAP_WIDTH < x < 2 * MAP_WIDTH and -MAP_HEIGHT < y < 2 * MAP_HEIGHT:
+            kept.append(place)
+    return kept
+
+
+def _task(task: dict[str, Any], scale: Scale) -> dict[str, Any]:
+    places = _places(task["points"])
+    x, y = scale.xy(*places[0])
+    return {
+        "id": task["id"],
+        "label": task["label"],
+        "x": x,
+        "y": y,
+        "lone": len(places) == 1,
+        "points": scale.line(places),
+        "radius": round(task["radius_m"] * scale.factor, 1),
+    }
+
+
+def _hold(hold: dict[str, Any], scale: Scale) -> dict[str, float]:
+    x, y = scale.xy(hold["north_m"], hold["east_m"])
+    return {"x": x, "y": y, "r": round(hold["radius_m"] * scale.factor, 1)}
+
+
+def _track(number: int, color: int, track: list[list[float]], scale: Scale) -> dict[str, Any]:
+    """A flown track cut where the authority changes; pieces share their end points."""
+    pieces: list[dict[str, Any]] = []
+    for row in track:
+        if not pieces or pieces[-1]["owner"] != row[4]:
+            start = [pieces[-1]["places"][-1]] if pieces else []
+            pieces.append({"owner": row[4], "places": start})
+        pieces[-1]["places"].append((row[1], row[2]))
+    return {
+        "vehicle": number,
+        "color": color,
+        "pieces": [
+            {"icarous": piece["owner"] == 1, "points": scale.line(piece["places"])}
+            for piece in pieces
+        ],
+    }
+
+
+def _start(vehicle: dict[str, Any], color: int, scale: Scale) -> dict[str, Any]:
+    x, y = scale.xy(vehicle["position"]["north_m"], vehicle["position"]["east_m"])
+    heading = vehicle["heading_rad"]
+    corners = []
+    for angle, reach in ((0.0, 15.0), (2.6, 10.0), (-2.6, 10.0)):
+        corners.append(
+            f"{x + reach * sin(heading + angle):.1f},{y - reach * cos(heading + angle):.1f}"
+        )
+    away = heading + pi
+    reach = 20 + 3.6 * len(vehicle["label"]) * abs(sin(away))
+    return {
+        "points": " ".join(corners),
+        "color": color,
+        "label": vehicle["label"],
+        "id": vehicle["id"],
+        "x": round(x + reach * sin(away), 1),
+        "y": round(y - reach * cos(away), 1),
+    }
+
+
+def _scale_bar(factor: float) -> dict[str, Any]:
+    metres = 150 / factor
+    step = 10 ** floor(log10(metres))
+    length = max(k * step for k in (1, 2, 5) if k * step <= metres)
+    text = f"{length / 1000:g} km" if length >= 1000 else f"{length:g} m"
+    return {"length": round(length * factor, 1), "text": text}
+
+
+def time_view(report: dict[str, Any]) -> dict[str, Any]:
+    """One row of bars per vehicle, with ticks in seconds."""
+    flight = report["flight"]
+    end_s = max(flight["end_ms"] / 1000, 1.0)
+    vehicles = report["mission"]["vehicles"]
+    rows = {vehicle["id"]: k for k, vehicle in enumerate(vehicles)}
+
+    def x_of(time_ms: float) -> float:
+        return round(BAR_LEFT + BAR_WIDTH * min(time_ms / 1000 / end_s, 1.0), 1)
+
+    bars = [
+        {
+            **bar,
+            "x": x_of(bar["from_ms"]),
+            "width": max(round(x_of(bar["to_ms"]) - x_of(bar["from_ms"]), 1), 1.0),
+            "y": rows[bar["vehicle"]] * BAR_ROW,
+        }
+        for bar in flight["bars"]
+        if bar["vehicle"] in rows
+    ]
+    step = _nice_step(end_s / 8)
+    return {
+        "width": BAR_LEFT + BAR_WIDTH + 30,
+        "height": len(vehicles) * BAR_ROW + 34,
+        "bottom": len(vehicles) * BAR_ROW,
+        "rows": [
+            {"label": vehicle["label"], "id": vehicle["id"], "y": k * BAR_ROW}
+            for k, vehicle in enumerate(vehicles)
+        ],
+        "bars": bars,
+        "ticks": [
+            {"x": x_of(1000 * k * step), "text": f"{k * step:g} s"}
+            for k in range(floor(end_s / step) + 1)
+        ],
+    }
+
+
+def _nice_step(least: float) -> float:
+    power = 10 ** floor(log10(max(least, 1e-3)))
+    return next(k * power for k in (1, 2, 5, 10) if k * power >= least)
+
+
+def separation_view(report: dict[str, Any]) -> dict[str, Any] | None:
+    """Horizontal distance of each pair of our vehicles over time; None with less than two."""
+    tracks = {
+        vehicle["id"]: report["flight"]["tracks"].get(str(vehicle["id"]), [])
+        for vehicle in report["mission"]["vehicles"]
+    }
+    curves = []
+    numbers = [number for number, track in tracks.items() if track]
+    for k, one in enumerate(numbers):
+        for other in numbers[k + 1 :]:
+            there = {row[0]: row for row in tracks[other]}
+            curve = [
+                (row[0], hypot(row[1] - there[row[0]][1], row[2] - there[row[0]][2]))
+                for row in tracks[one]
+                if row[0] in there
+            ]
+            if curve:
+                curves.append((one, other, curve))
+    if not curves:
+        return None
+    end_s = max(report["flight"]["end_ms"] / 1000, 1.0)
+    least_m = min(distance for _, _, curve in curves for _, distance in curve)
+    dthr_m = report["mission"]["daa"]["well_clear"]["dthr_m"]
+    # the low end is what matters, so far distances are cut
+    top_m = max(1500.0, 6 * dthr_m, ceil(least_m / 500 + 1) * 500)
+
+    def xy(time_ms: float, distance_m: float) -> str:
+        x = BAR_LEFT + BAR_WIDTH * time_ms / 1000 / end_s
+        return f"{x:.1f},{150 - 140 * min(distance_m, top_m) / top_m:.1f}"
+
+    return {
+        "width": BAR_LEFT + BAR_WIDTH + 30,
+        "top_m": top_m,
+        "dthr_m": dthr_m,
+        "dthr_y": round(150 - 140 * dthr_m / top_m, 1),
+        "curves": [
+            {
+                "pair": f"{one} and {other}",
+                "points": " ".join(xy(*point) for point in curve),
+                "least_m": round(min(distance for _, distance in curve), 1),
+            }
+            for one, other, curve in curves
+        ],
+    }

@@ -1,0 +1,198 @@
+"""`report.json`: everything that is claimed about one flight, with its evidence.
+
+It is made from the mission, the plan, the checks and the message log, and from nothing else; the
+HTML is a view of it. The same log and mission give the same report but for `environment`.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from cratous import __version__
+from cratous.services.certify.timeline import bars, read_flight
+from cratous.services.certify.verdicts import requirement_rows
+from cratous.services.log import read_digest, read_log
+from cratous.services.records import canonical, fingerprint, to_data
+from cratous.spec.errors import BadInput
+from cratous.spec.guarantees import Outcome, exit_code, worst
+from cratous.spec.mission import Mission
+from cratous.spec.plan import Plan
+
+FORMAT = "cratous-report/1"
+LOG_NAME = "log.sqlite"
+LIMITS = (
+    "Python and z3 are not qualified tools, so this is evidence, not certification credit.",
+    "Proofs hold for the kernels in real arithmetic; the compiled kernels compute in doubles.",
+    "The flight is a simulation with point-mass aircraft, without wind and sensor error.",
+    "Distances are taken in one local tangent frame; its scale error is stated below.",
+    "Terrain is flat at the stated height.",
+    "No loss is excused: whether a way out existed is not decided by an independent check.",
+)
+
+
+def mission_hash(mission: Mission) -> str:
+    """Names what was flown: the mission without the path it was read from."""
+    return fingerprint(to_data(replace(mission, source="")))
+
+
+def plan_hash(plan: Plan) -> str:
+    """Names a plan."""
+    return fingerprint(to_data(plan))
+
+
+def build_report(
+    mission: Mission,
+    plan: Plan,
+    rows: Iterable[dict[str, Any]],
+    log: Path,
+    *,
+    command: str,
+    daa: bool,
+    proofs: dict[str, Any],
+) -> dict[str, Any]:
+    """The whole report as plain data.
+
+    rows: of `verdicts.constraint_rows`; log: the message log; proofs: of `proofs.inventory`.
+    A flight with kernels that the ledger does not vouch for is at best unknown.
+    """
+    found = sorted(rows, key=lambda row: (row["requirement"], row["source"], row["item"]))
+    flight = read_flight(read_log(log), (vehicle.id for vehicle in mission.vehicles))
+    requirements = requirement_rows(found)
+    outcomes = [Outcome(row["verdict"]) for row in requirements]
+    if proofs["problems"]:
+        outcomes.append(Outcome.UNKNOWN)
+    return {
+        "format": FORMAT,
+        "product": {"name": "CRATOUS", "version": __version__},
+        "verdict": str(worst(outcomes)),
+        "exit_code": exit_code(outcomes),
+        "counts": _counts(found),
+        "mission": {**to_data(mission), "source": _shown(mission.source)},
+        "mission_hash": mission_hash(mission),
+        "command": command,
+        "avoidance": daa,
+        "not_covered": [v.id for v in mission.vehicles if not v.protected],
+        "requirements": requirements,
+        "constraints": found,
+        "plan": {**to_data(plan), "hash": plan_hash(plan)},
+        "flight": {
+            "outcome": flight.outcome,
+            "end_ms": flight.end_ms,
+            "tracks": {str(number): track for number, track in sorted(flight.tracks.items())},
+            "track_columns": ["time_ms", "north_m", "east_m", "alt_m", "owner (0 UxAS, 1 ICAROUS)"],
+            "bars": bars(flight),
+            "takeovers": flight.takeovers,
+            "authority": flight.authority,
+            "events": flight.events,
+            "served": [flight.served[task] for task in sorted(flight.served)],
+            "unserved": [task for task in plan.chosen if task not in flight.served],
+        },
+        "log": {
+            "file": LOG_NAME,
+            "digest": read_digest(log),
+            "messages": sum(flight.counts.values()),
+            "by_topic": dict(sorted(flight.counts.items())),
+        },
+        "proofs": proofs,
+        "limits": [*LIMITS, _scale(mission)],
+        "environment": environment(),
+    }
+
+
+def _counts(rows: list[dict[str, Any]]) -> dict[str, int]:
+    return {str(outcome): sum(row["verdict"] == outcome for row in rows) for outcome in Outcome}
+
+
+def _shown(source: str) -> str:
+    """A path as it can be given again: relative, never a folder of one machine."""
+    return source if not os.path.isabs(source) else Path(source).name
+
+
+def _scale(mission: Mission) -> str:
+    from math import hypot
+
+    from cratous.services.frames import scale_error
+
+    places = [vehicle.position[:2] for vehicle in mission.vehicles]
+    places += [point[:2] for task in mission.tasks for point in task.points]
+    places += [vertex for zone in mission.zones for vertex in zone.vertices]
+    reach = max(hypot(*place) for place in places)
+    return (
+        f"Within {reach / 1000:.1f} km of the frame's origin, where everything of this mission "
+        f"lies, local distances are off by at most {scale_error(reach):.1e} of themselves."
+    )
+
+
+def environment() -> dict[str, Any]:
+    """Python, system and the versions of what decides: recorded, but no part of any digest."""
+    import platform
+    from importlib.metadata import PackageNotFoundError, version
+
+    packages = {}
+    for name in ("numpy", "numba", "z3-solver", "shapely", "pyproj", "lark", "lxml"):
+        try:
+            packages[name] = version(name)
+        except PackageNotFoundError:
+            packages[name] = "not installed"
+    return {
+        "python": platform.python_version(),
+        "system": f"{platform.system()} {platform.machine()}",
+        "packages": packages,
+    }
+
+
+def write_report(report: dict[str, Any], folder: Path) -> None:
+    """Write `report.json` and, from it, `report.html` into a folder; each whole or not at all."""
+    from cratous.services.certify.html import render
+
+    text = json.dumps(report, indent=1, sort_keys=True, ensure_ascii=False, allow_nan=False)
+    _replace(folder / "report.json", text + "\n")
+    _replace(folder / "report.html", render(json.loads(text)))
+
+
+def _replace(path: Path, text: str) -> None:
+    part = path.with_name(path.name + ".part")
+    part.write_text(text, encoding="utf-8")
+    os.replace(part, path)
+
+
+def read_report(folder: Path) -> dict[str, Any]:
+    """The report.json of a folder; BadInput if it is missing or of another format."""
+    path = folder / "report.json"
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except OSError:
+        raise BadInput(
+            "there is no such file", where=str(path), expected="the output folder of cratous run"
+        ) from None
+    except ValueError as error:
+        raise BadInput(f"not JSON ({error})", where=str(path)) from None
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        got = data.get("format", "none") if isinstance(data, dict) else "no mapping"
+        raise BadInput("another format", where=str(path), expected=FORMAT, got=str(got))
+    return data
+
+
+def differences(written: dict[str, Any], again: dict[str, Any], path: str = "") -> list[str]:
+    """Where two reports say different things (`environment` is left aside), at most ten."""
+    found: list[str] = []
+    for key in sorted({*written, *again}):
+        if not path and key in ("environment", "command"):
+            continue
+        name = f"{path}.{key}" if path else key
+        one, two = written.get(key), again.get(key)
+        if isinstance(one, dict) and isinstance(two, dict):
+            found += differences(one, two, name)
+        elif canonical(one) != canonical(two):
+            found.append(f"{name}: written {_brief(one)}, found {_brief(two)}")
+    return found[:10]
+
+
+def _brief(value: Any) -> str:
+    text = canonical(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."

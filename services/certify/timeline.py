@@ -1,0 +1,204 @@
+"""What happened, read from the message log alone: tracks, authority, phases, takeovers, events.
+
+Every fact of the report's flight part comes from here, so that a second program can make it
+again from the same log.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+from cratous.services.log import Row
+
+TRACK_PERIOD_MS = 1000
+PHASES = ("Planned", "Transit", "Waiting", "Active", "Suspended", "Complete", "Failed")
+OWNERS = ("UxAS", "ICAROUS")
+
+
+@dataclass
+class Flight:
+    """The flight as read so far; times in ms after mission start, places in the mission frame."""
+
+    tracks: dict[int, list[list[float]]] = field(default_factory=dict)
+    authority: list[dict[str, Any]] = field(default_factory=list)
+    phases: list[dict[str, Any]] = field(default_factory=list)
+    takeovers: list[dict[str, Any]] = field(default_factory=list)
+    events: list[dict[str, Any]] = field(default_factory=list)
+    served: dict[int, dict[str, Any]] = field(default_factory=dict)
+    counts: dict[str, int] = field(default_factory=dict)
+    end_ms: int = 0
+    outcome: str = "the log has no end of mission"
+    plan_hash: str = ""
+
+
+def _name(value: Any, names: tuple[str, ...]) -> str:
+    return names[value] if isinstance(value, int) else str(value)
+
+
+def read_flight(rows: Iterable[Row], vehicles: Iterable[int]) -> Flight:
+    """Follow the messages of a log; `vehicles` are ours, anything else that flies is traffic."""
+    flight = Flight()
+    owners = dict.fromkeys(vehicles, "UxAS")
+    last: dict[int, list[float]] = {}
+    open_takeover: dict[int, dict[str, Any]] = {}
+    for row in rows:
+        short = row.topic.rpartition(".")[2]
+        flight.counts[row.topic] = flight.counts.get(row.topic, 0) + 1
+        flight.end_ms = max(flight.end_ms, row.time_ms)
+        if not row.topic.startswith("cratous."):
+            continue
+        body = json.loads(row.body)
+        if short == "TruthState":
+            _truth(flight, body, owners, last)
+        elif short == "AuthorityChange":
+            _authority(flight, body, owners, last, open_takeover)
+        elif short == "TaskProgress":
+            _progress(flight, body)
+        else:
+            _event(flight, short, body)
+    for number, point in last.items():
+        track = flight.tracks[number]
+        if track[-1] is not point:
+            track.append(point)
+    return flight
+
+
+def _truth(
+    flight: Flight, body: dict[str, Any], owners: dict[int, str], last: dict[int, list[float]]
+) -> None:
+    number, time_ms = int(body["VehicleID"]), int(body["Time"])
+    owner = OWNERS.index(owners.get(number, "UxAS"))
+    point = [
+        time_ms,
+        round(body["North"], 1),
+        round(body["East"], 1),
+        round(body["Altitude"], 1),
+        owner,
+    ]
+    track = flight.tracks.setdefault(number, [])
+    # the same instants for every vehicle, so that distances can be read off two tracks
+    due = not track or time_ms // TRACK_PERIOD_MS != track[-1][0] // TRACK_PERIOD_MS
+    if due or track[-1][4] != owner:
+        track.append(point)
+    last[number] = point
+
+
+def _authority(
+    flight: Flight,
+    body: dict[str, Any],
+    owners: dict[int, str],
+    last: dict[int, list[float]],
+    opened: dict[int, dict[str, Any]],
+) -> None:
+    number, time_ms = int(body["VehicleID"]), int(body["Time"])
+    owner = _name(body["Owner"], OWNERS)
+    before = owners.get(number, "UxAS")
+    intruder = int(body.get("IntruderID", 0))
+    flight.authority.append(
+        {
+            "vehicle": number,
+            "time_ms": time_ms,
+            "owner": owner,
+            "epoch": int(body["Epoch"]),
+            "reason": body["Reason"],
+            "intruder": intruder,
+        }
+    )
+    owners[number] = owner
+    if owner == "ICAROUS" and before != "ICAROUS":
+        place = last.get(number, [0, 0.0, 0.0, 0.0, 0])
+        opened[number] = {
+            "vehicle": number,
+            "intruder": intruder,
+            "from_ms": time_ms,
+            "to_ms": None,
+            "north_m": place[1],
+            "east_m": place[2],
+            "alt_m": place[3],
+            "reason": body["Reason"],
+        }
+        flight.takeovers.append(opened[number])
+        against = f" because of {intruder}" if intruder > 0 else ""
+        _note(flight, time_ms, number, f"ICAROUS takes over{against}: {body['Reason']}")
+    elif owner == "UxAS" and before == "ICAROUS":
+        if number in opened:
+            opened.pop(number)["to_ms"] = time_ms
+        _note(flight, time_ms, number, f"handed back to UxAS: {body['Reason']}")
+
+
+def _progress(flight: Flight, body: dict[str, Any]) -> None:
+    number, task, time_ms = int(body["VehicleID"]), int(body["TaskID"]), int(body["Time"])
+    phase = _name(body["Phase"], PHASES)
+    served = float(body["Served"])
+    for earlier in reversed(flight.phases):
+        if earlier["vehicle"] == number:
+            if earlier["task"] == task and earlier["phase"] == phase:
+                return
+            break
+    flight.phases.append({"vehicle": number, "task": task, "phase": phase, "time_ms": time_ms})
+    if phase in ("Complete", "Failed"):
+        flight.served[task] = {
+            "task": task,
+            "vehicle": number,
+            "served": served,
+            "phase": phase,
+            "time_ms": time_ms,
+            "note": body["Note"],
+        }
+    note = f" ({body['Note']})" if body["Note"] else ""
+    _note(flight, time_ms, number, f"task {task}: {phase.lower()}{note}")
+
+
+def _event(flight: Flight, short: str, body: dict[str, Any]) -> None:
+    time_ms = int(body.get("Time", 0))
+    if short == "MissionEnd":
+        flight.outcome, flight.end_ms = str(body["Outcome"]), time_ms
+        _note(flight, time_ms, None, f"end of mission: {body['Outcome']}")
+    elif short == "PlanAccepted":
+        flight.plan_hash = str(body["PlanHash"])
+        _note(flight, time_ms, None, f"plan accepted, {body['Makespan'] / 1000:.1f} s long")
+    elif short == "BridgeStatus":
+        state = "alive" if body["Alive"] else "silent"
+        _note(flight, time_ms, int(body["VehicleID"]), f"bridge {state} {body['Note']}".strip())
+    elif short == "CommandDropped":
+        text = f"command dropped by the gate: {body['Reason']}"
+        _note(flight, time_ms, int(body["VehicleID"]), text)
+
+
+def _note(flight: Flight, time_ms: int, vehicle: int | None, text: str) -> None:
+    flight.events.append({"time_ms": time_ms, "vehicle": vehicle, "text": text})
+
+
+BARS = {"Transit": "transit", "Waiting": "wait", "Active": "task", "Suspended": "return"}
+
+
+def bars(flight: Flight) -> list[dict[str, Any]]:
+    """The time line as bars: per vehicle what it did from when to when."""
+    found: list[dict[str, Any]] = []
+    for k, phase in enumerate(flight.phases):
+        if phase["phase"] not in BARS:
+            continue
+        later = (p["time_ms"] for p in flight.phases[k + 1 :] if p["vehicle"] == phase["vehicle"])
+        found.append(
+            {
+                "vehicle": phase["vehicle"],
+                "task": phase["task"],
+                "what": BARS[phase["phase"]],
+                "from_ms": phase["time_ms"],
+                "to_ms": next(later, flight.end_ms),
+            }
+        )
+    for takeover in flight.takeovers:
+        found.append(
+            {
+                "vehicle": takeover["vehicle"],
+                "task": None,
+                "what": "icarous",
+                "from_ms": takeover["from_ms"],
+                "to_ms": takeover["to_ms"] or flight.end_ms,
+            }
+        )
+    return sorted(found, key=lambda bar: (bar["vehicle"], bar["from_ms"], bar["what"]))

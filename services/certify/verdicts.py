@@ -1,0 +1,72 @@
+"""Verdicts of the plan check and of the monitor as the rows and the summary of a report."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from cratous.spec.guarantees import REQUIREMENTS, Outcome, Verdict, worst
+
+
+def constraint_rows(verdicts: Iterable[Verdict], source: str) -> list[dict[str, Any]]:
+    """One row per single constraint (verdicts on a whole requirement are made again).
+
+    source: "plan" for the check before the flight, "flight" for the monitor.
+    """
+    return [
+        {
+            "requirement": verdict.requirement,
+            "item": verdict.item,
+            "source": source,
+            "verdict": str(verdict.outcome),
+            "kind": str(verdict.kind),
+            "margin": verdict.margin,
+            "unit": verdict.unit,
+            "time_ms": verdict.time_ms,
+            "vehicles": list(verdict.vehicles),
+            "note": verdict.note,
+            "method": verdict.method,
+            "checks": verdict.checks,
+        }
+        for verdict in verdicts
+        if verdict.item
+    ]
+
+
+def requirement_rows(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
+    """One row per requirement: the worst of its constraints, and where the margin is least.
+
+    A requirement on which no constraint speaks is unknown.
+    """
+    by_id: dict[str, list[dict[str, Any]]] = {entry.id: [] for entry in REQUIREMENTS}
+    for row in rows:
+        by_id.setdefault(row["requirement"], []).append(row)
+    texts = {entry.id: entry for entry in REQUIREMENTS}
+    found = []
+    for name, group in by_id.items():
+        verdict = worst([Outcome(row["verdict"]) for row in group])
+        telling = [row for row in group if row["verdict"] == verdict]
+        measured = [row for row in telling if row["margin"] is not None]
+        # margins of different units cannot be compared; distances are what people look for first
+        chosen = min(
+            measured,
+            key=lambda row: (row["unit"] != "m", row["margin"]),
+            default=telling[0] if telling else None,
+        )
+        found.append(
+            {
+                "requirement": name,
+                "title": texts[name].title if name in texts else name,
+                "text": texts[name].text if name in texts else "",
+                "verdict": str(verdict),
+                "constraints": len(group),
+                "checks": sum(row["checks"] for row in group),
+                "margin": chosen["margin"] if chosen else None,
+                "unit": chosen["unit"] if chosen else "",
+                "time_ms": chosen["time_ms"] if chosen else None,
+                "vehicles": chosen["vehicles"] if chosen else [],
+                "item": chosen["item"] if chosen else "",
+                "note": chosen["note"] if chosen else "nothing was observed",
+            }
+        )
+    return found

@@ -1,0 +1,121 @@
+"""The command `cratous`: one line per command here, each command in its own module.
+
+A module is imported only when its command runs, so that `cratous --help` is quick. Whatever goes
+wrong ends as one message and an exit code: 0 all hold, 1 something is violated or no plan exists,
+2 bad input, 3 something is unknown or excused; 70 is an error of the product itself.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import sys
+from typing import Any
+
+import click
+
+from cratous.spec.errors import BadInput, CratousError, NoPlan
+
+INTERNAL_ERROR = 70
+COMMANDS = {
+    "run": "Plan, prove, fly, monitor and certify a mission.",
+    "plan": "Plan a mission and check the plan; nothing flies.",
+    "prove": "Prove the kernels and write the ledger (in a checkout).",
+    "certify": "Judge a finished flight again from its log.",
+    "monitor": "Watch a message log for violations of G1 to G5.",
+    "algebra": "Check, draw or enumerate a process-algebra text.",
+    "version": "Print the version.",
+}
+
+
+class LazyGroup(click.Group):
+    """A group whose commands are imported when they are called."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in COMMANDS:
+            return None
+        module = importlib.import_module(f"cratous.services.cli.{cmd_name}")
+        command: click.Command = getattr(module, cmd_name)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
+
+
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.option("--debug", is_flag=True, help="Show the traceback of an internal error.")
+def cli(debug: bool) -> None:
+    """Verified mission autonomy for teams of unmanned aircraft.
+
+    Try it:  cratous run examples/crossing/mission.yaml
+
+    Exit codes: 0 all requirements hold, 1 something is violated or no plan exists, 2 bad input,
+    3 something is unknown or excused.
+    """
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run a command line; returns the exit code and never lets an exception out."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    debug = "--debug" in arguments
+    # the flag may stand anywhere, as users put it at the end
+    arguments = [part for part in arguments if part != "--debug"]
+    as_json = "--json" in arguments
+    try:
+        result = cli.main(args=arguments, prog_name="cratous", standalone_mode=False)
+        return result if isinstance(result, int) else 0
+    except click.exceptions.Exit as done:
+        return done.exit_code
+    except SystemExit as done:
+        return done.code if isinstance(done.code, int) else int(done.code is not None)
+    except click.ClickException as error:
+        return _usage(error, as_json)
+    except (click.Abort, KeyboardInterrupt):
+        click.echo("cratous: stopped", err=True)
+        return 130
+    except CratousError as error:
+        return report_error(error, as_json)
+    except Exception as error:
+        if debug:
+            raise
+        name = type(error).__name__
+        click.echo(f"cratous: internal error ({name}: {error})", err=True)
+        click.echo("This is a defect of CRATOUS. Add --debug to see where it is.", err=True)
+        if as_json:
+            click.echo(json.dumps({"error": f"internal error: {name}", "exit_code": 70}))
+        return INTERNAL_ERROR
+
+
+def _usage(error: click.ClickException, as_json: bool) -> int:
+    if as_json:
+        click.echo(json.dumps({"error": error.format_message(), "exit_code": 2}))
+    else:
+        error.show()
+    return 2
+
+
+def report_error(error: CratousError, as_json: bool) -> int:
+    """Print an error once, for people or as JSON; returns its exit code."""
+    if as_json:
+        click.echo(json.dumps({**_data(error), "exit_code": error.exit_code}, ensure_ascii=False))
+        return error.exit_code
+    notes = "".join(f" {note}" for note in getattr(error, "__notes__", ()))
+    click.echo(f"cratous: {error}{notes}", err=True)
+    caret = getattr(error, "caret", None)
+    if caret is not None:
+        click.echo(caret(), err=True)
+    for other in getattr(error, "problems", ())[1:]:
+        click.echo(f"  also: {other}", err=True)
+    return error.exit_code
+
+
+def _data(error: CratousError) -> dict[str, Any]:
+    if isinstance(error, BadInput):
+        return error.data()
+    if isinstance(error, NoPlan):
+        return {"error": "no plan exists", "reasons": list(error.reasons)}
+    return {"error": str(error)}

@@ -1,0 +1,192 @@
+"""The main job for one mission: gate, plan, check, fly, monitor, certify.
+
+The output folder is filled under a temporary name beside its final one and renamed when it is
+whole; an error on the way leaves nothing.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import mkdtemp
+from typing import Any
+
+from cratous.spec.errors import BadInput, NoPlan
+from cratous.spec.guarantees import Outcome, Verdict, worst
+from cratous.spec.mission import Mission
+from cratous.spec.plan import Plan
+
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a mission is run; `command` is what reproduces it."""
+
+    daa: bool = True
+    allow_unproved: bool = False
+    command: str = ""
+
+
+def silent(_text: str) -> None:
+    """Tell nobody."""
+
+
+def new_bus() -> Any:
+    """A bus for LMCP bodies."""
+    from cratous.bridge import lmcp
+    from cratous.services.bus import Bus
+
+    return Bus(lmcp.full_names)
+
+
+def plan_and_check(mission: Mission, bus: Any) -> tuple[Plan, list[Verdict]]:
+    """The plan, and the verdicts of the kernels on it. NoPlan with reasons if there is none."""
+    from cratous.services.plan_check import check_plan
+    from cratous.services.planning import make_plan
+
+    plan = make_plan(mission, bus)
+    return plan, check_plan(mission, plan)
+
+
+def folder_name(mission: Mission) -> str:
+    """Name of the output folder: the mission's, with the number of the variant."""
+    return f"{mission.name}-seed{mission.seed}" if mission.seed else mission.name
+
+
+@contextmanager
+def whole_folder(target: Path) -> Iterator[Path]:
+    """A fresh folder that takes the place of `target` if all goes well, else vanishes."""
+    from cratous.services.certify.report import FORMAT
+
+    if target.exists() and not (target.is_dir() and _is_ours(target)):
+        raise BadInput(
+            "the output folder holds something else",
+            where=str(target),
+            expected=f"no such folder, or one with a report ({FORMAT})",
+            got="other files",
+        )
+    made = not target.parent.exists()
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        part = Path(mkdtemp(prefix=f".{target.name}-", dir=target.parent))
+    except OSError as error:
+        raise BadInput(
+            f"the output folder cannot be made ({error.strerror})", where=str(target.parent)
+        ) from None
+    try:
+        part.chmod(0o755)
+        yield part
+        if target.exists():
+            old = Path(mkdtemp(prefix=f".{target.name}-old-", dir=target.parent))
+            os.replace(target, old)
+            os.replace(part, target)
+            shutil.rmtree(old, ignore_errors=True)
+        else:
+            os.replace(part, target)
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+        if made and not any(target.parent.iterdir()):
+            target.parent.rmdir()
+
+
+def _is_ours(folder: Path) -> bool:
+    return (folder / "report.json").is_file() or not any(folder.iterdir())
+
+
+def run_mission(
+    mission: Mission, folder: Path, settings: Settings, tell: Tell = silent
+) -> dict[str, Any]:
+    """Fly one mission and write log and report into `folder`; returns the report as data."""
+    from cratous import __version__
+    from cratous.core import ledger
+    from cratous.services.certify.proofs import inventory
+    from cratous.services.certify.report import LOG_NAME, build_report, mission_hash, write_report
+    from cratous.services.certify.verdicts import constraint_rows
+    from cratous.services.flight.loop import fly
+    from cratous.services.log import LogWriter
+    from cratous.services.monitor import Monitor
+    from cratous.services.records import to_data
+
+    standing = ledger.require(allow_unproved=settings.allow_unproved)
+    proofs = inventory(standing)
+    tell(f"proofs: {standing.line}")
+    if not settings.daa:
+        mission = replace(mission, instances=())
+    bus = new_bus()
+    log = folder / LOG_NAME
+    meta = {
+        "mission": to_data(mission),
+        "version": __version__,
+        "seed": mission.seed,
+        "mission_hash": mission_hash(mission),
+    }
+    with LogWriter(log, **meta) as writer:
+        bus.tap(writer.tap)
+        plan, checks = plan_and_check(mission, bus)
+        tell(plan_line(plan, checks))
+        refuse_bad_plan(checks)
+        writer.note("plan", to_data(plan))
+        writer.note("proofs", {"seal": proofs["seal"], "problems": proofs["problems"]})
+        monitor = Monitor(mission, plan, on_violation=lambda v: tell(f"VIOLATION {sentence(v)}"))
+        bus.tap(monitor.tap)
+        fly(mission, plan, bus, daa=settings.daa, progress=_progress(tell))
+        verdicts = monitor.verdicts()
+    rows = constraint_rows(checks, "plan") + constraint_rows(verdicts, "flight")
+    report = build_report(
+        mission,
+        plan,
+        rows,
+        log,
+        command=settings.command,
+        daa=settings.daa,
+        proofs=proofs,
+    )
+    write_report(report, folder)
+    return report
+
+
+def refuse_bad_plan(checks: list[Verdict]) -> None:
+    """Nothing flies by a plan that fails its check."""
+    bad = [check for check in checks if check.outcome is Outcome.VIOLATED]
+    if bad:
+        raise NoPlan(tuple(f"the best plan found fails its check: {sentence(c)}" for c in bad[:5]))
+
+
+def _progress(tell: Tell) -> Callable[[int, str], None]:
+    """What the flight calls now and then; a line that the next one may overwrite."""
+
+    def show(now_ms: int, text: str) -> None:
+        tell(f"\r{now_ms / 1000:7.1f} s of flight: {text}")
+
+    return show
+
+
+def plan_line(plan: Plan, checks: list[Verdict]) -> str:
+    """One line on a plan and on what its check says."""
+    chains = []
+    for vehicle in dict.fromkeys(item.vehicle_id for item in plan.items):
+        tasks = " ".join(f"p{item.task_id}" for item in plan.chain(vehicle))
+        chains.append(f"vehicle {vehicle}: {tasks}")
+    outcome = worst([check.outcome for check in checks])
+    good = sum(check.outcome is Outcome.HOLDS for check in checks)
+    return (
+        f"plan: {'; '.join(chains)}; {plan.makespan_ms / 1000:.1f} s; "
+        f"{good} of {len(checks)} constraints hold ({outcome})"
+    )
+
+
+def sentence(verdict: Verdict) -> str:
+    """A verdict in one line: requirement, what, time, vehicles, margin."""
+    text = f"{verdict.requirement} {verdict.item}".strip()
+    if verdict.time_ms is not None:
+        text += f" at {verdict.time_ms / 1000:.2f} s"
+    if verdict.vehicles:
+        text += f", vehicles {', '.join(map(str, verdict.vehicles))}"
+    if verdict.margin is not None:
+        text += f", margin {verdict.margin:.4g} {verdict.unit}"
+    return f"{text}: {verdict.note}"

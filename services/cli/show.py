@@ -1,0 +1,92 @@
+"""Tables and progress for people. rich is imported only here, and only when it is needed."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import click
+
+COLOURS = {"holds": "green", "violated": "red", "unknown": "yellow", "excused": "yellow"}
+
+
+def margin_text(row: dict[str, Any]) -> str:
+    """A margin with its unit, or a dash."""
+    return "-" if row["margin"] is None else f"{row['margin']:.4g} {row['unit']}".strip()
+
+
+def place_text(row: dict[str, Any]) -> str:
+    """What the margin belongs to, and when."""
+    text = str(row["item"])
+    if row["time_ms"] is not None:
+        text += f" at {row['time_ms'] / 1000:.2f} s"
+    return text
+
+
+def table(head: list[str], rows: list[list[str]], verdict_column: int | None = None) -> None:
+    """Print a table: drawn for a terminal, plain columns for a file or a pipe."""
+    if sys.stdout.isatty():
+        from rich.console import Console
+        from rich.markup import escape
+        from rich.table import Table
+
+        drawn = Table(*head, header_style="bold")
+        for row in rows:
+            cells = [escape(cell) for cell in row]
+            if verdict_column is not None:
+                colour = COLOURS.get(row[verdict_column], "white")
+                cells[verdict_column] = f"[{colour}]{cells[verdict_column]}[/]"
+            drawn.add_row(*cells)
+        Console().print(drawn)
+        return
+    widths = [max(len(row[k]) for row in [head, *rows]) for k in range(len(head))]
+    for row in [head, *rows]:
+        line = "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True))
+        click.echo(line.rstrip())
+
+
+def requirement_table(rows: list[dict[str, Any]]) -> None:
+    """The verdicts of G1 to G5 with margins and places."""
+    table(
+        ["requirement", "verdict", "margin", "where"],
+        [
+            [
+                f"{row['requirement']} {row['title']}",
+                row["verdict"],
+                margin_text(row),
+                place_text(row)
+                if row["verdict"] == "holds"
+                else f"{place_text(row)}: {row['note']}",
+            ]
+            for row in rows
+        ],
+        verdict_column=1,
+    )
+
+
+@contextmanager
+def progress(quiet: bool) -> Iterator[Callable[[str], None]]:
+    """A function that tells one line of progress on stderr; with a spinner on a terminal.
+
+    A line that begins with a carriage return is passing: only a terminal shows it.
+    """
+    if quiet:
+        yield lambda _text: None
+        return
+    if not sys.stderr.isatty():
+        yield lambda text: None if text.startswith("\r") else click.echo(text, err=True)
+        return
+    from rich.console import Console
+
+    console = Console(stderr=True, highlight=False)
+    with console.status("working") as status:
+
+        def tell(text: str) -> None:
+            if text.startswith("\r"):
+                status.update(text[1:])
+            else:
+                console.print(text, markup=False)
+
+        yield tell

@@ -1,0 +1,171 @@
+"""A YAML file as plain data, with the line of each value; nothing is read in two ways.
+
+YAML 1.1 has readings that surprise (`010` is 8, `1:30` is 90, a key given twice, aliases that
+grow without bound). A mission file must mean one thing, so these are refused.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from cratous.spec.errors import BadInput
+
+MAX_BYTES = 5_000_000
+_SURPRISING = re.compile(r"^[-+]?(0[0-9_]+|[0-9][0-9_]*(:[0-5]?[0-9])+(\.[0-9_]*)?)$")
+_FLOAT = re.compile(r"^[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+$")
+
+Key = tuple[str | int, ...]
+
+
+@dataclass(frozen=True)
+class Document:
+    """Plain data and the line (from 1) on which each value stands."""
+
+    path: str
+    data: Any
+    lines: dict[Key, int]
+
+    def where(self, key: Key) -> str:
+        """`file:line` of a value, or of the nearest thing that contains it."""
+        while key and key not in self.lines:
+            key = key[:-1]
+        return f"{self.path}:{self.lines.get(key, 1)}"
+
+
+def item_name(key: Key) -> str:
+    """`vehicles[1].id` for ("vehicles", 1, "id")."""
+    text = ""
+    for part in key:
+        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else part
+    return text
+
+
+def item_key(item: str) -> Key:
+    """The inverse of `item_name`."""
+    parts = re.findall(r"[^.\[\]]+|\[\d+\]", item)
+    return tuple(int(part[1:-1]) if part.startswith("[") else part for part in parts)
+
+
+def read_document(path: Path) -> Document:
+    """Read a YAML file; BadInput with the line if it is missing, unreadable or ambiguous."""
+    where = str(path)
+    if not path.exists():
+        raise BadInput("there is no such file", where=where, expected="a mission file")
+    try:
+        raw = path.read_bytes()
+    except OSError as error:
+        raise BadInput(f"the file cannot be read ({error.strerror})", where=where) from None
+    if len(raw) > MAX_BYTES:
+        raise BadInput(
+            "the file is too large",
+            where=where,
+            expected=f"at most {MAX_BYTES} bytes",
+            got=f"{len(raw)}",
+        )
+    try:
+        text = raw.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise BadInput(
+            "not a text file", where=where, expected="UTF-8", got=f"byte {error.start} is not"
+        ) from None
+    return parse_document(text, where)
+
+
+def parse_document(text: str, where: str) -> Document:
+    """The same, from text."""
+    import yaml
+
+    try:
+        for event in yaml.parse(text, Loader=yaml.SafeLoader):
+            if isinstance(event, yaml.AliasEvent):
+                raise BadInput(
+                    "aliases are not allowed",
+                    where=f"{where}:{event.start_mark.line + 1 if event.start_mark else 1}",
+                    expected="the value written out",
+                    got=f"*{event.anchor}",
+                )
+        root = yaml.compose(text, Loader=yaml.SafeLoader)
+        if root is None:
+            raise BadInput("the file is empty", where=where, expected="a mission")
+        lines: dict[Key, int] = {}
+        data = _plain(root, (), lines, where)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        place = f"{where}:{mark.line + 1}:{mark.column + 1}" if mark else where
+        raise BadInput(f"not valid YAML: {error.problem or error.context}", where=place) from None
+    except yaml.YAMLError as error:
+        raise BadInput(f"not valid YAML: {error}", where=where) from None
+    except RecursionError:
+        raise BadInput("nested too deeply", where=where) from None
+    return Document(where, data, lines)
+
+
+def _plain(node: Any, key: Key, lines: dict[Key, int], where: str) -> Any:
+    import yaml
+
+    line = node.start_mark.line + 1
+    lines.setdefault(key, line)
+    if isinstance(node, yaml.MappingNode):
+        return _mapping(node, key, lines, where)
+    if isinstance(node, yaml.SequenceNode):
+        return [_plain(part, (*key, k), lines, where) for k, part in enumerate(node.value)]
+    return _scalar(node, f"{where}:{line}", item_name(key))
+
+
+def _mapping(node: Any, key: Key, lines: dict[Key, int], where: str) -> dict[str, Any]:
+    import yaml
+
+    found: dict[str, Any] = {}
+    for name, value in node.value:
+        place = f"{where}:{name.start_mark.line + 1}"
+        if not isinstance(name, yaml.ScalarNode):
+            raise BadInput("a key must be a plain word", where=place, item=item_name(key))
+        if name.value in found:
+            raise BadInput("given twice", where=place, item=item_name((*key, name.value)))
+        lines[(*key, name.value)] = name.start_mark.line + 1
+        found[name.value] = _plain(value, (*key, name.value), lines, where)
+    return found
+
+
+def _scalar(node: Any, where: str, item: str) -> Any:
+    text, kind = node.value, node.tag.rpartition(":")[2]
+    if kind in ("int", "float") and _SURPRISING.match(text):
+        raise BadInput(
+            "a number that can be read in two ways",
+            where=where,
+            item=item,
+            expected="a plain decimal number",
+            got=text,
+        )
+    if kind not in ("null", "bool", "int", "float", "str", "timestamp"):
+        raise BadInput(
+            "tags are not allowed",
+            where=where,
+            item=item,
+            expected="a plain value",
+            got=str(node.tag)[:60],
+        )
+    if kind == "null":
+        return None
+    if kind == "bool":
+        return text.lower() in ("true", "yes", "on")
+    if kind == "int":
+        return int(text.replace("_", ""), 0)
+    if kind == "float":
+        return _number(text, where, item)
+    if kind == "str" and node.style is None and _FLOAT.match(text):
+        return _number(text, where, item)
+    return text
+
+
+def _number(text: str, where: str, item: str) -> float:
+    words = {".inf": "inf", "+.inf": "inf", "-.inf": "-inf", ".nan": "nan"}
+    value = float(words.get(text.lower(), text.replace("_", "")))
+    if value - value != 0:
+        raise BadInput(
+            "not a finite number", where=where, item=item, expected="a finite number", got=text
+        )
+    return value

@@ -1,0 +1,292 @@
+"""A UxAS folder or configuration, as it is, as a `Mission`.
+
+The last configuration and state of each entity, the tasks and zones, and the first automation
+request make the mission: only what the request names takes part, and only the zones of its
+operating region bind. Whatever has no counterpart here is refused or noted, never dropped.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import isfinite
+from pathlib import Path
+
+from cratous.services.loading import uxas_parts as parts
+from cratous.services.loading.checks import too_many_instances
+from cratous.services.loading.document import item_key
+from cratous.services.loading.places import Places
+from cratous.services.loading.uxas_cfg import Configuration, Sent, read_cfg
+from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR, finish
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Daa, Frame, Mission, Task, Vehicle
+
+
+def load_uxas(path: Path) -> Mission:
+    """The mission of a UxAS folder (its only cfg*.xml) or cfg XML file.
+
+    Raises BadInput for what is wrong, missing, or not covered yet (named).
+    """
+    cfg = read_cfg(Path(path))
+    cast = _Cast(cfg)
+    request = cast.request()
+    notes = [*cfg.notes, *cast.notes]
+    frame = _frame(cast)
+    notes.append(f"terrain is taken as flat at {frame.terrain_m:g} m MSL")
+    places = Places(frame)
+    sources: dict[str, str] = {"relations": request.where}
+    vehicles = _vehicles(cast, request, places, sources, notes)
+    tasks = _tasks(cast, request, places, vehicles, sources, notes)
+    zones = []
+    for k, sent in enumerate(_zones(cast, request, notes)):
+        zones.append(parts.zone(sent, places, frame.terrain_m, notes))
+        sources[f"zones[{k}]"] = sent.where
+    instances, guard_notes = _instances(cfg, vehicles)
+    volume = DEFAULT_WELL_CLEAR
+    notes.append(
+        f"UxAS names no well-clear volume: DTHR {volume.dthr_m:g} m, ZTHR {volume.zthr_m:g} m, "
+        f"TTHR {volume.tthr_s:g} s, TCOA {volume.tcoa_s:g} s (our default)"
+    )
+    folder = cfg.path.resolve().parent.name
+    mission = Mission(
+        name=parts.safe_name(folder or cfg.path.stem),
+        source=str(path),
+        frame=frame,
+        vehicles=vehicles,
+        tasks=tasks,
+        daa=Daa(volume),
+        zones=tuple(zones),
+        relations=request.body.TaskRelationships.strip(),
+        cost=_cost(cfg, notes),
+        order="order" if cfg.root.get("Compatibility") == "uxas" else "time",
+        instances=instances,
+        notes=tuple(dict.fromkeys([*notes, *guard_notes])),
+    )
+
+    def where(item: str) -> str:
+        key = item_key(item)
+        for end in range(len(key), 0, -1):
+            name = "".join(f"[{p}]" if isinstance(p, int) else str(p) for p in key[:end])
+            if name in sources:
+                return sources[name]
+        return str(cfg.path)
+
+    return finish(mission, where)
+
+
+class _Cast:
+    """The messages sorted by what they are; later ones replace earlier ones of the same id."""
+
+    def __init__(self, cfg: Configuration) -> None:
+        self.cfg = cfg
+        self.notes: list[str] = []
+        self.configurations: dict[int, Sent] = {}
+        self.states: dict[int, Sent] = {}
+        self.tasks: dict[int, Sent] = {}
+        self.zones: dict[int, Sent] = {}
+        self.regions: dict[int, Sent] = {}
+        self.requests: list[Sent] = []
+        other: list[str] = []
+        for sent in cfg.messages:
+            body, kind = sent.body, type(sent.body).__name__
+            if kind == "AirVehicleConfiguration":
+                self.configurations[body.ID] = sent
+            elif kind == "AirVehicleState":
+                self.states[body.ID] = sent
+            elif kind in ("KeepInZone", "KeepOutZone"):
+                self.zones[body.ZoneID] = sent
+            elif kind == "OperatingRegion":
+                self.regions[body.ID] = sent
+            elif kind == "AutomationRequest":
+                self.requests.append(sent)
+            elif hasattr(body, "TaskID") and hasattr(body, "EligibleEntities"):
+                self.tasks[body.TaskID] = sent
+            else:
+                other.append(kind)
+        if other:
+            self.notes.append(f"messages not used: {', '.join(sorted(set(other)))}")
+
+    def request(self) -> Sent:
+        """The automation request that is flown: the first one."""
+        if not self.requests:
+            raise BadInput(
+                "there is nothing to do",
+                where=str(self.cfg.path),
+                item="SendMessagesService",
+                expected="an AutomationRequest among the messages",
+                got="none",
+            )
+        if len(self.requests) > 1:
+            self.notes.append(f"only the first of {len(self.requests)} requests is flown")
+        return self.requests[0]
+
+
+def _frame(cast: _Cast) -> Frame:
+    """A frame in the middle of everything that has a place, so that errors stay small."""
+    found = [
+        place
+        for sent in cast.cfg.messages
+        for place in parts.locations(sent.body)
+        if isfinite(place[0]) and isfinite(place[1])
+    ]
+    if not found:
+        raise BadInput("no message has a place", where=str(cast.cfg.path), expected="vehicles")
+    latitudes, longitudes = zip(*found, strict=True)
+    return Frame(
+        round((min(latitudes) + max(latitudes)) / 2, 6),
+        round((min(longitudes) + max(longitudes)) / 2, 6),
+    )
+
+
+def _vehicles(
+    cast: _Cast, request: Sent, places: Places, sources: dict[str, str], notes: list[str]
+) -> tuple[Vehicle, ...]:
+    wanted = list(request.body.EntityList) or sorted(cast.configurations)
+    found = []
+    for k, number in enumerate(wanted):
+        for kind, known in (("Configuration", cast.configurations), ("State", cast.states)):
+            if number not in known:
+                raise BadInput(
+                    f"vehicle {number} has no AirVehicle{kind}",
+                    where=request.where,
+                    item=f"EntityList[{k}]",
+                    expected="one of " + (", ".join(map(str, sorted(known))) or "none"),
+                    got=str(number),
+                )
+        sources[f"vehicles[{k}]"] = cast.configurations[number].where
+        sources[f"vehicles[{k}]position"] = cast.states[number].where
+        found.append(parts.vehicle(cast.configurations[number], cast.states[number], places, notes))
+    return tuple(found)
+
+
+def _tasks(
+    cast: _Cast,
+    request: Sent,
+    places: Places,
+    vehicles: tuple[Vehicle, ...],
+    sources: dict[str, str],
+    notes: list[str],
+) -> tuple[Task, ...]:
+    wanted = list(request.body.TaskList)
+    if not wanted:
+        raise BadInput(
+            "the request names no task",
+            where=request.where,
+            item="TaskList",
+            expected="at least one task",
+            got="none",
+        )
+    found: list[Task] = []
+    for k, number in enumerate(wanted):
+        if number not in cast.tasks:
+            raise BadInput(
+                f"task {number} does not exist",
+                where=request.where,
+                item=f"TaskList[{k}]",
+                expected="one of " + (", ".join(map(str, sorted(cast.tasks))) or "none"),
+                got=str(number),
+            )
+        sources[f"tasks[{k}]"] = cast.tasks[number].where
+        task = parts.task(cast.tasks[number], places, vehicles, notes)
+        found.append(_eligible(task, cast, vehicles, f"tasks[{k}].eligible", sources))
+    return tuple(_named_only(found, request, notes))
+
+
+def _eligible(
+    task: Task, cast: _Cast, vehicles: tuple[Vehicle, ...], item: str, sources: dict[str, str]
+) -> Task:
+    """Eligible vehicles that exist but are not in the request do not take part."""
+    ids = [vehicle.id for vehicle in vehicles]
+    kept = tuple(n for n in task.eligible if n in ids or n not in cast.configurations)
+    if task.eligible and not kept:
+        raise BadInput(
+            f"no vehicle of the request may do task {task.id}",
+            where=cast.tasks[task.id].where,
+            item=item,
+            expected="one of " + ", ".join(map(str, ids)),
+            got=", ".join(map(str, task.eligible)),
+        )
+    return replace(task, eligible=kept)
+
+
+def _named_only(tasks: list[Task], request: Sent, notes: list[str]) -> list[Task]:
+    """With relations only the tasks named in them are done, as in UxAS; the rest is noted."""
+    text = request.body.TaskRelationships.strip()
+    if not text:
+        return tasks
+    from cratous.spec.algebra import atoms, parse
+
+    known = frozenset(task.id for task in tasks)
+    named = {atom.task for atom in atoms(parse(text, known, where=request.where))}
+    left_out = [str(task.id) for task in tasks if task.id not in named]
+    if left_out:
+        notes.append(f"tasks not named in TaskRelationships, so not done: {', '.join(left_out)}")
+    return [task for task in tasks if task.id in named]
+
+
+def _zones(cast: _Cast, request: Sent, notes: list[str]) -> list[Sent]:
+    """The zones of the request's operating region; the others do not bind."""
+    number = request.body.OperatingRegion
+    named: list[int] = []
+    if number:
+        if number not in cast.regions:
+            raise BadInput(
+                f"operating region {number} does not exist",
+                where=request.where,
+                item="OperatingRegion",
+                expected="one of " + (", ".join(map(str, sorted(cast.regions))) or "none"),
+                got=str(number),
+            )
+        region = cast.regions[number]
+        named = [*region.body.KeepInAreas, *region.body.KeepOutAreas]
+        for zone in named:
+            if zone not in cast.zones:
+                raise BadInput(
+                    f"zone {zone} of operating region {number} does not exist",
+                    where=region.where,
+                    item="KeepInAreas, KeepOutAreas",
+                    expected="one of " + (", ".join(map(str, sorted(cast.zones))) or "none"),
+                    got=str(zone),
+                )
+    idle = [str(zone) for zone in cast.zones if zone not in named]
+    if idle:
+        notes.append(f"zones outside the operating region, so not binding: {', '.join(idle)}")
+    return [cast.zones[zone] for zone in dict.fromkeys(named)]
+
+
+def _instances(
+    cfg: Configuration, vehicles: tuple[Vehicle, ...]
+) -> tuple[tuple[int, ...], list[str]]:
+    ids = tuple(vehicle.id for vehicle in vehicles)
+    found = cfg.service("IcarousCommunicationService")
+    if found is None:
+        return ids, [
+            "no IcarousCommunicationService: each vehicle is protected by an instance all the same"
+        ]
+    attributes, where = found
+    text = attributes.get("NumberOfUAVs", "")
+    item = "IcarousCommunicationService.NumberOfUAVs"
+    if not text.isdigit():
+        raise BadInput("not a number", where=where, item=item, expected="a whole number", got=text)
+    if int(text) > len(ids):
+        raise too_many_instances(int(text), len(ids), where, item)
+    return tuple(sorted(ids)[: int(text)]), []
+
+
+def _cost(cfg: Configuration, notes: list[str]) -> str:
+    found = cfg.service("AssignmentTreeBranchBoundService")
+    if found is None:
+        return "MINMAX"
+    attributes, where = found
+    cost = attributes.get("CostFunction", "MINMAX")
+    if cost not in ("MINMAX", "CUMULATIVE"):
+        raise BadInput(
+            "unknown cost function",
+            where=where,
+            item="AssignmentTreeBranchBoundService.CostFunction",
+            expected="MINMAX or CUMULATIVE",
+            got=cost,
+        )
+    nodes = attributes.get("NumberNodesMaximum")
+    if nodes is not None:
+        notes.append(f"NumberNodesMaximum={nodes} is not used: the search goes on to the optimum")
+    return cost

@@ -1,0 +1,284 @@
+"""Single CMASI objects (vehicle, task, zone) as parts of a `Mission`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from math import hypot, isfinite, radians
+from typing import Any
+
+from cratous.services.loading.places import Places, msl
+from cratous.services.loading.polygons import circle, rectangle
+from cratous.services.loading.uxas_cfg import Sent
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Camera, Position, Task, TaskKind, Vehicle, View, Zone, ZoneKind
+
+DEFAULT_CLIMB_M_S = 5.0
+UNBOUNDED_M = (-1000.0, 100_000.0)
+TASK_KINDS = {
+    "LineSearchTask": TaskKind.LINE_SEARCH,
+    "PointSearchTask": TaskKind.POINT_SEARCH,
+    "MustFlyTask": TaskKind.MUST_FLY,
+    "LoiterTask": TaskKind.LOITER,
+}
+
+
+def safe_name(text: str) -> str:
+    """A folder's name as the name of a mission: letters, digits, '_' and '-'."""
+    return re.sub(r"[^A-Za-z0-9_-]+", "-", text).strip("-_") or "mission"
+
+
+def locations(body: Any) -> Iterator[tuple[float, float]]:
+    """Latitude and longitude [degrees] of every place inside an object."""
+    if isinstance(body, (list, tuple)):
+        for part in body:
+            yield from locations(part)
+    elif hasattr(body, "Latitude") and hasattr(body, "Longitude"):
+        yield float(body.Latitude), float(body.Longitude)
+    elif hasattr(body, "names"):
+        for name in body.names:
+            yield from locations(getattr(body, name))
+
+
+def _point(location: Any, places: Places, sent: Sent, item: str) -> Position:
+    if location is None:
+        raise BadInput("a place is missing", where=sent.where, item=item, expected="a Location3D")
+    values = (location.Latitude, location.Longitude, location.Altitude)
+    if not all(isfinite(v) for v in values) or abs(values[0]) > 89 or abs(values[1]) > 180:
+        raise BadInput(
+            "not a place",
+            where=sent.where,
+            item=item,
+            expected="a latitude within ±89 and a longitude within ±180 degrees",
+            got=f"{values[0]:g}, {values[1]:g}, altitude {values[2]:g}",
+        )
+    north_m, east_m = places.local(location.Latitude, location.Longitude)
+    kind = location.AltitudeType.name
+    altitude = msl(location.Altitude, kind, places.terrain_m, sent.where, item)
+    return Position(north_m, east_m, float(altitude))
+
+
+def vehicle(configuration: Sent, state: Sent, places: Places, notes: list[str]) -> Vehicle:
+    """A vehicle from its AirVehicleConfiguration and its AirVehicleState."""
+    body = configuration.body
+    profile = body.NominalFlightProfile
+    if profile is None:
+        raise BadInput(
+            f"vehicle {body.ID} has no nominal flight profile",
+            where=configuration.where,
+            item="NominalFlightProfile",
+            expected="a FlightProfile",
+            got="none",
+        )
+    climbs = [abs(entry.VerticalSpeed) for entry in (profile, *body.AlternateFlightProfiles)]
+    climb = max(climbs)
+    if climb == 0:
+        climb = DEFAULT_CLIMB_M_S
+        notes.append(f"vehicle {body.ID} states no climb rate: {climb:g} m/s (our default)")
+    bank = profile.MaxBankAngle
+    if not 1 <= bank <= 80:
+        raise BadInput(
+            f"vehicle {body.ID} cannot turn like that",
+            where=configuration.where,
+            item="NominalFlightProfile.MaxBankAngle",
+            expected="1 to 80 degrees",
+            got=f"{bank:g}",
+        )
+    speed = body.NominalSpeed if body.NominalSpeed > 0 else profile.Airspeed
+    position = _point(state.body.Location, places, state, "Location")
+    nominal = msl(
+        body.NominalAltitude,
+        body.NominalAltitudeType.name,
+        places.terrain_m,
+        configuration.where,
+        "NominalAltitude",
+    )
+    if abs(position.alt_m - nominal) > 1:
+        notes.append(
+            f"vehicle {body.ID} flies at the altitude of its state, {position.alt_m:g} m MSL, "
+            f"not at its nominal {nominal:g} m"
+        )
+    return Vehicle(
+        id=body.ID,
+        label=body.Label or f"vehicle {body.ID}",
+        position=position,
+        heading_rad=radians(state.body.Heading),
+        speed_m_s=float(speed),
+        min_speed_m_s=float(body.MinimumSpeed),
+        max_speed_m_s=float(body.MaximumSpeed),
+        max_bank_rad=radians(bank),
+        max_climb_m_s=float(climb),
+        protected=True,
+        cameras=_cameras(body, state.body),
+    )
+
+
+def _cameras(configuration: Any, state: Any) -> tuple[Camera, ...]:
+    """Each camera on a gimbal, with its present field of view."""
+    payloads = list(configuration.PayloadConfigurationList)
+    views = {
+        part.PayloadID: part.HorizontalFieldOfView
+        for part in state.PayloadStateList
+        if type(part).__name__ == "CameraState"
+    }
+    found = []
+    for gimbal in (part for part in payloads if type(part).__name__ == "GimbalConfiguration"):
+        for camera in payloads:
+            inside = camera.PayloadID in gimbal.ContainedPayloadList
+            if type(camera).__name__ != "CameraConfiguration" or not inside:
+                continue
+            width = camera.VideoStreamHorizontalResolution
+            height = camera.VideoStreamVerticalResolution
+            view = views.get(camera.PayloadID, 0) or camera.MaxHorizontalFieldOfView
+            found.append(
+                Camera(
+                    payload_id=gimbal.PayloadID,
+                    hfov_rad=radians(view),
+                    aspect=width / height if width and height else 4 / 3,
+                    min_elevation_rad=radians(gimbal.MinElevation),
+                    max_elevation_rad=radians(gimbal.MaxElevation),
+                    min_azimuth_rad=radians(gimbal.MinAzimuth),
+                    max_azimuth_rad=radians(gimbal.MaxAzimuth),
+                    wavelength=camera.SupportedWavelengthBand.name,
+                )
+            )
+    return tuple(found)
+
+
+def task(sent: Sent, places: Places, vehicles: tuple[Vehicle, ...], notes: list[str]) -> Task:
+    """A task; BadInput that names the type if it is not covered yet."""
+    body, kind = sent.body, type(sent.body).__name__
+    if kind not in TASK_KINDS:
+        raise BadInput(
+            f"tasks of type {kind} are not covered yet",
+            where=sent.where,
+            item=f"task {body.TaskID}",
+            expected="one of " + ", ".join(TASK_KINDS),
+            got=kind,
+        )
+    points: tuple[Position, ...]
+    duration_ms, radius_m, view, wavelength = 0, 0.0, None, "AllAny"
+    if kind == "LineSearchTask":
+        points = tuple(
+            _point(place, places, sent, f"PointList[{k}]") for k, place in enumerate(body.PointList)
+        )
+        view = _view(body, body.UseInertialViewAngles, notes)
+    elif kind == "PointSearchTask":
+        points = (_point(body.SearchLocation, places, sent, "SearchLocation"),)
+        view = _view(body, True, notes)
+        if body.StandoffDistance > 0:
+            raise BadInput(
+                "a standoff distance is not covered yet",
+                where=sent.where,
+                item="StandoffDistance",
+                expected="0",
+                got=f"{body.StandoffDistance:g}",
+            )
+    elif kind == "MustFlyTask":
+        points = (_point(body.Position, places, sent, "Position"),)
+        if not body.UseAltitude:
+            able = [
+                v for v in vehicles if not body.EligibleEntities or v.id in body.EligibleEntities
+            ]
+            height = (able or list(vehicles))[0].position.alt_m
+            points = (points[0]._replace(alt_m=height),)
+            notes.append(f"task {body.TaskID} uses no altitude: {height:g} m MSL is taken")
+    else:
+        action = body.DesiredAction
+        points = (_point(action and action.Location, places, sent, "DesiredAction.Location"),)
+        duration_ms, radius_m = int(action.Duration), float(action.Radius)
+    if kind.endswith("SearchTask"):
+        duration_ms = int(body.DwellTime)
+        bands = [band.name for band in body.DesiredWavelengthBands]
+        wavelength = bands[0] if len(bands) == 1 else "AllAny"
+        if len(bands) > 1:
+            notes.append(f"task {body.TaskID}: any of the bands {', '.join(bands)} will do")
+    return Task(
+        id=body.TaskID,
+        kind=TASK_KINDS[kind],
+        label=body.Label or f"task {body.TaskID}",
+        points=points,
+        eligible=tuple(body.EligibleEntities),
+        duration_ms=duration_ms,
+        radius_m=radius_m,
+        view=view,
+        wavelength=wavelength,
+    )
+
+
+def _view(body: Any, inertial: bool, notes: list[str]) -> View | None:
+    """The centreline of the first wedge; None means any direction."""
+    wedges = list(body.ViewAngleList)
+    if not wedges:
+        return None
+    if len(wedges) > 1:
+        notes.append(f"task {body.TaskID}: the first of {len(wedges)} view angles is used")
+    first = wedges[0]
+    return View(radians(first.AzimuthCenterline), radians(first.VerticalCenterline), bool(inertial))
+
+
+def zone(sent: Sent, places: Places, terrain_m: float, notes: list[str]) -> Zone:
+    """A keep-in or keep-out zone; a circle becomes a polygon that forbids no less."""
+    body = sent.body
+    kind = ZoneKind.KEEP_IN if type(body).__name__ == "KeepInZone" else ZoneKind.KEEP_OUT
+    floor = msl(body.MinAltitude, body.MinAltitudeType.name, terrain_m, sent.where, "MinAltitude")
+    top = msl(body.MaxAltitude, body.MaxAltitudeType.name, terrain_m, sent.where, "MaxAltitude")
+    if body.MinAltitude == 0 and body.MaxAltitude == 0:
+        floor, top = UNBOUNDED_M
+        notes.append(f"zone {body.ZoneID} states no altitudes: it binds at every altitude")
+    elif body.MinAltitude == 0 and body.MinAltitudeType.name == "AGL":
+        # from the ground up: nobody flies below it, and the ground itself is not a ceiling
+        floor = UNBOUNDED_M[0]
+    if body.StartTime or body.EndTime:
+        notes.append(f"zone {body.ZoneID} has times: it binds at all times")
+    if body.AffectedAircraft:
+        notes.append(f"zone {body.ZoneID} names aircraft: it binds all of them")
+    return Zone(
+        id=body.ZoneID,
+        kind=kind,
+        vertices=_vertices(sent, kind, places, notes),
+        floor_m=float(floor),
+        ceiling_m=float(top),
+        padding_m=float(body.Padding),
+        label=body.Label or f"zone {body.ZoneID}",
+    )
+
+
+def _vertices(
+    sent: Sent, kind: ZoneKind, places: Places, notes: list[str]
+) -> tuple[tuple[float, float], ...]:
+    shape = sent.body.Boundary
+    name = type(shape).__name__
+    if name == "Polygon":
+        corners = [
+            _point(place, places, sent, f"Boundary.BoundaryPoints[{k}]")[:2]
+            for k, place in enumerate(shape.BoundaryPoints)
+        ]
+        if (
+            len(corners) > 3
+            and hypot(corners[0][0] - corners[-1][0], corners[0][1] - corners[-1][1]) < 1e-6
+        ):
+            corners.pop()
+            notes.append(f"zone {sent.body.ZoneID} is closed by its first point: read once")
+        return tuple(corners)
+    if name not in ("Rectangle", "Circle"):
+        raise BadInput(
+            "a zone without a shape",
+            where=sent.where,
+            item="Boundary",
+            expected="a Polygon, Rectangle or Circle",
+            got=name,
+        )
+    centre = _point(shape.CenterPoint, places, sent, "Boundary.CenterPoint")[:2]
+    sizes = (shape.Width, shape.Height) if name == "Rectangle" else (shape.Radius,)
+    if not all(isfinite(size) and size > 0 for size in sizes):
+        raise BadInput(
+            "a zone without a size",
+            where=sent.where,
+            item="Boundary",
+            expected="more than 0 m",
+            got=", ".join(f"{size:g} m" for size in sizes),
+        )
+    if name == "Rectangle":
+        return tuple(rectangle(centre, shape.Width, shape.Height, radians(shape.Rotation)))
+    return tuple(circle(centre, shape.Radius, outside=kind == ZoneKind.KEEP_OUT))

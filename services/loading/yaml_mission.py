@@ -1,0 +1,210 @@
+"""A mission file (YAML, schema `spec/mission.schema.json`) as a `Mission`.
+
+Order: the text must mean one thing, then it must fit the schema, then the checks of `checks.py`
+on what it says, then zones are padded and starts are held against them. Each stage reports all
+that it finds, at most ten problems, each with file, line and item.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import radians
+from pathlib import Path
+from typing import Any
+
+from cratous.services.loading.checks import mission_problems, start_problems, too_many_instances
+from cratous.services.loading.document import Document, item_key, read_document
+from cratous.services.loading.places import Places
+from cratous.services.loading.polygons import padded
+from cratous.services.loading.problems import refuse
+from cratous.services.loading.schema import schema_problems
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import (
+    Camera,
+    Daa,
+    Frame,
+    Mission,
+    Simulation,
+    Task,
+    TaskKind,
+    Traffic,
+    Vehicle,
+    Velocity,
+    View,
+    WellClear,
+    Zone,
+    ZoneKind,
+)
+
+DEFAULT_WELL_CLEAR = WellClear(dthr_m=150.0, zthr_m=30.0, tthr_s=15.0, tcoa_s=0.0)
+
+
+def load(path: Path, seed: int = 0) -> Mission:
+    """The mission in a YAML file; seed > 0 gives that variant of its `variation` section.
+
+    Raises BadMission (a BadInput) with everything found wrong.
+    """
+    document = read_document(path)
+    refuse(schema_problems(document))
+
+    def where(item: str) -> str:
+        return document.where(item_key(item))
+
+    mission = _mission(document, seed)
+    if seed:
+        from cratous.services.loading.variation import vary
+
+        mission = vary(mission, document, seed)
+    return finish(mission, where)
+
+
+def finish(mission: Mission, where: Any) -> Mission:
+    """Check a mission, pad its zones and hold the starts against them."""
+    refuse(mission_problems(mission, where))
+    zones, notes, problems = [], [], []
+    for k, zone in enumerate(mission.zones):
+        item = f"zones[{k}].padding_m"
+        try:
+            zones.append(padded(zone, where(item), item))
+        except BadInput as problem:
+            problems.append(problem)
+        if zone.padding_m:
+            change = "widened" if zone.kind == ZoneKind.KEEP_OUT else "narrowed"
+            notes.append(f"zone {zone.id} is {change} by its padding of {zone.padding_m:g} m")
+    refuse(problems)
+    mission = replace(mission, zones=tuple(zones), notes=(*mission.notes, *notes))
+    refuse(list(start_problems(mission, where)))
+    return mission
+
+
+def expectations(path: Path) -> dict[str, Any]:
+    """The `expect` section of a mission file, as plain data."""
+    found: dict[str, Any] = read_document(path).data.get("expect", {})
+    return found
+
+
+def _mission(document: Document, seed: int) -> Mission:
+    data = document.data
+    frame = Frame(
+        float(data["frame"]["latitude_deg"]),
+        float(data["frame"]["longitude_deg"]),
+        float(data["frame"].get("terrain_m", 0.0)),
+    )
+    places = Places(frame)
+    vehicles = tuple(_vehicle(entry, places) for entry in data["vehicles"])
+    return Mission(
+        name=data["name"],
+        source=document.path,
+        frame=frame,
+        vehicles=vehicles,
+        tasks=tuple(_task(entry, places) for entry in data["tasks"]),
+        daa=_daa(data.get("daa", {})),
+        zones=tuple(_zone(entry, places) for entry in data.get("zones", [])),
+        traffic=tuple(_traffic(entry, places) for entry in data.get("traffic", [])),
+        relations=data.get("relations", "").strip(),
+        cost=data.get("cost", "MINMAX"),
+        order=data.get("order", "time"),
+        instances=_instances(document, vehicles),
+        simulation=_simulation(data.get("simulation", {})),
+        seed=seed,
+    )
+
+
+def _instances(document: Document, vehicles: tuple[Vehicle, ...]) -> tuple[int, ...]:
+    guarded = tuple(vehicle.id for vehicle in vehicles if vehicle.protected)
+    wanted = document.data.get("bridge", {}).get("instances", len(guarded))
+    if wanted > len(guarded):
+        key = ("bridge", "instances")
+        raise too_many_instances(wanted, len(guarded), document.where(key), "bridge.instances")
+    return guarded[: int(wanted)]
+
+
+def _vehicle(data: dict[str, Any], places: Places) -> Vehicle:
+    speed = float(data["speed_m_s"])
+    return Vehicle(
+        id=int(data["id"]),
+        label=data.get("label", f"vehicle {data['id']}"),
+        position=places.position(data["position"]),
+        heading_rad=radians(float(data["heading_deg"])),
+        speed_m_s=speed,
+        min_speed_m_s=float(data.get("min_speed_m_s", speed)),
+        max_speed_m_s=float(data.get("max_speed_m_s", speed)),
+        max_bank_rad=radians(float(data.get("max_bank_deg", 30.0))),
+        max_climb_m_s=float(data.get("max_climb_m_s", 5.0)),
+        protected=data.get("protected", True),
+        cameras=tuple(_camera(entry) for entry in data.get("cameras", [])),
+    )
+
+
+def _camera(data: dict[str, Any]) -> Camera:
+    found: dict[str, Any] = {
+        name: data[name] for name in ("payload_id", "aspect", "wavelength") if name in data
+    }
+    for name, value in data.items():
+        if name.endswith("_deg"):
+            found[f"{name.removesuffix('_deg')}_rad"] = radians(float(value))
+    return Camera(**found)
+
+
+def _task(data: dict[str, Any], places: Places) -> Task:
+    view = data.get("view")
+    return Task(
+        id=int(data["id"]),
+        kind=TaskKind(data["kind"]),
+        label=data.get("label", f"task {data['id']}"),
+        points=tuple(places.position(point) for point in data["points"]),
+        eligible=tuple(int(number) for number in data.get("eligible", [])),
+        duration_ms=round(float(data.get("duration_s", 0)) * 1000),
+        radius_m=float(data.get("radius_m", 0.0)),
+        view=None
+        if view is None
+        else View(
+            radians(float(view["azimuth_deg"])),
+            radians(float(view["elevation_deg"])),
+            view.get("inertial", False),
+        ),
+        wavelength=data.get("wavelength", "AllAny"),
+    )
+
+
+def _zone(data: dict[str, Any], places: Places) -> Zone:
+    return Zone(
+        id=int(data["id"]),
+        kind=ZoneKind(data["kind"]),
+        vertices=tuple(places.vertex(vertex) for vertex in data["vertices"]),
+        floor_m=float(data.get("floor_m", -1000.0)),
+        ceiling_m=float(data.get("ceiling_m", 100_000.0)),
+        padding_m=float(data.get("padding_m", 0.0)),
+        label=data.get("label", ""),
+    )
+
+
+def _traffic(data: dict[str, Any], places: Places) -> Traffic:
+    velocity = data["velocity"]
+    vanishes = data.get("vanishes_s")
+    return Traffic(
+        id=int(data["id"]),
+        position=places.position(data["position"]),
+        velocity=Velocity(
+            float(velocity["north_m_s"]),
+            float(velocity["east_m_s"]),
+            float(velocity.get("down_m_s", 0.0)),
+        ),
+        appears_ms=round(float(data.get("appears_s", 0)) * 1000),
+        vanishes_ms=None if vanishes is None else round(float(vanishes) * 1000),
+    )
+
+
+def _daa(data: dict[str, Any]) -> Daa:
+    volume = {name: float(value) for name, value in data.get("well_clear", {}).items()}
+    rest = {name: float(data[name]) for name in ("lookahead_s", "buffer") if name in data}
+    return Daa(well_clear=replace(DEFAULT_WELL_CLEAR, **volume), **rest)
+
+
+def _simulation(data: dict[str, Any]) -> Simulation:
+    found: dict[str, int] = {
+        name: int(data[name]) for name in ("step_ms", "heartbeat_ms") if name in data
+    }
+    if "limit_s" in data:
+        found["limit_ms"] = round(float(data["limit_s"]) * 1000)
+    return Simulation(**found)
