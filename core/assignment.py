@@ -13,6 +13,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from cratous.core.earliest import (
+    AFTER_END,
+    AFTER_START,
+    NOT_AFTER,
+    NOT_BEFORE,
+    WITHIN_END,
+    WITHIN_START,
     Visit,
     earliest,
     next_wait_ms,
@@ -22,10 +28,11 @@ from cratous.core.earliest import (
 from cratous.core.kernel import driver
 from cratous.core.timing import eligible, runs_forward
 from cratous.spec.plan import Row
-from cratous.spec.schedule import AFTER_END, AFTER_START, NOT_AFTER, NOT_BEFORE
 
 NODE_LIMIT = 50_000
 START = -1
+SETTLE_NODES = 20
+"""What a schedule that needs the full iteration counts as, in nodes."""
 
 
 class Candidate(NamedTuple):
@@ -203,16 +210,41 @@ class _Search:
         start = arrive + wait if wait is not None else start
         end = start + candidate.duration_ms
         for row in rows:
-            if row.i == candidate.task_id and row.kind == NOT_AFTER and end > row.hi:
+            if row.i != candidate.task_id:
+                continue
+            if row.kind == NOT_AFTER and end > row.hi:
+                return None
+            if row.kind in (WITHIN_END, WITHIN_START) and self.too_far(
+                state, vehicle, row, travel + candidate.duration_ms
+            ):
                 return None
         placed = Placed(vehicle, k, depart, arrive, start, end)
         return _State(
-            state.free_ms[:vehicle] + (end,) + state.free_ms[vehicle + 1 :],
-            state.at[:vehicle] + (k,) + state.at[vehicle + 1 :],
+            (*state.free_ms[:vehicle], end, *state.free_ms[vehicle + 1 :]),
+            (*state.at[:vehicle], k, *state.at[vehicle + 1 :]),
             (*state.placed, placed),
             {**state.starts, candidate.task_id: start},
             {**state.ends, candidate.task_id: end},
         )
+
+    def too_far(self, state: _State, vehicle: int, row: Row, last_ms: int) -> bool:
+        """True if the vehicle's own chain keeps the task from ending within the row's bound.
+
+        Between a task that it flew and the end of the new one lies at least what it flies in
+        between, however long anybody waits; last_ms: travel to the new task and its duration.
+        """
+        far: set[int] = set()
+        between = last_ms
+        for p in reversed([p for p in state.placed if p.vehicle == vehicle]):
+            task, duration = self.problem.candidates[p.candidate].task_id, p.end_ms - p.start_ms
+            if row.kind == WITHIN_START:
+                between += duration
+            if task in row.group and between > row.hi:
+                far.add(task)
+            if row.kind == WITHIN_END:
+                between += duration
+            between += p.arrive_ms - p.depart_ms
+        return bool(far) and (row.kind == WITHIN_START or far == set(row.group))
 
     def leaf(self, state: _State, branch: int, rows: Sequence[Row]) -> None:
         """Accept a complete assignment if the kernels do and it is better than the best."""
@@ -227,6 +259,7 @@ class _Search:
         ]
         placed, starts, ends = state.placed, state.starts, state.ends
         if not all(waits) or not rows_hold(rows, starts, ends):
+            self.nodes += SETTLE_NODES
             settled = settle(self.problem, placed, rows)
             if settled is None:
                 return

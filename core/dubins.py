@@ -8,6 +8,7 @@ legs that are flown are checked by the zone kernels.
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import NamedTuple
 
@@ -153,5 +154,5 @@ def polyline_length_m(points: tuple[Position, ...]) -> float:
     """Horizontal length of a polyline [m]."""
     return sum(
         math.hypot(q.north_m - p.north_m, q.east_m - p.east_m)
-        for p, q in zip(points, points[1:], strict=False)
+        for p, q in itertools.pairwise(points)
     )

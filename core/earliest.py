@@ -15,17 +15,9 @@ from typing import NamedTuple
 from cratous.core.kernel import driver
 from cratous.core.timing import row_holds, schedule_holds
 from cratous.spec.plan import Row
-from cratous.spec.schedule import (
-    AFTER_END,
-    AFTER_START,
-    NOT_AFTER,
-    NOT_BEFORE,
-    WITHIN_END,
-    WITHIN_START,
-)
 
-DEPTH = 200
-"""How many choices of who ends late may stack up before the rows are called impossible."""
+AFTER_END, AFTER_START, WITHIN_END, WITHIN_START, NOT_BEFORE, NOT_AFTER = 1, 2, 3, 4, 5, 6
+"""The kinds of rows, as in `spec.schedule`."""
 
 
 class Visit(NamedTuple):
@@ -89,132 +81,107 @@ def rows_hold(rows: Sequence[Row], starts: dict[int, int], ends: dict[int, int])
     return bool(schedule_holds(items))
 
 
-def first_broken_row(
-    rows: Sequence[Row], starts: dict[int, int], ends: dict[int, int]
-) -> Row | None:
-    """The first row that does not hold by the proved kernel, or None."""
-    for row in rows:
-        reference = reference_ms(row, starts, ends)
-        if row.i not in starts or reference is None:
-            return row
-        if not row_holds(row.kind, starts[row.i], ends[row.i], reference, row.lo, row.hi):
-            return row
-    return None
-
-
 class _Raiser:
     """Start times that only rise, until every rule is met or one is seen to be impossible."""
 
     def __init__(self, visits: Sequence[Visit], rows: Sequence[Row]) -> None:
         self.visits, self.rows = visits, rows
-        self.index = {visit.task_id: k for k, visit in enumerate(visits)}
-        self.start = [visit.fixed_ms or 0 for visit in visits]
-        self.arrive = [visit.fixed_ms or 0 for visit in visits]
+        self.of = {visit.task_id: visit for visit in visits}
+        self.start = {visit.task_id: visit.fixed_ms or 0 for visit in visits}
+        self.end = {visit.task_id: (visit.fixed_ms or 0) + visit.duration_ms for visit in visits}
+        self.arrive = dict(self.start)
 
     def copy(self) -> _Raiser:
         other = _Raiser(self.visits, self.rows)
-        other.start, other.arrive = list(self.start), list(self.arrive)
+        other.start, other.end = dict(self.start), dict(self.end)
+        other.arrive = dict(self.arrive)
         return other
 
-    def end(self, k: int) -> int:
-        return self.start[k] + self.visits[k].duration_ms
+    def raise_to(self, task: int, start_ms: int) -> bool | None:
+        """Raise a start; True if it rose, False if it stood there already, None if it is fixed."""
+        if self.start[task] >= start_ms:
+            return False
+        if self.of[task].fixed_ms is not None:
+            return None
+        self.start[task] = start_ms
+        self.end[task] = start_ms + self.of[task].duration_ms
+        return True
 
     def fly(self, in_laps: bool) -> tuple[bool, Row | None]:
         """Bring arrivals up to date, and waits to whole laps; (changed, impossible row)."""
         changed = False
-        for k, visit in enumerate(self.visits):
+        for visit in self.visits:
+            task = visit.task_id
             if visit.fixed_ms is not None:
                 continue
-            leave = visit.ready_ms if visit.previous < 0 else self.end(visit.previous)
-            self.arrive[k] = leave + visit.travel_ms
-            wait = max(0, self.start[k] - self.arrive[k])
+            before = self.visits[visit.previous].task_id if visit.previous >= 0 else None
+            leave = visit.ready_ms if before is None else self.end[before]
+            self.arrive[task] = leave + visit.travel_ms
+            wait = max(0, self.start[task] - self.arrive[task])
             if in_laps or visit.lap_max_ms <= 0:
                 whole = next_wait_ms(wait, visit.lap_ms, visit.lap_max_ms)
-                if whole is None and visit.previous >= 0:
-                    # no room to hold here: the vehicle waits before the task before instead
-                    before = self.visits[visit.previous]
-                    if before.fixed_ms is None:
-                        self.start[visit.previous] += wait
-                        return True, None
                 if whole is None:
-                    text = f"task {visit.task_id} would have to wait, but there is no room to hold"
-                    return changed, Row(NOT_AFTER, visit.task_id, (), 0, 0, text)
+                    # no room to hold here: the vehicle waits before the task before instead
+                    if before is not None and self.raise_to(before, self.start[before] + wait):
+                        return True, None
+                    text = f"task {task} would have to wait, but there is no room to hold"
+                    return changed, Row(NOT_AFTER, task, (), 0, 0, text)
                 wait = whole
-            if self.arrive[k] + wait != self.start[k]:
-                self.start[k], changed = self.arrive[k] + wait, True
+            changed = bool(self.raise_to(task, self.arrive[task] + wait)) or changed
         return changed, None
 
-    def raise_to(self, task_id: int, start_ms: int) -> bool | None:
-        """Raise a start; True if it rose, False if it stood there already, None if it is fixed."""
-        k = self.index[task_id]
-        if self.start[k] >= start_ms:
+    def obey(self, row: Row) -> bool | list[tuple[int, int]] | None:
+        """Raise what one row raises: whether anything rose, or the choices of (task, start) to
+        rise, or None if the row is impossible."""
+        reference = reference_ms(row, self.start, self.end)
+        if row.i not in self.start or reference is None:
+            return None
+        if row_holds(row.kind, self.start[row.i], self.end[row.i], reference, row.lo, row.hi):
             return False
-        if self.visits[k].fixed_ms is not None:
-            return None
-        self.start[k] = start_ms
-        return True
-
-    def times(self) -> tuple[dict[int, int], dict[int, int]]:
-        starts = {visit.task_id: self.start[k] for k, visit in enumerate(self.visits)}
-        return starts, {visit.task_id: self.end(k) for k, visit in enumerate(self.visits)}
-
-    def obey(self, row: Row) -> tuple[bool, list[tuple[int, int]]] | None:
-        """Raise what one row raises; (changed, choices of (task, start)), or None if impossible."""
-        starts, ends = self.times()
-        reference = reference_ms(row, starts, ends)
-        if row.i not in starts or reference is None:
-            return None
-        if row_holds(row.kind, starts[row.i], ends[row.i], reference, row.lo, row.hi):
-            return False, []
         if row.kind in (AFTER_END, AFTER_START, NOT_BEFORE):
-            rose = self.raise_to(row.i, reference + row.lo)
-            return None if rose is None else (True, [])
+            return self.raise_to(row.i, reference + row.lo)
+        need = self.end[row.i] - row.hi
         if row.kind == WITHIN_START:
             # the earliest start counts, so every member has to move
-            moved = [self.raise_to(task, ends[row.i] - row.hi) for task in row.group]
-            return None if None in moved else (True, [])
+            moved = [self.raise_to(task, need) for task in row.group]
+            return None if None in moved else True
         if row.kind == WITHIN_END:
-            need = ends[row.i] - row.hi
             choices = [
-                (task, need - self.visits[self.index[task]].duration_ms)
-                for task in sorted(row.group, key=lambda task: (-ends[task], task))
-                if self.visits[self.index[task]].fixed_ms is None
+                (task, need - self.of[task].duration_ms)
+                for task in sorted(row.group, key=lambda task: (-self.end[task], task))
+                if self.of[task].fixed_ms is None
             ]
-            if len(choices) > 1:
-                return False, choices
-            return (True, []) if choices and self.raise_to(*choices[0]) else None
+            if len(choices) != 1:
+                return choices or None
+            return self.raise_to(*choices[0])
         return None
 
 
-def _settle(
-    raiser: _Raiser, in_laps: bool, budget: list[int], depth: int = 0
-) -> tuple[_Raiser, Row | None]:
-    """Raise until nothing changes; choices are tried depth first within the budget of rounds."""
-    while True:
-        budget[0] -= 1
+def _settle(raiser: _Raiser, in_laps: bool, budget: list[int]) -> tuple[_Raiser, Row | None]:
+    """Raise until nothing changes; choices are tried depth first, within a budget of rounds."""
+    rounds = 4 * (len(raiser.visits) + 3)
+    changed = True
+    while changed:
         changed, impossible = raiser.fly(in_laps)
         if impossible is not None:
             return raiser, impossible
+        rounds, budget[0] = rounds - 1, budget[0] - 1
         for row in raiser.rows:
             answer = raiser.obey(row)
-            if answer is None:
+            if answer is None or (answer and min(rounds, budget[0]) < 0):
+                # times that still rise after so many rounds rise for ever
                 return raiser, row
-            if (budget[0] <= 0 and (answer[0] or answer[1])) or depth > DEPTH:
-                return raiser, row
-            if answer[0]:
-                changed = True
-                break
-            if answer[1]:
-                failed: tuple[_Raiser, Row | None] = (raiser, row)
-                for task, start in answer[1]:
+            if isinstance(answer, list):
+                failed = raiser
+                for task, start in answer:
                     trial = raiser.copy()
                     if trial.raise_to(task, start):
-                        failed = _settle(trial, in_laps, budget, depth + 1)
-                        if failed[1] is None:
-                            return failed
-                return failed[0], row
-        if not changed:
-            return raiser, None
+                        failed, violated = _settle(trial, in_laps, budget)
+                        if violated is None:
+                            return failed, None
+                return failed, row
+            changed = changed or answer
+    return raiser, None
 
 
 @driver(checked_by=("schedule_holds", "row_holds"))
@@ -225,9 +192,14 @@ def earliest(visits: Sequence[Visit], rows: Sequence[Row]) -> Times:
     which gives true lower bounds, then with it. Where a row bounds a task by the latest end of
     several others, each of them is tried as the one that ends late.
     """
-    rounds = 50 + 8 * (len(visits) + 1) * (len(rows) + 1)
-    raiser, violated = _settle(_Raiser(visits, rows), False, [rounds])
+    budget = [40 * (len(visits) + 3)]
+    raiser, violated = _settle(_Raiser(visits, rows), False, budget)
     if violated is None:
-        raiser, violated = _settle(raiser, True, [rounds])
-    ends = tuple(raiser.end(k) for k in range(len(visits)))
-    return Times(tuple(raiser.arrive), tuple(raiser.start), ends, violated)
+        raiser, violated = _settle(raiser, True, budget)
+    order = [visit.task_id for visit in visits]
+    return Times(
+        tuple(raiser.arrive[task] for task in order),
+        tuple(raiser.start[task] for task in order),
+        tuple(raiser.end[task] for task in order),
+        violated,
+    )

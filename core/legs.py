@@ -6,6 +6,7 @@ is refused, because a check without it would mean less than it says.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from functools import lru_cache
 
@@ -13,44 +14,52 @@ from cratous.core.kernel import Vec2, driver
 from cratous.core.polygon import edges_of, keep_in_leg_ok, keep_out_leg_ok, locate, meets_boundary
 from cratous.spec.mission import Position, Zone, ZoneKind
 
-Edges = tuple[tuple[Vec2, Vec2], ...]
+Edge = tuple[Vec2, Vec2]
+Box = tuple[float, float, float, float]
+
+
+def _box(points: Sequence[tuple[float, float]]) -> Box:
+    """Lowest and highest north, lowest and highest east."""
+    norths, easts = [p[0] for p in points], [p[1] for p in points]
+    return min(norths), max(norths), min(easts), max(easts)
 
 
 @lru_cache(maxsize=512)
 def _shape(
-    vertices: tuple[tuple[float, float], ...], number: type
-) -> tuple[Edges, float, float, float, float]:
-    """Edges and bounding box (lowest and highest north, lowest and highest east).
+    vertices: tuple[tuple[float, float], ...], number: str
+) -> tuple[Box, tuple[tuple[Box, Edge], ...]]:
+    """The bounding box of a polygon, and its edges with theirs.
 
-    number: type of the coordinates, so that floats and equal rationals are remembered apart.
+    number: type name of the coordinates, so that floats and equal rationals are remembered apart.
     """
-    norths, easts = [v[0] for v in vertices], [v[1] for v in vertices]
-    return edges_of(vertices), min(norths), max(norths), min(easts), max(easts)
+    return _box(vertices), tuple((_box(edge), edge) for edge in edges_of(vertices))
 
 
 @driver(checked_by=("keep_out_leg_ok", "keep_in_leg_ok", "locate", "meets_boundary"))
 def leg_ok(p: Position, q: Position, zone: Zone) -> bool:
     """True iff the straight leg from p to q obeys the zone. ValueError if the zone has padding.
 
-    The bounding box spares the polygon only where the answer is plain: a keep-out whose box the
-    leg's box does not touch.
+    Bounding boxes spare the folds only what changes nothing in them: all edges where the leg's
+    box does not touch the zone's, edges beside the ray from p, edges whose box the leg's does not
+    touch.
     """
     if zone.padding_m != 0:
         raise ValueError(f"zone {zone.id}: padding must be turned into vertices first")
-    edges, low_n, high_n, low_e, high_e = _shape(zone.vertices, type(zone.vertices[0][0]))
-    low, high = min(p.alt_m, q.alt_m), max(p.alt_m, q.alt_m)
-    keep_out = zone.kind is ZoneKind.KEEP_OUT
-    apart = (
-        max(p.north_m, q.north_m) < low_n
-        or min(p.north_m, q.north_m) > high_n
-        or max(p.east_m, q.east_m) < low_e
-        or min(p.east_m, q.east_m) > high_e
-    )
-    if keep_out and apart:
-        return keep_out_leg_ok(-1, False, low, high, zone.floor_m, zone.ceiling_m)
+    whole, edges = _shape(zone.vertices, type(zone.vertices[0][0]).__name__)
+    low, high = (p.alt_m, q.alt_m) if p.alt_m <= q.alt_m else (q.alt_m, p.alt_m)
+    south, north = (p.north_m, q.north_m) if p.north_m <= q.north_m else (q.north_m, p.north_m)
+    west, east = (p.east_m, q.east_m) if p.east_m <= q.east_m else (q.east_m, p.east_m)
+    holds = keep_out_leg_ok if zone.kind is ZoneKind.KEEP_OUT else keep_in_leg_ok
+    if north < whole[0] or south > whole[1] or east < whole[2] or west > whole[3]:
+        return holds(-1, False, low, high, zone.floor_m, zone.ceiling_m)
     a, b = Vec2(p.north_m, p.east_m), Vec2(q.north_m, q.east_m)
-    where, meets = locate(edges, a), meets_boundary(edges, a, b)
-    holds = keep_out_leg_ok if keep_out else keep_in_leg_ok
+    beside = [edge for box, edge in edges if box[2] <= a.y <= box[3]]
+    near = [
+        edge
+        for box, edge in edges
+        if box[0] <= north and box[1] >= south and box[2] <= east and box[3] >= west
+    ]
+    where, meets = locate(beside, a), meets_boundary(near, a, b)
     return holds(where, meets, low, high, zone.floor_m, zone.ceiling_m)
 
 
@@ -59,7 +68,7 @@ def first_bad_leg(path: Sequence[Position], zones: Sequence[Zone]) -> tuple[int,
 
     A path of one point is a leg from that point to itself.
     """
-    legs = [(path[0], path[0])] if len(path) == 1 else list(zip(path, path[1:], strict=False))
+    legs = [(path[0], path[0])] if len(path) == 1 else list(itertools.pairwise(path))
     for index, (p, q) in enumerate(legs):
         for zone in zones:
             if not leg_ok(p, q, zone):

@@ -83,7 +83,8 @@ def fly_to(
             max(gap, -ability.acceleration_m_s2 * duration), ability.acceleration_m_s2 * duration
         )
         mean_speed = speed + gain / 2
-        chord = mean_speed if turn == 0 else mean_speed * math.sin(turn / 2) / (turn / 2)
+        half = turn / 2
+        chord = mean_speed if abs(half) < 1e-9 else mean_speed * math.sin(half) / half
         climb = climb_m_s if climbing else 0.0
         piece = Piece(t, duration, p, velocity_of(heading + turn / 2, chord, climb))
         pieces.append(piece)

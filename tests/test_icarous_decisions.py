@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import pytest
@@ -98,7 +99,7 @@ def test_manoeuvre_is_connected_and_within_the_limits(
 ) -> None:
     pieces = fly_to(NORTH, ABILITY, heading, speed, climb, 10.0, 60.0)
     assert sum(p.duration_s for p in pieces) == pytest.approx(60.0)
-    for a, b in zip(pieces, pieces[1:], strict=False):
+    for a, b in itertools.pairwise(pieces):
         assert after(a, a.duration_s) == pytest.approx(b.position, abs=1e-9)
         assert a.start_s + a.duration_s == pytest.approx(b.start_s)
         turn = math.remainder(
@@ -151,7 +152,7 @@ def test_a_clear_choice_is_clear_and_the_nearest_to_the_course(
     else:
         assert first_conflict_s(flown, scene) == pytest.approx(choice.first_violation_s)
     if choice.clear and choice.kind == "heading":
-        for k in range(int(round(abs(math.degrees(choice.heading_rad)) / 5))):
+        for k in range(round(abs(math.degrees(choice.heading_rad)) / 5)):
             for side in (1, -1):
                 nearer = fly_to(NORTH, ABILITY, side * math.radians(5 * k), 22.0, 0.0, 0.0, 60.0)
                 assert first_conflict_s(nearer, scene) is not None

@@ -49,8 +49,8 @@ def mission(**more: Any) -> Mission:
         "frame": Frame(45.0, -121.0),
         "vehicles": (vehicle(1), vehicle(2)),
         "tasks": (
-            Task(1, TaskKind.MUST_FLY, "", (Position(0.0, 0.0, 100.0),)),
-            Task(2, TaskKind.MUST_FLY, "", (Position(0.0, 0.0, 100.0),)),
+            Task(1, TaskKind.MUST_FLY, "", (Position(10.0, 5000.0, 100.0),)),
+            Task(2, TaskKind.MUST_FLY, "", (Position(50.0, 10000.0, 100.0),)),
         ),
         "daa": Daa(WellClear(100.0, 30.0, 10.0, 0.0)),
         "relations": ".(p1 p2)",
@@ -59,12 +59,14 @@ def mission(**more: Any) -> Mission:
     return Mission(**{**basis, **more})
 
 
-PLAN = Plan("test", (item(1, 1, 0, 1000), item(2, 2, 2000, 3000)), (), (1, 2), 3000, "MINMAX", 1, True)
+PLAN = Plan(
+    "test", (item(1, 1, 0, 1000), item(2, 2, 2000, 3000)), (), (1, 2), 3000, "MINMAX", 1, True
+)
 
 
 def watch(m: Mission, messages: list[tuple[int, Any]]) -> dict[str, Any]:
     monitor = Monitor(m, PLAN)
-    for time_ms, body in messages:
+    for time_ms, body in sorted(messages, key=lambda m: m[0]):
         monitor.tap(Envelope(lmcp.full_names(body)[0], time_ms, body))
     return {v.requirement + (":" + v.item if v.item else ""): v for v in monitor.verdicts()}
 
@@ -99,9 +101,7 @@ def done(until: int = 3000) -> list[tuple[int, Any]]:
 
 
 def apart(until: int = 3000) -> list[tuple[int, Any]]:
-    return [
-        truth(v, ms, ms / 50, 5000.0 * v) for ms in range(0, until + 1, 250) for v in (1, 2)
-    ]
+    return [truth(v, ms, ms / 50, 5000.0 * v) for ms in range(0, until + 1, 250) for v in (1, 2)]
 
 
 def test_a_good_flight_holds_in_everything():
@@ -112,7 +112,12 @@ def test_a_good_flight_holds_in_everything():
 
 def test_loss_of_well_clear_between_two_samples_is_seen():
     # 600 m apart at both samples, through each other in between
-    fast = [truth(1, 0, -300, 0), truth(2, 0, 300, 0), truth(1, 250, 300, 0), truth(2, 250, -300, 0)]
+    fast = [
+        truth(1, 0, -300, 0),
+        truth(2, 0, 300, 0),
+        truth(1, 250, 300, 0),
+        truth(2, 250, -300, 0),
+    ]
     verdict = watch(mission(), [*fast, *beats(3000), *done()])["G2"]
     assert verdict.outcome is Outcome.VIOLATED
     assert verdict.vehicles == (1, 2)
@@ -130,7 +135,9 @@ def test_traffic_counts_and_an_unprotected_vehicle_is_not_covered():
 
 
 def test_entering_a_keep_out_between_samples_is_seen():
-    zone = Zone(7, ZoneKind.KEEP_OUT, ((10.0, -5.0), (12.0, -5.0), (12.0, 5.0), (10.0, 5.0)), 0.0, 500.0)
+    zone = Zone(
+        7, ZoneKind.KEEP_OUT, ((10.0, -5.0), (12.0, -5.0), (12.0, 5.0), (10.0, 5.0)), 0.0, 500.0
+    )
     flight = [truth(1, 0, 0, 0), truth(1, 250, 20, 0), truth(1, 500, 40, 0)]
     seen = watch(mission(zones=(zone,)), [*flight, *done()])
     verdict = seen["G1:zone: keep_out 7, flight of vehicle 1"]
@@ -164,6 +171,26 @@ def test_a_search_must_be_covered_by_footprints():
     assert "0.00 %" in seen["G3:task 1 served"].note
 
 
+def test_a_point_must_really_be_flown_through():
+    tasks = (Task(1, TaskKind.MUST_FLY, "", (Position(10.0, 5060.0, 100.0),)), mission().tasks[1])
+    seen = watch(mission(tasks=tasks), [*apart(), *beats(3000), *done()])
+    assert seen["G3:task 1 served"].outcome is Outcome.VIOLATED
+    assert seen["G3:task 2 served"].outcome is Outcome.HOLDS
+
+
+def test_a_loiter_must_last():
+    def loiter(ms: int) -> Mission:
+        centre = (Position(0.0, 5000.0, 100.0),)
+        task = Task(1, TaskKind.LOITER, "", centre, duration_ms=ms, radius_m=100.0)
+        return mission(tasks=(task, mission().tasks[1]))
+
+    flight = sorted([*apart(), *beats(3000), *done()], key=lambda m: m[0])
+    assert watch(loiter(1000), flight)["G3:task 1 served"].outcome is Outcome.HOLDS
+    short = watch(loiter(2000), flight)["G3:task 1 served"]
+    assert short.outcome is Outcome.VIOLATED
+    assert "of 2.00 s" in short.note
+
+
 def test_a_takeover_must_be_handed_back():
     name = "AuthorityChange"
     taken = (600, lmcp.new(name, VehicleID=1, Time=600, Owner="ICAROUS", Epoch=1))
@@ -195,7 +222,12 @@ def test_messages_that_stop_leave_it_unknown():
 def test_a_violation_is_told_when_it_happens():
     told: list[Any] = []
     monitor = Monitor(mission(), PLAN, told.append)
-    for ms, body in [truth(1, 0, 0, 0), truth(2, 0, 10, 0), truth(1, 250, 0, 0), truth(2, 250, 10, 0)]:
+    for ms, body in [
+        truth(1, 0, 0, 0),
+        truth(2, 0, 10, 0),
+        truth(1, 250, 0, 0),
+        truth(2, 250, 10, 0),
+    ]:
         monitor.tap(Envelope(lmcp.full_names(body)[0], ms, body))
     assert told == []
     ms, body = truth(1, 500, 0, 0)

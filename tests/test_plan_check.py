@@ -28,9 +28,7 @@ def place(north: float, east: float = 0.0) -> Position:
     return Position(north, east, 100.0)
 
 
-VEHICLES = tuple(
-    Vehicle(k, "", place(0.0), 0.0, 20.0, 15.0, 30.0, 0.5, 5.0, True) for k in (1, 2)
-)
+VEHICLES = tuple(Vehicle(k, "", place(0.0), 0.0, 20.0, 15.0, 30.0, 0.5, 5.0, True) for k in (1, 2))
 TASKS = (
     Task(1, TaskKind.MUST_FLY, "", (place(1000.0),), eligible=(1,)),
     Task(2, TaskKind.MUST_FLY, "", (place(2000.0),)),
@@ -81,6 +79,11 @@ def test_a_flight_faster_than_the_aircraft_is_caught():
     assert "chain: vehicle 2" in bad(tampered(depart_ms=5_000))
 
 
+def test_a_plan_that_jumps_is_caught():
+    gone = tampered(path=(place(1900.0, 3000.0), place(2000.0, 3000.0)))
+    assert "chain: vehicle 2" in bad(gone)
+
+
 def test_an_ineligible_vehicle_is_caught():
     plan = replace(PLAN, items=(replace(FIRST, vehicle_id=2), replace(SECOND, vehicle_id=1)))
     assert "eligibility: task 1" in bad(plan)
@@ -100,7 +103,9 @@ def test_a_leg_that_only_touches_a_keep_out_is_caught():
 
 def test_the_circle_of_a_wait_is_checked_too():
     hold = Hold(1900.0, 150.0, 100.0, 150.0, True)
-    zone = Zone(6, ZoneKind.KEEP_OUT, ((1890.0, 290.0), (1910.0, 290.0), (1900.0, 310.0)), 0.0, 200.0)
+    zone = Zone(
+        6, ZoneKind.KEEP_OUT, ((1890.0, 290.0), (1910.0, 290.0), (1900.0, 310.0)), 0.0, 200.0
+    )
     plan = tampered(hold=hold, wait_ms=60_000, start_ms=155_000, end_ms=160_000)
     found = bad(plan, replace(MISSION, zones=(zone,)))
     assert found == ["zone: keep_out 6, planned route of vehicle 2"]

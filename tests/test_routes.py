@@ -15,7 +15,15 @@ from cratous.core.dubins import (
     pose_after,
     turn_radius_m,
 )
+from cratous.core.kernel import Vec2
 from cratous.core.legs import first_bad_leg, leg_ok
+from cratous.core.polygon import (
+    edges_of,
+    keep_in_leg_ok,
+    keep_out_leg_ok,
+    locate,
+    meets_boundary,
+)
 from cratous.core.visibility import Roadmap, circle, route
 from cratous.services.frames import Projection, scale_error
 from cratous.services.planning.zones import roadmaps
@@ -178,3 +186,21 @@ def test_many_points_at_once_are_the_same():
     norths, easts = projection.to_local_many(lats, lons)
     assert norths[1] == pytest.approx(500.0, abs=1e-6)
     assert easts[0] == pytest.approx(100.0, abs=1e-6)
+
+
+SMALL = st.integers(-6, 6).map(float)
+
+
+@given(
+    st.lists(st.tuples(SMALL, SMALL), min_size=3, max_size=7, unique=True),
+    st.tuples(SMALL, SMALL),
+    st.tuples(SMALL, SMALL),
+    st.sampled_from(ZoneKind),
+)
+@settings(max_examples=400)
+def test_leaving_edges_out_changes_no_verdict(vertices, p, q, kind):
+    zone = Zone(1, kind, tuple(vertices), 0.0, 100.0)
+    edges, a, b = edges_of(vertices), Vec2(*p), Vec2(*q)
+    holds = keep_out_leg_ok if kind is ZoneKind.KEEP_OUT else keep_in_leg_ok
+    wanted = holds(locate(edges, a), meets_boundary(edges, a, b), 50.0, 50.0, 0.0, 100.0)
+    assert leg_ok(Position(*p, 50.0), Position(*q, 50.0), zone) == wanted

@@ -77,6 +77,7 @@ class Monitor:
     def _step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
         self.constraints.step(before, after)
         self.separation.step(before, after)
+        self.completion.step(before, after)
 
     def details(self) -> list[Verdict]:
         """One verdict for each single constraint, pair, task, vehicle."""

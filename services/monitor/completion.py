@@ -3,25 +3,34 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
+from cratous.core.well_clear import dips_to_zero
 from cratous.services.monitor.coverage import CoverageWatch
+from cratous.services.monitor.samples import Sample
 from cratous.spec.guarantees import Kind, Outcome, Verdict
-from cratous.spec.mission import Mission
+from cratous.spec.mission import Mission, Position, TaskKind
 from cratous.spec.plan import Plan
 
 SERVED = 0.99
 """A search is served when the footprints covered at least this fraction of its line or point."""
 
 
+CAPTURE_M = 50.0
+"""A point is flown through within this distance, and a loiter kept within it of its circle [m]."""
+
+
 @dataclass
 class Doing:
-    """What has been seen of one task."""
+    """What has been seen of one task. near_ms: time spent as close to its point as it asks."""
 
     vehicle: int = 0
     active: bool = False
     complete_ms: int | None = None
     failed: str = ""
+    near_ms: int = 0
+    touched: bool = False
 
 
 class CompletionWatch:
@@ -29,6 +38,8 @@ class CompletionWatch:
 
     def __init__(self, mission: Mission, plan: Plan) -> None:
         self._coverage = CoverageWatch(mission)
+        self._kinds = {task.id: task for task in mission.tasks}
+        self._step_ms = mission.simulation.step_ms
         self._tasks = {item.task_id: Doing(item.vehicle_id) for item in plan.items}
         self._outcome: str | None = None
         self._end_ms: int | None = None
@@ -50,6 +61,18 @@ class CompletionWatch:
         """A vehicle's state: what its sensors see counts for the tasks that it is doing."""
         active = [t for t, d in self._tasks.items() if d.active and d.vehicle == body.ID]
         self._coverage.state(body, active)
+
+    def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
+        """Was the point of a must-fly or loiter task near during this step?"""
+        for number, doing in self._tasks.items():
+            task, who = self._kinds[number], doing.vehicle
+            if not doing.active or who not in before or who not in after:
+                continue
+            if task.kind in (TaskKind.MUST_FLY, TaskKind.LOITER):
+                reach = CAPTURE_M + (task.radius_m if task.kind is TaskKind.LOITER else 0.0)
+                if comes_near(before[who], after[who], task.points[0], reach):
+                    doing.touched = True
+                    doing.near_ms += after[who].time_ms - before[who].time_ms
 
     def end(self, body: Any) -> None:
         """The mission ended."""
@@ -82,6 +105,9 @@ class CompletionWatch:
             note += f"; the footprint covered {100 * covered:.2f} % of it"
             if covered < SERVED and outcome is Outcome.HOLDS:
                 outcome = Outcome.VIOLATED
+        missed = self._missed(task)
+        if missed and outcome is Outcome.HOLDS:
+            outcome, note = Outcome.VIOLATED, missed
         return Verdict(
             "G3",
             f"task {task} served",
@@ -93,5 +119,25 @@ class CompletionWatch:
             margin=margin,
             unit="% of the search" if margin is not None else "",
             checks=1,
-            method="locate on footprints" if covered is not None else "",
+            method="locate on footprints" if covered is not None else "dips_to_zero",
         )
+
+    def _missed(self, number: int) -> str:
+        """What a must-fly or loiter task lacks to be served; empty if nothing."""
+        task, doing = self._kinds[number], self._tasks[number]
+        if task.kind in (TaskKind.MUST_FLY, TaskKind.LOITER) and not doing.touched:
+            return f"its point was never within {CAPTURE_M:g} m of what the task asks"
+        # the first and the last step of a loiter are not counted in full
+        lacking = task.duration_ms - 2 * self._step_ms - doing.near_ms
+        if task.kind is TaskKind.LOITER and lacking > 0:
+            return f"loitered {doing.near_ms / 1000:.2f} of {task.duration_ms / 1000:.2f} s"
+        return ""
+
+
+def comes_near(before: Sample, after: Sample, point: Position, reach_m: float) -> bool:
+    """True iff the leg comes within reach_m of the point, horizontally (kernel `dips_to_zero`)."""
+    exact: Any = Fraction
+    s = [exact(before.position[k]) - exact(point[k]) for k in (0, 1)]
+    v = [exact(after.position[k]) - exact(before.position[k]) for k in (0, 1)]
+    ss, vv, sv = s[0] ** 2 + s[1] ** 2, v[0] ** 2 + v[1] ** 2, s[0] * v[0] + s[1] * v[1]
+    return dips_to_zero(vv, 2 * sv, ss - exact(reach_m) ** 2, exact(1))

@@ -1,0 +1,1 @@
+"""The flight: aircraft, autopilots, gates, the executive and both ends of the bridge."""

@@ -1,0 +1,140 @@
+"""A deterministic point-mass aircraft; its flown path is exactly piecewise linear.
+
+Within one physics step the velocity is constant: `steer` chooses the velocity of the coming step
+(turn rate limited by the bank angle, g tan(bank) / v; speed change and climb limited), `advance`
+moves by it. So a state, together with its velocity, says where the aircraft is at every instant
+of the step, and two of them can be checked exactly by the well-clear kernels.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from cratous.spec.mission import Position, Traffic, Vehicle, Velocity
+from cratous.spec.plan import Pose
+
+GRAVITY_M_S2 = 9.80665
+MAX_ACCELERATION_M_S2 = 1.0
+
+
+class Limits(NamedTuple):
+    """What the airframe can do: speeds [m/s], bank [rad], climb [m/s], acceleration [m/s2]."""
+
+    min_speed_m_s: float
+    max_speed_m_s: float
+    max_bank_rad: float
+    max_climb_m_s: float
+    max_acceleration_m_s2: float = MAX_ACCELERATION_M_S2
+
+
+class AirState(NamedTuple):
+    """Where an aircraft is and how it moves until the next step: ground speed, climb positive."""
+
+    position: Position
+    heading_rad: float
+    speed_m_s: float
+    climb_m_s: float
+
+    @property
+    def velocity(self) -> Velocity:
+        """The velocity of the coming step: north, east, down [m/s]."""
+        return Velocity(
+            self.speed_m_s * math.cos(self.heading_rad),
+            self.speed_m_s * math.sin(self.heading_rad),
+            -self.climb_m_s,
+        )
+
+    @property
+    def pose(self) -> Pose:
+        """Position and heading."""
+        return Pose(*self.position, self.heading_rad)
+
+
+class Steering(NamedTuple):
+    """What the autopilot asks for: heading [rad], ground speed [m/s], climb rate [m/s]."""
+
+    heading_rad: float
+    speed_m_s: float
+    climb_m_s: float
+
+
+def limits_of(vehicle: Vehicle) -> Limits:
+    """The limits that the mission declares for a vehicle."""
+    return Limits(
+        vehicle.min_speed_m_s, vehicle.max_speed_m_s, vehicle.max_bank_rad, vehicle.max_climb_m_s
+    )
+
+
+def first_state(vehicle: Vehicle) -> AirState:
+    """A vehicle at mission start."""
+    return AirState(vehicle.position, wrap(vehicle.heading_rad), vehicle.speed_m_s, 0.0)
+
+
+def wrap(angle_rad: float) -> float:
+    """The same angle in (-pi, pi]."""
+    angle = math.fmod(angle_rad, 2 * math.pi)
+    if angle > math.pi:
+        return angle - 2 * math.pi
+    if angle <= -math.pi:
+        return angle + 2 * math.pi
+    return angle
+
+
+def clamp(value: float, low: float, high: float) -> float:
+    """The nearest value in [low, high]."""
+    return min(max(value, low), high)
+
+
+def turn_rate_rad_s(speed_m_s: float, max_bank_rad: float) -> float:
+    """Fastest level turn at a bank angle: g tan(bank) / v [rad/s]."""
+    return GRAVITY_M_S2 * math.tan(max_bank_rad) / speed_m_s
+
+
+def turn_radius_m(speed_m_s: float, max_bank_rad: float) -> float:
+    """Radius of that turn: v^2 / (g tan(bank)) [m]."""
+    return speed_m_s / turn_rate_rad_s(speed_m_s, max_bank_rad)
+
+
+def steer(state: AirState, wanted: Steering, limits: Limits, dt_s: float) -> AirState:
+    """The state with the velocity of the coming step, as near to `wanted` as the limits allow."""
+    most = turn_rate_rad_s(state.speed_m_s, limits.max_bank_rad) * dt_s
+    turn = clamp(wrap(wanted.heading_rad - state.heading_rad), -most, most)
+    change = limits.max_acceleration_m_s2 * dt_s
+    speed = state.speed_m_s + clamp(wanted.speed_m_s - state.speed_m_s, -change, change)
+    return AirState(
+        state.position,
+        wrap(state.heading_rad + turn),
+        clamp(speed, limits.min_speed_m_s, limits.max_speed_m_s),
+        clamp(wanted.climb_m_s, -limits.max_climb_m_s, limits.max_climb_m_s),
+    )
+
+
+def advance(state: AirState, dt_s: float) -> AirState:
+    """The state one step later: straight on."""
+    p, v = state.position, state.velocity
+    return state._replace(
+        position=Position(
+            p.north_m + v.north_m_s * dt_s,
+            p.east_m + v.east_m_s * dt_s,
+            p.alt_m - v.down_m_s * dt_s,
+        )
+    )
+
+
+def traffic_state(traffic: Traffic, now_ms: int) -> AirState | None:
+    """Traffic at an instant: straight flight from where it appears; None while it is not there."""
+    if now_ms < traffic.appears_ms:
+        return None
+    if traffic.vanishes_ms is not None and now_ms > traffic.vanishes_ms:
+        return None
+    v, p = traffic.velocity, traffic.position
+    t_s = (now_ms - traffic.appears_ms) / 1000
+    return AirState(
+        Position(
+            p.north_m + v.north_m_s * t_s, p.east_m + v.east_m_s * t_s, p.alt_m - v.down_m_s * t_s
+        ),
+        math.atan2(v.east_m_s, v.north_m_s),
+        math.hypot(v.north_m_s, v.east_m_s),
+        -v.down_m_s,
+    )

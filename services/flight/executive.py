@@ -1,0 +1,470 @@
+"""Flies a plan: transit, wait while the gate in time is closed, task; for all vehicles at once.
+
+A task starts when its vehicle passes the start pose and every lower bound of the plan's rows
+holds for the REAL times of the others; until then the vehicle circles on its hold. While it
+comes near, it adapts its speed a little so as to pass the start pose just when it may. Events of
+all vehicles are handled in the order of their instants within a step. A delay that breaks an
+upper bound leads to a new plan for the tasks that are left, and if there is none to a named
+failure of the task.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.core.following import Track
+from cratous.core.gate import UXAS
+from cratous.core.manoeuvre import Motion
+from cratous.services.flight import chain as chains
+from cratous.services.flight.chain import Chain, Phase
+from cratous.services.flight.commands import gated, path_command
+from cratous.services.flight.dynamics import AirState, turn_radius_m
+from cratous.services.flight.expectation import expected_times
+from cratous.services.flight.rejoining import Router
+from cratous.services.flight.timing import broken_by, closed_by, opens_ms
+from cratous.services.frames import Projection
+from cratous.services.icarous.return_to_path import goal_index
+from cratous.spec.mission import Mission, Position, Zone
+from cratous.spec.plan import Plan, Pose, Row
+
+SLOWEST, FASTEST = 0.8, 1.06
+"""How far the speed may be adapted in order to be on time, as factors of the planned one."""
+EARLY_MS = 500
+"""A planned wait may end this much early; the rows themselves are never bent."""
+OVERLAP_S = 1.0
+"""An interrupted task goes on this much before the place where it was left [s of flight]."""
+OPEN_MARGIN_MS = 60
+"""Aim this much later than the predicted opening, so that rounding never costs a lap."""
+
+Replan = Callable[[dict[int, AirState], frozenset[int], int], Plan | None]
+
+
+@dataclass
+class Executive:
+    """The UxAS side of the flight: chains by vehicle, real times, and the rows in force.
+
+    zones: the mission's, with their padding already turned into vertices.
+    """
+
+    mission: Mission
+    zones: tuple[Zone, ...]
+    plan: Plan
+    projection: Projection
+    dt_s: float
+    replan: Replan | None = None
+    chains: dict[int, Chain] = field(default_factory=dict)
+    starts: dict[int, int] = field(default_factory=dict)
+    ends: dict[int, int] = field(default_factory=dict)
+    failed: dict[int, str] = field(default_factory=dict)
+    commands: int = 0
+    replans: int = 0
+    finished: int = 0
+    hurry: bool = False
+
+    def __post_init__(self) -> None:
+        self.router = Router(self.zones)
+
+    def begin(self, states: dict[int, AirState], now_ms: int = 0) -> list[Any]:
+        """Set every vehicle on its way; the first messages."""
+        out: list[Any] = []
+        for vehicle in self.mission.vehicles:
+            state = states[vehicle.id]
+            items = self._items(vehicle.id)
+            track = Track((state.position,), state.heading_rad)
+            chain = Chain(vehicle, items, -1, Phase.DONE, track, state.speed_m_s)
+            old = self.chains.get(vehicle.id)
+            if old is not None:
+                chain.version, chain.suspended = old.version, old.suspended
+                chain.failed = old.failed
+            self.chains[vehicle.id] = chain
+            self._next_item(chain, now_ms, state, out)
+        self._settle(states, now_ms, out)
+        return out
+
+    def _items(self, vehicle_id: int) -> tuple[Any, ...]:
+        vehicle = self.mission.vehicle(vehicle_id)
+        radius = chains.ROUTE_MARGIN * turn_radius_m(vehicle.speed_m_s, vehicle.max_bank_rad)
+        return tuple(
+            chains.with_hold(item, radius, self.zones) for item in self.plan.chain(vehicle_id)
+        )
+
+    def step(self, states: dict[int, AirState], epochs: dict[int, int], now_ms: int) -> list[Any]:
+        """One step: events since the last one, in time order, then commands for changed tracks."""
+        out: list[Any] = []
+        before = {vid: chain.version for vid, chain in self.chains.items()}
+        self._settle(states, now_ms, out)
+        if now_ms % self.mission.simulation.heartbeat_ms == 0:
+            self._watch_deadlines(states, now_ms, out)
+            for chain in self.chains.values():
+                self._adapt_speed(chain, now_ms)
+        for vid, chain in self.chains.items():
+            if chain.away and not chain.suspended and chain.s_m >= chain.join_m:
+                chain.away = False
+                note = "back on the path"
+                out.append(self._progress(chain, now_ms, "Active", chain.served(), note))
+            if not chain.suspended and chain.version != before[vid]:
+                out.append(self.command(vid, epochs[vid]))
+        return out
+
+    def command(self, vehicle_id: int, epoch: int) -> Any:
+        """The present track from here on, for the vehicle's gate."""
+        chain = self.chains[vehicle_id]
+        self.commands += 1
+        tasks = (chain.item.task_id,) if chain.item and chain.phase is Phase.TASK else ()
+        points = chain.track.rest(chain.s_m)
+        if len(points) == 1:
+            h = chain.track.heading_rad(chain.s_m)
+            p = points[0]
+            # one point alone has no direction: a metre more gives it the track's
+            points = (p, Position(p.north_m + math.cos(h), p.east_m + math.sin(h), p.alt_m))
+        body = path_command(
+            self.projection, vehicle_id, self.commands, points, chain.speed_m_s, tasks
+        )
+        return gated(vehicle_id, epoch, UXAS, body)
+
+    # events -------------------------------------------------------------------------------
+
+    def _settle(self, states: dict[int, AirState], now_ms: int, out: list[Any]) -> None:
+        """Handle every passing of an end up to now, the earliest first."""
+        passed: dict[int, int | None] = {}
+        for vid in sorted(self.chains):
+            chain = self.chains[vid]
+            if not chain.suspended:
+                passed[vid] = chain.measure(states[vid], now_ms, self.dt_s)
+        while True:
+            due = [(at, vid) for vid, at in passed.items() if at is not None]
+            if not due:
+                return
+            at, vid = min(due)
+            chain = self.chains[vid]
+            self._on_end(chain, at, states[vid], out)
+            passed[vid] = chain.measure(states[vid], now_ms, self.dt_s)
+
+    def _on_end(self, chain: Chain, at_ms: int, state: AirState, out: list[Any]) -> None:
+        item = chain.item
+        if chain.phase is Phase.TASK and item is not None:
+            self.ends[item.task_id] = at_ms
+            out.append(self._progress(chain, at_ms, "Complete", 1.0, ""))
+            self._next_item(chain, at_ms, state, out)
+        elif item is not None:
+            self._try_start(chain, at_ms, out)
+        else:
+            last = chain.track.points[-1]
+            again = [
+                p._replace(alt_m=last.alt_m) for p in chain.track.points[-chains.LAP_LEGS - 1 :]
+            ]
+            chain.enter(Phase.DONE, Track(tuple(again)), at_ms)
+
+    def _next_item(self, chain: Chain, at_ms: int, state: AirState, out: list[Any]) -> None:
+        chain.k += 1
+        while chain.item is not None and chain.item.task_id in self.failed:
+            chain.k += 1
+        item = chain.item
+        if item is None:
+            chain.enter(Phase.DONE, self._final_loiter(chain, state), at_ms)
+            return
+        chain.speed_m_s = item.speed_m_s
+        chain.enter(Phase.TRANSIT, self._transit(chain, state), at_ms)
+        out.append(self._progress(chain, at_ms, "Transit", 0.0, ""))
+
+    def _transit(self, chain: Chain, state: AirState) -> Track:
+        """The planned way to the item, or a new one if we do not come from where it begins."""
+        item = chain.item
+        assert item is not None
+        track = chains.transit_track(item, state.position)
+        first = track.points[0]
+        off = math.hypot(
+            first.north_m - state.position.north_m, first.east_m - state.position.east_m
+        )
+        if off <= 3 * state.speed_m_s * self.dt_s + 1:
+            return track
+        return Track(self._way(chain, state, chains.start_pose(item)))
+
+    def _way(self, chain: Chain, state: AirState, target: Pose) -> tuple[Position, ...]:
+        slope = chain.vehicle.max_climb_m_s / chain.speed_m_s
+        return self.router.way_to(state, self._radius(chain), target, slope)
+
+    def _radius(self, chain: Chain) -> float:
+        return chains.ROUTE_MARGIN * turn_radius_m(
+            max(chain.speed_m_s, chain.vehicle.min_speed_m_s), chain.vehicle.max_bank_rad
+        )
+
+    def _final_loiter(self, chain: Chain, state: AirState) -> Track:
+        """Circle at the end of the chain; raised to a layer of its own while others still fly.
+
+        The layer is one and a half buffered vertical thresholds per vehicle, in the order of
+        finishing, so that one who has finished is in nobody's way.
+        """
+        end = chain.track.at(chain.track.length_m) if chain.k > 0 else state.position
+        heading = (
+            chain.track.heading_rad(chain.track.length_m) if chain.k > 0 else state.heading_rad
+        )
+        self.finished += 1
+        others = any(c.item is not None for c in self.chains.values() if c is not chain)
+        daa = self.mission.daa
+        layer = 1.5 * daa.buffer * daa.well_clear.zthr_m * self.finished
+        return chains.final_loiter(
+            Pose(*end, heading),
+            self._radius(chain),
+            layer if others else 0.0,
+            0.9 * chain.vehicle.max_climb_m_s / chain.vehicle.max_speed_m_s,
+            self.zones,
+        )
+
+    def _last_lap(self, chain: Chain) -> tuple[Position, ...]:
+        """One more lap of the final loiter, level, at the height that was reached."""
+        points = chain.track.points
+        lap = points[-chains.LAP_LEGS - 1 :]
+        return tuple(p._replace(alt_m=points[-1].alt_m) for p in lap)
+
+    def _try_start(self, chain: Chain, at_ms: int, out: list[Any]) -> None:
+        """At the start pose: begin the task, or fly a lap of the hold."""
+        item = chain.item
+        assert item is not None
+        row = closed_by(item.task_id, at_ms, self.plan.rows, self.starts, self.ends)
+        early = item.wait_ms > 0 and at_ms + EARLY_MS < item.start_ms
+        if row is None and not early:
+            self.starts[item.task_id] = at_ms
+            chain.speed_m_s = item.speed_m_s
+            chain.enter(Phase.TASK, Track(item.path, chains.start_pose(item).heading_rad), at_ms)
+            out.append(self._progress(chain, at_ms, "Active", 0.0, ""))
+            return
+        first = chain.phase is not Phase.WAIT
+        pose = chains.start_pose(item)
+        hold = item.hold or chains.tangent_hold(pose, self._radius(chain), ())
+        assert hold is not None
+        chain.enter(Phase.WAIT, Track(chains.lap_points(hold, Position(*pose[:3]))), at_ms)
+        if first:
+            note = row.text if row is not None else f"planned start at {item.start_ms} ms"
+            out.append(self._progress(chain, at_ms, "Waiting", 0.0, note))
+
+    # interruption ---------------------------------------------------------------------------
+
+    def suspend(self, vehicle_id: int, now_ms: int) -> tuple[list[Any], Position | None]:
+        """ICAROUS has taken over: messages, and the resume point if a task was active."""
+        chain = self.chains[vehicle_id]
+        if chain.suspended:
+            return [], self.resume_point(vehicle_id)
+        chain.suspended = True
+        if chain.phase is not Phase.TASK:
+            return [], None
+        if chain.away:
+            return [], self.resume_point(vehicle_id)
+        note = f"left the path at {chain.path_flown_m():.0f} m"
+        return [
+            self._progress(chain, now_ms, "Suspended", chain.served(), note)
+        ], self.resume_point(vehicle_id)
+
+    def resume_point(self, vehicle_id: int) -> Position | None:
+        """Where the path was left, if a task was active: the sensor misses nothing."""
+        chain = self.chains[vehicle_id]
+        if chain.phase is not Phase.TASK:
+            return None
+        return chain.track.at(self._leaving_m(chain))
+
+    def _leaving_m(self, chain: Chain) -> float:
+        """Arc length at which the path was left, and a little before, so that the sensor overlaps."""
+        return max(chain.s_m - OVERLAP_S * chain.speed_m_s, chain.join_m)
+
+    def resume(self, vehicle_id: int, state: AirState, now_ms: int) -> None:
+        """ICAROUS hands back: route to the resume point, then along the rest of the path."""
+        chain = self.chains[vehicle_id]
+        chain.suspended = False
+        flown = 0.0
+        if chain.phase is Phase.TASK:
+            join = self._leaving_m(chain)
+            flown = chain.base_m + join - chain.join_m
+        else:
+            join = self._join_in_transit(chain, state)
+        rest = Track(chain.track.rest(join), chain.track.heading_rad(join))
+        target = Pose(*rest.points[0], rest.heading_rad(0.0))
+        way = self._way(chain, state, target)
+        phase, speed = chain.phase, chain.speed_m_s
+        track = Track((*way, *rest.points[1:]), target.heading_rad)
+        chain.enter(phase, track, now_ms)
+        chain.speed_m_s = speed
+        if phase is Phase.TASK:
+            chain.join_m = max(0.0, track.length_m - rest.length_m)
+            chain.base_m, chain.away = flown, True
+
+    def _join_in_transit(self, chain: Chain, state: AirState) -> float:
+        """Arc length of the waypoint ahead at which the way goes on, as ICAROUS chooses it."""
+        track, p = chain.track, state.position
+        near = track.nearest(p, chain.s_m, track.length_m)
+        index = 0
+        while index < len(track.s_m) - 1 and track.s_m[index] <= near.s_m:
+            index += 1
+        motion = Motion(p, state.heading_rad, state.speed_m_s, state.climb_m_s)
+        radius = turn_radius_m(state.speed_m_s, chain.vehicle.max_bank_rad)
+        return track.s_m[goal_index(motion, radius, track.points, index)]
+
+    # timing -----------------------------------------------------------------------------------
+
+    def expected(self, factor: float, now_ms: int) -> tuple[dict[int, int], dict[int, int]]:
+        """Expected starts and ends of all tasks, ways flown at `factor` times the planned speed."""
+        return expected_times(
+            self.chains, self.plan.rows, self.starts, self.ends, self.failed, factor, now_ms
+        )
+
+    def _adapt_speed(self, chain: Chain, now_ms: int) -> None:
+        """Slow down or speed up so as to pass the start pose when the task may begin."""
+        item = chain.item
+        if item is None or chain.suspended or chain.phase not in (Phase.TRANSIT, Phase.WAIT):
+            return
+        starts, ends = self.expected(1.0, now_ms)
+        starts.pop(item.task_id, None)
+        target = opens_ms(item.task_id, self.plan.rows, starts, ends)
+        if target > 0:
+            target += OPEN_MARGIN_MS
+        if item.wait_ms > 0:
+            target = max(target, item.start_ms)
+        left = chain.left_m()
+        nominal_ms = 1000 * left / item.speed_m_s
+        spare_ms = target - now_ms
+        low = max(chain.vehicle.min_speed_m_s, SLOWEST * item.speed_m_s)
+        high = max(low, min(chain.vehicle.max_speed_m_s, FASTEST * item.speed_m_s))
+        speed = high if self.hurry else item.speed_m_s
+        if spare_ms > nominal_ms and item.hold is not None:
+            lap = 2 * math.pi * item.hold.radius_m
+            laps = 0
+            while 1000 * (left + laps * lap) / low < spare_ms:
+                laps += 1
+            speed = 1000 * (left + laps * lap) / spare_ms
+        speed = min(max(speed, low), high)
+        if abs(speed - chain.speed_m_s) > 0.02 * item.speed_m_s or (
+            left < 10 * item.speed_m_s and abs(speed - chain.speed_m_s) > 0.002 * item.speed_m_s
+        ):
+            chain.speed_m_s = speed
+            chain.version += 1
+
+    def _watch_deadlines(self, states: dict[int, AirState], now_ms: int, out: list[Any]) -> None:
+        """Find an upper bound that not even the fastest flight can keep; plan anew or fail."""
+        self.hurry = bool(self._broken(1.0, now_ms))
+        if not self.hurry:
+            return
+        for task_id, row in self._broken(FASTEST, now_ms):
+            under_way = any(
+                c.phase is Phase.TASK and c.item is not None and c.item.task_id == task_id
+                for c in self.chains.values()
+            )
+            if not under_way and self.replan is not None:
+                if any(c.suspended or c.phase is Phase.TASK for c in self.chains.values()):
+                    continue  # plan anew when no task is under way: none is torn apart
+                if self._plan_anew(states, now_ms, row.text, out):
+                    return
+            self._fail(task_id, now_ms, f"{row.text}: cannot be met any more", states, out)
+
+    def _broken(self, factor: float, now_ms: int) -> list[tuple[int, Row]]:
+        """The tasks that are left whose upper bounds break at this pace, with the first row."""
+        starts, ends = self.expected(factor, now_ms)
+        found = []
+        for task_id in sorted(ends):
+            if task_id not in self.ends and task_id not in self.failed:
+                begins = starts.get(task_id, 0)
+                row = broken_by(task_id, begins, ends[task_id], self.plan.rows, starts, ends)
+                if row is not None:
+                    found.append((task_id, row))
+        return found
+
+    def _plan_anew(
+        self, states: dict[int, AirState], now_ms: int, why: str, out: list[Any]
+    ) -> bool:
+        """A new plan for what is left, from where all are; False if there is none."""
+        if self.replan is None:
+            return False
+        made = self.replan(states, frozenset(self.ends), now_ms)
+        if made is None:
+            return False
+        self.plan = made
+        self.replans += 1
+        for chain in self.chains.values():
+            if chain.item is not None:
+                note = f"planned anew, because of {why}"
+                out.append(self._progress(chain, now_ms, "Planned", 0.0, note))
+        out.extend(self.begin(states, now_ms))
+        return True
+
+    def _fail(
+        self, task_id: int, now_ms: int, why: str, states: dict[int, AirState], out: list[Any]
+    ) -> None:
+        """Name the failure of a task, and of those that can now never begin."""
+        self.failed[task_id] = why
+        for vid in sorted(self.chains):
+            chain = self.chains[vid]
+            item = chain.item
+            ids = [i.task_id for i in chain.items]
+            if task_id not in ids:
+                continue
+            out.append(
+                lmcp.new(
+                    "TaskProgress",
+                    TaskID=task_id,
+                    VehicleID=vid,
+                    Time=now_ms,
+                    Phase="Failed",
+                    Served=chain.served() if item and item.task_id == task_id else 0.0,
+                    Note=why,
+                )
+            )
+            if item is not None and item.task_id == task_id and not chain.suspended:
+                self._next_item(chain, now_ms, states[vid], out)
+            elif item is not None and item.task_id == task_id:
+                chain.phase = Phase.TRANSIT
+                self._next_item(chain, now_ms, states[vid], out)
+        for row in self.plan.rows:
+            waits = row.kind in (1, 2) and task_id in row.group
+            if waits and row.i not in self.failed and row.i not in self.starts:
+                self._fail(row.i, now_ms, f"{row.text}: task {task_id} failed", states, out)
+
+    # reading ----------------------------------------------------------------------------------
+
+    def done(self) -> bool:
+        """True iff every chain is flown to its end."""
+        return all(chain.item is None for chain in self.chains.values())
+
+    def waypoints(self, vehicle_id: int, ahead_m: float) -> tuple[Position, ...]:
+        """The present track and, beyond it, at least ahead_m of what follows if all goes well."""
+        chain = self.chains[vehicle_id]
+        points = list(chain.track.rest(chain.s_m))
+        item = chain.item
+        more: list[Position] = []
+        if item is None:
+            more = list(self._last_lap(chain)) * 4
+        elif chain.phase is Phase.TASK:
+            after = chain.items[chain.k + 1 : chain.k + 2]
+            more = list(after[0].transit + after[0].path) if after else []
+        else:
+            more = list(self._laps_expected(chain, ahead_m)) + list(item.path)
+        return tuple(points + more)
+
+    def _laps_expected(self, chain: Chain, ahead_m: float) -> tuple[Position, ...]:
+        item = chain.item
+        if item is None or item.hold is None:
+            return ()
+        now_ms = chain.since_ms
+        starts, ends = self.expected(1.0, now_ms)
+        starts.pop(item.task_id, None)
+        target = opens_ms(item.task_id, self.plan.rows, starts, ends)
+        if item.wait_ms > 0:
+            target = max(target, item.start_ms)
+        wait_m = (target - now_ms) / 1000 * chain.speed_m_s - chain.left_m()
+        lap = 2 * math.pi * item.hold.radius_m
+        laps = max(0, min(round(wait_m / lap), math.ceil(ahead_m / lap)))
+        return chains.lap_points(item.hold, item.path[0]) * laps
+
+    def _progress(self, chain: Chain, at_ms: int, phase: str, served: float, note: str) -> Any:
+        item = chain.item
+        assert item is not None
+        return lmcp.new(
+            "TaskProgress",
+            TaskID=item.task_id,
+            VehicleID=chain.vehicle.id,
+            Time=at_ms,
+            Phase=phase,
+            Served=served,
+            Note=note,
+        )

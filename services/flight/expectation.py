@@ -1,0 +1,53 @@
+"""When the tasks that are left will start and end, if everyone flies on at a certain speed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping
+
+from cratous.core.dubins import polyline_length_m
+from cratous.services.flight.chain import Chain, Phase
+from cratous.services.flight.timing import opens_ms
+from cratous.spec.plan import PlanItem, Row
+
+
+def expected_times(
+    chains: Mapping[int, Chain],
+    rows: tuple[Row, ...],
+    real_starts: Mapping[int, int],
+    real_ends: Mapping[int, int],
+    failed: Collection[int],
+    factor: float,
+    now_ms: int,
+) -> tuple[dict[int, int], dict[int, int]]:
+    """Starts and ends by task [ms]: the real ones, and the expected ones of the others.
+
+    Ways between tasks are flown at `factor` times the planned speed, tasks at the planned one.
+    They are taken in the order of the planned starts, which no row points against.
+    """
+    starts, ends = dict(real_starts), dict(real_ends)
+    free: dict[int, float] = {}
+    todo: list[tuple[int, int, PlanItem, bool]] = []
+    for vid in sorted(chains):
+        chain = chains[vid]
+        item = chain.item
+        pace = 1.0 if chain.phase is Phase.TASK else factor
+        left_ms = 1000 * chain.left_m() / (item.speed_m_s * pace) if item else 0.0
+        free[vid] = now_ms + left_ms
+        if item is not None and chain.phase is Phase.TASK:
+            ends[item.task_id] = math.ceil(free[vid])
+        rest = chain.items[chain.k + (1 if chain.phase is Phase.TASK else 0) :]
+        for n, later in enumerate(rest):
+            arrived = n == 0 and chain.phase in (Phase.TRANSIT, Phase.WAIT)
+            todo.append((later.start_ms, vid, later, arrived))
+    for _, vid, item, arrived in sorted(todo, key=lambda t: (t[0], t[1])):
+        if item.task_id in failed:
+            continue
+        way = 0.0 if arrived else polyline_length_m(item.transit)
+        speed = item.speed_m_s / 1000
+        opens = opens_ms(item.task_id, rows, starts, ends)
+        start = max(math.floor(free[vid] + way / (speed * factor)), opens)
+        starts[item.task_id] = start
+        free[vid] = start + polyline_length_m(item.path) / speed
+        ends[item.task_id] = math.floor(free[vid])
+    return starts, ends

@@ -1,0 +1,300 @@
+"""One flight in virtual time: the same inputs give the same messages, byte for byte.
+
+Each step of mission.simulation.step_ms, at its instant: heartbeats over the bridge and the
+ICAROUS instances (every heartbeat), the gates, the executive; then the velocities of the coming
+step are chosen and published (`TruthState`), and the step is flown. So a TruthState says where an
+aircraft is at its Time and with which constant velocity it flies until the next one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.bridge.link import LinkEvent
+from cratous.bridge.loopback import Bridge, Delivered
+from cratous.bridge.text_protocol import Direction, Message
+from cratous.core.gate import ICAROUS, UXAS
+from cratous.services.bus import Bus
+from cratous.services.flight.commands import SENDERS, gated, velocity_command
+from cratous.services.flight.communication import Communication
+from cratous.services.flight.dynamics import AirState, traffic_state
+from cratous.services.flight.executive import Executive
+from cratous.services.flight.sensing import camera_states, target_of
+from cratous.services.flight.vehicle import VehicleNode, traffic_picture, truth
+from cratous.services.frames import Projection
+from cratous.services.icarous import instance
+from cratous.services.planning.zones import hard_zones
+from cratous.services.records import fingerprint, to_data
+from cratous.spec.errors import NoPlan
+from cratous.spec.mission import Mission
+from cratous.spec.plan import Plan
+
+Segmenter = Callable[[bytes], Iterable[bytes]]
+GROUND_MARGIN = 2.0
+"""No manoeuvre goes nearer to the ground than this many vertical thresholds."""
+
+
+@dataclass(frozen=True)
+class FlightResult:
+    """How a flight ended. outcome: "complete", "failed" or "limit"; times in ms."""
+
+    outcome: str
+    end_ms: int
+    starts: dict[int, int]
+    ends: dict[int, int]
+    failed: dict[int, str]
+    takeovers: int
+    replans: int
+    steps: int
+
+
+def fly(
+    mission: Mission,
+    plan: Plan,
+    bus: Bus,
+    *,
+    daa: bool = True,
+    segmenter: Segmenter | None = None,
+    progress: Callable[[int, str], None] | None = None,
+) -> FlightResult:
+    """Fly a plan to its end, or to mission.simulation.limit_ms; publish everything on the bus.
+
+    daa: with the ICAROUS instances that the mission has; without, nobody avoids anybody.
+    segmenter: cuts the bytes on the sockets, for tests. progress(now_ms, text): called now and
+    then.
+    """
+    instances = tuple(sorted(mission.instances)) if daa else ()
+    with Bridge(instances, segmenter=segmenter) as bridge:
+        return _Flight(mission, plan, bus, bridge, instances).run(progress)
+
+
+class _Flight:
+    """The state of one flight."""
+
+    def __init__(
+        self, mission: Mission, plan: Plan, bus: Bus, bridge: Bridge, instances: tuple[int, ...]
+    ) -> None:
+        self.mission, self.bus, self.bridge = mission, bus, bridge
+        self.plan, self.instances = plan, instances
+        self.projection = Projection(mission.frame)
+        self.zones = hard_zones(mission.zones)
+        self.step_ms = mission.simulation.step_ms
+        dt_s = self.step_ms / 1000
+        well_clear = mission.daa.well_clear
+        floor = mission.frame.terrain_m + GROUND_MARGIN * well_clear.zthr_m
+        self.nodes = {
+            v.id: VehicleNode(v, self.projection, dt_s, floor)
+            for v in sorted(mission.vehicles, key=lambda v: v.id)
+        }
+        self.traffic: dict[int, AirState] = {}
+        self.executive = Executive(
+            mission, self.zones, plan, self.projection, dt_s, replan=self._replan
+        )
+        self.ics = Communication(mission, self.zones, self.projection, bridge, self.executive)
+        self.brains = {vid: instance.State() for vid in instances}
+        self.configs = {
+            vid: instance.Config(vid, mission.daa, self.projection, mission.simulation.heartbeat_ms)
+            for vid in instances
+        }
+        self.takeovers = 0
+        self.commands = 0
+        self.now_ms = 0
+
+    # publishing ---------------------------------------------------------------------------
+
+    def _say(self, bodies: Iterable[Any], source: str) -> None:
+        """Publish; a GatedCommand also reaches its vehicle's gate, in the order of publishing."""
+        for body in bodies:
+            self.bus.publish(body, source)
+            if isinstance(body, self._gated):
+                node = self.nodes[body.VehicleID]
+                before = node.gate.owner
+                dropped = node.receive(body, self.now_ms)
+                self._say(dropped, f"vehicle/{body.VehicleID}")
+                if node.gate.owner != before:
+                    self._authority(body.VehicleID, "the way back is free: handed back", 0)
+
+    def _authority(self, vid: int, reason: str, intruder_id: int) -> None:
+        """Say who commands a vehicle from now on, and since which epoch."""
+        gate = self.nodes[vid].gate
+        self._say(
+            [
+                lmcp.new(
+                    "AuthorityChange",
+                    VehicleID=vid,
+                    Time=self.now_ms,
+                    Owner=SENDERS[gate.owner],
+                    Epoch=gate.epoch,
+                    Reason=reason,
+                    IntruderID=intruder_id,
+                )
+            ],
+            f"vehicle/{vid}",
+        )
+
+    # the loop -----------------------------------------------------------------------------
+
+    def run(self, progress: Callable[[int, str], None] | None) -> FlightResult:
+        """Fly to the end."""
+        simulation = self.mission.simulation
+        self._gated = lmcp.types["GatedCommand"]
+        self.bus.now_ms = 0
+        accepted = lmcp.new(
+            "PlanAccepted",
+            Time=0,
+            Makespan=self.plan.makespan_ms,
+            PlanHash=fingerprint(to_data(self.plan)),
+        )
+        self._say([accepted], "uxas")
+        states = self._own_states()
+        self._say(self.executive.begin(states), "uxas/executive")
+        self._say(self.ics.begin(0), "uxas/ics")
+        first = (self.executive.command(vid, self.nodes[vid].gate.epoch) for vid in self.nodes)
+        self._say(first, "uxas/executive")
+        steps = 0
+        while True:
+            self.bus.now_ms = self.now_ms
+            self._step()
+            outcome = self._outcome(simulation.limit_ms)
+            if outcome:
+                end = lmcp.new("MissionEnd", Time=self.now_ms, Outcome=outcome)
+                self._say([end], "uxas/executive")
+            self.bus.run()
+            if progress is not None and (outcome or self.now_ms % 10_000 == 0):
+                progress(self.now_ms, outcome or "flying")
+            if outcome:
+                break
+            for node in self.nodes.values():
+                node.advance()
+            self.now_ms += self.step_ms
+            steps += 1
+        executive = self.executive
+        return FlightResult(
+            outcome,
+            self.now_ms,
+            dict(executive.starts),
+            dict(executive.ends),
+            dict(executive.failed),
+            self.takeovers,
+            executive.replans,
+            steps,
+        )
+
+    def _outcome(self, limit_ms: int) -> str:
+        back = all(node.gate.owner == UXAS for node in self.nodes.values())
+        if self.executive.done() and back:
+            return "failed" if self.executive.failed else "complete"
+        return "limit" if self.now_ms >= limit_ms else ""
+
+    def _own_states(self) -> dict[int, AirState]:
+        return {vid: node.state for vid, node in self.nodes.items()}
+
+    def _everyone(self) -> dict[int, AirState]:
+        return {**self._own_states(), **self.traffic}
+
+    def _step(self) -> None:
+        now = self.now_ms
+        self.traffic = {
+            t.id: s for t in self.mission.traffic if (s := traffic_state(t, now)) is not None
+        }
+        epochs = {vid: node.gate.epoch for vid, node in self.nodes.items()}
+        self._say(self.executive.step(self._own_states(), epochs, now), "uxas/executive")
+        if now % self.mission.simulation.heartbeat_ms == 0:
+            self._heartbeat()
+        for node in self.nodes.values():
+            node.steer()
+        cooperating = frozenset(self.instances)
+        for vid, state in sorted(self._everyone().items()):
+            self.bus.publish(truth(vid, state, now, vid in cooperating), "simulation")
+
+    def _heartbeat(self) -> None:
+        now = self.now_ms
+        for vid, node in self.nodes.items():
+            chain = self.executive.chains[vid]
+            item = chain.item
+            task = self.mission.task(item.task_id) if item is not None else None
+            target = None if chain.suspended else target_of(chain, task)
+            payloads = camera_states(
+                node.vehicle, node.state, target, self.projection, self.mission.frame
+            )
+            tasks = [task.id] if task is not None and target is not None else []
+            state = node.air_vehicle_state(now, payloads, tasks)
+            self._say([state], f"vehicle/{vid}")
+        if not self.instances:
+            return
+        self._say(self.ics.heartbeat(self._everyone(), now), "uxas/ics")
+        down: dict[int, list[Message]] = {vid: [] for vid in self.instances}
+        for delivered in self._exchange():
+            if delivered.direction is Direction.DOWN and isinstance(delivered.record, Message):
+                down[delivered.vehicle_id].append(delivered.record)
+        for vid in self.instances:
+            self._think(vid, tuple(down[vid]))
+        for delivered in self._exchange():
+            if delivered.direction is Direction.UP and isinstance(delivered.record, Message):
+                vid = delivered.vehicle_id
+                answer = self.ics.hear(vid, delivered.record, self.nodes[vid].state, now)
+                self._say(answer, "uxas/ics")
+        self._say(self.ics.watch(now), "uxas/ics")
+
+    def _exchange(self) -> list[Delivered]:
+        delivered = self.bridge.exchange()
+        for one in delivered:
+            if isinstance(one.record, LinkEvent) and one.direction is Direction.UP:
+                lost = self.ics.lost(one.vehicle_id, one.record, self.now_ms)
+                self._say(lost, "uxas/ics")
+        return delivered
+
+    def _think(self, vid: int, messages: tuple[Message, ...]) -> None:
+        """One heartbeat of a vehicle's ICAROUS: its wishes reach the gate here, on board."""
+        node = self.nodes[vid]
+        inputs = instance.Inputs(
+            self.now_ms,
+            node.motion,
+            node.ability,
+            traffic_picture(vid, self._everyone(), frozenset(self.instances)),
+            node.gate,
+            messages,
+        )
+        self.brains[vid], out = instance.step(self.configs[vid], self.brains[vid], inputs)
+        if out.authority == "takeover":
+            fresh = node.gate.owner == UXAS
+            node.takeover()
+            if fresh:
+                self.takeovers += 1
+                self._authority(vid, out.reason, out.intruder_id)
+        elif out.authority == "offer":
+            node.offer()
+        if out.resolution:
+            conflict = lmcp.new(
+                "Conflict",
+                VehicleID=vid,
+                IntruderID=out.intruder_id,
+                Time=self.now_ms,
+                TimeToViolation_s=out.first_violation_s,
+                Resolution=out.resolution,
+            )
+            self._say([conflict], f"icarous/{vid}")
+        if out.velocity is not None:
+            self.commands += 1
+            command = velocity_command(vid, self.commands, out.velocity)
+            self._say([gated(vid, node.gate.epoch, ICAROUS, command)], f"icarous/{vid}")
+        for message in out.messages:
+            self.bridge.to_uxas(vid, message)
+
+    def _replan(
+        self, states: dict[int, AirState], done: frozenset[int], now_ms: int
+    ) -> Plan | None:
+        from cratous.services.planning.plan import make_plan
+
+        poses = {vid: state.pose for vid, state in states.items()}
+        flown = [
+            (task, self.executive.starts[task], self.executive.ends[task]) for task in sorted(done)
+        ]
+        mission = replace(self.mission, vehicles=self.mission.vehicles)
+        try:
+            return make_plan(mission, starts=poses, done=flown, now_ms=now_ms)
+        except NoPlan:
+            return None

@@ -1,0 +1,86 @@
+"""When tasks start and end in the air: the rows of the plan, held against real times.
+
+`completed` and `started` map task ids to real times [ms]. Whether a row holds is decided by the
+kernel `row_holds`; what is added here are the reference times.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from cratous.core.timing import row_holds
+from cratous.spec.plan import Row
+from cratous.spec.schedule import (
+    AFTER_END,
+    AFTER_START,
+    NOT_AFTER,
+    NOT_BEFORE,
+    WITHIN_END,
+)
+
+Times = Mapping[int, tuple[int, int]]
+"""Start and end of tasks [ms]."""
+
+LOWER = (AFTER_END, AFTER_START, NOT_BEFORE)
+
+
+def reference(row: Row, starts: Mapping[int, int], ends: Mapping[int, int]) -> int | None:
+    """Latest end or earliest start of the row's group; None if a member's is not known."""
+    if not row.group:
+        return 0
+    known = ends if row.kind in (AFTER_END, WITHIN_END) else starts
+    if row.kind in (AFTER_END, WITHIN_END):
+        if any(task not in known for task in row.group):
+            return None
+        return max(known[task] for task in row.group)
+    some = [known[task] for task in row.group if task in known]
+    return min(some) if some else None
+
+
+def closed_by(
+    task_id: int,
+    at_ms: int,
+    rows: Iterable[Row],
+    starts: Mapping[int, int],
+    ends: Mapping[int, int],
+) -> Row | None:
+    """The first lower-bound row that forbids the task to start at an instant; None if it may."""
+    for row in rows:
+        if row.i != task_id or row.kind not in LOWER:
+            continue
+        ref = reference(row, starts, ends)
+        if ref is None or not row_holds(row.kind, at_ms, at_ms, ref, row.lo, row.hi):
+            return row
+    return None
+
+
+def opens_ms(
+    task_id: int, rows: Iterable[Row], starts: Mapping[int, int], ends: Mapping[int, int]
+) -> int:
+    """The earliest start that the lower bounds allow, by (expected) times of the others [ms]."""
+    earliest = 0
+    for row in rows:
+        if row.i != task_id or row.kind not in LOWER:
+            continue
+        ref = reference(row, starts, ends)
+        if ref is not None:
+            earliest = max(earliest, ref + row.lo)
+    return earliest
+
+
+def broken_by(
+    task_id: int,
+    start_ms: int,
+    end_ms: int,
+    rows: Iterable[Row],
+    starts: Mapping[int, int],
+    ends: Mapping[int, int],
+) -> Row | None:
+    """The first upper-bound row that a task from start to end would break, or None."""
+    for row in rows:
+        if row.i != task_id or row.kind in LOWER:
+            continue
+        ref = 0 if row.kind == NOT_AFTER else reference(row, starts, ends)
+        if ref is not None and not row_holds(row.kind, start_ms, end_ms, ref, row.lo, row.hi):
+            return row
+    return None

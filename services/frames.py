@@ -1,0 +1,90 @@
+"""The mission frame and WGS-84: an azimuthal equidistant projection centred on the frame.
+
+Distances and bearings from the origin are exact; a distance between two other points at most d
+from the origin is off by a factor of at most 1 + (d / R)^2 / 6 + ..., with R the least radius of
+curvature of the ellipsoid. `scale_error` bounds it, so that margins can carry it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+from cratous.spec.mission import Frame
+
+if TYPE_CHECKING:
+    import numpy as np
+
+LEAST_RADIUS_M = 6_335_439.0
+"""Least radius of curvature of WGS-84: along the meridian, at the equator."""
+
+
+def scale_error(distance_m: float) -> float:
+    """Bound on the relative error of local distances within distance_m of the origin.
+
+    The tangential scale of the projection at distance d on a sphere is (d/R) / sin(d/R), which
+    stays below 1 + (d/R)^2 / 5 for d <= R; the first term, (d/R)^2 / 6, is what matters.
+    """
+    x = distance_m / LEAST_RADIUS_M
+    return x * x / 6 if x < 0.01 else x * x / 5
+
+
+class Projection:
+    """Conversion between the mission frame and WGS-84 degrees."""
+
+    def __init__(self, frame: Frame) -> None:
+        self.frame = frame
+
+    @cached_property
+    def _projection(self) -> Any:
+        import pyproj
+
+        return pyproj.Proj(
+            proj="aeqd",
+            ellps="WGS84",
+            lat_0=self.frame.latitude_deg,
+            lon_0=self.frame.longitude_deg,
+        )
+
+    def to_local(self, lat_deg: float, lon_deg: float) -> tuple[float, float]:
+        """(north, east) [m] of a latitude and longitude [deg]."""
+        east, north = self._projection(lon_deg, lat_deg)
+        return float(north), float(east)
+
+    def to_geodetic(self, north_m: float, east_m: float) -> tuple[float, float]:
+        """(latitude, longitude) [deg] of a point of the mission frame [m]."""
+        lon, lat = self._projection(east_m, north_m, inverse=True)
+        return float(lat), float(lon)
+
+    def to_local_many(
+        self, lat_deg: Sequence[float], lon_deg: Sequence[float]
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The same as `to_local` for arrays of equal length."""
+        import numpy as np
+
+        east, north = self._projection(np.asarray(lon_deg, float), np.asarray(lat_deg, float))
+        return north, east
+
+    def to_geodetic_many(
+        self, north_m: Sequence[float], east_m: Sequence[float]
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The same as `to_geodetic` for arrays of equal length."""
+        import numpy as np
+
+        lon, lat = self._projection(
+            np.asarray(east_m, float), np.asarray(north_m, float), inverse=True
+        )
+        return lat, lon
+
+    def geodesic_m(self, a: tuple[float, float], b: tuple[float, float]) -> float:
+        """Length of the geodesic between two (latitude, longitude) points [m]."""
+        import pyproj
+
+        return float(pyproj.Geod(ellps="WGS84").inv(a[1], a[0], b[1], b[0])[2])
+
+
+def compass(heading_rad: float) -> float:
+    """A heading in degrees clockwise from north, in [0, 360)."""
+    return math.degrees(heading_rad) % 360.0

@@ -1,0 +1,1 @@
+"""ICAROUS: one instance per protected vehicle watches, avoids and hands back."""

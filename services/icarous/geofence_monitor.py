@@ -1,0 +1,27 @@
+"""Whether the way ahead of the ownship, flown as it flies now, meets a zone too soon."""
+
+from __future__ import annotations
+
+from cratous.core.manoeuvre import Ability, Motion
+from cratous.core.prediction import Piece
+from cratous.core.resolution import first_zone_s, turn_back_s
+from cratous.spec.mission import Zone
+
+
+def zone_ahead_s(
+    now: Motion, ability: Ability, pieces: tuple[Piece, ...], zones: tuple[Zone, ...]
+) -> float | None:
+    """When a zone is met [s from now], if that is sooner than a half circle takes; else None.
+
+    pieces: the predicted way. Only its part within the turn-back time is checked: farther away
+    there is still time to see it and turn.
+    """
+    if not zones:
+        return None
+    horizon_s = turn_back_s(now, ability)
+    near = []
+    for piece in pieces:
+        if piece.start_s >= horizon_s:
+            break
+        near.append(piece._replace(duration_s=min(piece.duration_s, horizon_s - piece.start_s)))
+    return first_zone_s(near, zones, horizon_s)

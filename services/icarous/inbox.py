@@ -1,0 +1,109 @@
+"""What an ICAROUS instance has been told over the bridge: zones, waypoints, and how far it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from cratous.bridge.text_protocol import (
+    FenceDone,
+    FenceVertex,
+    HardReset,
+    Message,
+    OwnPosition,
+    SoftReset,
+    StartMission,
+    Waypoint,
+    WaypointReached,
+)
+from cratous.services.frames import Projection
+from cratous.spec.mission import Position, Zone, ZoneKind
+
+
+@dataclass(frozen=True)
+class Told:
+    """The mission as told so far.
+
+    waypoints: the plan in force; next_index: the one to fly to; resume: where the task's path was
+    left, while ICAROUS has control; gathering and vertices: what is not yet complete.
+    heard_ms: when UxAS was last heard.
+    """
+
+    zones: tuple[Zone, ...] = ()
+    waypoints: tuple[Position, ...] = ()
+    speed_m_s: float = 0.0
+    next_index: int = 0
+    resume: Position | None = None
+    gathering: tuple[Waypoint, ...] = ()
+    vertices: tuple[FenceVertex, ...] = ()
+    heard_ms: int = 0
+    started: bool = False
+
+
+def hear(told: Told, messages: tuple[Message, ...], projection: Projection, now_ms: int) -> Told:
+    """The same after some messages, in order."""
+    for message in messages:
+        told = replace(_hear(told, message, projection), heard_ms=now_ms)
+    return told
+
+
+def _hear(told: Told, message: Message, projection: Projection) -> Told:
+    if isinstance(message, WaypointReached):
+        return replace(told, next_index=max(told.next_index, message.index + 1))
+    if isinstance(message, Waypoint):
+        gathering = () if message.index == 0 else told.gathering
+        return replace(told, gathering=(*gathering, message))
+    if isinstance(message, StartMission):
+        return _start(told, projection)
+    if isinstance(message, SoftReset):
+        if message.lat_deg is None or message.long_deg is None or message.alt_m is None:
+            return replace(told, resume=None)
+        north, east = projection.to_local(message.lat_deg, message.long_deg)
+        return replace(told, resume=Position(north, east, message.alt_m))
+    if isinstance(message, HardReset):
+        return Told()
+    if isinstance(message, FenceVertex):
+        kept = told.vertices if message.vertex > 1 else ()
+        return replace(told, vertices=(*kept, message))
+    if isinstance(message, FenceDone):
+        return _close_fence(told, projection)
+    if isinstance(message, OwnPosition):
+        return told
+    return told
+
+
+def _start(told: Told, projection: Projection) -> Told:
+    if not told.gathering:
+        return replace(told, started=True)
+    norths, easts = projection.to_local_many(
+        [w.lat_deg for w in told.gathering], [w.long_deg for w in told.gathering]
+    )
+    points = tuple(
+        Position(float(n), float(e), w.alt_m)
+        for n, e, w in zip(norths, easts, told.gathering, strict=True)
+    )
+    return replace(
+        told,
+        waypoints=points,
+        speed_m_s=told.gathering[0].speed_mps,
+        next_index=0,
+        gathering=(),
+        resume=None,
+        started=True,
+    )
+
+
+def _close_fence(told: Told, projection: Projection) -> Told:
+    """A zone counts only when all its vertices are there; until then it is not in force."""
+    vertices = told.vertices
+    if not vertices or len(vertices) != vertices[0].total:
+        return replace(told, vertices=())
+    first = vertices[0]
+    zone = Zone(
+        first.zone,
+        ZoneKind.KEEP_IN if first.fence == "KEEPIN" else ZoneKind.KEEP_OUT,
+        tuple(projection.to_local(v.lat_deg, v.long_deg) for v in vertices),
+        first.floor_m,
+        first.ceiling_m,
+    )
+    others = tuple(z for z in told.zones if z.id != zone.id)
+    return replace(told, zones=(*others, zone), vertices=())

@@ -1,0 +1,70 @@
+"""The way back: which waypoint to make for, and whether the way there is free of conflict.
+
+Control is handed back only when the whole way back (the turn towards the resume point, the leg to
+it and the waypoints after it) is free of predicted conflict over the look-ahead, and has been for
+a persistence time. The persistence doubles with each takeover that follows soon after a handback,
+so authority does not chatter.
+"""
+
+from __future__ import annotations
+
+import math
+
+from cratous.core.dubins import cut, dubins
+from cratous.core.manoeuvre import Motion, along
+from cratous.core.prediction import Piece
+from cratous.spec.mission import Position
+from cratous.spec.plan import Pose
+
+PERSIST_MS = 1500
+"""The way back must have been free for this long [ms]: three heartbeats."""
+RELAPSE_MS = 20_000
+"""A takeover this soon after a handback is a relapse."""
+
+
+def persistence_ms(relapses: int) -> int:
+    """How long the way back must have been free: doubled per relapse, at most 16 times."""
+    return int(PERSIST_MS * 2 ** min(relapses, 4))
+
+
+def bearing_rad(p: Position, q: Position) -> float:
+    """Direction from p to q, clockwise from north."""
+    return math.atan2(q.east_m - p.east_m, q.north_m - p.north_m)
+
+
+def goal_index(now: Motion, radius_m: float, waypoints: tuple[Position, ...], index: int) -> int:
+    """The waypoint to make for: the first from `index` on that is not near nor passed abeam.
+
+    Near is three turn radii: inside them a turn may not reach the point at all.
+    """
+    last = len(waypoints) - 1
+    while index < last:
+        here, goal, beyond = now.position, waypoints[index], waypoints[index + 1]
+        north, east = goal.north_m - here.north_m, goal.east_m - here.east_m
+        forward = north * (beyond.north_m - goal.north_m) + east * (beyond.east_m - goal.east_m)
+        if math.hypot(north, east) > 3 * radius_m and forward > 0:
+            break
+        index += 1
+    return min(index, last)
+
+
+def rejoin(
+    now: Motion, radius_m: float, target: Position, beyond: Position | None
+) -> tuple[Position, ...]:
+    """The shortest flyable way from here to `target`, arriving in the direction of `beyond`.
+
+    The executive flies the same way after the handback, so what was checked is what is flown.
+    """
+    if beyond is None:
+        return (now.position, target)
+    heading = math.atan2(beyond.east_m - target.east_m, beyond.north_m - target.north_m)
+    end = Pose(*target, heading)
+    return cut(dubins(Pose(*now.position, now.heading_rad), end, radius_m), end)
+
+
+def way_back(
+    now: Motion, radius_m: float, points: tuple[Position, ...], horizon_s: float
+) -> tuple[Piece, ...]:
+    """The pieces of flight from here onto points[0] and on through the others."""
+    onto = rejoin(now, radius_m, points[0], points[1] if len(points) > 1 else None)
+    return along(now, (*onto[1:], *points[1:]), horizon_s)

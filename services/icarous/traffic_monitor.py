@@ -1,0 +1,112 @@
+"""Who will take well clear from us, when, and whether it is for us to act.
+
+The own trajectory is checked against each intruder (flying straight on) with the exact-in-time
+kernel, on thresholds widened by the mission's buffer. A predicted loss must persist before it
+counts, so that an intruder that is merely turning past does not take a vehicle off its task,
+unless the loss is so near that waiting would cost the way out.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from cratous.core.gate import gives_way
+from cratous.core.manoeuvre import Ability, smallest_turn
+from cratous.core.prediction import Intruder, Piece, first_violation_s
+from cratous.spec.mission import WellClear
+
+PERSIST_MS = 2000
+"""A predicted loss counts after this long [ms]: four heartbeats."""
+
+
+TURNING_RAD_S = 0.02
+"""An intruder that turns faster than this [rad/s] does not fly straight on: about 1 deg/s."""
+
+Tracks = tuple[tuple[int, float], ...]
+"""Last seen courses of the intruders: (id, course [rad])."""
+
+
+class Threat(NamedTuple):
+    """A predicted loss of well clear: with whom, in how many seconds, since when it is seen."""
+
+    intruder_id: int
+    first_violation_s: float
+    since_ms: int
+    ours_to_act: bool
+
+
+def last_time_s(ability: Ability, volume: WellClear, heartbeat_ms: int) -> float:
+    """The nearest predicted loss [s] at which the one with the right of way still waits.
+
+    Derivation: whatever the geometry, a turn of 90 degrees takes the own velocity out of the
+    line of the encounter; it takes (pi / 2) / turn rate. The other may need TTHR of the volume
+    for its own turn to show in the prediction, since the volume reaches TTHR ahead of contact.
+    One heartbeat passes until the prediction is renewed, one until the command acts:
+
+        T_last = (pi / 2) / turn_rate + TTHR + 2 heartbeats
+
+    Example: 22 m/s, 30 degrees of bank: 0.257 rad/s, 6.1 s; TTHR 18.75 s; 1 s: 25.9 s.
+    """
+    return (math.pi / 2) / ability.turn_rate_rad_s + volume.tthr_s + 2 * heartbeat_ms / 1000
+
+
+def hard_limit_s(ability: Ability, heartbeat_ms: int) -> float:
+    """The nearest predicted loss [s] that may wait for any reason: the turn and two heartbeats."""
+    return (math.pi / 2) / ability.turn_rate_rad_s + 2 * heartbeat_ms / 1000
+
+
+def courses(intruders: tuple[Intruder, ...]) -> Tracks:
+    """The present course of every intruder."""
+    return tuple(
+        (other.id, math.atan2(other.velocity.east_m_s, other.velocity.north_m_s))
+        for other in intruders
+    )
+
+
+def turning(now: Tracks, before: Tracks, dt_s: float) -> frozenset[int]:
+    """The intruders that are in a turn: their course has changed since the last heartbeat."""
+    was = dict(before)
+    return frozenset(
+        other
+        for other, course in now
+        if other in was and abs(smallest_turn(was[other], course)) > TURNING_RAD_S * dt_s
+    )
+
+
+def threats(
+    own_id: int,
+    pieces: tuple[Piece, ...],
+    intruders: tuple[Intruder, ...],
+    volume: WellClear,
+    before: tuple[Threat, ...],
+    now_ms: int,
+    last_s: float,
+    hard_s: float,
+    in_turn: frozenset[int] = frozenset(),
+) -> tuple[Threat, ...]:
+    """All predicted losses, by intruder; `before` is what the last heartbeat gave.
+
+    last_s, hard_s: see `last_time_s` and `hard_limit_s`. An intruder in a turn is not where a
+    straight line leads, so unless the loss is nearer than hard_s its threat has to persist.
+    """
+    since = {threat.intruder_id: threat.since_ms for threat in before}
+    found = []
+    for other in intruders:
+        first = first_violation_s(pieces, other, volume)
+        if first is None:
+            continue
+        seen_ms = since.get(other.id, now_ms)
+        persists = now_ms - seen_ms >= PERSIST_MS
+        near = first <= (hard_s if other.id in in_turn and not persists else last_s)
+        soon = other.id not in in_turn and first <= last_s + PERSIST_MS / 1000
+        due = persists or soon
+        ours = near or (due and gives_way(own_id, other.id, other.cooperates))
+        found.append(Threat(other.id, first, seen_ms, ours))
+    return tuple(found)
+
+
+def most_urgent(found: tuple[Threat, ...]) -> Threat | None:
+    """The threat to act on: the nearest of those that are ours, or None."""
+    ours = [threat for threat in found if threat.ours_to_act]
+    return min(ours, key=lambda t: (t.first_violation_s, t.intruder_id), default=None)

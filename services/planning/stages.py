@@ -1,0 +1,223 @@
+"""The stages of planning as pure functions: check, expand, route, assign, build.
+
+The bus services of this package call these; each stage's result is plain data.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import islice
+from typing import Any
+
+from cratous.core.assignment import (
+    START,
+    Assignment,
+    Branch,
+    Candidate,
+    Fixed,
+    Problem,
+    without_order,
+)
+from cratous.core.legs import first_bad_leg
+from cratous.core.visibility import circle, name_of, start_point
+from cratous.services.planning.options import Option
+from cratous.services.planning.routes import Routes
+from cratous.spec import algebra, algebra_meaning, algebra_runs
+from cratous.spec.errors import BadInput, NoPlan
+from cratous.spec.mission import Mission, Zone
+from cratous.spec.plan import Hold, Plan, PlanItem, Pose
+
+BRANCH_LIMIT = 64
+"""How many ways to resolve `+` are searched."""
+
+
+def start_poses(mission: Mission, given: Mapping[int, Pose] | None = None) -> dict[int, Pose]:
+    """Where each vehicle plans from: the given poses, else the mission's start poses."""
+    poses = {v.id: Pose(*v.position, v.heading_rad) for v in mission.vehicles}
+    poses.update(given or {})
+    return poses
+
+
+def check_starts(mission: Mission, starts: Mapping[int, Pose], zones: Sequence[Zone]) -> None:
+    """BadInput if a vehicle starts inside a keep-out or outside of a keep-in."""
+    for k, vehicle in enumerate(mission.vehicles):
+        bad = first_bad_leg((start_point(starts[vehicle.id]),), zones)
+        if bad is not None:
+            keep_in = bad[1].kind.value == "keep_in"
+            where = "outside of" if keep_in else "inside"
+            raise BadInput(
+                f"vehicle {vehicle.id} starts {where} {name_of(bad[1])}",
+                where=mission.source,
+                item=f"vehicles[{k}].position",
+                expected=f"a start {'inside' if keep_in else 'outside of'} it",
+                got=f"north {starts[vehicle.id].north_m:.1f} m, "
+                f"east {starts[vehicle.id].east_m:.1f} m, alt {starts[vehicle.id].alt_m:.1f} m",
+            )
+
+
+def term_of(mission: Mission) -> algebra.Term:
+    """The mission's relations as a term; every task in any order if there are none."""
+    ids = [task.id for task in mission.tasks]
+    if not ids:
+        raise NoPlan(("the mission has no tasks",))
+    if not mission.relations.strip():
+        return algebra.parallel_of(ids)
+    return algebra.parse(mission.relations, frozenset(ids), where=mission.source)
+
+
+def fixed_tasks(done: Iterable[Any]) -> tuple[Fixed, ...]:
+    """Tasks already flown, from anything with (task_id, start_ms, end_ms) or those attributes."""
+    made = []
+    for item in done:
+        if hasattr(item, "task_id"):
+            made.append(Fixed(item.task_id, item.start_ms, item.end_ms))
+        else:
+            made.append(Fixed(*item))
+    return tuple(made)
+
+
+def branches_of(mission: Mission, fixed: Sequence[Fixed]) -> tuple[tuple[Branch, ...], bool]:
+    """The branches that agree with what is already done, and whether these are all of them."""
+    term = term_of(mission)
+    done = {f.task_id for f in fixed}
+    made = []
+    for resolved in islice(algebra_meaning.branches(term), BRANCH_LIMIT):
+        tasks = algebra_meaning.tasks(resolved)
+        if not done <= set(tasks):
+            continue
+        rows = tuple(row for row in algebra_meaning.rows(resolved) if row.i not in done)
+        if mission.order == "order":
+            rows = without_order(rows)
+
+        def allowed(before: tuple[int, ...], term: algebra.Term = resolved) -> Iterable[int]:
+            return algebra_runs.next_actions(term, before)
+
+        made.append(Branch(tasks, rows, allowed))
+    return tuple(made), algebra_meaning.count_branches(term) <= BRANCH_LIMIT
+
+
+def problem_of(
+    mission: Mission,
+    options: Sequence[Option],
+    travel_ms: Callable[[int, int, int], int | None],
+    branches: tuple[Branch, ...],
+    fixed: tuple[Fixed, ...] = (),
+    now_ms: int = 0,
+    node_limit: int | None = None,
+) -> Problem:
+    """The assignment problem over the options; vehicle k is `mission.vehicles[k]`."""
+    bit = {vehicle.id: 1 << k for k, vehicle in enumerate(mission.vehicles)}
+    everyone = sum(bit.values())
+    candidates = tuple(
+        Candidate(
+            option.task_id,
+            sum(bit[v] for v in option.vehicles),
+            option.duration_ms,
+            option.lap_ms,
+            option.lap_max_ms,
+        )
+        for option in options
+    )
+    masks = {
+        task.id: sum(bit.get(v, 0) for v in task.eligible) if task.eligible else everyone
+        for task in mission.tasks
+    }
+    extra = {} if node_limit is None else {"node_limit": node_limit}
+    return Problem(
+        ready_ms=(now_ms,) * len(mission.vehicles),
+        candidates=candidates,
+        travel_ms=travel_ms,
+        eligible=masks,
+        branches=branches,
+        cost=mission.cost,
+        fixed=fixed,
+        **extra,
+    )
+
+
+def hold_of(option: Option, wait_ms: int, zones: Sequence[Zone]) -> Hold | None:
+    """A circle at the option's start whose laps take exactly wait_ms and obey the zones."""
+    pose, speed = option.start, option.flyer.speed_m_s
+    for laps in range(wait_ms // option.lap_ms, 0, -1):
+        radius = speed * wait_ms / 1000 / (2 * math.pi * laps)
+        for room in option.holds:
+            if radius > room.radius_m * (1 + 1e-9):
+                continue
+            if first_bad_leg(circle(pose, radius, room.clockwise), zones) is not None:
+                continue
+            side = pose.heading_rad + (math.pi / 2 if room.clockwise else -math.pi / 2)
+            return Hold(
+                pose.north_m + radius * math.cos(side),
+                pose.east_m + radius * math.sin(side),
+                pose.alt_m,
+                radius,
+                room.clockwise,
+            )
+    return None
+
+
+def build(
+    mission: Mission,
+    options: Sequence[Option],
+    routes: Routes,
+    branches: Sequence[Branch],
+    result: Assignment,
+    zones: Sequence[Zone],
+    fixed: Sequence[Fixed] = (),
+) -> Plan:
+    """The plan of an assignment: transits, holds, paths and times. NoPlan if a hold has no room."""
+    assert result.placed is not None
+    branch = branches[result.branch]
+    at: dict[int, int] = {}
+    items = []
+    for placed in result.placed:
+        option = options[placed.candidate]
+        vehicle = mission.vehicles[placed.vehicle]
+        way = routes.route(placed.vehicle, at.get(placed.vehicle, START), placed.candidate)
+        wait = placed.start_ms - placed.arrive_ms
+        hold = hold_of(option, wait, zones) if wait > 0 else None
+        if wait > 0 and hold is None:
+            raise NoPlan(
+                (
+                    f"vehicle {vehicle.id} has to wait {wait / 1000:.3f} s before task "
+                    f"{option.task_id}, and no hold circle there obeys the zones",
+                )
+            )
+        items.append(
+            PlanItem(
+                task_id=option.task_id,
+                option_id=option.option_id,
+                vehicle_id=vehicle.id,
+                transit=way.points,
+                path=option.path,
+                hold=hold,
+                speed_m_s=option.flyer.speed_m_s,
+                depart_ms=placed.depart_ms,
+                arrive_ms=placed.arrive_ms,
+                wait_ms=wait,
+                start_ms=placed.start_ms,
+                end_ms=placed.end_ms,
+                end_heading_rad=option.end.heading_rad,
+                view_elevation_rad=option.view_elevation_rad,
+            )
+        )
+        at[placed.vehicle] = placed.candidate
+    return Plan(
+        mission=mission.name,
+        items=tuple(items),
+        rows=branch.rows,
+        chosen=branch.tasks,
+        makespan_ms=max([item.end_ms for item in items] + [f.end_ms for f in fixed], default=0),
+        cost=mission.cost,
+        nodes=result.nodes,
+        exhausted=result.exhausted,
+    )
+
+
+def nothing_left(mission: Mission, branches: Sequence[Branch], fixed: Sequence[Fixed]) -> Plan:
+    """The plan when every task has been flown; NoPlan if what was flown fits no branch."""
+    if not branches:
+        raise NoPlan(("what has been flown fits no branch of the relations",))
+    first, last = branches[0], max((f.end_ms for f in fixed), default=0)
+    return Plan(mission.name, (), first.rows, first.tasks, last, mission.cost, 0, True)
