@@ -126,7 +126,7 @@ def compiled(kernel: Callable[..., Any]) -> Callable[..., np.ndarray]:
     def run(*columns: Any) -> np.ndarray:
         arrays = np.broadcast_arrays(*[np.asarray(column) for column in columns])
         flat = [np.ascontiguousarray(array).reshape(-1) for array in arrays]
-        out = np.empty(flat[0].size, dtype=kind)
+        out: np.ndarray = np.empty(flat[0].size, dtype=kind)
         loop(out, *flat)
         return out.reshape(arrays[0].shape)
 

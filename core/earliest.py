@@ -14,10 +14,15 @@ from typing import NamedTuple
 
 from cratous.core.kernel import driver
 from cratous.core.timing import row_holds, schedule_holds
-from cratous.spec.plan import Row
-
-AFTER_END, AFTER_START, WITHIN_END, WITHIN_START, NOT_BEFORE, NOT_AFTER = 1, 2, 3, 4, 5, 6
-"""The kinds of rows, as in `spec.schedule`."""
+from cratous.spec.plan import (
+    AFTER_END,
+    AFTER_START,
+    NOT_AFTER,
+    NOT_BEFORE,
+    WITHIN_END,
+    WITHIN_START,
+    Row,
+)
 
 
 class Visit(NamedTuple):

@@ -37,9 +37,7 @@ def eligible(mask: int, bit: int) -> bool:
 
 
 @kernel(implements="schedule.rows_hold_step")
-def schedule_step(
-    ok: bool, kind: int, start: int, end: int, ref: int, lo: int, hi: int
-) -> bool:
+def schedule_step(ok: bool, kind: int, start: int, end: int, ref: int, lo: int, hi: int) -> bool:
     """Add one row to whether all rows so far hold."""
     return ok and runs_forward(start, end) and row_holds(kind, start, end, ref, lo, hi)
 

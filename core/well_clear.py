@@ -64,9 +64,7 @@ def violation(
     tcoa_s: float,
 ) -> bool:
     """True iff well clear is lost now: horizontally and vertically at once."""
-    return vertical_violation(sz, vz, zthr_m, tcoa_s) and horizontal_violation(
-        s, v, dthr_m, tthr_s
-    )
+    return vertical_violation(sz, vz, zthr_m, tcoa_s) and horizontal_violation(s, v, dthr_m, tthr_s)
 
 
 @kernel(implements="well_clear.quadratic_reaches_zero")
@@ -80,9 +78,7 @@ def dips_to_zero(a: float, b: float, c: float, h: float) -> bool:
 
 
 @kernel(implements="well_clear.horizontal_violation_within")
-def horizontal_violation_within(
-    s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, h_s: float
-) -> bool:
+def horizontal_violation_within(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, h_s: float) -> bool:
     """True iff the horizontal volume is violated at some t in [0, h_s] of straight flight."""
     ss = s.x * s.x + s.y * s.y
     vv = v.x * v.x + v.y * v.y

@@ -142,7 +142,7 @@ class SymNumber(Sym):
     """Arithmetic and comparisons shared by reals and integers."""
 
     __slots__ = ()
-    __hash__ = None  # type: ignore[assignment]
+    __hash__ = None
 
     __lt__ = _compare("lt")
     __le__ = _compare("le")
@@ -168,7 +168,7 @@ class SymReal(SymNumber):
     """A real number."""
 
     __slots__ = ()
-    __hash__ = None  # type: ignore[assignment]
+    __hash__ = None
 
     def __truediv__(self, other: Any) -> Any:
         return _divide(self, other)
@@ -190,7 +190,7 @@ class SymInt(SymNumber):
     """An integer; every operation on it carries the obligation to stay in 64 bits."""
 
     __slots__ = ()
-    __hash__ = None  # type: ignore[assignment]
+    __hash__ = None
 
     def __mod__(self, other: Any) -> Any:
         """Only definitions in `spec` use this; the lint keeps it out of kernels."""
@@ -202,7 +202,7 @@ class SymMask(Sym):
     """A 64-bit mask: bit operations and tests for equality."""
 
     __slots__ = ()
-    __hash__ = None  # type: ignore[assignment]
+    __hash__ = None
 
     def _with(self, other: Any) -> z3.ExprRef | None:
         if isinstance(other, SymMask):

@@ -30,7 +30,7 @@ def _rational(zone: Zone) -> Zone:
 
 def exact_leg_ok(p: Position, q: Position, zone: Zone) -> bool:
     """True iff the leg from p to q obeys the zone; exact. The zone's vertices are effective."""
-    one, other = (cast(Any, Position(*map(Fraction, point))) for point in (p, q))
+    one, other = (Position(*cast(Any, map(Fraction, point))) for point in (p, q))
     return leg_ok(one, other, _rational(zone))
 
 

@@ -37,7 +37,7 @@ def turn(a: Point, b: Point, c: Point) -> float:
 def on_segment_at(p: Point, a: Point, b: Point, t: float) -> bool:
     """p is the point of the closed segment a-b at parameter t."""
     at = along(a, b, t)
-    return 0 <= t and t <= 1 and at.x == p.x and at.y == p.y
+    return t >= 0 and t <= 1 and at.x == p.x and at.y == p.y
 
 
 def crosses_ray(p: Point, a: Point, b: Point) -> bool:
@@ -45,7 +45,7 @@ def crosses_ray(p: Point, a: Point, b: Point) -> bool:
     if a.y == b.y:
         return False
     t = (p.y - a.y) / (b.y - a.y)
-    if not (0 <= t and t <= 1):
+    if not (t >= 0 and t <= 1):
         return False
     if a.y < b.y and t == 1:
         return False
@@ -73,7 +73,7 @@ def location(count: Count) -> int:
 def common_point(p: Point, q: Point, a: Point, b: Point, s: float, t: float) -> bool:
     """The point of p-q at s and the point of a-b at t are the same point of both segments."""
     one, other = along(p, q, s), along(a, b, t)
-    inside = 0 <= s and s <= 1 and 0 <= t and t <= 1
+    inside = s >= 0 and s <= 1 and t >= 0 and t <= 1
     return inside and one.x == other.x and one.y == other.y
 
 

@@ -12,6 +12,14 @@ from typing import NamedTuple
 
 from cratous.spec.mission import Position
 
+AFTER_END, AFTER_START, WITHIN_END, WITHIN_START, NOT_BEFORE, NOT_AFTER = 1, 2, 3, 4, 5, 6
+"""Kinds of constraint rows; `spec.schedule` says what they mean. With the reference group's latest
+end (1, 3) or earliest start (2, 4) as `ref`:
+
+1, 2: the task starts at ref + lo or later; 3, 4: it ends at ref + hi or earlier;
+5: it starts at lo or later; 6: it ends at hi or earlier.
+"""
+
 
 class Pose(NamedTuple):
     """A position with a heading [rad, clockwise from north]."""
@@ -56,7 +64,7 @@ class PlanItem:
 class Row(NamedTuple):
     """One constraint on the times of task `i`, as the checker kernel reads it.
 
-    kind: a code of `spec.schedule`; group: the reference tasks (empty for kinds 5 and 6), whose
+    kind: one of the codes above; `spec.schedule` says what they mean; group: the reference tasks (empty for kinds 5 and 6), whose
     latest end (1, 3) or earliest start (2, 4) counts; lo, hi: bounds [ms]; text: where it comes
     from, in the user's words.
     """

@@ -12,12 +12,24 @@ the kernels are proved, where the sum of two stays in 64 bits.
 
 from __future__ import annotations
 
-AFTER_END, AFTER_START, WITHIN_END, WITHIN_START, NOT_BEFORE, NOT_AFTER = 1, 2, 3, 4, 5, 6
-"""Row kinds. With the reference group's latest end (1, 3) or earliest start (2, 4) as `ref`:
+from cratous.spec.plan import (
+    AFTER_END,
+    AFTER_START,
+    NOT_AFTER,
+    NOT_BEFORE,
+    WITHIN_END,
+    WITHIN_START,
+)
 
-1, 2: the task starts at ref + lo or later; 3, 4: it ends at ref + hi or earlier;
-5: it starts at lo or later; 6: it ends at hi or earlier.
-"""
+__all__ = [
+    "AFTER_END",
+    "AFTER_START",
+    "NOT_AFTER",
+    "NOT_BEFORE",
+    "TIME_LIMIT_MS",
+    "WITHIN_END",
+    "WITHIN_START",
+]
 
 TIME_LIMIT_MS = 2**61
 """No time and no bound reaches this: 73 million years. It is the premise of the proofs."""

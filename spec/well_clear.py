@@ -55,7 +55,7 @@ def horizontal_violation(s: Plane, v: Plane, dthr: float, tthr: float) -> bool:
         return False
     closest = position(s, v, time_of_closest_approach(s, v))
     time = tau_mod(s, v, dthr)
-    return within(closest, dthr) and 0 <= time and time <= tthr
+    return within(closest, dthr) and time >= 0 and time <= tthr
 
 
 def horizontal_violation_at(s: Plane, v: Plane, dthr: float, tthr: float, t: float) -> bool:
@@ -70,7 +70,7 @@ def vertical_violation(sz: float, vz: float, zthr: float, tcoa: float) -> bool:
     if vz == 0:
         return False
     time = -sz / vz
-    return 0 <= time and time <= tcoa
+    return time >= 0 and time <= tcoa
 
 
 def vertical_violation_at(sz: float, vz: float, zthr: float, tcoa: float, t: float) -> bool:

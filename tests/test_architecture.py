@@ -43,7 +43,9 @@ def test_imports_follow_the_table(part: str, root: Path) -> None:
         for name in _imports(file):
             if not name.startswith("cratous."):
                 top = name.split(".")[0]
-                if part == "core" and top not in sys.stdlib_module_names | CORE_OUTSIDE | {"cratous"}:
+                if part == "core" and top not in sys.stdlib_module_names | CORE_OUTSIDE | {
+                    "cratous"
+                }:
                     wrong.append(f"{place} imports {name}")
                 continue
             target = name.split(".")[1]
@@ -112,7 +114,10 @@ def test_folders_refuse_another_name(root: Path) -> None:
 def test_wheel_holds_what_git_tracks(root: Path, tmp_path: Path) -> None:
     copy = tmp_path / "tree"
     clone = subprocess.run(
-        ["git", "clone", "--quiet", str(root), str(copy)], capture_output=True, text=True, timeout=120
+        ["git", "clone", "--quiet", str(root), str(copy)],
+        capture_output=True,
+        text=True,
+        timeout=120,
     )
     if clone.returncode != 0:
         pytest.skip(f"no git checkout to build from: {clone.stderr.strip()}")

@@ -39,9 +39,7 @@ def test_vertical_violation_is_the_definition(sz, vz, zthr, tcoa):
 def test_violation_within_covers_every_instant(s, v, sz, vz, dthr, zthr, tthr, tcoa, h):
     predicted = well_clear.violation_within(s, v, sz, vz, dthr, zthr, tthr, tcoa, h)
     instants = [h * k / 24 for k in range(25)]
-    seen = any(
-        meaning.violation_at(s, v, sz, vz, dthr, zthr, tthr, tcoa, t) for t in instants
-    )
+    seen = any(meaning.violation_at(s, v, sz, vz, dthr, zthr, tthr, tcoa, t) for t in instants)
     assert predicted or not seen
 
 

@@ -16,9 +16,8 @@ from cratous.services.bus import Bus
 from cratous.services.frames import Projection
 from cratous.services.planning import make_plan
 from cratous.services.planning.options import expand, flyer_of
-from cratous.services.planning.sensor import coverage, footprint, sees
 from cratous.services.planning.smoothing import line_path
-from cratous.services.planning.stages import start_poses
+from cratous.services.sensor import coverage, footprint, sees
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission import (
     Camera,
@@ -96,7 +95,7 @@ def assert_flyable(plan, of):
                 radius = item.hold.radius_m
                 laps = item.wait_ms * item.speed_m_s / 1000 / (2 * math.pi * radius)
                 assert laps == pytest.approx(round(laps), abs=1e-6)
-                assert radius >= flyer_of(one, Pose(*one.position, 0.0)).radius_m * 0.999
+                assert radius >= flyer_of(one).radius_m * 0.999
                 centre = (item.hold.north_m, item.hold.east_m)
                 assert math.dist(centre, item.path[0][:2]) == pytest.approx(radius)
             assert_turns_wide(item.transit + item.path[1:], one)
@@ -105,7 +104,7 @@ def assert_flyable(plan, of):
 
 def assert_turns_wide(points, one):
     """At each corner the turn is no sharper than the chords of the tightest circle make it."""
-    radius = flyer_of(one, Pose(*one.position, 0.0)).radius_m
+    radius = flyer_of(one).radius_m
     for p, q, r in zip(points, points[1:], points[2:], strict=False):
         if math.dist(p[:2], q[:2]) < 1e-6 or math.dist(q[:2], r[:2]) < 1e-6:
             continue
@@ -207,6 +206,14 @@ def test_planning_again_keeps_what_is_done_and_starts_from_where_they_are():
             assert item.transit[0] == Position(*starts[item.vehicle_id][:3])
     second = next(item for item in plan.items if item.task_id == 2)
     assert second.start_ms >= 260_000
+
+
+def test_a_vehicle_that_was_pushed_down_climbs_back_to_its_altitude():
+    low = {1: Pose(0.0, 0.0, 550.0, 0.0)}
+    plan = make_plan(mission(FOUR[:1], TWO[:1]), starts=low, now_ms=1000)
+    item = plan.items[0]
+    assert item.transit[0].alt_m == 550.0
+    assert {p.alt_m for p in item.path} == {700.0}
 
 
 def test_nothing_left_is_an_empty_plan():
@@ -348,7 +355,7 @@ def test_the_view_of_a_point_is_from_the_wanted_side():
     wanted = View(math.radians(90), math.radians(-60))
     point = task(1, TaskKind.POINT_SEARCH, (2000.0, 0.0, 0.0), view=wanted)
     of = mission((point,))
-    options, dropped = expand(of, of.tasks, start_poses(of), ())
+    options, dropped = expand(of, of.tasks, ())
     assert len(options) == 18
     assert dropped == ()
     for option in options:
@@ -364,7 +371,7 @@ def test_the_view_of_a_point_is_from_the_wanted_side():
 def test_a_long_dwell_is_flown_in_circles():
     point = task(1, TaskKind.POINT_SEARCH, (2000.0, 0.0, 0.0), duration_ms=300_000)
     of = mission((point,))
-    options, _ = expand(of, of.tasks, start_poses(of), ())
+    options, _ = expand(of, of.tasks, ())
     assert options
     for option in options:
         assert option.duration_ms == 300_000

@@ -238,7 +238,7 @@ def test_lifted_term_equals_running_function(entry):
     if entry.name == "eligible":
         pytest.skip("works on masks: the next test")
     symbols = {name: _symbols(hint, name) for name, hint in hints.items()}
-    lifted = [v for v in _flat(lift(entry.function, *symbols.values()).value)]
+    lifted = _flat(lift(entry.function, *symbols.values()).value)
     rng = random.Random(entry.name)
     for _ in range(60):
         found: list = []

@@ -161,10 +161,10 @@ def test_the_frame_goes_there_and_back(lat, lon, north, east):
     projection = Projection(Frame(lat, lon))
     there = projection.to_geodetic(north, east)
     back = projection.to_local(*there)
-    assert math.dist(back, (north, east)) < 1e-6
+    assert math.dist(back, (north, east)) < 1e-4
     distance = math.hypot(north, east)
     exact = projection.geodesic_m((lat, lon), there)
-    assert exact == pytest.approx(distance, abs=1e-5)
+    assert exact == pytest.approx(distance, abs=1e-4)
 
 
 @given(st.floats(-70, 70), COORDINATE, COORDINATE, COORDINATE, COORDINATE)

@@ -11,7 +11,7 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import location
 from cratous.services.flight.dynamics import AirState, clamp, wrap
 from cratous.services.frames import Projection
-from cratous.services.planning.sensor import footprint
+from cratous.services.sensor import footprint
 from cratous.spec.mission import Frame, Position, Task, TaskKind, Vehicle
 
 

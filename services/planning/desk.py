@@ -59,7 +59,7 @@ class Inputs:
     @cached_property
     def _by_task(self) -> dict[int, tuple[tuple[Option, ...], tuple[Dropped, ...]]]:
         return {
-            task: expand(self.mission, [self.mission.task(task)], self.starts, self.zones)
+            task: expand(self.mission, [self.mission.task(task)], self.zones)
             for task in self.wanted
         }
 

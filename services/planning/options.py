@@ -8,15 +8,15 @@ reason kept for the user.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from cratous.core.dubins import LEFT, RIGHT, pose_after, turn_radius_m
 from cratous.core.legs import first_bad_leg
 from cratous.core.visibility import circle, name_of, start_point
-from cratous.services.planning.sensor import coverage, share_seen, view_distance_m
 from cratous.services.planning.smoothing import ENOUGH, line_path
+from cratous.services.sensor import coverage, share_seen, view_distance_m
 from cratous.spec.mission import Camera, Mission, Position, Task, TaskKind, Vehicle, Zone
 from cratous.spec.plan import Pose
 
@@ -98,10 +98,11 @@ class Way(NamedTuple):
     coverage: float | None = None
 
 
-def flyer_of(vehicle: Vehicle, start: Pose) -> Flyer:
-    """The class of a vehicle that starts from this pose."""
+def flyer_of(vehicle: Vehicle) -> Flyer:
+    """The class of a vehicle; it cruises at the altitude of its start in the mission."""
     radius = BANK_RESERVE * turn_radius_m(vehicle.speed_m_s, vehicle.max_bank_rad)
-    return Flyer(vehicle.speed_m_s, radius, start.alt_m, vehicle.max_climb_m_s, vehicle.cameras)
+    alt = vehicle.position.alt_m
+    return Flyer(vehicle.speed_m_s, radius, alt, vehicle.max_climb_m_s, vehicle.cameras)
 
 
 def flight_ms(length_m: float, speed_m_s: float) -> int:
@@ -112,13 +113,12 @@ def flight_ms(length_m: float, speed_m_s: float) -> int:
 def expand(
     mission: Mission,
     tasks: Sequence[Task],
-    starts: Mapping[int, Pose],
     zones: Sequence[Zone],
 ) -> tuple[tuple[Option, ...], tuple[Dropped, ...]]:
     """All options of the tasks for the mission's vehicles, and those dropped."""
     classes: dict[Flyer, list[int]] = {}
     for vehicle in mission.vehicles:
-        classes.setdefault(flyer_of(vehicle, starts[vehicle.id]), []).append(vehicle.id)
+        classes.setdefault(flyer_of(vehicle), []).append(vehicle.id)
     options: list[Option] = []
     dropped: list[Dropped] = []
     for task in tasks:

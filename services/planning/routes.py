@@ -30,10 +30,7 @@ class Routes:
     ) -> None:
         self.options = options
         self.poses = [starts[vehicle.id] for vehicle in mission.vehicles]
-        self.flyers = [
-            flyer_of(vehicle, pose)
-            for vehicle, pose in zip(mission.vehicles, self.poses, strict=True)
-        ]
+        self.flyers = [flyer_of(vehicle) for vehicle in mission.vehicles]
         self.zones = tuple(zones)
         self._maps: dict[float, tuple[Roadmap, ...]] = {}
         self._found: dict[tuple[Pose, Flyer, Pose], Route] = {}
