@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.ready
 
-.PHONY: help venv demo test test-fast lint types prove bench docs lock clean
+.PHONY: help venv demo test test-fast lint types prove recheck mutate crosshair bench docs lock clean
 
 help:
 	@echo "make demo      set up, then plan, prove, fly, monitor and certify the crossing mission"
@@ -12,6 +12,9 @@ help:
 	@echo "make venv      only set up (.venv, pinned dependencies, compiled kernels)"
 	@echo "make lint      style, types, kernel subset"
 	@echo "make prove     prove every kernel anew and hold the ledger against it"
+	@echo "make recheck   put every proof to the second solver (cvc5), some minutes"
+	@echo "make mutate    look for faults of kernels that no theorem would notice, some minutes"
+	@echo "make crosshair look for bugs in functions that are no kernels, two minutes"
 	@echo "make bench     benchmarks (ratios, see bench/README.md)"
 	@echo "make docs      regenerate the generated documents"
 
@@ -43,6 +46,15 @@ types: venv
 
 prove: venv
 	$(BIN)/cratous prove --check
+
+recheck: venv
+	$(BIN)/cratous prove --recheck
+
+mutate: venv
+	$(BIN)/cratous prove --mutate
+
+crosshair: venv
+	$(BIN)/python -m crosshair check --analysis_kind=asserts --per_condition_timeout=10 tests/crosshair_targets.py
 
 bench: venv
 	$(BIN)/python bench/run.py

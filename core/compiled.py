@@ -1,9 +1,11 @@
 """The compiled reading: a kernel over numpy arrays, by numba; and the exact one, on rationals.
 
-The kernel's own source and that of everything it calls is written, unchanged but for the
-decorators, into a module in a private cache folder that is named by the hash of that text, and
-compiled there. So machine code can never outlive the source it was made from. No fastmath, no
-parallel loops: the result of each element is what CPython computes on doubles.
+A kernel without division is printed from its graph as straight-line code, so that the compiler
+can work on several states at once; any other kernel is compiled from its own source and that of
+everything it calls, unchanged but for the decorators. The text is written into a module in a
+private cache folder that is named by the hash of that text, and compiled there. So machine code
+can never outlive the source it was made from. No fastmath, no parallel loops: the result of each
+element is what CPython computes on doubles.
 """
 
 from __future__ import annotations
@@ -11,20 +13,25 @@ from __future__ import annotations
 import functools
 import importlib.util
 import inspect
+import math
 import os
 import sys
 import textwrap
 from collections.abc import Callable
-from fractions import Fraction
 from pathlib import Path
 from typing import Any, get_type_hints
 
 import numpy as np
 
+from cratous.core.graph import Node, NotInSubset, Program, program
 from cratous.core.kernel import Fold
+from cratous.core.printing import name as text_of
+from cratous.core.printing import straight
 from cratous.core.sources import digest
+from cratous.spec.errors import BadInput
 
 FLAGS = "njit(cache=True, fastmath=False, error_model='python')"
+KINDS: dict[Any, Any] = {bool: np.bool_, int: np.int64, float: np.float64}
 
 
 def cache_folder() -> Path:
@@ -34,6 +41,56 @@ def cache_folder() -> Path:
     return root / "cratous"
 
 
+def load(text: str) -> Any:
+    """The module of this text, from the cache folder; numba keeps its machine code beside it."""
+    name = "kernels_" + digest([text])[:32]
+    folder = cache_folder() / name
+    file = folder / f"{name}.py"
+    if not file.is_file() or file.read_text(encoding="utf-8") != text:
+        folder.mkdir(parents=True, exist_ok=True)
+        part = file.with_suffix(f".{os.getpid()}")
+        part.write_text(text, encoding="utf-8")
+        part.replace(file)
+    spec = importlib.util.spec_from_file_location(name, file)
+    if spec is None or spec.loader is None:
+        raise ImportError(f"compiled kernels cannot be loaded from {folder}")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # numba's cache finds the functions by this name
+    spec.loader.exec_module(module)
+    return module
+
+
+# -- straight-line code from the graph ------------------------------------------------------
+def loop_text(
+    columns: tuple[Node, ...], scalars: frozenset[str], outs: str, body: list[str]
+) -> str:
+    """`_map(outs..., columns...)`: the body for every element; `scalars` are single values."""
+    arguments = [str(c.value) if c.value in scalars else f"a_{c.value}" for c in columns]
+    lines = [
+        "from math import sqrt",
+        "",
+        "from numba import njit",
+        "",
+        "",
+        f"@{FLAGS}",
+        f"def _map({', '.join([outs, *arguments])}):",
+        "    for i in range(out.size):",
+    ]
+    for column in columns:
+        if column.value not in scalars:
+            lines.append(f"        {column.value} = a_{column.value}[i]")
+    return "\n".join([*lines, *body, ""])
+
+
+@functools.cache
+def _straight_map(source: Program, scalars: frozenset[str]) -> Any:
+    result = source.result
+    assert isinstance(result, Node)
+    body = [*straight([result], "        "), f"        out[i] = {text_of(result)}"]
+    return load(loop_text(source.columns, scalars, "out", body))._map
+
+
+# -- the kernel's own source ------------------------------------------------------------
 def _collect(function: Any, found: dict[str, str]) -> None:
     """Sources of a kernel and of what it uses, callees first."""
     if function.__name__ in found:
@@ -41,11 +98,11 @@ def _collect(function: Any, found: dict[str, str]) -> None:
     if not inspect.isclass(function):
         for name in function.__code__.co_names:
             value = function.__globals__.get(name)
-            ours = getattr(value, "__module__", "").startswith("cratous.")
+            ours = getattr(value, "__module__", "").startswith(("cratous.", function.__module__))
             if ours and (inspect.isfunction(value) or inspect.isclass(value)):
                 _collect(value, found)
         for hint in get_type_hints(function).values():
-            if inspect.isclass(hint) and hint.__module__.startswith("cratous."):
+            if inspect.isclass(hint) and hasattr(hint, "_fields"):
                 _collect(hint, found)
     if inspect.isclass(function):
         found[function.__name__] = _constructor(function)
@@ -92,65 +149,133 @@ def _map_source(kernel: Callable[..., Any]) -> str:
     )
 
 
-def _module(text: str) -> Any:
-    name = "kernels_" + digest([text])[:32]
-    folder = cache_folder() / name
-    file = folder / f"{name}.py"
-    if not file.is_file() or file.read_text(encoding="utf-8") != text:
-        folder.mkdir(parents=True, exist_ok=True)
-        part = file.with_suffix(f".{os.getpid()}")
-        part.write_text(text, encoding="utf-8")
-        part.replace(file)
-    spec = importlib.util.spec_from_file_location(name, file)
-    if spec is None or spec.loader is None:
-        raise ImportError(f"compiled kernels cannot be loaded from {folder}")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module  # numba's cache finds the functions by this name
-    spec.loader.exec_module(module)
-    return module
+@functools.cache
+def _source_map(kernel: Callable[..., Any]) -> Any:
+    found: dict[str, str] = {}
+    _collect(kernel, found)
+    head = "from math import sqrt\nfrom typing import NamedTuple\n\nfrom numba import njit\n"
+    return load("\n\n".join([head, *found.values(), _map_source(kernel)]))._map
+
+
+# -- the map ----------------------------------------------------------------------------
+def aligned(columns: tuple[Any, ...]) -> tuple[list[Any], tuple[int, ...]]:
+    """Columns as flat arrays of one length, single values left alone; and the common shape."""
+    arrays = [np.asarray(column) for column in columns]
+    shape = np.broadcast_shapes(*[array.shape for array in arrays])
+    if shape == ():
+        return [array.reshape(1) for array in arrays], shape
+    flat = [
+        array[()]
+        if array.ndim == 0
+        else np.ascontiguousarray(np.broadcast_to(array, shape)).reshape(-1)
+        for array in arrays
+    ]
+    return flat, shape
+
+
+def outcome(where: str, out: np.ndarray | None, shape: tuple[int, ...], kind: Any) -> np.ndarray:
+    """The flat array for the results: `out` if it is given and fits, else a new one."""
+    size = math.prod(shape)
+    if out is None:
+        return np.empty(size, dtype=kind)
+    if out.shape != shape or out.dtype != kind or not out.flags.c_contiguous:
+        raise BadInput(
+            "out does not fit",
+            where=where,
+            item="out",
+            expected=f"a contiguous array of {np.dtype(kind).name}, shape {shape}",
+            got=f"{out.dtype.name}, shape {out.shape}",
+        )
+    return out.reshape(-1)
+
+
+def single(source: Program, flat: list[Any]) -> frozenset[str]:
+    """The names of the columns that are single values."""
+    pairs = zip(source.columns, flat, strict=True)
+    return frozenset(str(column.value) for column, value in pairs if np.ndim(value) == 0)
+
+
+def checked(source: Program, columns: tuple[Any, ...]) -> tuple[list[Any], tuple[int, ...]]:
+    """Flat columns of the kernel's own types, and the common shape.
+
+    Raises BadInput for a wrong number of columns, shapes or types that do not fit, and for a
+    number that its column's type cannot hold.
+    """
+    if len(columns) != len(source.columns):
+        raise BadInput(
+            "a wrong number of columns",
+            where=source.name,
+            expected=f"{len(source.columns)} ({', '.join(source.labels)})",
+            got=str(len(columns)),
+        )
+    try:
+        flat, shape = aligned(columns)
+    except ValueError as error:
+        raise BadInput(
+            "the columns cannot be broadcast to one shape", where=source.name, got=str(error)
+        ) from error
+    for k, (column, label) in enumerate(zip(source.columns, source.labels, strict=True)):
+        flat[k] = _typed(source.name, column.kind, label, flat[k])
+    return flat, shape
+
+
+def _typed(where: str, kind: str, label: str, value: Any) -> Any:
+    array, wanted = np.asarray(value), KINDS[{"float": float, "int": int, "bool": bool}[kind]]
+    if array.dtype == wanted:
+        return value
+    if array.dtype.kind not in {"float": "fiu", "int": "iu", "bool": "b"}[kind]:
+        raise BadInput(f"not of type {kind}", where=where, item=label, got=str(array.dtype))
+    turned = array.astype(wanted)
+    if array.dtype.kind == "f":
+        # wider or narrower floats: NaN is left for the check that names it
+        lost = (turned != array) & (array == array)
+    else:
+        # beyond 2^62 the way back could overflow
+        lost = (turned.astype(array.dtype) != array) | (np.abs(turned) > 2.0**62)
+    wrong = np.flatnonzero(lost)
+    if wrong.size:
+        item = f"{label}[{wrong[0]}]" if array.ndim else label
+        got = str(array.reshape(-1)[wrong[0]])
+        raise BadInput(f"no {np.dtype(wanted).name}", where=where, item=item, got=got)
+    return turned[()]
 
 
 @functools.cache
 def compiled(kernel: Callable[..., Any]) -> Callable[..., np.ndarray]:
     """The kernel as a function of arrays: one array for each scalar, vectors field by field.
 
-    All arrays have one length n (broadcast them first); the result has n elements, of type bool,
-    int64 or float64 as the kernel's.
+    Columns are broadcast to one shape; the result has it too, and elements of type bool, int64 or
+    float64 as the kernel's. `out` may be given for it; BadInput if it, or a column, does not fit.
     """
-    kind = {bool: np.bool_, int: np.int64, float: np.float64}[get_type_hints(kernel)["return"]]
-    found: dict[str, str] = {}
-    _collect(kernel, found)
-    head = "from typing import NamedTuple\n\nfrom numba import njit\n"
-    loop = _module("\n\n".join([head, *found.values(), _map_source(kernel)]))._map
+    kind = KINDS[get_type_hints(kernel)["return"]]
+    try:
+        source: Program | None = program(kernel)
+    except NotInSubset:
+        source = None
+    if source is not None and source.divides:
+        source = None  # a division is carried out only where the kernel carries it out
 
-    def run(*columns: Any) -> np.ndarray:
-        arrays = np.broadcast_arrays(*[np.asarray(column) for column in columns])
-        flat = [np.ascontiguousarray(array).reshape(-1) for array in arrays]
-        out: np.ndarray = np.empty(flat[0].size, dtype=kind)
-        loop(out, *flat)
-        return out.reshape(arrays[0].shape)
+    def run(*columns: Any, out: np.ndarray | None = None) -> np.ndarray:
+        if source is None:
+            arrays = np.broadcast_arrays(*[np.asarray(column) for column in columns])
+            shape = arrays[0].shape
+            flat = [np.ascontiguousarray(array).reshape(-1) for array in arrays]
+            found = outcome(kernel.__name__, out, shape, kind)
+            _source_map(kernel)(found, *flat)
+            return found.reshape(shape)
+        flat, shape = checked(source, columns)
+        found = outcome(source.name, out, shape, kind)
+        _straight_map(source, single(source, flat))(found, *flat)
+        return found.reshape(shape)
 
     return run
 
 
-def _rational(value: Any) -> Any:
-    if isinstance(value, float):
-        return Fraction(value)
-    if isinstance(value, tuple):
-        parts = [_rational(part) for part in value]
-        return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
-    return value
-
-
 def exact(function: Callable[..., Any] | Fold[Any], *args: Any) -> Any:
-    """The exact reading: run a division-free kernel or fold on the rationals the doubles are.
+    """The exact reading of a division-free kernel or fold: its result on the reals that args are.
 
     Raises ValueError for an argument that is not finite: it has no exact reading.
     """
-    try:
-        if isinstance(function, Fold):
-            items, *context = args
-            return function([_rational(tuple(i)) for i in items], *map(_rational, context))
-        return function(*map(_rational, args))
-    except OverflowError as error:
-        raise ValueError(f"{function.__name__}: an argument is not finite") from error
+    from cratous.core.exactly import exact_scalar
+
+    return exact_scalar(function, *args)

@@ -1,35 +1,116 @@
 """The ledger's gate: a kernel flies only with the source that was proved.
 
-`ledger.json` is written by `cratous prove`. For every registered kernel, fold and driver it keeps
-the parts of its key: its own syntax tree with all that it calls, the definition in `spec`, its
-theorems, the prover, the solver's version and the compiler flags. `check` computes them anew and
-names whatever differs.
+A ledger is written by `cratous prove`: the product's is `core/ledger.json`, a package with kernels
+of its own has `<package>/ledger.json`. For every registered kernel, fold and driver it keeps the
+parts of its key: its own syntax tree with all that it calls, the definition in `spec`, its
+theorems with everything they take from elsewhere, the prover, the solver, the readings (how a
+kernel becomes machine code or an exact verdict) and the compiler. `check` computes them anew and
+names whatever differs; it also holds the code that runs against the file that was hashed.
 """
 
 from __future__ import annotations
 
+import ast
+import functools
 import importlib
 import importlib.metadata
 import json
 import sys
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from cratous.core.compiled import FLAGS
 from cratous.core.kernel import REGISTRY, Entry, Fold
-from cratous.core.sources import ROOT, closure, digest, files_digest, function_parts
-from cratous.spec.errors import Refused
+from cratous.core.sources import (
+    ROOT,
+    add_package,
+    altered,
+    closure,
+    digest,
+    files_digest,
+    function_parts,
+    position,
+    statement_parts,
+)
+from cratous.spec.errors import BadInput, Refused
 
-LEDGER = ROOT / "core" / "ledger.json"
 PARTS = {
     "source": "its source or that of something it calls",
     "spec": "its definition in spec",
     "theorems": "its theorems",
     "prover": "the prover",
     "solver": "the solver's version",
-    "flags": "the compiler flags",
+    "readings": "the readings (core/compiled.py, the exact reading, the registry)",
+    "flags": "the compiler flags or the versions of numba, llvmlite, numpy",
 }
+READINGS = ("kernel.py", "compiled.py", "sources.py", "ledger.py", "exact*.py")
+"""With all that they import from core: how a kernel is marked, compiled, read, and held to this."""
+COMPILER = ("numba", "llvmlite", "numpy")
+
+
+@dataclass(frozen=True)
+class Home:
+    """A package with kernels: its name and folder, and where its parts lie in it."""
+
+    name: str
+    root: Path
+
+    @property
+    def product(self) -> bool:
+        """True iff it is the product itself."""
+        return self.name == "cratous"
+
+    @property
+    def ledger(self) -> Path:
+        """Its ledger."""
+        return self.root / "core" / "ledger.json" if self.product else self.root / "ledger.json"
+
+    @property
+    def theorems(self) -> Path:
+        """The folder of its theorem files."""
+        return self.root / "proofs" / "theorems" if self.product else self.root / "theorems"
+
+    def definition(self, implements: str) -> Path:
+        """The file of a definition, named as `module.function` of the package's `spec`."""
+        return self.root / "spec" / f"{implements.split('.')[0]}.py"
+
+    def modules(self) -> Iterator[str]:
+        """Every module that may hold kernels."""
+        folder = self.root / "core" if self.product else self.root
+        for file in sorted(folder.rglob("*.py")):
+            parts = file.relative_to(self.root).with_suffix("").parts
+            if parts[0] != "theorems" and parts[-1] not in ("__init__", "__main__"):
+                yield ".".join((self.name, *parts))
+
+
+PRODUCT = Home("cratous", ROOT)
+LEDGER = PRODUCT.ledger
+
+
+def package(name: str) -> Home:
+    """The home of an installed or importable package with kernels of its own.
+
+    Raises BadInput if there is no such package.
+    """
+    if name == "cratous":
+        return PRODUCT
+    try:
+        module = importlib.import_module(name)
+    except ImportError as error:
+        raise BadInput(
+            f"the package cannot be imported ({error})",
+            item=name,
+            expected="the name of a package on the Python path",
+        ) from error
+    if not getattr(module, "__path__", None) or "." in name:
+        raise BadInput(
+            "this is a module, not a package", item=name, expected="a top-level folder of modules"
+        )
+    root = Path(next(iter(module.__path__))).resolve()
+    add_package(name, root)
+    return Home(name, root)
 
 
 @dataclass(frozen=True)
@@ -57,12 +138,25 @@ class Standing:
         return text if not self.problems else f"{text}; {len(self.problems)} NOT VOUCHED FOR"
 
 
-def load_all() -> dict[str, Entry]:
-    """Import every module of core, so that the registry is complete."""
-    for file in sorted((ROOT / "core").glob("*.py")):
-        if file.stem != "__init__":
-            importlib.import_module(f"cratous.core.{file.stem}")
-    return dict(sorted(REGISTRY.items()))
+def _top(entry: Entry) -> str:
+    function = entry.function
+    module = function.step.__module__ if isinstance(function, Fold) else function.__module__
+    return module.split(".")[0]
+
+
+def load_all(home: Home = PRODUCT) -> dict[str, Entry]:
+    """Import every module that may hold kernels; the registered ones of this home, by name.
+
+    Raises BadInput for a module of another package that cannot be imported.
+    """
+    for name in home.modules():
+        try:
+            importlib.import_module(name)
+        except (ImportError, SyntaxError, ValueError) as error:
+            if home.product:
+                raise
+            raise BadInput(f"the module cannot be imported: {error}", where=name) from error
+    return {n: entry for n, entry in sorted(REGISTRY.items()) if _top(entry) == home.name}
 
 
 def read(path: Path = LEDGER) -> dict[str, Any]:
@@ -73,6 +167,8 @@ def read(path: Path = LEDGER) -> dict[str, Any]:
         data = json.loads(path.read_text(encoding="utf-8"))
         if data["seal"] != seal(data):
             raise Refused(f"{path.name} was edited after the prover wrote it; run `cratous prove`")
+        if not isinstance(data["kernels"], dict) or not isinstance(data["theorems"], dict):
+            raise TypeError("kernels and theorems must be objects")
     except (ValueError, KeyError, TypeError) as error:
         raise Refused(f"{path.name} cannot be read ({error!r}); run `cratous prove`") from error
     return dict(data)
@@ -84,82 +180,165 @@ def seal(data: dict[str, Any]) -> str:
     return digest([json.dumps(body, sort_keys=True)])
 
 
+@functools.cache
+def _version(name: str) -> str:
+    try:
+        return importlib.metadata.version(name)
+    except importlib.metadata.PackageNotFoundError:
+        return "not installed"
+
+
 def solver_version() -> str:
     """The installed z3."""
-    try:
-        return "z3 " + importlib.metadata.version("z3-solver")
-    except importlib.metadata.PackageNotFoundError:
-        return "z3 not installed"
+    return f"z3 {_version('z3-solver')}"
 
 
-def _source(entry: Entry) -> str:
-    function = entry.function
-    if isinstance(function, Fold):
-        parts = function_parts(function.step) + function_parts(function.finish)
-        return digest([*parts, repr(function.start)])
-    module = sys.modules[function.__module__]
-    if entry.kind == "driver":
-        return files_digest(closure(Path(str(module.__file__)).resolve()))
-    return digest(function_parts(function))
+def compiler() -> str:
+    """How machine code is made: numba's flags, and the versions that decide what they mean."""
+    return "; ".join([FLAGS, *(f"{name} {_version(name)}" for name in COMPILER)])
 
 
-def theorem_digest(names: list[str], theorems: dict[str, Any]) -> str:
-    """The meaning of some theorem files and of the lemmas that they rest on."""
-    todo, seen = list(names), set()
-    while todo:
-        name = todo.pop()
-        if name not in seen:
-            seen.add(name)
-            todo += theorems.get(name, {}).get("lemmas", [])
-    folder = ROOT / "proofs" / "theorems"
-    files = [folder / f"{name}.py" for name in sorted(seen)]
-    if any(not file.is_file() for file in files):
-        return "missing"
-    return files_digest(files, docstrings=True)
+@functools.cache
+def engine() -> frozenset[Path]:
+    """The files that decide what `proved` means: the prover and all of proofs that it imports."""
+    roots = [ROOT / "proofs" / f"{name}.py" for name in ("prover", "ledger", "subset")]
+    found = closure(*[file for file in roots if file.is_file()])
+    return frozenset(file for file in found if file.is_relative_to(ROOT / "proofs"))
 
 
-def key_parts(entry: Entry, names: list[str], theorems: dict[str, Any]) -> dict[str, str]:
-    """All parts of a kernel's key as the code stands now; names are its theorems."""
-    spec = ""
-    if entry.implements:
-        file = ROOT / "spec" / f"{entry.implements.split('.')[0]}.py"
-        spec = files_digest(closure(file)) if file.is_file() else "missing"
-    engine = sorted((ROOT / "proofs").glob("*.py"))
+@functools.cache
+def _tools() -> dict[str, str]:
+    """The parts of the key that all kernels share."""
+    roots = {file for pattern in READINGS for file in (ROOT / "core").glob(pattern)}
+    readings = [file for file in closure(*roots) if file.is_relative_to(ROOT / "core")]
     return {
-        "source": _source(entry),
-        "spec": spec,
-        "theorems": theorem_digest(names, theorems),
-        "prover": files_digest(engine),
+        "prover": files_digest(sorted(engine())),
         "solver": solver_version(),
-        "flags": FLAGS,
+        "readings": files_digest(readings),
+        "flags": compiler(),
     }
 
 
-def check(path: Path = LEDGER) -> Standing:
-    """Hold every registered kernel, fold and driver against the ledger."""
-    data = read(path)
-    problems = []
+def _source(entry: Entry) -> str:
+    if entry.kind == "driver":
+        module = sys.modules[entry.function.__module__]
+        return digest(
+            [files_digest(closure(Path(str(module.__file__)).resolve())), repr(entry.uses)]
+        )
+    return digest(function_parts(entry.function))
+
+
+def theorem_file(name: str, home: Home) -> Path | None:
+    """The file of a theorem: in this home, else in the product."""
+    for folder in (home.theorems, PRODUCT.theorems):
+        file = folder / f"{name}.py"
+        if file.is_file():
+            return file
+    return None
+
+
+@functools.cache
+def _statement(path: Path) -> str:
+    return digest(statement_parts(path, engine()))
+
+
+@functools.cache
+def _mentioned(path: Path) -> frozenset[str]:
+    """All texts in a file that could be the name of a lemma."""
+    nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+    texts = {n.value for n in nodes if isinstance(n, ast.Constant) and isinstance(n.value, str)}
+    return frozenset(text for text in texts if text.isidentifier())
+
+
+def theorem_digest(names: Iterable[str], theorems: dict[str, Any], home: Home = PRODUCT) -> str:
+    """The meaning of some theorem files and of the lemmas that they rest on.
+
+    Lemmas are what the ledger lists for a theorem and whatever its file names as text.
+    """
+    todo, parts = list(names), {}
+    folders = {home.theorems, PRODUCT.theorems}
+    known = {file.stem for folder in folders for file in folder.glob("*.py")}
+    while todo:
+        name = todo.pop()
+        if name in parts:
+            continue
+        file = theorem_file(name, home)
+        if file is None:
+            return "missing"
+        parts[name] = _statement(file)
+        todo += theorems.get(name, {}).get("lemmas", [])
+        todo += _mentioned(file) & known
+    return digest(f"{name}={text}" for name, text in sorted(parts.items()))
+
+
+def key_parts(
+    entry: Entry, names: list[str], theorems: dict[str, Any], home: Home = PRODUCT
+) -> dict[str, str]:
+    """All parts of a kernel's key as the code stands now; names are its theorems."""
+    spec = ""
+    if entry.implements:
+        file = home.definition(entry.implements)
+        spec = files_digest(closure(file)) if file.is_file() else "missing"
+    return {
+        "source": _source(entry),
+        "spec": spec,
+        "theorems": theorem_digest(names, theorems, home),
+        **_tools(),
+    }
+
+
+def _problems(home: Home, entries: dict[str, Entry], data: dict[str, Any]) -> Iterator[Problem]:
     theorems = data["theorems"]
-    for name, entry in load_all().items():
+    for name, entry in entries.items():
         record = data["kernels"].get(name)
         if record is None:
-            problems.append(Problem(name, "it is not in the ledger"))
+            yield Problem(name, "it is not in the ledger")
             continue
         if record["status"] != "proved":
-            problems.append(Problem(name, f"it is {record['status']}"))
+            yield Problem(name, f"it is {record['status']}")
             continue
-        now = key_parts(entry, record["theorems"], theorems)
+        now = key_parts(entry, record["theorems"], theorems, home)
         changed = [PARTS[part] for part in PARTS if now[part] != record["key"].get(part)]
         if changed:
-            problems.append(Problem(name, "changed since the proof: " + ", ".join(changed)))
-    proved = sum(record["status"] == "proved" for record in theorems.values())
-    assumed = sum(len(record["assumptions"]) for record in theorems.values())
-    return Standing(len(REGISTRY), proved, assumed, tuple(problems))
+            yield Problem(name, "changed since the proof: " + ", ".join(changed))
+        elif wrong := altered(entry.function):
+            yield Problem(name, "the code that runs is not its file's: " + ", ".join(wrong))
+    for name in sorted(set(data["kernels"]) - set(entries)):
+        yield Problem(name, "it was proved but is no longer registered")
 
 
-def require(*, allow_unproved: bool = False, path: Path = LEDGER) -> Standing:
+def check(path: Path | None = None, home: Home = PRODUCT) -> Standing:
+    """Hold every registered kernel, fold and driver of a home against its ledger."""
+    entries = load_all(home)
+    data = read(home.ledger if path is None else path)
+    problems = tuple(_problems(home, entries, data))
+    records = data["theorems"].values()
+    proved = sum(record["status"] == "proved" for record in records)
+    assumed = sum(len(record["assumptions"]) for record in records)
+    return Standing(len(entries), proved, assumed, problems)
+
+
+def check_everything(path: Path | None = None) -> Standing:
+    """The product, and every other package that has registered a kernel in this process."""
+    standings = [check(path)]
+    for name in sorted({_top(entry) for entry in REGISTRY.values()} - {"cratous"}):
+        try:
+            standings.append(check(home=package(name)))
+        except BadInput as error:
+            strangers = [n for n, entry in sorted(REGISTRY.items()) if _top(entry) == name]
+            problems = tuple(Problem(n, f"it has no ledger: {error}") for n in strangers)
+            standings.append(Standing(len(strangers), 0, 0, problems))
+    return Standing(
+        sum(s.kernels for s in standings),
+        sum(s.theorems for s in standings),
+        sum(s.assumptions for s in standings),
+        tuple(problem for s in standings for problem in s.problems),
+    )
+
+
+def require(*, allow_unproved: bool = False, path: Path | None = None) -> Standing:
     """The standing, or `Refused` with the name of each kernel and what changed."""
-    standing = check(path)
+    standing = check_everything(path)
     if standing.problems and not allow_unproved:
         shown = "\n".join(f"  {p.name}: {p.what}" for p in standing.problems[:12])
         more = len(standing.problems) - 12
@@ -171,3 +350,8 @@ def require(*, allow_unproved: bool = False, path: Path = LEDGER) -> Standing:
             "`--allow-unproved` (the report will say so)"
         )
     return standing
+
+
+def place_of(name: str) -> str:
+    """Where a registered kernel, fold or driver stands."""
+    return position(REGISTRY[name].function)

@@ -1,4 +1,7 @@
-"""Writes the generated documents: `docs/proof-inventory.md` from the ledger.
+"""Writes the generated documents: `docs/proof-inventory.md` from the ledger and the re-check.
+
+The second solver's verdicts and the effort come from `proofs/recheck.json`, which
+`cratous prove --recheck` writes; a theorem that it does not know is shown as not re-checked.
 
 `python docs/generate.py --check` writes nothing and fails if a document is not up to date.
 """
@@ -9,32 +12,55 @@ import sys
 from pathlib import Path
 
 from cratous.core import ledger
+from cratous.proofs import recheck
 
 FILE = Path(__file__).resolve().parent / "proof-inventory.md"
 
 
 def inventory() -> str:
     """Every theorem with its sentence, then every kernel, fold and driver with what checks it."""
-    data = ledger.read()
+    data, second = ledger.read(), recheck.read()
     theorems, kernels = data["theorems"], data["kernels"]
     assumed = sum(len(t["assumptions"]) for t in theorems.values())
     obligations = sum(t["obligations"] for t in theorems.values())
+    known = second["theorems"]
+    verdicts = {n: known[n]["cvc5"] if n in known else "not re-checked" for n in theorems}
+    confirmed = sum(verdict == "confirmed" for verdict in verdicts.values())
+    rows = second["obligations"].values()
+    good = sum(row["cvc5"] == "confirmed" for row in rows)
+    solver = second["solver"] or "the second solver"
     lines = [
         "# Proof inventory",
         "",
-        "Generated from `core/ledger.json` by `make docs`; do not edit.",
+        "Generated from `core/ledger.json` and `proofs/recheck.json` by `make docs`; do not edit.",
         "",
         f"{len(theorems)} theorems, {obligations} obligations, {assumed} assumptions, "
-        f"{data['solver']}. All theorems are over the reals (or 64-bit integers); a verdict on "
-        "doubles is exact where the same function is evaluated on rationals.",
+        f"{data.get('solver', 'no solver')}. All theorems are over the reals (or 64-bit "
+        "integers); a verdict on doubles is exact where the same function is evaluated on "
+        "rationals.",
+        "",
+        f"{solver} confirms {confirmed} of {len(theorems)} theorems "
+        f"({good} of {len(rows)} obligations). No answer is no contradiction: it did not decide "
+        "within its budget. Effort is z3's, in thousands of its own steps.",
         "",
         "## Theorems",
-        "| theorem | sentence | about | obligations |",
-        "|---|---|---|---|",
+        "| theorem | sentence | about | obligations | effort | second solver |",
+        "|---|---|---|---|---|---|",
     ]
     for name, theorem in sorted(theorems.items()):
         about = ", ".join(f"`{kernel}`" for kernel in theorem["kernels"])
-        lines.append(f"| `{name}` | {theorem['sentence']} | {about} | {theorem['obligations']} |")
+        spent = f"{known[name]['z3_effort'] / 1000:.0f}" if name in known else "-"
+        lines.append(
+            f"| `{name}` | {theorem['sentence']} | {about} | {theorem['obligations']} "
+            f"| {spent} | {verdicts[name]} |"
+        )
+    for theorem_name, theorem in sorted(theorems.items()):
+        for condition, owner, reason in theorem["assumptions"]:
+            lines.append(f"\n**Assumed** in `{theorem_name}` by {owner}: {condition} ({reason})")
+    waiting = [row for row in rows if row["cvc5"] != "confirmed"]
+    if waiting:
+        lines += ["", "## Obligations that the second solver does not confirm"]
+        lines += [f"- {row['cvc5']}: {'; '.join(row['of'])}" for row in waiting]
     lines += ["", "## Kernels, folds and drivers", "| name | kind | definition | stands on |"]
     lines.append("|---|---|---|---|")
     for name, kernel in sorted(kernels.items()):

@@ -4,7 +4,8 @@ A theorem is a file in `proofs/theorems/` whose docstring is the sentence that r
 whose function `claim(c: Claim)` states it. `c.real`, `c.integer`, ... introduce arbitrary values;
 `c.premise` restricts them; `c.use` runs a kernel and `c.define` a definition of `spec`;
 `c.show` states what must follow. `c.lemma` uses a theorem proved elsewhere: its premises become
-obligations here. `c.fold` proves a fold for every number of items by induction.
+obligations here. `c.fold` proves a fold for every number of items by induction. Names are given
+once, lemmas may not go in a circle: a slip there would weaken a theorem without a word.
 """
 
 from __future__ import annotations
@@ -16,8 +17,18 @@ from typing import Any, get_type_hints
 import z3
 
 from cratous.core.kernel import Fold, Vec2
-from cratous.proofs.lift import OPAQUE, join, lift
-from cratous.proofs.symbolic import PATHS, Sym, SymBool, SymInt, SymMask, SymReal, _raw, wrap
+from cratous.proofs.lift import OPAQUE, REPLACED, VISITS, Visit, join, lift
+from cratous.proofs.symbolic import (
+    PATHS,
+    RANGE,
+    Sym,
+    SymBool,
+    SymInt,
+    SymMask,
+    SymReal,
+    _raw,
+    wrap,
+)
 
 
 @dataclass(frozen=True)
@@ -51,7 +62,7 @@ def _normal(value: Any) -> str:
     """A normal form of an argument: polynomials expanded and sorted."""
     if isinstance(value, tuple):
         return ", ".join(_normal(part) for part in value)
-    return str(z3.simplify(_known(value), som=True).sexpr())
+    return str(z3.simplify(_known(value), som=True, sort_sums=True).sexpr())
 
 
 def _fresh(name: str, kind: Any) -> Any:
@@ -70,6 +81,7 @@ class Claim:
     """The theorem under construction."""
 
     prefix: str = ""
+    circle: tuple[str, ...] = ()
     fixed: dict[str, Any] = field(default_factory=dict)
     load: Callable[[str], Callable[[Claim], None]] | None = None
     premises: list[z3.BoolRef] = field(default_factory=list)
@@ -80,9 +92,18 @@ class Claim:
     assumptions: list[tuple[str, str, str]] = field(default_factory=list)
     goals: list[z3.BoolRef] = field(default_factory=list)
     stubs: dict[Callable[..., Any], Stub] = field(default_factory=dict)
+    roots: list[z3.BoolRef] = field(default_factory=list)
+    visits: list[Visit] = field(default_factory=list)
+    names: set[str] = field(default_factory=set)
+    dropped: frozenset[int] = frozenset()
+    weakened: Callable[[int, z3.BoolRef], z3.BoolRef] | None = None
+    stated: int = 0
 
     # -- arbitrary values ---------------------------------------------------------------
     def _value(self, name: str, make: Callable[[str], Any]) -> Any:
+        if name in self.names:
+            raise ValueError(f"the value {name!r} is introduced twice")
+        self.names.add(name)
         return self.fixed[name] if name in self.fixed else make(self.prefix + name)
 
     def real(self, name: str) -> Any:
@@ -96,9 +117,12 @@ class Claim:
     def integer(self, name: str) -> Any:
         """An arbitrary integer of at most 62 bits (a premise that the run time checks)."""
         value = self._value(name, lambda n: SymInt(z3.Int(n)))
-        if name not in self.fixed:
-            self.premises.append(z3.And(value.term >= -(2**61), value.term <= 2**61))
+        self._restrict(z3.And(value.term >= -(2**61), value.term <= 2**61))
         return value
+
+    def whole(self, name: str) -> Any:
+        """An arbitrary integer of any size: for definitions, which are never compiled."""
+        return self._value(name, lambda n: SymInt(z3.Int(n)))
 
     def boolean(self, name: str) -> Any:
         """An arbitrary truth value."""
@@ -119,7 +143,14 @@ class Claim:
     # -- statements ---------------------------------------------------------------------
     def premise(self, condition: Any) -> None:
         """Restrict the theorem to values that satisfy `condition`."""
-        self.premises.append(_term(condition))
+        self._restrict(_term(condition))
+
+    def _restrict(self, premise: z3.BoolRef) -> None:
+        """Add a premise, unless this reading of the claim is to do without it (`proofs.mutate`)."""
+        number, self.stated = self.stated, self.stated + 1
+        if number in self.dropped:
+            return
+        self.premises.append(premise if self.weakened is None else self.weakened(number, premise))
 
     def assume(self, condition: Any, *, owner: str, reason: str) -> None:
         """Take something for granted; it stays in the ledger, with owner and reason, for ever."""
@@ -128,13 +159,13 @@ class Claim:
 
     def use(self, kernel: Callable[..., Any], *args: Any) -> Any:
         """Run a kernel of `core` on these values; the theorem is about it."""
-        if kernel.__name__ not in self.kernels:
+        if kernel not in self.stubs and kernel.__name__ not in self.kernels:
             self.kernels.append(kernel.__name__)
         return self._lift(kernel, args)
 
     def define(self, definition: Callable[..., Any], *args: Any) -> Any:
         """Evaluate a definition of `spec` on these values."""
-        return self._lift(definition, args)
+        return self._lift(definition, args, machine=False)
 
     def opaque(self, *functions: Callable[..., Any]) -> None:
         """Do not look into these functions: equal arguments give equal, otherwise unknown results.
@@ -143,7 +174,9 @@ class Claim:
         very arguments of the call, so a contract cannot ignore them.
         """
         for function in functions:
-            self.stubs[function] = Stub(self.prefix + function.__name__, function)
+            # two functions of one name, a kernel and its definition, must not share their results
+            name = f"{function.__module__.removeprefix('cratous.')}.{function.__name__}"
+            self.stubs[function] = Stub(self.prefix + name, function)
 
     def calls(self, function: Callable[..., Any]) -> list[tuple[Any, ...]]:
         """The arguments of every call of an opaque function so far."""
@@ -157,16 +190,24 @@ class Claim:
         equal = self.all_of(*[self.same(a, b) for a, b in zip(one, other, strict=True)])
         self.facts.append(z3.Implies(equal.term, _term(self.same(stub(*one), stub(*other)))))
 
-    def _lift(self, function: Callable[..., Any], args: tuple[Any, ...]) -> Any:
+    def _lift(
+        self, function: Callable[..., Any], args: tuple[Any, ...], machine: bool = True
+    ) -> Any:
+        """The function's value; `machine`: its integers are those of compiled code."""
         before = dict(OPAQUE)
         OPAQUE.update(self.stubs)
+        VISITS.append(self.visits)
         try:
             lifted = lift(function, *args)
         finally:
+            VISITS.pop()
             OPAQUE.clear()
             OPAQUE.update(before)
+        self.facts += lifted.roots
+        self.roots += lifted.roots
         for text, condition in lifted.obligations:
-            self._owe("defined", f"{function.__name__}: {text}", condition)
+            if machine or not text.endswith(RANGE):
+                self._owe("defined", f"{function.__name__}: {text}", condition)
         return lifted.value
 
     def _owe(self, kind: str, text: str, goal: z3.BoolRef) -> None:
@@ -178,6 +219,12 @@ class Claim:
         term = _term(goal)
         self._owe("goal", text, term)
         self.goals.append(term)
+        self.facts.append(term)
+
+    def step(self, goal: Any, text: str) -> None:
+        """Show something on the way: it may be used here, but a lemma's user does not see it."""
+        term = _term(goal)
+        self._owe("goal", text, term)
         self.facts.append(term)
 
     def cases(self, *conditions: Any, goal: Any, text: str = "the claim") -> None:
@@ -197,15 +244,28 @@ class Claim:
         """
         if self.load is None:
             raise RuntimeError("lemmas need a loader")
+        if name in self.circle:
+            way = " -> ".join([*self.circle[self.circle.index(name) :], name])
+            raise ValueError(f"the lemmas go in a circle: {way}")
         number = sum(other == name for other in self.lemmas)
         prefix = f"{self.prefix}{name}!{number}!"
-        inner = Claim(prefix=prefix, fixed=_flatten(values), load=self.load, stubs=self.stubs)
+        inner = Claim(
+            prefix=prefix,
+            circle=(*self.circle, name),
+            fixed=_flatten(values),
+            load=self.load,
+            stubs=self.stubs,
+        )
         self.load(name)(inner)
+        strangers = sorted(set(inner.fixed) - inner.names)
+        if strangers:
+            raise ValueError(f"the lemma {name} has no value called {', '.join(strangers)}")
         given = _term(when)
         self.lemmas.append(name)
         for premise in inner.premises:
             self._owe("lemma", f"premise of {name}", z3.Implies(given, premise))
         self.facts += [z3.Implies(given, goal) for goal in inner.goals]
+        self.facts += inner.roots
 
     def implies(self, if_: Any, then: Any) -> Any:
         """If the one then the other."""
@@ -253,20 +313,68 @@ class Claim:
 
         acc and model are arbitrary accumulators of kernel and definition. Base: `relation` holds
         at the start. Step: if it holds before any item it holds after it. Use: where it holds the
-        results are equal. The three together are the induction; nothing is left to a comment.
+        results are equal. The three together are the induction over the number of items, provided
+        that the accumulators are arbitrary: that they are distinct free values which no premise
+        restricts, and on which the item does not depend, is checked here. What is to be known of
+        them belongs into `relation`. A premise on the item is one on every item.
         """
+        if self.prefix:
+            return  # used as a lemma, a fold has no goals to offer
+        kernel_fold = REPLACED.get(kernel_fold, kernel_fold)
+        self._arbitrary((acc, model), (item, context))
         if kernel_fold.name not in self.kernels:
             self.kernels.append(kernel_fold.name)
         self._owe("base", "relation at the start", _term(relation(kernel_fold.start, model_start)))
         before = _term(relation(acc, model))
+        # both are run only where the relation holds, so what they owe is owed there
+        self.facts.append(before)
         after = self.use(kernel_fold.step, acc, *item, *context)
         model_after = self.define(model_step, model, *item, *context)
-        self._owe(
-            "step", "relation is kept", z3.Implies(before, _term(relation(after, model_after)))
-        )
+        self._owe("step", "relation is kept", _term(relation(after, model_after)))
         result = self.use(kernel_fold.finish, acc)
         wanted = self.define(model_finish, model)
-        self._owe("use", "results are equal", z3.Implies(before, _term(self.same(result, wanted))))
+        self._owe("use", "results are equal", _term(self.same(result, wanted)))
+        self.facts = [fact for fact in self.facts if not fact.eq(before)]
+
+    def _arbitrary(self, accumulators: Any, others: Any) -> None:
+        """Refuse accumulators over which no induction runs."""
+        own = [_known(leaf) for leaf in _leaves(accumulators)]
+        if any(not z3.is_const(t) or t.decl().kind() != z3.Z3_OP_UNINTERPRETED for t in own):
+            raise ValueError("a fold's accumulators are arbitrary values, not terms or literals")
+        names = {str(term) for term in own}
+        if len(names) < len(own):
+            raise ValueError("a fold's accumulators are distinct values")
+        for leaf in _leaves(others):
+            shared = sorted(names & _free(_known(leaf)))
+            if shared:
+                raise ValueError(f"an item or context depends on the accumulator {shared[0]}")
+        for premise in self.premises:
+            shared = sorted(names & _free(premise))
+            if shared:
+                raise ValueError(
+                    f"a premise restricts the accumulator {shared[0]}: no step keeps to it; "
+                    "put it into the relation (an unbounded integer is `c.whole`)"
+                )
+
+
+def _leaves(value: Any) -> list[Any]:
+    if isinstance(value, tuple):
+        return [leaf for part in value for leaf in _leaves(part)]
+    return [value]
+
+
+def _free(term: z3.ExprRef) -> set[str]:
+    """The names of the values in a term."""
+    seen, names, todo = set(), set(), [term]
+    while todo:
+        part = todo.pop()
+        if part.get_id() in seen:
+            continue
+        seen.add(part.get_id())
+        if z3.is_const(part) and part.decl().kind() == z3.Z3_OP_UNINTERPRETED:
+            names.add(str(part))
+        todo += part.children()
+    return names
 
 
 def _flatten(values: dict[str, Any]) -> dict[str, Any]:

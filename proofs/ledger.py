@@ -1,54 +1,211 @@
-"""Proves all theorems and writes what came of it into `core/ledger.json`.
+"""Proves all theorems and writes what came of it into the ledger.
 
 The file holds facts only (no times, no machine): it is the same on every machine that proves the
-same code with the same solver, so CI can compare it byte by byte.
+same code with the same solver, so CI can compare it byte by byte. Theorems are proved on all
+cores, each in a process forked from the same state, so that the result does not depend on how
+they are spread.
 """
 
 from __future__ import annotations
 
 import json
+import multiprocessing
+import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any
 
 from cratous.core import ledger as gate
-from cratous.core.kernel import REGISTRY
+from cratous.core.kernel import REGISTRY, Entry, Fold
+from cratous.core.ledger import PRODUCT, Home
+from cratous.core.sources import altered, position, reached
 from cratous.proofs import prover
+from cratous.proofs.cache import Cache
 from cratous.proofs.subset import Finding, lint_all
 
 
 @dataclass(frozen=True)
 class Inventory:
-    """What a run of the prover found: theorems, lint findings, kernels without a theorem."""
+    """What a run of the prover found: theorems, lint findings, kernels without a theorem.
+
+    problems: whatever else forbids a ledger, each with its place.
+    """
 
     theorems: tuple[prover.Theorem, ...]
     findings: tuple[Finding, ...]
     bare: tuple[str, ...]
+    problems: tuple[str, ...] = ()
 
     @property
     def holds(self) -> bool:
         """True iff everything is proved and nothing is missing."""
-        return all(t.proved for t in self.theorems) and not self.findings and not self.bare
+        whole = not (self.findings or self.bare or self.problems)
+        return whole and all(t.proved for t in self.theorems)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a theorem is: obligations done, of how many; at the end the theorem itself."""
+
+    name: str
+    done: int
+    of: int
+    theorem: prover.Theorem | None = None
+
+
+Listener = Callable[[Progress], None]
+
+
+def jobs_default() -> int:
+    """One worker for each core that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _work(name: str, folder: Path, cache: Cache, out: Connection) -> None:
+    try:
+        theorem = prover.prove_file(
+            name,
+            folder=folder,
+            cache=cache,
+            tell=lambda done, of: out.send(Progress(name, done, of)),
+        )
+        out.send(Progress(name, 1, 1, theorem))
+    except Exception as error:
+        out.send(error)
+    finally:
+        out.close()
+
+
+def prove_theorems(
+    names: Iterable[str],
+    *,
+    folder: Path = prover.FOLDER,
+    jobs: int | None = None,
+    cache: Cache | None = None,
+    tell: Listener | None = None,
+) -> list[prover.Theorem]:
+    """Prove these theorems on several cores; the result is in the order of the names.
+
+    Raises whatever a theorem file raises, for the first such file in that order.
+    """
+    wanted = list(names)
+    store = cache or Cache(None)
+    fork = multiprocessing.get_context("fork")
+    results: dict[str, prover.Theorem | Exception] = {}
+    running: dict[Connection, tuple[str, Any]] = {}
+    queue = list(reversed(wanted))
+    while queue or running:
+        while queue and len(running) < (jobs or jobs_default()):
+            name = queue.pop()
+            here, there = fork.Pipe(duplex=False)
+            process = fork.Process(target=_work, args=(name, folder, store, there), daemon=True)
+            process.start()
+            there.close()
+            running[here] = (name, process)
+        for ready in wait(list(running)):
+            assert isinstance(ready, Connection)
+            name, process = running[ready]
+            try:
+                message = ready.recv()
+            except EOFError:
+                process.join()
+                message = RuntimeError(
+                    f"the prover of {name} ended without an answer (exit code {process.exitcode})"
+                )
+            if isinstance(message, Progress):
+                if message.theorem is not None:
+                    results[name] = message.theorem
+                if tell is not None:
+                    tell(message)
+                if message.theorem is None:
+                    continue
+            else:
+                results[name] = message
+            process.join()
+            ready.close()
+            del running[ready]
+    proved = []
+    for name in wanted:
+        result = results[name]
+        if isinstance(result, Exception):
+            raise result
+        proved.append(result)
+    return proved
 
 
 def prove_all(
-    names: Iterable[str], tell: Callable[[prover.Theorem], None] | None = None
+    names: Iterable[str],
+    tell: Listener | None = None,
+    *,
+    home: Home = PRODUCT,
+    jobs: int | None = None,
+    cache: Cache | None = None,
 ) -> Inventory:
-    """Prove these theorems, and look for kernels that no theorem names."""
-    gate.load_all()
-    theorems = []
-    for name in names:
-        theorem = prover.prove_file(name)
-        theorems.append(theorem)
-        if tell is not None:
-            tell(theorem)
+    """Prove these theorems, and look for whatever the ledger could not vouch for."""
+    entries = gate.load_all(home)
+    folder = prover.home_folder(home)
+    theorems = prove_theorems(names, folder=folder, jobs=jobs, cache=cache, tell=tell)
     named = {kernel for theorem in theorems for kernel in theorem.kernels}
-    strangers = sorted(kernel for kernel in named if kernel not in REGISTRY)
-    if strangers:
-        raise ValueError(f"theorems name what is not registered: {', '.join(strangers)}")
-    bare = [n for n, e in sorted(REGISTRY.items()) if e.kind != "driver" and n not in named]
-    return Inventory(tuple(theorems), tuple(lint_all()), tuple(bare))
+    bare = [n for n, e in entries.items() if e.kind != "driver" and n not in named]
+    findings = [f for f in lint_all() if f.kernel in entries]
+    return Inventory(tuple(theorems), tuple(findings), tuple(bare), tuple(problems(entries, home)))
+
+
+def problems(entries: dict[str, Entry], home: Home = PRODUCT) -> list[str]:
+    """Kernels and drivers that no proof could be bound to, each with its place and the reason."""
+    found = []
+    calls = {n: _called(e) | {n} for n, e in entries.items() if e.kind == "driver"}
+    for name, entry in entries.items():
+        where = f"{position(entry.function)}: {name}"
+        if wrong := altered(entry.function):
+            found.append(f"{where}: the code that runs is not its file's: {', '.join(wrong)}")
+        if entry.kind == "driver":
+            if not entry.uses:
+                found.append(f"{where}: no kernel re-checks this driver's output (checked_by)")
+            for checker in entry.uses:
+                if checker not in REGISTRY or REGISTRY[checker].kind == "driver":
+                    found.append(f"{where}: its checker {checker!r} is no kernel or fold")
+                elif not any({name, checker} <= names for names in calls.values()):
+                    found.append(
+                        f"{where}: nothing calls its checker {checker!r} on its output: neither "
+                        "itself nor a driver that uses it"
+                    )
+        elif not home.definition(entry.implements).is_file():
+            found.append(
+                f"{where}: implements {entry.implements!r}, but there is no "
+                f"spec/{home.definition(entry.implements).name}"
+            )
+    return found
+
+
+def dead_paths(theorems: Iterable[prover.Theorem]) -> list[str]:
+    """Paths of kernels that no theorem's premises let anything reach: dead code, or a hole."""
+    reached: dict[str, list[tuple[bool, ...]]] = {}
+    for theorem in theorems:
+        for name, seen in theorem.paths:
+            reached.setdefault(name, []).append(seen)
+    found = []
+    for name, views in sorted(reached.items()):
+        most = max(len(view) for view in views)
+        whole = [view for view in views if len(view) == most]
+        for number, possible in enumerate(zip(*whole, strict=True), 1):
+            if not any(possible):
+                found.append(f"{name}: no premises let anything reach path {number} of it")
+    return found
+
+
+def _called(entry: Entry) -> set[str]:
+    """Names of the kernels, folds and drivers that a driver calls, directly or not."""
+    by_function = {e.function: n for n, e in REGISTRY.items() if not isinstance(e.function, Fold)}
+    found = set()
+    for name, value in reached(entry.function).items():
+        if name.startswith("fold "):
+            found.add(name.removeprefix("fold "))
+        elif callable(value) and value in by_function:
+            found.add(by_function[value])
+    return found
 
 
 def _theorem_record(theorem: prover.Theorem) -> dict[str, Any]:
@@ -63,36 +220,64 @@ def _theorem_record(theorem: prover.Theorem) -> dict[str, Any]:
     }
 
 
-def records(inventory: Inventory) -> dict[str, Any]:
+def records(inventory: Inventory, home: Home = PRODUCT) -> dict[str, Any]:
     """The ledger as data."""
     theorems = {t.name: _theorem_record(t) for t in inventory.theorems}
+    entries = gate.load_all(home)
+    proved = {
+        kernel: all(r["status"] == "proved" for r in theorems.values() if kernel in r["kernels"])
+        for record in theorems.values()
+        for kernel in record["kernels"]
+    }
     kernels: dict[str, Any] = {}
-    for name, entry in gate.load_all().items():
+    for name, entry in entries.items():
         own = sorted(t for t, record in theorems.items() if name in record["kernels"])
         checkers = [u for u in entry.uses if entry.kind == "driver"]
-        good = bool(own) and all(theorems[t]["status"] == "proved" for t in own)
+        good = proved.get(name, False)
         if entry.kind == "driver":
-            good = bool(checkers) and all(u in REGISTRY for u in checkers)
+            good = bool(checkers) and all(proved.get(u, False) for u in checkers)
         kernels[name] = {
             "kind": entry.kind,
             "implements": entry.implements,
             "checked_by": checkers,
             "theorems": own,
             "status": "proved" if good else "not proved",
-            "key": gate.key_parts(entry, own, theorems),
+            "key": gate.key_parts(entry, own, theorems, home),
         }
+    for record in theorems.values():
+        for lemma in record["lemmas"]:
+            if lemma not in theorems and gate.theorem_file(lemma, home) is None:
+                record["status"] = "not proved"
     data = {"solver": gate.solver_version(), "kernels": kernels, "theorems": theorems}
     return {**data, "seal": gate.seal(data)}
 
 
-def text(inventory: Inventory) -> str:
+def changed_theorems(home: Home = PRODUCT) -> list[str]:
+    """Theorems that are new, or about a kernel whose key differs from the ledger's."""
+    data = gate.read(home.ledger)
+    entries = gate.load_all(home)
+    stale = set()
+    for name, entry in entries.items():
+        record = data["kernels"].get(name)
+        now = gate.key_parts(entry, record["theorems"], data["theorems"], home) if record else None
+        if record is None or record["status"] != "proved" or now != record["key"]:
+            stale.add(name)
+    found = []
+    for name in prover.theorem_files(prover.home_folder(home)):
+        record = data["theorems"].get(name)
+        if record is None or record["status"] != "proved" or stale & set(record["kernels"]):
+            found.append(name)
+    return found
+
+
+def text(inventory: Inventory, home: Home = PRODUCT) -> str:
     """The ledger as it is written."""
-    return json.dumps(records(inventory), indent=1, sort_keys=True) + "\n"
+    return json.dumps(records(inventory, home), indent=1, sort_keys=True) + "\n"
 
 
-def write(inventory: Inventory, path: Path = gate.LEDGER) -> bool:
+def write(inventory: Inventory, path: Path = gate.LEDGER, home: Home = PRODUCT) -> bool:
     """Write the ledger; True iff it differs from what was there."""
-    new = text(inventory)
+    new = text(inventory, home)
     old = path.read_text(encoding="utf-8") if path.is_file() else ""
     if new == old:
         return False

@@ -2,14 +2,17 @@
 
 A claim is proved if its premises are satisfiable and z3 finds the negation of every obligation
 unsatisfiable, within a budget of solver resources (rlimit, never wall time). `unknown` is not
-proved. Each obligation can be written out as SMT-LIB for solvers that stand alone.
+proved. Every question is put to a solver in a context of its own, so the answer and the effort
+depend on the question alone, not on what was asked before or on how the work is spread. Each
+obligation can be written out as SMT-LIB for solvers that stand alone.
 """
 
 from __future__ import annotations
 
 import ast
-import importlib.util
 import sys
+import time
+import types
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,26 +20,56 @@ from typing import Any
 
 import z3
 
+from cratous.core.kernel import REGISTRY
+from cratous.core.ledger import PRODUCT, Home
+from cratous.core.sources import place
+from cratous.proofs.cache import Answer, Cache
 from cratous.proofs.claim import Claim, Obligation
+from cratous.proofs.counterexample import Model, Watched, story, telling
+from cratous.proofs.lift import LiftError
+from cratous.proofs.merkle import Hasher
+from cratous.proofs.smtlib import logic_of, question, smt2, sorts
+from cratous.spec.errors import BadInput
 
 RLIMIT = 60_000_000
+FACTS_RLIMIT = 3_000_000
+PATH_RLIMIT = 1_000_000
 _KEY = object()
+_NO_CACHE = Cache(None)
+
+
+@dataclass(frozen=True)
+class Owed:
+    """What was owed: its kind (goal, defined, base, step, use, lemma) and its text."""
+
+    kind: str
+    text: str
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What the solver said of one obligation: proved, refuted, unknown; rlimit spent."""
+    """What the solver said of one obligation: proved, refuted, unknown; the effort it took.
 
-    obligation: Obligation
+    key: structural hash of the obligation; counterexample: the values of a refutation by name;
+    story: the same in the user's terms; seconds: CPU, not in the ledger.
+    """
+
+    obligation: Owed
     status: str
     rlimit: int
     logic: str
     counterexample: tuple[tuple[str, str], ...] = ()
+    key: str = ""
+    story: tuple[str, ...] = ()
+    seconds: float = 0.0
 
 
 @dataclass(frozen=True)
 class Theorem:
-    """A claim with its outcomes. Only `prove` can make one."""
+    """A claim with its outcomes. Only `prove` can make one.
+
+    paths: of every kernel that it is about, which paths some values reach under the premises.
+    """
 
     name: str
     sentence: str
@@ -46,6 +79,7 @@ class Theorem:
     outcomes: tuple[Outcome, ...]
     assumptions: tuple[tuple[str, str, str], ...]
     _key: Any = None
+    paths: tuple[tuple[str, tuple[bool, ...]], ...] = ()
 
     def __post_init__(self) -> None:
         if self._key is not _KEY:
@@ -61,45 +95,42 @@ class Theorem:
         """Solver effort over all obligations."""
         return sum(o.rlimit for o in self.outcomes)
 
-
-def _terms_have(kind: Callable[[Any], bool], terms: list[z3.ExprRef]) -> bool:
-    seen: set[int] = set()
-    todo = list(terms)
-    while todo:
-        term = todo.pop()
-        if term.get_id() in seen:
-            continue
-        seen.add(term.get_id())
-        if kind(term):
-            return True
-        todo += term.children()
-    return False
+    @property
+    def seconds(self) -> float:
+        """CPU seconds of the solver over all obligations, when they were last really solved."""
+        return sum(o.seconds for o in self.outcomes)
 
 
-def _solvers(terms: list[z3.ExprRef]) -> list[tuple[str, z3.Solver]]:
+def _solvers(terms: list[z3.ExprRef], context: z3.Context) -> list[tuple[str, z3.Solver]]:
     """The solvers worth asking for these terms, most promising first."""
-    ints = _terms_have(lambda t: bool(z3.is_int(t)), terms)
-    bits = _terms_have(lambda t: bool(z3.is_bv(t)), terms)
-    reals = _terms_have(lambda t: bool(z3.is_real(t)), terms)
-    if reals and not ints and not bits:
-        return [("QF_NRA", z3.SolverFor("QF_NRA")), ("ALL", z3.Solver())]
-    return [("ALL", z3.Solver())]
+    if sorts(terms) & {"Real", "Int", "BitVec", "quantifier", "function"} == {"Real"}:
+        return [("QF_NRA", _maker("QF_NRA", context)), ("ALL", _maker("ALL", context))]
+    return [("ALL", _maker("ALL", context))]
 
 
-def _ask(given: list[z3.BoolRef], rlimit: int) -> tuple[str, int, str, z3.ModelRef | None]:
-    """sat, unsat or unknown, the effort, the logic that answered, and a model if sat."""
-    spent, answer, logic, model = 0, "unknown", "ALL", None
-    for name, solver in _solvers(list(given)):
+def _maker(logic: str, context: z3.Context) -> z3.Solver:
+    return z3.Solver(ctx=context) if logic == "ALL" else z3.SolverFor(logic, ctx=context)
+
+
+def _ask(given: list[z3.BoolRef], rlimit: int) -> tuple[Answer, z3.ModelRef | None, z3.Context]:
+    """The answer of the first solver that decides, and a model if it is sat."""
+    context = z3.Context()
+    # translated in order into an empty context, terms get the same numbers wherever this runs
+    terms = [term.translate(context) for term in given]
+    begun = time.process_time()
+    spent, result, logic, model = 0, "unknown", "ALL", None
+    for name, solver in _solvers(terms, context):
         solver.set("rlimit", rlimit)
-        solver.add(*given)
+        solver.add(*terms)
         before = _rlimit_count(solver)
-        result = solver.check()
+        said = solver.check()
         spent += max(0, _rlimit_count(solver) - before)
-        answer, logic = str(result), name
-        if answer != "unknown":
-            model = solver.model() if answer == "sat" else None
+        result, logic = str(said), name
+        if result != "unknown":
+            model = solver.model() if result == "sat" else None
             break
-    return answer, spent, logic, model
+    answer = Answer(result, spent, round(time.process_time() - begun, 3), logic)
+    return answer, model, context
 
 
 def _rlimit_count(solver: z3.Solver) -> int:
@@ -110,48 +141,122 @@ def _rlimit_count(solver: z3.Solver) -> int:
     return 0
 
 
-def _decide(obligation: Obligation, rlimit: int) -> Outcome:
-    question = [*obligation.given, z3.Not(obligation.goal)]
-    answer, spent, logic, model = _ask(question, rlimit)
-    status = {"unsat": "proved", "sat": "refuted"}.get(answer, "unknown")
+def _decide(
+    claim: Claim, obligation: Obligation, rlimit: int, cache: Cache, hasher: Hasher
+) -> Outcome:
+    asked = question(obligation)
+    key = hasher.key("unsat?", asked)
+    answer = cache.get(key, rlimit)
     example: tuple[tuple[str, str], ...] = ()
-    if model is not None:
-        values = [(str(d.name()), str(model[d])) for d in model.decls() if d.arity() == 0]
-        example = tuple(sorted(values))
-    return Outcome(obligation, status, spent, logic, example)
+    lines: list[str] = []
+    if answer is None or answer.result == "sat":
+        answer, found, context = _ask(asked, rlimit)
+        if found is None:
+            cache.put(key, rlimit, answer)
+        else:
+            terms = [term.translate(context) for term in asked]
+            first = _solvers(terms, context)[0][0]
+            found = telling(terms, found, lambda: _maker(first, context))
+            model = Model(found, context)
+            values = [(str(d.name()), str(found[d])) for d in found.decls() if d.arity() == 0]
+            example = tuple(sorted(values))
+            lines = story(claim, model)
+    status = {"unsat": "proved", "sat": "refuted"}.get(answer.result, "unknown")
+    owed = Owed(obligation.kind, obligation.text)
+    return Outcome(
+        owed, status, answer.rlimit, answer.logic, example, key, tuple(lines), answer.seconds
+    )
 
 
-def prove(name: str, claim: Claim, sentence: str, *, rlimit: int = RLIMIT) -> Theorem:
-    """Decide a stated claim; the returned theorem says what was proved and what was not."""
+def _premises(claim: Claim, rlimit: int, cache: Cache, hasher: Hasher) -> str:
+    """Whether some values satisfy the premises, and with them all that is taken as known.
+
+    A contradiction among premises, assumptions and what lemmas say would prove anything. Where
+    the solver cannot judge all together, the premises alone must be satisfiable.
+    """
+    for terms, budget in (
+        ([*claim.premises, *claim.facts], min(rlimit, FACTS_RLIMIT)),
+        (list(claim.premises), rlimit),
+    ):
+        result = _satisfiable(terms, budget, cache, hasher)
+        if result != "unknown":
+            break
+    return {"sat": "satisfiable", "unsat": "contradictory"}.get(result, "unknown")
+
+
+def prove(
+    name: str,
+    claim: Claim,
+    sentence: str,
+    *,
+    rlimit: int = RLIMIT,
+    cache: Cache = _NO_CACHE,
+    tell: Callable[[int, int], None] | None = None,
+) -> Theorem:
+    """Decide a stated claim; the returned theorem says what was proved and what was not.
+
+    tell: called with (done, all) after each obligation. Raises ValueError for a claim that names
+    no kernel or shows nothing.
+    """
     if not claim.kernels:
         raise ValueError(f"theorem {name}: it names no kernel (state it with c.use)")
     if not claim.obligations:
         raise ValueError(f"theorem {name}: it shows nothing (state it with c.show)")
-    answer, *_ = _ask(list(claim.premises), rlimit)
-    premises = {"sat": "satisfiable", "unsat": "contradictory"}.get(answer, "unknown")
-    outcomes = tuple(_decide(obligation, rlimit) for obligation in claim.obligations)
+    hasher = Hasher()
+    premises = _premises(claim, rlimit, cache, hasher)
+    outcomes = []
+    for obligation in claim.obligations:
+        outcomes.append(_decide(claim, obligation, rlimit, cache, hasher))
+        if tell is not None:
+            tell(len(outcomes), len(claim.obligations))
     return Theorem(
         name,
         sentence,
         tuple(claim.kernels),
         tuple(claim.lemmas),
         premises,
-        outcomes,
+        tuple(outcomes),
         tuple(claim.assumptions),
         _KEY,
+        _reached_paths(claim, min(rlimit, PATH_RLIMIT), cache, hasher),
     )
 
 
-def smt2(obligation: Obligation, title: str) -> str:
-    """The obligation as SMT-LIB 2: `unsat` means proved."""
-    solver = z3.Solver()
-    solver.add(*obligation.given, z3.Not(obligation.goal))
-    body = str(solver.to_smt2())
-    return f"; {title}\n; {obligation.kind}: {obligation.text}\n; expected: unsat\n{body}"
+def _reached_paths(
+    claim: Claim, rlimit: int, cache: Cache, hasher: Hasher
+) -> tuple[tuple[str, tuple[bool, ...]], ...]:
+    """For each kernel that is looked into: is each of its paths possible under the premises?
+
+    A path that the solver cannot judge counts as possible: only a proof makes it dead.
+    """
+    found: dict[str, list[bool]] = {}
+    for visit in claim.visits:
+        name, conditions = visit.function.__name__, visit.lifted.branches
+        entry = REGISTRY.get(name)
+        if visit.context or entry is None or entry.function is not visit.function:
+            continue
+        # arguments may be literals: the uses with the most paths are the kernel's
+        if len(conditions) > len(found.get(name, [])):
+            found[name] = [False] * len(conditions)
+        seen = found[name]
+        for number, condition in enumerate(conditions):
+            if len(conditions) == len(seen) and not seen[number]:
+                terms = [*claim.premises, *visit.lifted.roots, condition]
+                seen[number] = _satisfiable(terms, rlimit, cache, hasher) != "unsat"
+    return tuple((name, tuple(seen)) for name, seen in sorted(found.items()) if len(seen) > 1)
+
+
+def _satisfiable(terms: list[z3.BoolRef], rlimit: int, cache: Cache, hasher: Hasher) -> str:
+    key = hasher.key("sat?", terms)
+    answer = cache.get(key, rlimit)
+    if answer is None:
+        answer, *_ = _ask(terms, rlimit)
+        cache.put(key, rlimit, answer)
+    return answer.result
 
 
 # -- theorem files ----------------------------------------------------------------------
-FOLDER = Path(__file__).resolve().parent / "theorems"
+FOLDER = PRODUCT.theorems
 
 
 def theorem_files(folder: Path = FOLDER) -> dict[str, Path]:
@@ -159,29 +264,104 @@ def theorem_files(folder: Path = FOLDER) -> dict[str, Path]:
     return {p.stem: p for p in sorted(folder.glob("*.py")) if not p.stem.startswith("_")}
 
 
+def _find(name: str, folder: Path) -> Path:
+    """The file of a theorem: in this folder, else in the product's. One name, one theorem."""
+    found = [files[name] for files in map(theorem_files, {folder, FOLDER}) if name in files]
+    if not found:
+        raise BadInput(
+            f"there is no theorem called {name!r}",
+            where=place(folder),
+            expected="the name of a file of this folder, without .py",
+        )
+    if len(found) > 1:
+        places = " and ".join(sorted(place(path) for path in found))
+        raise BadInput(f"two theorems are called {name!r}", where=places, expected="one id, one")
+    return found[0]
+
+
 def load_claim(name: str, folder: Path = FOLDER) -> tuple[Callable[[Claim], None], str]:
     """The function `claim` of a theorem file, and its sentence."""
-    path = theorem_files(folder).get(name)
-    if path is None:
-        raise ValueError(f"there is no theorem called {name!r} in {folder.name}/")
+    path = _find(name, folder)
+    text = path.read_text(encoding="utf-8")
     module_name = f"cratous.proofs.theorems.{name}"
     module = sys.modules.get(module_name)
     if module is None or getattr(module, "__file__", None) != str(path):
-        spec = importlib.util.spec_from_file_location(module_name, path)
-        if spec is None or spec.loader is None:
-            raise ValueError(f"theorem file {path.name} cannot be read")
-        module = importlib.util.module_from_spec(spec)
+        module = types.ModuleType(module_name)
+        module.__file__ = str(path)
+        try:
+            # from the text, never from byte code: what is proved is what is written
+            exec(compile(text, str(path), "exec", dont_inherit=True), module.__dict__)
+        except ImportError as error:
+            raise BadInput(
+                f"the theorem imports what is not there: {error}", where=place(path)
+            ) from error
+        except SyntaxError as error:
+            line = f"{place(path)}:{error.lineno}"
+            raise BadInput(f"the theorem is no Python: {error.msg}", where=line) from error
         sys.modules[module_name] = module
-        spec.loader.exec_module(module)
-    sentence = " ".join((ast.get_docstring(ast.parse(path.read_text())) or "").split())
+    sentence = " ".join((ast.get_docstring(ast.parse(text)) or "").split())
     if not sentence:
-        raise ValueError(f"theorem file {path.name} has no docstring: it is the sentence")
+        raise BadInput(
+            "the theorem has no docstring", where=place(path), expected="the sentence it proves"
+        )
+    if not callable(getattr(module, "claim", None)):
+        raise BadInput("the theorem states nothing", where=place(path), expected="def claim(c)")
     return module.claim, sentence
 
 
-def prove_file(name: str, *, folder: Path = FOLDER, rlimit: int = RLIMIT) -> Theorem:
-    """State and prove the theorem of one file."""
+def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
+    """The claim of a theorem file, stated, and its sentence; the kernels must be registered."""
     statement, sentence = load_claim(name, folder)
-    claim = Claim(load=lambda other: load_claim(other, folder)[0])
-    statement(claim)
-    return prove(name, claim, sentence, rlimit=rlimit)
+    claim = Watched(load=lambda other: load_claim(other, folder)[0])
+    where = place(_find(name, folder))
+    try:
+        statement(claim)
+    except (ValueError, TypeError, LiftError) as error:
+        raise BadInput(f"the theorem cannot be stated: {error}", where=where) from error
+    used: list[Any] = [run.function for run in claim.runs if run.role == "kernel"]
+    for function in [*used, *claim.folds]:
+        entry = REGISTRY.get(function.__name__)
+        if entry is None or entry.function is not function:
+            raise BadInput(
+                f"the theorem is about {function.__name__!r}, which is not registered",
+                where=where,
+                expected="a function marked with @kernel, or a fold made with fold(...)",
+                got=f"{getattr(function, '__module__', 'a fold')}.{function.__name__}",
+            )
+    if not claim.kernels:
+        raise BadInput(
+            "the theorem names no kernel", where=where, expected="at least one c.use(kernel, ...)"
+        )
+    if not claim.obligations:
+        raise BadInput(
+            "the theorem shows nothing", where=where, expected="at least one c.show(...)"
+        )
+    return claim, sentence
+
+
+def prove_file(
+    name: str,
+    *,
+    folder: Path = FOLDER,
+    rlimit: int = RLIMIT,
+    cache: Cache = _NO_CACHE,
+    tell: Callable[[int, int], None] | None = None,
+) -> Theorem:
+    """State and prove the theorem of one file."""
+    claim, sentence = state(name, folder)
+    return prove(name, claim, sentence, rlimit=rlimit, cache=cache, tell=tell)
+
+
+def home_folder(home: Home) -> Path:
+    """Where the theorems of a home lie; raises BadInput if there is no such folder."""
+    if not home.theorems.is_dir():
+        raise BadInput(
+            "the package has no theorems", where=home.name, expected="a folder `theorems`"
+        )
+    return home.theorems
+
+
+__all__ = [
+    "FOLDER", "RLIMIT", "Outcome", "Owed", "Theorem", "home_folder", "load_claim", "logic_of",
+    "prove", "prove_file", "question", "smt2", "sorts", "state", "theorem_files",
+]  # fmt: skip

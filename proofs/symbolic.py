@@ -7,6 +7,7 @@ being explored which way to go; `proofs.lift` replays the kernel for every way.
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -15,18 +16,32 @@ from typing import Any
 import z3
 
 
+class LiftError(Exception):
+    """A function that cannot be lifted; says which and why."""
+
+
+RANGE = "integer stays in 64 bits"
+"""The side condition of machine integers; definitions, which are never compiled, do not owe it."""
+
+
 @dataclass
 class Path:
-    """One way through a function: decisions taken so far, their conditions, side conditions."""
+    """One way through a function: decisions taken so far, their conditions, side conditions.
+
+    roots: what is true of the square roots met on the way (see `root`).
+    """
 
     decide: Callable[[Path, z3.BoolRef], bool]
     script: list[bool] = field(default_factory=list)
     taken: list[bool] = field(default_factory=list)
     conditions: list[z3.BoolRef] = field(default_factory=list)
     obligations: list[tuple[str, z3.BoolRef]] = field(default_factory=list)
+    roots: list[z3.BoolRef] = field(default_factory=list)
 
     def require(self, text: str, condition: z3.BoolRef) -> None:
         """Record that `condition` must hold here for the function to be defined."""
+        if z3.is_true(z3.simplify(condition)):
+            return
         given = z3.And(*self.conditions) if self.conditions else z3.BoolVal(True)
         self.obligations.append((text, z3.Implies(given, condition)))
 
@@ -35,6 +50,7 @@ PATHS: list[Path] = []
 """The paths being explored, innermost last: a lifted call inside a lifted call has its own."""
 
 INT64 = 2**63
+BITS = 64
 
 
 def _raw(value: Any) -> z3.ExprRef | None:
@@ -86,12 +102,16 @@ class SymBool(Sym):
         return PATHS[-1].decide(PATHS[-1], self.term)
 
     def __eq__(self, other: object) -> Any:
-        raw = _raw(other)
-        return NotImplemented if raw is None else SymBool(self.term == raw)
+        return SymBool(self.term == self._truth(other))
 
     def __ne__(self, other: object) -> Any:
+        return SymBool(z3.Xor(self.term, self._truth(other)))
+
+    def _truth(self, other: object) -> z3.BoolRef:
         raw = _raw(other)
-        return NotImplemented if raw is None else SymBool(z3.Xor(self.term, raw))
+        if raw is None or not z3.is_bool(raw):
+            raise LiftError(f"a truth value is compared with {other!r}, which is none")
+        return raw
 
 
 def _pair(a: Any, b: Any) -> tuple[z3.ExprRef, z3.ExprRef] | None:
@@ -99,12 +119,28 @@ def _pair(a: Any, b: Any) -> tuple[z3.ExprRef, z3.ExprRef] | None:
     x, y = _raw(a), _raw(b)
     if x is None or y is None or z3.is_bool(x) or z3.is_bool(y):
         return None
+    if z3.is_bv(x) or z3.is_bv(y):
+        return None
     if z3.is_int(x) and z3.is_real(y):
-        # only integer literals may stand beside reals: the lint forbids mixed variables
-        x = z3.ToReal(x) if not z3.is_int_value(x) else z3.RealVal(x.as_long())
+        x = as_real(x)
     if z3.is_real(x) and z3.is_int(y):
-        y = z3.ToReal(y) if not z3.is_int_value(y) else z3.RealVal(y.as_long())
+        y = as_real(y)
     return x, y
+
+
+def as_real(term: z3.ExprRef) -> z3.ExprRef:
+    """An integer literal as a real; only literals may stand beside reals.
+
+    A 64-bit integer variable would be rounded on its way to a double, which no proof would see.
+    """
+    if not z3.is_int(term):
+        return term
+    if z3.is_app_of(term, z3.Z3_OP_ITE):
+        return z3.If(term.arg(0), as_real(term.arg(1)), as_real(term.arg(2)))
+    value = z3.simplify(term)
+    if not z3.is_int_value(value):
+        raise LiftError(f"the integer {term} is mixed with reals; only literals may be")
+    return z3.RealVal(value.as_long())
 
 
 def _compare(name: str) -> Callable[[Sym, Any], Any]:
@@ -119,7 +155,12 @@ def _compare(name: str) -> Callable[[Sym, Any], Any]:
 
     def method(self: Sym, other: Any) -> Any:
         pair = _pair(self, other)
-        return NotImplemented if pair is None else SymBool(relation[name](*pair))
+        if pair is not None:
+            return SymBool(relation[name](*pair))
+        if name in ("eq", "ne"):
+            # Python would fall back to identity and answer without a word
+            raise LiftError(f"a number is compared with {other!r}, which is none")
+        return NotImplemented
 
     return method
 
@@ -134,7 +175,7 @@ def _arith(operation: Callable[[Any, Any], z3.ExprRef], swap: bool) -> Callable[
 
 def _result(term: z3.ExprRef) -> Sym:
     if z3.is_int(term) and PATHS:
-        PATHS[-1].require("integer stays in 64 bits", z3.And(term >= -INT64, term < INT64))
+        PATHS[-1].require(RANGE, z3.And(term >= -INT64, term < INT64))
     return wrap(term)
 
 
@@ -195,11 +236,16 @@ class SymInt(SymNumber):
     def __mod__(self, other: Any) -> Any:
         """Only definitions in `spec` use this; the lint keeps it out of kernels."""
         pair = _pair(self, other)
-        return NotImplemented if pair is None else wrap(pair[0] % pair[1])
+        if pair is None:
+            return NotImplemented
+        if PATHS:
+            # Python and the solver agree on remainders by positive numbers alone
+            PATHS[-1].require("the modulus is positive", pair[1] > 0)
+        return wrap(pair[0] % pair[1])
 
 
 class SymMask(Sym):
-    """A 64-bit mask: bit operations and tests for equality."""
+    """A 64-bit mask: bit operations, shifts and tests for equality; as a number it is 0..2^64-1."""
 
     __slots__ = ()
     __hash__ = None
@@ -208,7 +254,9 @@ class SymMask(Sym):
         if isinstance(other, SymMask):
             return other.term
         if isinstance(other, int) and not isinstance(other, bool):
-            return z3.BitVecVal(other, 64)
+            if not 0 <= other < 2**BITS:
+                raise LiftError(f"{other} is no mask of {BITS} bits")
+            return z3.BitVecVal(other, BITS)
         return None
 
     def __and__(self, other: Any) -> Any:
@@ -219,15 +267,60 @@ class SymMask(Sym):
         raw = self._with(other)
         return NotImplemented if raw is None else SymMask(self.term | raw)
 
-    def __rshift__(self, other: Any) -> Any:
-        """Only definitions in `spec` shift, by a known amount; the lint keeps it out of kernels."""
+    def __xor__(self, other: Any) -> Any:
         raw = self._with(other)
+        return NotImplemented if raw is None else SymMask(self.term ^ raw)
+
+    __rand__, __ror__, __rxor__ = __and__, __or__, __xor__
+
+    def _shift(self, other: Any) -> z3.ExprRef | None:
+        """The amount of a shift; it is owed that it lies in 0..63."""
+        raw = self._with(other)
+        if raw is not None and PATHS:
+            PATHS[-1].require("the shift is by 0 to 63 places", z3.ULT(raw, BITS))
+        return raw
+
+    def __rshift__(self, other: Any) -> Any:
+        """Only definitions in `spec` shift; the lint keeps it out of kernels."""
+        raw = self._shift(other)
         return NotImplemented if raw is None else SymMask(z3.LShR(self.term, raw))
 
+    def __lshift__(self, other: Any) -> Any:
+        """As for `>>`; Python's result has no width, so it is owed that no bit is lost."""
+        raw = self._shift(other)
+        if raw is None:
+            return NotImplemented
+        moved = self.term << raw
+        if PATHS:
+            PATHS[-1].require("no bit is shifted out", z3.LShR(moved, raw) == self.term)
+        return SymMask(moved)
+
     def __eq__(self, other: object) -> Any:
-        raw = self._with(other)
-        return NotImplemented if raw is None else SymBool(self.term == raw)
+        return SymBool(self.term == self._operand(other))
 
     def __ne__(self, other: object) -> Any:
+        return SymBool(self.term != self._operand(other))
+
+    def _operand(self, other: object) -> z3.ExprRef:
         raw = self._with(other)
-        return NotImplemented if raw is None else SymBool(self.term != raw)
+        if raw is None:
+            raise LiftError(f"a mask is compared with {other!r}, which is none")
+        return raw
+
+
+def root(value: Any) -> Any:
+    """The square root of a real: a value r of which only r >= 0 and r * r == x are known.
+
+    Such an r exists for every x >= 0, and x >= 0 is owed. Equal arguments have one name.
+    """
+    term = _raw(value)
+    if term is None or not (z3.is_real(term) or z3.is_int_value(term)):
+        raise LiftError(f"sqrt of {value!r}, which is no real number")
+    term = as_real(term)
+    result = z3.Real("sqrt!" + hashlib.sha256(term.sexpr().encode()).hexdigest()[:16])
+    if not PATHS:
+        raise LiftError("sqrt of a symbolic value outside of a lifted function")
+    PATHS[-1].require("no root of a negative number", term >= 0)
+    known = z3.And(result >= 0, result * result == term)
+    PATHS[-1].roots.append(z3.Implies(term >= 0, known))
+    return SymReal(result)

@@ -87,4 +87,6 @@ class Projection:
 
 def compass(heading_rad: float) -> float:
     """A heading in degrees clockwise from north, in [0, 360)."""
-    return math.degrees(heading_rad) % 360.0
+    degrees = math.degrees(heading_rad) % 360.0
+    # the remainder of a heading just below zero rounds to 360 itself
+    return 0.0 if degrees == 360.0 else degrees

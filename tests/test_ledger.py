@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import os
 import shutil
@@ -27,20 +28,34 @@ except Exception as error:
 
 @pytest.fixture(scope="module")
 def product(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the product as it would be installed."""
+    """A copy of the product as it would be installed, with a ledger proved from it."""
     home = tmp_path_factory.mktemp("product")
     for part in PARTS:
         shutil.copytree(
             root / part, home / "cratous" / part, ignore=shutil.ignore_patterns("__pycache__")
         )
-    shutil.copy(root / "src" / "cratous" / "__init__.py", home / "cratous")
+    for name in ("__init__.py", "__main__.py"):
+        shutil.copy(root / "src" / "cratous" / name, home / "cratous")
+    done = _prove(home)
+    assert done.returncode == 0, done.stdout + done.stderr
     return home
 
 
-def _check(home: Path) -> subprocess.CompletedProcess[str]:
+def _prove(home: Path, *options: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "cratous", "prove", *options],
+        cwd=home,
+        env={**os.environ, "PYTHONPATH": str(home), "PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )
+
+
+def _check(home: Path, first: str = "") -> subprocess.CompletedProcess[str]:
     environment = {**os.environ, "PYTHONPATH": str(home), "PYTHONDONTWRITEBYTECODE": "1"}
     # from another folder and without the checkout's editable install on the path
-    code = f"import sys; sys.path.insert(0, {str(home)!r})\n" + CHECK
+    code = f"import sys; sys.path.insert(0, {str(home)!r})\n" + first + CHECK
     return subprocess.run(
         [sys.executable, "-c", code],
         cwd=home,
@@ -59,30 +74,51 @@ def test_the_committed_ledger_vouches_for_the_committed_code():
 
 
 ATTACKS = {
-    "a callee's source": (
-        "core/well_clear.py",
-        "if ss <= dd:",
-        "if ss < dd:",
-        "horizontal_violation: changed since the proof: its source",
-    ),
+    # what is edited: (file, old, new, what the gate says)
+    "a kernel": (
+        "core/well_clear.py", "if ss <= dd:", "if ss < dd:",
+        "horizontal_violation: changed since the proof: its source"),
+    "a callee": (
+        "core/well_clear.py", "return b < 0 and 0 - b", "return b <= 0 and 0 - b",
+        "violation_within: changed since the proof: its source"),
+    "a record's order of fields": (
+        "core/well_clear.py", "    first: float\n    last: float", "    last: float\n    first: float",
+        "vertical_window: changed since the proof: its source"),
     "a constant": ("core/gate.py", "return Gate(1, gate.epoch + 1, False)",
                    "return Gate(1, gate.epoch + 0, False)", "gate_takeover: changed"),
+    "a fold's start": ("core/timing.py", "start=True", "start=False",
+                       "schedule_holds: changed since the proof: its source"),
     "a definition": ("spec/well_clear.py", "return dot(s, v) < 0", "return dot(s, v) <= 0",
                      "its definition in spec"),
     "a theorem weakened to true": (
         "proofs/theorems/violation_is_symmetric.py", "c.show(c.same(ours, theirs))",
         "c.show(c.same(ours, ours))", "violation: changed since the proof: its theorems"),
+    "a lemma weakened": (
+        "proofs/theorems/horizontal_violation_scales.py", "c.premise(k > 0)",
+        "c.premise(k == 1)", "violation_within: changed since the proof: its theorems"),
     "a theorem's sentence": (
         "proofs/theorems/violation_is_symmetric.py", "Well clear is symmetric", "All is well",
         "its theorems"),
+    "a theorem removed": ("proofs/theorems/violation_is_symmetric.py", None, None,
+                          "violation: changed since the proof: its theorems"),
     "the prover": ("proofs/prover.py", '"unsat": "proved"', '"sat": "proved"', "the prover"),
-    "the compiler's flags": ("core/compiled.py", "fastmath=False", "fastmath=True",
-                             "the compiler flags"),
-    "a fold's start": ("core/timing.py", "start=True", "start=False",
-                       "schedule_holds: changed since the proof: its source"),
-    "a driver": ("core/legs.py", "if keep_out and apart:", "if apart:", "leg_ok: changed"),
+    "the lifter": ("proofs/symbolic.py", "lambda x, y: x <= y", "lambda x, y: x < y",
+                   "the prover"),
+    "numba's flags": ("core/compiled.py", "fastmath=False", "fastmath=True",
+                      "the compiler flags"),
+    "how kernels are compiled": ("core/compiled.py", "range(out.size)", "range(out.size - 1)",
+                                 "the readings"),
+    "the exact reading": ("core/exactly.py", "FEW = 64", "FEW = 65", "the readings"),
+    "a driver": ("core/legs.py", "box[2] <= a.y <= box[3]", "box[2] < a.y <= box[3]", "leg_ok: changed"),
+    "a driver's checker removed": (
+        "core/prediction.py", '@driver(checked_by=("violation_within",))',
+        '@driver(checked_by=())', "first_violation_s: changed since the proof: its source"),
+    "a kernel's mark removed": (
+        "core/well_clear.py", '@kernel(implements="well_clear.violation")\n', "",
+        "violation: it was proved but is no longer registered"),
     "the ledger file": ("core/ledger.json", '"status": "proved"', '"status": "Proved"',
                         "was edited"),
+    "the ledger file cut short": ("core/ledger.json", '"kernels"', '"kern', "cannot be read"),
 }  # fmt: skip
 
 
@@ -91,8 +127,11 @@ def test_attack_is_caught(name: str, product: Path) -> None:
     place, old, new, wanted = ATTACKS[name]
     file = product / "cratous" / place
     original = file.read_text()
-    assert old in original, f"{old!r} is not in {place}: this attack needs an update"
-    file.write_text(original.replace(old, new))
+    if old is None:
+        file.unlink()
+    else:
+        assert old in original, f"{old!r} is not in {place}: this attack needs an update"
+        file.write_text(original.replace(old, new))
     try:
         done = _check(product)
     finally:
@@ -100,6 +139,177 @@ def test_attack_is_caught(name: str, product: Path) -> None:
     assert done.returncode == 1, done.stdout + done.stderr
     assert "Refused" in done.stdout
     assert wanted in done.stdout
+
+
+def test_the_untouched_product_is_vouched_for(product: Path) -> None:
+    done = _check(product)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "NOT VOUCHED" not in done.stdout
+
+
+@pytest.mark.parametrize("name", ["z3-solver", "numba", "llvmlite", "numpy"])
+def test_another_version_of_a_tool_is_noticed(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = ledger._tools.__wrapped__()
+    real = ledger._version.__wrapped__
+    monkeypatch.setattr(ledger, "_version", lambda n: "9.9" if n == name else real(n))
+    after = ledger._tools.__wrapped__()
+    changed = {part for part in before if before[part] != after[part]}
+    assert changed == {"solver" if name == "z3-solver" else "flags"}
+
+
+# -- attacks that leave the source as it is ---------------------------------------------------
+def test_planted_byte_code_is_caught(product: Path) -> None:
+    """A .pyc with the source's date and size, but with another kernel in it."""
+    file = product / "cratous" / "core" / "well_clear.py"
+    text = file.read_text()
+    wrong = text.replace("if ss <= dd:", "if ss >= dd:")
+    assert len(wrong) == len(text)
+    code = importlib._bootstrap_external._code_to_timestamp_pyc(
+        compile(wrong, str(file), "exec"), int(file.stat().st_mtime), len(text.encode())
+    )
+    cached = Path(importlib.util.cache_from_source(str(file)))
+    cached.parent.mkdir(exist_ok=True)
+    cached.write_bytes(code)
+    try:
+        done = _check(product)
+    finally:
+        cached.unlink()
+    assert done.returncode == 1, done.stdout
+    assert "horizontal_violation: the code that runs is not its file's" in done.stdout
+
+
+def test_a_function_replaced_in_memory_is_caught(product: Path) -> None:
+    code = "import cratous.core.well_clear as w\n"
+    code += "exec(w.__file__ and 'def f(sz, vz, zthr_m, tcoa_s):\\n return False', vars(w))\n"
+    code += "w.vertical_violation.__code__ = w.f.__code__\n"
+    done = _check(product, code)
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert "  vertical_violation: " in done.stdout
+    assert "  violation: " in done.stdout  # it calls the replaced one
+
+
+PLANT = """
+import sys
+from pathlib import Path
+from cratous.core import compiled
+from cratous.core.polygon import straddles
+real = compiled.load
+seen = []
+compiled.load = lambda text: seen.append(text) or real(text)
+right = compiled.compiled(straddles)([1.0, 0.0], [1.0, 1.0]).tolist()
+folder = compiled.cache_folder() / ("kernels_" + compiled.digest([seen[-1]])[:32])
+print(folder, right)
+"""
+
+
+def test_machine_code_of_another_text_is_not_used(product: Path, tmp_path: Path) -> None:
+    """Code compiled from another text, planted under the folder name of the right one."""
+    environment = {**os.environ, "PYTHONPATH": str(product), "CRATOUS_CACHE": str(tmp_path)}
+
+    def run() -> tuple[Path, str]:
+        done = subprocess.run(
+            [sys.executable, "-c", PLANT],
+            cwd=product, env=environment, capture_output=True, text=True, timeout=300,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        folder, right = done.stdout.strip().split(" ", 1)
+        return Path(folder), right
+
+    folder, right = run()
+    assert right == "[False, True]"
+    (module,) = folder.glob("kernels_*.py")
+    text = module.read_text()
+    planted = text.replace("<=", "<")
+    assert planted != text
+    # the wrong text is compiled in place, so that its machine code lies where the right one would
+    for old in [*folder.glob("*.nb?"), *folder.glob("__pycache__/*")]:
+        old.unlink()
+    module.write_text(planted)
+    spec = importlib.util.spec_from_file_location(folder.name, module)
+    assert spec is not None
+    assert spec.loader is not None
+    wrong = importlib.util.module_from_spec(spec)
+    sys.modules[folder.name] = wrong
+    try:
+        spec.loader.exec_module(wrong)
+        import numpy as np
+
+        out = np.empty(2, dtype=np.bool_)
+        wrong._map(out, np.array([1.0, 0.0]), np.array([1.0, 1.0]))
+    finally:
+        del sys.modules[folder.name]
+    assert out.tolist() != [False, True]
+    assert list(folder.rglob("*.nbc")), "no machine code was planted"
+    again, right = run()
+    assert again == folder
+    assert right == "[False, True]"
+    assert module.read_text() == text
+
+
+RESEAL = """
+import json
+from cratous.core import ledger
+path = ledger.LEDGER
+data = json.loads(path.read_text())
+{edit}
+for name, entry in ledger.load_all().items():
+    record = data["kernels"][name]
+    record["key"] = ledger.key_parts(entry, record["theorems"], data["theorems"])
+data["seal"] = ledger.seal(data)
+path.write_text(json.dumps(data, indent=1, sort_keys=True) + chr(10))
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("edit", "place", "old", "new", "wanted"),
+    [
+        ("", "core/well_clear.py", "if ss <= dd:", "if ss < dd:", "NOT PROVED"),
+        (
+            'data["theorems"]["violation_is_symmetric"]["sentence"] = "All is well."',
+            "", "", "", "differs from these proofs",
+        ),
+        (
+            'del data["theorems"]["violation_is_symmetric"]\n'
+            'data["kernels"]["violation"]["theorems"].remove("violation_is_symmetric")',
+            "", "", "", "differs from these proofs",
+        ),
+    ],
+)  # fmt: skip
+def test_a_ledger_that_was_sealed_again_is_caught_by_proving(
+    edit: str, place: str, old: str, new: str, wanted: str, product: Path
+) -> None:
+    """The seal is no secret: only a new proof shows that such a ledger lies. CI makes one."""
+    ledger_file = product / "cratous" / "core" / "ledger.json"
+    before = ledger_file.read_text()
+    file = product / "cratous" / place if place else ledger_file
+    original = file.read_text()
+    if place:
+        assert old in original
+        file.write_text(original.replace(old, new))
+    try:
+        assert _check(product, RESEAL.format(edit=edit)).returncode == 0
+        done = _prove(product, "--check")
+    finally:
+        file.write_text(original)
+        ledger_file.write_text(before)
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert wanted in done.stdout + done.stderr
+
+
+@pytest.mark.slow
+def test_a_driver_that_no_longer_calls_its_checker_is_refused_by_the_prover(product: Path) -> None:
+    file = product / "cratous" / "core" / "prediction.py"
+    original = file.read_text()
+    changed = original.replace("violation_within(", "bool(")
+    assert changed != original
+    file.write_text(changed)
+    try:
+        done = _prove(product)
+    finally:
+        file.write_text(original)
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert "nothing calls its checker 'violation_within'" in done.stderr
 
 
 def test_comments_and_layout_change_nothing(product: Path) -> None:

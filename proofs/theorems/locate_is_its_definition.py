@@ -21,8 +21,7 @@ def model_step(count: Any, a: Any, b: Any, p: Any) -> Any:
 def claim(c: Claim) -> None:
     p, a, b = c.vector("p"), c.vector("a"), c.vector("b")
     acc = Seen(c.boolean("on"), c.boolean("odd"))
-    model = Count(c.boolean("model_on"), c.integer("crossings"))
-    c.premise(model.crossings >= 0)
+    model = Count(c.boolean("model_on"), c.whole("crossings"))
     c.opaque(on_segment, crosses_ray)
     c.lemma("crosses_ray_is_its_definition", p=p, a=a, b=b)
 

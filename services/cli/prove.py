@@ -5,6 +5,9 @@ from __future__ import annotations
 import fnmatch
 import json
 import sys
+import time
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -13,134 +16,320 @@ import click
 from cratous.spec.errors import BadInput
 
 
-def _theorem_data(theorem: Any) -> dict[str, Any]:
-    outcomes = [
-        {
-            "kind": outcome.obligation.kind,
-            "text": outcome.obligation.text,
-            "status": outcome.status,
-            "rlimit": outcome.rlimit,
-            "logic": outcome.logic,
-            "counterexample": dict(outcome.counterexample),
-        }
-        for outcome in theorem.outcomes
-    ]
-    return {
-        "name": theorem.name,
-        "sentence": theorem.sentence,
-        "proved": theorem.proved,
-        "kernels": sorted(theorem.kernels),
-        "lemmas": sorted(set(theorem.lemmas)),
-        "premises": theorem.premises,
-        "assumptions": [list(a) for a in theorem.assumptions],
-        "rlimit": theorem.rlimit,
-        "obligations": outcomes,
-    }
+class _Bar:
+    """A progress bar on a terminal; silent everywhere else."""
+
+    def __init__(self, title: str, total: int, shown: bool) -> None:
+        self._parts: dict[str, tuple[int, int]] = {}
+        self._total = total
+        self._last = 0.0
+        self._context: AbstractContextManager[Any] = nullcontext()
+        if shown:
+            from rich.console import Console
+            from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+            columns = (
+                TextColumn(title),
+                BarColumn(),
+                MofNCompleteColumn(),
+                TextColumn("{task.fields[at]}"),
+            )
+            # no refresh thread: workers are forked from here
+            self._bar = Progress(
+                *columns, console=Console(stderr=True), auto_refresh=False, transient=True
+            )
+            self._task = self._bar.add_task(title, total=total, at="")
+            self._context = self._bar
+        self._shown = shown
+
+    def __enter__(self) -> _Bar:
+        self._context.__enter__()
+        return self
+
+    def __exit__(self, *error: Any) -> None:
+        self._context.__exit__(*error)
+
+    def step(self, name: str, done: int, of: int) -> None:
+        """One item is so far; the total grows as items become known."""
+        if not self._shown:
+            return
+        self._parts[name] = (done, of)
+        known = sum(o for _, o in self._parts.values())
+        self._bar.update(
+            self._task,
+            completed=sum(d for d, _ in self._parts.values()),
+            total=max(known, self._total),
+            at=name,
+        )
+        if time.monotonic() - self._last > 0.1:
+            self._last = time.monotonic()
+            self._bar.refresh()
 
 
 def _show(theorem: Any, verbose: bool) -> None:
-    mark = "proved" if theorem.proved else "NOT PROVED"
-    click.echo(f"{mark:10s} {theorem.name} ({len(theorem.outcomes)} obligations)")
+    from cratous.proofs.formats import failure_text
+
+    mark = (
+        click.style("proved    ", fg="green")
+        if theorem.proved
+        else (click.style("NOT PROVED", fg="red"))
+    )
+    click.echo(f"{mark} {theorem.name} ({len(theorem.outcomes)} obligations)")
     if verbose:
         click.echo(f"           {theorem.sentence}")
-    if theorem.premises != "satisfiable":
-        click.echo(f"           its premises are {theorem.premises}")
-    for outcome in theorem.outcomes:
-        if outcome.status == "proved":
-            continue
-        where = f"{outcome.obligation.kind}: {outcome.obligation.text}"
-        click.echo(f"           {outcome.status}: {where}")
-        for name, value in outcome.counterexample:
-            if "!" not in name:
-                click.echo(f"             {name} = {value}")
+    for condition, owner, reason in theorem.assumptions:
+        text = f"           ASSUMED by {owner}: {' '.join(condition.split())} ({reason})"
+        click.secho(text, fg="red")
+    for line in failure_text(theorem).splitlines():
+        click.echo(f"           {line}")
 
 
-def _export(names: list[str], folder: Path) -> int:
+def _export(theorems: list[Any], folder: Path, theorem_folder: Path) -> int:
     """Write each obligation as SMT-LIB; returns how many files."""
-    from cratous.proofs import prover
-    from cratous.proofs.claim import Claim
+    from functools import partial
+
+    from cratous.proofs import forked, prover
+
+    def texts(name: str) -> list[str]:
+        claim, sentence = prover.state(name, theorem_folder)
+        return [prover.smt2(obligation, sentence) for obligation in claim.obligations]
 
     folder.mkdir(parents=True, exist_ok=True)
     written = 0
-    for name in names:
-        statement, sentence = prover.load_claim(name)
-        claim = Claim(load=lambda other: prover.load_claim(other)[0])
-        statement(claim)
-        for number, obligation in enumerate(claim.obligations, 1):
-            file = folder / f"{name}-{number:02d}.smt2"
-            file.write_text(prover.smt2(obligation, sentence), encoding="utf-8")
+    for theorem in theorems:
+        for number, text in enumerate(forked.call(partial(texts, theorem.name)), 1):
+            (folder / f"{theorem.name}-{number:02d}.smt2").write_text(text, encoding="utf-8")
             written += 1
     return written
 
 
+def _refuse(problems: list[str]) -> None:
+    """Structural faults end the run: no ledger could say anything of such code."""
+    for problem in problems:
+        click.echo(problem, err=True)
+    where, _, what = problems[0].partition(": ")
+    raise BadInput(
+        f"{what} ({len(problems)} such places)" if len(problems) > 1 else what,
+        where=where,
+        expected="every kernel proved and every driver re-checked; the ledger is not written",
+    )
+
+
+def _recheck(
+    theorems: list[Any], folder: Path, jobs: int, as_json: bool, keep: bool
+) -> dict[str, Any]:
+    from cratous.proofs import recheck
+
+    begun = time.monotonic()
+    bar = _Bar("cvc5", 1, not as_json and sys.stderr.isatty())
+    with bar:
+        found = recheck.recheck(
+            theorems, folder=folder, jobs=jobs, tell=lambda c, n, of: bar.step("cvc5", n, of)
+        )
+    if keep:
+        recheck.write(found, theorems)
+    names = found.theorems
+    counts = {v: found.count(v) for v in ("confirmed", "no answer", "contradicted")}
+    good = sum(check.verdict == recheck.CONFIRMED for check in found.checks)
+    if not as_json:
+        for check in found.checks:
+            if check.verdict != recheck.CONFIRMED:
+                click.echo(f"{check.verdict:12s} {check.theorem} {check.number}: {check.text}")
+        click.echo(
+            f"{found.solver}: {counts['confirmed']} of {len(names)} theorems confirmed, "
+            f"{counts['no answer']} no answer, {counts['contradicted']} contradicted; "
+            f"{good} of {len(found.checks)} obligations confirmed"
+        )
+    return {
+        "solver": found.solver,
+        "theorems": {name: found.verdict(name) for name in names},
+        **{key.replace(" ", "_"): value for key, value in counts.items()},
+        "obligations": len(found.checks),
+        "obligations_confirmed": good,
+        "not_confirmed": [
+            {"theorem": c.theorem, "obligation": c.text, "verdict": c.verdict, "key": c.key}
+            for c in found.checks
+            if c.verdict != recheck.CONFIRMED
+        ],
+        "seconds": round(time.monotonic() - begun, 1),
+    }
+
+
+def _mutate(names: list[str] | None, jobs: int, as_json: bool) -> dict[str, Any]:
+    from cratous.proofs import mutate
+
+    def tell(target: str, results: list[Any]) -> None:
+        if not as_json:
+            click.echo(f"mutated    {target} ({len(results)})", err=True)
+
+    report = mutate.run(("*",), tell, jobs, theorems=names)
+    listed = {v: report.of(v) for v in ("survived", "undecided")}
+    if not as_json:
+        for verdict, results in listed.items():
+            for result in results:
+                click.echo(f"{verdict:10s} {result.place}: {result.target}: {result.diff}")
+        click.echo(report.line)
+    return {
+        "mutants": len(report.results),
+        **{verdict: report.count(verdict) for verdict in mutate.VERDICTS},
+        "score": float(report.score),
+        "listed": [
+            {"verdict": v, "target": r.target, "place": r.place, "diff": r.diff, "note": r.note}
+            for v, results in listed.items()
+            for r in results
+        ],
+    }
+
+
 @click.command()
 @click.option("--only", metavar="GLOB", help="Only theorems whose name matches; writes no ledger.")
+@click.option("--changed", is_flag=True, help="Only what differs from the ledger; writes none.")
 @click.option("--check", is_flag=True, help="Do not write the ledger; fail if it would differ.")
+@click.option("--recheck", is_flag=True, help="Put every obligation to cvc5 as well.")
+@click.option("--mutate", is_flag=True, help="Also look for faults that no theorem would notice.")
+@click.option("--package", "package_name", metavar="NAME", help="A package with own kernels.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@click.option("--junit", type=click.Path(path_type=Path, dir_okay=False), help="Write JUnit XML.")
+@click.option("--sarif", type=click.Path(path_type=Path, dir_okay=False), help="Write SARIF.")
 @click.option(
     "--smt2",
     "smt2_folder",
     type=click.Path(path_type=Path, file_okay=False),
-    help="Also write every obligation as SMT-LIB 2 into this folder (unsat means proved).",
+    help="Write every obligation as SMT-LIB 2 into this folder (unsat means proved).",
 )
+@click.option("--jobs", type=click.IntRange(1), help="Processes; by default one for each core.")
 @click.option("-v", "--verbose", is_flag=True, help="Print each theorem's sentence.")
 def prove(
-    only: str | None, check: bool, as_json: bool, smt2_folder: Path | None, verbose: bool
+    only: str | None,
+    changed: bool,
+    check: bool,
+    recheck: bool,
+    mutate: bool,
+    package_name: str | None,
+    as_json: bool,
+    junit: Path | None,
+    sarif: Path | None,
+    smt2_folder: Path | None,
+    jobs: int | None,
+    verbose: bool,
 ) -> None:
-    """Prove every kernel against its definition and write core/ledger.json.
+    """Prove every kernel against its definition and write the ledger.
 
     Runs each kernel on symbolic values, states every theorem of proofs/theorems about exactly
-    that function, and asks z3. The ledger binds the proofs to the source: `cratous run` refuses a
-    kernel that has changed since.
+    that function, and asks z3. The ledger (core/ledger.json) binds the proofs to the source:
+    `cratous run` refuses a kernel that has changed since. What was proved before is known by its
+    structural hash from the cache ($CRATOUS_CACHE); CI proves from an empty one.
 
     Example: cratous prove --only 'well*' -v
 
-    Exit code: 0 everything proved, 1 something refuted or not decided, 2 bad input.
+    Exit code: 0 everything proved, 1 something refuted, not decided or contradicted, 2 bad input:
+    a theorem or kernel that no proof could be bound to.
     """
     from cratous.core import ledger as gate
-    from cratous.proofs import ledger, prover
+    from cratous.proofs import cache, decisions, formats, ledger, prover
 
-    names = [n for n in prover.theorem_files() if fnmatch.fnmatch(n, only or "*")]
-    if not names:
+    begun = time.monotonic()
+    if sum((only is not None, changed, check)) > 1:
+        raise BadInput("--only, --changed and --check exclude each other", item="cratous prove")
+    if package_name:
+        sys.path.insert(0, str(Path.cwd()))
+    home = gate.package(package_name or "cratous")
+    gate.load_all()
+    gate.load_all(home)
+    folder = prover.home_folder(home)
+    names = [n for n in prover.theorem_files(folder) if fnmatch.fnmatch(n, only or "*")]
+    if changed:
+        names = ledger.changed_theorems(home)
+    elif not names:
         raise BadInput("no theorem matches", item="--only", got=str(only), expected="a file name")
-    tell = None if as_json else (lambda theorem: _show(theorem, verbose))
-    try:
-        inventory = ledger.prove_all(names, tell)
-    except ValueError as error:
-        raise BadInput(str(error), where="proofs/theorems") from error
+    whole = only is None and not changed
+    workers = jobs or ledger.jobs_default()
+    store = cache.standard()
+    bar = _Bar("proving", len(names), not as_json and sys.stderr.isatty())
+    with bar:
+        inventory = ledger.prove_all(
+            names,
+            lambda progress: bar.step(progress.name, progress.done, progress.of),
+            home=home,
+            jobs=workers,
+            cache=store,
+        )
+    theorems = list(inventory.theorems)
+    if not as_json:
+        for theorem in theorems:
+            _show(theorem, verbose)
+    outputs: list[tuple[Path | None, Callable[[list[str]], str]]] = [
+        (junit, lambda found: formats.junit(theorems, found)),
+        (sarif, lambda found: formats.sarif(theorems, found, home)),
+    ]
+    structural = list(inventory.problems) if whole else []
+    if whole:
+        structural += [
+            f"{gate.place_of(name)}: {name}: no theorem is about this kernel"
+            for name in inventory.bare
+        ]
+    problems = [*structural, *(str(finding) for finding in inventory.findings)]
+    if whole and home.product:
+        problems += [str(finding) for finding in decisions.unexplained()]
+    data: dict[str, Any] = {}
+    if recheck:
+        keep = whole and home.product and not check
+        data["recheck"] = _recheck(theorems, folder, workers, as_json, keep)
+    if mutate:
+        data["mutation"] = _mutate(None if whole else names, workers, as_json)
     if smt2_folder is not None:
-        count = _export(names, smt2_folder)
+        count = _export(theorems, smt2_folder, folder)
         if not as_json:
             click.echo(f"{count} SMT-LIB files in {smt2_folder}")
-    proved = sum(t.proved for t in inventory.theorems)
-    problems = [str(finding) for finding in inventory.findings]
-    stale = False
-    if only is None:
-        problems += [f"{name}: no theorem is about this kernel" for name in inventory.bare]
+    proved = sum(t.proved for t in theorems)
+    if whole and not structural:
         if check:
-            stale = ledger.text(inventory) != gate.LEDGER.read_text(encoding="utf-8")
-            if stale:
-                problems.append("core/ledger.json differs from these proofs: run `cratous prove`")
+            old = home.ledger.read_text(encoding="utf-8") if home.ledger.is_file() else ""
+            if ledger.text(inventory, home) != old:
+                problems.append(
+                    f"{home.ledger.name} differs from these proofs: run `cratous prove`"
+                )
         else:
-            ledger.write(inventory)
+            ledger.write(inventory, home.ledger, home)
+    for path, make in outputs:
+        if path is not None:
+            formats.write(path, make(problems))
+    dead = ledger.dead_paths(theorems) if whole else []
+    second = data.get("recheck", {}).get("theorems", {})
+    assumed = sum(len(t.assumptions) for t in theorems)
     if as_json:
-        data = {
+        shown = {
             "proved": proved,
-            "theorems": [_theorem_data(t) for t in inventory.theorems],
+            "theorems": [formats.theorem_data(t, second.get(t.name)) for t in theorems],
             "problems": problems,
-            "assumptions": sum(len(t.assumptions) for t in inventory.theorems),
+            "dead_paths": dead,
+            "assumptions": assumed,
             "solver": gate.solver_version(),
+            "seconds": round(time.monotonic() - begun, 2),
+            **data,
         }
-        click.echo(json.dumps(data, indent=1))
+        click.echo(json.dumps(shown, indent=1))
     else:
-        obligations = sum(len(t.outcomes) for t in inventory.theorems)
-        kernels = len({k for t in inventory.theorems for k in t.kernels})
-        assumed = sum(len(t.assumptions) for t in inventory.theorems)
-        for problem in problems:
-            click.echo(problem, err=True)
+        for line in dead:
+            click.echo(line)
+        if not structural:
+            for problem in problems:
+                click.echo(problem, err=True)
+        kernels = len({k for t in theorems for k in t.kernels})
         click.echo(
-            f"{proved} of {len(inventory.theorems)} theorems proved about {kernels} kernels, "
-            f"{obligations} obligations, {assumed} assumptions, {gate.solver_version()}"
+            f"{proved} of {len(theorems)} theorems proved about {kernels} kernels, "
+            f"{sum(len(t.outcomes) for t in theorems)} obligations, ",
+            nl=False,
         )
-    if proved < len(inventory.theorems) or problems:
+        click.secho(f"{assumed} assumptions", fg="red" if assumed else None, nl=False)
+        click.echo(f", {gate.solver_version()}")
+        slow = [f"{t.name} {t.seconds:.1f} s" for t in theorems if t.seconds > 1]
+        if slow and verbose:
+            click.echo(f"more than 1 s of solver CPU: {', '.join(slow)}")
+        if not whole:
+            click.echo("a part only: the ledger is not written")
+    if structural:
+        _refuse(structural)
+    contradicted = bool(data.get("recheck", {}).get("contradicted"))
+    if proved < len(theorems) or problems or contradicted:
         sys.exit(1)

@@ -1,0 +1,266 @@
+"""The second solver: cvc5 on every obligation, as exported SMT-LIB text and nothing else.
+
+Each obligation is read by cvc5 under its exact logic and, if that gives no answer, under ALL, and
+for polynomials by cylindrical coverings alone, in a process of its own with 5 s of CPU each. A theorem is `confirmed` if cvc5 finds every obligation
+unsatisfiable, `contradicted` if it finds one satisfiable that z3 proved, else `no answer`. The
+verdicts are kept in `proofs/recheck.json` by the hash of the obligation, for the proof inventory.
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+import json
+import multiprocessing
+import os
+import resource
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import partial
+from multiprocessing.connection import Connection, wait
+from pathlib import Path
+from typing import Any
+
+from cratous.core.sources import ROOT
+from cratous.proofs import forked, prover
+from cratous.spec.errors import BadInput
+
+FILE = ROOT / "proofs" / "recheck.json"
+CPU_SECONDS = 5
+CONFIRMED, NO_ANSWER, CONTRADICTED = "confirmed", "no answer", "contradicted"
+
+
+@dataclass(frozen=True)
+class Check:
+    """What cvc5 said of one obligation: verdict, the logic that answered, CPU seconds."""
+
+    theorem: str
+    number: int
+    key: str
+    text: str
+    verdict: str
+    logic: str
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Recheck:
+    """All checks, and the solver that made them."""
+
+    solver: str
+    checks: tuple[Check, ...]
+
+    def verdict(self, theorem: str) -> str:
+        """confirmed, no answer or contradicted."""
+        verdicts = {check.verdict for check in self.checks if check.theorem == theorem}
+        if CONTRADICTED in verdicts:
+            return CONTRADICTED
+        return CONFIRMED if verdicts == {CONFIRMED} else NO_ANSWER
+
+    def count(self, verdict: str) -> int:
+        """How many theorems have this verdict."""
+        return sum(self.verdict(name) == verdict for name in self.theorems)
+
+    @property
+    def theorems(self) -> list[str]:
+        """Every theorem that was checked."""
+        return list(dict.fromkeys(check.theorem for check in self.checks))
+
+
+def version() -> str:
+    """The installed cvc5; raises BadInput if there is none."""
+    try:
+        return "cvc5 " + importlib.metadata.version("cvc5")
+    except importlib.metadata.PackageNotFoundError as error:
+        raise BadInput(
+            "the second solver is not installed", item="--recheck", expected="`pip install cvc5`"
+        ) from error
+
+
+def solve(text: str, logic: str, options: dict[str, str] | None = None) -> str:
+    """sat, unsat or unknown, by cvc5 on SMT-LIB text under the given logic.
+
+    Raises ValueError for text that cvc5 refuses.
+    """
+    import cvc5
+
+    solver = cvc5.Solver()
+    for option, value in (options or {}).items():
+        solver.setOption(option, value)
+    parser = cvc5.InputParser(solver)
+    body = "\n".join(line for line in text.splitlines() if not line.startswith("(set-logic"))
+    solver.setLogic(logic)
+    parser.setStringInput(cvc5.InputLanguage.SMT_LIB_2_6, body, "obligation")
+    symbols = parser.getSymbolManager()
+    answer = "unknown"
+    while True:
+        command = parser.nextCommand()
+        if command.isNull():
+            return answer
+        if command.getCommandName() == "set-info":
+            # the expected status is for readers; a solver is not to be told
+            continue
+        said = str(command.invoke(solver, symbols)).strip()
+        if said in ("sat", "unsat", "unknown"):
+            answer = said
+        elif said.startswith("(error"):
+            raise ValueError(said)
+
+
+def _child(text: str, way: tuple[str, dict[str, str]], out: Connection) -> None:
+    """Ask once; the system ends this process when its CPU time is used up."""
+    used = time.process_time()
+    limit = int(used + CPU_SECONDS) + 1
+    resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
+    out.send((solve(text, *way), time.process_time() - used))
+    out.close()
+
+
+@dataclass
+class _Job:
+    """One obligation on its way through the solver."""
+
+    theorem: str
+    number: int
+    key: str
+    text: str
+    smt: str
+    ways: list[tuple[str, dict[str, str]]]
+
+    def check(self, verdict: str, logic: str, seconds: float) -> Check:
+        return Check(
+            self.theorem, self.number, self.key, self.text, verdict, logic, round(seconds, 2)
+        )
+
+
+def _jobs(theorem: prover.Theorem, folder: Path) -> list[_Job]:
+    claim, sentence = prover.state(theorem.name, folder)
+    if len(claim.obligations) != len(theorem.outcomes):
+        raise ValueError(f"{theorem.name}: other obligations than those that were proved")
+    found = []
+    for number, (obligation, outcome) in enumerate(
+        zip(claim.obligations, theorem.outcomes, strict=True), 1
+    ):
+        if outcome.status != "proved":
+            continue
+        logic = prover.logic_of(obligation)
+        ways: list[tuple[str, dict[str, str]]] = [(logic, {})]
+        if logic == "QF_NRA":
+            ways.append((logic, {"nl-ext": "none"}))
+        if logic != "ALL":
+            ways.append(("ALL", {}))
+        text = f"{obligation.kind}: {obligation.text}"
+        smt = prover.smt2(obligation, sentence)
+        found.append(_Job(theorem.name, number, outcome.key, text, smt, ways))
+    return found
+
+
+def _ask(job: _Job) -> tuple[str, str, float]:
+    """One obligation: a fresh process for each way of asking, so that each has its whole budget."""
+    fork = multiprocessing.get_context("fork")
+    spent = 0.0
+    for way in job.ways:
+        here, there = fork.Pipe(duplex=False)
+        process = fork.Process(target=_child, args=(job.smt, way, there), daemon=True)
+        process.start()
+        there.close()
+        try:
+            answer, seconds = here.recv()
+        except EOFError:
+            answer, seconds = "unknown", float(CPU_SECONDS)
+        process.join()
+        here.close()
+        spent += seconds
+        if answer != "unknown":
+            verdict = CONFIRMED if answer == "unsat" else CONTRADICTED
+            return verdict, " ".join([way[0], *way[1]]), spent
+    return NO_ANSWER, "", spent
+
+
+def _worker(jobs: list[_Job], share: int, of: int, out: Connection) -> None:
+    for job in jobs[share::of]:
+        out.send(job.check(*_ask(job)))
+    out.close()
+
+
+def recheck(
+    theorems: Iterable[prover.Theorem],
+    *,
+    folder: Path = prover.FOLDER,
+    jobs: int = 1,
+    tell: Callable[[Check, int, int], None] | None = None,
+) -> Recheck:
+    """Put every proved obligation to cvc5.
+
+    tell: called with each check, how many are done, and of how many.
+    """
+    solver = version()
+    import cvc5  # noqa: F401  (once here, so that the forked solvers have it already)
+
+    wanted: list[_Job] = []
+    for theorem in theorems:
+        wanted += forked.call(partial(_jobs, theorem, folder))
+    # theorems may share an obligation: it is asked once
+    todo = list({job.key: job for job in wanted}.values())
+    fork = multiprocessing.get_context("fork")
+    pipes: list[tuple[Connection, Any]] = []
+    for share in range(jobs):
+        here, there = fork.Pipe(duplex=False)
+        process = fork.Process(target=_worker, args=(todo, share, jobs, there))
+        process.start()
+        there.close()
+        pipes.append((here, process))
+    done: list[Check] = []
+    open_pipes = [pipe for pipe, _ in pipes]
+    while open_pipes:
+        for ready in wait(open_pipes):
+            assert isinstance(ready, Connection)
+            try:
+                check = ready.recv()
+            except EOFError:
+                open_pipes.remove(ready)
+                continue
+            done.append(check)
+            if tell is not None:
+                tell(check, len(done), len(todo))
+    for _, process in pipes:
+        process.join()
+    if len(done) != len(todo):
+        raise RuntimeError(f"the second solver was stopped after {len(done)} of {len(todo)}")
+    said = {check.key: check for check in done}
+    checks = [
+        job.check(said[job.key].verdict, said[job.key].logic, said[job.key].seconds)
+        for job in wanted
+    ]
+    return Recheck(solver, tuple(checks))
+
+
+def text(found: Recheck, theorems: Iterable[prover.Theorem]) -> str:
+    """The verdicts by hash of the obligation, with z3's effort: the file beside the proofs."""
+    spent = {theorem.name: theorem.rlimit for theorem in theorems}
+    obligations: dict[str, dict[str, Any]] = {}
+    for check in found.checks:
+        row = obligations.setdefault(
+            check.key, {"cvc5": check.verdict, "logic": check.logic, "of": []}
+        )
+        row["of"].append(f"{check.theorem} {check.number}: {check.text}")
+    summary = {
+        name: {"cvc5": found.verdict(name), "z3_effort": spent[name]}
+        for name in sorted(found.theorems)
+    }
+    data = {"solver": found.solver, "theorems": summary, "obligations": obligations}
+    return json.dumps(data, indent=1, sort_keys=True) + "\n"
+
+
+def write(found: Recheck, theorems: Iterable[prover.Theorem], path: Path = FILE) -> None:
+    """Write the verdicts."""
+    part = path.with_suffix(f".{os.getpid()}")
+    part.write_text(text(found, theorems), encoding="utf-8")
+    part.replace(path)
+
+
+def read(path: Path = FILE) -> dict[str, Any]:
+    """The verdicts of the last full re-check; empty where there is none."""
+    if not path.is_file():
+        return {"solver": "", "theorems": {}, "obligations": {}}
+    return dict(json.loads(path.read_text(encoding="utf-8")))

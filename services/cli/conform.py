@@ -1,0 +1,76 @@
+"""`cratous conform`: published vectors against the kernels."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import Path
+
+import click
+
+from cratous.services import conform as suites
+from cratous.spec.errors import BadInput
+
+LIST = "\n".join(f"  {name}: {text}" for name, text in suites.SUITES.items())
+
+
+@click.command(epilog="Vectors of your own: docs/conformance.md")
+@click.argument("suite")
+@click.argument("files", nargs=-1, type=click.Path(path_type=Path, dir_okay=False))
+@click.option("--show", default=5, type=click.IntRange(0), help="Differences shown for each file.")
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> int:
+    """Run published vectors against the kernels.
+
+    SUITE is `well-clear` or `polygon`; FILES are JSON lines, also gzipped. Every case is decided
+    by the exact reading of the proved kernels. A case of a kind that the suite does not cover is
+    listed as not covered and never counted as passed.
+
+    Example:  cratous conform polygon vectors.jsonl.gz
+
+    Exit codes: 0 nothing failed, 1 a case failed, 2 bad input, 3 no case was covered.
+    """
+    judge = suites.suite(suite)
+    if not files:
+        raise BadInput("no file is given", item="FILES", expected="at least one file of vectors")
+    reports = []
+    for file in files:
+        report = suites.run(judge, file, show)
+        reports.append(report)
+        if as_json:
+            continue
+        click.echo(report.line)
+        for label, count in sorted(report.differences.items()):
+            click.echo(f"  {count} x {label}")
+        for result in report.shown:
+            click.echo(f"    {result.case}: {result.text}")
+    good, bad = sum(r.passed for r in reports), sum(r.failed for r in reports)
+    skipped: Counter[str] = sum((r.skipped for r in reports), Counter())
+    code = 1 if bad else (0 if good else 3)
+    if as_json:
+        data = {
+            "suite": suite,
+            "passed": good,
+            "failed": bad,
+            "checks": sum(r.checks for r in reports),
+            "not_covered": dict(sorted(skipped.items())),
+            "files": [
+                {
+                    "file": r.file,
+                    "passed": r.passed,
+                    "failed": r.failed,
+                    "not_covered": dict(sorted(r.skipped.items())),
+                    "differences": dict(sorted(r.differences.items())),
+                    "shown": [{"id": s.case, "kind": s.label, "text": s.text} for s in r.shown],
+                }
+                for r in reports
+            ],
+            "exit_code": code,
+        }
+        click.echo(json.dumps(data, indent=1))
+        return code
+    if skipped:
+        kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(skipped.items()))
+        click.echo(f"not covered: {kinds}")
+    click.echo(f"{good} passed, {bad} failed")
+    return code

@@ -1,0 +1,43 @@
+"""What is assumed of arithmetic on doubles, and what an error bound means.
+
+The model of one operation (IEEE 754, binary64, round to nearest): its result is `rounded` from the
+real result of the operation on its operands, sums without an underflow term; and rounding
+`keeps_order`. Results that overflow are outside of it: the filter decides nothing there.
+"""
+
+
+def rounded(result: float, real: float, unit: float, tiny: float) -> bool:
+    """`result` is `real`, rounded: relative error at most unit, plus tiny if it underflows."""
+    return abs(result - real) <= unit * abs(result) + tiny
+
+
+def keeps_order(less: float, more: float, less_rounded: float, more_rounded: float) -> bool:
+    """Rounding does not turn two numbers round."""
+    return less > more or less_rounded <= more_rounded
+
+
+def near(value: float, real: float, size: float, bound: float) -> bool:
+    """A computed value stands for a real one within a bound, and is at most its size."""
+    return abs(value - real) <= bound and abs(value) <= size
+
+
+def surely_positive(value: float, bound: float) -> bool:
+    """Every real number within `bound` of `value` is positive."""
+    return value - bound > 0
+
+
+def surely_negative(value: float, bound: float) -> bool:
+    """Every real number within `bound` of `value` is negative."""
+    return value + bound < 0
+
+
+def outward_margin(value: float, share: float, least: float) -> float:
+    """A share of the magnitude, and something for underflow."""
+    if value < 0:
+        return least - share * value
+    return least + share * value
+
+
+def between(low: float, real: float, high: float) -> bool:
+    """The interval [low, high] contains the number."""
+    return low <= real and real <= high

@@ -1,0 +1,180 @@
+"""`docs/own-kernel.md`, followed to the letter; and what is refused of a package's kernels."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cratous.core import ledger
+
+FILE = re.compile(r"^`([\w/]+\.py)`\n```python\n(.*?)^```", re.S | re.M)
+COMMAND = re.compile(r"^```console\n\$ (.*?)\n```\n```\n(.*?)```", re.S | re.M)
+
+
+@pytest.fixture
+def package(root: Path, tmp_path: Path) -> Path:
+    """The page's files, in an empty folder outside of the repository."""
+    text = (root / "docs" / "own-kernel.md").read_text(encoding="utf-8")
+    for name, body in FILE.findall(text):
+        file = tmp_path / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(body, encoding="utf-8")
+    return tmp_path
+
+
+def _run(
+    folder: Path, root: Path, command: str, *, path: str = ""
+) -> subprocess.CompletedProcess[str]:
+    words = command.split()
+    program = {"cratous": [sys.executable, "-m", "cratous"], "python": [sys.executable]}[words[0]]
+    search = os.pathsep.join(part for part in (str(root / "src"), path) if part)
+    return subprocess.run(
+        [*program, *words[1:]],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": search},
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+
+
+def test_the_page_is_true(package: Path, root: Path) -> None:
+    text = (root / "docs" / "own-kernel.md").read_text(encoding="utf-8")
+    commands = COMMAND.findall(text)
+    assert [c.split()[0] for c, _ in commands] == ["cratous", "python"]
+    for command, printed in commands:
+        done = _run(package, root, command)
+        assert done.returncode == 0, done.stderr
+        wanted = re.sub(r"z3 [\d.]+", ledger.solver_version(), printed)
+        assert done.stdout.strip() == wanted.strip()
+    record = json.loads((package / "my_pkg" / "ledger.json").read_text())
+    assert record["kernels"]["reaches_home"]["status"] == "proved"
+    again = _run(package, root, "cratous prove --package my_pkg --check")
+    assert again.returncode == 0, again.stderr
+
+
+GATE = """
+from cratous.core import ledger
+import my_pkg.reserve
+print([f"{p.name}: {p.what}" for p in ledger.check_everything().problems if p.name == "reaches_home"])
+"""
+
+
+@pytest.mark.parametrize(
+    ("place", "old", "new", "what"),
+    [
+        ("reserve.py", ">= burn", "> burn", "its source"),
+        ("spec/fuel.py", "fuel_kg - burn_kg_s *", "0 + fuel_kg - burn_kg_s *", "its definition"),
+        ("theorems/reserve_is_kept.py", "speed > 0", "speed > 1", "its theorems"),
+        ("ledger.json", "reserve_is_kept", "reserve_was_kept", "edited"),
+    ],
+)
+def test_the_gate_covers_the_package(
+    package: Path, root: Path, place: str, old: str, new: str, what: str
+) -> None:
+    assert _run(package, root, "cratous prove --package my_pkg").returncode == 0
+    (package / "gate.py").write_text(GATE)
+    fine = _run(package, root, "python gate.py")
+    assert fine.stdout.strip() == "[]", fine.stdout + fine.stderr
+    file = package / "my_pkg" / place
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new))
+    done = _run(package, root, "python gate.py")
+    assert what in done.stdout + done.stderr
+
+
+def test_a_kernel_of_a_package_without_ledger_is_not_vouched_for(package: Path, root: Path) -> None:
+    (package / "gate.py").write_text(GATE)
+    assert "not in the ledger" in _run(package, root, "python gate.py").stdout
+
+
+THEOREM = '''"""A sentence."""
+
+{imports}
+
+
+def claim(c):
+{body}
+'''
+
+
+@pytest.mark.parametrize(
+    ("name", "imports", "body", "wanted"),
+    [
+        ("names_nothing", "", "    c.show(c.real('x') >= 0)", "names no kernel"),
+        (
+            "shows_nothing",
+            "from my_pkg.reserve import reaches_home",
+            "    c.use(reaches_home, *c.reals('a b d e f'))",
+            "shows nothing",
+        ),
+        (
+            "of_a_stranger",
+            "def lone(x: float) -> bool:\n    return x >= 0",
+            "    c.show(c.same(c.use(lone, c.real('x')), True))",
+            "'lone', which is not registered",
+        ),
+        (
+            "of_a_lookalike",
+            "def reaches_home(x: float) -> bool:\n    return x >= x",
+            "    c.show(c.use(reaches_home, c.real('x')))",
+            "'reaches_home', which is not registered",
+        ),
+        ("of_a_missing_kernel", "from my_pkg.reserve import nowhere", "    pass", "is not there"),
+        ("violation_is_symmetric", "", "    pass", "two theorems are called"),
+        ("broken", "from", "    pass", "no Python"),
+    ],
+)
+def test_a_theorem_that_binds_nothing_is_refused_with_its_place(
+    package: Path, root: Path, name: str, imports: str, body: str, wanted: str
+) -> None:
+    file = package / "my_pkg" / "theorems" / f"{name}.py"
+    file.write_text(THEOREM.format(imports=imports, body=body))
+    done = _run(package, root, "cratous prove --package my_pkg")
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert wanted in done.stderr
+    assert f"my_pkg/theorems/{name}.py" in done.stderr
+    assert not (package / "my_pkg" / "ledger.json").exists()
+
+
+def test_a_kernel_without_theorem_or_definition_is_refused_with_its_place(
+    package: Path, root: Path
+) -> None:
+    (package / "my_pkg" / "more.py").write_text(
+        '"""More."""\n\nfrom cratous.core.kernel import kernel\n\n\n'
+        '@kernel(implements="nowhere.at_all")\ndef one_more(a: float) -> bool:\n'
+        '    """True iff a is not negative. a: any number."""\n    return a >= 0\n'
+    )
+    done = _run(package, root, "cratous prove --package my_pkg")
+    assert done.returncode == 2
+    assert "my_pkg/more.py:6: one_more: no theorem is about this kernel" in done.stderr
+    assert "there is no spec/nowhere.py" in done.stderr
+    assert not (package / "my_pkg" / "ledger.json").exists()
+
+
+def test_a_name_of_the_product_cannot_be_taken(package: Path, root: Path) -> None:
+    file = package / "my_pkg" / "reserve.py"
+    file.write_text(file.read_text().replace("def reaches_home", "def violation"))
+    theorem = package / "my_pkg" / "theorems" / "reserve_is_kept.py"
+    theorem.write_text(theorem.read_text().replace("reaches_home", "violation"))
+    done = _run(package, root, "cratous prove --package my_pkg")
+    assert done.returncode == 2
+    assert "two kernels are called 'violation'" in done.stderr
+
+
+def test_a_package_that_is_none_is_bad_input(tmp_path: Path, root: Path) -> None:
+    done = _run(tmp_path, root, "cratous prove --package no_such_package")
+    assert done.returncode == 2
+    assert "no_such_package" in done.stderr
+    (tmp_path / "lonely").mkdir()
+    (tmp_path / "lonely" / "__init__.py").write_text("")
+    done = _run(tmp_path, root, "cratous prove --package lonely")
+    assert done.returncode == 2
+    assert "no theorems" in done.stderr

@@ -1,0 +1,162 @@
+"""`cratous prove`: options, output, exit codes."""
+
+from __future__ import annotations
+
+import json
+import resource
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cratous.core import ledger as gate
+from cratous.proofs import ledger, mutate, prover, recheck
+from cratous.services.cli import main
+
+FEW = "*its_definition"
+ONE = "straddles_is_its_definition"
+
+
+@pytest.fixture(autouse=True)
+def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("CRATOUS_CACHE", str(tmp_path / "cache"))
+
+
+def _json(capsys: pytest.CaptureFixture[str], *options: str) -> tuple[int, dict]:
+    code = main(["prove", "--json", *options])
+    return code, json.loads(capsys.readouterr().out)
+
+
+def test_cold_and_warm_say_the_same(capsys: pytest.CaptureFixture[str]):
+    before = gate.LEDGER.read_bytes()
+    code, cold = _json(capsys, "--only", "orient*")
+    assert code == 0
+    _, warm = _json(capsys, "--only", "orient*")
+    assert warm["theorems"] == cold["theorems"]
+    assert cold["proved"] == 1
+    assert gate.LEDGER.read_bytes() == before, "a part writes no ledger"
+
+
+def test_all_views_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    options = ["--only", ONE, "--junit", str(tmp_path / "r" / "j.xml"), "-v"]
+    options += ["--sarif", str(tmp_path / "s.json"), "--smt2", str(tmp_path / "smt2")]
+    assert main(["prove", *options]) == 0
+    out = capsys.readouterr().out
+    assert ONE in out
+    assert "the ledger is not written" in out
+    assert 'failures="0"' in (tmp_path / "r" / "j.xml").read_text()
+    assert json.loads((tmp_path / "s.json").read_text())["runs"][0]["results"] == []
+    files = sorted((tmp_path / "smt2").iterdir())
+    assert files
+    assert all("(check-sat)" in file.read_text() for file in files)
+
+
+def test_nothing_matches_is_bad_input(capsys: pytest.CaptureFixture[str]):
+    assert main(["prove", "--only", "nothing*"]) == 2
+    assert "no theorem matches" in capsys.readouterr().err
+    assert main(["prove", "--only", ONE, "--check"]) == 2
+    assert "exclude each other" in capsys.readouterr().err
+
+
+def test_changed_proves_what_differs_from_the_ledger(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    """With a ledger about two theorems only, of which one has changed since."""
+    names = ["straddles_is_its_definition", "exactly_one_gives_way"]
+    inventory = ledger.prove_all(names)
+    data = ledger.records(inventory)
+    data["kernels"]["gives_way"]["key"]["source"] = "another"
+    data["seal"] = gate.seal(data)
+    file = tmp_path / "ledger.json"
+    file.write_text(json.dumps(data))
+    real = gate.read
+    monkeypatch.setattr(gate, "read", lambda path=gate.LEDGER: real(file))
+    changed = ledger.changed_theorems()
+    assert "exactly_one_gives_way" in changed
+    assert "straddles_is_its_definition" not in changed
+    assert set(changed) == set(prover.theorem_files()) - {"straddles_is_its_definition"}
+
+
+def test_recheck_counts_theorems_and_obligations(capsys: pytest.CaptureFixture[str]):
+    pytest.importorskip("cvc5")
+    before = recheck.FILE.read_bytes() if recheck.FILE.is_file() else b""
+    code, data = _json(capsys, "--only", ONE, "--recheck")
+    assert code == 0
+    second = data["recheck"]
+    assert second["theorems"] == {ONE: "confirmed"}
+    assert (second["confirmed"], second["no_answer"], second["contradicted"]) == (1, 0, 0)
+    assert data["theorems"][0]["second_solver"] == "confirmed"
+    assert (recheck.FILE.read_bytes() if recheck.FILE.is_file() else b"") == before
+
+
+def test_a_contradiction_of_the_second_solver_fails(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    check = recheck.Check(ONE, 1, "k", "goal: the claim", "contradicted", "QF_NRA", 0.1)
+    monkeypatch.setattr(recheck, "recheck", lambda *_, **__: recheck.Recheck("cvc5 1", (check,)))
+    assert main(["prove", "--only", ONE, "--recheck"]) == 1
+    out = capsys.readouterr().out
+    assert "contradicted straddles_is_its_definition 1: goal: the claim" in out
+    assert "1 contradicted" in out
+
+
+def test_mutation_is_reported(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
+    result = mutate.Result("f", "kernel", "op", "core/x.py:1", "a -> b", "survived")
+    asked = []
+
+    def run(names, tell, jobs, *, theorems=None):
+        asked.append(theorems)
+        tell("f", [result])
+        return mutate.MutationReport((result,), ())
+
+    monkeypatch.setattr(mutate, "run", run)
+    assert main(["prove", "--only", ONE, "--mutate"]) in (0, 1)
+    out = capsys.readouterr().out
+    assert asked == [[ONE]]
+    assert "survived" in out
+    assert "a -> b" in out
+
+
+def test_assumptions_are_shown_with_owner_and_reason(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    real = prover.load_claim
+
+    def assuming(name, folder=prover.FOLDER):
+        statement, sentence = real(name, folder)
+
+        def stated(c):
+            c.assume(c.real("wind") >= 0, owner="the pilot", reason="it always blows")
+            statement(c)
+
+        return stated, sentence
+
+    monkeypatch.setattr(prover, "load_claim", assuming)
+    code = main(["prove", "--only", ONE])
+    out = capsys.readouterr().out
+    assert code == 0
+    assert "ASSUMED by the pilot" in out
+    assert "it always blows" in out
+    assert "1 assumptions" in out
+
+
+VERDICT = """
+from cratous.core.compiled import compiled
+from cratous.core.well_clear import violation
+assert compiled(violation)(100.0, 0.0, -10.0, 0.0, 0.0, 0.0, 50.0, 30.0, 10.0, 0.0)
+"""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "limit_s"), [(["-m", "cratous", "plan", "--help"], 0.7), (["-c", VERDICT], 2.0)]
+)
+def test_the_start_is_quick(arguments: list[str], limit_s: float):
+    """CPU seconds of a fresh process; for the verdict with a warm compile cache."""
+    spent = []
+    for _ in range(3):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        subprocess.run([sys.executable, *arguments], check=True, capture_output=True, timeout=60)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        spent.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    assert min(spent) < limit_s, spent

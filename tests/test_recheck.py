@@ -1,0 +1,97 @@
+"""The second solver: it confirms, it contradicts, and it is never told the answer."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+import z3
+
+from cratous.core import ledger as gate
+from cratous.proofs import ledger, prover, recheck
+from cratous.proofs.claim import Obligation
+from cratous.spec.errors import BadInput
+
+pytest.importorskip("cvc5")
+gate.load_all()
+QUICK = ["exactly_one_gives_way", "orient_is_the_turn", "straddles_is_its_definition"]
+
+
+def test_cvc5_confirms_what_is_true():
+    theorems = ledger.prove_theorems(QUICK)
+    steps: list[tuple[int, int]] = []
+    found = recheck.recheck(theorems, jobs=2, tell=lambda c, n, of: steps.append((n, of)))
+    assert {name: found.verdict(name) for name in QUICK} == dict.fromkeys(QUICK, "confirmed")
+    assert found.count("confirmed") == 3
+    assert len(found.checks) == sum(len(t.outcomes) for t in theorems)
+    assert steps[-1][0] == steps[-1][1]
+    assert all(check.logic for check in found.checks)
+
+
+def _text(*terms: z3.BoolRef) -> str:
+    return prover.smt2(Obligation("goal", "x", terms[:-1], terms[-1]), "T.")
+
+
+def test_the_expected_status_is_not_believed():
+    """The export says `unsat`; cvc5 must find out by itself."""
+    x, y = z3.Reals("x y")
+    true = _text(x > 1, x * x > x)
+    false = _text(x > 0, x * x > x)
+    assert "(set-info :status unsat)" in false
+    assert recheck.solve(true, "QF_NRA") == "unsat"
+    assert recheck.solve(false, "QF_NRA") == "sat"
+    assert recheck.solve(true, "ALL") == "unsat"
+    assert recheck.solve(_text(x + y > 0), "QF_LRA") == "sat"
+
+
+def test_text_that_is_no_smt_lib_is_an_error():
+    with pytest.raises((ValueError, RuntimeError)):
+        recheck.solve("(assert (= x 1))(check-sat)", "ALL")
+
+
+def test_a_contradiction_is_seen(monkeypatch: pytest.MonkeyPatch):
+    """A proof that z3 got wrong: here its obligation is replaced by a false one."""
+    (theorem,) = ledger.prove_theorems(["straddles_is_its_definition"])
+    false = _text(z3.Real("x") > 0)
+    monkeypatch.setattr(prover, "smt2", lambda obligation, title: false)
+    found = recheck.recheck([theorem])
+    assert found.verdict(theorem.name) == "contradicted"
+    assert found.count("contradicted") == 1
+
+
+def test_no_answer_is_no_answer(monkeypatch: pytest.MonkeyPatch):
+    """A solver that spends its CPU time is ended by the system, and nothing is concluded."""
+    (theorem,) = ledger.prove_theorems(["straddles_is_its_definition"])
+    monkeypatch.setattr(recheck, "CPU_SECONDS", 0)
+
+    def busy(text: str, logic: str, options: dict[str, str] | None = None) -> str:
+        while True:
+            pass
+
+    monkeypatch.setattr(recheck, "solve", busy)
+    found = recheck.recheck([theorem])
+    assert found.verdict(theorem.name) == "no answer"
+
+
+def test_the_file_is_keyed_by_obligation(tmp_path: Path):
+    theorems = ledger.prove_theorems(["straddles_is_its_definition"])
+    found = recheck.recheck(theorems)
+    file = tmp_path / "recheck.json"
+    recheck.write(found, theorems, file)
+    data = recheck.read(file)
+    assert data["solver"] == recheck.version()
+    assert data["theorems"]["straddles_is_its_definition"]["cvc5"] == "confirmed"
+    assert set(data["obligations"]) == {o.key for o in theorems[0].outcomes}
+    assert recheck.text(found, theorems) == file.read_text()
+    assert recheck.read(tmp_path / "none.json")["obligations"] == {}
+    assert json.loads(file.read_text()) == data
+
+
+def test_without_cvc5_the_user_is_told(monkeypatch: pytest.MonkeyPatch):
+    def absent(name: str) -> str:
+        raise recheck.importlib.metadata.PackageNotFoundError(name)
+
+    monkeypatch.setattr(recheck.importlib.metadata, "version", absent)
+    with pytest.raises(BadInput, match="second solver is not installed"):
+        recheck.version()
