@@ -80,7 +80,7 @@ ATTACKS = {
                              "the compiler flags"),
     "a fold's start": ("core/timing.py", "start=True", "start=False",
                        "schedule_holds: changed since the proof: its source"),
-    "a driver": ("core/legs.py", "if keep_out and apart:", "if apart:", "leg_ok: changed"),
+    "a driver": ("core/legs.py", "if zone.padding_m != 0:", "if zone.padding_m < 0:", "leg_ok: changed"),
     "the ledger file": ("core/ledger.json", '"status": "proved"', '"status": "Proved"',
                         "was edited"),
 }  # fmt: skip

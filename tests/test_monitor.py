@@ -163,6 +163,17 @@ def test_a_task_that_was_not_flown_is_not_complete_and_its_order_is_unknown():
     assert seen["G1"].outcome is Outcome.UNKNOWN
 
 
+def test_the_tasks_of_a_later_plan_count():
+    m = mission(relations="+(p1 p2)")
+    later = (500, lmcp.new("PlanAccepted", Time=500, Tasks=[2]))
+    only_two = [x for x in done() if getattr(x[1], "TaskID", 2) == 2]
+    seen = watch(m, [*apart(), *beats(3000), later, *only_two])
+    assert seen["G3"].outcome is Outcome.HOLDS
+    assert seen["G1"].outcome is Outcome.HOLDS
+    both = (500, lmcp.new("PlanAccepted", Time=500, Tasks=[1, 2]))
+    assert watch(m, [*apart(), *beats(3000), both, *done()])["G1"].outcome is Outcome.VIOLATED
+
+
 def test_a_search_must_be_covered_by_footprints():
     line = (Position(0.0, 0.0, 0.0), Position(100.0, 0.0, 0.0))
     m = mission(tasks=(Task(1, TaskKind.LINE_SEARCH, "", line), mission().tasks[1]))

@@ -9,13 +9,13 @@ aircraft is at its Time and with which constant velocity it flies until the next
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.loopback import Bridge, Delivered
-from cratous.bridge.text_protocol import Direction, Message
+from cratous.bridge.text_protocol import Direction, Message, WireError
 from cratous.core.gate import ICAROUS, UXAS
 from cratous.services.bus import Bus
 from cratous.services.flight.commands import SENDERS, gated, velocity_command
@@ -142,13 +142,7 @@ class _Flight:
         simulation = self.mission.simulation
         self._gated = lmcp.types["GatedCommand"]
         self.bus.now_ms = 0
-        accepted = lmcp.new(
-            "PlanAccepted",
-            Time=0,
-            Makespan=self.plan.makespan_ms,
-            PlanHash=fingerprint(to_data(self.plan)),
-        )
-        self._say([accepted], "uxas")
+        self._accept(self.plan, frozenset())
         states = self._own_states()
         self._say(self.executive.begin(states), "uxas/executive")
         self._say(self.ics.begin(0), "uxas/ics")
@@ -182,6 +176,18 @@ class _Flight:
             executive.replans,
             steps,
         )
+
+    def _accept(self, plan: Plan, done: frozenset[int]) -> None:
+        """Say by which plan is flown from now on; `done` are the tasks already flown."""
+        tasks = done | {item.task_id for item in plan.items}
+        accepted = lmcp.new(
+            "PlanAccepted",
+            Time=self.now_ms,
+            Makespan=plan.makespan_ms,
+            PlanHash=fingerprint(to_data(plan)),
+            Tasks=sorted(tasks),
+        )
+        self._say([accepted], "uxas")
 
     def _outcome(self, limit_ms: int) -> str:
         back = all(node.gate.owner == UXAS for node in self.nodes.values())
@@ -245,6 +251,16 @@ class _Flight:
             if isinstance(one.record, LinkEvent) and one.direction is Direction.UP:
                 lost = self.ics.lost(one.vehicle_id, one.record, self.now_ms)
                 self._say(lost, "uxas/ics")
+            elif isinstance(one.record, WireError):
+                text = f"unreadable line from {one.direction.value}: {one.record}"
+                note = lmcp.new(
+                    "BridgeStatus",
+                    VehicleID=one.vehicle_id,
+                    Time=self.now_ms,
+                    Alive=self.bridge.alive(one.vehicle_id),
+                    Note=text,
+                )
+                self._say([note], "uxas/ics")
         return delivered
 
     def _think(self, vid: int, messages: tuple[Message, ...]) -> None:
@@ -293,8 +309,9 @@ class _Flight:
         flown = [
             (task, self.executive.starts[task], self.executive.ends[task]) for task in sorted(done)
         ]
-        mission = replace(self.mission, vehicles=self.mission.vehicles)
         try:
-            return make_plan(mission, starts=poses, done=flown, now_ms=now_ms)
+            plan = make_plan(self.mission, starts=poses, done=flown, now_ms=now_ms)
         except NoPlan:
             return None
+        self._accept(plan, done)
+        return plan

@@ -53,6 +53,9 @@ class Monitor:
                 self._step(*step)
         elif short == "AirVehicleState":
             self.completion.state(body)
+        elif short == "PlanAccepted" and body.Tasks:
+            self.constraints.accept(frozenset(body.Tasks))
+            self.completion.accept(frozenset(body.Tasks))
         elif short == "TaskProgress":
             self.constraints.progress(body)
             self.completion.progress(body)
