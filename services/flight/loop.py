@@ -16,7 +16,7 @@ from cratous.bridge import lmcp
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.loopback import Bridge, Delivered
 from cratous.bridge.text_protocol import Direction, Message, WireError
-from cratous.core.gate import ICAROUS, UXAS
+from cratous.core.gate import ICAROUS, UXAS, Gate
 from cratous.services.bus import Bus
 from cratous.services.flight.commands import SENDERS, gated, velocity_command
 from cratous.services.flight.communication import Communication
@@ -111,11 +111,26 @@ class _Flight:
             self.bus.publish(body, source)
             if isinstance(body, self._gated):
                 node = self.nodes[body.VehicleID]
-                before = node.gate.owner
+                before = node.gate
                 dropped = node.receive(body, self.now_ms)
                 self._say(dropped, f"vehicle/{body.VehicleID}")
-                if node.gate.owner != before:
+                self._gate(body.VehicleID, before)
+                if node.gate.owner != before.owner:
                     self._authority(body.VehicleID, "the way back is free: handed back", 0)
+
+    def _gate(self, vid: int, before: Gate) -> None:
+        """Say how the gate stands, if it has changed."""
+        gate = self.nodes[vid].gate
+        if gate != before:
+            state = lmcp.new(
+                "GateState",
+                VehicleID=vid,
+                Time=self.now_ms,
+                Owner=SENDERS[gate.owner],
+                Epoch=gate.epoch,
+                Offered=gate.offered,
+            )
+            self._say([state], f"vehicle/{vid}")
 
     def _authority(self, vid: int, reason: str, intruder_id: int) -> None:
         """Say who commands a vehicle from now on, and since which epoch."""
@@ -275,14 +290,17 @@ class _Flight:
             messages,
         )
         self.brains[vid], out = instance.step(self.configs[vid], self.brains[vid], inputs)
+        before = node.gate
         if out.authority == "takeover":
             fresh = node.gate.owner == UXAS
             node.takeover()
+            self._gate(vid, before)
             if fresh:
                 self.takeovers += 1
                 self._authority(vid, out.reason, out.intruder_id)
         elif out.authority == "offer":
             node.offer()
+            self._gate(vid, before)
         if out.resolution:
             conflict = lmcp.new(
                 "Conflict",

@@ -59,7 +59,7 @@ class Monitor:
         elif short == "TaskProgress":
             self.constraints.progress(body)
             self.completion.progress(body)
-        elif short in ("AuthorityChange", "GatedCommand", "CommandDropped"):
+        elif short in ("GateState", "GatedCommand", "CommandDropped"):
             self.authority.message(short, body, envelope.time_ms)
         elif short == "Heartbeat":
             self.bridge.heartbeat(body)
