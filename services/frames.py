@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 LEAST_RADIUS_M = 6_335_439.0
 """Least radius of curvature of WGS-84: along the meridian, at the equator."""
 
+RESOLUTION_M = 3e-4
+"""PROJ takes coordinates that differ by less than about 1e-9 degrees for equal."""
+
 
 def scale_error(distance_m: float) -> float:
     """Bound on the relative error of local distances within distance_m of the origin.

@@ -163,6 +163,17 @@ def test_a_task_that_was_not_flown_is_not_complete_and_its_order_is_unknown():
     assert seen["G1"].outcome is Outcome.UNKNOWN
 
 
+def test_the_tasks_of_a_later_plan_count():
+    m = mission(relations="+(p1 p2)")
+    later = (500, lmcp.new("PlanAccepted", Time=500, Tasks=[2]))
+    only_two = [x for x in done() if getattr(x[1], "TaskID", 2) == 2]
+    seen = watch(m, [*apart(), *beats(3000), later, *only_two])
+    assert seen["G3"].outcome is Outcome.HOLDS
+    assert seen["G1"].outcome is Outcome.HOLDS
+    both = (500, lmcp.new("PlanAccepted", Time=500, Tasks=[1, 2]))
+    assert watch(m, [*apart(), *beats(3000), both, *done()])["G1"].outcome is Outcome.VIOLATED
+
+
 def test_a_search_must_be_covered_by_footprints():
     line = (Position(0.0, 0.0, 0.0), Position(100.0, 0.0, 0.0))
     m = mission(tasks=(Task(1, TaskKind.LINE_SEARCH, "", line), mission().tasks[1]))
@@ -191,17 +202,50 @@ def test_a_loiter_must_last():
     assert "of 2.00 s" in short.note
 
 
-def test_a_takeover_must_be_handed_back():
-    name = "AuthorityChange"
-    taken = (600, lmcp.new(name, VehicleID=1, Time=600, Owner="ICAROUS", Epoch=1))
-    back = (900, lmcp.new(name, VehicleID=1, Time=900, Owner="UxAS", Epoch=2))
-    basis = [*apart(), *beats(3000)]
-    assert watch(mission(), [*basis, taken, back, *done()])["G4"].outcome is Outcome.HOLDS
-    left = watch(mission(), [*basis, taken, *done()])["G4"]
-    assert left.outcome is Outcome.VIOLATED
-    assert "never handed back" in left.note
-    stale = (900, lmcp.new(name, VehicleID=1, Time=900, Owner="UxAS", Epoch=1))
-    assert watch(mission(), [*basis, taken, stale, *done()])["G4"].outcome is Outcome.VIOLATED
+def gate(ms: int, owner: str, epoch: int, offered: bool = False) -> tuple[int, Any]:
+    return ms, lmcp.new(
+        "GateState", VehicleID=1, Time=ms, Owner=owner, Epoch=epoch, Offered=offered
+    )
+
+
+def command(ms: int, sender: str, epoch: int) -> tuple[int, Any]:
+    return ms, lmcp.new("GatedCommand", VehicleID=1, Sender=sender, Epoch=epoch)
+
+
+def dropped(ms: int, epoch: int) -> tuple[int, Any]:
+    return ms, lmcp.new("CommandDropped", VehicleID=1, Time=ms, Epoch=epoch)
+
+
+TAKEN = [gate(600, "ICAROUS", 1), command(600, "ICAROUS", 1)]
+BACK = [gate(800, "ICAROUS", 2, True), command(900, "UxAS", 2), gate(900, "UxAS", 2)]
+
+
+def authority(*messages: tuple[int, Any]) -> Any:
+    basis = [*apart(), *beats(3000), *done()]
+    return watch(mission(), sorted([*messages, *basis], key=lambda m: m[0]))["G4"]
+
+
+def test_a_takeover_that_is_handed_back_holds():
+    assert authority(command(0, "UxAS", 0), *TAKEN, *BACK).outcome is Outcome.HOLDS
+    stale = [command(700, "UxAS", 0), dropped(700, 0)]
+    assert authority(*TAKEN, *stale, *BACK).outcome is Outcome.HOLDS
+
+
+@pytest.mark.parametrize(
+    ("messages", "wanted"),
+    [
+        (TAKEN, "never handed back"),
+        ([*TAKEN, gate(900, "UxAS", 2)], "went from ICAROUS in epoch 1 to UxAS in epoch 2"),
+        ([gate(600, "ICAROUS", 0)], "went from UxAS in epoch 0 to ICAROUS in epoch 0"),
+        ([*TAKEN, command(700, "UxAS", 0), *BACK], "was not dropped"),
+        ([command(100, "UxAS", 0), dropped(100, 0)], "dropped that had authority"),
+        ([*TAKEN, *BACK[:2]], "the gate did not change"),
+    ],
+)
+def test_two_commanders_or_none_are_seen(messages, wanted):
+    verdict = authority(*messages)
+    assert verdict.outcome is Outcome.VIOLATED
+    assert wanted in verdict.note
 
 
 def test_a_silent_bridge_is_seen_and_a_missing_one_is_unknown():

@@ -25,7 +25,7 @@ from cratous.core.polygon import (
     meets_boundary,
 )
 from cratous.core.visibility import Roadmap, circle, route
-from cratous.services.frames import Projection, scale_error
+from cratous.services.frames import RESOLUTION_M, Projection, scale_error
 from cratous.services.planning.zones import roadmaps
 from cratous.spec.mission import Frame, Position, Zone, ZoneKind
 from cratous.spec.plan import Pose
@@ -161,10 +161,10 @@ def test_the_frame_goes_there_and_back(lat, lon, north, east):
     projection = Projection(Frame(lat, lon))
     there = projection.to_geodetic(north, east)
     back = projection.to_local(*there)
-    assert math.dist(back, (north, east)) < 1e-4
+    assert math.dist(back, (north, east)) < RESOLUTION_M
     distance = math.hypot(north, east)
     exact = projection.geodesic_m((lat, lon), there)
-    assert exact == pytest.approx(distance, abs=1e-4)
+    assert exact == pytest.approx(distance, abs=RESOLUTION_M)
 
 
 @given(st.floats(-70, 70), COORDINATE, COORDINATE, COORDINATE, COORDINATE)

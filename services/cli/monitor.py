@@ -13,7 +13,8 @@ from cratous.spec.guarantees import exit_code
 @click.command()
 @click.argument("log", type=click.Path(path_type=Path))
 @click.option("--json", "as_json", is_flag=True, help="Print the verdicts as JSON.")
-def monitor(log: Path, as_json: bool) -> int:
+@click.option("--allow-unproved", is_flag=True, help="Judge with kernels that have no proof.")
+def monitor(log: Path, as_json: bool, allow_unproved: bool) -> int:
     """Replay a message LOG (log.sqlite, or its folder) through the monitor of G1 to G5.
 
     Example:  cratous monitor out/crossing/log.sqlite
@@ -21,17 +22,27 @@ def monitor(log: Path, as_json: bool) -> int:
     Exit codes: 0 all requirements hold, 1 something is violated, 2 bad input, 3 something is
     unknown or excused.
     """
+    from cratous.core import ledger
     from cratous.services.certify.again import watch
     from cratous.services.certify.report import LOG_NAME
     from cratous.services.certify.verdicts import constraint_rows, requirement_rows
     from cratous.services.cli.show import requirement_table
 
+    standing = ledger.require(allow_unproved=allow_unproved)
     verdicts = watch(log / LOG_NAME if log.is_dir() else log)
     rows = constraint_rows(verdicts, "flight")
     code = exit_code([v.outcome for v in verdicts])
+    if standing.problems and code == 0:
+        code = 3  # no verdict of an unproved kernel is better than unknown
     if as_json:
-        data = {"requirements": requirement_rows(rows), "constraints": rows, "exit_code": code}
+        data = {
+            "requirements": requirement_rows(rows),
+            "constraints": rows,
+            "proofs": standing.line,
+            "exit_code": code,
+        }
         click.echo(json.dumps(data, indent=1))
     else:
         requirement_table(requirement_rows(rows))
+        click.echo(f"proofs: {standing.line}")
     return code

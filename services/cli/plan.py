@@ -14,7 +14,8 @@ from cratous.spec.guarantees import exit_code
 @click.argument("mission", type=click.Path(path_type=Path))
 @click.option("--seed", type=click.IntRange(0), default=0, help="Variant; 0 is as written.")
 @click.option("--json", "as_json", is_flag=True, help="Print plan and checks as JSON.")
-def plan(mission: Path, seed: int, as_json: bool) -> int:
+@click.option("--allow-unproved", is_flag=True, help="Plan with kernels that have no proof.")
+def plan(mission: Path, seed: int, as_json: bool, allow_unproved: bool) -> int:
     """Plan a MISSION and check the plan with the proved kernels; nothing flies.
 
     Example:  cratous plan examples/relations/mission.yaml
@@ -22,18 +23,27 @@ def plan(mission: Path, seed: int, as_json: bool) -> int:
     Exit codes: 0 the plan satisfies all its constraints, 1 it does not or no plan exists, 2 bad
     input, 3 something is unknown.
     """
+    from cratous.core import ledger
     from cratous.services.certify.verdicts import constraint_rows
     from cratous.services.cli.job import new_bus, plan_and_check, plan_line
     from cratous.services.cli.show import margin_text, table
     from cratous.services.loading import load
     from cratous.services.records import to_data
 
+    standing = ledger.require(allow_unproved=allow_unproved)
     loaded = load(mission, seed)
     made, checks = plan_and_check(loaded, new_bus())
     code = exit_code([check.outcome for check in checks])
+    if standing.problems and code == 0:
+        code = 3  # no verdict of an unproved kernel is better than unknown
     rows = constraint_rows(checks, "plan")
     if as_json:
-        data = {"plan": to_data(made), "constraints": rows, "exit_code": code}
+        data = {
+            "plan": to_data(made),
+            "constraints": rows,
+            "proofs": standing.line,
+            "exit_code": code,
+        }
         click.echo(json.dumps(data, indent=1))
         return code
     table(
@@ -64,4 +74,5 @@ def plan(mission: Path, seed: int, as_json: bool) -> int:
     )
     click.echo()
     click.echo(plan_line(made, checks))
+    click.echo(f"proofs: {standing.line}")
     return code

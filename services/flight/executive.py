@@ -24,15 +24,14 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import gated, path_command
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.expectation import expected_times
+from cratous.services.flight.pace import FASTEST, broken_rows, trimmed_speed_m_s
 from cratous.services.flight.rejoining import Router
-from cratous.services.flight.timing import broken_by, closed_by, opens_ms
+from cratous.services.flight.timing import closed_by, opens_ms
 from cratous.services.frames import Projection
 from cratous.services.icarous.return_to_path import goal_index
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.plan import Plan, Pose, Row
 
-SLOWEST, FASTEST = 0.8, 1.06
-"""How far the speed may be adapted in order to be on time, as factors of the planned one."""
 EARLY_MS = 500
 """A planned wait may end this much early; the rows themselves are never bent."""
 OVERLAP_S = 1.0
@@ -323,18 +322,7 @@ class Executive:
         if item.wait_ms > 0:
             target = max(target, item.start_ms)
         left = chain.left_m()
-        nominal_ms = 1000 * left / item.speed_m_s
-        spare_ms = target - now_ms
-        low = max(chain.vehicle.min_speed_m_s, SLOWEST * item.speed_m_s)
-        high = max(low, min(chain.vehicle.max_speed_m_s, FASTEST * item.speed_m_s))
-        speed = high if self.hurry else item.speed_m_s
-        if spare_ms > nominal_ms and item.hold is not None:
-            lap = 2 * math.pi * item.hold.radius_m
-            laps = 0
-            while 1000 * (left + laps * lap) / low < spare_ms:
-                laps += 1
-            speed = 1000 * (left + laps * lap) / spare_ms
-        speed = min(max(speed, low), high)
+        speed = trimmed_speed_m_s(item, chain.vehicle, left, target - now_ms, self.hurry)
         if abs(speed - chain.speed_m_s) > 0.02 * item.speed_m_s or (
             left < 10 * item.speed_m_s and abs(speed - chain.speed_m_s) > 0.002 * item.speed_m_s
         ):
@@ -360,15 +348,8 @@ class Executive:
 
     def _broken(self, factor: float, now_ms: int) -> list[tuple[int, Row]]:
         """The tasks that are left whose upper bounds break at this pace, with the first row."""
-        starts, ends = self.expected(factor, now_ms)
-        found = []
-        for task_id in sorted(ends):
-            if task_id not in self.ends and task_id not in self.failed:
-                begins = starts.get(task_id, 0)
-                row = broken_by(task_id, begins, ends[task_id], self.plan.rows, starts, ends)
-                if row is not None:
-                    found.append((task_id, row))
-        return found
+        settled = self.ends.keys() | self.failed.keys()
+        return broken_rows(self.plan.rows, *self.expected(factor, now_ms), settled)
 
     def _plan_anew(
         self, states: dict[int, AirState], now_ms: int, why: str, out: list[Any]

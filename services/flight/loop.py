@@ -9,14 +9,14 @@ aircraft is at its Time and with which constant velocity it flies until the next
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.loopback import Bridge, Delivered
-from cratous.bridge.text_protocol import Direction, Message
-from cratous.core.gate import ICAROUS, UXAS
+from cratous.bridge.text_protocol import Direction, Message, WireError
+from cratous.core.gate import ICAROUS, UXAS, Gate
 from cratous.services.bus import Bus
 from cratous.services.flight.commands import SENDERS, gated, velocity_command
 from cratous.services.flight.communication import Communication
@@ -111,11 +111,26 @@ class _Flight:
             self.bus.publish(body, source)
             if isinstance(body, self._gated):
                 node = self.nodes[body.VehicleID]
-                before = node.gate.owner
+                before = node.gate
                 dropped = node.receive(body, self.now_ms)
                 self._say(dropped, f"vehicle/{body.VehicleID}")
-                if node.gate.owner != before:
+                self._gate(body.VehicleID, before)
+                if node.gate.owner != before.owner:
                     self._authority(body.VehicleID, "the way back is free: handed back", 0)
+
+    def _gate(self, vid: int, before: Gate) -> None:
+        """Say how the gate stands, if it has changed."""
+        gate = self.nodes[vid].gate
+        if gate != before:
+            state = lmcp.new(
+                "GateState",
+                VehicleID=vid,
+                Time=self.now_ms,
+                Owner=SENDERS[gate.owner],
+                Epoch=gate.epoch,
+                Offered=gate.offered,
+            )
+            self._say([state], f"vehicle/{vid}")
 
     def _authority(self, vid: int, reason: str, intruder_id: int) -> None:
         """Say who commands a vehicle from now on, and since which epoch."""
@@ -142,13 +157,7 @@ class _Flight:
         simulation = self.mission.simulation
         self._gated = lmcp.types["GatedCommand"]
         self.bus.now_ms = 0
-        accepted = lmcp.new(
-            "PlanAccepted",
-            Time=0,
-            Makespan=self.plan.makespan_ms,
-            PlanHash=fingerprint(to_data(self.plan)),
-        )
-        self._say([accepted], "uxas")
+        self._accept(self.plan, frozenset())
         states = self._own_states()
         self._say(self.executive.begin(states), "uxas/executive")
         self._say(self.ics.begin(0), "uxas/ics")
@@ -182,6 +191,18 @@ class _Flight:
             executive.replans,
             steps,
         )
+
+    def _accept(self, plan: Plan, done: frozenset[int]) -> None:
+        """Say by which plan is flown from now on; `done` are the tasks already flown."""
+        tasks = done | {item.task_id for item in plan.items}
+        accepted = lmcp.new(
+            "PlanAccepted",
+            Time=self.now_ms,
+            Makespan=plan.makespan_ms,
+            PlanHash=fingerprint(to_data(plan)),
+            Tasks=sorted(tasks),
+        )
+        self._say([accepted], "uxas")
 
     def _outcome(self, limit_ms: int) -> str:
         back = all(node.gate.owner == UXAS for node in self.nodes.values())
@@ -245,6 +266,16 @@ class _Flight:
             if isinstance(one.record, LinkEvent) and one.direction is Direction.UP:
                 lost = self.ics.lost(one.vehicle_id, one.record, self.now_ms)
                 self._say(lost, "uxas/ics")
+            elif isinstance(one.record, WireError):
+                text = f"unreadable line from {one.direction.value}: {one.record}"
+                note = lmcp.new(
+                    "BridgeStatus",
+                    VehicleID=one.vehicle_id,
+                    Time=self.now_ms,
+                    Alive=self.bridge.alive(one.vehicle_id),
+                    Note=text,
+                )
+                self._say([note], "uxas/ics")
         return delivered
 
     def _think(self, vid: int, messages: tuple[Message, ...]) -> None:
@@ -259,14 +290,17 @@ class _Flight:
             messages,
         )
         self.brains[vid], out = instance.step(self.configs[vid], self.brains[vid], inputs)
+        before = node.gate
         if out.authority == "takeover":
             fresh = node.gate.owner == UXAS
             node.takeover()
+            self._gate(vid, before)
             if fresh:
                 self.takeovers += 1
                 self._authority(vid, out.reason, out.intruder_id)
         elif out.authority == "offer":
             node.offer()
+            self._gate(vid, before)
         if out.resolution:
             conflict = lmcp.new(
                 "Conflict",
@@ -293,8 +327,9 @@ class _Flight:
         flown = [
             (task, self.executive.starts[task], self.executive.ends[task]) for task in sorted(done)
         ]
-        mission = replace(self.mission, vehicles=self.mission.vehicles)
         try:
-            return make_plan(mission, starts=poses, done=flown, now_ms=now_ms)
+            plan = make_plan(self.mission, starts=poses, done=flown, now_ms=now_ms)
         except NoPlan:
             return None
+        self._accept(plan, done)
+        return plan

@@ -288,5 +288,7 @@ def _cost(cfg: Configuration, notes: list[str]) -> str:
         )
     nodes = attributes.get("NumberNodesMaximum")
     if nodes is not None:
-        notes.append(f"NumberNodesMaximum={nodes} is not used: the search goes on to the optimum")
+        notes.append(
+            f"NumberNodesMaximum={nodes} is not used: the search goes on beyond the first plan"
+        )
     return cost

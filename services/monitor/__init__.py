@@ -53,10 +53,13 @@ class Monitor:
                 self._step(*step)
         elif short == "AirVehicleState":
             self.completion.state(body)
+        elif short == "PlanAccepted" and body.Tasks:
+            self.constraints.accept(frozenset(body.Tasks))
+            self.completion.accept(frozenset(body.Tasks))
         elif short == "TaskProgress":
             self.constraints.progress(body)
             self.completion.progress(body)
-        elif short in ("AuthorityChange", "GatedCommand", "CommandDropped"):
+        elif short in ("GateState", "GatedCommand", "CommandDropped"):
             self.authority.message(short, body, envelope.time_ms)
         elif short == "Heartbeat":
             self.bridge.heartbeat(body)

@@ -1,21 +1,36 @@
-"""G4: exactly one commander at any time; every takeover ends in a handback or declared failure."""
+"""G4: exactly one commander at any time; every takeover ends in a handback or declared failure.
+
+The monitor replays each vehicle's actuator gate with the proved gate kernels. Every command in the
+messages must have been accepted or dropped as `gate_accepts` says, and every state that the gate
+reports must be what `gate_after`, `gate_takeover` or `gate_offer` makes of the state before.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import Any
 
-from cratous.core.gate import ICAROUS, UXAS
+from cratous.core.gate import (
+    ICAROUS,
+    UXAS,
+    Gate,
+    gate_accepts,
+    gate_after,
+    gate_offer,
+    gate_takeover,
+)
 from cratous.spec.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission import Mission
+
+NAMES = {UXAS: "UxAS", ICAROUS: "ICAROUS"}
 
 
 @dataclass
 class Command:
-    """What has been seen of the authority over one vehicle."""
+    """What has been seen of the authority over one vehicle; `due`: what must be reported next."""
 
-    owner: int = UXAS
-    epoch: int = 0
+    gate: Gate = field(default_factory=lambda: Gate(UXAS, 0, False))
+    due: str = ""
     changes: int = 0
     takeovers: int = 0
     open_ms: int | None = None
@@ -33,36 +48,63 @@ class AuthorityWatch:
         self._ended = False
 
     def message(self, short: str, body: Any, time_ms: int) -> None:
-        """A change of authority, a command, or a dropped command."""
+        """A state of the gate, a command, or a dropped command."""
         seen = self.vehicles.get(body.VehicleID)
         if seen is None:
             return
-        if short == "GatedCommand":
-            seen.commands += 1
-        elif short == "CommandDropped":
+        if short == "CommandDropped":
             seen.dropped += 1
+            if seen.due != "drop":
+                seen.faults.append((time_ms, "a command was dropped that had authority"))
+            seen.due = ""
+            return
+        if short == "GatedCommand":
+            self._missing(seen, time_ms)
+            self._command(seen, body)
         else:
-            self._change(seen, body, time_ms)
+            self._state(seen, body, time_ms)
 
-    def _change(self, seen: Command, body: Any, time_ms: int) -> None:
+    def _command(self, seen: Command, body: Any) -> None:
+        sender = ICAROUS if body.Sender.name == "ICAROUS" else UXAS
+        seen.commands += 1
+        accepted = gate_accepts(seen.gate, sender, body.Epoch)
+        after = gate_after(seen.gate, sender, body.Epoch)
+        seen.due = "state" if after != seen.gate else "" if accepted else "drop"
+
+    def _missing(self, seen: Command, time_ms: int) -> None:
+        """What the last command must have led to, and what did not come."""
+        if seen.due == "drop":
+            text = f"a command without authority in epoch {seen.gate.epoch} was not dropped"
+            seen.faults.append((time_ms, text))
+        elif seen.due == "state":
+            seen.faults.append((time_ms, "a handback was accepted but the gate did not change"))
+        seen.due = ""
+
+    def _state(self, seen: Command, body: Any, time_ms: int) -> None:
         owner = ICAROUS if body.Owner.name == "ICAROUS" else UXAS
+        now, before = Gate(owner, body.Epoch, body.Offered), seen.gate
+        handback = gate_after(before, UXAS, before.epoch)
+        allowed: tuple[Gate, ...] = (handback,)
+        if seen.due != "state":
+            self._missing(seen, time_ms)
+            allowed = (gate_takeover(before), gate_offer(before))
+        if now not in allowed:
+            text = f"the gate went from {_said(before)} to {_said(now)}"
+            seen.faults.append((time_ms, text))
+        seen.due, seen.gate = "", now
         seen.changes += 1
-        if body.Epoch <= seen.epoch:
-            seen.faults.append((time_ms, f"epoch {body.Epoch} follows epoch {seen.epoch}"))
-        if owner == seen.owner:
-            seen.faults.append((time_ms, f"authority went from {body.Owner.name} to itself"))
-        if owner == ICAROUS:
+        if before.owner == UXAS and now.owner == ICAROUS:
             seen.takeovers += 1
             seen.open_ms = time_ms
-        elif seen.open_ms is not None:
+        elif now.owner == UXAS and seen.open_ms is not None:
             seen.longest_ms = max(seen.longest_ms, time_ms - seen.open_ms)
             seen.open_ms = None
-        seen.owner, seen.epoch = owner, body.Epoch
 
     def end(self, body: Any) -> None:
         """The mission ended: no takeover may be left open."""
         self._ended = True
         for seen in self.vehicles.values():
+            self._missing(seen, body.Time)
             if seen.open_ms is not None:
                 text = f"the takeover of {seen.open_ms / 1000:.2f} s was never handed back"
                 seen.faults.append((body.Time, text))
@@ -75,7 +117,7 @@ class AuthorityWatch:
             note = f"{seen.takeovers} takeovers, each handed back"
             if seen.takeovers:
                 note += f" (longest {seen.longest_ms / 1000:.2f} s)"
-            note += f"; {seen.dropped} stale commands dropped"
+            note += f"; {seen.commands} commands, {seen.dropped} of them stale and dropped"
             time_ms = None
             if seen.faults:
                 outcome, (time_ms, note) = Outcome.VIOLATED, seen.faults[0]
@@ -86,12 +128,17 @@ class AuthorityWatch:
                     "G4",
                     f"authority over vehicle {vehicle}",
                     outcome,
-                    Kind.OBSERVED,
+                    Kind.EXACT,
                     note,
                     time_ms=time_ms,
                     vehicles=(vehicle,),
                     checks=seen.changes + seen.commands,
-                    method="gate_accepts, gate_after",
+                    method="gate_accepts, gate_after, gate_offer, gate_takeover",
                 )
             )
         return found
+
+
+def _said(gate: Gate) -> str:
+    offered = ", offered" if gate.offered else ""
+    return f"{NAMES.get(gate.owner, gate.owner)} in epoch {gate.epoch}{offered}"

@@ -44,6 +44,13 @@ class CompletionWatch:
         self._outcome: str | None = None
         self._end_ms: int | None = None
 
+    def accept(self, chosen: frozenset[int]) -> None:
+        """Another plan is flown from now on: these are its tasks and those already done."""
+        for task in chosen - self._tasks.keys():
+            self._tasks[task] = Doing()
+        for task in self._tasks.keys() - chosen:
+            del self._tasks[task]
+
     def progress(self, body: Any) -> None:
         """A task changed its phase."""
         doing = self._tasks.get(body.TaskID)

@@ -40,6 +40,10 @@ class ConstraintWatch:
         self._tracks: dict[int, list[Position]] = {}
         self.violations: list[Verdict] = []
 
+    def accept(self, chosen: frozenset[int]) -> None:
+        """Another plan is flown from now on: these are its tasks and those already done."""
+        self._chosen = chosen
+
     def progress(self, body: Any) -> None:
         """A task began or ended."""
         if body.Phase.name == ACTIVE:
@@ -88,7 +92,14 @@ class ConstraintWatch:
             for (vehicle, zone), fence in sorted(self._fences.items())
         ]
         times = {t: (self._starts[t], self._ends[t]) for t in self._starts if t in self._ends}
-        for row in term_rows(self._mission, self._chosen) or ():
+        wanted = term_rows(self._mission, self._chosen)
+        if wanted is None:
+            names = ", ".join(map(str, sorted(self._chosen)))
+            note = f"tasks {names} are no complete choice of the mission's relations"
+            found.append(
+                Verdict("G1", "flight: choice", Outcome.VIOLATED, Kind.EXACT, note, checks=1)
+            )
+        for row in wanted or ():
             if all(task in times for task in (row.i, *row.group)):
                 found.append(row_verdict(row, times, "flight"))
                 continue
