@@ -106,7 +106,7 @@ def _flat(value: Any) -> list[Any]:
 
 def _is_free(value: Any) -> bool:
     """An arbitrary value, which an input fixes at once."""
-    term = _raw(value)
+    term: Any = _raw(value)
     return z3.is_const(term) and term.decl().kind() == z3.Z3_OP_UNINTERPRETED
 
 
@@ -335,6 +335,7 @@ def _lies_in(
     domain: list[z3.BoolRef], leaves: list[z3.ExprRef], args: tuple, given: list[z3.BoolRef]
 ) -> bool:
     """Do these arguments satisfy the premises, where `given` holds?"""
+    pairs: list[tuple[Any, Any]]
     pairs = list(zip(leaves, [_raw(leaf) for leaf in _flat(args)], strict=True))
     if any(one.sort() != other.sort() for one, other in pairs):
         return False
