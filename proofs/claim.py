@@ -94,6 +94,9 @@ class Claim:
     stubs: dict[Callable[..., Any], Stub] = field(default_factory=dict)
     roots: list[z3.BoolRef] = field(default_factory=list)
     visits: list[Visit] = field(default_factory=list)
+    used: list[Callable[..., Any]] = field(default_factory=list)
+    closed: set[Callable[..., Any]] = field(default_factory=set)
+    vouched: set[Callable[..., Any]] = field(default_factory=set)
     names: set[str] = field(default_factory=set)
     dropped: frozenset[int] = frozenset()
     weakened: Callable[[int, z3.BoolRef], z3.BoolRef] | None = None
@@ -159,9 +162,16 @@ class Claim:
 
     def use(self, kernel: Callable[..., Any], *args: Any) -> Any:
         """Run a kernel of `core` on these values; the theorem is about it."""
-        if kernel not in self.stubs and kernel.__name__ not in self.kernels:
-            self.kernels.append(kernel.__name__)
+        self.used.append(kernel)
+        self._name()
         return self._lift(kernel, args)
+
+    def _name(self) -> None:
+        """The theorem is about the kernels that it uses, and that it or a lemma looks into."""
+        for kernel in self.used:
+            seen = kernel not in self.stubs or kernel in self.vouched
+            if seen and kernel.__name__ not in self.kernels:
+                self.kernels.append(kernel.__name__)
 
     def define(self, definition: Callable[..., Any], *args: Any) -> Any:
         """Evaluate a definition of `spec` on these values."""
@@ -174,6 +184,9 @@ class Claim:
         very arguments of the call, so a contract cannot ignore them.
         """
         for function in functions:
+            self.closed.add(function)
+            if function in self.stubs:
+                continue
             # two functions of one name, a kernel and its definition, must not share their results
             name = f"{function.__module__.removeprefix('cratous.')}.{function.__name__}"
             self.stubs[function] = Stub(self.prefix + name, function)
@@ -254,12 +267,14 @@ class Claim:
             circle=(*self.circle, name),
             fixed=_flatten(values),
             load=self.load,
-            stubs=self.stubs,
+            stubs=dict(self.stubs),
         )
         self.load(name)(inner)
         strangers = sorted(set(inner.fixed) - inner.names)
         if strangers:
             raise ValueError(f"the lemma {name} has no value called {', '.join(strangers)}")
+        self.vouched |= inner.vouched | (set(inner.used) - inner.closed)
+        self._name()
         given = _term(when)
         self.lemmas.append(name)
         for premise in inner.premises:

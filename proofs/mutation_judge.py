@@ -23,7 +23,7 @@ from cratous.core import ledger as gate
 from cratous.core.kernel import REGISTRY, Fold
 from cratous.proofs import prover
 from cratous.proofs.asking import ask, renew, values
-from cratous.proofs.claim import Claim, Obligation, _free, _fresh
+from cratous.proofs.claim import Claim, Obligation, _free, _fresh, _known
 from cratous.proofs.lift import REPLACED, LiftError, lift
 from cratous.proofs.mutation_inputs import SAMPLES, compare, inputs, shaped
 from cratous.proofs.mutation_inputs import run as run_once
@@ -34,7 +34,8 @@ from cratous.proofs.symbolic import SymMask, _raw
 NEAR = 300_000
 """Effort for a question whose inputs are fixed."""
 FAR = 3_000_000
-"""Effort for an open question; theorems that were dearer to prove get twice their own."""
+"""Effort for an open question; a theorem that was dearer to prove gets twice its own, up to MOST."""
+MOST = 10_000_000
 SAME = 12_000_000
 """Effort to prove that a mutant is equivalent: seldom asked, and it spares a person the search."""
 
@@ -106,7 +107,7 @@ def _flat(value: Any) -> list[Any]:
 
 def _is_free(value: Any) -> bool:
     """An arbitrary value, which an input fixes at once."""
-    term: Any = _raw(value)
+    term = _known(value)
     return z3.is_const(term) and term.decl().kind() == z3.Z3_OP_UNINTERPRETED
 
 
@@ -201,7 +202,7 @@ class Target:
             if self._refutes(name, questions, rows, NEAR, NEAR):
                 return name
         for name, questions in changed:
-            if self._refutes(name, questions, rows, FAR, max(FAR, 2 * self.effort[name])):
+            if self._refutes(name, questions, rows, FAR, _budget(self.effort[name])):
                 return name
         return ""
 
@@ -289,7 +290,7 @@ class Target:
         return [], []
 
     def _holds(self, name: str, mutant: Any) -> bool:
-        budget = max(FAR, 2 * self.effort[name])
+        budget = _budget(self.effort[name])
         return all(ask(question, budget) == "unsat" for question in self._questions(name, mutant))
 
     def _differs(
@@ -335,8 +336,7 @@ def _lies_in(
     domain: list[z3.BoolRef], leaves: list[z3.ExprRef], args: tuple, given: list[z3.BoolRef]
 ) -> bool:
     """Do these arguments satisfy the premises, where `given` holds?"""
-    pairs: list[tuple[Any, Any]]
-    pairs = list(zip(leaves, [_raw(leaf) for leaf in _flat(args)], strict=True))
+    pairs = list(zip(leaves, [_known(leaf) for leaf in _flat(args)], strict=True))
     if any(one.sort() != other.sort() for one, other in pairs):
         return False
     wanted = [z3.substitute(premise, *pairs) for premise in domain]
@@ -351,6 +351,10 @@ def _unequal(one: Any, other: Any) -> z3.BoolRef:
 def claim_of(name: str) -> Claim:
     """A theorem as it stands, stated."""
     return stated(name).claim
+
+
+def _budget(effort: int) -> int:
+    return max(FAR, min(2 * effort, MOST))
 
 
 def _row(row: tuple) -> str:
@@ -403,7 +407,7 @@ def judge_premises(name: str, effort: int, folder: Path) -> list[PremiseResult]:
     renew()
     theorems_from(folder)
     claim = stated(name).claim
-    budget = max(FAR, 2 * effort)
+    budget = _budget(effort)
 
     def without(**how: Any) -> str:
         answers = []

@@ -689,3 +689,53 @@ def test_masks_stay_in_64_bits():
     for wrong in (-1, 2**64):
         with pytest.raises(LiftError, match="no mask"):
             SymMask(z3.BitVec("m", 64)) | wrong
+
+
+# -- what a theorem is about, and what it offers ----------------------------------------------------
+def _closed(c):
+    c.opaque(callee)
+    a, b = c.reals("a b")
+    c.show(c.same(c.use(callee, a, b), c.use(callee, a, b)))
+
+
+def _looking(c):
+    a, b = c.reals("a b")
+    c.premise(b == 1)
+    c.step(b * b == 1, "on the way")
+    c.show(c.use(callee, a, b) == a)
+
+
+def test_a_theorem_is_about_what_it_or_a_lemma_looks_into(monkeypatch):
+    for name, statement, about in (("closed", _closed, []), ("looking", _looking, ["callee"])):
+        monkeypatch.setitem(LEMMAS, name, statement)
+        own = Claim()
+        statement(own)
+        assert own.kernels == about
+        caller_of_it = Claim(load=lambda name: LEMMAS[name])
+        caller_of_it.opaque(callee)
+        x, y = caller_of_it.reals("x y")
+        caller_of_it.use(callee, x, y)
+        caller_of_it.lemma(name, a=x, b=y)
+        assert caller_of_it.kernels == about
+
+
+def test_a_step_is_owed_and_known_but_not_offered(monkeypatch):
+    monkeypatch.setitem(LEMMAS, "looking", _looking)
+    own = Claim()
+    _looking(own)
+    assert [o.text for o in own.obligations if o.kind == "goal"] == ["on the way", "the claim"]
+    assert all(_holds(o.given, o.goal) for o in own.obligations)
+    user = Claim(load=lambda name: LEMMAS[name])
+    x, y = user.reals("x y")
+    user.lemma("looking", a=x, b=y)
+    assert len(user.facts) == 1
+
+
+def test_what_a_lemma_hides_stays_open_outside():
+    def hides(c):
+        c.opaque(callee)
+        c.show(True)
+
+    claim = Claim(load=lambda name: hides)
+    claim.lemma("hides")
+    assert claim.stubs == {}
