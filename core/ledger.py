@@ -73,8 +73,8 @@ class Home:
         return self.root / "proofs" / "theorems" if self.product else self.root / "theorems"
 
     def definition(self, implements: str) -> Path:
-        """The file of a definition, named as `module.function` of the package's `spec`."""
-        return self.root / "spec" / f"{implements.split('.')[0]}.py"
+        """The file of a definition, named as `module.function` or `folder.module.function`."""
+        return self.root.joinpath("spec", *implements.split(".")[:-1]).with_suffix(".py")
 
     def modules(self) -> Iterator[str]:
         """Every module that may hold kernels."""

@@ -1,0 +1,101 @@
+"""The route aggregator's and collector's bookkeeping: open items, blocks of ids, stages of a request.
+
+The service keeps what was received by key; these kernels decide whether a list is complete, which
+request an id belongs to, and what the collector of one request does next. A list is looked at as
+a whole each time, so no count can drift from what is there. Definitions: `spec.contracts.checklists`.
+"""
+
+from typing import NamedTuple
+
+from cratous.core.kernel import fold, kernel
+
+
+@kernel(implements="contracts.checklists.open_step")
+def missing_step(missing: int, ticked: bool) -> int:
+    """Add one item of a list to how many are still missing (at most 2^60 are counted)."""
+    if ticked or missing >= 1152921504606846976:
+        return missing
+    return missing + 1
+
+
+@kernel(implements="contracts.checklists.complete")
+def missing_result(missing: int) -> bool:
+    """True iff the list is complete."""
+    return missing == 0
+
+
+list_complete = fold(
+    name="list_complete",
+    implements="contracts.checklists.complete",
+    step=missing_step,
+    start=0,
+    finish=missing_result,
+)
+
+
+@kernel(implements="contracts.checklists.in_block")
+def owns(first: int, count: int, number: int) -> bool:
+    """True iff an id belongs to the block of `count` ids that begins with `first`."""
+    return number >= first and number < first + count
+
+
+class Owners(NamedTuple):
+    """The next free id, and how many blocks so far hold the id that is looked at."""
+
+    free: int
+    owners: int
+
+
+@kernel(implements="contracts.checklists.fits")
+def free_after(free: int, count: int) -> int:
+    """The next free id after a block of `count` was given out from `free`; the same if it may not.
+
+    A negative count gets nothing, and ids end at 2^60.
+    """
+    if count < 0 or count > 1152921504606846976 - free:
+        return free
+    return free + count
+
+
+@kernel(implements="contracts.checklists.give_step")
+def owners_after(o: Owners, count: int, number: int) -> Owners:
+    """Give out a block, with an eye on one id."""
+    free = free_after(o.free, count)
+    if owns(o.free, free - o.free, number):
+        return Owners(free, o.owners + 1)
+    return Owners(free, o.owners)
+
+
+@kernel(implements="contracts.checklists.owners")
+def owners_result(o: Owners) -> int:
+    """How many blocks hold the id."""
+    return o.owners
+
+
+owners_of = fold(
+    name="owners_of",
+    implements="contracts.checklists.owners",
+    step=owners_after,
+    start=Owners(1, 0),
+    finish=owners_result,
+)
+
+NOTHING, ASK_ROUTES, HAND_OVER = 0, 1, 2
+"""What the collector of one request does."""
+
+
+class Collected(NamedTuple):
+    """stage: 0 idle, 1 awaits options, 2 awaits routes, 3 handed over; act: what to do now."""
+
+    stage: int
+    act: int
+
+
+@kernel(implements="contracts.checklists.collected")
+def collector_step(stage: int, all_options: bool, all_routes: bool) -> Collected:
+    """What the collector does with what it has; call it again after every act."""
+    if stage == 1 and all_options:
+        return Collected(2, 1)
+    if stage == 2 and all_options and all_routes:
+        return Collected(3, 2)
+    return Collected(stage, 0)
