@@ -167,6 +167,7 @@ def lift(function: Callable[..., Any], *args: Any) -> Lifted:
     decide = _decider(context, queue, pruned)
     branches: list[tuple[z3.BoolRef, Any]] = []
     obligations: list[tuple[str, z3.BoolRef]] = []
+    seen: set[tuple[str, int]] = set()
     roots: list[z3.BoolRef] = []
     while queue:
         if len(branches) >= MAX_PATHS:
@@ -181,7 +182,11 @@ def lift(function: Callable[..., Any], *args: Any) -> Lifted:
             _LIFTING.pop()
         condition = z3.And(*path.conditions) if path.conditions else z3.BoolVal(True)
         branches.append((condition, value))
-        obligations += path.obligations
+        # paths with a common beginning owe the same there: once is enough
+        for text, owed in path.obligations:
+            if (text, owed.get_id()) not in seen:
+                seen.add((text, owed.get_id()))
+                obligations.append((text, owed))
         roots += path.roots
     lifted = Lifted(
         join(branches),

@@ -47,9 +47,7 @@ def line_step(line: Line, event: int, ticket: int, now_ms: int, limit_ms: int) -
         # a counter that may not overflow: 2^60 requests
         if line.taken >= 1152921504606846976:
             return Step(line, 6, line.taken)
-        return Step(
-            Line(line.taken + 1, line.answered, line.busy, line.sent_ms), 1, line.taken
-        )
+        return Step(Line(line.taken + 1, line.answered, line.busy, line.sent_ms), 1, line.taken)
     if event == 2:
         if line.busy and ticket == line.answered:
             return Step(Line(line.taken, line.answered + 1, False, line.sent_ms), 3, ticket)

@@ -12,7 +12,7 @@ def claim(c: Claim) -> None:
     line = Line(c.integer("taken"), c.integer("answered"), c.boolean("busy"), c.integer("sent_ms"))
     event, answer, now, limit = (c.integer(n) for n in ("event", "answer", "now_ms", "limit_ms"))
     ticket = c.integer("ticket")
-    c.premise(c.all_of(0 <= line.answered, line.answered <= line.taken, line.taken <= 2**60))
+    c.premise(c.all_of(line.answered >= 0, line.answered <= line.taken, line.taken <= 2**60))
     c.premise(c.implies(line.busy, line.answered < line.taken))
     c.premise(c.all_of(ticket >= line.answered, ticket < line.taken))
     before = c.define(requests.steps_left, ticket - line.answered, line.busy)

@@ -33,7 +33,7 @@ def claim(c: Claim) -> None:
     )
 
     def related(w: Any, held: Any) -> Any:
-        counters = c.all_of(0 <= w.answered, w.answered <= w.taken, w.taken <= MANY)
+        counters = c.all_of(w.answered >= 0, w.answered <= w.taken, w.taken <= MANY)
         planned = c.implies(w.busy, w.answered < w.taken)
         instant = c.all_of(w.sent_ms >= -(2**61), w.sent_ms <= 2**61)
         stages = c.all_of(

@@ -8,7 +8,7 @@ from cratous.proofs.claim import Claim
 def claim(c: Claim) -> None:
     line = Line(c.integer("taken"), c.integer("answered"), c.boolean("busy"), c.integer("sent_ms"))
     event, answer, now, limit = (c.integer(n) for n in ("event", "answer", "now_ms", "limit_ms"))
-    c.premise(c.all_of(0 <= line.answered, line.answered <= line.taken, line.taken <= 2**60))
+    c.premise(c.all_of(line.answered >= 0, line.answered <= line.taken, line.taken <= 2**60))
     c.premise(c.implies(line.busy, line.answered < line.taken))
     step = c.use(line_step, line, event, answer, now, limit)
     mine = c.all_of(event == 2, line.busy, answer == line.answered)
@@ -24,8 +24,11 @@ def claim(c: Claim) -> None:
         c.implies(
             room,
             c.all_of(
-                step.act == 1, step.ticket == line.taken, step.line.taken == line.taken + 1,
-                step.line.answered == line.answered, c.same(step.line.busy, line.busy),
+                step.act == 1,
+                step.ticket == line.taken,
+                step.line.taken == line.taken + 1,
+                step.line.answered == line.answered,
+                c.same(step.line.busy, line.busy),
                 step.line.sent_ms == line.sent_ms,
             ),
         ),
@@ -46,8 +49,6 @@ def claim(c: Claim) -> None:
     empty = c.all_of(event == 3, c.negation(line.busy), line.answered == line.taken)
     unknown = c.all_of(event != 1, event != 2, event != 3)
     c.show(
-        c.implies(
-            c.any_of(empty, unknown), c.all_of(step.act == 0, c.same(step.line, line))
-        ),
+        c.implies(c.any_of(empty, unknown), c.all_of(step.act == 0, c.same(step.line, line))),
         "without a cause nothing happens",
     )

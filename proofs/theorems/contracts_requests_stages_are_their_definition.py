@@ -1,6 +1,6 @@
-"""The watcher of requests steps from stage to stage as the definition says, whatever happens."""
+"""The watcher of requests takes each act for what it is and steps from stage to stage as the definition says, whatever happens."""
 
-from cratous.core.contracts.requests import stage_after
+from cratous.core.contracts.requests import happening, stage_after
 from cratous.proofs.claim import Claim
 from cratous.spec.contracts import requests
 
@@ -12,3 +12,6 @@ def claim(c: Claim) -> None:
     c.show(
         c.same(c.use(stage_after, stage, what), c.define(requests.after, stage, what)), "the stage"
     )
+    act, about, ticket = c.integer("act"), c.integer("about"), c.integer("ticket")
+    mine = c.when(about == ticket, c.define(requests.means, act), 0)
+    c.show(c.use(happening, act, about, ticket) == mine, "what an act is for a request")

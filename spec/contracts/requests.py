@@ -33,6 +33,18 @@ def after(stage: int, happening: int) -> int:
     return WRONG
 
 
+def means(act: int) -> int:
+    """What an act of the line (taken, published, passed on, given up) is for its request.
+
+    An answer that is passed on (3) and one that says that the time ran out (4) are both answers.
+    """
+    if act == 4:
+        return ANSWERED
+    if act >= TAKEN and act <= ANSWERED:
+        return act
+    return 0
+
+
 def in_order(pair: Pair) -> bool:
     """Neither has gone wrong, and the second has not been published before the first's answer."""
     lived = pair.first != WRONG and pair.second != WRONG

@@ -30,7 +30,7 @@ def holds(kind: int, known: bool, ready: bool, given: bool) -> bool:
         return known and (ready or given)
     if kind == TASK:
         return known and ready
-    return (kind == REGION or kind == ZONE) and known
+    return kind >= REGION and kind <= ZONE and known
 
 
 def found_step(found: Found, here: bool, kind: int) -> Found:

@@ -1,0 +1,106 @@
+"""The plan builder's progress with one request: which task is asked next, and when it answers.
+
+Definitions: `spec.contracts.building`. Stages: 0 waits for the assignment, 1 builds, 2 answered.
+"""
+
+from typing import NamedTuple
+
+from cratous.core.kernel import fold, kernel
+
+
+class Building(NamedTuple):
+    """stage; count: parts of the assignment; at: the part that was asked for last."""
+
+    stage: int
+    count: int
+    at: int
+
+
+class Built(NamedTuple):
+    """The progress afterwards, and what to do.
+
+    act: 0 nothing, 1 ask for part `part`, 2 answer with the plan, 3 answer with an error, 4 report
+    something that nobody waits for; done: part `part` has just been built.
+    """
+
+    building: Building
+    act: int
+    part: int
+    done: bool
+
+
+@kernel(implements="contracts.building.after")
+def building_step(b: Building, event: int, number: int) -> Built:
+    """One step.
+
+    event: 1 the assignment of `number` parts, 2 part `number` was built, 3 it failed. An assignment
+    of nothing is answered with an error. Parts are numbered from 0, at most 2^60 of them.
+    """
+    if event == 1 and b.stage == 0:
+        if number < 1 or number > 1152921504606846976:
+            return Built(Building(2, 0, 0), 3, 0, False)
+        return Built(Building(1, number, 0), 1, 0, False)
+    if event == 2 and b.stage == 1 and number == b.at:
+        if b.at + 1 < b.count:
+            return Built(Building(1, b.count, b.at + 1), 1, b.at + 1, True)
+        return Built(Building(2, b.count, b.at), 2, b.at, True)
+    if event == 3 and b.stage < 2:
+        return Built(Building(2, b.count, b.at), 3, b.at, False)
+    return Built(b, 4, number, False)
+
+
+@kernel(implements="contracts.building.after")
+def part_after(stage: int, asked: bool, built: bool) -> int:
+    """The stage of one part after it was asked for, or built, or neither: 3 if that is wrong."""
+    if not asked and not built:
+        return stage
+    if asked and not built and stage == 0:
+        return 1
+    if built and not asked and stage == 1:
+        return 2
+    return 3
+
+
+class WatchedParts(NamedTuple):
+    """A builder's progress, the stages of two of its parts, and its answers."""
+
+    stage: int
+    count: int
+    at: int
+    first: int
+    second: int
+    planned: bool
+    failed: bool
+    held: bool
+
+
+@kernel(implements="contracts.building.in_order")
+def watched_parts_step(
+    w: WatchedParts, event: int, number: int, one: int, other: int
+) -> WatchedParts:
+    """One step, with an eye on the parts `one` and `other`."""
+    b, act, part, done = building_step(Building(w.stage, w.count, w.at), event, number)
+    first = part_after(w.first, act == 1 and part == one, done and number == one)
+    second = part_after(w.second, act == 1 and part == other, done and number == other)
+    planned = w.planned or act == 2
+    failed = w.failed or act == 3
+    once = (act != 2 and act != 3) or (not w.planned and not w.failed)
+    lived = first != 3 and second != 3 and (second == 0 or first == 2)
+    whole = not planned or other >= b.count or second == 2
+    held = w.held and lived and once and whole
+    return WatchedParts(b.stage, b.count, b.at, first, second, planned, failed, held)
+
+
+@kernel(implements="contracts.building.in_order")
+def watched_parts_result(w: WatchedParts) -> bool:
+    """Whether all was in order all the time."""
+    return w.held
+
+
+parts_in_order = fold(
+    name="parts_in_order",
+    implements="contracts.building.in_order",
+    step=watched_parts_step,
+    start=WatchedParts(0, 0, 0, 0, 0, False, False, True),
+    finish=watched_parts_result,
+)

@@ -1,0 +1,76 @@
+"""Which piece of a mission path a vehicle gets next, so that together they are the path.
+
+Definitions: `spec.contracts.segments`. Positions count from 0, at most 2^60 of them.
+"""
+
+from typing import NamedTuple
+
+from cratous.core.kernel import fold, kernel
+
+
+class Span(NamedTuple):
+    """Positions first to last, both included."""
+
+    first: int
+    last: int
+
+
+@kernel(implements="contracts.segments.new_here")
+def first_span(end: int, length: int) -> Span:
+    """The first piece. end: last position of the path; length: positions in a piece, >= 2."""
+    return Span(0, min(end, length - 1))
+
+
+@kernel(implements="contracts.segments.new_here")
+def span_after(span: Span, end: int, length: int, overlap: int) -> Span:
+    """The piece after this one; the same if it was the last, or if the overlap is not below length.
+
+    overlap: positions that the two have in common, 1 <= overlap < length.
+    """
+    if span.last >= end or overlap < 1 or overlap >= length or overlap > span.last + 1:
+        return span
+    first = span.last + 1 - overlap
+    return Span(first, min(end, first + (length - 1)))
+
+
+@kernel(implements="contracts.segments.follows")
+def waypoint_after(waypoint: int, count: int, back_to: int) -> int:
+    """The waypoint after this one on a path of `count`; the last leads back_to (itself to stay)."""
+    if waypoint + 1 < count:
+        return waypoint + 1
+    return back_to
+
+
+class Spans(NamedTuple):
+    """The piece served last, and how often so far the position that is looked at was new."""
+
+    first: int
+    last: int
+    times: int
+
+
+@kernel(implements="contracts.segments.serve_step")
+def spans_step(s: Spans, overlap: int, end: int, length: int, position: int) -> Spans:
+    """Serve the next piece, with an eye on one position; before the first, last is -1."""
+    if s.last < 0:
+        first, last = first_span(end, length)
+    else:
+        first, last = span_after(Span(s.first, s.last), end, length, overlap)
+    if position > s.last and position <= last:
+        return Spans(first, last, s.times + 1)
+    return Spans(first, last, s.times)
+
+
+@kernel(implements="contracts.segments.times")
+def spans_result(s: Spans) -> int:
+    """How often the position was new."""
+    return s.times
+
+
+spans_serve = fold(
+    name="spans_serve",
+    implements="contracts.segments.times",
+    step=spans_step,
+    start=Spans(0, -1, 0),
+    finish=spans_result,
+)

@@ -1,0 +1,40 @@
+"""Put together without their overlaps, the pieces of a mission path are the path: every position up to
+the last one served was new exactly once and in order, none was skipped, and none beyond it was
+served; for every path, length, overlap and number of pieces."""
+
+from typing import Any
+
+from cratous.core.contracts.segments import Spans, spans_serve
+from cratous.proofs.claim import Claim
+from cratous.spec.contracts import segments
+
+
+def serve(served: Any, overlap: Any, end: Any, length: Any, position: Any) -> Any:
+    return segments.serve_step(served, end, length, overlap, position)
+
+
+def claim(c: Claim) -> None:
+    end, length, overlap = c.integer("end"), c.integer("length"), c.integer("overlap")
+    position = c.integer("position")
+    c.premise(c.all_of(end >= 0, end <= 2**60, length >= 2, length <= 2**60))
+    acc = Spans(c.whole("first"), c.whole("last"), c.whole("times"))
+    c.premise(c.all_of(overlap >= 0, overlap <= 2**60))
+
+    def related(s: Any, served: Any) -> Any:
+        place = c.all_of(s.first >= 0, s.last >= -1, s.last <= end, s.first <= s.last + 1)
+        due = c.define(segments.times_due, s.last, position)
+        alike = c.all_of(c.same(served.last, s.last), c.same(served.times, s.times))
+        full = c.any_of(s.last == end, s.last < 0, s.last - s.first == length - 1)
+        return c.all_of(place, alike, s.times == due, full)
+
+    c.fold(
+        spans_serve,
+        acc=acc,
+        model=segments.Served(c.whole("served_to"), c.whole("new")),
+        item=(overlap,),
+        context=(end, length, position),
+        model_start=segments.Served(-1, 0),
+        model_step=serve,
+        model_finish=segments.times,
+        relation=related,
+    )
