@@ -2,7 +2,7 @@
 and begun as soon as the task is initialised or has completed; only a newer request takes its place.
 And each answer that the task waits for brings it one state nearer to its plan."""
 
-from cratous.core.contracts.tasks import Task, task_step
+from cratous.core.contracts.tasks import Task, task_requested, task_step
 from cratous.proofs.claim import Claim
 from cratous.spec.contracts import tasks
 
@@ -23,6 +23,8 @@ def claim(c: Claim) -> None:
     moved = c.use(task_step, task, event, about)
     after = moved.task
     c.show(sound(after), "after every event")
+    told = c.use(task_requested, task, about)
+    c.step(c.implies(event == tasks.REQUESTED, c.same(told, moved)), "one kernel")
     newer = c.all_of(event == tasks.REQUESTED, about > request, about > kept)
     begun = c.all_of(after.state == 2, after.request == about, moved.act == tasks.ASK_SENSORS)
     c.show(
