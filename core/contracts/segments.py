@@ -23,11 +23,11 @@ def first_span(end: int, length: int) -> Span:
 
 @kernel(implements="contracts.segments.new_here")
 def span_after(span: Span, end: int, length: int, overlap: int) -> Span:
-    """The piece after this one; the same if it was the last, or if the overlap is not below length.
+    """The piece after this one of `length`; the same if it was the last, or the overlap cannot be.
 
     overlap: positions that the two have in common, 1 <= overlap < length.
     """
-    if span.last >= end or overlap < 1 or overlap >= length or overlap > span.last + 1:
+    if span.last >= end or overlap < 1 or overlap >= length:
         return span
     first = span.last + 1 - overlap
     return Span(first, min(end, first + (length - 1)))

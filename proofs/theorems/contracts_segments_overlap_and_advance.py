@@ -29,7 +29,7 @@ def claim(c: Claim) -> None:
     whole = c.any_of(after.last - after.first == length - 1, after.last == end)
     c.show(c.implies(on, c.all_of(whole, after.last - after.first <= length - 1)), "its length")
     bad = c.integer("bad")
-    c.premise(c.any_of(bad < 1, bad >= length, bad > span.last + 1))
+    c.premise(c.any_of(bad < 1, bad >= length))
     c.show(c.same(c.use(span_after, span, end, length, bad), span), "an overlap that cannot be")
     waypoint, count, back = c.integer("waypoint"), c.integer("count"), c.integer("back_to")
     c.premise(c.all_of(waypoint >= 0, waypoint < count))

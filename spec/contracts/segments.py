@@ -33,7 +33,7 @@ def fresh_positions(served_to: int, length: int, overlap: int) -> int:
     """How many positions a piece adds if the path is long enough: all but those of the overlap."""
     if served_to < 0:
         return length
-    if overlap < 1 or overlap >= length or overlap > served_to + 1:
+    if overlap < 1 or overlap >= length:
         return 0
     return length - overlap
 
