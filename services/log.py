@@ -118,6 +118,7 @@ class LogWriter:
             self._db.close()
         with suppress(OSError):
             self._part.unlink(missing_ok=True)
+            self._part.with_name(self._part.name + "-journal").unlink(missing_ok=True)
 
     def __enter__(self) -> LogWriter:
         return self

@@ -74,8 +74,9 @@ def export(
     except OSError as error:
         raise cannot_write(target, error) from None
     finally:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
+        for end in ("", "-journal", "-wal", "-shm"):
+            with suppress(OSError):
+                part.with_name(part.name + end).unlink(missing_ok=True)
     return done
 
 

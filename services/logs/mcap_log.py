@@ -29,6 +29,7 @@ from cratous.spec.errors import BadInput
 PROFILE = "cratous"
 MAGIC = b"\x89MCAP0\r\n"
 _ENVELOPE = ("address", "group", "entity_id", "service_id", "content_type")
+_CHUNK = 1 << 18  # bytes; what a truncated file loses at most
 _NS = 1_000_000  # nanoseconds in a millisecond
 
 
@@ -41,7 +42,7 @@ class McapWriter:
 
         from cratous import __version__
 
-        self._out = Writer(stream, compression=CompressionType.ZSTD)
+        self._out = Writer(stream, chunk_size=_CHUNK, compression=CompressionType.ZSTD)
         self._out.start(profile=PROFILE, library=f"cratous {__version__}")
         self._with_bytes, self._views = with_bytes, views
         self._channels: dict[tuple[Any, ...], int] = {}

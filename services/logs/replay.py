@@ -123,21 +123,22 @@ def replay(
     form: Callable[[Entry], bytes],
     rate: float,
     on_skip: Callable[[Entry, BadInput], None],
+    clock: Callable[[], float] = time.monotonic,
 ) -> int:
     """Send the messages; returns how many. rate: 2 is twice as fast, 0 as fast as it goes.
 
-    on_skip gets what cannot be sent in this form.
+    on_skip gets what cannot be sent in this form; clock: seconds, which `out.wait` lets pass.
     """
     if not 0 <= rate < float("inf"):
         raise BadInput("wrong rate", item="rate", expected="a number from 0", got=f"{rate}")
-    start = time.monotonic()
+    start = clock()
     first_ms: int | None = None
     sent = 0
     for entry in entries:
         first_ms = entry.time_ms if first_ms is None else first_ms
         if rate:
             due = start + (entry.time_ms - first_ms) / 1000 / rate
-            pause = due - time.monotonic()
+            pause = due - clock()
             if pause > 0:
                 out.wait(pause)
         try:

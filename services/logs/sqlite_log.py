@@ -158,11 +158,11 @@ def connect(path: Path) -> sqlite3.Connection:
     if not path.is_file():
         raise BadInput("there is no such file", where=str(path), expected="a message log (SQLite)")
     try:
-        database = sqlite3.connect(
-            f"{path.resolve().as_uri()}?mode=ro", uri=True, check_same_thread=False, timeout=10
-        )
-        database.text_factory = _text
-        database.execute("SELECT name FROM sqlite_master").fetchall()
+        try:
+            return _connect(path, "ro")
+        except sqlite3.OperationalError:
+            # a writer that was killed at its very end leaves a journal that must be rolled back
+            return _connect(path, "rw")
     except sqlite3.OperationalError as error:
         raise BadInput(
             "the log cannot be opened",
@@ -173,6 +173,19 @@ def connect(path: Path) -> sqlite3.Connection:
         ) from None
     except sqlite3.DatabaseError:
         raise BadInput("not a message log", where=str(path), expected="SQLite 3") from None
+
+
+def _connect(path: Path, mode: str) -> sqlite3.Connection:
+    database = sqlite3.connect(
+        f"{path.resolve().as_uri()}?mode={mode}", uri=True, check_same_thread=False, timeout=10
+    )
+    try:
+        database.text_factory = _text
+        database.execute("PRAGMA query_only = ON")
+        database.execute("SELECT name FROM sqlite_master").fetchall()
+    except sqlite3.Error:
+        database.close()
+        raise
     return database
 
 

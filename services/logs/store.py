@@ -67,6 +67,7 @@ class LogStore:
         """
         self.path, self._batch, self._hold, self._every_s = path, batch, hold, every_s
         self.count = 0  # messages accepted: written, held or given up
+        self.committed = 0  # messages on disk
         self.lost = 0  # messages given up
         self.trouble = ""  # why the last commit failed, empty if it did not
         self._pending: list[Entry] = []
@@ -198,6 +199,7 @@ class LogStore:
             return False
         for entry in self._pending:
             self._digest.feed(entry)
+        self.committed += len(self._pending)
         self._pending.clear()
         self._gap, self.trouble = None, ""
         return True
@@ -237,15 +239,17 @@ def _create(path: Path, meta: dict[str, Any]) -> sqlite3.Connection:
         rows = [(key, canonical(value)) for key, value in sorted(meta.items())]
         new.executemany("INSERT INTO meta VALUES(?, ?)", rows)
         new.commit()
+        # before it has its name: the change itself is not safe against a kill for readers
+        new.execute("PRAGMA journal_mode = WAL")
         new.close()
         _give_name(part, path)
         database = sqlite3.connect(path, check_same_thread=False, isolation_level=None)
-        database.execute("PRAGMA journal_mode = WAL")
         database.execute("PRAGMA synchronous = NORMAL")
         return database
     except (OSError, sqlite3.Error) as error:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
+        for end in ("", "-journal", "-wal", "-shm"):
+            with suppress(OSError):
+                part.with_name(part.name + end).unlink(missing_ok=True)
         raise cannot_write(path, error) from None
 
 
