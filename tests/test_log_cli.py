@@ -105,6 +105,7 @@ def test_export_and_import(log: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert main(["log", "export", str(log), "-o", str(there)]) == 0
     assert main(["log", "import", str(there), "-o", str(back)]) == 0
     assert "8 messages written" in capsys.readouterr().out
+    assert main(["log", "import", str(there), "-o", str(back)]) == 2  # no log is replaced
     with open_log(log) as one, open_log(back) as other:
         assert list(one.entries()) == list(other.entries())
     short = log.with_name("short.mcap")

@@ -110,12 +110,13 @@ def _time_ms(source: Source, text: str | None) -> int | None:
 
 def _missing(source: Source) -> list[str]:
     """What is known to be lost, in sentences."""
+    gaps = source.gaps()
     found = [
         f"{gap.missing} messages from {gap.first_ms / 1000:.3f} to {gap.last_ms / 1000:.3f} s were "
         f"lost: {gap.reason}"
-        for gap in source.gaps()
+        for gap in gaps
     ]
-    unexplained = source.holes() - sum(gap.missing for gap in source.gaps())
+    unexplained = source.holes() - sum(gap.missing for gap in gaps)
     if unexplained > 0:
         found.append(f"{unexplained} numbers are missing and nothing says why")
     return found

@@ -52,6 +52,10 @@ def export(
     """
     if target.exists() and target.resolve() == source.path.resolve():
         raise BadInput("the log would replace itself", where=str(target))
+    if form == "sqlite" and target.exists():  # a log may be evidence
+        raise BadInput(
+            "the log exists already", where=str(target), expected="a new file", got="a file"
+        )
     done = Exported()
     chosen = selection or Selection()
 
