@@ -143,9 +143,14 @@ def test_follow_in_another_process(tmp_path: Path) -> None:
         first = json.loads(follower.stdout.readline())  # while the log is still open
         assert first["body"]["ID"] == 400
         store.close()
-        rest, told = follower.communicate(timeout=120)
+        # what `readline` took from the pipe is in the buffer of this stream alone
+        rest = follower.stdout.read()
+        assert follower.stderr is not None
+        told = follower.stderr.read()
+        follower.wait(120)
     finally:
         follower.kill()
+        follower.communicate()
     assert len(rest.splitlines()) == COUNT - 1
     assert "the log is closed" in told
     assert follower.returncode == 0
