@@ -17,7 +17,7 @@ nobody has a model of are logged too. It goes on when the log cannot be written,
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -84,9 +84,22 @@ class MessageLogger:
     @classmethod
     def from_element(cls, element: Any, folder: Path, where: str, **store: Any) -> MessageLogger:
         """The logger of an element `Service` of a configuration; BadInput with file and line."""
-        rules = []
-        for child in element:
-            place = f"{where}:{child.sourceline}"
+        place = f"{where}:{element.sourceline}"
+        return cls.from_parts(element.attrib, tuple(element), folder, place, **store)
+
+    @classmethod
+    def from_parts(
+        cls,
+        attributes: Mapping[str, str],
+        children: Iterable[Any],
+        folder: Path,
+        where: str,
+        **store: Any,
+    ) -> MessageLogger:
+        """The same of an element's attributes and children; where: its `file:line`."""
+        file, rules = where.rpartition(":")[0], []
+        for child in children:
+            place = f"{file}:{child.sourceline}"
             if child.tag != "LogMessage":
                 raise BadInput(
                     "unknown element", where=place, expected="LogMessage", got=str(child.tag)
@@ -95,12 +108,11 @@ class MessageLogger:
             if not prefix:
                 raise BadInput("no message type", where=place, item="LogMessage.MessageType")
             rules.append(LogRule(prefix, _whole(child, "NumberMessagesToSkip", place)))
-        place = f"{where}:{element.sourceline}"
         return cls(
             folder,
             rules,
-            text_limit=_whole(element, "LogFileMessageCountLimit", place),
-            files_per_folder=_whole(element, "FilesPerSubDirectory", place),
+            text_limit=_whole(attributes, "LogFileMessageCountLimit", where),
+            files_per_folder=_whole(attributes, "FilesPerSubDirectory", where),
             **store,
         )
 
