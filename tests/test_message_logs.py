@@ -240,6 +240,28 @@ def test_mcap_opens_by_the_specification(log: Path) -> None:
     assert json.loads(fix.data)["timestamp"] == {"sec": 0, "nsec": 500_000_000}
 
 
+def test_what_the_originals_sent_is_a_log(shared: Path, tmp_path: Path) -> None:
+    """UxAS's TCP stream as it was captured: 29 frames, the same bytes again from our log."""
+    stream = shared / "vectors/openuxas/frames/waterway-stream.tcp.bin"
+    with open_log(stream) as source:
+        export(source, tmp_path / "log.sqlite", "sqlite")
+    found = read(tmp_path / "log.sqlite")
+    assert len(found) == 29
+    assert all(to_object(entry).all_names[0] == entry.topic for entry in found)
+    for form in ("mcap", "jsonl"):
+        between = copy(tmp_path / "log.sqlite", f"between.{form}", form)
+        assert copy(between, "again.frames", "frames").read_bytes() == stream.read_bytes()
+
+
+def test_a_scenario_of_amase_is_a_log(shared: Path) -> None:
+    scenario = shared / "vectors/amase/scenarios/02_waterway.xml"
+    with open_log(scenario) as source:
+        assert source.kind == "xml"
+        found = list(source.entries())
+    assert len(found) == 6
+    assert [entry.time_ms for entry in found[:2]] == [1000, 1100]
+
+
 # --- selection
 
 

@@ -77,6 +77,9 @@ def export(
         os.replace(part, target)
     except OSError as error:
         raise cannot_write(target, error) from None
+    except BadInput as error:
+        error.where = error.where.replace(str(part), str(target))
+        raise
     finally:
         for end in ("", "-journal", "-wal", "-shm"):
             with suppress(OSError):

@@ -213,7 +213,11 @@ class LogStore:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self.close()
+        if kind is None:
+            self.close()
+        else:  # the error under way says more
+            with suppress(BadInput):
+                self.close()
 
 
 def _make_plain(database: sqlite3.Connection) -> None:
