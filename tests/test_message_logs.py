@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import random
 import resource
-import shutil
 import signal
 import sqlite3
 import time
@@ -400,29 +400,6 @@ def test_a_changed_message_is_found(tmp_path: Path) -> None:
         source.verify()
 
 
-@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(at=st.floats(0, 1), noise=st.binary(min_size=1, max_size=40))
-def test_a_damaged_database_never_gives_another_error(
-    at: float, noise: bytes, tmp_path: Path
-) -> None:
-    log = tmp_path / "whole.sqlite"
-    if not log.exists():
-        write(log, list(entries()))
-    hurt = tmp_path / "hurt.sqlite"
-    shutil.copyfile(log, hurt)
-    damage(hurt, int(at * (hurt.stat().st_size - 1)), noise)
-    try:
-        with open_log(hurt) as source:
-            source.meta()
-            source.topics()
-            source.gaps()
-            source.holes()
-            for entry in source.entries():
-                any_data(entry)
-    except BadInput:
-        pass
-
-
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(cut=st.floats(0, 1), flips=st.lists(st.floats(0, 1), max_size=3))
 def test_truncated_and_damaged_mcap(cut: float, flips: list[float], tmp_path: Path) -> None:
@@ -446,6 +423,44 @@ def test_truncated_and_damaged_mcap(cut: float, flips: list[float], tmp_path: Pa
         assert size == len(data)
     if not flips:
         assert found == list(entries())[: len(found)]
+
+
+def hurt(data: bytearray, dice: random.Random) -> None:
+    """Change, replace, take out or cut off some bytes."""
+    for _ in range(dice.choice([1, 1, 2, 5])):
+        at, kind = dice.randrange(len(data)), dice.random()
+        if kind < 0.5:
+            data[at] = dice.randrange(256)
+        elif kind < 0.7:
+            data[at : at + dice.randrange(1, 40)] = dice.randbytes(dice.randrange(1, 40))
+        elif kind < 0.85:
+            del data[at : at + dice.randrange(1, 100)]
+        else:
+            del data[at + 1 :]
+        if not data:
+            data += b"x"
+
+
+@pytest.mark.parametrize("form", ["sqlite", "mcap", "jsonl", "xml", "frames", "lmcp", "uxas"])
+def test_damage_of_any_kind_is_an_error_of_ours(log: Path, form: str) -> None:
+    whole = copy(log, f"whole.{form}", form).read_bytes()
+    dice, bad = random.Random(form), 0
+    for _ in range(60):
+        data = bytearray(whole)
+        hurt(data, dice)
+        log.with_name("hurt").write_bytes(data)
+        try:
+            with open_log(log.with_name("hurt")) as source:
+                source.meta()
+                source.topics()
+                source.gaps()
+                source.holes()
+                source.verify()
+                for entry in source.entries():
+                    any_data(entry)
+        except BadInput:
+            bad += 1
+    assert bad >= 20
 
 
 def test_truncated_mcap_is_salvaged(tmp_path: Path) -> None:

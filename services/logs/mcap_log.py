@@ -29,6 +29,7 @@ from cratous.spec.errors import BadInput
 PROFILE = "cratous"
 MAGIC = b"\x89MCAP0\r\n"
 _ENVELOPE = ("address", "group", "entity_id", "service_id", "content_type")
+_GAP = [int, int, int, int, str]
 _CHUNK = 1 << 18  # bytes; what a truncated file loses at most
 _NS = 1_000_000  # nanoseconds in a millisecond
 
@@ -137,14 +138,22 @@ def is_mcap(head: bytes) -> bool:
 
 def read_meta(path: Path) -> tuple[dict[str, Any], list[list[Any]]]:
     """The log's meta data and gaps; empty if the file is truncated (`read_mcap` says so)."""
+    found = []
+    with suppress(BadInput):
+        found = [record for record in _records(path) if type(record).__name__ == "Metadata"]
     meta: dict[str, Any] = {}
     gaps: list[list[Any]] = []
-    with suppress(BadInput):
-        for record in _records(path):
-            if type(record).__name__ == "Metadata" and record.name == "meta":
-                meta = {key: json.loads(value) for key, value in record.metadata.items()}
-            elif type(record).__name__ == "Metadata" and record.name == "gap":
-                gaps += [json.loads(value) for value in record.metadata.values()]
+    for record in found:
+        try:
+            values = {key: json.loads(value) for key, value in record.metadata.items()}
+        except ValueError as error:
+            raise _damaged(path, 0, error) from None
+        if record.name == "meta":
+            meta = values
+        elif record.name == "gap":
+            gaps += values.values()
+    if any(not isinstance(gap, list) or [*map(type, gap)] != _GAP for gap in gaps):
+        raise _damaged(path, 0, ValueError("wrong values in a gap"))
     return meta, gaps
 
 
@@ -191,9 +200,13 @@ def read_mcap(path: Path) -> Iterator[Entry]:
         if name == "Channel":
             channels[record.id] = record
         elif name == "Metadata" and record.name == "closing":
-            count = int(record.metadata["count"])
+            text = record.metadata.get("count", "")
+            count = int(text) if text.isascii() and text.isdigit() else None
         elif name == "Message":
-            entry = _entry(record, channels.get(record.channel_id), path)
+            try:
+                entry = _entry(record, channels.get(record.channel_id), path)
+            except (KeyError, UnicodeDecodeError) as error:
+                raise _damaged(path, read, error) from None
             # bytes come before the JSON of the same message and count for it
             if entry is None or entry.seq == done:
                 continue

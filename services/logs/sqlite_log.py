@@ -17,6 +17,9 @@ from cratous.services.logs.schema import COLUMNS, COLUMNS_1, Digest
 from cratous.services.logs.store import Gap
 from cratous.spec.errors import BadInput
 
+# the second is what the library raises where a damaged name stands in its message
+ERRORS = (sqlite3.DatabaseError, UnicodeDecodeError)
+
 
 class Closing(NamedTuple):
     """What the writer said at its end."""
@@ -68,7 +71,7 @@ class SqliteLog:
     def _rows(self, query: str, values: tuple[Any, ...] = ()) -> list[Any]:
         try:
             return self._db.execute(query, values).fetchall()
-        except sqlite3.DatabaseError as error:
+        except ERRORS as error:
             raise damaged(self.path, error) from None
 
     def entries(
@@ -80,9 +83,9 @@ class SqliteLog:
         read = 0
         try:
             for row in self._db.execute(query + " ORDER BY seq", (after, *values)):
-                yield Entry(*row)
+                yield entry_of(row)
                 read += 1
-        except sqlite3.DatabaseError as error:
+        except ERRORS as error:
             raise damaged(self.path, error, read) from None
 
     def meta(self) -> dict[str, Any]:
@@ -90,26 +93,33 @@ class SqliteLog:
         try:
             rows = self._rows("SELECT key, value FROM meta ORDER BY key")
             return {key: json.loads(value) for key, value in rows}
-        except ValueError as error:
+        except (ValueError, TypeError) as error:
             raise damaged(self.path, error) from None
 
     def topics(self) -> list[TopicCount]:
         """The types in the log with their counts and times."""
         query = "SELECT topic, count(*), min(time_ms), max(time_ms) FROM messages GROUP BY topic"
-        return [TopicCount(*row) for row in self._rows(query + " ORDER BY topic")]
+        found = self._rows(query + " ORDER BY topic")
+        return [TopicCount(*self._typed(row, (str, int, int, int))) for row in found]
 
     def gaps(self) -> list[Gap]:
         """What the writer had to give up."""
         if "gaps" not in self._tables:
             return []
-        return [Gap(*row) for row in self._rows("SELECT * FROM gaps ORDER BY before_seq")]
+        found = self._rows("SELECT * FROM gaps ORDER BY before_seq")
+        return [Gap(*self._typed(row, (int, int, int, int, str))) for row in found]
 
     def closing(self) -> Closing | None:
         """What the writer said at its end; None if it has not ended, was killed, or is of old."""
         if "closing" not in self._tables:
             return None
         rows = self._rows("SELECT messages, digest FROM closing")
-        return Closing(*rows[-1]) if rows else None
+        return Closing(*self._typed(rows[-1], (int, str))) if rows else None
+
+    def _typed(self, row: tuple[Any, ...], kinds: tuple[type, ...]) -> tuple[Any, ...]:
+        if tuple(map(type, row)) != kinds:
+            raise damaged(self.path, ValueError(f"wrong values {row!r:.80}"))
+        return row
 
     def holes(self) -> int:
         """How many numbers are missing between the first and the last."""
@@ -153,6 +163,17 @@ class SqliteLog:
         self.close()
 
 
+def entry_of(row: tuple[Any, ...]) -> Entry:
+    """The entry of a row; sqlite3.DatabaseError if a value is not of its kind."""
+    entry = Entry(*row)
+    right = type(entry.seq) is type(entry.time_ms) is int
+    right = right and type(entry.source) is type(entry.topic) is str
+    right = right and type(entry.body) in (str, bytes)
+    if not right or any(type(value) not in (str, type(None)) for value in entry[5:]):
+        raise sqlite3.DatabaseError(f"wrong values {row!r:.80}")
+    return entry
+
+
 def connect(path: Path) -> sqlite3.Connection:
     """The database, for reading only; BadInput if it is none."""
     if not path.is_file():
@@ -171,7 +192,7 @@ def connect(path: Path) -> sqlite3.Connection:
             "written (copy both there)",
             got=str(error),
         ) from None
-    except sqlite3.DatabaseError:
+    except ERRORS:
         raise BadInput("not a message log", where=str(path), expected="SQLite 3") from None
 
 
@@ -183,7 +204,7 @@ def _connect(path: Path, mode: str) -> sqlite3.Connection:
         database.text_factory = _text
         database.execute("PRAGMA query_only = ON")
         database.execute("SELECT name FROM sqlite_master").fetchall()
-    except sqlite3.Error:
+    except (sqlite3.Error, UnicodeDecodeError):
         database.close()
         raise
     return database
@@ -201,7 +222,7 @@ def tables_of(path: Path) -> set[str]:
     database = connect(path)
     try:
         return {name for (name,) in database.execute("SELECT name FROM sqlite_master")}
-    except sqlite3.DatabaseError as error:
+    except ERRORS as error:
         raise damaged(path, error) from None
     finally:
         database.close()

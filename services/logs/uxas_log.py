@@ -11,7 +11,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from cratous.services.logs.entry import Entry, to_object
-from cratous.services.logs.sqlite_log import connect, damaged
+from cratous.services.logs.sqlite_log import ERRORS, connect, damaged, entry_of
 from cratous.services.logs.store import cannot_write
 from cratous.services.records import canonical
 from cratous.spec.errors import BadInput
@@ -37,11 +37,10 @@ def read_uxas(path: Path) -> Iterator[Entry]:
             except (BadInput, ValueError):
                 body = canonical({"$text": text})
             source = f"{entity}/{service}"
-            yield Entry(
-                read, time_ms, source, descriptor, body, None, group, str(entity), str(service)
-            )
+            ids = (str(entity), str(service), None)
+            yield entry_of((read, time_ms, source, descriptor, body, None, group, *ids))
             read += 1
-    except sqlite3.DatabaseError as error:
+    except ERRORS as error:
         raise damaged(path, error, read) from None
     finally:
         database.close()
