@@ -162,10 +162,8 @@ def list_(source: Source, chosen: Selection, verify: bool, as_json: bool) -> int
     ]
     table(["type", "messages", "first [s]", "last [s]"], rows)
     click.echo(f"{count} messages of {len(topics)} types ({source.kind})")
-    if closing is not None:
-        click.echo(f"closed with the digest {closing.digest}{' (verified)' if verify else ''}")
-    elif source.kind == "sqlite":
-        click.echo("no end: it is being written, or its writer was stopped")
+    if end := source.end():
+        click.echo(end + (" (verified)" if verify and closing is not None else ""))
     for line in missing:
         click.echo(f"MISSING: {line}")
     return 3 if missing else 0

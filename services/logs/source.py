@@ -56,6 +56,10 @@ class Source:
         """What the writer said at its end; None if the format or the writer does not say."""
         return None
 
+    def end(self) -> str:
+        """What is known about the end of the log, in a sentence; empty if the format has none."""
+        return ""
+
     def holes(self) -> int:
         """Numbers that are missing between the first and the last."""
         return 0
@@ -98,6 +102,14 @@ class DatabaseSource(Source):
 
     def closing(self) -> Closing | None:
         return self._log.closing()
+
+    def end(self) -> str:
+        closing = self._log.closing()
+        if closing is not None:
+            return f"closed with the digest {closing.digest}"
+        if self._log.old:
+            return "a log of the first version, which does not say whether it is whole"
+        return "no end: it is being written, or its writer was stopped"
 
     def holes(self) -> int:
         return 0 if "selected" in self._log.meta() else self._log.holes()

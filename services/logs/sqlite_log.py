@@ -109,6 +109,11 @@ class SqliteLog:
         found = self._rows("SELECT * FROM gaps ORDER BY before_seq")
         return [Gap(*self._typed(row, (int, int, int, int, str))) for row in found]
 
+    @property
+    def old(self) -> bool:
+        """Whether it is of the first version, which says nothing about its end."""
+        return "closing" not in self._tables
+
     def closing(self) -> Closing | None:
         """What the writer said at its end; None if it has not ended, was killed, or is of old."""
         if "closing" not in self._tables:
