@@ -6,6 +6,7 @@ import importlib.util
 import resource
 import signal
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -153,35 +154,39 @@ def test_choosing_is_pure(tmp_path: Path) -> None:
     logger.close()
 
 
-@pytest.fixture
+@contextmanager
 def full_disk() -> Iterator[None]:
-    """Files of this process may not grow beyond 200 kB."""
+    """Files of this process may not grow beyond 200 kB.
+
+    Not a fixture: pytest itself must be able to write between the phases of a test.
+    """
     old = resource.getrlimit(resource.RLIMIT_FSIZE)
     ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, old[1]))
-    yield
-    resource.setrlimit(resource.RLIMIT_FSIZE, old)
-    signal.signal(signal.SIGXFSZ, ignored)
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, old)
+        signal.signal(signal.SIGXFSZ, ignored)
 
 
-def test_trouble_is_said_once_on_the_bus_and_again_when_it_is_over(
-    tmp_path: Path, full_disk: None
-) -> None:
-    logger = MessageLogger(tmp_path, batch=50, hold=200, every_s=None)
-    envelope = Envelope(0, 0, "sim", STATE, lmcp.new("AirVehicleState"))
-    state, said = logger.start(), []
-    for _ in range(2500):
+def test_trouble_is_said_once_on_the_bus_and_again_when_it_is_over(tmp_path: Path) -> None:
+    with full_disk():
+        logger = MessageLogger(tmp_path, batch=50, hold=200, every_s=None)
+        envelope = Envelope(0, 0, "sim", STATE, lmcp.new("AirVehicleState"))
+        state, said = logger.start(), []
+        for _ in range(2500):
+            state, more = logger.handle(state, envelope, 0)
+            said += list(more)
+        assert [s.StatusType.name for s in said] == ["Error"]
+        assert "cannot be written" in said[0].Info[0].Value
+        old = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (-1, old[1]))
+        assert logger.log.flush()
         state, more = logger.handle(state, envelope, 0)
-        said += list(more)
-    assert [s.StatusType.name for s in said] == ["Error"]
-    assert "cannot be written" in said[0].Info[0].Value
-    old = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (-1, old[1]))
-    assert logger.log.flush()
-    state, more = logger.handle(state, envelope, 0)
-    (back,) = more
-    assert f"{logger.log.lost} messages lost" in back.Info[0].Value
-    logger.close()
+        (back,) = more
+        assert f"{logger.log.lost} messages lost" in back.Info[0].Value
+        logger.close()
 
 
 def test_a_small_day_of_traffic(root: Path, tmp_path: Path) -> None:

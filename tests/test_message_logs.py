@@ -10,6 +10,7 @@ import signal
 import sqlite3
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import jsonschema
@@ -528,68 +529,77 @@ def test_a_folder_that_cannot_be_written(tmp_path: Path, log: Path) -> None:
     assert read(log) == list(entries())
 
 
-@pytest.fixture
+@contextmanager
 def small_disk() -> Iterator[None]:
-    """Files of this process may not grow beyond 300 kB: a disk that is full."""
+    """Files of this process may not grow beyond 300 kB: a disk that is full.
+
+    Not a fixture: pytest itself must be able to write between the phases of a test.
+    """
     old = resource.getrlimit(resource.RLIMIT_FSIZE)
     ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, old[1]))
-    yield
-    resource.setrlimit(resource.RLIMIT_FSIZE, old)
-    signal.signal(signal.SIGXFSZ, ignored)
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, old)
+        signal.signal(signal.SIGXFSZ, ignored)
 
 
-def test_a_full_disk_loses_nothing_silently(tmp_path: Path, small_disk: None) -> None:
-    path = tmp_path / "log.sqlite"
-    store = LogStore(path, batch=100, every_s=None, hold=500)
-    body = lmcp.binary.pack(state(400, 1))
-    good = [store.write(Entry(0, k, "sim", STATE, body)) for k in range(4000)]
-    assert good[0]
-    assert not good[-1]
-    assert store.trouble
-    assert store.lost == 4000 - store.committed - 500
-    with SqliteLog(path) as log:
-        assert [e.seq for e in log.entries()] == list(range(store.committed))
-    # there is room again: what was held is written, the gap is named, and it goes on
-    resource.setrlimit(resource.RLIMIT_FSIZE, (-1, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
-    assert store.flush()
-    assert store.write(Entry(0, 4000, "sim", STATE, body))
-    lost = store.lost
-    store.close()
-    with SqliteLog(path) as log:
-        log.verify()
-        (gap,) = log.gaps()
-        assert gap.missing == lost == log.holes()
-        assert (gap.before_seq, gap.last_ms) == (4000, 3999)
-        assert "full" in gap.reason or "I/O" in gap.reason
-        assert log.last_seq() == 4000
-
-
-def test_a_disk_that_stays_full_is_an_error_at_the_end(tmp_path: Path, small_disk: None) -> None:
-    store = LogStore(tmp_path / "log.sqlite", batch=100, every_s=None, hold=500)
-    body = lmcp.binary.pack(state(400, 1))
-    for k in range(4000):
-        store.write(Entry(0, k, "sim", STATE, body))
-    with pytest.raises(BadInput, match=r"not whole: [0-9]+ of 4000 messages are lost"):
+def test_a_full_disk_loses_nothing_silently(tmp_path: Path) -> None:
+    with small_disk():
+        path = tmp_path / "log.sqlite"
+        store = LogStore(path, batch=100, every_s=None, hold=500)
+        body = lmcp.binary.pack(state(400, 1))
+        good = [store.write(Entry(0, k, "sim", STATE, body)) for k in range(4000)]
+        assert good[0]
+        assert not good[-1]
+        assert store.trouble
+        assert store.lost == 4000 - store.committed - 500
+        with SqliteLog(path) as log:
+            assert [e.seq for e in log.entries()] == list(range(store.committed))
+        # there is room again: what was held is written, the gap is named, and it goes on
+        resource.setrlimit(
+            resource.RLIMIT_FSIZE, (-1, resource.getrlimit(resource.RLIMIT_FSIZE)[1])
+        )
+        assert store.flush()
+        assert store.write(Entry(0, 4000, "sim", STATE, body))
+        lost = store.lost
         store.close()
-    assert len(read(tmp_path / "log.sqlite")) == store.committed
-    with pytest.raises(BadInput, match=r"cannot be written|not whole"):
-        copy(tmp_path / "log.sqlite", "copy.xml", "xml")
-    assert not (tmp_path / "copy.xml").exists()
-    assert not list(tmp_path.glob(".copy*"))
+        with SqliteLog(path) as log:
+            log.verify()
+            (gap,) = log.gaps()
+            assert gap.missing == lost == log.holes()
+            assert (gap.before_seq, gap.last_ms) == (4000, 3999)
+            assert "full" in gap.reason or "I/O" in gap.reason
+            assert log.last_seq() == 4000
 
 
-def test_a_flight_log_on_a_full_disk_is_an_error_and_no_file(
-    tmp_path: Path, small_disk: None
-) -> None:
-    def fill() -> None:
-        with LogWriter(tmp_path / "log.sqlite") as writer:
-            for k in range(4000):
-                writer.tap(Envelope(k, k, "sim", STATE, state(400, k)))
+def test_a_disk_that_stays_full_is_an_error_at_the_end(tmp_path: Path) -> None:
+    with small_disk():
+        store = LogStore(tmp_path / "log.sqlite", batch=100, every_s=None, hold=500)
+        body = lmcp.binary.pack(state(400, 1))
+        for k in range(4000):
+            store.write(Entry(0, k, "sim", STATE, body))
+        with pytest.raises(BadInput, match=r"not whole: [0-9]+ of 4000 messages are lost"):
+            store.close()
+        assert len(read(tmp_path / "log.sqlite")) == store.committed
+        with pytest.raises(BadInput, match=r"cannot be written|not whole"):
+            copy(tmp_path / "log.sqlite", "copy.xml", "xml")
+        assert not (tmp_path / "copy.xml").exists()
+        assert not list(tmp_path.glob(".copy*"))
 
-    with pytest.raises(BadInput, match="cannot be written"):
-        fill()
-    assert list(tmp_path.iterdir()) == []
+
+def test_a_flight_log_on_a_full_disk_is_an_error_and_no_file(tmp_path: Path) -> None:
+    with small_disk():
+
+        def fill() -> None:
+            with LogWriter(tmp_path / "log.sqlite") as writer:
+                for k in range(4000):
+                    writer.tap(Envelope(k, k, "sim", STATE, state(400, k)))
+
+        with pytest.raises(BadInput, match="cannot be written"):
+            fill()
+        assert list(tmp_path.iterdir()) == []
 
 
 # --- while it is written
