@@ -1,32 +1,30 @@
 """The message log: SQLite, complete or absent, with a digest that names its content.
 
 `messages` holds every message of the bus in total order; `meta` holds what is needed to judge it
-again (mission, plan, version, seed). The digest covers sequence, virtual time, source, topic and
-canonical body: no ports, no wall times, no order of insertion. The file is written beside its
-final name and renamed when it is whole.
+again (mission, plan, version, seed); the schema is that of all logs (`services.logs.schema`). The
+digest covers sequence, virtual time, source, topic and canonical body: no ports, no wall times, no
+order of insertion. The file is written beside its final name and renamed when it is whole. The
+readers here take logs of the message logger as well.
 """
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 import sqlite3
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple
 
 from cratous.services.bus import Envelope
+from cratous.services.logs.entry import Entry, to_text
+from cratous.services.logs.schema import INSERT, TABLES, Digest
+from cratous.services.logs.sqlite_log import SqliteLog
+from cratous.services.logs.store import cannot_write
 from cratous.services.records import canonical
-from cratous.spec.errors import BadInput
 
 BATCH = 500
-_SCHEMA = """
-CREATE TABLE messages(seq INTEGER PRIMARY KEY, time_ms INTEGER NOT NULL, source TEXT NOT NULL,
-                      topic TEXT NOT NULL, body TEXT NOT NULL);
-CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL);
-"""
 
 
 class Row(NamedTuple):
@@ -37,11 +35,6 @@ class Row(NamedTuple):
     source: str
     topic: str
     body: str
-
-
-def _feed(digest: Any, row: Row) -> None:
-    head = canonical([row.seq, row.time_ms, row.source, row.topic])
-    digest.update(f"{head}\n{row.body}\n".encode())
 
 
 class LogWriter:
@@ -56,53 +49,76 @@ class LogWriter:
         self.path = path
         self._encode = encode
         self._part = path.with_name(path.name + ".part")
-        self._part.unlink(missing_ok=True)
-        self._db = sqlite3.connect(self._part)
-        self._db.executescript(_SCHEMA)
-        self._rows: list[Row] = []
-        self._digest = hashlib.sha256()
+        self._rows: list[Entry] = []
+        self._digest = Digest()
         self.count = 0
+        try:
+            self._part.unlink(missing_ok=True)
+            self._db = sqlite3.connect(self._part)
+            self._db.executescript(TABLES)
+        except (OSError, sqlite3.Error) as error:
+            raise cannot_write(path, error) from None
         for key, value in sorted(meta.items()):
             self.note(key, value)
 
     def note(self, key: str, value: Any) -> None:
         """Set a meta entry to plain data."""
-        self._db.execute("INSERT OR REPLACE INTO meta VALUES(?, ?)", (key, canonical(value)))
+        self._execute("INSERT OR REPLACE INTO meta VALUES(?, ?)", (key, canonical(value)))
 
     def tap(self, envelope: Envelope) -> None:
         """Log one message; made for `Bus.tap`."""
-        row = Row(
+        entry = Entry(
             envelope.seq,
             envelope.time_ms,
             envelope.source,
             envelope.topic,
             self._encode(envelope.body),
         )
-        _feed(self._digest, row)
-        self._rows.append(row)
+        self._digest.feed(entry)
+        self._rows.append(entry)
         self.count += 1
         if len(self._rows) >= BATCH:
             self._flush()
 
     def digest(self) -> str:
         """SHA-256 over all messages so far, in hexadecimal."""
-        return self._digest.hexdigest()
+        return self._digest.hex()
+
+    def _execute(self, statement: str, values: tuple[Any, ...]) -> None:
+        try:
+            self._db.execute(statement, values)
+        except sqlite3.Error as error:
+            raise cannot_write(self.path, error) from None
 
     def _flush(self) -> None:
-        self._db.executemany("INSERT INTO messages VALUES(?, ?, ?, ?, ?)", self._rows)
+        try:
+            self._db.executemany(INSERT, self._rows)
+        except sqlite3.Error as error:
+            raise cannot_write(self.path, error) from None
         self._rows.clear()
 
     def close(self) -> None:
         """Write the rest and give the file its name."""
-        self._flush()
-        self._db.commit()
-        self._db.close()
-        os.replace(self._part, self.path)
+        try:
+            self._flush()
+            self._execute("INSERT INTO closing VALUES(?, ?)", (self.count, self.digest()))
+            try:
+                self._db.commit()
+                self._db.close()
+                os.replace(self._part, self.path)
+            except (OSError, sqlite3.Error) as error:
+                raise cannot_write(self.path, error) from None
+        except BaseException:
+            self.discard()
+            raise
 
     def discard(self) -> None:
         """Give up: leave no file."""
-        self._db.close()
-        self._part.unlink(missing_ok=True)
+        with suppress(sqlite3.Error):
+            self._db.close()
+        with suppress(OSError):
+            self._part.unlink(missing_ok=True)
+            self._part.with_name(self._part.name + "-journal").unlink(missing_ok=True)
 
     def __enter__(self) -> LogWriter:
         return self
@@ -119,52 +135,26 @@ class LogWriter:
             self.discard()
 
 
-def _open(path: Path) -> sqlite3.Connection:
-    if not path.is_file():
-        raise BadInput("there is no such file", where=str(path), expected="a message log (SQLite)")
-    database = sqlite3.connect(f"{path.resolve().as_uri()}?mode=ro", uri=True)
-    try:
-        tables = {name for (name,) in database.execute("SELECT name FROM sqlite_master")}
-    except sqlite3.DatabaseError:
-        database.close()
-        raise BadInput("not a message log", where=str(path), expected="SQLite 3") from None
-    if not {"messages", "meta"} <= tables:
-        database.close()
-        raise BadInput("not a message log", where=str(path), expected="tables messages and meta")
-    return database
-
-
 def read_log(path: Path) -> Iterator[Row]:
-    """The messages in order; BadInput if the file is not a message log."""
-    database = _open(path)
-    try:
-        query = "SELECT seq, time_ms, source, topic, body FROM messages ORDER BY seq"
-        for found in database.execute(query):
-            yield Row(*found)
-    except sqlite3.DatabaseError as error:
-        raise BadInput(f"the log is damaged ({error})", where=str(path)) from None
-    finally:
-        database.close()
+    """The messages in order; BadInput if the file is not a message log.
+
+    A body that was logged as LMCP bytes is given as JSON text.
+    """
+    with SqliteLog(path) as log:
+        for entry in log.entries():
+            yield Row(*entry[:4], to_text(entry))
 
 
 def read_meta(path: Path) -> dict[str, Any]:
     """All meta entries as plain data."""
-    database = _open(path)
-    try:
-        rows = database.execute("SELECT key, value FROM meta ORDER BY key").fetchall()
-        return {key: json.loads(value) for key, value in rows}
-    except (sqlite3.DatabaseError, ValueError) as error:
-        raise BadInput(f"the log is damaged ({error})", where=str(path)) from None
-    finally:
-        database.close()
+    with SqliteLog(path) as log:
+        return log.meta()
 
 
 def read_digest(path: Path) -> str:
     """The digest recomputed from the file."""
-    digest = hashlib.sha256()
-    for row in read_log(path):
-        _feed(digest, row)
-    return digest.hexdigest()
+    with SqliteLog(path) as log:
+        return log.digest()
 
 
 def read_envelopes(path: Path, decode: Callable[[str], Any] | None = None) -> Iterator[Envelope]:

@@ -1,0 +1,97 @@
+"""JSON Schemas of LMCP types, in the form that Foxglove reads, and its own LocationFix.
+
+Foxglove wants `"type": "object"` at the top and one plain type for each property, so nested types
+stand inline, an enum is a string, and a field that may be null is left out of the message when it
+is null (reading it back gives null again). Where a type holds itself, it is any object. NaN and
+the infinities have no number in JSON: they stand as text.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.services.logs.entry import RAW
+
+LOCATION_FIX = "foxglove.LocationFix"
+_TIME = {
+    "type": "object",
+    "title": "time",
+    "properties": {"sec": {"type": "integer"}, "nsec": {"type": "integer"}},
+}
+LOCATION_FIX_SCHEMA: dict[str, Any] = {
+    "title": LOCATION_FIX,
+    "type": "object",
+    "properties": {
+        "timestamp": _TIME,
+        "frame_id": {"type": "string"},
+        "latitude": {"type": "number", "description": "degrees"},
+        "longitude": {"type": "number", "description": "degrees"},
+        "altitude": {"type": "number", "description": "metres"},
+        "position_covariance": {"type": "array", "items": {"type": "number"}},
+        "position_covariance_type": {"type": "integer"},
+    },
+}
+
+
+@cache
+def schema_of(topic: str) -> dict[str, Any]:
+    """The JSON Schema of a type, by its full name; BadInput for a name that is no type."""
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **_struct(lmcp.types[topic], ()),
+        "title": topic,
+    }
+
+
+def _struct(cls: Any, above: tuple[Any, ...]) -> dict[str, Any]:
+    if cls in above:
+        return {"type": "object"}
+    properties: dict[str, Any] = {"$type": {"type": "string"}}
+    for field in cls.fields:
+        one = _one(field, (*above, cls))
+        properties[field.name] = one if field.array is None else {"type": "array", "items": one}
+    return {"type": "object", "properties": properties}
+
+
+def _one(field: Any, above: tuple[Any, ...]) -> dict[str, Any]:
+    units = {"description": field.units} if getattr(field, "units", "") else {}
+    if field.kind == "struct":
+        return _struct(lmcp.types[field.type], above)
+    if field.kind == "any":
+        return {"type": "object"}
+    if field.kind == "enum":
+        return {"type": "string", "enum": list(lmcp.enums[field.type].__members__)}
+    if field.kind == "bool":
+        return {"type": "boolean"}
+    if field.kind in ("string", "char"):
+        return {"type": "string"}
+    return {"type": "number" if field.kind.startswith("real") else "integer", **units}
+
+
+def without_null(data: Any) -> Any:
+    """The JSON form with fields that are null left out; elements of arrays stay."""
+    if isinstance(data, dict):
+        return {key: without_null(value) for key, value in data.items() if value is not None}
+    return [without_null(value) for value in data] if isinstance(data, list) else data
+
+
+def location_fix(data: Any, topic: str, time_ns: int) -> tuple[str, dict[str, Any]] | None:
+    """(Foxglove topic, LocationFix) of a state of an entity; None for any other message."""
+    if topic not in lmcp.types or "afrl.cmasi.EntityState" not in lmcp.types[topic].all_names:
+        return None
+    place = data.get("Location") if isinstance(data, dict) and RAW not in data else None
+    if not isinstance(place, dict):
+        return None
+    sec, nsec = divmod(time_ns, 1_000_000_000)
+    fix = {
+        "timestamp": {"sec": sec, "nsec": nsec},
+        "frame_id": f"vehicle_{data['ID']}",
+        "latitude": place.get("Latitude", 0.0),
+        "longitude": place.get("Longitude", 0.0),
+        "altitude": place.get("Altitude", 0.0),
+        "position_covariance": [0.0] * 9,
+        "position_covariance_type": 0,
+    }
+    return f"/vehicles/{data['ID']}/fix", fix

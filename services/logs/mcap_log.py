@@ -1,0 +1,254 @@
+"""MCAP: export that Foxglove opens, and import of what was exported.
+
+A channel for each type and envelope, JSON with the type's JSON Schema; `channel.metadata` bears
+role, sender and envelope, so that nothing of an entry is lost. Roles: `message`; `bytes`, the
+LMCP message as it was logged (encoding `lmcp`, on request, and for what cannot be decoded);
+`view`, a LocationFix of every vehicle for Foxglove's map. Time 0 is that of the log's clock. Meta
+data, gaps and the number of messages stand in metadata records: a file without them is truncated.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import IO, Any
+
+from cratous.services.logs.entry import Entry, any_data, to_bytes
+from cratous.services.logs.foxglove import (
+    LOCATION_FIX,
+    LOCATION_FIX_SCHEMA,
+    location_fix,
+    schema_of,
+    without_null,
+)
+from cratous.services.records import canonical
+from cratous.spec.errors import BadInput
+
+PROFILE = "cratous"
+MAGIC = b"\x89MCAP0\r\n"
+_ENVELOPE = ("address", "group", "entity_id", "service_id", "content_type")
+_GAP = [int, int, int, int, str]
+_CHUNK = 1 << 18  # bytes; what a truncated file loses at most
+_NS = 1_000_000  # nanoseconds in a millisecond
+
+
+class McapWriter:
+    """Writes entries to a binary stream; `close` makes the file whole."""
+
+    def __init__(self, stream: IO[bytes], *, with_bytes: bool = False, views: bool = True) -> None:
+        """with_bytes: also a channel with the LMCP bytes; views: LocationFix of vehicles."""
+        from mcap.writer import CompressionType, Writer
+
+        from cratous import __version__
+
+        self._out = Writer(stream, chunk_size=_CHUNK, compression=CompressionType.ZSTD)
+        self._out.start(profile=PROFILE, library=f"cratous {__version__}")
+        self._with_bytes, self._views = with_bytes, views
+        self._channels: dict[tuple[Any, ...], int] = {}
+        self._schemas: dict[str, int] = {}
+        self.count = 0
+
+    def write(self, entry: Entry) -> BadInput | None:
+        """Add one message; gives the error if it can only stand there as bytes."""
+        time_ns = entry.time_ms * _NS
+        if not 0 <= time_ns < 2**63 or not 0 <= entry.seq < 2**32:
+            raise BadInput(
+                "MCAP cannot hold this time or number",
+                where=entry.place,
+                expected="times from 0, numbers below 2^32",
+                got=f"{entry.time_ms} ms, number {entry.seq}",
+            )
+        data, error = any_data(entry)
+        if error is None and "$type" not in data:
+            error = BadInput("not an LMCP object", where=entry.place, expected='{"$type": ...}')
+        self.count += 1
+        if isinstance(entry.body, bytes) and (self._with_bytes or error is not None):
+            self._add(entry, "bytes", "lmcp", entry.body)
+        elif self._with_bytes and error is None:
+            self._add(entry, "bytes", "lmcp", to_bytes(entry))
+        if error is not None:
+            if isinstance(entry.body, str):
+                self._add(entry, "text", "json", entry.body.encode())
+            return error
+        text = json.dumps(without_null(data), ensure_ascii=False, separators=(",", ":"))
+        self._add(entry, "message", "json", text.encode())
+        if self._views:
+            self._view(entry, data)
+        return None
+
+    def _view(self, entry: Entry, data: Any) -> None:
+        found = location_fix(data, entry.topic, entry.time_ms * _NS)
+        if found is None:
+            return
+        topic, fix = found
+        key = ("view", topic)
+        if key not in self._channels:
+            schema = self._schema(LOCATION_FIX, LOCATION_FIX_SCHEMA)
+            self._channels[key] = self._out.register_channel(
+                topic, "json", schema, {"role": "view"}
+            )
+        self._put(self._channels[key], entry, json.dumps(fix).encode())
+
+    def _add(self, entry: Entry, role: str, encoding: str, body: bytes) -> None:
+        key = (role, entry.topic, entry.source, type(entry.body), *entry[5:])
+        channel = self._channels.get(key)
+        if channel is None:
+            if len(self._channels) >= 65_000:
+                raise BadInput(
+                    "too many kinds of message for MCAP", where=entry.place, expected="< 65,000"
+                )
+            schema = 0
+            if role == "message":
+                schema = self._schema(entry.topic, schema_of(entry.topic))
+            form = "lmcp" if isinstance(entry.body, bytes) else "json"
+            about = {"role": role, "type": entry.topic, "source": entry.source, "body": form}
+            for name, value in zip(_ENVELOPE, entry[5:], strict=True):
+                if value is not None:
+                    about[name] = value
+            topic = entry.topic if role != "bytes" else f"lmcp/{entry.topic}"
+            channel = self._out.register_channel(topic, encoding, schema, about)
+            self._channels[key] = channel
+        self._put(channel, entry, body)
+
+    def _put(self, channel: int, entry: Entry, body: bytes) -> None:
+        time_ns = entry.time_ms * _NS
+        self._out.add_message(channel, time_ns, body, time_ns, entry.seq)
+
+    def _schema(self, name: str, schema: dict[str, Any]) -> int:
+        if name not in self._schemas:
+            text = json.dumps(schema, ensure_ascii=False).encode()
+            self._schemas[name] = self._out.register_schema(name, "jsonschema", text)
+        return self._schemas[name]
+
+    def close(self, meta: dict[str, Any], gaps: Iterable[tuple[Any, ...]] = ()) -> None:
+        """Write meta data and summary."""
+        self._out.add_metadata("meta", {key: canonical(value) for key, value in meta.items()})
+        for number, gap in enumerate(gaps):
+            self._out.add_metadata("gap", {str(number): canonical(list(gap))})
+        self._out.add_metadata("closing", {"count": str(self.count)})
+        self._out.finish()
+
+
+def is_mcap(head: bytes) -> bool:
+    """Whether a file with this beginning is MCAP."""
+    return head.startswith(MAGIC)
+
+
+def read_meta(path: Path) -> tuple[dict[str, Any], list[list[Any]]]:
+    """The log's meta data and gaps; empty if the file is truncated (`read_mcap` says so)."""
+    found = []
+    with suppress(BadInput):
+        found = [record for record in _records(path) if type(record).__name__ == "Metadata"]
+    meta: dict[str, Any] = {}
+    gaps: list[list[Any]] = []
+    for record in found:
+        try:
+            values = {key: json.loads(value) for key, value in record.metadata.items()}
+        except ValueError as error:
+            raise _damaged(path, 0, error) from None
+        if record.name == "meta":
+            meta = values
+        elif record.name == "gap":
+            gaps += values.values()
+    if any(not isinstance(gap, list) or [*map(type, gap)] != _GAP for gap in gaps):
+        raise _damaged(path, 0, ValueError("wrong values in a gap"))
+    return meta, gaps
+
+
+def _records(path: Path) -> Iterator[Any]:
+    """The records of the file, with those in chunks; BadInput where it is damaged."""
+    from mcap.stream_reader import StreamReader
+
+    with path.open("rb") as stream:
+        reader = StreamReader(stream, validate_crcs=True, record_size_limit=2**30)
+        records, read = iter(reader.records), 0
+        while True:
+            try:
+                record = next(records)
+            except StopIteration:
+                return
+            except Exception as error:  # the parser and both decompressors have errors of all kinds
+                raise _damaged(path, read, error) from None
+            read += 1
+            yield record
+
+
+def _damaged(path: Path, read: int, error: Exception) -> BadInput:
+    text = str(error) or "it ends too early"
+    return BadInput(
+        f"the MCAP file is damaged or truncated after {read} records ({text})", where=str(path)
+    )
+
+
+def read_mcap(path: Path) -> Iterator[Entry]:
+    """The messages of an export of ours, in order; BadInput for damage and for other files."""
+    channels: dict[int, Any] = {}
+    done: int | None = None
+    count: int | None = None
+    read = 0
+    for record in _records(path):
+        name = type(record).__name__
+        if name == "Header" and record.profile != PROFILE:
+            raise BadInput(
+                "not an MCAP file of ours",
+                where=str(path),
+                expected=f"profile {PROFILE!r}",
+                got=repr(record.profile),
+            )
+        if name == "Channel":
+            channels[record.id] = record
+        elif name == "Metadata" and record.name == "closing":
+            text = record.metadata.get("count", "")
+            count = int(text) if text.isascii() and text.isdigit() else None
+        elif name == "Message":
+            try:
+                entry = _entry(record, channels.get(record.channel_id), path)
+            except (KeyError, UnicodeDecodeError) as error:
+                raise _damaged(path, read, error) from None
+            # bytes come before the JSON of the same message and count for it
+            if entry is None or entry.seq == done:
+                continue
+            done = entry.seq
+            read += 1
+            yield entry
+    if count != read:
+        raise BadInput(
+            "the MCAP file is not whole",
+            where=str(path),
+            expected="messages that were written: " + ("?" if count is None else str(count)),
+            got=str(read),
+        )
+
+
+def _entry(record: Any, channel: Any, path: Path) -> Entry | None:
+    about = getattr(channel, "metadata", {})
+    role = about.get("role")
+    if role == "view":
+        return None
+    if role not in ("message", "bytes", "text"):
+        raise BadInput(
+            "message on a channel that is not ours",
+            where=str(path),
+            item=getattr(channel, "topic", "no channel"),
+        )
+    envelope = [about.get(name) for name in _ENVELOPE]
+    time_ms = record.log_time // _NS
+    head = (record.sequence, time_ms, about["source"], about["type"])
+    if role == "bytes":
+        body: str | bytes = record.data
+        if about["body"] == "json":
+            return None  # the JSON that follows is what was logged
+    elif role == "text":
+        body = record.data.decode()
+    else:
+        body = _body(record.data, about["body"], f"{path}: message {record.sequence}")
+    return Entry(*head, body, *envelope)
+
+
+def _body(data: bytes, form: str, where: str) -> str | bytes:
+    from cratous.bridge import lmcp
+
+    message = lmcp.from_json(data, where)
+    return lmcp.binary.pack(message) if form == "lmcp" else lmcp.to_json(message)
