@@ -9,10 +9,7 @@ obligation can be written out as SMT-LIB for solvers that stand alone.
 
 from __future__ import annotations
 
-import ast
-import sys
 import time
-import types
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,7 +18,7 @@ from typing import Any
 import z3
 
 from cratous.core.kernel import REGISTRY
-from cratous.core.ledger import PRODUCT, Home
+from cratous.core.ledger import Home
 from cratous.core.sources import place
 from cratous.proofs.cache import Answer, Cache
 from cratous.proofs.claim import Claim, Obligation
@@ -29,6 +26,7 @@ from cratous.proofs.counterexample import Model, Watched, story, telling
 from cratous.proofs.lift import LiftError
 from cratous.proofs.merkle import Hasher
 from cratous.proofs.smtlib import logic_of, question, smt2, sorts
+from cratous.proofs.theorem_files import FOLDER, find, load_claim, theorem_files
 from cratous.spec.errors import BadInput
 
 RLIMIT = 60_000_000
@@ -256,64 +254,11 @@ def _satisfiable(terms: list[z3.BoolRef], rlimit: int, cache: Cache, hasher: Has
 
 
 # -- theorem files ----------------------------------------------------------------------
-FOLDER = PRODUCT.theorems
-
-
-def theorem_files(folder: Path = FOLDER) -> dict[str, Path]:
-    """Name to file of every theorem, in order of name."""
-    return {p.stem: p for p in sorted(folder.glob("*.py")) if not p.stem.startswith("_")}
-
-
-def _find(name: str, folder: Path) -> Path:
-    """The file of a theorem: in this folder, else in the product's. One name, one theorem."""
-    found = [files[name] for files in map(theorem_files, {folder, FOLDER}) if name in files]
-    if not found:
-        raise BadInput(
-            f"there is no theorem called {name!r}",
-            where=place(folder),
-            expected="the name of a file of this folder, without .py",
-        )
-    if len(found) > 1:
-        places = " and ".join(sorted(place(path) for path in found))
-        raise BadInput(f"two theorems are called {name!r}", where=places, expected="one id, one")
-    return found[0]
-
-
-def load_claim(name: str, folder: Path = FOLDER) -> tuple[Callable[[Claim], None], str]:
-    """The function `claim` of a theorem file, and its sentence."""
-    path = _find(name, folder)
-    text = path.read_text(encoding="utf-8")
-    module_name = f"cratous.proofs.theorems.{name}"
-    module = sys.modules.get(module_name)
-    if module is None or getattr(module, "__file__", None) != str(path):
-        module = types.ModuleType(module_name)
-        module.__file__ = str(path)
-        try:
-            # from the text, never from byte code: what is proved is what is written
-            exec(compile(text, str(path), "exec", dont_inherit=True), module.__dict__)
-        except ImportError as error:
-            raise BadInput(
-                f"the theorem imports what is not there: {error}", where=place(path)
-            ) from error
-        except SyntaxError as error:
-            line = f"{place(path)}:{error.lineno}"
-            raise BadInput(f"the theorem is no Python: {error.msg}", where=line) from error
-        sys.modules[module_name] = module
-    sentence = " ".join((ast.get_docstring(ast.parse(text)) or "").split())
-    if not sentence:
-        raise BadInput(
-            "the theorem has no docstring", where=place(path), expected="the sentence it proves"
-        )
-    if not callable(getattr(module, "claim", None)):
-        raise BadInput("the theorem states nothing", where=place(path), expected="def claim(c)")
-    return module.claim, sentence
-
-
 def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
     """The claim of a theorem file, stated, and its sentence; the kernels must be registered."""
     statement, sentence = load_claim(name, folder)
     claim = Watched(load=lambda other: load_claim(other, folder)[0])
-    where = place(_find(name, folder))
+    where = place(find(name, folder))
     try:
         statement(claim)
     except (ValueError, TypeError, LiftError) as error:
