@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from cratous.core import ledger as gate
-from cratous.proofs import ledger, mutate, prover, recheck
+from cratous.proofs import ledger, mutate, mutation_record, prover, recheck
 from cratous.services.cli import main
 
 FEW = "*its_definition"
@@ -103,17 +103,19 @@ def test_a_contradiction_of_the_second_solver_fails(
 
 def test_mutation_is_reported(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
     result = mutate.Result("f", "kernel", "op", "core/x.py:1", "a -> b", "survived")
-    asked = []
+    asked, kept = [], []
 
-    def run(names, tell, jobs, *, theorems=None):
-        asked.append(theorems)
+    def run(names, tell, jobs, *, about, home):
+        asked.append((names, about))
         tell("f", [result])
         return mutate.MutationReport((result,), ())
 
     monkeypatch.setattr(mutate, "run", run)
-    assert main(["prove", "--only", ONE, "--mutate"]) in (0, 1)
+    monkeypatch.setattr(mutation_record, "write", lambda report, keys: kept.append(report))
+    assert main(["prove", "--only", ONE, "--mutate"]) == 1, "a survivor on a kernel fails the run"
     out = capsys.readouterr().out
-    assert asked == [[ONE]]
+    assert asked == [((ONE,), [ONE])]
+    assert kept[0].of("survived") == (result,)
     assert "survived" in out
     assert "a -> b" in out
 
@@ -160,3 +162,18 @@ def test_the_start_is_quick(arguments: list[str], limit_s: float):
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         spent.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
     assert min(spent) < limit_s, spent
+
+
+def test_mutation_of_functions_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A pattern that only functions match proves and mutates what meets them."""
+    asked = []
+
+    def run(names, tell, jobs, *, about, home):
+        asked.append((names, about))
+        return mutate.MutationReport((), ())
+
+    monkeypatch.setattr(mutate, "run", run)
+    monkeypatch.setattr(mutation_record, "write", lambda report, keys: None)
+    assert main(["prove", "--only", "gives_way", "--mutate"]) == 0
+    assert asked == [(("gives_way",), [])]
+    assert main(["prove", "--only", "no_such_function", "--mutate"]) == 2

@@ -19,6 +19,7 @@ from cratous.bridge import lmcp
 from cratous.core.following import Track
 from cratous.core.gate import UXAS
 from cratous.core.manoeuvre import Motion
+from cratous.core.timeliness import too_early
 from cratous.services.flight import chain as chains
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import gated, path_command
@@ -225,7 +226,7 @@ class Executive:
         item = chain.item
         assert item is not None
         row = closed_by(item.task_id, at_ms, self.plan.rows, self.starts, self.ends)
-        early = item.wait_ms > 0 and at_ms + EARLY_MS < item.start_ms
+        early = item.wait_ms != 0 and too_early(at_ms, item.start_ms, EARLY_MS)
         if row is None and not early:
             self.starts[item.task_id] = at_ms
             chain.speed_m_s = item.speed_m_s
