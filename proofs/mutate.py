@@ -26,8 +26,8 @@ from functools import partial
 from typing import Any
 
 from cratous.core import ledger as gate
-from cratous.core.compiled import cache_folder
 from cratous.core.ledger import PRODUCT, Home
+from cratous.core.private import private_cache
 from cratous.proofs import cache, forked, prover
 from cratous.proofs.mutation_judge import judge_target
 from cratous.proofs.mutation_keys import Keys, Store
@@ -41,7 +41,7 @@ __all__ = ["VERDICTS", "MutationReport", "PremiseResult", "Result", "chosen", "r
 
 def standard() -> Store:
     """The verdicts that this user and machine know."""
-    return Store(cache_folder() / "mutation")
+    return Store(private_cache() / "mutation")
 
 
 def chosen(

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ import z3
 
 from cratous.core.kernel import REGISTRY
 from cratous.core.ledger import Home
-from cratous.core.sources import place
+from cratous.core.sources import altered, ours, place
 from cratous.proofs.cache import Answer, Cache
 from cratous.proofs.claim import Claim, Obligation
 from cratous.proofs.counterexample import Model, Watched, story, telling
@@ -76,7 +76,7 @@ class Theorem:
     premises: str
     outcomes: tuple[Outcome, ...]
     assumptions: tuple[tuple[str, str, str], ...]
-    _key: Any = None
+    _key: Any = field(default=None, compare=False, repr=False)
     paths: tuple[tuple[str, tuple[bool, ...]], ...] = ()
 
     def __post_init__(self) -> None:
@@ -97,6 +97,30 @@ class Theorem:
     def seconds(self) -> float:
         """CPU seconds of the solver over all obligations, when they were last really solved."""
         return sum(o.seconds for o in self.outcomes)
+
+
+def restore(data: dict[str, Any]) -> Theorem:
+    """A theorem from its fields as they were kept (`proofs.recall`).
+
+    Raises KeyError, TypeError or ValueError for data that are not a theorem's.
+    """
+    outcomes = []
+    for row in data["outcomes"]:
+        owed = Owed(**row["obligation"])
+        example = tuple((str(n), str(v)) for n, v in row["counterexample"])
+        rest = {k: row[k] for k in ("status", "rlimit", "logic", "key", "seconds")}
+        outcomes.append(Outcome(owed, counterexample=example, story=tuple(row["story"]), **rest))
+    return Theorem(
+        data["name"],
+        data["sentence"],
+        tuple(data["kernels"]),
+        tuple(data["lemmas"]),
+        data["premises"],
+        tuple(outcomes),
+        tuple((str(a), str(b), str(c)) for a, b, c in data["assumptions"]),
+        _KEY,
+        tuple((str(name), tuple(map(bool, seen))) for name, seen in data["paths"]),
+    )
 
 
 def _solvers(terms: list[z3.ExprRef], context: z3.Context) -> list[tuple[str, z3.Solver]]:
@@ -263,6 +287,13 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
         statement(claim)
     except (ValueError, TypeError, LiftError) as error:
         raise BadInput(f"the theorem cannot be stated: {error}", where=where) from error
+    wrong = {n for f in {v.function for v in claim.visits} if ours(f) for n in altered(f)}
+    if wrong:
+        raise BadInput(
+            f"the code that runs is not its file's: {', '.join(sorted(wrong))}",
+            where=where,
+            expected="functions as their files say (remove __pycache__)",
+        )
     used: list[Any] = [run.function for run in claim.runs if run.role == "kernel"]
     for function in [*used, *claim.folds]:
         entry = REGISTRY.get(function.__name__)

@@ -197,7 +197,7 @@ real = compiled.load
 seen = []
 compiled.load = lambda text: seen.append(text) or real(text)
 right = compiled.compiled(straddles)([1.0, 0.0], [1.0, 1.0]).tolist()
-folder = compiled.cache_folder() / ("kernels_" + compiled.digest([seen[-1]])[:32])
+folder = compiled.private_cache() / ("kernels_" + compiled.digest([seen[-1]])[:32])
 print(folder, right)
 """
 

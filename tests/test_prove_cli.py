@@ -121,8 +121,11 @@ def test_mutation_is_reported(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Ca
 
 
 def test_assumptions_are_shown_with_owner_and_reason(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ):
+    monkeypatch.setenv(
+        "CRATOUS_CACHE", str(tmp_path)
+    )  # the theorem as its file has it is not meant
     real = prover.load_claim
 
     def assuming(name, folder=prover.FOLDER):

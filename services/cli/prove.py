@@ -232,7 +232,8 @@ def prove(
     Runs each kernel on symbolic values, states every theorem of proofs/theorems about exactly
     that function, and asks z3. The ledger (core/ledger.json) binds the proofs to the source:
     `cratous run` refuses a kernel that has changed since. What was proved before is known by its
-    structural hash from the cache ($CRATOUS_CACHE); CI proves from an empty one.
+    structural hash from the cache ($CRATOUS_CACHE), and where no file has changed nothing is even
+    lifted; CI proves from an empty one.
 
     Example: cratous prove --only 'well*' -v
 
@@ -240,7 +241,9 @@ def prove(
     a theorem or kernel that no proof could be bound to.
     """
     from cratous.core import ledger as gate
+    from cratous.core.private import private_cache
     from cratous.proofs import cache, decisions, formats, ledger, prover
+    from cratous.proofs.recall import Recall
 
     begun = time.monotonic()
     if sum((only is not None, changed, check)) > 1:
@@ -266,6 +269,7 @@ def prove(
     whole = only is None and not changed
     workers = jobs or ledger.jobs_default()
     store = cache.standard()
+    memory = Recall(private_cache() / "theorems", home)
     bar = _Bar("proving", len(names), not as_json and sys.stderr.isatty())
     with bar:
         inventory = ledger.prove_all(
@@ -274,6 +278,7 @@ def prove(
             home=home,
             jobs=workers,
             cache=store,
+            recall=memory,
         )
     theorems = list(inventory.theorems)
     if not as_json:
