@@ -22,8 +22,9 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
-from cratous.core.graph import Node, NotInSubset, Program, program
+from cratous.core.graph import program
 from cratous.core.kernel import Fold
+from cratous.core.nodes import Node, NotInSubset, Program
 from cratous.core.printing import name as text_of
 from cratous.core.printing import straight
 from cratous.core.private import private_cache

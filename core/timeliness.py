@@ -18,7 +18,7 @@ def in_time(last: int, now: int, bound: int) -> bool:
     return last <= now and now - last <= bound
 
 
-@kernel(implements="timeliness.lasted")
+@kernel(implements="timeliness.lasted", nonnegative=("least",))
 def lasted(since: int, now: int, least: int) -> bool:
     """True iff what has been so since then has been so during the last `least` milliseconds.
 
@@ -27,7 +27,7 @@ def lasted(since: int, now: int, least: int) -> bool:
     return now - since >= least
 
 
-@kernel(implements="timeliness.too_early")
+@kernel(implements="timeliness.too_early", nonnegative=("margin",))
 def too_early(at: int, planned: int, margin: int) -> bool:
     """True iff the planned time is more than the margin ahead of the instant `at` [ms].
 
