@@ -19,7 +19,7 @@ from cratous.core.kernel import REGISTRY, Fold
 from cratous.core.sources import position
 from cratous.proofs import forked
 from cratous.proofs.asking import ask, renew
-from cratous.proofs.lift import LiftError
+from cratous.proofs.lift import Visit
 from cratous.proofs.mutation_equal import Equality
 from cratous.proofs.mutation_inputs import SAMPLES, compare, inputs
 from cratous.proofs.mutation_inputs import run as run_once
@@ -27,6 +27,7 @@ from cratous.proofs.mutation_keys import Keys, Store
 from cratous.proofs.mutation_operators import Mutant, mutants
 from cratous.proofs.mutation_results import Result
 from cratous.proofs.mutation_statements import (
+    Stillborn,
     claim_of,
     ids,
     in_place,
@@ -35,7 +36,16 @@ from cratous.proofs.mutation_statements import (
     targets,
     theorems_from,
 )
-from cratous.proofs.mutation_terms import FAR, NEAR, budget, equal, flat, is_free, row_text
+from cratous.proofs.mutation_terms import (
+    FAR,
+    NEAR,
+    budget,
+    equal,
+    flat,
+    is_free,
+    row_text,
+    with_values,
+)
 
 
 class Target:
@@ -90,8 +100,8 @@ class Target:
             if what == "undecided" and all(self._holds(n, mutant.function) for n in self.users):
                 note = "every theorem holds with it; equality is not decided"
             return verdict(what, note=note)
-        except (LiftError, TypeError, z3.Z3Exception) as error:
-            return verdict("stillborn", note=f"{type(error).__name__}: {error}")
+        except Stillborn as error:
+            return verdict("stillborn", note=str(error))
 
     def refuted(self, mutant: Any, rows: list[tuple]) -> str:
         """The first theorem that is refuted with the mutant in place, or nothing.
@@ -137,14 +147,23 @@ class Target:
         found = []
         for row in rows:
             if any(
-                ask([*equal(v.args, row), *claim_of(name).premises, *v.context], NEAR) == "sat"
+                self._allows(name, visit, row)
                 for name in self.users
-                for v in self.visits[name][:4]
+                for visit in self.visits[name][:4]
             ):
                 found.append(row)
                 if len(found) == 3:
                     break
         return found
+
+    def _allows(self, name: str, visit: Visit, row: tuple) -> bool:
+        """Do the theorem's premises leave this input to the visit?"""
+        conditions = [*claim_of(name).premises, *visit.context]
+        # on a path of a caller, or in a theorem with other values, it may be a question
+        plain = with_values(conditions, visit.args, row)
+        if plain is False or (plain and not visit.context):
+            return plain
+        return ask([*equal(visit.args, row), *conditions], NEAR) == "sat"
 
     def judge_start(self, mutant: Mutant) -> Result:
         """The verdict on another start of a fold."""

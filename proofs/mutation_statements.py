@@ -9,10 +9,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import z3
+
 from cratous.core.kernel import REGISTRY, Fold
 from cratous.core.ledger import PRODUCT, Home
 from cratous.proofs.claim import Claim, Obligation
-from cratous.proofs.lift import REPLACED
+from cratous.proofs.lift import REPLACED, LiftError
 from cratous.proofs.theorem_files import FOLDER, load_claim
 
 
@@ -84,11 +86,17 @@ def claim_of(name: str) -> Claim:
     return stated(name).claim
 
 
+class Stillborn(Exception):
+    """The mutant cannot be lifted."""
+
+
 @contextmanager
 def in_place(original: Any, mutant: Any) -> Iterator[None]:
-    """What is lifted within this takes the mutant for the original."""
+    """What is lifted within this takes the mutant for the original; raises Stillborn."""
     REPLACED[original] = mutant
     try:
         yield
+    except (LiftError, TypeError, z3.Z3Exception) as error:
+        raise Stillborn(f"{type(error).__name__}: {error}") from error
     finally:
         del REPLACED[original]

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
+from fractions import Fraction
 from typing import Any
 
 import z3
 
 from cratous.proofs.symbolic import SymMask, _raw
-from cratous.proofs.terms import known
+from cratous.proofs.terms import free_names, known
 
 NEAR = 300_000
 """Effort for a question whose inputs are fixed."""
@@ -45,8 +46,36 @@ def equal(args: tuple[Any, ...], row: tuple) -> list[z3.BoolRef]:
         elif isinstance(value, bool):
             equations.append(term if value else z3.Not(term))
         else:
+            if z3.is_int(term) and isinstance(value, Fraction):
+                term = z3.ToReal(term)  # a literal of a theorem, where the function takes a real
             equations.append(term == (z3.RealVal(str(value)) if z3.is_real(term) else value))
     return equations
+
+
+def with_values(conditions: list[z3.BoolRef], args: tuple[Any, ...], row: tuple) -> bool | None:
+    """Whether the conditions can hold where these arguments have these values.
+
+    conditions: satisfiable together, so those about other values alone leave the answer open to
+    none. None where it is a question for the solver: arguments are terms, or a condition is about
+    these and other values.
+    """
+    if not all(is_free(value) for value in flat(args)):
+        return None
+    leaves = [known(value) for value in flat(args)]
+    if len({leaf.get_id() for leaf in leaves}) < len(leaves):
+        return None
+    pairs = [
+        (equation.arg(0), equation.arg(1))
+        if z3.is_eq(equation)
+        else (leaf, z3.BoolVal(not z3.is_not(equation)))
+        for leaf, equation in zip(leaves, equal(args, row), strict=True)
+    ]
+    names = {str(leaf) for leaf in leaves}
+    own = [condition for condition in conditions if free_names(condition) & names]
+    found = [z3.simplify(z3.substitute(condition, *pairs)) for condition in own]
+    if any(z3.is_false(one) for one in found):
+        return False
+    return True if all(z3.is_true(one) for one in found) else None
 
 
 def premise_text(term: z3.ExprRef) -> str:
