@@ -84,7 +84,10 @@ class Recall:
         """The theorem, if it was proved from the very same files."""
         if self.folder is None:
             return None
-        wanted = key(name, self.home)
+        try:
+            wanted = key(name, self.home)
+        except SyntaxError:
+            return None  # the prover says where
         try:
             data = json.loads((self.folder / wanted[:2] / wanted).read_text(encoding="utf-8"))
             if data["key"] != wanted or data["name"] != name:

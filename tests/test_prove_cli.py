@@ -78,16 +78,22 @@ def test_changed_proves_what_differs_from_the_ledger(
     assert set(changed) == set(prover.theorem_files()) - {"straddles_is_its_definition"}
 
 
-def test_recheck_counts_theorems_and_obligations(capsys: pytest.CaptureFixture[str]):
+def test_recheck_counts_theorems_and_obligations(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
     pytest.importorskip("cvc5")
-    before = recheck.FILE.read_bytes() if recheck.FILE.is_file() else b""
+    written = []
+    monkeypatch.setattr(recheck, "write", lambda found, _, whole: written.append((found, whole)))
     code, data = _json(capsys, "--only", ONE, "--recheck")
     assert code == 0
     second = data["recheck"]
     assert second["theorems"] == {ONE: "confirmed"}
     assert (second["confirmed"], second["no_answer"], second["contradicted"]) == (1, 0, 0)
     assert data["theorems"][0]["second_solver"] == "confirmed"
-    assert (recheck.FILE.read_bytes() if recheck.FILE.is_file() else b"") == before
+    ((found, whole),) = written
+    assert set(found.theorems) == {ONE}
+    assert not whole, "the verdicts on other theorems stay"
+    assert main(["prove", "--check", "--only", ONE, "--recheck"]) == 2
 
 
 def test_a_contradiction_of_the_second_solver_fails(
@@ -95,6 +101,7 @@ def test_a_contradiction_of_the_second_solver_fails(
 ):
     check = recheck.Check(ONE, 1, "k", "goal: the claim", "contradicted", "QF_NRA", 0.1)
     monkeypatch.setattr(recheck, "recheck", lambda *_, **__: recheck.Recheck("cvc5 1", (check,)))
+    monkeypatch.setattr(recheck, "write", lambda *_, **__: None)
     assert main(["prove", "--only", ONE, "--recheck"]) == 1
     out = capsys.readouterr().out
     assert "contradicted straddles_is_its_definition 1: goal: the claim" in out

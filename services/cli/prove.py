@@ -116,7 +116,7 @@ def _refuse(problems: list[str]) -> None:
 
 
 def _recheck(
-    theorems: list[Any], folder: Path, jobs: int, as_json: bool, keep: bool
+    theorems: list[Any], folder: Path, jobs: int, as_json: bool, keep: bool, whole: bool
 ) -> dict[str, Any]:
     from cratous.proofs import recheck
 
@@ -127,7 +127,7 @@ def _recheck(
             theorems, folder=folder, jobs=jobs, tell=lambda c, n, of: bar.step("cvc5", n, of)
         )
     if keep:
-        recheck.write(found, theorems)
+        recheck.write(found, theorems, whole=whole)
     names = found.theorems
     counts = {v: found.count(v) for v in ("confirmed", "no answer", "contradicted")}
     good = sum(check.verdict == recheck.CONFIRMED for check in found.checks)
@@ -199,7 +199,9 @@ def _mutate(
 )
 @click.option("--changed", is_flag=True, help="Only what differs from the ledger; writes none.")
 @click.option("--check", is_flag=True, help="Do not write the ledger; fail if it would differ.")
-@click.option("--recheck", is_flag=True, help="Put every obligation to cvc5 as well.")
+@click.option(
+    "--recheck", is_flag=True, help="Put every obligation to cvc5 as well; with --only, of these."
+)
 @click.option("--mutate", is_flag=True, help="Also look for faults that no theorem would notice.")
 @click.option("--package", "package_name", metavar="NAME", help="A package with own kernels.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
@@ -261,6 +263,8 @@ def prove(
     if mutate and only is not None:
         from cratous.proofs.mutate import Keys, chosen
 
+        for name in prover.theorem_files(folder):
+            prover.load_claim(name, folder)  # says what is wrong with a file, and where
         # the theorems that meet a function of this name are proved too
         met = chosen((only,), Keys(home), about)
         names = sorted({*names, *(name for users in met.values() for name in users)})
@@ -299,8 +303,8 @@ def prove(
         problems += [str(finding) for finding in decisions.unexplained()]
     data: dict[str, Any] = {}
     if recheck:
-        keep = whole and home.product and not check
-        data["recheck"] = _recheck(theorems, folder, workers, as_json, keep)
+        keep = home.product and not check
+        data["recheck"] = _recheck(theorems, folder, workers, as_json, keep, whole)
     if mutate:
         pattern = only if only is not None else ("*" if whole else "")
         keep = home.product and not check
