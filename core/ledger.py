@@ -33,6 +33,7 @@ from cratous.core.sources import (
     function_parts,
     position,
     statement_parts,
+    tree,
 )
 from cratous.spec.errors import BadInput, Refused
 
@@ -245,7 +246,7 @@ def _statement(path: Path) -> str:
 @functools.cache
 def mentioned(path: Path) -> frozenset[str]:
     """All texts in a theorem file that could be the name of a lemma."""
-    nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+    nodes = ast.walk(tree(path))
     texts = {n.value for n in nodes if isinstance(n, ast.Constant) and isinstance(n.value, str)}
     return frozenset(text for text in texts if text.isidentifier())
 

@@ -101,15 +101,38 @@ def tree_text(source: str, *, docstrings: bool = False) -> str:
     return ast.dump(tree if docstrings else _strip_docstrings(tree))
 
 
+def tree(path: Path, *, docstrings: bool = True) -> ast.Module:
+    """The syntax tree of a file as it is now; shared, so it must not be changed."""
+    stat = os.stat(path)
+    return _tree(path, docstrings, stat.st_mtime_ns, stat.st_size)
+
+
+@functools.cache
+def _tree(path: Path, docstrings: bool, changed_ns: int, size: int) -> ast.Module:
+    parsed = ast.parse(path.read_text(encoding="utf-8"))
+    if not docstrings:
+        _strip_docstrings(parsed)
+    return parsed
+
+
 @functools.cache
 def file_text(path: Path, docstrings: bool = False) -> str:
     """The syntax tree of a file as text."""
-    return tree_text(path.read_text(encoding="utf-8"), docstrings=docstrings)
+    return ast.dump(tree(path, docstrings=docstrings))
 
 
-def imported(path: Path) -> Iterator[tuple[str, str]]:
+def imported(path: Path) -> tuple[tuple[str, str], ...]:
     """(module, name) of every import in a file; name is empty for `import module`."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    return _imported(path, tree(path))
+
+
+@functools.cache
+def _imported(path: Path, parsed: ast.Module) -> tuple[tuple[str, str], ...]:
+    return tuple(_import_statements(path, parsed))
+
+
+def _import_statements(path: Path, parsed: ast.Module) -> Iterator[tuple[str, str]]:
+    for node in ast.walk(parsed):
         if isinstance(node, ast.Import):
             yield from ((alias.name, "") for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -249,7 +272,7 @@ def _defined(file: Path, changed_ns: int, size: int) -> dict[tuple[str, int], li
             else:
                 look(child, inside)
 
-    look(_strip_docstrings(ast.parse(file.read_text(encoding="utf-8"))), "")
+    look(tree(file, docstrings=False), "")
     return found
 
 
