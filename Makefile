@@ -13,7 +13,7 @@ help:
 	@echo "make lint      style, types, kernel subset"
 	@echo "make prove     prove every kernel anew and hold the ledger against it"
 	@echo "make recheck   put every proof to the second solver (cvc5), some minutes"
-	@echo "make mutate    look for faults of kernels that no theorem would notice, some minutes"
+	@echo "make mutate    look for faults of kernels that no theorem would notice; pays for what has changed"
 	@echo "make crosshair look for bugs in functions that are no kernels, two minutes"
 	@echo "make bench     benchmarks (ratios, see bench/README.md)"
 	@echo "make docs      regenerate the generated documents"

@@ -19,7 +19,7 @@ def surely_below(value: float, bound: float) -> bool:
     return value < -bound
 
 
-@kernel(implements="rounding.outward_margin")
+@kernel(implements="rounding.outward_margin", nonnegative=("share", "least"))
 def outward_margin(value: float, share: float, least: float) -> float:
     """How far an operation's result is moved outward; any one unit for value and least.
 

@@ -18,15 +18,16 @@ import os
 import sys
 import textwrap
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, get_type_hints
 
 import numpy as np
 
-from cratous.core.graph import Node, NotInSubset, Program, program
+from cratous.core.graph import program
 from cratous.core.kernel import Fold
+from cratous.core.nodes import Node, NotInSubset, Program
 from cratous.core.printing import name as text_of
 from cratous.core.printing import straight
+from cratous.core.private import private_cache
 from cratous.core.sources import digest
 from cratous.spec.errors import BadInput
 
@@ -34,20 +35,13 @@ FLAGS = "njit(cache=True, fastmath=False, error_model='python')"
 KINDS: dict[Any, Any] = {bool: np.bool_, int: np.int64, float: np.float64}
 
 
-def cache_folder() -> Path:
-    """Where compiled kernels live: $CRATOUS_CACHE, else the user's cache folder."""
-    base = os.environ.get("CRATOUS_CACHE") or os.environ.get("XDG_CACHE_HOME")
-    root = Path(base) if base else Path.home() / ".cache"
-    return root / "cratous"
-
-
 def load(text: str) -> Any:
     """The module of this text, from the cache folder; numba keeps its machine code beside it."""
     name = "kernels_" + digest([text])[:32]
-    folder = cache_folder() / name
+    folder = private_cache() / name
     file = folder / f"{name}.py"
     if not file.is_file() or file.read_text(encoding="utf-8") != text:
-        folder.mkdir(parents=True, exist_ok=True)
+        folder.mkdir(exist_ok=True, mode=0o700)
         part = file.with_suffix(f".{os.getpid()}")
         part.write_text(text, encoding="utf-8")
         part.replace(file)

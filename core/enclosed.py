@@ -19,7 +19,9 @@ import numpy as np
 
 from cratous.core.certainty import outward_margin
 from cratous.core.compiled import checked
-from cratous.core.graph import Node, Program, Record, Value, leaves, program
+from cratous.core.domain import nonnegative, refuse_negative
+from cratous.core.graph import program
+from cratous.core.nodes import Node, Program, Record, Value, leaves
 from cratous.spec.errors import BadInput
 
 SHARE = 2.0**-51
@@ -240,9 +242,11 @@ def enclosed(kernel: Callable[..., Any]) -> Callable[..., Any]:
     enclosure.
     """
     source = program(kernel)
+    names = nonnegative(kernel)
 
     def run(*columns: Any) -> Any:
         flat, shape = checked(source, columns)
+        refuse_negative(source.name, names, zip(source.labels, flat, strict=True))
         for label, value in zip(source.labels, flat, strict=True):
             wrong = np.flatnonzero(~np.isfinite(np.atleast_1d(value)))
             if wrong.size:

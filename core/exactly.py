@@ -10,6 +10,7 @@ verdict does not depend on which of them did.
 from __future__ import annotations
 
 import functools
+import inspect
 import math
 from collections.abc import Callable
 from fractions import Fraction
@@ -17,11 +18,12 @@ from typing import Any
 
 import numpy as np
 
-from cratous.core import expansions, integers
+from cratous.core import expansion_arithmetic, expansions, integers
 from cratous.core.compiled import FLAGS, checked, load, loop_text, outcome, single
+from cratous.core.domain import nonnegative, refuse_negative
 from cratous.core.filtering import TRUE, UNDECIDED, Certain, Filter, filtered
-from cratous.core.graph import Node, NotInSubset, Program, Record, Value, leaves
 from cratous.core.kernel import Fold
+from cratous.core.nodes import Node, NotInSubset, Program, Record, Value, leaves
 from cratous.core.printing import name, straight
 from cratous.spec.errors import BadInput
 
@@ -54,7 +56,7 @@ def _filter_map(found: Filter, scalars: frozenset[str]) -> Any:
 
 @functools.cache
 def _expansion_map(found: Filter, scalars: frozenset[str]) -> tuple[Any, int, int] | None:
-    shared = load(expansions.primitives(FLAGS)).__name__
+    shared = load(expansion_arithmetic.primitives(FLAGS)).__name__
     made = expansions.text(found, scalars, FLAGS, shared)
     if made is None:
         return None
@@ -77,9 +79,11 @@ def exactly(kernel: Callable[..., Any], made: Filter | None = None) -> Callable[
     if source.result.kind == "float":
         raise NotInSubset(f"{source.name} gives a real number, which may be no double")
     truth = source.result.kind == "bool"
+    names = nonnegative(kernel)
 
     def run(*columns: Any, out: np.ndarray | None = None) -> np.ndarray:
         flat, shape = checked(source, columns)
+        refuse_negative(source.name, names, zip(source.labels, flat, strict=True))
         scalars = single(source, flat)
         result = outcome(source.name, out, shape, np.bool_ if truth else np.int64)
         code = result.view(np.uint8) if truth else np.empty(result.size, dtype=np.uint8)
@@ -234,6 +238,10 @@ def exact_scalar(function: Callable[..., Any] | Fold[Any], *args: Any) -> Any:
 
 
 def _one(function: Callable[..., Any], args: tuple[Any, ...]) -> Any:
+    names = nonnegative(function)
+    if names:
+        parameters = inspect.signature(function).parameters
+        refuse_negative(function.__name__, names, zip(parameters, args, strict=False))
     source = _filterable(function)
     row = _numbers(args) if source is not None else []
     if source is None or not _fits(source, row):

@@ -59,3 +59,19 @@ def gives_way(own_id: int, intruder_id: int, intruder_cooperates: bool) -> bool:
     if not intruder_cooperates:
         return True
     return own_id > intruder_id
+
+
+@kernel(implements="authority.handback")
+def handback(offered: bool, free: bool, lasted: bool, linked: bool) -> int:
+    """What ICAROUS, in command, does with its authority: 0 keep it, 1 offer it, 2 withdraw the offer.
+
+    offered: an offer is open; free: the way back is free of predicted conflict; lasted: it has been
+    for as long as it must; linked: UxAS has been heard.
+    """
+    if offered:
+        if free:
+            return 0
+        return 2
+    if free and lasted and linked:
+        return 1
+    return 0

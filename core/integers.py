@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from cratous.core.graph import Node, Program, leaves, ordered
+from cratous.core.nodes import Node, Program, leaves, ordered
 from cratous.core.printing import name
 
 

@@ -8,6 +8,7 @@ The decorators return the function itself: CPython runs exactly what is written.
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Generic, NamedTuple, TypeVar
@@ -25,13 +26,18 @@ class Vec2(NamedTuple):
 
 @dataclass(frozen=True)
 class Entry:
-    """One registered function: what it is, what it implements, and the function."""
+    """One registered function: what it is, what it implements, and the function.
+
+    uses: kernels that a fold is made of or that re-check a driver; nonnegative: arguments for which
+    a number below 0 means nothing.
+    """
 
     name: str
     kind: str
     implements: str
     function: Callable[..., Any]
     uses: tuple[str, ...] = ()
+    nonnegative: tuple[str, ...] = ()
 
 
 REGISTRY: dict[str, Entry] = {}
@@ -51,11 +57,20 @@ def _register(entry: Entry) -> None:
     REGISTRY[entry.name] = entry
 
 
-def kernel(*, implements: str) -> Callable[[F], F]:
-    """Register a kernel under its function name; `implements` names its definition in `spec`."""
+def kernel(*, implements: str, nonnegative: tuple[str, ...] = ()) -> Callable[[F], F]:
+    """Register a kernel under its function name; `implements` names its definition in `spec`.
+
+    nonnegative: arguments that the theorems take to be at least 0 and that come from outside, as
+    thresholds do; the exact and the enclosed reading refuse a number below 0 there. Raises
+    ValueError for a name that is no argument.
+    """
 
     def mark(function: F) -> F:
-        _register(Entry(function.__name__, "kernel", implements, function))
+        strangers = set(nonnegative) - set(inspect.signature(function).parameters)
+        if strangers:
+            raise ValueError(f"{function.__name__} has no argument {', '.join(sorted(strangers))}")
+        name = function.__name__
+        _register(Entry(name, "kernel", implements, function, nonnegative=nonnegative))
         return function
 
     return mark

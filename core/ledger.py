@@ -33,6 +33,7 @@ from cratous.core.sources import (
     function_parts,
     position,
     statement_parts,
+    tree,
 )
 from cratous.spec.errors import BadInput, Refused
 
@@ -243,9 +244,9 @@ def _statement(path: Path) -> str:
 
 
 @functools.cache
-def _mentioned(path: Path) -> frozenset[str]:
-    """All texts in a file that could be the name of a lemma."""
-    nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+def mentioned(path: Path) -> frozenset[str]:
+    """All texts in a theorem file that could be the name of a lemma."""
+    nodes = ast.walk(tree(path))
     texts = {n.value for n in nodes if isinstance(n, ast.Constant) and isinstance(n.value, str)}
     return frozenset(text for text in texts if text.isidentifier())
 
@@ -267,7 +268,7 @@ def theorem_digest(names: Iterable[str], theorems: dict[str, Any], home: Home = 
             return "missing"
         parts[name] = _statement(file)
         todo += theorems.get(name, {}).get("lemmas", [])
-        todo += _mentioned(file) & known
+        todo += mentioned(file) & known
     return digest(f"{name}={text}" for name, text in sorted(parts.items()))
 
 

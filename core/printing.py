@@ -6,7 +6,7 @@ less, or greater), so that signed zeros and NaN come out alike in both.
 
 from __future__ import annotations
 
-from cratous.core.graph import Node, ordered
+from cratous.core.nodes import Node, ordered
 
 INFIX = {
     "add": "+",

@@ -13,6 +13,7 @@ import functools
 import hashlib
 import importlib
 import inspect
+import os
 import sys
 import textwrap
 import types
@@ -100,15 +101,38 @@ def tree_text(source: str, *, docstrings: bool = False) -> str:
     return ast.dump(tree if docstrings else _strip_docstrings(tree))
 
 
+def tree(path: Path, *, docstrings: bool = True) -> ast.Module:
+    """The syntax tree of a file as it is now; shared, so it must not be changed."""
+    stat = os.stat(path)
+    return _tree(path, docstrings, stat.st_mtime_ns, stat.st_size)
+
+
+@functools.cache
+def _tree(path: Path, docstrings: bool, changed_ns: int, size: int) -> ast.Module:
+    parsed = ast.parse(path.read_text(encoding="utf-8"))
+    if not docstrings:
+        _strip_docstrings(parsed)
+    return parsed
+
+
 @functools.cache
 def file_text(path: Path, docstrings: bool = False) -> str:
     """The syntax tree of a file as text."""
-    return tree_text(path.read_text(encoding="utf-8"), docstrings=docstrings)
+    return ast.dump(tree(path, docstrings=docstrings))
 
 
-def imported(path: Path) -> Iterator[tuple[str, str]]:
+def imported(path: Path) -> tuple[tuple[str, str], ...]:
     """(module, name) of every import in a file; name is empty for `import module`."""
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    return _imported(path, tree(path))
+
+
+@functools.cache
+def _imported(path: Path, parsed: ast.Module) -> tuple[tuple[str, str], ...]:
+    return tuple(_import_statements(path, parsed))
+
+
+def _import_statements(path: Path, parsed: ast.Module) -> Iterator[tuple[str, str]]:
+    for node in ast.walk(parsed):
         if isinstance(node, ast.Import):
             yield from ((alias.name, "") for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -216,9 +240,40 @@ def function_parts(function: Callable[..., Any] | Fold[Any] | type) -> list[str]
 def _source(value: Any, code: types.CodeType | None) -> str:
     """The tree of a function or class; code: what a function runs now, so that it is read anew."""
     try:
+        file = code.co_filename if code else str(sys.modules[value.__module__].__file__)
+        name = (code.co_qualname, code.co_firstlineno) if code else (value.__qualname__, 0)
+        stat = os.stat(file)
+        nodes = _defined(Path(file), stat.st_mtime_ns, stat.st_size).get(name, ())
+        if len(nodes) == 1:
+            return ast.dump(ast.Module([nodes[0]], []))
         return tree_text(textwrap.dedent(inspect.getsource(value)))
     except (OSError, SyntaxError):
         return "no source"  # made at run time: it equals nothing that was proved
+
+
+@functools.cache
+def _defined(file: Path, changed_ns: int, size: int) -> dict[tuple[str, int], list[ast.stmt]]:
+    """Every function and class of a file without docstrings, by qualified name and first line.
+
+    The line of a class counts as 0: the class itself does not know it.
+    """
+    found: dict[tuple[str, int], list[ast.stmt]] = {}
+
+    def look(node: ast.AST, inside: str) -> None:
+        for child in ast.iter_child_nodes(node):
+            if isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef):
+                name = inside + child.name
+                first = min([child.lineno, *(mark.lineno for mark in child.decorator_list)])
+                found.setdefault((name, first), []).append(child)
+                look(child, f"{name}.<locals>.")
+            elif isinstance(child, ast.ClassDef):
+                found.setdefault((inside + child.name, 0), []).append(child)
+                look(child, f"{inside}{child.name}.")
+            else:
+                look(child, inside)
+
+    look(tree(file, docstrings=False), "")
+    return found
 
 
 def statement_parts(path: Path, engine: frozenset[Path]) -> list[str]:

@@ -1,4 +1,5 @@
-"""Writes the generated documents: `docs/proof-inventory.md` from the ledger and the re-check.
+"""Writes the generated documents: `docs/proof-inventory.md` from the ledger and the re-check,
+`docs/mutation.md` from `proofs/mutation.json`.
 
 The second solver's verdicts and the effort come from `proofs/recheck.json`, which
 `cratous prove --recheck` writes; a theorem that it does not know is shown as not re-checked.
@@ -12,9 +13,10 @@ import sys
 from pathlib import Path
 
 from cratous.core import ledger
-from cratous.proofs import recheck
+from cratous.proofs import mutation_record, recheck
+from cratous.proofs.mutation_keys import Keys
 
-FILE = Path(__file__).resolve().parent / "proof-inventory.md"
+FOLDER = Path(__file__).resolve().parent
 
 
 def inventory() -> str:
@@ -70,16 +72,24 @@ def inventory() -> str:
     return "\n".join(lines) + "\n"
 
 
+def mutation() -> str:
+    """What mutants came of every kernel and definition; what is no longer up to date is named."""
+    return mutation_record.document(mutation_record.read(), Keys())
+
+
 def main() -> int:
     """Write, or with --check compare."""
-    text = inventory()
-    if "--check" in sys.argv:
-        good = FILE.is_file() and FILE.read_text(encoding="utf-8") == text
-        print(f"{FILE.name}: {'up to date' if good else 'run `make docs`'}")
-        return 0 if good else 1
-    FILE.write_text(text, encoding="utf-8")
-    print(f"{FILE.name}: {len(text.splitlines())} lines")
-    return 0
+    wrong = 0
+    for name, make in {"proof-inventory.md": inventory, "mutation.md": mutation}.items():
+        file, text = FOLDER / name, make()
+        if "--check" in sys.argv:
+            good = file.is_file() and file.read_text(encoding="utf-8") == text
+            print(f"{name}: {'up to date' if good else 'run `make docs`'}")
+            wrong += not good
+        else:
+            file.write_text(text, encoding="utf-8")
+            print(f"{name}: {len(text.splitlines())} lines")
+    return 1 if wrong else 0
 
 
 if __name__ == "__main__":

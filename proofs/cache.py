@@ -13,8 +13,8 @@ import os
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from cratous.core.compiled import cache_folder
 from cratous.core.ledger import engine, solver_version
+from cratous.core.private import private_cache
 from cratous.core.sources import digest, files_digest
 
 
@@ -76,9 +76,4 @@ class Cache:
 
 def standard() -> Cache:
     """The cache of this user and machine."""
-    folder = cache_folder() / "proofs"
-    try:
-        folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-    except OSError:
-        return Cache(None)
-    return Cache(folder)
+    return Cache(private_cache() / "proofs")

@@ -12,23 +12,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, get_type_hints
+from typing import Any
 
 import z3
 
 from cratous.core.kernel import Fold, Vec2
 from cratous.proofs.lift import OPAQUE, REPLACED, VISITS, Visit, join, lift
-from cratous.proofs.symbolic import (
-    PATHS,
-    RANGE,
-    Sym,
-    SymBool,
-    SymInt,
-    SymMask,
-    SymReal,
-    _raw,
-    wrap,
-)
+from cratous.proofs.symbolic import RANGE, Sym, SymBool, SymInt, SymMask, SymReal, _raw
+from cratous.proofs.terms import Stub, flatten, free_names, known, leaves, statement
 
 
 @dataclass(frozen=True)
@@ -39,41 +30,6 @@ class Obligation:
     text: str
     given: tuple[z3.BoolRef, ...]
     goal: z3.BoolRef
-
-
-class Stub:
-    """Stands for a function that is not looked into: same arguments, same unknown result."""
-
-    def __init__(self, name: str, function: Callable[..., Any]) -> None:
-        self.name = name
-        self.result = get_type_hints(function)["return"]
-        self.calls: list[tuple[Any, ...]] = []
-        self.results: dict[str, Any] = {}
-
-    def __call__(self, *args: Any) -> Any:
-        key = "; ".join(_normal(arg) for arg in args)
-        if key not in self.results:
-            self.results[key] = _fresh(f"{self.name}#{len(self.calls)}", self.result)
-            self.calls.append(args)
-        return self.results[key]
-
-
-def _normal(value: Any) -> str:
-    """A normal form of an argument: polynomials expanded and sorted."""
-    if isinstance(value, tuple):
-        return ", ".join(_normal(part) for part in value)
-    return str(z3.simplify(_known(value), som=True, sort_sums=True).sexpr())
-
-
-def _fresh(name: str, kind: Any) -> Any:
-    if kind is bool:
-        return SymBool(z3.Bool(name))
-    if kind is int:
-        return SymInt(z3.Int(name))
-    if kind is float:
-        return SymReal(z3.Real(name))
-    fields = get_type_hints(kind)
-    return kind(*[_fresh(f"{name}.{part}", fields[part]) for part in fields])
 
 
 @dataclass
@@ -146,7 +102,7 @@ class Claim:
     # -- statements ---------------------------------------------------------------------
     def premise(self, condition: Any) -> None:
         """Restrict the theorem to values that satisfy `condition`."""
-        self._restrict(_term(condition))
+        self._restrict(statement(condition))
 
     def _restrict(self, premise: z3.BoolRef) -> None:
         """Add a premise, unless this reading of the claim is to do without it (`proofs.mutate`)."""
@@ -157,7 +113,7 @@ class Claim:
 
     def assume(self, condition: Any, *, owner: str, reason: str) -> None:
         """Take something for granted; it stays in the ledger, with owner and reason, for ever."""
-        self.facts.append(_term(condition))
+        self.facts.append(statement(condition))
         self.assumptions.append((str(condition), owner, reason))
 
     def use(self, kernel: Callable[..., Any], *args: Any) -> Any:
@@ -201,7 +157,7 @@ class Claim:
         """For an opaque function: where the two argument lists are equal, so are the results."""
         stub = self.stubs[function]
         equal = self.all_of(*[self.same(a, b) for a, b in zip(one, other, strict=True)])
-        self.facts.append(z3.Implies(equal.term, _term(self.same(stub(*one), stub(*other)))))
+        self.facts.append(z3.Implies(equal.term, statement(self.same(stub(*one), stub(*other)))))
 
     def _lift(
         self, function: Callable[..., Any], args: tuple[Any, ...], machine: bool = True
@@ -229,25 +185,25 @@ class Claim:
 
     def show(self, goal: Any, text: str = "the claim") -> None:
         """What must follow; later statements may use it."""
-        term = _term(goal)
+        term = statement(goal)
         self._owe("goal", text, term)
         self.goals.append(term)
         self.facts.append(term)
 
     def step(self, goal: Any, text: str) -> None:
         """Show something on the way: it may be used here, but a lemma's user does not see it."""
-        term = _term(goal)
+        term = statement(goal)
         self._owe("goal", text, term)
         self.facts.append(term)
 
     def cases(self, *conditions: Any, goal: Any, text: str = "the claim") -> None:
         """Show the goal case by case; that the cases cover everything is shown as well."""
-        terms = [_term(c) for c in conditions]
+        terms = [statement(c) for c in conditions]
         self._owe("goal", f"{text}: the cases cover everything", z3.Or(*terms))
         for number, term in enumerate(terms, 1):
-            self._owe("goal", f"{text}: case {number}", z3.Implies(term, _term(goal)))
-        self.goals.append(_term(goal))
-        self.facts.append(_term(goal))
+            self._owe("goal", f"{text}: case {number}", z3.Implies(term, statement(goal)))
+        self.goals.append(statement(goal))
+        self.facts.append(statement(goal))
 
     def lemma(self, name: str, *, when: Any = True, **values: Any) -> None:
         """Use the theorem `name` for these values where `when` holds.
@@ -265,7 +221,7 @@ class Claim:
         inner = Claim(
             prefix=prefix,
             circle=(*self.circle, name),
-            fixed=_flatten(values),
+            fixed=flatten(values),
             load=self.load,
             stubs=dict(self.stubs),
         )
@@ -275,7 +231,7 @@ class Claim:
             raise ValueError(f"the lemma {name} has no value called {', '.join(strangers)}")
         self.vouched |= inner.vouched | (set(inner.used) - inner.closed)
         self._name()
-        given = _term(when)
+        given = statement(when)
         self.lemmas.append(name)
         for premise in inner.premises:
             self._owe("lemma", f"premise of {name}", z3.Implies(given, premise))
@@ -284,23 +240,23 @@ class Claim:
 
     def implies(self, if_: Any, then: Any) -> Any:
         """If the one then the other."""
-        return SymBool(z3.Implies(_term(if_), _term(then)))
+        return SymBool(z3.Implies(statement(if_), statement(then)))
 
     def all_of(self, *conditions: Any) -> Any:
         """All of them."""
-        return SymBool(z3.And(*[_term(c) for c in conditions]))
+        return SymBool(z3.And(*[statement(c) for c in conditions]))
 
     def any_of(self, *conditions: Any) -> Any:
         """At least one of them."""
-        return SymBool(z3.Or(*[_term(c) for c in conditions]))
+        return SymBool(z3.Or(*[statement(c) for c in conditions]))
 
     def negation(self, condition: Any) -> Any:
         """Not."""
-        return SymBool(z3.Not(_term(condition)))
+        return SymBool(z3.Not(statement(condition)))
 
     def when(self, condition: Any, yes: Any, no: Any) -> Any:
         """One value or the other."""
-        term = _term(condition)
+        term = statement(condition)
         return join([(term, yes), (z3.Not(term), no)])
 
     def same(self, a: Any, b: Any) -> Any:
@@ -339,84 +295,36 @@ class Claim:
         self._arbitrary((acc, model), (item, context))
         if kernel_fold.name not in self.kernels:
             self.kernels.append(kernel_fold.name)
-        self._owe("base", "relation at the start", _term(relation(kernel_fold.start, model_start)))
-        before = _term(relation(acc, model))
+        self._owe(
+            "base", "relation at the start", statement(relation(kernel_fold.start, model_start))
+        )
+        before = statement(relation(acc, model))
         # both are run only where the relation holds, so what they owe is owed there
         self.facts.append(before)
         after = self.use(kernel_fold.step, acc, *item, *context)
         model_after = self.define(model_step, model, *item, *context)
-        self._owe("step", "relation is kept", _term(relation(after, model_after)))
+        self._owe("step", "relation is kept", statement(relation(after, model_after)))
         result = self.use(kernel_fold.finish, acc)
         wanted = self.define(model_finish, model)
-        self._owe("use", "results are equal", _term(self.same(result, wanted)))
+        self._owe("use", "results are equal", statement(self.same(result, wanted)))
         self.facts = [fact for fact in self.facts if not fact.eq(before)]
 
     def _arbitrary(self, accumulators: Any, others: Any) -> None:
         """Refuse accumulators over which no induction runs."""
-        own = [_known(leaf) for leaf in _leaves(accumulators)]
+        own = [known(leaf) for leaf in leaves(accumulators)]
         if any(not z3.is_const(t) or t.decl().kind() != z3.Z3_OP_UNINTERPRETED for t in own):
             raise ValueError("a fold's accumulators are arbitrary values, not terms or literals")
         names = {str(term) for term in own}
         if len(names) < len(own):
             raise ValueError("a fold's accumulators are distinct values")
-        for leaf in _leaves(others):
-            shared = sorted(names & _free(_known(leaf)))
+        for leaf in leaves(others):
+            shared = sorted(names & free_names(known(leaf)))
             if shared:
                 raise ValueError(f"an item or context depends on the accumulator {shared[0]}")
         for premise in self.premises:
-            shared = sorted(names & _free(premise))
+            shared = sorted(names & free_names(premise))
             if shared:
                 raise ValueError(
                     f"a premise restricts the accumulator {shared[0]}: no step keeps to it; "
                     "put it into the relation (an unbounded integer is `c.whole`)"
                 )
-
-
-def _leaves(value: Any) -> list[Any]:
-    if isinstance(value, tuple):
-        return [leaf for part in value for leaf in _leaves(part)]
-    return [value]
-
-
-def _free(term: z3.ExprRef) -> set[str]:
-    """The names of the values in a term."""
-    seen, names, todo = set(), set(), [term]
-    while todo:
-        part = todo.pop()
-        if part.get_id() in seen:
-            continue
-        seen.add(part.get_id())
-        if z3.is_const(part) and part.decl().kind() == z3.Z3_OP_UNINTERPRETED:
-            names.add(str(part))
-        todo += part.children()
-    return names
-
-
-def _flatten(values: dict[str, Any]) -> dict[str, Any]:
-    flat: dict[str, Any] = {}
-    for name, value in values.items():
-        if isinstance(value, Vec2):
-            flat[name + ".x"], flat[name + ".y"] = value.x, value.y
-        else:
-            flat[name] = value
-    # a literal is as good as a term
-    return {k: v if isinstance(v, Sym) else wrap(_known(v)) for k, v in flat.items()}
-
-
-def _known(value: Any) -> z3.ExprRef:
-    term = _raw(value)
-    if term is None:
-        raise TypeError(f"{value!r} is no value of the kernel subset")
-    return term
-
-
-def _term(value: Any) -> z3.BoolRef:
-    if PATHS:
-        raise RuntimeError("a theorem's statement was evaluated inside a lifted function")
-    if isinstance(value, bool):
-        return z3.BoolVal(value)
-    if isinstance(value, SymBool):
-        return value.term
-    if z3.is_expr(value) and z3.is_bool(value):
-        return value
-    raise TypeError(f"{value!r} is no statement")

@@ -1,4 +1,4 @@
-"""One call in a process forked from the present state; its result comes back.
+"""Calls in processes forked from the present state; their results come back.
 
 What a theorem's statement looks like may depend on what the solver was asked before (numbers of
 terms, pruned paths). Stated in a fresh fork it is the same for the prover, the second solver and
@@ -8,9 +8,9 @@ the export.
 from __future__ import annotations
 
 import multiprocessing
-from collections.abc import Callable
-from multiprocessing.connection import Connection
-from typing import TypeVar
+from collections.abc import Callable, Iterator, Sequence
+from multiprocessing.connection import Connection, wait
+from typing import Any, TypeVar
 
 T = TypeVar("T")
 
@@ -24,19 +24,52 @@ def _child(function: Callable[[], T], out: Connection) -> None:
         out.close()
 
 
-def call(function: Callable[[], T]) -> T:
-    """The function's result; raises what it raises."""
-    here, there = (fork := multiprocessing.get_context("fork")).Pipe(duplex=False)
-    process = fork.Process(target=_child, args=(function, there), daemon=True)
+def _start(function: Callable[[], Any]) -> tuple[Connection, Any]:
+    fork = multiprocessing.get_context("fork")
+    here, there = fork.Pipe(duplex=False)
+    process = fork.Process(target=_child, args=(function, there))
     process.start()
     there.close()
+    return here, process
+
+
+def _finish(here: Connection, process: Any) -> Any:
     try:
         good, result = here.recv()
     except EOFError as error:
         process.join()
         raise RuntimeError(f"a process ended with code {process.exitcode}") from error
+    finally:
+        here.close()
     process.join()
-    here.close()
     if not good:
         raise result
     return result
+
+
+def call(function: Callable[[], T]) -> T:
+    """The function's result; raises what it raises."""
+    result: T = _finish(*_start(function))
+    return result
+
+
+def each(functions: Sequence[Callable[[], T]], jobs: int) -> Iterator[tuple[int, T]]:
+    """Number and result of every function as they are done, so many at once.
+
+    Raises what the first to fail raises; what still runs is ended then.
+    """
+    waiting = list(reversed(range(len(functions))))
+    running: dict[Connection, tuple[int, Any]] = {}
+    try:
+        while waiting or running:
+            while waiting and len(running) < max(1, jobs):
+                number = waiting.pop()
+                here, process = _start(functions[number])
+                running[here] = (number, process)
+            for ready in wait(list(running)):
+                assert isinstance(ready, Connection)
+                number, process = running.pop(ready)
+                yield number, _finish(ready, process)
+    finally:
+        for _, process in running.values():
+            process.terminate()

@@ -23,6 +23,7 @@ from cratous.core.ledger import PRODUCT, Home
 from cratous.core.sources import altered, position, reached
 from cratous.proofs import prover
 from cratous.proofs.cache import Cache
+from cratous.proofs.recall import Recall
 from cratous.proofs.subset import Finding, lint_all
 
 
@@ -142,11 +143,25 @@ def prove_all(
     home: Home = PRODUCT,
     jobs: int | None = None,
     cache: Cache | None = None,
+    recall: Recall | None = None,
 ) -> Inventory:
-    """Prove these theorems, and look for whatever the ledger could not vouch for."""
+    """Prove these theorems, and look for whatever the ledger could not vouch for.
+
+    cache: solver answers; recall: theorems proved before, whose files are the same.
+    """
     entries = gate.load_all(home)
     folder = prover.home_folder(home)
-    theorems = prove_theorems(names, folder=folder, jobs=jobs, cache=cache, tell=tell)
+    wanted = list(names)
+    memory = recall or Recall(None)
+    kept = {name: theorem for name in wanted if (theorem := memory.get(name)) is not None}
+    for name, theorem in kept.items():
+        if tell is not None:
+            tell(Progress(name, 1, 1, theorem))
+    rest = [name for name in wanted if name not in kept]
+    anew = prove_theorems(rest, folder=folder, jobs=jobs, cache=cache, tell=tell)
+    memory.put(anew)
+    kept |= {theorem.name: theorem for theorem in anew}
+    theorems = [kept[name] for name in wanted]
     named = {kernel for theorem in theorems for kernel in theorem.kernels}
     bare = [n for n, e in entries.items() if e.kind != "driver" and n not in named]
     findings = [f for f in lint_all() if f.kernel in entries]

@@ -12,64 +12,60 @@ equivalent  the solver proves that mutant and original agree, everywhere or wher
 undecided   neither refuted nor proved equivalent within the budget; not counted as killed
 stillborn   the mutant cannot be run or lifted; apart, and not counted
 
-The budget is solver effort (rlimit), the order is fixed, each target has a solver context of its
-own: the result does not depend on the machine or on the number of processes.
+The budget is solver effort (rlimit), the order is fixed, and each mutant is judged in a process
+forked from one state: the result does not depend on the machine, on the number of processes, or
+on what was known before. Every verdict is stored when it is reached (`mutation_keys`), so a run
+that was stopped goes on where it was, and a change is paid for by what it touches alone.
 """
 
 from __future__ import annotations
 
-import dataclasses
 import fnmatch
-import json
 from collections.abc import Callable, Iterable
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from multiprocessing import get_context
-from pathlib import Path
+from functools import partial
 from typing import Any
 
 from cratous.core import ledger as gate
-from cratous.core.compiled import cache_folder
-from cratous.core.sources import closure, digest, files_digest
-from cratous.proofs import prover
-from cratous.proofs.mutation_judge import (
-    claim_of,
-    judge_premises,
-    judge_target,
-    targets,
-    theorems_from,
-)
-from cratous.proofs.mutation_report import VERDICTS, MutationReport, PremiseResult, Result, document
+from cratous.core.ledger import PRODUCT, Home
+from cratous.core.private import private_cache
+from cratous.proofs import cache, forked, prover
+from cratous.proofs.mutation_judge import judge_target
+from cratous.proofs.mutation_keys import Keys, Store
+from cratous.proofs.mutation_premises import judge_premises
+from cratous.proofs.mutation_report import MutationReport
+from cratous.proofs.mutation_results import VERDICTS, PremiseResult, Result
+from cratous.proofs.mutation_statements import targets, theorems_from
 
-__all__ = ["VERDICTS", "MutationReport", "PremiseResult", "Result", "document", "run"]
-
-GENERATED = "filter_*"
-"""Theorems that hold a kernel against what is generated from it. They never kill: every fault
-differs from what was generated before it was made, so they would hide each missing theorem."""
+__all__ = ["VERDICTS", "MutationReport", "PremiseResult", "Result", "chosen", "run", "standard"]
 
 
-def _key(parts: list[str], users: list[str], folder: Path) -> str:
-    files = {**prover.theorem_files(), **prover.theorem_files(folder)}
-    todo, seen = list(users), set()
-    while todo:
-        name = todo.pop()
-        if name not in seen:
-            seen.add(name)
-            todo += claim_of(name).lemmas
-    sources = sorted({file for name in seen for file in closure(files[name])})
-    engine = closure(Path(__file__).resolve())
-    return digest([*parts, files_digest([*sources, *engine]), gate.solver_version()])
+def standard() -> Store:
+    """The verdicts that this user and machine know."""
+    return Store(private_cache() / "mutation")
 
 
-def _kept(key: str) -> Path:
-    return cache_folder() / "mutation" / f"{key}.json"
+def chosen(
+    names: Iterable[str] = ("*",), keys: Keys | None = None, about: Iterable[str] = ()
+) -> dict[str, list[str]]:
+    """The targets whose `module.name` or name matches a pattern, with the theorems that may kill.
 
+    about: theorems; the kernels and folds that they are about are chosen too.
+    """
+    keys = keys or Keys()
+    patterns, theorems = list(names), set(about)
 
-def _remember(key: str, rows: list[Any]) -> None:
-    file = _kept(key)
-    file.parent.mkdir(parents=True, exist_ok=True)
-    part = file.with_suffix(".part")
-    part.write_text(json.dumps([dataclasses.asdict(row) for row in rows]), encoding="utf-8")
-    part.replace(file)
+    def look() -> dict[str, list[str]]:
+        gate.load_all(keys.home)
+        theorems_from(keys.folder)
+        found = {}
+        for key, (target, users) in targets(keys.theorems, keys.home).items():
+            named = any(fnmatch.fnmatch(n, p) for p in patterns for n in (key, target.__name__))
+            if named or theorems & set(users):
+                found[key] = users
+        return found
+
+    # in a process of its own, so that every judgement starts from a state without terms
+    return forked.call(look)
 
 
 def run(
@@ -78,89 +74,50 @@ def run(
     jobs: int = 1,
     *,
     theorems: Iterable[str] | None = None,
+    about: Iterable[str] = (),
     premises: bool = True,
-    folder: Path = prover.FOLDER,
+    home: Home = PRODUCT,
+    store: Store | None = None,
 ) -> MutationReport:
     """Mutate the functions whose `module.name` or name matches one of the patterns `names`.
 
     tell(target, results) is called as each target or theorem is done. jobs: processes. theorems:
-    which may kill, all but GENERATED by default; ValueError if one of them does not hold as it
-    stands. folder: where the theorems lie. Results are cached by the hash of all that they depend
-    on.
+    which may kill, all that are not generated by default; ValueError if one of them does not hold
+    as it stands. about: mutate what these theorems look into as well. store: verdicts that are
+    known; by default those of this user and machine.
     """
-    gate.load_all()
-    theorems_from(folder)
-    patterns = list(names)
-    known = list(theorems) if theorems is not None else list(prover.theorem_files(folder))
-    known = [name for name in known if not fnmatch.fnmatch(name, GENERATED)]
-    chosen = {
-        key: (target, users)
-        for key, (target, users) in targets(known).items()
-        if any(fnmatch.fnmatch(key, p) or fnmatch.fnmatch(target.__name__, p) for p in patterns)
-    }
-    work: list[tuple[str, Any, tuple[Any, ...], type]] = []
-    for key, (_, users) in chosen.items():
-        work.append((_key(["mutants", key], users, folder), judge_target, (key, users), Result))
-    met = sorted({name for _, users in chosen.values() for name in users})
+    gate.load_all(home)
+    known = standard() if store is None else store
+    keys = Keys(home, None if theorems is None else list(theorems))
+    work = chosen(names, keys, about)
+    met = sorted({name for users in work.values() for name in users})
+    effort = _effort(met, home)
+    # the longest first, so that no process waits for one that began late
+    order = sorted(work, key=lambda key: -sum(effort[name] for name in work[key]))
+    calls: list[tuple[str, Callable[[], list[Any]]]] = []
+    for key in order:
+        spent = {name: effort[name] for name in work[key]}
+        calls.append((key, partial(judge_target, key, work[key], spent, keys, known)))
     for name in met if premises else []:
-        work.append(
-            (_key(["premises", name], [name], folder), judge_premises, (name,), PremiseResult)
-        )
-    rows = _all(work, met, tell, jobs, folder)
-    results = [r for found in rows for r in found if isinstance(r, Result)]
-    loose = [r for found in rows for r in found if isinstance(r, PremiseResult)]
-    return MutationReport(tuple(results), tuple(loose))
-
-
-def _all(
-    work: list[tuple[str, Any, tuple[Any, ...], type]],
-    met: list[str],
-    tell: Callable[[str, list[Any]], None] | None,
-    jobs: int,
-    folder: Path,
-) -> list[list[Any]]:
-    """The results of all items of work, from the cache or by so many processes."""
-    rows: dict[int, list[Any]] = {}
-    for number, (key, _, _, kind) in enumerate(work):
-        if _kept(key).is_file():
-            stored = json.loads(_kept(key).read_text(encoding="utf-8"))
-            rows[number] = [kind(**row) for row in stored]
-    todo = [number for number in range(len(work)) if number not in rows]
-    effort = _effort(met, folder) if todo else {}
-
-    def done(number: int, found: list[Any]) -> None:
-        rows[number] = found
-        _remember(work[number][0], found)
+        calls.append((name, partial(judge_premises, name, effort[name], keys, known)))
+    rows: dict[str, list[Any]] = {}
+    for number, found in forked.each([call for _, call in calls], jobs):
+        rows[calls[number][0]] = found
         if tell is not None:
-            tell(str(work[number][2][0]), found)
-
-    def call(number: int) -> tuple[Any, ...]:
-        _, function, args, _ = work[number]
-        if function is judge_premises:
-            return (function, args[0], effort[args[0]], folder)
-        return (function, *args, {name: effort[name] for name in args[1]}, folder)
-
-    if jobs <= 1 or len(todo) <= 1:
-        for number in todo:
-            function, *args = call(number)
-            done(number, function(*args))
-    else:
-        with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-            # the longest first, so that no process waits for one that began late
-            todo.sort(key=lambda number: -sum(effort[name] for name in _theorems(work[number])))
-            waiting = {pool.submit(*call(number)): number for number in todo}
-            for future in as_completed(waiting):
-                done(waiting[future], future.result())
-    return [rows[number] for number in range(len(work))]
+            tell(calls[number][0], found)
+    return MutationReport(
+        tuple(result for key in work for result in rows[key]),
+        tuple(row for name in (met if premises else []) for row in rows[name]),
+    )
 
 
-def _theorems(item: tuple[str, Any, tuple[Any, ...], type]) -> list[str]:
-    return list(item[2][1]) if item[1] is judge_target else [item[2][0]]
-
-
-def _effort(names: list[str], folder: Path) -> dict[str, int]:
-    """Prove the theorems as they stand; what each took."""
-    proved = {name: prover.prove_file(name, folder=folder) for name in names}
+def _effort(names: list[str], home: Home) -> dict[str, int]:
+    """What each theorem took to prove; all must hold as they stand."""
+    kept = cache.standard()
+    proved = {
+        name: forked.call(partial(prover.prove_file, name, folder=home.theorems, cache=kept))
+        for name in names
+    }
     broken = [name for name, theorem in proved.items() if not theorem.proved]
     if broken:
         raise ValueError(f"not proved as they stand, so no mutant can be judged: {broken}")

@@ -47,12 +47,16 @@ MOST_NAMES = 4
 
 @dataclass(frozen=True)
 class Mutant:
-    """One fault: what was done, the line of the file, the line before and after, the function."""
+    """One fault: what was done, the line of the file, the line before and after, the function.
+
+    text: the whole function with the fault in it.
+    """
 
     operator: str
     line: int
     diff: str
     function: Callable[..., Any]
+    text: str
 
 
 def mutants(function: Callable[..., Any]) -> list[Mutant]:
@@ -75,7 +79,8 @@ def mutants(function: Callable[..., Any]) -> list[Mutant]:
                 continue
             seen.add(text)
             line = first + getattr(place, "lineno", 1) - 1
-            made.append(Mutant(name, line, _diff(original, text), _function(function, changed)))
+            diff, faulty = _diff(original, text), _function(function, changed)
+            made.append(Mutant(name, line, diff, faulty, text))
     return made
 
 

@@ -9,26 +9,24 @@ obligation can be written out as SMT-LIB for solvers that stand alone.
 
 from __future__ import annotations
 
-import ast
-import sys
 import time
-import types
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import z3
 
 from cratous.core.kernel import REGISTRY
-from cratous.core.ledger import PRODUCT, Home
-from cratous.core.sources import place
+from cratous.core.ledger import Home
+from cratous.core.sources import altered, ours, place
 from cratous.proofs.cache import Answer, Cache
 from cratous.proofs.claim import Claim, Obligation
 from cratous.proofs.counterexample import Model, Watched, story, telling
 from cratous.proofs.lift import LiftError
 from cratous.proofs.merkle import Hasher
 from cratous.proofs.smtlib import logic_of, question, smt2, sorts
+from cratous.proofs.theorem_files import FOLDER, find, load_claim, theorem_files
 from cratous.spec.errors import BadInput
 
 RLIMIT = 60_000_000
@@ -78,7 +76,7 @@ class Theorem:
     premises: str
     outcomes: tuple[Outcome, ...]
     assumptions: tuple[tuple[str, str, str], ...]
-    _key: Any = None
+    _key: Any = field(default=None, compare=False, repr=False)
     paths: tuple[tuple[str, tuple[bool, ...]], ...] = ()
 
     def __post_init__(self) -> None:
@@ -99,6 +97,30 @@ class Theorem:
     def seconds(self) -> float:
         """CPU seconds of the solver over all obligations, when they were last really solved."""
         return sum(o.seconds for o in self.outcomes)
+
+
+def restore(data: dict[str, Any]) -> Theorem:
+    """A theorem from its fields as they were kept (`proofs.recall`).
+
+    Raises KeyError, TypeError or ValueError for data that are not a theorem's.
+    """
+    outcomes = []
+    for row in data["outcomes"]:
+        owed = Owed(**row["obligation"])
+        example = tuple((str(n), str(v)) for n, v in row["counterexample"])
+        rest = {k: row[k] for k in ("status", "rlimit", "logic", "key", "seconds")}
+        outcomes.append(Outcome(owed, counterexample=example, story=tuple(row["story"]), **rest))
+    return Theorem(
+        data["name"],
+        data["sentence"],
+        tuple(data["kernels"]),
+        tuple(data["lemmas"]),
+        data["premises"],
+        tuple(outcomes),
+        tuple((str(a), str(b), str(c)) for a, b, c in data["assumptions"]),
+        _KEY,
+        tuple((str(name), tuple(map(bool, seen))) for name, seen in data["paths"]),
+    )
 
 
 def _solvers(terms: list[z3.ExprRef], context: z3.Context) -> list[tuple[str, z3.Solver]]:
@@ -256,68 +278,22 @@ def _satisfiable(terms: list[z3.BoolRef], rlimit: int, cache: Cache, hasher: Has
 
 
 # -- theorem files ----------------------------------------------------------------------
-FOLDER = PRODUCT.theorems
-
-
-def theorem_files(folder: Path = FOLDER) -> dict[str, Path]:
-    """Name to file of every theorem, in order of name."""
-    return {p.stem: p for p in sorted(folder.glob("*.py")) if not p.stem.startswith("_")}
-
-
-def _find(name: str, folder: Path) -> Path:
-    """The file of a theorem: in this folder, else in the product's. One name, one theorem."""
-    found = [files[name] for files in map(theorem_files, {folder, FOLDER}) if name in files]
-    if not found:
-        raise BadInput(
-            f"there is no theorem called {name!r}",
-            where=place(folder),
-            expected="the name of a file of this folder, without .py",
-        )
-    if len(found) > 1:
-        places = " and ".join(sorted(place(path) for path in found))
-        raise BadInput(f"two theorems are called {name!r}", where=places, expected="one id, one")
-    return found[0]
-
-
-def load_claim(name: str, folder: Path = FOLDER) -> tuple[Callable[[Claim], None], str]:
-    """The function `claim` of a theorem file, and its sentence."""
-    path = _find(name, folder)
-    text = path.read_text(encoding="utf-8")
-    module_name = f"cratous.proofs.theorems.{name}"
-    module = sys.modules.get(module_name)
-    if module is None or getattr(module, "__file__", None) != str(path):
-        module = types.ModuleType(module_name)
-        module.__file__ = str(path)
-        try:
-            # from the text, never from byte code: what is proved is what is written
-            exec(compile(text, str(path), "exec", dont_inherit=True), module.__dict__)
-        except ImportError as error:
-            raise BadInput(
-                f"the theorem imports what is not there: {error}", where=place(path)
-            ) from error
-        except SyntaxError as error:
-            line = f"{place(path)}:{error.lineno}"
-            raise BadInput(f"the theorem is no Python: {error.msg}", where=line) from error
-        sys.modules[module_name] = module
-    sentence = " ".join((ast.get_docstring(ast.parse(text)) or "").split())
-    if not sentence:
-        raise BadInput(
-            "the theorem has no docstring", where=place(path), expected="the sentence it proves"
-        )
-    if not callable(getattr(module, "claim", None)):
-        raise BadInput("the theorem states nothing", where=place(path), expected="def claim(c)")
-    return module.claim, sentence
-
-
 def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
     """The claim of a theorem file, stated, and its sentence; the kernels must be registered."""
     statement, sentence = load_claim(name, folder)
     claim = Watched(load=lambda other: load_claim(other, folder)[0])
-    where = place(_find(name, folder))
+    where = place(find(name, folder))
     try:
         statement(claim)
     except (ValueError, TypeError, LiftError) as error:
         raise BadInput(f"the theorem cannot be stated: {error}", where=where) from error
+    wrong = {n for f in {v.function for v in claim.visits} if ours(f) for n in altered(f)}
+    if wrong:
+        raise BadInput(
+            f"the code that runs is not its file's: {', '.join(sorted(wrong))}",
+            where=where,
+            expected="functions as their files say (remove __pycache__)",
+        )
     used: list[Any] = [run.function for run in claim.runs if run.role == "kernel"]
     for function in [*used, *claim.folds]:
         entry = REGISTRY.get(function.__name__)

@@ -244,6 +244,8 @@ def text(found: Recheck, theorems: Iterable[prover.Theorem]) -> str:
             check.key, {"cvc5": check.verdict, "logic": check.logic, "of": []}
         )
         row["of"].append(f"{check.theorem} {check.number}: {check.text}")
+    for row in obligations.values():
+        row["of"].sort()
     summary = {
         name: {"cvc5": found.verdict(name), "z3_effort": spent[name]}
         for name in sorted(found.theorems)
@@ -252,11 +254,45 @@ def text(found: Recheck, theorems: Iterable[prover.Theorem]) -> str:
     return json.dumps(data, indent=1, sort_keys=True) + "\n"
 
 
-def write(found: Recheck, theorems: Iterable[prover.Theorem], path: Path = FILE) -> None:
-    """Write the verdicts."""
+def write(
+    found: Recheck,
+    theorems: Iterable[prover.Theorem],
+    path: Path = FILE,
+    *,
+    whole: bool = True,
+) -> None:
+    """Write the verdicts; those on a part of the theorems (not whole) replace only these.
+
+    Raises BadInput where a part by one version of the solver would stand beside those of another.
+    """
+    new = text(found, theorems)
+    if not whole and path.is_file():
+        new = _joined(read(path), json.loads(new), path)
     part = path.with_suffix(f".{os.getpid()}")
-    part.write_text(text(found, theorems), encoding="utf-8")
+    part.write_text(new, encoding="utf-8")
     part.replace(path)
+
+
+def _joined(old: dict[str, Any], new: dict[str, Any], path: Path) -> str:
+    if old["solver"] != new["solver"]:
+        raise BadInput(
+            "the verdicts that are there come from another solver",
+            where=path.name,
+            expected=f"{new['solver']}, or a re-check of all theorems",
+            got=old["solver"],
+        )
+    mine = set(new["theorems"])
+    rows: dict[str, dict[str, Any]] = {}
+    for key, row in old["obligations"].items():
+        others = [name for name in row["of"] if name.split(" ")[0] not in mine]
+        if others:
+            rows[key] = {**row, "of": others}
+    for key, row in new["obligations"].items():
+        shared = rows.get(key, {"of": []})["of"]
+        rows[key] = {**row, "of": sorted([*shared, *row["of"]])}
+    known = {**old["theorems"], **new["theorems"]}
+    data = {"solver": new["solver"], "theorems": known, "obligations": rows}
+    return json.dumps(data, indent=1, sort_keys=True) + "\n"
 
 
 def read(path: Path = FILE) -> dict[str, Any]:

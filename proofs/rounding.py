@@ -23,10 +23,12 @@ from typing import Any
 
 import z3
 
+from cratous.core.bounds import FLOOR, TINY, UNIT
 from cratous.core.certainty import surely_above, surely_below
-from cratous.core.filtering import FLOOR, TINY, UNIT, Certain, Filter, Step, filtered
-from cratous.core.graph import Node, NotInSubset, Program, leaves, program
+from cratous.core.filtering import Certain, Filter, Step, filtered
+from cratous.core.graph import program
 from cratous.core.ledger import load_all
+from cratous.core.nodes import Node, NotInSubset, Program, leaves
 from cratous.proofs.claim import Claim, Obligation
 from cratous.proofs.symbolic import Sym, wrap
 from cratous.spec import rounding

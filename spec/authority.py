@@ -27,3 +27,27 @@ def may_command(state: State, sender: int) -> bool:
     if sender == 0:
         return state.owner == 0 or state.offered
     return sender == 1 and state.owner == 1
+
+
+def may_offer(offered: bool, free: bool, lasted: bool, linked: bool) -> bool:
+    """ICAROUS may offer control: it has not yet, the way back is free and has been for long enough,
+    and UxAS can hear the offer."""
+    return not offered and free and lasted and linked
+
+
+def must_withdraw(offered: bool, free: bool) -> bool:
+    """An open offer must be withdrawn: whoever took it would fly into a predicted conflict."""
+    return offered and not free
+
+
+KEEP, OFFER, WITHDRAW = 0, 1, 2
+"""What an instance that commands does with its authority at a heartbeat."""
+
+
+def handback(offered: bool, free: bool, lasted: bool, linked: bool) -> int:
+    """What is due, by code: withdraw what must be withdrawn, offer what may be offered, else keep."""
+    if must_withdraw(offered, free):
+        return WITHDRAW
+    if may_offer(offered, free, lasted, linked):
+        return OFFER
+    return KEEP

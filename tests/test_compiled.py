@@ -10,9 +10,10 @@ import pytest
 
 from cratous.core.compiled import compiled
 from cratous.core.exactly import exactly
-from cratous.core.graph import NotInSubset, leaves, program
+from cratous.core.graph import program
 from cratous.core.kernel import REGISTRY
 from cratous.core.ledger import load_all
+from cratous.core.nodes import NotInSubset, leaves
 from cratous.core.well_clear import horizontal_violation, vertical_violation
 from cratous.spec.errors import BadInput
 

@@ -18,7 +18,7 @@ def test_the_explanations_are_few_and_those_without_a_kernel_are_counted():
     counts = decisions.counted()
     assert sum(counts.values()) == len(decisions.places())
     assert len(decisions.explanations()) <= 40
-    assert counts["open"] <= 13, "decisions without a kernel may only become fewer"
+    assert counts["open"] == 0, "every decision has a kernel"
 
 
 SOURCE = """

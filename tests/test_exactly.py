@@ -10,11 +10,13 @@ import pytest
 
 from cratous.core import exactly as reading
 from cratous.core import polygon, well_clear
+from cratous.core.bounds import UNIT
 from cratous.core.compiled import compiled, exact
 from cratous.core.exactly import exactly
-from cratous.core.filtering import UNDECIDED, UNIT, filtered
-from cratous.core.graph import NotInSubset, leaves, program
+from cratous.core.filtering import UNDECIDED, filtered
+from cratous.core.graph import program
 from cratous.core.kernel import Vec2
+from cratous.core.nodes import NotInSubset, leaves
 from cratous.core.well_clear import horizontal_violation
 from cratous.proofs import rounding
 from cratous.proofs.claim import Claim

@@ -86,6 +86,14 @@ ATTACKS = {
         "vertical_window: changed since the proof: its source"),
     "a constant": ("core/gate.py", "return Gate(1, gate.epoch + 1, False)",
                    "return Gate(1, gate.epoch + 0, False)", "gate_takeover: changed"),
+    "a constant of a definition": (
+        "spec/plan.py", "NOT_BEFORE, NOT_AFTER = 1, 2, 3, 4, 5, 6", "NOT_BEFORE, NOT_AFTER = 2, 1, 3, 4, 5, 6",
+        "row_holds: changed since the proof: its definition in spec"),
+    "a constant of the float filter": ("core/bounds.py", "Fraction(1, 2**53)", "Fraction(1, 2**54)",
+                                       "the readings"),
+    "an argument's range": (
+        "core/timeliness.py", ', nonnegative=("least",)', "",
+        "lasted: changed since the proof: its source"),
     "a fold's start": ("core/timing.py", "start=True", "start=False",
                        "schedule_holds: changed since the proof: its source"),
     "a definition": ("spec/well_clear.py", "return dot(s, v) < 0", "return dot(s, v) <= 0",
@@ -197,7 +205,7 @@ real = compiled.load
 seen = []
 compiled.load = lambda text: seen.append(text) or real(text)
 right = compiled.compiled(straddles)([1.0, 0.0], [1.0, 1.0]).tolist()
-folder = compiled.cache_folder() / ("kernels_" + compiled.digest([seen[-1]])[:32])
+folder = compiled.private_cache() / ("kernels_" + compiled.digest([seen[-1]])[:32])
 print(folder, right)
 """
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -13,16 +13,20 @@ import z3
 from cratous.core import gate as gate_module
 from cratous.core import ledger as gate
 from cratous.core.kernel import REGISTRY
-from cratous.proofs import mutate, mutation_judge, prover
+from cratous.proofs import mutate, mutation_judge, mutation_record, prover
 from cratous.proofs.asking import ask
 from cratous.proofs.claim import Claim
 from cratous.proofs.lift import REPLACED
 from cratous.proofs.mutation_inputs import compare, inputs, run
+from cratous.proofs.mutation_keys import Keys, Store
 from cratous.proofs.mutation_operators import mutants
-from cratous.proofs.mutation_report import MutationReport, PremiseResult, Result, document
+from cratous.proofs.mutation_premises import judge_premises
+from cratous.proofs.mutation_report import MutationReport
+from cratous.proofs.mutation_results import PremiseResult, Result
+from cratous.proofs.mutation_statements import targets
 
 gate.load_all()
-FOLDER = prover.FOLDER
+KEYS, NOWHERE = Keys(), Store(None)
 
 
 @pytest.fixture(autouse=True)
@@ -136,7 +140,7 @@ def test_a_missing_theorem_shows_as_a_survivor_with_its_diff_and_a_witness():
 
 def judged(key, theorems, *ends):
     """The verdicts on chosen mutants of one function."""
-    original = mutation_judge.targets(theorems)[key][0]
+    original = targets(theorems)[key][0]
     target = mutation_judge.Target(key, original, theorems, dict.fromkeys(theorems, 100_000))
     made = {m.diff: m for m in mutants(original)}
     chosen = [next(m for diff, m in made.items() if diff.endswith(end)) for end in ends]
@@ -191,14 +195,13 @@ def test_the_starts_of_folds_are_mutated():
 
 def test_premises_matter_or_are_named_as_unused():
     found = {
-        p.premise: p
-        for p in mutation_judge.judge_premises("runs_forward_is_its_definition", 10**5, FOLDER)
+        p.premise: p for p in judge_premises("runs_forward_is_its_definition", 10**5, KEYS, NOWHERE)
     }
     assert found["start has at most 62 bits"].dropped == "unused"
 
 
 def test_a_premise_that_matters_is_noticed():
-    judged = mutation_judge.judge_premises("the_greater_id_gives_way", 10**5, FOLDER)
+    judged = judge_premises("the_greater_id_gives_way", 10**5, KEYS, NOWHERE)
     (found,) = [p for p in judged if "62 bits" not in p.premise]
     assert (found.dropped, found.weakened) == ("matters", "matters")
 
@@ -214,30 +217,56 @@ def test_no_mutant_is_judged_by_a_theorem_that_does_not_hold(monkeypatch):
         c.show(c.use(gate_module.gives_way, c.integer("a"), c.integer("b"), True))
 
     monkeypatch.setattr(prover, "load_claim", lambda name, *more: (claim, "A sentence."))
-    mutation_judge.stated.cache_clear()
-    try:
-        with pytest.raises(ValueError, match="not proved as they stand"):
-            mutate.run(["gives_way"], theorems=["exactly_one_gives_way"], premises=False)
-    finally:
-        mutation_judge.stated.cache_clear()
+    with pytest.raises(ValueError, match="not proved as they stand"):
+        mutate.run(["gives_way"], theorems=["exactly_one_gives_way"], premises=False)
 
 
-def test_results_are_cached_and_the_same_in_two_processes():
+def test_results_are_stored_and_the_same_in_two_processes(monkeypatch):
     names = ["later", "runs_forward", "gives_way"]
-    heard = []
-    first = mutate.run(names, lambda target, _: heard.append(target), 2)
-    assert heard
-    heard.clear()
-    assert mutate.run(names, lambda target, _: heard.append(target)) == first
-    assert heard == []
+    first = mutate.run(names, jobs=2)
+
+    def judged_again(*more):
+        raise AssertionError("a stored verdict was asked again")
+
+    monkeypatch.setattr(mutation_judge.Target, "judge", judged_again)
+    assert mutate.run(names) == first
 
 
-def test_a_cached_result_of_another_engine_is_not_used(monkeypatch, tmp_path):
-    mutate.run(["later"], premises=False)
-    monkeypatch.setattr(mutate.gate, "solver_version", lambda: "z3 0.0")
-    heard = []
-    mutate.run(["later"], lambda target, _: heard.append(target), premises=False)
-    assert "core.timing.later" in heard
+def test_a_run_that_was_stopped_goes_on_where_it_was(monkeypatch, tmp_path):
+    store = Store(tmp_path / "verdicts")
+    whole = mutate.run(["gives_way"], premises=False, store=store)
+    files = sorted(p for p in store.folder.rglob("*") if p.is_file())
+    assert len(files) == len(whole.results) > 3
+    files[0].unlink()
+    files[1].write_text("{damaged")
+    files[2].write_text(files[3].read_text())
+    again = mutate.run(["gives_way"], premises=False, store=store)
+    assert again == whole
+    assert len([p for p in store.folder.rglob("*") if p.is_file()]) == len(files)
+
+
+def test_a_verdict_depends_on_function_theorems_judge_and_solver(monkeypatch):
+    function = REGISTRY["gives_way"].function
+    key = KEYS.target("core.gate.gives_way", function)
+    assert Keys().target("core.gate.gives_way", function) == key
+    other = REGISTRY["gate_offer"].function
+    assert key != KEYS.target("core.gate.gives_way", other)
+    fewer = Keys(theorems=["exactly_one_gives_way"])
+    assert fewer.target("core.gate.gives_way", function) != key
+    unrelated = [name for name in KEYS.theorems if name != "orient_is_the_turn"]
+    assert Keys(theorems=unrelated).target("core.gate.gives_way", function) == key
+    assert KEYS.mutant(key, "a") != KEYS.mutant(key, "b")
+    monkeypatch.setattr("cratous.proofs.mutation_keys.judging", lambda: "another")
+    assert KEYS.target("core.gate.gives_way", function) != key
+
+
+def test_what_a_theorem_meets_is_within_what_its_imports_reach():
+    """A key must cover every theorem that can judge, also those that meet a function indirectly."""
+    from cratous.proofs.mutation_keys import reach, reach_name
+
+    for target, users in targets(KEYS.theorems).values():
+        for name in users:
+            assert reach_name(target) in reach(name), (name, target)
 
 
 # -- the report --------------------------------------------------------------------------------------
@@ -263,11 +292,43 @@ def test_the_document_lists_what_was_not_killed():
         PremiseResult("t", "x >= 0", "unused", "-"),
         PremiseResult("t", "y >= 0", "matters", "unused"),
     )
-    text = document(MutationReport((result("survived"), result("killed")), premises))
-    assert "`core/m.py:3` `- a + -a`: why" in text
-    assert "| `core.m.f` | 1 | 1 | 0 | 0 | 0 |" in text
-    assert "`t`: `x >= 0`" in text
+    name, theorem = "core.gate.gives_way", "exactly_one_gives_way"
+    results = tuple(replace(result(v), target=name) for v in ("survived", "killed"))
+    premises = tuple(replace(p, theorem=theorem) for p in premises)
+    data = mutation_record.merged(mutation_record.EMPTY, MutationReport(results, premises), KEYS)
+    text = mutation_record.document(data, KEYS)
+    assert f"- `{name}` `- a + -a`: why" in text
+    assert f"| `{name}` | kernel | 2 | 1 | 1 | 0 | 0 | 0 |  |" in text
+    assert f"`{theorem}`: `x >= 0`" in text
     assert "slightly weaker" in text
+    assert "- `core.gate.gate_offer`: it was never mutated" in text
+
+
+def test_a_stale_result_is_listed_as_stale():
+    name = "core.gate.gives_way"
+    report = MutationReport((replace(result("killed"), target=name),), ())
+    data = mutation_record.merged(mutation_record.EMPTY, report, KEYS)
+    assert name not in mutation_record.stale(data, KEYS)
+    fewer = Keys(theorems=["exactly_one_gives_way"])
+    assert "changed since" in mutation_record.stale(data, fewer)[name]
+    assert f"| `{name}` | kernel | 1 | 1 | 0 | 0 | 0 | 0 | stale |" in mutation_record.document(
+        data, fewer
+    )
+    gone = {"targets": {"core.gate.gone": data["targets"][name]}, "premises": {}}
+    assert "no longer there" in mutation_record.stale(gone, KEYS)["core.gate.gone"]
+
+
+def test_a_report_replaces_its_own_targets_in_the_record_alone(tmp_path):
+    file = tmp_path / "mutation.json"
+    one, other = "core.gate.gives_way", "core.timing.later"
+    for name in (one, other):
+        report = MutationReport((replace(result("killed"), target=name),), ())
+        mutation_record.write(report, KEYS, file)
+    survivor = MutationReport((replace(result("survived"), target=one),), ())
+    mutation_record.write(survivor, KEYS, file)
+    targets_now = mutation_record.read(file)["targets"]
+    assert targets_now[one]["counts"]["survived"] == 1
+    assert targets_now[other]["counts"]["killed"] == 1
 
 
 def test_a_report_is_plain_data():

@@ -178,3 +178,17 @@ def test_a_package_that_is_none_is_bad_input(tmp_path: Path, root: Path) -> None
     done = _run(tmp_path, root, "cratous prove --package lonely")
     assert done.returncode == 2
     assert "no theorems" in done.stderr
+
+
+@pytest.mark.slow
+def test_faults_of_the_package_s_kernel_are_looked_for(package: Path, root: Path) -> None:
+    """Mutation judges the package's functions by its theorems, and leaves the product's record."""
+    record = root / "proofs" / "mutation.json"
+    before = record.read_bytes() if record.is_file() else b""
+    done = _run(package, root, "cratous prove --package my_pkg --mutate --json")
+    assert done.returncode == 0, done.stdout + done.stderr
+    found = json.loads(done.stdout)["mutation"]
+    assert found["killed"] > 10
+    assert found["survived"] == found["undecided"] == 0
+    assert found["holds"]
+    assert (record.read_bytes() if record.is_file() else b"") == before

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from cratous.core import ledger as gate
-from cratous.proofs import ledger, mutate, prover, recheck
+from cratous.proofs import ledger, mutate, mutation_record, prover, recheck
 from cratous.services.cli import main
 
 FEW = "*its_definition"
@@ -78,16 +78,22 @@ def test_changed_proves_what_differs_from_the_ledger(
     assert set(changed) == set(prover.theorem_files()) - {"straddles_is_its_definition"}
 
 
-def test_recheck_counts_theorems_and_obligations(capsys: pytest.CaptureFixture[str]):
+def test_recheck_counts_theorems_and_obligations(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
     pytest.importorskip("cvc5")
-    before = recheck.FILE.read_bytes() if recheck.FILE.is_file() else b""
+    written = []
+    monkeypatch.setattr(recheck, "write", lambda found, _, whole: written.append((found, whole)))
     code, data = _json(capsys, "--only", ONE, "--recheck")
     assert code == 0
     second = data["recheck"]
     assert second["theorems"] == {ONE: "confirmed"}
     assert (second["confirmed"], second["no_answer"], second["contradicted"]) == (1, 0, 0)
     assert data["theorems"][0]["second_solver"] == "confirmed"
-    assert (recheck.FILE.read_bytes() if recheck.FILE.is_file() else b"") == before
+    ((found, whole),) = written
+    assert set(found.theorems) == {ONE}
+    assert not whole, "the verdicts on other theorems stay"
+    assert main(["prove", "--check", "--only", ONE, "--recheck"]) == 2
 
 
 def test_a_contradiction_of_the_second_solver_fails(
@@ -95,6 +101,7 @@ def test_a_contradiction_of_the_second_solver_fails(
 ):
     check = recheck.Check(ONE, 1, "k", "goal: the claim", "contradicted", "QF_NRA", 0.1)
     monkeypatch.setattr(recheck, "recheck", lambda *_, **__: recheck.Recheck("cvc5 1", (check,)))
+    monkeypatch.setattr(recheck, "write", lambda *_, **__: None)
     assert main(["prove", "--only", ONE, "--recheck"]) == 1
     out = capsys.readouterr().out
     assert "contradicted straddles_is_its_definition 1: goal: the claim" in out
@@ -103,24 +110,29 @@ def test_a_contradiction_of_the_second_solver_fails(
 
 def test_mutation_is_reported(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
     result = mutate.Result("f", "kernel", "op", "core/x.py:1", "a -> b", "survived")
-    asked = []
+    asked, kept = [], []
 
-    def run(names, tell, jobs, *, theorems=None):
-        asked.append(theorems)
+    def run(names, tell, jobs, *, about, home):
+        asked.append((names, about))
         tell("f", [result])
         return mutate.MutationReport((result,), ())
 
     monkeypatch.setattr(mutate, "run", run)
-    assert main(["prove", "--only", ONE, "--mutate"]) in (0, 1)
+    monkeypatch.setattr(mutation_record, "write", lambda report, keys: kept.append(report))
+    assert main(["prove", "--only", ONE, "--mutate"]) == 1, "a survivor on a kernel fails the run"
     out = capsys.readouterr().out
-    assert asked == [[ONE]]
+    assert asked == [((ONE,), [ONE])]
+    assert kept[0].of("survived") == (result,)
     assert "survived" in out
     assert "a -> b" in out
 
 
 def test_assumptions_are_shown_with_owner_and_reason(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ):
+    monkeypatch.setenv(
+        "CRATOUS_CACHE", str(tmp_path)
+    )  # the theorem as its file has it is not meant
     real = prover.load_claim
 
     def assuming(name, folder=prover.FOLDER):
@@ -160,3 +172,18 @@ def test_the_start_is_quick(arguments: list[str], limit_s: float):
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         spent.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
     assert min(spent) < limit_s, spent
+
+
+def test_mutation_of_functions_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A pattern that only functions match proves and mutates what meets them."""
+    asked = []
+
+    def run(names, tell, jobs, *, about, home):
+        asked.append((names, about))
+        return mutate.MutationReport((), ())
+
+    monkeypatch.setattr(mutate, "run", run)
+    monkeypatch.setattr(mutation_record, "write", lambda report, keys: None)
+    assert main(["prove", "--only", "gives_way", "--mutate"]) == 0
+    assert asked == [(("gives_way",), [])]
+    assert main(["prove", "--only", "no_such_function", "--mutate"]) == 2

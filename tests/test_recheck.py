@@ -88,6 +88,29 @@ def test_the_file_is_keyed_by_obligation(tmp_path: Path):
     assert json.loads(file.read_text()) == data
 
 
+def test_a_part_replaces_its_own_theorems_alone(tmp_path: Path):
+    names = ["straddles_is_its_definition", "orient_is_the_turn", "violation_is_symmetric"]
+    theorems = ledger.prove_theorems(names)
+    whole, part = tmp_path / "whole.json", tmp_path / "part.json"
+    recheck.write(recheck.recheck(theorems), theorems, whole)
+    data = json.loads(whole.read_text())
+    # as if one theorem had been another when the file was written
+    old = json.loads(whole.read_text())
+    old["theorems"][names[1]]["cvc5"] = "no answer"
+    gone = {k: row for k, row in old["obligations"].items() if names[1] in row["of"][0]}
+    for key, row in gone.items():
+        del old["obligations"][key]
+        old["obligations"][f"old {key}"] = row
+    part.write_text(json.dumps(old))
+    recheck.write(recheck.recheck(theorems[1:2]), theorems[1:2], part, whole=False)
+    assert json.loads(part.read_text()) == data
+    assert part.read_text() == whole.read_text()
+    old["solver"] = "cvc5 0.0"
+    part.write_text(json.dumps(old))
+    with pytest.raises(BadInput, match="another solver"):
+        recheck.write(recheck.recheck(theorems[1:2]), theorems[1:2], part, whole=False)
+
+
 def test_without_cvc5_the_user_is_told(monkeypatch: pytest.MonkeyPatch):
     def absent(name: str) -> str:
         raise recheck.importlib.metadata.PackageNotFoundError(name)

@@ -3,9 +3,9 @@ on doubles themselves, encloses the real result, underflow included."""
 
 from fractions import Fraction
 
+from cratous.core.bounds import TINY, UNIT
 from cratous.core.certainty import outward_margin
 from cratous.core.enclosed import LEAST, SHARE
-from cratous.core.filtering import TINY, UNIT
 from cratous.proofs.claim import Claim
 from cratous.spec import rounding
 

@@ -116,7 +116,7 @@ def _refuse(problems: list[str]) -> None:
 
 
 def _recheck(
-    theorems: list[Any], folder: Path, jobs: int, as_json: bool, keep: bool
+    theorems: list[Any], folder: Path, jobs: int, as_json: bool, keep: bool, whole: bool
 ) -> dict[str, Any]:
     from cratous.proofs import recheck
 
@@ -127,7 +127,7 @@ def _recheck(
             theorems, folder=folder, jobs=jobs, tell=lambda c, n, of: bar.step("cvc5", n, of)
         )
     if keep:
-        recheck.write(found, theorems)
+        recheck.write(found, theorems, whole=whole)
     names = found.theorems
     counts = {v: found.count(v) for v in ("confirmed", "no answer", "contradicted")}
     good = sum(check.verdict == recheck.CONFIRMED for check in found.checks)
@@ -155,14 +155,23 @@ def _recheck(
     }
 
 
-def _mutate(names: list[str] | None, jobs: int, as_json: bool) -> dict[str, Any]:
-    from cratous.proofs import mutate
+def _mutate(
+    pattern: str, about: list[str], home: Any, jobs: int, as_json: bool, keep: bool
+) -> dict[str, Any]:
+    """Judge the mutants; pattern: names of functions; about: theorems whose functions are meant too."""
+    from cratous.proofs import mutate, mutation_record
+    from cratous.proofs.mutation_keys import Keys
 
     def tell(target: str, results: list[Any]) -> None:
-        if not as_json:
-            click.echo(f"mutated    {target} ({len(results)})", err=True)
+        if as_json:
+            return
+        counts = {v: sum(getattr(r, "verdict", "") == v for r in results) for v in mutate.VERDICTS}
+        shown = ", ".join(f"{count} {v}" for v, count in counts.items() if count)
+        click.echo(f"mutated    {target}: {shown or f'{len(results)} premises'}", err=True)
 
-    report = mutate.run(("*",), tell, jobs, theorems=names)
+    report = mutate.run((pattern,), tell, jobs, about=about, home=home)
+    if keep:
+        mutation_record.write(report, Keys(home))
     listed = {v: report.of(v) for v in ("survived", "undecided")}
     if not as_json:
         for verdict, results in listed.items():
@@ -173,6 +182,7 @@ def _mutate(names: list[str] | None, jobs: int, as_json: bool) -> dict[str, Any]
         "mutants": len(report.results),
         **{verdict: report.count(verdict) for verdict in mutate.VERDICTS},
         "score": float(report.score),
+        "holds": report.holds,
         "listed": [
             {"verdict": v, "target": r.target, "place": r.place, "diff": r.diff, "note": r.note}
             for v, results in listed.items()
@@ -182,10 +192,16 @@ def _mutate(names: list[str] | None, jobs: int, as_json: bool) -> dict[str, Any]
 
 
 @click.command()
-@click.option("--only", metavar="GLOB", help="Only theorems whose name matches; writes no ledger.")
+@click.option(
+    "--only",
+    metavar="GLOB",
+    help="Only theorems whose name matches, with --mutate functions too; writes no ledger.",
+)
 @click.option("--changed", is_flag=True, help="Only what differs from the ledger; writes none.")
 @click.option("--check", is_flag=True, help="Do not write the ledger; fail if it would differ.")
-@click.option("--recheck", is_flag=True, help="Put every obligation to cvc5 as well.")
+@click.option(
+    "--recheck", is_flag=True, help="Put every obligation to cvc5 as well; with --only, of these."
+)
 @click.option("--mutate", is_flag=True, help="Also look for faults that no theorem would notice.")
 @click.option("--package", "package_name", metavar="NAME", help="A package with own kernels.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
@@ -218,7 +234,8 @@ def prove(
     Runs each kernel on symbolic values, states every theorem of proofs/theorems about exactly
     that function, and asks z3. The ledger (core/ledger.json) binds the proofs to the source:
     `cratous run` refuses a kernel that has changed since. What was proved before is known by its
-    structural hash from the cache ($CRATOUS_CACHE); CI proves from an empty one.
+    structural hash from the cache ($CRATOUS_CACHE), and where no file has changed nothing is even
+    lifted; CI proves from an empty one.
 
     Example: cratous prove --only 'well*' -v
 
@@ -226,7 +243,9 @@ def prove(
     a theorem or kernel that no proof could be bound to.
     """
     from cratous.core import ledger as gate
+    from cratous.core.private import private_cache
     from cratous.proofs import cache, decisions, formats, ledger, prover
+    from cratous.proofs.recall import Recall
 
     begun = time.monotonic()
     if sum((only is not None, changed, check)) > 1:
@@ -240,11 +259,21 @@ def prove(
     names = [n for n in prover.theorem_files(folder) if fnmatch.fnmatch(n, only or "*")]
     if changed:
         names = ledger.changed_theorems(home)
-    elif not names:
+    about = [] if only is None and not changed else names
+    if mutate and only is not None:
+        from cratous.proofs.mutate import Keys, chosen
+
+        for name in prover.theorem_files(folder):
+            prover.load_claim(name, folder)  # says what is wrong with a file, and where
+        # the theorems that meet a function of this name are proved too
+        met = chosen((only,), Keys(home), about)
+        names = sorted({*names, *(name for users in met.values() for name in users)})
+    if not changed and not names:
         raise BadInput("no theorem matches", item="--only", got=str(only), expected="a file name")
     whole = only is None and not changed
     workers = jobs or ledger.jobs_default()
     store = cache.standard()
+    memory = Recall(private_cache() / "theorems", home)
     bar = _Bar("proving", len(names), not as_json and sys.stderr.isatty())
     with bar:
         inventory = ledger.prove_all(
@@ -253,6 +282,7 @@ def prove(
             home=home,
             jobs=workers,
             cache=store,
+            recall=memory,
         )
     theorems = list(inventory.theorems)
     if not as_json:
@@ -273,10 +303,12 @@ def prove(
         problems += [str(finding) for finding in decisions.unexplained()]
     data: dict[str, Any] = {}
     if recheck:
-        keep = whole and home.product and not check
-        data["recheck"] = _recheck(theorems, folder, workers, as_json, keep)
+        keep = home.product and not check
+        data["recheck"] = _recheck(theorems, folder, workers, as_json, keep, whole)
     if mutate:
-        data["mutation"] = _mutate(None if whole else names, workers, as_json)
+        pattern = only if only is not None else ("*" if whole else "")
+        keep = home.product and not check
+        data["mutation"] = _mutate(pattern, about, home, workers, as_json, keep)
     if smt2_folder is not None:
         count = _export(theorems, smt2_folder, folder)
         if not as_json:
@@ -331,5 +363,6 @@ def prove(
     if structural:
         _refuse(structural)
     contradicted = bool(data.get("recheck", {}).get("contradicted"))
-    if proved < len(theorems) or problems or contradicted:
+    survives = mutate and not data["mutation"]["holds"]
+    if proved < len(theorems) or problems or contradicted or survives:
         sys.exit(1)

@@ -136,3 +136,18 @@ def decode(projection: Projection, body: Any, heading_rad: float) -> Command:
         item=type(body).__name__,
         expected="MissionCommand, FlightDirectorAction or LoiterAction",
     )
+
+
+def task_progress(
+    task_id: int, vehicle_id: int, at_ms: int, phase: str, served: float, note: str
+) -> Any:
+    """How far a task is, as a `TaskProgress`; served: fraction, 0 to 1."""
+    return lmcp.new(
+        "TaskProgress",
+        TaskID=task_id,
+        VehicleID=vehicle_id,
+        Time=at_ms,
+        Phase=phase,
+        Served=served,
+        Note=note,
+    )

@@ -32,6 +32,7 @@ from cratous.bridge.text_protocol import (
     WaypointReached,
 )
 from cratous.core.following import Track
+from cratous.core.timeliness import in_time
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.executive import Executive
 from cratous.services.frames import Projection
@@ -168,7 +169,7 @@ class Communication:
         """Say so when an instance has fallen silent."""
         out = []
         for vid, peer in self.peers.items():
-            if peer.alive and now_ms - peer.heard_ms > LINK_LOST_MS:
+            if peer.alive and not in_time(peer.heard_ms, now_ms, LINK_LOST_MS):
                 peer.alive = False
                 out.append(self._status(vid, now_ms, f"silent since {peer.heard_ms} ms"))
         return out

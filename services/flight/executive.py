@@ -15,27 +15,24 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from cratous.bridge import lmcp
 from cratous.core.following import Track
 from cratous.core.gate import UXAS
-from cratous.core.manoeuvre import Motion
+from cratous.core.timeliness import too_early
 from cratous.services.flight import chain as chains
+from cratous.services.flight.ahead import join_in_transit, last_lap, leaving_m, points_ahead
 from cratous.services.flight.chain import Chain, Phase
-from cratous.services.flight.commands import gated, path_command
+from cratous.services.flight.commands import gated, path_command, task_progress
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.expectation import expected_times
 from cratous.services.flight.pace import FASTEST, broken_rows, trimmed_speed_m_s
 from cratous.services.flight.rejoining import Router
 from cratous.services.flight.timing import closed_by, opens_ms
 from cratous.services.frames import Projection
-from cratous.services.icarous.return_to_path import goal_index
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.plan import Plan, Pose, Row
 
 EARLY_MS = 500
 """A planned wait may end this much early; the rows themselves are never bent."""
-OVERLAP_S = 1.0
-"""An interrupted task goes on this much before the place where it was left [s of flight]."""
 OPEN_MARGIN_MS = 60
 """Aim this much later than the predicted opening, so that rounding never costs a lap."""
 
@@ -152,11 +149,7 @@ class Executive:
         elif item is not None:
             self._try_start(chain, at_ms, out)
         else:
-            last = chain.track.points[-1]
-            again = [
-                p._replace(alt_m=last.alt_m) for p in chain.track.points[-chains.LAP_LEGS - 1 :]
-            ]
-            chain.enter(Phase.DONE, Track(tuple(again)), at_ms)
+            chain.enter(Phase.DONE, Track(last_lap(chain)), at_ms)
 
     def _next_item(self, chain: Chain, at_ms: int, state: AirState, out: list[Any]) -> None:
         chain.k += 1
@@ -214,18 +207,12 @@ class Executive:
             self.zones,
         )
 
-    def _last_lap(self, chain: Chain) -> tuple[Position, ...]:
-        """One more lap of the final loiter, level, at the height that was reached."""
-        points = chain.track.points
-        lap = points[-chains.LAP_LEGS - 1 :]
-        return tuple(p._replace(alt_m=points[-1].alt_m) for p in lap)
-
     def _try_start(self, chain: Chain, at_ms: int, out: list[Any]) -> None:
         """At the start pose: begin the task, or fly a lap of the hold."""
         item = chain.item
         assert item is not None
         row = closed_by(item.task_id, at_ms, self.plan.rows, self.starts, self.ends)
-        early = item.wait_ms > 0 and at_ms + EARLY_MS < item.start_ms
+        early = item.wait_ms != 0 and too_early(at_ms, item.start_ms, EARLY_MS)
         if row is None and not early:
             self.starts[item.task_id] = at_ms
             chain.speed_m_s = item.speed_m_s
@@ -263,11 +250,7 @@ class Executive:
         chain = self.chains[vehicle_id]
         if chain.phase is not Phase.TASK:
             return None
-        return chain.track.at(self._leaving_m(chain))
-
-    def _leaving_m(self, chain: Chain) -> float:
-        """Arc length at which the path was left, and a little before, so that the sensor overlaps."""
-        return max(chain.s_m - OVERLAP_S * chain.speed_m_s, chain.join_m)
+        return chain.track.at(leaving_m(chain))
 
     def resume(self, vehicle_id: int, state: AirState, now_ms: int) -> None:
         """ICAROUS hands back: route to the resume point, then along the rest of the path."""
@@ -275,10 +258,10 @@ class Executive:
         chain.suspended = False
         flown = 0.0
         if chain.phase is Phase.TASK:
-            join = self._leaving_m(chain)
+            join = leaving_m(chain)
             flown = chain.base_m + join - chain.join_m
         else:
-            join = self._join_in_transit(chain, state)
+            join = join_in_transit(chain, state)
         rest = Track(chain.track.rest(join), chain.track.heading_rad(join))
         target = Pose(*rest.points[0], rest.heading_rad(0.0))
         way = self._way(chain, state, target)
@@ -289,17 +272,6 @@ class Executive:
         if phase is Phase.TASK:
             chain.join_m = max(0.0, track.length_m - rest.length_m)
             chain.base_m, chain.away = flown, True
-
-    def _join_in_transit(self, chain: Chain, state: AirState) -> float:
-        """Arc length of the waypoint ahead at which the way goes on, as ICAROUS chooses it."""
-        track, p = chain.track, state.position
-        near = track.nearest(p, chain.s_m, track.length_m)
-        index = 0
-        while index < len(track.s_m) - 1 and track.s_m[index] <= near.s_m:
-            index += 1
-        motion = Motion(p, state.heading_rad, state.speed_m_s, state.climb_m_s)
-        radius = turn_radius_m(state.speed_m_s, chain.vehicle.max_bank_rad)
-        return track.s_m[goal_index(motion, radius, track.points, index)]
 
     # timing -----------------------------------------------------------------------------------
 
@@ -380,17 +352,8 @@ class Executive:
             ids = [i.task_id for i in chain.items]
             if task_id not in ids:
                 continue
-            out.append(
-                lmcp.new(
-                    "TaskProgress",
-                    TaskID=task_id,
-                    VehicleID=vid,
-                    Time=now_ms,
-                    Phase="Failed",
-                    Served=chain.served() if item and item.task_id == task_id else 0.0,
-                    Note=why,
-                )
-            )
+            served = chain.served() if item and item.task_id == task_id else 0.0
+            out.append(task_progress(task_id, vid, now_ms, "Failed", served, why))
             if item is not None and item.task_id == task_id and not chain.suspended:
                 self._next_item(chain, now_ms, states[vid], out)
             elif item is not None and item.task_id == task_id:
@@ -410,42 +373,19 @@ class Executive:
     def waypoints(self, vehicle_id: int, ahead_m: float) -> tuple[Position, ...]:
         """The present track and, beyond it, at least ahead_m of what follows if all goes well."""
         chain = self.chains[vehicle_id]
-        points = list(chain.track.rest(chain.s_m))
-        item = chain.item
-        more: list[Position] = []
-        if item is None:
-            more = list(self._last_lap(chain)) * 4
-        elif chain.phase is Phase.TASK:
-            after = chain.items[chain.k + 1 : chain.k + 2]
-            more = list(after[0].transit + after[0].path) if after else []
-        else:
-            more = list(self._laps_expected(chain, ahead_m)) + list(item.path)
-        return tuple(points + more)
+        return points_ahead(chain, self._opens_ms(chain, chain.since_ms), ahead_m)
 
-    def _laps_expected(self, chain: Chain, ahead_m: float) -> tuple[Position, ...]:
+    def _opens_ms(self, chain: Chain, now_ms: int) -> int:
+        """When the chain's next task is expected to be allowed to begin; 0 if it has none."""
         item = chain.item
-        if item is None or item.hold is None:
-            return ()
-        now_ms = chain.since_ms
+        if item is None:
+            return 0
         starts, ends = self.expected(1.0, now_ms)
         starts.pop(item.task_id, None)
-        target = opens_ms(item.task_id, self.plan.rows, starts, ends)
-        if item.wait_ms > 0:
-            target = max(target, item.start_ms)
-        wait_m = (target - now_ms) / 1000 * chain.speed_m_s - chain.left_m()
-        lap = 2 * math.pi * item.hold.radius_m
-        laps = max(0, min(round(wait_m / lap), math.ceil(ahead_m / lap)))
-        return chains.lap_points(item.hold, item.path[0]) * laps
+        opens = opens_ms(item.task_id, self.plan.rows, starts, ends)
+        return max(opens, item.start_ms) if item.wait_ms > 0 else opens
 
     def _progress(self, chain: Chain, at_ms: int, phase: str, served: float, note: str) -> Any:
         item = chain.item
         assert item is not None
-        return lmcp.new(
-            "TaskProgress",
-            TaskID=item.task_id,
-            VehicleID=chain.vehicle.id,
-            Time=at_ms,
-            Phase=phase,
-            Served=served,
-            Note=note,
-        )
+        return task_progress(item.task_id, chain.vehicle.id, at_ms, phase, served, note)

@@ -16,10 +16,11 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from cratous.bridge.text_protocol import Heartbeat, Message, SetMode, SetVelocity
-from cratous.core.gate import UXAS, Gate, gate_offer, gate_takeover
+from cratous.core.gate import ICAROUS, Gate, gate_accepts, gate_offer, gate_takeover, handback
 from cratous.core.manoeuvre import Ability, Motion, along, velocity_of
 from cratous.core.prediction import Intruder, Piece, buffered
 from cratous.core.resolution import Choice, Scene, first_conflict_s, first_zone_s, resolve
+from cratous.core.timeliness import in_time, lasted
 from cratous.services.frames import Projection
 from cratous.services.icarous.geofence_monitor import zone_ahead_s
 from cratous.services.icarous.inbox import Told, hear
@@ -40,6 +41,7 @@ from cratous.services.icarous.traffic_monitor import (
     threats,
     turning,
 )
+from cratous.spec.authority import OFFER, WITHDRAW
 from cratous.spec.mission import Daa, Position, Velocity
 
 LINK_LOST_MS = 2000
@@ -110,7 +112,8 @@ def step(config: Config, state: State, inputs: Inputs) -> tuple[State, Outputs]:
     told = hear(state.told, inputs.messages, config.projection, inputs.now_ms)
     state = replace(state, told=told, beats=state.beats + 1)
     beat = Heartbeat(sequence=state.beats, time_s=inputs.now_ms / 1000)
-    if state.mode is not Mode.MONITOR and inputs.gate.owner == UXAS:
+    commands = gate_accepts(inputs.gate, ICAROUS, inputs.gate.epoch)
+    if state.mode is not Mode.MONITOR and not commands:
         state = replace(state, mode=Mode.MONITOR, handback_ms=inputs.now_ms, held=None, threats=())
     now = courses(inputs.intruders)
     in_turn = turning(now, state.courses, config.heartbeat_ms / 1000)
@@ -191,7 +194,8 @@ def _monitor(
 def _take_over(
     config: Config, state: State, inputs: Inputs, why: str, intruder_id: int, first_s: float
 ) -> tuple[State, Outputs]:
-    soon = state.handback_ms is not None and inputs.now_ms - state.handback_ms < RELAPSE_MS
+    before_ms = state.handback_ms
+    soon = before_ms is not None and not lasted(before_ms, inputs.now_ms, RELAPSE_MS)
     told = state.told
     state = replace(
         state,
@@ -225,8 +229,10 @@ def _command(config: Config, state: State, inputs: Inputs) -> tuple[State, Outpu
     changed = before is None or describe(before) != describe(choice)
     told_again = describe(choice) if changed else ""
     outputs = Outputs(velocity=velocity, messages=(_set_velocity(velocity),), resolution=told_again)
-    linked = inputs.now_ms - state.told.heard_ms <= LINK_LOST_MS
-    if state.mode is Mode.HANDBACK and not free:
+    linked = in_time(state.told.heard_ms, inputs.now_ms, LINK_LOST_MS)
+    long = since is not None and lasted(since, inputs.now_ms, persistence_ms(state.relapses))
+    due = handback(state.mode is Mode.HANDBACK, free, long, linked)
+    if due == WITHDRAW:
         epoch = gate_takeover(inputs.gate).epoch
         return replace(state, mode=Mode.AVOID), replace(
             outputs,
@@ -235,8 +241,7 @@ def _command(config: Config, state: State, inputs: Inputs) -> tuple[State, Outpu
             resolution=f"offer withdrawn; {describe(choice)}",
             messages=(SetMode("ACTIVE", epoch), *outputs.messages),
         )
-    ready = since is not None and inputs.now_ms - since >= persistence_ms(state.relapses)
-    if state.mode is Mode.AVOID and ready and linked:
+    if due == OFFER:
         epoch = gate_offer(inputs.gate).epoch
         return replace(state, mode=Mode.HANDBACK), replace(
             outputs,

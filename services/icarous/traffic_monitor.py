@@ -14,6 +14,8 @@ from typing import NamedTuple
 from cratous.core.gate import gives_way
 from cratous.core.manoeuvre import Ability, smallest_turn
 from cratous.core.prediction import Intruder, Piece, first_violation_s
+from cratous.core.right_of_way import must_act
+from cratous.core.timeliness import lasted
 from cratous.spec.mission import WellClear
 
 PERSIST_MS = 2000
@@ -97,11 +99,15 @@ def threats(
         if first is None:
             continue
         seen_ms = since.get(other.id, now_ms)
-        persists = now_ms - seen_ms >= PERSIST_MS
-        near = first <= (hard_s if other.id in in_turn and not persists else last_s)
-        soon = other.id not in in_turn and first <= last_s + PERSIST_MS / 1000
-        due = persists or soon
-        ours = near or (due and gives_way(own_id, other.id, other.cooperates))
+        ours = must_act(
+            first,
+            last_s,
+            hard_s,
+            PERSIST_MS / 1000,
+            lasted(seen_ms, now_ms, PERSIST_MS),
+            other.id in in_turn,
+            gives_way(own_id, other.id, other.cooperates),
+        )
         found.append(Threat(other.id, first, seen_ms, ours))
     return tuple(found)
 

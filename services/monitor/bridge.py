@@ -1,10 +1,14 @@
-"""G5: heartbeats in both directions at their period, for every protected vehicle."""
+"""G5: heartbeats in both directions at their period, for every protected vehicle.
+
+That none was late is decided by the fold `beats_in_time`; the longest gap is kept for the note.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
 
+from cratous.core.timeliness import Beats, beats_in_time
 from cratous.spec.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission import Mission
 
@@ -16,17 +20,31 @@ PERIODS = 2
 class Beat:
     """Heartbeats of one vehicle in one direction."""
 
+    bound_ms: int
     count: int = 0
-    last_ms: int = 0
     longest_ms: int = 0
     at_ms: int = 0
+    beats: Beats = beats_in_time.start
 
     def come(self, time_ms: int) -> None:
-        gap = time_ms - self.last_ms
+        """A heartbeat."""
+        self._add(time_ms)
+        self.count += 1
+
+    def end(self, time_ms: int) -> None:
+        """The mission's end: the time since the last heartbeat counts too."""
+        self._add(time_ms)
+
+    def _add(self, time_ms: int) -> None:
+        gap = time_ms - self.beats.last
         if gap > self.longest_ms:
             self.longest_ms, self.at_ms = gap, time_ms
-        self.last_ms = time_ms
-        self.count += 1
+        self.beats = beats_in_time.step(self.beats, time_ms, self.bound_ms)
+
+    @property
+    def in_time(self) -> bool:
+        """True iff none was late so far."""
+        return bool(beats_in_time.finish(self.beats))
 
 
 class BridgeWatch:
@@ -36,7 +54,10 @@ class BridgeWatch:
         self._bound_ms = PERIODS * mission.simulation.heartbeat_ms
         self._instances = set(mission.instances)
         self._beats = {
-            (v.id, way): Beat() for v in mission.vehicles if v.protected for way in ("Down", "Up")
+            (v.id, way): Beat(self._bound_ms)
+            for v in mission.vehicles
+            if v.protected
+            for way in ("Down", "Up")
         }
         self._downs: dict[int, str] = {}
         self._end_ms: int | None = None
@@ -53,11 +74,11 @@ class BridgeWatch:
             self._downs[body.VehicleID] = f"down at {body.Time / 1000:.2f} s: {body.Note}"
 
     def end(self, body: Any) -> None:
-        """The mission ended: the time since the last heartbeat counts too."""
+        """The mission ended."""
         self._end_ms = body.Time
         for beat in self._beats.values():
             if beat.count:
-                beat.longest_ms = max(beat.longest_ms, body.Time - beat.last_ms)
+                beat.end(body.Time)
 
     def verdicts(self) -> list[Verdict]:
         """One verdict a protected vehicle and direction."""
@@ -66,7 +87,7 @@ class BridgeWatch:
     def _verdict(self, vehicle: int, way: str, beat: Beat) -> Verdict:
         margin: float | None = (self._bound_ms - beat.longest_ms) / 1000
         note = f"{beat.count} heartbeats, longest gap {beat.longest_ms / 1000:.2f} s"
-        outcome = Outcome.HOLDS if beat.longest_ms <= self._bound_ms else Outcome.VIOLATED
+        outcome = Outcome.HOLDS if beat.in_time else Outcome.VIOLATED
         if vehicle not in self._instances:
             outcome, margin = Outcome.UNKNOWN, None
             note = "the vehicle has no ICAROUS instance: there is no bridge to judge"

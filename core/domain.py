@@ -1,0 +1,37 @@
+"""What a kernel's checked readings refuse beyond what is no number: values below 0 where the kernel
+says that they mean nothing (`kernel(nonnegative=...)`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+
+from cratous.core.kernel import REGISTRY
+from cratous.spec.errors import BadInput
+
+
+def nonnegative(function: Callable[..., Any]) -> tuple[str, ...]:
+    """The arguments of a kernel that must not be below 0."""
+    entry = REGISTRY.get(function.__name__)
+    return entry.nonnegative if entry is not None and entry.function is function else ()
+
+
+def refuse_negative(where: str, names: tuple[str, ...], columns: Iterable[tuple[str, Any]]) -> None:
+    """Raise BadInput for the first number below 0 in one of these columns.
+
+    columns: label and value or array; where: the kernel's name.
+    """
+    if not names:
+        return
+    for label, value in columns:
+        if label not in names:
+            continue
+        array = np.asarray(value)
+        wrong = np.flatnonzero(array < 0)
+        if wrong.size:
+            item = f"{label}[{wrong[0]}]" if array.ndim else label
+            got = str(array.reshape(-1)[wrong[0]])
+            raise BadInput("is below 0", where=where, item=item, expected="0 or more", got=got)

@@ -1,0 +1,244 @@
+"""Floating-point expansions as numba text: sums, products and signs without rounding.
+
+An expansion is a sum of doubles of which no two overlap; sums and products of expansions are
+exact as long as nothing overflows or underflows (J. R. Shewchuk, "Adaptive Precision
+Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997; products split after Dekker,
+so that no fused operation is needed). One compiled function carries out tables of steps over a
+work array with fixed places; `expansion_steps` makes the tables. It is text and not code because
+it is compiled beside the kernels, in their private folder, with their flags.
+"""
+
+LONGEST = 2100
+"""No expansion is longer: its parts do not overlap, and doubles span fewer bits."""
+MUL2, ADD2, SUB2, ADD, SUB, SCALE, MUL, TIMES, ABS, PICK, PICK_NOT, DOT, CROSS = range(13)
+
+PRIMITIVES = '''
+# An expansion's place has two cells more than it is long: results are written before it is known
+# whether they are zero, and no branch depends on the data.
+@FLAGS
+def _add2(w, c, x, y):
+    """x + y."""
+    s = x + y
+    t = s - x
+    e = (x - (s - t)) + (y - t)
+    w[c] = e
+    n = 1 if e != 0 else 0
+    w[c + n] = s
+    return n + (1 if s != 0 else 0)
+
+
+@FLAGS
+def _high(x):
+    """The upper 26 bits of x (Dekker)."""
+    t = 134217729.0 * x
+    return t - (t - x)
+
+
+@FLAGS
+def _mul2(w, c, x, y):
+    """x * y."""
+    p = x * y
+    a = _high(x)
+    b = x - a
+    d = _high(y)
+    f = y - d
+    e = b * f - (((p - a * d) - b * d) - a * f)
+    w[c] = e
+    n = 1 if e != 0 else 0
+    w[c + n] = p
+    return n + (1 if p != 0 else 0)
+
+
+@FLAGS
+def _dot(w, c, x, y, u, v, sign):
+    """x * y plus sign times u * v: a sum of two and two, without a loop."""
+    p = x * y
+    a = _high(x)
+    b = x - a
+    d = _high(y)
+    f = y - d
+    e = b * f - (((p - a * d) - b * d) - a * f)
+    q = sign * (u * v)
+    a = _high(u)
+    b = u - a
+    d = _high(v)
+    f = v - d
+    g = sign * (b * f - (((sign * q - a * d) - b * d) - a * f))
+    s = e + g
+    t = s - e
+    h0 = (e - (s - t)) + (g - t)
+    i = p + s
+    t = i - p
+    k = (p - (i - t)) + (s - t)
+    s = k + q
+    t = s - k
+    h1 = (k - (s - t)) + (q - t)
+    h3 = i + s
+    t = h3 - i
+    h2 = (i - (h3 - t)) + (s - t)
+    w[c] = h0
+    n = 1 if h0 != 0 else 0
+    w[c + n] = h1
+    n += 1 if h1 != 0 else 0
+    w[c + n] = h2
+    n += 1 if h2 != 0 else 0
+    w[c + n] = h3
+    return n + (1 if h3 != 0 else 0)
+
+
+@FLAGS
+def _times(w, a, n, x, c):
+    """The expansion at a times x, a power of two or 0 or -1."""
+    if x == 0:
+        return 0
+    for k in range(n):
+        w[c + k] = w[a + k] * x
+    return n
+
+
+@FLAGS
+def _scale(w, a, n, y, c):
+    """The expansion at a times y."""
+    if n == 0 or y == 0:
+        return 0
+    d = _high(y)
+    f = y - d
+    m = 0
+    q = 0.0
+    for k in range(n):
+        x = w[a + k]
+        p = x * y
+        g = _high(x)
+        h = x - g
+        low = h * f - (((p - g * d) - h * d) - g * f)
+        if k == 0:
+            q = p
+            w[c] = low
+            m = 1 if low != 0 else 0
+        else:
+            s = q + low
+            t = s - q
+            e = (q - (s - t)) + (low - t)
+            w[c + m] = e
+            m += 1 if e != 0 else 0
+            q = p + s
+            e = s - (q - p)
+            w[c + m] = e
+            m += 1 if e != 0 else 0
+    w[c + m] = q
+    m += 1 if q != 0 else 0
+    return m
+
+
+@FLAGS
+def _sum(w, a, n, b, k, sign, c):
+    """The expansion at a plus sign times the one at b."""
+    if n == 0:
+        return _times(w, b, k, sign, c)
+    if k == 0:
+        return _times(w, a, n, 1.0, c)
+    i = 0
+    j = 0
+    m = 0
+    q = 0.0
+    for _ in range(n + k):
+        # one place beyond either may be read: it is not used
+        x = w[a + i]
+        y = w[b + j]
+        first = (j == k) | ((i < n) & (abs(x) < abs(y)))
+        x = x if first else sign * y
+        i += 1 if first else 0
+        j += 0 if first else 1
+        s = q + x
+        t = s - q
+        e = (q - (s - t)) + (x - t)
+        w[c + m] = e
+        m += 1 if e != 0 else 0
+        q = s
+    w[c + m] = q
+    m += 1 if q != 0 else 0
+    return m
+
+
+@FLAGS
+def _mul(w, a, n, b, k, c, t, u):
+    """The product of two expansions; t and u are scratch."""
+    if n < k:
+        a, n, b, k = b, k, a, n
+    if k == 0:
+        return 0
+    m = _scale(w, a, n, w[b], c)
+    for j in range(1, k):
+        p = _scale(w, a, n, w[b + j], t)
+        r = _sum(w, c, m, t, p, 1.0, u)
+        m = _times(w, u, r, 1.0, c)
+    return m
+
+
+@FLAGS
+def _sign(w, a, n):
+    """The sign of an expansion: that of its greatest part."""
+    if n == 0 or w[a + n - 1] == 0:
+        return 0
+    return 1 if w[a + n - 1] > 0 else -1
+
+
+@FLAGS
+def sign_of(w, length, steps, first, last):
+    """Carry out the steps first to last - 1 and give the sign of the last one's result.
+
+    A step is (operation, operands x and y, result z, their places in w, two scratch places);
+    length[x] is the length of value x.
+    """
+    z = 0
+    at = 0
+    for k in range(first, last):
+        op = steps[k, 0]
+        x = steps[k, 1]
+        y = steps[k, 2]
+        z = steps[k, 3]
+        a = steps[k, 4]
+        b = steps[k, 5]
+        at = steps[k, 6]
+        if op == 0:
+            length[z] = _mul2(w, at, w[a], w[b])
+        elif op == 1:
+            length[z] = _add2(w, at, w[a], w[b])
+        elif op == 2:
+            length[z] = _add2(w, at, w[a], -w[b])
+        elif op == 3:
+            length[z] = _sum(w, a, length[x], b, length[y], 1.0, at)
+        elif op == 4:
+            length[z] = _sum(w, a, length[x], b, length[y], -1.0, at)
+        elif op == 5:
+            length[z] = _scale(w, a, length[x], w[b], at)
+        elif op == 6:
+            length[z] = _mul(w, a, length[x], b, length[y], at, steps[k, 7], steps[k, 8])
+        elif op == 7:
+            length[z] = _times(w, a, length[x], w[b], at)
+        elif op == 8:
+            length[z] = _times(w, a, length[x], 1.0 * _sign(w, a, length[x]), at)
+        elif op == 11:
+            length[z] = _dot(w, at, w[a], w[b], w[steps[k, 7]], w[steps[k, 8]], 1.0)
+        elif op == 12:
+            length[z] = _dot(w, at, w[a], w[b], w[steps[k, 7]], w[steps[k, 8]], -1.0)
+        else:
+            # the first operand where the sign of value p is not s, else the second
+            p = steps[k, 7]
+            if _sign(w, steps[k, 8], length[p]) * (1 if op == 9 else -1) <= 0:
+                length[z] = _times(w, a, length[x], 1.0, at)
+            else:
+                length[z] = _times(w, b, length[y], 1.0, at)
+    return _sign(w, at, length[z])
+
+
+@FLAGS
+def usable(x, low, high):
+    """True iff x is 0 or of a magnitude from low to high."""
+    return x == 0 or (abs(x) >= low and abs(x) <= high)
+'''
+
+
+def primitives(flags: str) -> str:
+    """The module that all kernels share: `sign_of` and `usable`."""
+    return "from numba import njit\n\n\n" + PRIMITIVES.strip().replace("@FLAGS", f"@{flags}") + "\n"

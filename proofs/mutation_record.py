@@ -1,0 +1,164 @@
+"""The mutation results that stand beside the proofs, `proofs/mutation.json`, and their document.
+
+Each target's results are kept under the key of all that they depend on (`mutation_keys`). A
+result whose key is no longer that of the code is stale and listed as such; so is a kernel that
+was never mutated. A run on some targets replaces those and leaves the others alone.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from cratous.core import ledger as gate
+from cratous.core.kernel import Fold
+from cratous.core.ledger import PRODUCT
+from cratous.proofs.mutation_keys import Keys, find
+from cratous.proofs.mutation_report import MutationReport, percent
+from cratous.proofs.mutation_results import VERDICTS
+
+FILE = Path(__file__).with_name("mutation.json")
+LISTED = ("survived", "undecided", "equivalent", "stillborn")
+EMPTY: dict[str, Any] = {"targets": {}, "premises": {}}
+
+
+def read(path: Path = FILE) -> dict[str, Any]:
+    """What is recorded; empty where there is nothing."""
+    return dict(json.loads(path.read_text(encoding="utf-8"))) if path.is_file() else dict(EMPTY)
+
+
+def merged(data: dict[str, Any], report: MutationReport, keys: Keys) -> dict[str, Any]:
+    """The record with this report's targets and theorems in the place of what it said of them.
+
+    Functions and theorems that are no longer there are left out.
+    """
+    there = {k: row for k, row in data["targets"].items() if find(k) is not None}
+    for target in dict.fromkeys(r.target for r in report.results):
+        own = [r for r in report.results if r.target == target]
+        listed = [
+            {"verdict": r.verdict, "operator": r.operator, "diff": r.diff, "note": r.note}
+            for r in own
+            if r.verdict in LISTED
+        ]
+        there[target] = {
+            "key": keys.target(target, find(target)),
+            "kind": own[0].kind,
+            "counts": {v: sum(r.verdict == v for r in own) for v in VERDICTS},
+            "listed": listed,
+        }
+    premises = {n: row for n, row in data["premises"].items() if n in keys.theorems}
+    for theorem in dict.fromkeys(p.theorem for p in report.premises):
+        rows = [p for p in report.premises if p.theorem == theorem]
+        found = [[p.premise, p.dropped, p.weakened] for p in rows]
+        premises[theorem] = {"key": keys.premises(theorem), "rows": found}
+    return {"targets": there, "premises": premises}
+
+
+def write(report: MutationReport, keys: Keys, path: Path = FILE) -> None:
+    """Put a report into the record."""
+    text = json.dumps(merged(read(path), report, keys), indent=1, sort_keys=True) + "\n"
+    part = path.with_suffix(f".{os.getpid()}")
+    part.write_text(text, encoding="utf-8")
+    part.replace(path)
+
+
+def stale(data: dict[str, Any], keys: Keys) -> dict[str, str]:
+    """Targets and theorems whose results are not those of the code as it stands, with the reason."""
+    found = {}
+    for target, row in data["targets"].items():
+        function = find(target)
+        if function is None:
+            found[target] = "it is no longer there"
+        elif keys.target(target, function) != row["key"]:
+            found[target] = "it, a theorem about it, or the judging code has changed since"
+    for name, entry in gate.load_all().items():
+        function = entry.function
+        module = function.step.__module__ if isinstance(function, Fold) else function.__module__
+        target = f"{module.removeprefix(f'{PRODUCT.name}.')}.{name}"
+        # a fold's theorem may be about its step and result alone
+        if entry.kind != "driver" and target not in data["targets"]:
+            found[target] = "it was never mutated"
+    return found
+
+
+# -- the document ---------------------------------------------------------------------------------
+def document(data: dict[str, Any], keys: Keys) -> str:
+    """The record as Markdown: counts per function, then every mutant that was not killed."""
+    targets = dict(sorted(data["targets"].items()))
+    old = stale(data, keys)
+    total = {v: sum(row["counts"][v] for row in targets.values()) for v in VERDICTS}
+    viable = total["killed"] + total["survived"] + total["undecided"]
+    score = percent(Fraction(total["killed"], viable)) if viable else "nothing was"
+    counts = ", ".join(f"{total[v]} {v}" for v in VERDICTS)
+    lines = [
+        "# Mutation of kernels, definitions and premises",
+        "",
+        "Generated from `proofs/mutation.json` by `make docs`; do not edit. `cratous prove --mutate`",
+        "writes that file: it pays only for what has changed, and `--only GLOB` for what matches.",
+        "Each mutant is one small fault: put in place of the original, some theorem must be refuted.",
+        "*Survived* means that a theorem is missing; *equivalent* that the solver proved that the",
+        "fault changes nothing, everywhere or where the theorems apply (the list says which);",
+        "*undecided* counts as not killed; *stillborn* mutants cannot be run.",
+        "",
+        f"**{sum(total.values())} mutants: {counts}; {score} killed of those that are viable and "
+        "not proved equivalent.**",
+        "",
+        "| kind | " + " | ".join(VERDICTS) + " |",
+        "|---|" + "---|" * len(VERDICTS),
+    ]
+    for kind in ("kernel", "fold", "definition"):
+        rows = [row["counts"] for row in targets.values() if row["kind"] == kind]
+        lines.append(f"| {kind} | {' | '.join(str(sum(c[v] for c in rows)) for v in VERDICTS)} |")
+    lines += ["", "## Not up to date", ""]
+    lines += [f"- `{name}`: {why}" for name, why in sorted(old.items())] or ["None."]
+    lines += ["", "## By function", "", "| function | kind | mutants | " + " | ".join(VERDICTS)]
+    lines[-1] += " | |"
+    lines.append("|---|---|---|" + "---|" * len(VERDICTS) + "---|")
+    for name, row in targets.items():
+        each = " | ".join(str(row["counts"][v]) for v in VERDICTS)
+        mark = "stale" if name in old else ""
+        lines.append(
+            f"| `{name}` | {row['kind']} | {sum(row['counts'].values())} | {each} | {mark} |"
+        )
+    for verdict in LISTED:
+        lines += ["", f"## {verdict.capitalize()}", ""]
+        found = [
+            f"- `{name}` `{_short(one['diff'])}`: {_short(one['note'])}"
+            for name, row in targets.items()
+            for one in row["listed"]
+            if one["verdict"] == verdict
+        ]
+        lines += found or ["None."]
+    premises = [(n, *row) for n, one in sorted(data["premises"].items()) for row in one["rows"]]
+    lines += ["", "## Premises", "", *_premises(premises), ""]
+    return "\n".join(lines)
+
+
+def _short(text: str, most: int = 240) -> str:
+    return text if len(text) <= most else text[: most - 3] + "..."
+
+
+def _premises(rows: Iterable[tuple[str, str, str, str]]) -> list[str]:
+    found = list(rows)
+    unused = [f"- `{name}`: `{_short(p)}`" for name, p, dropped, _ in found if dropped == "unused"]
+    loose = [
+        f"- `{name}`: `{_short(premise)}`"
+        for name, premise, dropped, weakened in found
+        if dropped == "matters" and weakened == "unused"
+    ]
+    unknown = sum(dropped == "undecided" for _, _, dropped, _ in found)
+    text = [
+        f"{len(found)} premises; without it the theorem is refuted for "
+        f"{sum(dropped == 'matters' for _, _, dropped, _ in found)}, still proved for "
+        f"{len(unused)}, undecided for {unknown}.",
+        "",
+        "Not needed (the theorem holds without; kept where they say what the kernel is for):",
+        "",
+    ]
+    text += unused or ["- none"]
+    text += ["", "Needed, though a slightly weaker form would do:", "", *(loose or ["- none"])]
+    return text

@@ -1,0 +1,128 @@
+"""Recalled theorems: only what was proved, only from the very same files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cratous.core import ledger as gate
+from cratous.core.sources import ROOT
+from cratous.proofs import ledger, prover, recall
+from cratous.proofs.claim import Claim
+from cratous.proofs.recall import Recall, files, key
+from cratous.spec.errors import BadInput
+
+NAME = "violation_within_misses_no_instant"
+gate.load_all()
+
+
+@pytest.fixture
+def memory(tmp_path: Path) -> Recall:
+    return Recall(tmp_path / "theorems")
+
+
+def stored(memory: Recall) -> Path:
+    assert memory.folder is not None
+    (file,) = [f for f in memory.folder.rglob("*") if f.is_file()]
+    return file
+
+
+def test_a_proved_theorem_is_recalled_as_it_was_and_not_stated_again(memory, monkeypatch):
+    name = "the_greater_id_gives_way"
+    first = ledger.prove_all([name], recall=memory)
+
+    def again(*more):
+        raise AssertionError("it was stated again")
+
+    monkeypatch.setattr(prover, "state", again)
+    heard = []
+    second = ledger.prove_all([name], heard.append, recall=memory)
+    assert second.theorems == first.theorems
+    assert [p.theorem for p in heard] == list(first.theorems)
+    assert ledger.prove_all([], recall=memory).theorems == ()
+
+
+@pytest.mark.parametrize(
+    "place",
+    [
+        f"proofs/theorems/{NAME}.py",
+        "proofs/theorems/vertical_window_is_exact.py",
+        "core/well_clear.py",
+        "spec/well_clear.py",
+        "core/kernel.py",
+        "proofs/prover.py",
+        "proofs/lift.py",
+        "proofs/recall.py",
+    ],
+)
+def test_a_change_of_any_file_behind_it_is_another_theorem(place, monkeypatch):
+    before, real = key(NAME), recall._hash
+    changed = ROOT / place
+    assert changed.is_file()
+    monkeypatch.setattr(recall, "_hash", lambda f: "other" if f == changed else real(f))
+    assert key(NAME) != before
+
+
+def test_a_change_elsewhere_is_none(monkeypatch):
+    before, real = key(NAME), recall._hash
+    elsewhere = (ROOT / "core/gate.py", ROOT / "spec/authority.py", ROOT / "core/compiled.py")
+    monkeypatch.setattr(recall, "_hash", lambda f: "other" if f in elsewhere else real(f))
+    assert key(NAME) == before
+
+
+def test_a_theorem_about_whatever_is_registered_depends_on_every_file():
+    every = set(files("filter_graphs_are_the_kernels"))
+    assert {*(ROOT / "core").glob("*.py"), *(ROOT / "spec").glob("*.py")} <= every
+    assert set(files(NAME)) < every
+
+
+@pytest.mark.parametrize("what", ["solver_version", "python_version"])
+def test_another_version_is_another_theorem(what, monkeypatch):
+    before = key(NAME)
+    owner = recall.gate if what == "solver_version" else recall.platform
+    monkeypatch.setattr(owner, what, lambda: "0.0")
+    assert key(NAME) != before
+
+
+def test_what_is_damaged_or_another_theorem_s_counts_as_absent(memory):
+    one, other = "the_greater_id_gives_way", "exactly_one_gives_way"
+    memory.put(ledger.prove_theorems([one]))
+    file = stored(memory)
+    text = file.read_text()
+    assert memory.get(one) is not None
+    for wrong in ("", "{}", text[:-9], text.replace(one, other), text.replace('"kernels"', '"x"')):
+        file.write_text(wrong)
+        assert memory.get(one) is None
+    elsewhere = file.parent.parent / key(other)[:2] / key(other)
+    elsewhere.parent.mkdir(exist_ok=True)
+    elsewhere.write_text(text)
+    assert memory.get(other) is None
+
+
+def test_what_is_not_proved_is_not_kept(memory, monkeypatch):
+    def claim(c: Claim) -> None:
+        from cratous.core.gate import gives_way
+
+        c.show(c.use(gives_way, c.integer("a"), c.integer("b"), True))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(prover, "load_claim", lambda *more: (claim, "It always does."))
+        found = ledger.prove_all(["the_greater_id_gives_way"], recall=memory)
+    assert not found.theorems[0].proved
+    assert memory.get("the_greater_id_gives_way") is None
+    # nor is a file that says so believed
+    memory.put(ledger.prove_theorems(["exactly_one_gives_way"]))
+    file = stored(memory)
+    file.write_text(file.read_text().replace('"status": "proved"', '"status": "refuted"'))
+    assert memory.get("exactly_one_gives_way") is None
+
+
+def test_a_definition_whose_running_code_is_not_its_file_s_is_no_ground_for_a_proof(monkeypatch):
+    from cratous.spec import authority
+
+    monkeypatch.setattr(
+        authority.may_command, "__code__", (lambda state, sender: sender == 0).__code__
+    )
+    with pytest.raises(BadInput, match=r"not its file's: cratous\.spec\.authority"):
+        prover.state("gate_has_exactly_one_commander")
