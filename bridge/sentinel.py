@@ -181,8 +181,8 @@ class FrameStream:
     def _frame(self, at: int) -> tuple[int, bytes | None]:
         """What stands at a head: (bytes done with, payload or None); (0, None) is not decided."""
         buffer, held = self._buffer, len(self._buffer)
-        self._need = at + len(HEAD) + 1
-        if held < self._need:
+        if held < at + len(HEAD) + 1:
+            self._need = held + 1
             return 0, None
         number = _NUMBER.match(buffer, at + len(HEAD))
         after = number.end() if number else at + len(HEAD)

@@ -6,7 +6,7 @@ import random
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cratous.bridge import envelope, sentinel
@@ -77,6 +77,7 @@ def test_the_next_good_frame_arrives_and_the_fault_is_reported(bad: bytes, seed:
         raise first.error("line")
 
 
+@settings(max_examples=300)
 @given(st.data())
 def test_segmentation_makes_no_difference(data: st.DataObject) -> None:
     alphabet = st.sampled_from(
