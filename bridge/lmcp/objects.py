@@ -12,11 +12,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from enum import IntEnum
-from functools import cache
 from operator import attrgetter, index
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import Any, ClassVar, TypeVar
 
-from cratous.bridge.lmcp import model
+from cratous.bridge.lmcp import describe, model
 from cratous.spec.errors import BadInput
 
 Self = TypeVar("Self", bound="LmcpObject")
@@ -35,7 +34,8 @@ class LmcpEnum(IntEnum):
 class LmcpObject:
     """Base of every message and part of a message."""
 
-    __slots__ = ()
+    __slots__ = ("_raw",)
+    _raw: tuple[bytes, str]  # only of the lazy classes of `lmcp.lazily`: the message, and where
     series: ClassVar[str] = ""
     type_name: ClassVar[str] = ""  # as in `CMASI/AirVehicleState`
     type_id: ClassVar[int] = 0
@@ -45,12 +45,6 @@ class LmcpObject:
     values_of: ClassVar[Any] = staticmethod(lambda _obj: ())  # all values, in that order
     _makers: ClassVar[tuple[tuple[str, Callable[[], Any] | None, Any], ...]] = ()
     _checks: ClassVar[dict[str, Check]] = {}
-
-    if TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any: ...
-
-        def __setattr__(self, name: str, value: Any) -> None: ...
 
     def __init__(self, **given: Any) -> None:
         for name, make, constant in self._makers:
@@ -82,6 +76,23 @@ class LmcpObject:
         ]
         return f"{type(self).__name__}({', '.join(shown)})"
 
+    def __rich_repr__(self) -> Iterator[tuple[str, Any, Any]]:
+        """What `rich` prints, over several lines where it is long."""
+        plain = type(self)()
+        for name in self.names:
+            yield name, getattr(self, name), getattr(plain, name)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _again, (self.type_name, self.values_of(self))
+
+    def raw_message(self) -> bytes | None:
+        """The bytes of the whole message, if it was read lazily and not looked into; else None."""
+        return None
+
+    def complete(self: Self) -> Self:
+        """Itself; what was read lazily is read wholly."""
+        return self
+
     def copy(self: Self, **changes: Any) -> Self:
         """A deep copy, with some fields changed."""
         kept = {n: _copied(getattr(self, n)) for n in self.names if n not in changes}
@@ -99,6 +110,14 @@ class LmcpObject:
                 raise within(err, f"{where}{type(self).__name__}.{name}") from None
             setattr(self, name, value)
         return self
+
+
+def _again(name: str, values: tuple[Any, ...]) -> LmcpObject:
+    cls = types[name]
+    obj: LmcpObject = object.__new__(cls)
+    for field, value in zip(cls.names, values, strict=True):
+        setattr(obj, field, value)
+    return obj
 
 
 def within(err: BadInput, item: str) -> BadInput:
@@ -273,8 +292,19 @@ def _maker(field: model.Field) -> tuple[str, Callable[[], Any] | None, Any]:
     return field.name, None, constant
 
 
-@cache
 def _class(series: str, name: str) -> type[LmcpObject]:
+    """The one class of a struct."""
+    found = _classes.get((series, name))
+    if found is None:
+        found = _classes[series, name] = _make_class(series, name)
+    return found
+
+
+_classes: dict[tuple[str, str], Any] = {}
+_enum_classes: dict[tuple[str, str], Any] = {}
+
+
+def _make_class(series: str, name: str) -> type[LmcpObject]:
     loaded = model.load(series)
     if name not in loaded.structs:
         raise BadInput("not a struct", item=f"{series}/{name}", expected="a struct's name")
@@ -292,8 +322,8 @@ def _class(series: str, name: str) -> type[LmcpObject]:
         checks[field.name] = one if field.array is None else _array(field, one)
     body = {
         "__slots__": tuple(f.name for f in own),
-        "__module__": __name__,
-        "__doc__": f"{loaded.full_name(name)}: {', '.join(names) or 'no fields'}.",
+        "__module__": f"cratous.bridge.lmcp.messages.{series.lower()}",
+        "__doc__": describe.docstring(loaded, struct, fields),
         "series": series,
         "type_name": f"{series}/{name}",
         "type_id": struct.id,
@@ -307,13 +337,22 @@ def _class(series: str, name: str) -> type[LmcpObject]:
     return type(name, (base,), body)
 
 
-@cache
 def _enum_class(series: str, name: str) -> Any:
+    found = _enum_classes.get((series, name))
+    if found is None:
+        found = _enum_classes[series, name] = _make_enum_class(series, name)
+    return found
+
+
+def _make_enum_class(series: str, name: str) -> Any:
     loaded = model.load(series)
     if name not in loaded.enums:
         raise BadInput("not an enum", item=f"{series}/{name}", expected="an enum's name")
     make: Any = LmcpEnum  # the functional form makes a subclass
-    return make(name, loaded.enums[name])
+    module = f"cratous.bridge.lmcp.messages.{series.lower()}"
+    made = make(name, loaded.enums[name], module=module)
+    made.__doc__ = f"{loaded.full_name(name)}: {', '.join(loaded.enums[name])}."
+    return made
 
 
 class _Registry(Mapping[str, Any]):
@@ -336,17 +375,46 @@ class _Registry(Mapping[str, Any]):
             return False
 
     def __iter__(self) -> Iterator[str]:
-        for series in model.SERIES:
+        for series in model.known():
             loaded = model.load(series)
             for name in getattr(loaded, self._part):
                 yield loaded.full_name(name)
 
     def __len__(self) -> int:
-        return sum(len(getattr(model.load(s), self._part)) for s in model.SERIES)
+        return sum(len(getattr(model.load(s), self._part)) for s in model.known())
 
 
-types: Mapping[str, type[Any]] = _Registry(_class, "structs")
-enums: Mapping[str, Any] = _Registry(_enum_class, "enums")
+_types, _enums = _Registry(_class, "structs"), _Registry(_enum_class, "enums")
+types: Mapping[str, type[Any]] = _types
+enums: Mapping[str, Any] = _enums
+
+
+def members_of(series: str) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+    """`__getattr__` and `__dir__` of the module that holds a series' classes and enums."""
+
+    def get(name: str) -> Any:
+        loaded = model.load(series)
+        if name in loaded.structs:
+            return types[f"{series}/{name}"]
+        if name in loaded.enums:
+            return enums[f"{series}/{name}"]
+        raise AttributeError(f"the series {series} has no type {name!r}")
+
+    def names() -> list[str]:
+        loaded = model.load(series)
+        return [*loaded.enums, *loaded.structs]
+
+    return get, names
+
+
+def _forget(series: str) -> None:
+    for made, registry in ((_classes, _types), (_enum_classes, _enums)):
+        registry._found.clear()
+        for key in [key for key in made if key[0] == series]:
+            del made[key]
+
+
+model.when_removed(_forget)
 
 
 def new(name: str, **fields: Any) -> Any:
