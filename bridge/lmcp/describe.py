@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 from cratous.bridge.lmcp import model
 
@@ -58,3 +59,21 @@ def docstring(series: model.Series, struct: model.Struct, fields: Iterable[model
         lines.append(f"\nExtends {struct.extends}; the fields of its ancestors come first.")
     listed = [f"    {field_line(field)}" for field in fields]
     return "\n".join([*lines, *(["\nFields:", *listed] if listed else ["\nNo fields."])])
+
+
+def pretty(obj: Any, indent: str = "") -> str:
+    """An object over several lines, every field with its unit."""
+    lines = [f"{type(obj.complete()).__name__} ({obj.type_name})"]
+    for field in obj.fields:
+        value, name = getattr(obj, field.name), f"{indent}  {field.name}:"
+        if field.kind in ("struct", "any") and field.array is None and value is not None:
+            lines.append(f"{name} {pretty(value, indent + '  ')}")
+        elif field.array is not None and field.kind in ("struct", "any") and value:
+            lines.append(name)
+            for i, part in enumerate(value):
+                text = "null" if part is None else pretty(part, indent + "    ")
+                lines.append(f"{indent}    [{i}] {text}")
+        else:
+            text = "null" if value is None else repr(value)
+            lines.append(f"{name} {text}" + (f" {field.units}" if field.units else ""))
+    return "\n".join(lines)

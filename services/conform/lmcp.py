@@ -3,7 +3,8 @@
 A *message* gives `type`, `fields` (our JSON form) and `hex`; `xml`, `xml_cpp`, `xml_py` are the same
 object as others write it, `tcp_java` the same message in a sentinel frame. It passes if the bytes
 are read to exactly these fields and written to exactly these bytes (also through the lazy reader),
-every XML text is read to the same object, and our own XML and JSON come back to it.
+every XML text is read to the same object, and our own XML and JSON come back to it;
+of kind `default`, a new object of the type must be the same.
 
 A *quirk* gives `case`, `hex` and `outcome`, what each implementation did with it. Where Python,
 Java and C++ all kept the message, it must be read and written to the same bytes (but for the
@@ -52,6 +53,10 @@ def _message(name: str, raw: bytes, case: dict[str, Any]) -> Result:
             checks += 1
             if not good:
                 return failed(name, what, f"{what}: {obj!r:.300}, expected {wanted!r:.300}", checks)
+        if case.get("kind") == "default":
+            checks += 1
+            if lmcp.new(str(case.get("type"))) != wanted:
+                return failed(name, "defaults", f"{lmcp.new(str(case.get('type')))!r:.300}", checks)
         for form in FORMS:
             if form in case:
                 checks += 1
