@@ -96,7 +96,10 @@ def test_lazy_messages_are_ordinary_once_looked_into() -> None:
     assert lmcp.full_names(lazy) == lmcp.full_names(state)
     assert binary.pack(lazy) == raw
     assert type(lazy) is not cls  # passed on without being read
-    assert lazy.ID == 400
+    assert (lazy.ID, lazy.Heading) == (400, 0.0)
+    assert type(lazy) is not cls  # numbers in front are read by themselves
+    assert binary.pack(lazy) == raw
+    assert lazy.Location.Latitude == 0.0
     assert type(lazy) is cls
     lazy.ID = 401
     assert binary.unpack(binary.pack(lazy)).ID == 401
@@ -124,9 +127,20 @@ def test_a_lazy_message_that_is_wrong_says_so_when_looked_into() -> None:
     raw[-5] = 2  # the boolean Required
     raw[-4:] = bytes(4)
     lazy = binary.lazy(bytes(raw), "line 7")
+    assert lazy.TaskID == 1
     for _ in range(2):
         with pytest.raises(BadInput, match=r"line 7: byte 42: Task\.Required.*0 or 1"):
-            _ = lazy.TaskID
+            _ = lazy.Priority
+    assert lazy.TaskID == 1
+    with pytest.raises(BadInput, match="0 or 1"):
+        lazy.complete()
+    short = bytearray(raw[:29] + bytes(4))  # its only number would reach into the checksum
+    short[7] = len(short) - 12
+    with pytest.raises(BadInput, match=r"Task\.TaskID: message ends too early"):
+        _ = binary.lazy(bytes(short)).TaskID
+    interval = binary.lazy(binary.pack(lmcp.new("AltitudeInterval")))
+    interval.Altitude[0] = 1.0  # a list that was read can be changed: the message is written anew
+    assert binary.unpack(binary.pack(interval)).Altitude == [1.0, 0.0]
     for wrong in (b"LMCP", raw[:-1], bytes(raw[:8]) + b"\2" + bytes(raw[9:])):
         with pytest.raises(BadInput):
             binary.lazy(bytes(wrong))

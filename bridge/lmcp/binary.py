@@ -71,8 +71,9 @@ def lazy(data: bytes, where: str = "message") -> Any:
     """As `unpack`, but the fields are read when one is first asked for.
 
     Length, checksum, and that the type is known are checked at once; anything else that is wrong
-    raises its BadInput at the first access to a field. The object is of its class (isinstance,
-    topics) from the start, and an ordinary one from then on.
+    raises its BadInput at the first access to a field (of the numbers in front, which are read by
+    themselves: to another field; `complete()` reads all). The object is of its class (isinstance,
+    topics) from the start. While only such numbers were read, `pack` gives the message as it came.
     """
     data = bytes(data)
     _checked(data, where)

@@ -10,6 +10,7 @@ the same messages; `tests/test_lmcp_compiled.py` holds them together.
 from __future__ import annotations
 
 import keyword
+import re
 import struct
 from collections.abc import Callable
 from typing import Any
@@ -104,9 +105,15 @@ def _of_lazy(cls: Any) -> tuple[Reads, Writes]:
     return reads, write
 
 
-def filler(cls: Any) -> Callable[[Any, bytes, int, int], int]:
-    """What reads the fields into an object that is there: (obj, data, at, depth) -> end."""
-    return _Maker(cls).filler()
+Fills = Callable[[Any, bytes, int, int], int]
+
+
+def fillers(cls: Any) -> tuple[Fills, Fills, frozenset[str], int]:
+    """What reads fields into an object that is there: (obj, data, at, depth) -> end.
+
+    All fields; those in front that have fixed places; the names of the latter, and their size.
+    """
+    return _Maker(cls).fillers()
 
 
 def tables(base: type, nullable: bool) -> tuple[Readers, Writers]:
@@ -142,6 +149,7 @@ class _Maker:
         self.count = 0
         self.group: list[tuple[str, str, str, str]] = []  # code, target, value, conversion
         self.checks: list[str] = []
+        self.front: tuple[list[str], frozenset[str], int] | None = None
 
     def functions(self) -> tuple[Reads, Writes]:
         if any(keyword.iskeyword(name) for name in self.cls.names):
@@ -159,14 +167,17 @@ class _Maker:
             self.field(field)
         self.flush()
 
-    def filler(self) -> Callable[[Any, bytes, int, int], int]:
+    def fillers(self) -> tuple[Fills, Fills, frozenset[str], int]:
         if any(keyword.iskeyword(name) for name in self.cls.names):
-            return _give_up
+            return _give_up, _give_up, frozenset(), 0
         self.body()
-        lines = ["def fill(o, data, at, depth):", *(" " + line for line in self.read), " return at"]
-        exec(compile("\n".join(lines), f"<lmcp {self.cls.type_name}>", "exec"), self.space)
-        made: Callable[[Any, bytes, int, int], int] = self.space["fill"]
-        return made
+        front = self.front or ([], frozenset(), 0)
+        made = []
+        for lines in (self.read, front[0]):
+            text = ["def fill(o, data, at, depth):", *(" " + line for line in lines), " return at"]
+            exec(compile("\n".join(text), f"<lmcp {self.cls.type_name}>", "exec"), self.space)
+            made.append(self.space["fill"])
+        return made[0], made[1], front[1], front[2]
 
     def name(self, prefix: str, value: Any = None) -> str:
         self.count += 1
@@ -237,6 +248,12 @@ class _Maker:
         self.read.append(f"{targets}{',' * (len(self.group) == 1)} = {unpack}(data, at)")
         self.read.append(f"at += {form.size}")
         self.read += [convert for *_, convert in self.group if convert]
+        if self.front is None:
+            targets = " ".join(part for _, target, _, made in self.group for part in (target, made))
+            names = frozenset(n for n in self.cls.names if re.search(rf"\bo\.{n}\b", targets))
+            if any(f.array is not None for f in self.cls.fields if f.name in names):
+                names = frozenset()  # a list can be changed by whoever has read it
+            self.front = list(self.read), names, form.size
         pack = self.name("P", struct.Struct(f">{head}{codes}").pack)
         values = ", ".join(value for _, _, value, _ in self.group)
         self.write.append(f"put({pack}({'HEAD, ' if head else ''}{values}))")

@@ -1,8 +1,10 @@
 """Messages whose fields are read when one is first asked for.
 
 The lazy class of a message class is a subclass with the same slots and none of them filled, so an
-access falls through to `__getattr__`, which reads all fields and turns the object into an ordinary
-one by giving it its real class. Whoever only passes a message on pays for its checksum alone.
+access falls through to `__getattr__`. The numbers in front of a message, which have fixed places,
+are read by themselves, as nobody can change an object through them; any other field has all of them
+read, and turns the object into an ordinary one by giving it its real class. Whoever only passes a
+message on pays for its checksum alone.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ from typing import Any
 from cratous.bridge.lmcp import compiled
 from cratous.bridge.lmcp.objects import LmcpObject
 
+AT = 8 + compiled.HEAD_SIZE  # bytes of a message before the fields of its root object
 # Methods that look at `type(self)` or write, and so need the real class.
 _COMPLETE_FIRST = (
     "__eq__", "__repr__", "__rich_repr__", "__reduce__", "__setattr__", "__delattr__", "copy",
@@ -26,7 +29,8 @@ def class_of(cls: type[LmcpObject], fill: Fill) -> Any:
 
     fill(obj, reader, message, where) reads the fields into the object, or raises BadInput.
     """
-    reader = compiled.filler(cls)
+    reader, front, in_front, size = compiled.fillers(cls)
+    least = AT + size + 4
 
     def complete(self: Any) -> Any:
         if type(self) is made:
@@ -43,7 +47,22 @@ def class_of(cls: type[LmcpObject], fill: Fill) -> Any:
             del self._raw
         return self
 
+    def read_front(self: Any) -> bool:
+        data = self._raw[0]
+        if len(data) < least:
+            return False
+        object.__setattr__(self, "__class__", cls)
+        try:
+            front(self, data, AT, 0)
+        except compiled.GIVES_UP:
+            return False
+        finally:
+            object.__setattr__(self, "__class__", made)
+        return True
+
     def __getattr__(self: Any, name: str) -> Any:
+        if name in in_front and read_front(self):
+            return getattr(self, name)
         if name not in cls.names:
             raise AttributeError(f"{cls.__name__!r} object has no attribute {name!r}")
         return getattr(complete(self), name)
