@@ -137,7 +137,7 @@ def message_case(rng: random.Random, corpus: list[bytes], seen: Counter[str]) ->
 def agree(raw: bytes, found: Any) -> None:
     """The careful and the lazy reader say the same as the fast one."""
     text = "" if found is None else lmcp.to_json(found)
-    for reader in (_carefully, _lazily):
+    for reader in (_carefully, _lazily, _field_by_field):
         try:
             other = lmcp.to_json(reader(raw))
         except BadInput:
@@ -160,6 +160,13 @@ def _carefully(raw: bytes) -> Any:
 
 def _lazily(raw: bytes) -> Any:
     return binary.lazy(raw).complete()
+
+
+def _field_by_field(raw: bytes) -> Any:
+    obj = binary.lazy(raw)
+    for name in obj.names:
+        getattr(obj, name)
+    return obj.complete()
 
 
 def frame_case(rng: random.Random, corpus: list[bytes], seen: Counter[str]) -> None:

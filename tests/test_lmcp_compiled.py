@@ -82,8 +82,9 @@ def test_what_is_assigned_later_is_checked_or_converted_when_written() -> None:
 def test_an_object_within_itself_is_refused() -> None:
     gated = lmcp.new("GatedCommand")
     gated.Command = gated
-    with pytest.raises(BadInput, match="too deeply"):
-        binary.pack(gated)
+    for write in (binary.pack, lmcp.xml.dumps, lmcp.to_json):
+        with pytest.raises(BadInput, match="too deeply"):
+            write(gated)
 
 
 def test_lazy_messages_are_ordinary_once_looked_into() -> None:
