@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cratous.bridge import lmcp
+from cratous.bridge.lmcp import careful
 from cratous.spec.errors import BadInput
 
 VECTORS = Path(__file__).resolve().parents[2] / "shared" / "vectors" / "lmcp"
@@ -87,3 +88,30 @@ def test_limits_of_the_wire() -> None:
         nested = lmcp.new("GatedCommand", Command=nested)
     with pytest.raises(BadInput, match="too deeply"):
         lmcp.binary.unpack(lmcp.binary.pack(nested))
+
+
+def test_a_message_of_very_many_elements_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    regions = [lmcp.new("GraphEdge")] * 3
+    raw = lmcp.binary.pack(lmcp.new("GraphRegion", EdgeList=regions))
+    for module in (careful, lmcp.binary):
+        monkeypatch.setattr(module, "MAX_ELEMENTS", 2)
+    with pytest.raises(BadInput, match=r"GraphRegion\.EdgeList: too many elements"):
+        lmcp.binary.unpack(raw)
+    with pytest.raises(BadInput, match="too many elements"):
+        lmcp.binary.lazy(raw).complete()
+    monkeypatch.setattr(lmcp.binary, "MAX_MESSAGE", 50)
+    for use in (
+        lambda: lmcp.binary.unpack(raw),
+        lambda: lmcp.binary.pack(lmcp.new("Task", Label="x" * 60)),
+    ):
+        with pytest.raises(BadInput, match="message too long"):
+            use()
+
+
+def test_a_count_of_four_billion_is_refused_at_once() -> None:
+    raw = bytearray(lmcp.binary.pack(lmcp.new("GraphRegion")))
+    for at in range(len(raw) - 12, len(raw) - 4):
+        wrong = raw[:at] + b"\xff\xff\xff\xff" + raw[at + 4 :]
+        wrong[-4:] = bytes(4)
+        with pytest.raises(BadInput):
+            lmcp.binary.unpack(bytes(wrong))

@@ -29,13 +29,13 @@ OURS = """<?xml version="1.0"?>
       <Field Name="Depth" Type="real32" Units="meter" Default="2.5"/>
       <Field Name="Mood" Type="Mood" Default="Loud"/>
       <Field Name="Place" Type="Location3D" Series="CMASI" Default="null" Optional="true"/>
-      <Field Name="Marks" Type="uint16[3]"/>
+      <Field Name="Marks" Type="uint16[3]" Series="" Default=""/>
       <Field Name="Moods" Type="Mood[]"/>
       <Field Name="Many" Type="string[]" LargeArray="true" MaxArrayLength="9"/>
       <Field Name="from" Type="char" Default="x"/>
       <Field Name="Parts" Type="LmcpObject[]"/>
     </Struct>
-    <Struct Name="Second" ID="40"/>
+    <Struct Name="Second" ID="40"><Comment>Nothing in it.</Comment></Struct>
     <Struct Name="Third" Extends="Buoy"><Field Name="Flags" Type="bool[]"/></Struct>
   </StructList>
 </MDM>
@@ -141,6 +141,10 @@ def test_files_may_refer_to_each_other(tmp_path: Path) -> None:
         ('Name="from"', 'Name="Depth"', "18", "given twice"),
         ('Name="from"', 'Name="Heading"', "11", "field of an ancestor"),
         ('ID="40"', 'ID="0"', "21", "wrong ID"),
+        ('ID="40"', 'Id="40"', "21", "unknown attribute"),
+        ('Units="meter"', 'Unit="meter"', "12", "unknown attribute"),
+        ('ID="40">', 'ID="40">5', "21", "text between elements"),
+        ("<StructList>", "<StructList>x", "10", "text between elements"),
         ('Extends="Buoy"', 'Extends="Third"', "22", "extends itself"),
         ('Extends="Buoy"', 'Extends="Mood"', "22", "wrong parent"),
         ('Extends="Buoy"', 'Extends="Boy"', "22", "unknown type"),

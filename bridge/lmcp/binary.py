@@ -15,11 +15,11 @@ from typing import Any
 
 from cratous.bridge.bytesum import byte_sum
 from cratous.bridge.lmcp import careful, compiled, lazily, model
-from cratous.bridge.lmcp.careful import MAX_DEPTH
+from cratous.bridge.lmcp.careful import MAX_DEPTH, MAX_ELEMENTS
 from cratous.bridge.lmcp.objects import LmcpObject
 from cratous.spec.errors import BadInput
 
-__all__ = ["MAX_DEPTH", "MAX_MESSAGE", "lazy", "pack", "split", "unpack"]
+__all__ = ["MAX_DEPTH", "MAX_ELEMENTS", "MAX_MESSAGE", "lazy", "pack", "split", "unpack"]
 
 TAG = b"LMCP"
 MAX_MESSAGE = 64 * 1024 * 1024  # bytes of one message
@@ -27,6 +27,7 @@ _HEAD = struct.Struct(">4sI")
 _SUM = struct.Struct(">I")
 _LEAST = _HEAD.size + 1 + _SUM.size
 _AT = _HEAD.size
+_left = compiled.left
 _readers, _writers = compiled.tables(LmcpObject, False)
 
 
@@ -44,6 +45,8 @@ def pack(obj: LmcpObject) -> bytes:
         body: bytes | bytearray = b"".join(parts)
     except compiled.GIVES_UP:
         body = careful.pack(obj)
+    if len(body) > MAX_MESSAGE:
+        raise _long("", len(body))
     message = _HEAD.pack(TAG, len(body)) + body
     return message + _SUM.pack(byte_sum(message))
 
@@ -52,12 +55,14 @@ def unpack(data: bytes, where: str = "message") -> Any:
     """The object of exactly one message.
 
     Raises BadInput, with the byte and the path of the field, for anything that is not one: a wrong
-    tag, length or checksum, a longer message than MAX_MESSAGE, more levels than MAX_DEPTH, unknown
-    series, types and versions, wrong values, text that is not UTF-8.
+    tag, length or checksum, a longer message than MAX_MESSAGE, more levels than MAX_DEPTH, more
+    elements of arrays (but of numbers) than MAX_ELEMENTS, unknown series, types and versions, wrong
+    values, text that is not UTF-8.
     """
     data = bytes(data)
     _checked(data, where)
     end = len(data) - 4
+    _left[0] = MAX_ELEMENTS
     try:
         obj, at = _readers[data[_AT : _AT + 15]](data[:end], _AT + 15, 0)
         if at == end:
@@ -97,6 +102,7 @@ def lazy(data: bytes, where: str = "message") -> Any:
 def _fill(obj: Any, fill: Any, data: bytes, where: str) -> None:
     """Read the fields of a lazy object."""
     end = len(data) - 4
+    _left[0] = MAX_ELEMENTS
     try:
         if fill(obj, data[:end], _AT + 15, 0) == end:
             return
@@ -136,9 +142,7 @@ def _checked(data: bytes, where: str) -> None:
     if size + 12 != len(data):
         raise _length(where, size, len(data))
     if size > MAX_MESSAGE:
-        raise BadInput(
-            "message too long", where=where, expected=f"at most {MAX_MESSAGE} bytes", got=f"{size}"
-        )
+        raise _long(where, size)
     (given,) = _SUM.unpack_from(data, len(data) - 4)
     if given and given != (total := byte_sum(memoryview(data)[:-4])):
         place = f"{where}: byte {len(data) - 4}"
@@ -156,4 +160,10 @@ def _not_lmcp(where: str, tag: bytes) -> BadInput:
 def _length(where: str, size: int, got: int) -> BadInput:
     return BadInput(
         "wrong length of message", where=f"{where}", expected=f"{size + 12}", got=f"{got}"
+    )
+
+
+def _long(where: str, size: int) -> BadInput:
+    return BadInput(
+        "message too long", where=where, expected=f"at most {MAX_MESSAGE} bytes", got=f"{size}"
     )

@@ -31,6 +31,7 @@ CODES = {
 OBJECT_HEAD = struct.Struct(">BqIH")
 _SMALL_COUNT, _LARGE_COUNT = struct.Struct(">H"), struct.Struct(">I")
 MAX_DEPTH = 64
+MAX_ELEMENTS = 1_000_000  # of arrays of anything but numbers, in one message together
 
 
 def pack(obj: LmcpObject) -> bytearray:
@@ -125,6 +126,7 @@ class _Reader:
 
     def __init__(self, data: bytes, at: int, end: int) -> None:
         self.data, self.at, self.end = data, at, end
+        self.left = MAX_ELEMENTS
         self.began = at  # of what was read last: where an error is
 
     def take(self, size: int) -> int:
@@ -173,6 +175,9 @@ class _Reader:
         if field.kind in ("real32", "real64") or field.kind in model.INTEGER_RANGES:
             form = struct.Struct(f">{count}{CODES[field.kind]}")
             return list(form.unpack_from(self.data, self.take(form.size)))
+        self.left -= count
+        if self.left < 0:
+            raise BadInput("too many elements", expected=f"at most {MAX_ELEMENTS} in a message")
         return [self.one(field, depth) for _ in range(count)]
 
     def one(self, field: model.Field, depth: int) -> Any:

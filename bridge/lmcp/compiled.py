@@ -16,13 +16,18 @@ from collections.abc import Callable
 from typing import Any
 
 from cratous.bridge.lmcp import model
-from cratous.bridge.lmcp.careful import CODES, MAX_DEPTH, OBJECT_HEAD, class_of
+from cratous.bridge.lmcp.careful import CODES, MAX_DEPTH, MAX_ELEMENTS, OBJECT_HEAD, class_of
 from cratous.bridge.lmcp.objects import LmcpObject, enums, types
 from cratous.spec.errors import BadInput
 
 Reads = Callable[[bytes, int, int], tuple[Any, int]]
 Writes = Callable[[Any, Callable[[bytes], None], int], None]
 HEAD_SIZE = OBJECT_HEAD.size
+
+
+# Elements that the message being read may still have. Two threads would share it, and then at worst
+# read a message carefully that could have been read fast.
+left = [MAX_ELEMENTS]
 
 
 class NotFast(Exception):
@@ -142,7 +147,7 @@ class _Maker:
         self.space: dict[str, Any] = {
             "new": object.__new__, "C": cls, "HEAD": head_of(cls), "NotFast": NotFast,
             "B": {0: False, 1: True}, "unpack_from": struct.unpack_from, "pack": struct.pack,
-            "INT": {int}, "FLOAT": {float},
+            "INT": {int}, "FLOAT": {float}, "left": left,
         }  # fmt: skip
         self.read: list[str] = []
         self.write: list[str] = []
@@ -308,6 +313,10 @@ class _Maker:
         else:
             self.count_field(field.large, n, f"len({value})")
         target = f"o.{field.name}"
+        if kind in ("struct", "any", "string", "enum", "bool", "char"):
+            self.read.append(f"if {n}:")
+            self.read.append(f" left[0] -= {n}")
+            self.read.append(" if left[0] < 0: raise NotFast")
         if kind in ("struct", "any"):
             reads, writes = self.tables(field, True)
             self.read += [

@@ -7,7 +7,7 @@
 EnumList and a StructList. An enum entry without Value has its index; a struct without ID gets the
 next number in file order, from one above the largest that is given. A type is a primitive, a name
 of its own series or `SERIES/Name` (or Series="SERIES"), with `[]` or `[n]` behind it for arrays.
-Default is null for structs, and without meaning for arrays. Every mistake is an error with file and line. The DTD is not read.
+Default is null for structs, and without meaning for arrays; an empty attribute is none. Every mistake is an error with file and line. The DTD is not read.
 Format: LmcpGen (MDM.DTD).
 """
 
@@ -28,6 +28,14 @@ _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _SERIES = re.compile(r"[A-Za-z0-9_]{1,8}\Z")
 _TYPE = re.compile(r"(?:([A-Za-z0-9_]+)/)?([A-Za-z_][A-Za-z0-9_]*)(?:\[([0-9]*)\])?\Z")
 _MAX_ID = 2**32 - 1
+_ATTRIBUTES = {
+    "Struct": {"Name", "Extends", "Series", "ID"},
+    "Field": {
+        "Name", "Type", "Series", "Default", "Units", "LargeArray", "MaxArrayLength", "Optional",
+    },
+    "Enum": {"Name"},
+    "Entry": {"Name", "Value"},
+}  # fmt: skip
 # Names that a Python class of a message already has, and so no field can have.
 _TAKEN = re.compile(
     r"(series|type_name|type_id|all_names|fields|names|values_of|copy|checked|_.*)\Z"
@@ -111,14 +119,28 @@ class _Draft:
         found: dict[str, Any] = {}
         for element in () if parent is None else parent:
             name = element.get("Name", "")
+            if element.tag == "Comment":
+                continue
             if element.tag != tag:
                 raise self.wrong(element, "wrong element", f"<{tag}>", f"<{element.tag}>")
+            self.nothing_else(element, _ATTRIBUTES[tag])
             if not _NAME.match(name) or name in PRIMITIVES or name == model.ANY:
                 raise self.wrong(element, "wrong name", "a name that is free", repr(name))
             if name in found:
                 raise self.wrong(element, "name given twice", got=name)
             found[name] = element
         return found
+
+    def nothing_else(self, element: Any, attributes: set[str]) -> None:
+        """No attribute and no text that would be passed over."""
+        for name in element.keys():  # noqa: SIM118 (an lxml element, not a dictionary)
+            if name not in attributes:
+                expected = " or ".join(sorted(attributes)) or "none"
+                raise self.wrong(element, "unknown attribute", expected, name)
+        texts = [element.text, *(child.tail for child in element)]
+        for text in texts:
+            if text and text.strip():
+                raise self.wrong(element, "text between elements", got=repr(text.strip())[:60])
 
     def data(self, drafts: dict[str, _Draft]) -> dict[str, Any]:
         enums = {name: self.entries(element) for name, element in self.enums.items()}
@@ -158,7 +180,7 @@ class _Draft:
         given: dict[str, int] = {}
         for name, element in self.structs.items():
             text = element.get("ID")
-            if text is not None:
+            if text:
                 given[name] = self.whole(element, "ID", text.strip(), 1, _MAX_ID)
                 if list(given.values()).count(given[name]) > 1:
                     raise self.wrong(element, "ID given twice", got=text)
@@ -204,7 +226,7 @@ class _Draft:
             raise self.wrong(element, "wrong type", "a type, `[]` or `[n]` behind it", repr(text))
         series, short, size = match.groups()
         field: dict[str, Any] = {"name": name}
-        series = series or element.get("Series")
+        series = series or element.get("Series") or None
         if series is None and short in PRIMITIVES:
             kind = field["type"] = short
         elif series is None and short == model.ANY:
@@ -221,7 +243,7 @@ class _Draft:
             if field.get("array") != "variable":
                 raise self.wrong(element, "LargeArray of what is no variable array", got=text)
             field["large"] = True
-        if element.get("Default") is not None and size is None:
+        if element.get("Default") and size is None:
             field["default"] = self.default(element, kind, field, drafts)
         elif kind == "any" and size is None:
             field["default"] = None
@@ -314,6 +336,8 @@ def _children(draft: _Draft, parent: Any, allowed: str) -> dict[str, Any]:
         if element.tag in found:
             raise draft.wrong(element, "element given twice", got=f"<{element.tag}>")
         found[element.tag] = element
+        if element.tag in ("EnumList", "StructList"):
+            draft.nothing_else(element, set())
     return found
 
 
