@@ -138,9 +138,9 @@ def _checked(data: bytes, where: str) -> None:
         raise _short(where, len(data))
     tag, size = _HEAD.unpack_from(data)
     if tag != TAG:
-        raise _not_lmcp(where, tag)
+        raise _not_lmcp(f"{where}: byte 0", tag)
     if size + 12 != len(data):
-        raise _length(where, size, len(data))
+        raise _length(f"{where}: byte 4", size, len(data))
     if size > MAX_MESSAGE:
         raise _long(where, size)
     (given,) = _SUM.unpack_from(data, len(data) - 4)
@@ -158,9 +158,7 @@ def _not_lmcp(where: str, tag: bytes) -> BadInput:
 
 
 def _length(where: str, size: int, got: int) -> BadInput:
-    return BadInput(
-        "wrong length of message", where=f"{where}", expected=f"{size + 12}", got=f"{got}"
-    )
+    return BadInput("wrong length of message", where=where, expected=f"{size + 12}", got=f"{got}")
 
 
 def _long(where: str, size: int) -> BadInput:
