@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.ready
 
-.PHONY: help venv demo test test-fast lint types prove recheck mutate crosshair bench docs lock clean
+.PHONY: help venv demo test test-fast lint types prove recheck mutate crosshair fuzz bench docs lock clean
 
 help:
 	@echo "make demo      set up, then plan, prove, fly, monitor and certify the crossing mission"
@@ -15,6 +15,7 @@ help:
 	@echo "make recheck   put every proof to the second solver (cvc5), some minutes"
 	@echo "make mutate    look for faults of kernels that no theorem would notice; pays for what has changed"
 	@echo "make crosshair look for bugs in functions that are no kernels, two minutes"
+	@echo "make fuzz      a million changed LMCP messages and frames, some minutes"
 	@echo "make bench     benchmarks (ratios, see bench/README.md)"
 	@echo "make docs      regenerate the generated documents"
 
@@ -56,11 +57,15 @@ mutate: venv
 crosshair: venv
 	$(BIN)/python -m crosshair check --analysis_kind=asserts --per_condition_timeout=10 tests/crosshair_targets.py
 
+fuzz: venv
+	$(BIN)/python tests/fuzz_lmcp.py --count 1000000
+
 bench: venv
 	$(BIN)/python bench/run.py
 
 docs: venv
 	$(BIN)/python docs/generate.py
+	$(BIN)/python -m cratous.bridge.lmcp.generate
 
 lock:
 	$(BIN)/python -m pip install --quiet pip-tools

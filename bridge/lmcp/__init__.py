@@ -13,7 +13,7 @@ first in `model.SERIES`. Models load on first use, one series at a time.
 
 from __future__ import annotations
 
-from cratous.bridge.lmcp import binary, xml
+from cratous.bridge.lmcp import binary, mdm, xml
 from cratous.bridge.lmcp.jsonform import from_dict, from_json, to_dict, to_json
 from cratous.bridge.lmcp.objects import LmcpObject, enums, full_names, new, types
 
@@ -24,6 +24,7 @@ __all__ = [
     "from_dict",
     "from_json",
     "full_names",
+    "mdm",
     "new",
     "to_dict",
     "to_json",

@@ -10,220 +10,158 @@ in a field, bytes behind the end) this one refuses it.
 from __future__ import annotations
 
 import struct
-from functools import cache
+from collections.abc import Iterator
 from typing import Any
 
-from cratous.bridge.lmcp import model
-from cratous.bridge.lmcp.objects import LmcpObject, element_check, enums, types, within
+from cratous.bridge.bytesum import byte_sum
+from cratous.bridge.lmcp import careful, compiled, lazily, model
+from cratous.bridge.lmcp.careful import MAX_DEPTH, MAX_ELEMENTS
+from cratous.bridge.lmcp.objects import LmcpObject
 from cratous.spec.errors import BadInput
 
-_CODES = {
-    "bool": "B",
-    "byte": "B",
-    "char": "c",
-    "int16": "h",
-    "uint16": "H",
-    "int32": "i",
-    "uint32": "I",
-    "int64": "q",
-    "real32": "f",
-    "real64": "d",
-    "enum": "i",
-}
+__all__ = ["MAX_DEPTH", "MAX_ELEMENTS", "MAX_MESSAGE", "lazy", "pack", "split", "unpack"]
+
+TAG = b"LMCP"
+MAX_MESSAGE = 64 * 1024 * 1024  # bytes of one message
 _HEAD = struct.Struct(">4sI")
-_OBJECT = struct.Struct(">BqIH")
 _SUM = struct.Struct(">I")
-_SMALL_COUNT, _LARGE_COUNT = struct.Struct(">H"), struct.Struct(">I")
-_MAX_DEPTH = 64
+_LEAST = _HEAD.size + 1 + _SUM.size
+_AT = _HEAD.size
+_left = compiled.left
+_readers, _writers = compiled.tables(LmcpObject, False)
 
 
 def pack(obj: LmcpObject) -> bytes:
-    """The whole message of an object; BadInput if a value does not fit its field."""
-    body = bytearray()
-    _pack_object(obj.copy().checked(), body)
-    message = _HEAD.pack(b"LMCP", len(body)) + body
-    return message + _SUM.pack(sum(message) & 0xFFFFFFFF)
+    """The whole message of an object; BadInput if a value does not fit its field.
+
+    What `lazy` gave and nobody has looked into is passed on as it came.
+    """
+    raw = obj.raw_message()
+    if raw is not None:
+        return raw
+    parts: list[bytes] = [b""]
+    try:
+        _writers[type(obj)](obj, parts.append, 0)
+        body: bytes | bytearray = b"".join(parts)
+    except compiled.GIVES_UP:
+        body = careful.pack(obj)
+    if len(body) > MAX_MESSAGE:
+        raise _long("", len(body))
+    message = _HEAD.pack(TAG, len(body)) + body
+    return message + _SUM.pack(byte_sum(message))
 
 
 def unpack(data: bytes, where: str = "message") -> Any:
-    """The object of exactly one message; BadInput says what is wrong with it."""
-    if len(data) < _HEAD.size + 1 + _SUM.size:
-        raise BadInput("message too short", where=where, expected="13 bytes", got=f"{len(data)}")
-    tag, size = _HEAD.unpack_from(data)
-    if tag != b"LMCP":
-        raise BadInput("not an LMCP message", where=where, expected="b'LMCP'", got=repr(tag))
-    if size + 12 != len(data):
-        raise BadInput(
-            "wrong length of message", where=where, expected=f"{size + 12}", got=f"{len(data)}"
-        )
-    (given,) = _SUM.unpack_from(data, len(data) - 4)
-    if given and given != (total := sum(data[:-4]) & 0xFFFFFFFF):
-        raise BadInput("wrong checksum", where=where, expected=f"{total}", got=f"{given}")
-    reader = _Reader(data, _HEAD.size, len(data) - 4)
+    """The object of exactly one message.
+
+    Raises BadInput, with the byte and the path of the field, for anything that is not one: a wrong
+    tag, length or checksum, a longer message than MAX_MESSAGE, more levels than MAX_DEPTH, more
+    elements of arrays (but of numbers) than MAX_ELEMENTS, unknown series, types and versions, wrong
+    values, text that is not UTF-8.
+    """
+    data = bytes(data)
+    _checked(data, where)
+    end = len(data) - 4
+    _left[0] = MAX_ELEMENTS
     try:
-        obj = reader.object(0)
-    except BadInput as err:
-        raise BadInput(
-            err.what,
-            where=f"{where}: byte {reader.at}",
-            item=err.item,
-            expected=err.expected,
-            got=err.got,
-        ) from None
-    if obj is None or reader.at != reader.end:
-        raise BadInput(
-            "null message" if obj is None else "bytes behind the object",
-            where=f"{where}: byte {reader.at}",
-            expected="one object",
-        )
+        obj, at = _readers[data[_AT : _AT + 15]](data[:end], _AT + 15, 0)
+        if at == end:
+            return obj
+    except compiled.GIVES_UP:
+        pass
+    return careful.read(data, _AT, end, where)
+
+
+def lazy(data: bytes, where: str = "message") -> Any:
+    """As `unpack`, but the fields are read when one is first asked for.
+
+    Length, checksum, and that the type is known are checked at once; anything else that is wrong
+    raises its BadInput at the first access to a field (of the numbers in front, which are read by
+    themselves: to another field; `complete()` reads all). The object is of its class (isinstance,
+    topics) from the start. While only such numbers were read, `pack` gives the message as it came.
+    """
+    data = bytes(data)
+    _checked(data, where)
+    head = data[_AT : _AT + 15]
+    cls = _lazy_classes.get(head)
+    if cls is None:
+        if len(data) < _AT + 15 + 4 or head[0] != 1:
+            return careful.read(data, _AT, len(data) - 4, where)  # says what is wrong
+        try:
+            found = careful.class_of(*careful.OBJECT_HEAD.unpack(head)[1:])
+        except BadInput:
+            return careful.read(data, _AT, len(data) - 4, where)
+        if not found.names:
+            return unpack(data, where)
+        cls = _lazy_classes[head] = lazily.class_of(found, _fill)
+    obj = _new(cls)
+    _set_raw(obj, "_raw", (data, where))
     return obj
 
 
-def _pack_object(obj: LmcpObject | None, out: bytearray) -> None:
-    if obj is None:
-        out.append(0)
-        return
-    loaded = model.load(obj.series)
-    out += _OBJECT.pack(1, loaded.wire_id, obj.type_id, loaded.version)
-    for field, value in zip(obj.fields, obj.values_of(obj), strict=True):
-        if field.array is None:
-            _pack_one(field, value, out)
-            continue
-        if field.array == 0:
-            count = _LARGE_COUNT if field.large else _SMALL_COUNT
-            if len(value) >= 256**count.size:
-                raise BadInput(
-                    "array too long", item=field.name, expected=f"< {256**count.size} elements"
-                )
-            out += count.pack(len(value))
-        code = _CODES.get(field.kind)
-        if code and field.kind != "char":
-            out += struct.pack(f">{len(value)}{code}", *value)
-        else:
-            for element in value:
-                _pack_one(field, element, out)
+def _fill(obj: Any, fill: Any, data: bytes, where: str) -> None:
+    """Read the fields of a lazy object."""
+    end = len(data) - 4
+    _left[0] = MAX_ELEMENTS
+    try:
+        if fill(obj, data[:end], _AT + 15, 0) == end:
+            return
+    except compiled.GIVES_UP:
+        pass
+    read = careful.read(data, _AT, end, where)
+    for name in read.names:
+        setattr(obj, name, getattr(read, name))
 
 
-def _pack_one(field: model.Field, value: Any, out: bytearray) -> None:
-    if field.kind == "string":
-        try:
-            text = value.encode("utf-8")
-        except UnicodeEncodeError:
-            raise BadInput("text without UTF-8 form", item=field.name, got=repr(value)) from None
-        if len(text) > 0xFFFF:
-            raise BadInput(
-                "text too long", item=field.name, expected="< 65536 bytes", got=f"{len(text)}"
-            )
-        out += _SMALL_COUNT.pack(len(text)) + text
-    elif field.kind in ("struct", "any"):
-        _pack_object(value, out)
-    elif field.kind == "char":
-        out += value.encode("latin-1")
-    else:
-        out += _one(field.kind).pack(value)
+_new, _set_raw = object.__new__, object.__setattr__  # past the lazy __setattr__
+_lazy_classes: dict[bytes, Any] = {}
+model.when_removed(lambda _series: _lazy_classes.clear())
 
 
-@cache
-def _one(kind: str) -> struct.Struct:
-    return struct.Struct(">" + _CODES[kind])
+def split(data: bytes, where: str = "messages") -> Iterator[bytes]:
+    """The messages of bytes in which whole messages stand one behind the other."""
+    at = 0
+    while at < len(data):
+        if len(data) - at < _LEAST:
+            raise _short(f"{where}: byte {at}", len(data) - at)
+        tag, size = _HEAD.unpack_from(data, at)
+        if tag != TAG:
+            raise _not_lmcp(f"{where}: byte {at}", tag)
+        if size + 12 > len(data) - at:
+            raise _length(f"{where}: byte {at}", size, len(data) - at)
+        yield data[at : at + size + 12]
+        at += size + 12
 
 
-class _Reader:
-    """A place in the bytes of one message."""
-
-    def __init__(self, data: bytes, at: int, end: int) -> None:
-        self.data, self.at, self.end = data, at, end
-
-    def take(self, size: int) -> int:
-        """Step over `size` bytes and give where they start."""
-        start = self.at
-        if start + size > self.end:
-            raise BadInput(
-                "message ends too early", expected=f"{size} bytes", got=f"{self.end - start}"
-            )
-        self.at = start + size
-        return start
-
-    def object(self, depth: int) -> Any:
-        if depth > _MAX_DEPTH:
-            raise BadInput("nested too deeply", expected=f"at most {_MAX_DEPTH} levels")
-        flag = self.data[self.take(1)]
-        if flag == 0:
-            return None
-        if flag != 1:
-            raise BadInput("wrong object header", expected="0 or 1", got=f"{flag}")
-        self.at -= 1
-        _, series_id, type_id, version = _OBJECT.unpack_from(self.data, self.take(_OBJECT.size))
-        cls = _class_of(series_id, type_id, version)
-        values = {}
-        for field in cls.fields:
-            try:
-                values[field.name] = self.field(field, depth)
-            except BadInput as err:
-                raise within(err, f"{cls.__name__}.{field.name}") from None
-        return cls(**values)
-
-    def field(self, field: model.Field, depth: int) -> Any:
-        if field.array is None:
-            return self.one(field, depth)
-        if field.array:
-            count = field.array
-        else:
-            head = _LARGE_COUNT if field.large else _SMALL_COUNT
-            (count,) = head.unpack_from(self.data, self.take(head.size))
-        if count > self.end - self.at:  # every element has at least one byte
-            raise BadInput(
-                "message ends too early", expected=f"{count} elements", got=f"{self.end - self.at}"
-            )
-        if field.kind in ("real32", "real64") or field.kind in model.INTEGER_RANGES:
-            form = struct.Struct(f">{count}{_CODES[field.kind]}")
-            return list(form.unpack_from(self.data, self.take(form.size)))
-        return [self.one(field, depth) for _ in range(count)]
-
-    def one(self, field: model.Field, depth: int) -> Any:
-        if field.kind in ("struct", "any"):
-            return element_check(field)(self.object(depth + 1))
-        if field.kind == "string":
-            (length,) = _SMALL_COUNT.unpack_from(self.data, self.take(2))
-            start = self.take(length)
-            try:
-                return bytes(self.data[start : start + length]).decode("utf-8")
-            except UnicodeDecodeError as err:
-                raise BadInput("text that is not UTF-8", got=str(err.reason)) from None
-        form = _one(field.kind)
-        (value,) = form.unpack_from(self.data, self.take(form.size))
-        if field.kind == "char":
-            return value.decode("latin-1")
-        if field.kind == "bool":
-            if value > 1:
-                raise BadInput("wrong value", expected="0 or 1", got=f"{value}")
-            return bool(value)
-        if field.kind == "enum":
-            members = enums[field.type]
-            if value not in members._value2member_map_:
-                raise BadInput(
-                    "wrong value", expected=" or ".join(members.__members__), got=f"{value}"
-                )
-            return members(value)
-        return value
+def _checked(data: bytes, where: str) -> None:
+    if len(data) < _LEAST:
+        raise _short(where, len(data))
+    tag, size = _HEAD.unpack_from(data)
+    if tag != TAG:
+        raise _not_lmcp(f"{where}: byte 0", tag)
+    if size + 12 != len(data):
+        raise _length(f"{where}: byte 4", size, len(data))
+    if size > MAX_MESSAGE:
+        raise _long(where, size)
+    (given,) = _SUM.unpack_from(data, len(data) - 4)
+    if given and given != (total := byte_sum(memoryview(data)[:-4])):
+        place = f"{where}: byte {len(data) - 4}"
+        raise BadInput("wrong checksum", where=place, expected=f"{total}", got=f"{given}")
 
 
-@cache
-def _class_of(series_id: int, type_id: int, version: int) -> type[Any]:
-    for name in model.SERIES:
-        loaded = model.load(name)
-        if loaded.wire_id != series_id:
-            continue
-        if loaded.version != version:
-            raise BadInput(
-                "other version of a series",
-                item=name,
-                expected=f"version {loaded.version}",
-                got=f"{version}",
-            )
-        for struct_ in loaded.structs.values():
-            if struct_.id == type_id:
-                return types[f"{name}/{struct_.name}"]
-        raise BadInput("unknown message type", item=name, got=f"type {type_id}")
-    raw = series_id.to_bytes(8, "big", signed=True)
-    raise BadInput("unknown message series", expected=" or ".join(model.SERIES), got=repr(raw))
+def _short(where: str, size: int) -> BadInput:
+    return BadInput("message too short", where=where, expected=f"{_LEAST} bytes", got=f"{size}")
+
+
+def _not_lmcp(where: str, tag: bytes) -> BadInput:
+    return BadInput("not an LMCP message", where=where, expected="b'LMCP'", got=repr(tag))
+
+
+def _length(where: str, size: int, got: int) -> BadInput:
+    return BadInput("wrong length of message", where=where, expected=f"{size + 12}", got=f"{got}")
+
+
+def _long(where: str, size: int) -> BadInput:
+    return BadInput(
+        "message too long", where=where, expected=f"at most {MAX_MESSAGE} bytes", got=f"{size}"
+    )

@@ -79,6 +79,8 @@ def to_json(obj: LmcpObject) -> str:
     """One line of canonical JSON; BadInput if a field holds a value that is not of its type."""
     try:
         return _encode(to_dict(obj))
+    except RecursionError:
+        raise BadInput("nested too deeply", item=type(obj).__name__) from None
     except (ValueError, TypeError):  # a non-finite number, or a wrong or a numpy value
         return _encode(_spell_non_finite(to_dict(obj.copy().checked())))
 

@@ -1,12 +1,14 @@
-"""The LMCP message models, read from `spec/lmcp/<SERIES>.json` one series at a time.
+"""The LMCP message models: the product's own, and those that are loaded at run time.
 
 A model says which enums and structs a series has; every field has a primitive type, or names an
-enum or a struct as `SERIES/Name`. `LmcpObject` as a type means any struct.
+enum or a struct as `SERIES/Name`. `LmcpObject` as a type means any struct. The product's own are
+read from `spec/lmcp/<SERIES>.json` one series at a time; `lmcp.mdm` adds others from MDM files.
 """
 
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -46,6 +48,7 @@ class Field:
 
     array: None for one value, 0 for a variable array, n for exactly n elements. `large` arrays
     have a 32-bit count on the wire. `default` is None also for a struct that starts as null.
+    `max_length` is what the model says of an array's length; no implementation holds to it.
     """
 
     name: str
@@ -57,6 +60,7 @@ class Field:
     default: Any
     units: str
     optional: bool
+    max_length: int | None = None
 
     @property
     def nullable(self) -> bool:
@@ -108,18 +112,108 @@ def _field(data: dict[str, Any]) -> Field:
         default=None if default is _NO_DEFAULT else default,
         units=data.get("units", ""),
         optional=data.get("optional", False),
+        max_length=data.get("max_length"),
     )
+
+
+_added: dict[str, Series] = {}
+
+
+def known() -> tuple[str, ...]:
+    """The names of all series: the product's own, then those added, in the order of adding."""
+    return (*SERIES, *_added)
+
+
+def add(models: Iterable[Series]) -> tuple[str, ...]:
+    """Make series known, together (they may refer to each other); the names that are new.
+
+    A series that is known already must be the same. Raises BadInput, and then adds none, for one
+    that differs or that refers to a type that does not exist.
+    """
+    fresh: dict[str, Series] = {}
+    for one in models:
+        old = fresh.get(one.name) or (load(one.name) if one.name in known() else None)
+        if old is None:
+            fresh[one.name] = one
+        elif old != one:
+            raise BadInput(
+                "another model of a series that is known",
+                item=one.name,
+                expected=f"version {old.version} as it is known",
+                got=f"version {one.version}"
+                + ("" if old.version != one.version else ", different"),
+            )
+    everything = {**{name: load(name) for name in known()}, **fresh}
+    for one in fresh.values():
+        for other in everything.values():
+            if other is not one and one.namespace == other.namespace:
+                raise BadInput(
+                    "two series of one namespace",
+                    item=one.name,
+                    got=f"{one.namespace}, {other.name}",
+                )
+        _refers_to_what_exists(one, everything)
+    _added.update(fresh)
+    load.cache_clear()
+    series_with.cache_clear()
+    return tuple(fresh)
+
+
+def remove(series: str) -> None:
+    """Forget a series that was added; classes made from it stay valid, but are no longer found."""
+    if _added.pop(series, None) is None:
+        raise BadInput("not a series that was added", item=series)
+    for cached in (load, series_with, resolve):
+        cached.cache_clear()
+    for forget in _when_removed:
+        forget(series)
+
+
+_when_removed: list[Callable[[str], None]] = []
+
+
+def when_removed(forget: Callable[[str], None]) -> None:
+    """Have `forget(series)` called when a series is removed, by what keeps something of it."""
+    _when_removed.append(forget)
+
+
+def _refers_to_what_exists(one: Series, everything: dict[str, Series]) -> None:
+    def part(kind: str, name: str, item: str) -> None:
+        series, _, short = name.partition("/")
+        if series not in everything or short not in getattr(everything[series], kind):
+            raise BadInput(
+                f"unknown {kind[:-1]}", item=item, expected="a type that exists", got=name
+            )
+
+    for struct in one.structs.values():
+        item, seen = f"{one.name}/{struct.name}", set()
+        at = struct
+        while at.extends:
+            part("structs", at.extends, item)
+            if at.extends in seen or at.extends == item:
+                raise BadInput("struct that extends itself", item=item, got=at.extends)
+            seen.add(at.extends)
+            series, _, short = at.extends.partition("/")
+            at = everything[series].structs[short]
+        for field in struct.fields:
+            if field.kind in ("enum", "struct"):
+                part(f"{field.kind}s", field.type, f"{item}.{field.name}")
 
 
 @cache
 def load(series: str) -> Series:
     """The model of one series; BadInput for a name that no model has."""
+    if series in _added:
+        return _added[series]
     if series not in SERIES:
         raise BadInput(
-            "unknown message series", item=series, expected=" or ".join(SERIES), got=repr(series)
+            "unknown message series", item=series, expected=" or ".join(known()), got=repr(series)
         )
-    text = (_FOLDER / f"{series}.json").read_text("utf-8")
-    data = json.loads(text)
+    return from_dict(json.loads((_FOLDER / f"{series}.json").read_text("utf-8")))
+
+
+def from_dict(data: dict[str, Any]) -> Series:
+    """The model that a file of `spec/lmcp` holds; its form is not checked (`lmcp.mdm` does)."""
     structs = {
         s["name"]: Struct(
             s["name"],
@@ -141,7 +235,7 @@ def _in_series(series: str, name: str) -> bool:
 @cache
 def series_with(name: str) -> tuple[str, ...]:
     """The series that have a type of that short name; loads every model."""
-    return tuple(s for s in SERIES if _in_series(s, name))
+    return tuple(s for s in known() if _in_series(s, name))
 
 
 @cache
@@ -149,15 +243,15 @@ def resolve(name: str) -> tuple[str, str]:
     """(series, short name) of a type named in any of the three ways; BadInput if unknown."""
     if "/" in name:
         series, _, short = name.partition("/")
-        if series in SERIES and _in_series(series, short):
+        if series in known() and _in_series(series, short):
             return series, short
     elif "." in name:
         space, _, short = name.rpartition(".")
-        for series in SERIES:
+        for series in known():
             if load(series).namespace.replace("/", ".") == space and _in_series(series, short):
                 return series, short
     else:
-        for series in SERIES:
+        for series in known():
             if _in_series(series, name):
                 return series, name
-    raise BadInput("unknown message type", item=name, expected="a type of " + ", ".join(SERIES))
+    raise BadInput("unknown message type", item=name, expected="a type of " + ", ".join(known()))

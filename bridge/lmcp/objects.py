@@ -11,123 +11,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from enum import IntEnum
-from functools import cache
 from operator import attrgetter, index
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import Any
 
-from cratous.bridge.lmcp import model
+from cratous.bridge.lmcp import describe, model
+from cratous.bridge.lmcp.base import Check, LmcpEnum, LmcpObject, unknown_field, within
 from cratous.spec.errors import BadInput
-
-Self = TypeVar("Self", bound="LmcpObject")
-Check = Callable[[Any], Any]
-
-
-class LmcpEnum(IntEnum):
-    """Base of the enums: an int that prints by its name."""
-
-    def __repr__(self) -> str:
-        return self.name
-
-    __str__ = __repr__
-
-
-class LmcpObject:
-    """Base of every message and part of a message."""
-
-    __slots__ = ()
-    series: ClassVar[str] = ""
-    type_name: ClassVar[str] = ""  # as in `CMASI/AirVehicleState`
-    type_id: ClassVar[int] = 0
-    all_names: ClassVar[tuple[str, ...]] = ()  # full names: its own, then those of its bases
-    fields: ClassVar[tuple[model.Field, ...]] = ()  # oldest ancestor first: the wire's order
-    names: ClassVar[tuple[str, ...]] = ()
-    values_of: ClassVar[Any] = staticmethod(lambda _obj: ())  # all values, in that order
-    _makers: ClassVar[tuple[tuple[str, Callable[[], Any] | None, Any], ...]] = ()
-    _checks: ClassVar[dict[str, Check]] = {}
-
-    if TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> Any: ...
-
-        def __setattr__(self, name: str, value: Any) -> None: ...
-
-    def __init__(self, **given: Any) -> None:
-        for name, make, constant in self._makers:
-            if name not in given:
-                setattr(self, name, constant if make is None else make())
-        for name, value in given.items():
-            check = self._checks.get(name)
-            if check is None:
-                raise unknown_field(type(self), name)
-            try:
-                setattr(self, name, check(value))
-            except BadInput as err:
-                raise within(err, f"{type(self).__name__}.{name}") from None
-
-    def __eq__(self, other: object) -> bool:
-        if type(other) is not type(self):
-            return NotImplemented
-        return bool(self.values_of(self) == self.values_of(other))
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __repr__(self) -> str:
-        """Only what differs from the default, so that long messages stay readable."""
-        plain = type(self)()
-        shown = [
-            f"{name}={getattr(self, name)!r}"
-            for name in self.names
-            if getattr(self, name) != getattr(plain, name)
-        ]
-        return f"{type(self).__name__}({', '.join(shown)})"
-
-    def copy(self: Self, **changes: Any) -> Self:
-        """A deep copy, with some fields changed."""
-        kept = {n: _copied(getattr(self, n)) for n in self.names if n not in changes}
-        return type(self)(**kept, **changes)
-
-    def checked(self: Self, where: str = "") -> Self:
-        """Itself, after all its values are found (or made) to be of their types; else BadInput."""
-        for name, check in self._checks.items():
-            try:
-                value = check(getattr(self, name))
-                for i, part in enumerate(value if type(value) is list else (value,)):
-                    if isinstance(part, LmcpObject):
-                        part.checked(f"[{i}]" if type(value) is list else "")
-            except BadInput as err:
-                raise within(err, f"{where}{type(self).__name__}.{name}") from None
-            setattr(self, name, value)
-        return self
-
-
-def within(err: BadInput, item: str) -> BadInput:
-    """The same error, with `item` put before the path of the part it speaks of."""
-    path = item if not err.item else f"{item}{'' if err.item[0] == '[' else '.'}{err.item}"
-    return BadInput(err.what, where=err.where, item=path, expected=err.expected, got=err.got)
-
-
-def unknown_field(cls: type[LmcpObject], name: str, where: str = "") -> BadInput:
-    """The error for a field that a class does not have, with the nearest names it does have."""
-    from difflib import get_close_matches
-
-    by_lower = {n.lower(): n for n in cls.names}
-    near = [by_lower[n] for n in get_close_matches(name.lower(), by_lower, 3)]
-    if not near:
-        near = list(cls.names) if len(cls.names) <= 8 else [f"one of its {len(cls.names)} fields"]
-    return BadInput(
-        "unknown field",
-        where=where,
-        item=f"{cls.__name__}.{name}",
-        expected=" or ".join(near) or "no field at all",
-        got=name,
-    )
-
-
-def _copied(value: Any) -> Any:
-    if isinstance(value, LmcpObject):
-        return value.copy()
-    return [_copied(v) for v in value] if type(value) is list else value
 
 
 def _wrong(expected: str, got: Any) -> BadInput:
@@ -273,8 +162,19 @@ def _maker(field: model.Field) -> tuple[str, Callable[[], Any] | None, Any]:
     return field.name, None, constant
 
 
-@cache
 def _class(series: str, name: str) -> type[LmcpObject]:
+    """The one class of a struct."""
+    found = _classes.get((series, name))
+    if found is None:
+        found = _classes[series, name] = _make_class(series, name)
+    return found
+
+
+_classes: dict[tuple[str, str], Any] = {}
+_enum_classes: dict[tuple[str, str], Any] = {}
+
+
+def _make_class(series: str, name: str) -> type[LmcpObject]:
     loaded = model.load(series)
     if name not in loaded.structs:
         raise BadInput("not a struct", item=f"{series}/{name}", expected="a struct's name")
@@ -292,8 +192,8 @@ def _class(series: str, name: str) -> type[LmcpObject]:
         checks[field.name] = one if field.array is None else _array(field, one)
     body = {
         "__slots__": tuple(f.name for f in own),
-        "__module__": __name__,
-        "__doc__": f"{loaded.full_name(name)}: {', '.join(names) or 'no fields'}.",
+        "__module__": f"cratous.bridge.lmcp.messages.{series.lower()}",
+        "__doc__": describe.docstring(loaded, struct, fields),
         "series": series,
         "type_name": f"{series}/{name}",
         "type_id": struct.id,
@@ -307,13 +207,22 @@ def _class(series: str, name: str) -> type[LmcpObject]:
     return type(name, (base,), body)
 
 
-@cache
 def _enum_class(series: str, name: str) -> Any:
+    found = _enum_classes.get((series, name))
+    if found is None:
+        found = _enum_classes[series, name] = _make_enum_class(series, name)
+    return found
+
+
+def _make_enum_class(series: str, name: str) -> Any:
     loaded = model.load(series)
     if name not in loaded.enums:
         raise BadInput("not an enum", item=f"{series}/{name}", expected="an enum's name")
     make: Any = LmcpEnum  # the functional form makes a subclass
-    return make(name, loaded.enums[name])
+    module = f"cratous.bridge.lmcp.messages.{series.lower()}"
+    made = make(name, loaded.enums[name], module=module)
+    made.__doc__ = f"{loaded.full_name(name)}: {', '.join(loaded.enums[name])}."
+    return made
 
 
 class _Registry(Mapping[str, Any]):
@@ -336,17 +245,71 @@ class _Registry(Mapping[str, Any]):
             return False
 
     def __iter__(self) -> Iterator[str]:
-        for series in model.SERIES:
+        for series in model.known():
             loaded = model.load(series)
             for name in getattr(loaded, self._part):
                 yield loaded.full_name(name)
 
     def __len__(self) -> int:
-        return sum(len(getattr(model.load(s), self._part)) for s in model.SERIES)
+        return sum(len(getattr(model.load(s), self._part)) for s in model.known())
 
 
-types: Mapping[str, type[Any]] = _Registry(_class, "structs")
-enums: Mapping[str, Any] = _Registry(_enum_class, "enums")
+__all__ = [
+    "LmcpEnum",
+    "LmcpObject",
+    "again",
+    "element_check",
+    "enums",
+    "full_names",
+    "members_of",
+    "new",
+    "real",
+    "real32",
+    "types",
+    "unknown_field",
+    "within",
+]
+
+_types, _enums = _Registry(_class, "structs"), _Registry(_enum_class, "enums")
+types: Mapping[str, type[Any]] = _types
+enums: Mapping[str, Any] = _enums
+
+
+def members_of(series: str) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+    """`__getattr__` and `__dir__` of the module that holds a series' classes and enums."""
+
+    def get(name: str) -> Any:
+        loaded = model.load(series)
+        if name in loaded.structs:
+            return types[f"{series}/{name}"]
+        if name in loaded.enums:
+            return enums[f"{series}/{name}"]
+        raise AttributeError(f"the series {series} has no type {name!r}")
+
+    def names() -> list[str]:
+        loaded = model.load(series)
+        return [*loaded.enums, *loaded.structs]
+
+    return get, names
+
+
+def _forget(series: str) -> None:
+    for made, registry in ((_classes, _types), (_enum_classes, _enums)):
+        registry._found.clear()
+        for key in [key for key in made if key[0] == series]:
+            del made[key]
+
+
+model.when_removed(_forget)
+
+
+def again(name: str, values: tuple[Any, ...]) -> LmcpObject:
+    """An object from all its values as they are; what pickle calls."""
+    cls = types[name]
+    obj: LmcpObject = object.__new__(cls)
+    for field, value in zip(cls.names, values, strict=True):
+        setattr(obj, field, value)
+    return obj
 
 
 def new(name: str, **fields: Any) -> Any:

@@ -311,7 +311,10 @@ def _primitive(field: model.Field, element: Any, source: _Source) -> Any:
 def dumps(obj: LmcpObject) -> str:
     """XML text of an object, fields in the order of the wire, two blanks of indentation."""
     lines: list[str] = []
-    _write(obj.copy().checked(), lines, "")
+    try:
+        _write(obj.copy().checked(), lines, "")
+    except RecursionError:
+        raise BadInput("nested too deeply", item=type(obj).__name__) from None
     return "\n".join(lines) + "\n"
 
 

@@ -21,10 +21,11 @@ COMMANDS = {
     "run": "Plan, prove, fly, monitor and certify a mission.",
     "plan": "Plan a mission and check the plan; nothing flies.",
     "prove": "Prove the kernels and write the ledger (in a checkout).",
-    "conform": "Run published vectors against the kernels.",
+    "conform": "Run published vectors against the kernels and the wires.",
     "certify": "Judge a finished flight again from its log.",
     "monitor": "Watch a message log for violations of G1 to G5.",
     "log": "List, filter, follow, export, import and replay message logs.",
+    "lmcp": "Read, write, explain and compare LMCP messages.",
     "algebra": "Check, draw or enumerate a process-algebra text.",
     "version": "Print the version.",
 }

@@ -1,4 +1,4 @@
-"""`cratous conform`: published vectors against the kernels."""
+"""`cratous conform`: published vectors against the kernels and the wires."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ LIST = "\n".join(f"  {name}: {text}" for name, text in suites.SUITES.items())
 @click.option("--show", default=5, type=click.IntRange(0), help="Differences shown for each file.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> int:
-    """Run published vectors against the kernels.
+    """Run published vectors against the kernels and the wires.
 
-    SUITE is `well-clear` or `polygon`; FILES are JSON lines, also gzipped. Every case is decided
-    by the exact reading of the proved kernels. A case of a kind that the suite does not cover is
+    SUITE is `well-clear`, `polygon`, `lmcp` or `frames`; FILES are JSON lines, also gzipped
+    (`frames` takes captured bytes). Geometry is decided by the exact reading of the proved kernels,
+    messages by the codecs that talk to others. A case of a kind that the suite does not cover is
     listed as not covered and never counted as passed.
 
     Example:  cratous conform polygon vectors.jsonl.gz

@@ -1,7 +1,7 @@
-"""Conformance: published vectors against the kernels that decide.
+"""Conformance: published vectors against the kernels that decide, and against the wires.
 
-A suite reads the cases of a file (JSON lines, also gzipped), runs the exact reading of kernels on
-each and compares. A case passes, fails, or is of a kind that the suite does not cover; the last is
+A suite reads the cases of a file (JSON lines, also gzipped; or what its own function `cases` reads)
+and judges each: by the exact reading of kernels, or by what the codecs make of the bytes. A case passes, fails, or is of a kind that the suite does not cover; the last is
 said and counted apart, never as passed. Suites are imported when they are asked for.
 """
 
@@ -21,6 +21,8 @@ from cratous.spec.errors import BadInput
 SUITES = {
     "well-clear": "Horizontal and vertical well-clear violation with modified tau, now.",
     "polygon": "Location of a point in a polygon: inside, outside or on the boundary.",
+    "lmcp": "LMCP messages in binary and XML, both ways, and malformed ones.",
+    "frames": "Captured sentinel frames and envelopes, and what breaks a TCP bridge.",
 }
 
 
@@ -121,7 +123,8 @@ def run(judge: Suite, file: Path, show: int) -> FileReport:
     Raises BadInput for a case that cannot be read: it is neither passed nor failed.
     """
     report = FileReport(str(file))
-    for number, case in cases(file):
+    module = importlib.import_module(judge.__module__)
+    for number, case in getattr(module, "cases", cases)(file):
         try:
             result = judge(case)
         except BadInput as error:

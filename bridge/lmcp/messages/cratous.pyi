@@ -1,0 +1,314 @@
+"""Messages of CRATOUS, version 1. Generated; do not edit."""
+
+from collections.abc import Iterable
+
+from cratous.bridge.lmcp.messages import cratous as _cratous
+from cratous.bridge.lmcp.objects import LmcpEnum, LmcpObject
+
+class Authority(LmcpEnum):
+    UxAS = 0
+    ICAROUS = 1
+
+class TaskPhase(LmcpEnum):
+    Planned = 0
+    Transit = 1
+    Waiting = 2
+    Active = 3
+    Suspended = 4
+    Complete = 5
+    Failed = 6
+
+class Direction(LmcpEnum):
+    Down = 0
+    Up = 1
+
+class Verdict(LmcpEnum):
+    Holds = 0
+    Violated = 1
+    Unknown = 2
+    Excused = 3
+
+class AuthorityChange(LmcpObject):
+    """cratous.AuthorityChange: CRATOUS type 1."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Owner: _cratous.Authority
+    """CRATOUS/Authority, default UxAS."""
+    Epoch: int
+    """int64, default 0."""
+    Reason: str
+    """string, default ''."""
+    IntruderID: int
+    """int64, default 0."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Time: int = ...,
+        Owner: _cratous.Authority | str = ...,
+        Epoch: int = ...,
+        Reason: str = ...,
+        IntruderID: int = ...,
+    ) -> None: ...
+
+class CommandDropped(LmcpObject):
+    """cratous.CommandDropped: CRATOUS type 2."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Sender: _cratous.Authority
+    """CRATOUS/Authority, default UxAS."""
+    Epoch: int
+    """int64, default 0."""
+    GateEpoch: int
+    """int64, default 0."""
+    Reason: str
+    """string, default ''."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Time: int = ...,
+        Sender: _cratous.Authority | str = ...,
+        Epoch: int = ...,
+        GateEpoch: int = ...,
+        Reason: str = ...,
+    ) -> None: ...
+
+class TaskProgress(LmcpObject):
+    """cratous.TaskProgress: CRATOUS type 3."""
+
+    TaskID: int
+    """int64, default 0."""
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Phase: _cratous.TaskPhase
+    """CRATOUS/TaskPhase, default Planned."""
+    Served: float
+    """real64 [fraction], default 0.0."""
+    Note: str
+    """string, default ''."""
+    def __init__(
+        self,
+        *,
+        TaskID: int = ...,
+        VehicleID: int = ...,
+        Time: int = ...,
+        Phase: _cratous.TaskPhase | str = ...,
+        Served: float = ...,
+        Note: str = ...,
+    ) -> None: ...
+
+class Heartbeat(LmcpObject):
+    """cratous.Heartbeat: CRATOUS type 4."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Direction: _cratous.Direction
+    """CRATOUS/Direction, default Down."""
+    Sequence: int
+    """int64, default 0."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Time: int = ...,
+        Direction: _cratous.Direction | str = ...,
+        Sequence: int = ...,
+    ) -> None: ...
+
+class BridgeStatus(LmcpObject):
+    """cratous.BridgeStatus: CRATOUS type 5."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Alive: bool
+    """bool, default false."""
+    Note: str
+    """string, default ''."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Time: int = ...,
+        Alive: bool = ...,
+        Note: str = ...,
+    ) -> None: ...
+
+class Conflict(LmcpObject):
+    """cratous.Conflict: CRATOUS type 6."""
+
+    VehicleID: int
+    """int64, default 0."""
+    IntruderID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    TimeToViolation_s: float
+    """real64 [seconds], default -1.0."""
+    Resolution: str
+    """string, default ''."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        IntruderID: int = ...,
+        Time: int = ...,
+        TimeToViolation_s: float = ...,
+        Resolution: str = ...,
+    ) -> None: ...
+
+class PlanAccepted(LmcpObject):
+    """cratous.PlanAccepted: CRATOUS type 7."""
+
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Makespan: int
+    """int64 [milliseconds], default 0."""
+    PlanHash: str
+    """string, default ''."""
+    Tasks: list[int]
+    """int64[], default empty."""
+    def __init__(
+        self,
+        *,
+        Time: int = ...,
+        Makespan: int = ...,
+        PlanHash: str = ...,
+        Tasks: Iterable[int] = ...,
+    ) -> None: ...
+
+class TruthState(LmcpObject):
+    """cratous.TruthState: CRATOUS type 8."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    North: float
+    """real64 [meters], default 0.0."""
+    East: float
+    """real64 [meters], default 0.0."""
+    Altitude: float
+    """real64 [meters], default 0.0."""
+    VelocityNorth: float
+    """real64 [meters/second], default 0.0."""
+    VelocityEast: float
+    """real64 [meters/second], default 0.0."""
+    VelocityDown: float
+    """real64 [meters/second], default 0.0."""
+    Heading: float
+    """real64 [degrees], default 0.0."""
+    Cooperative: bool
+    """bool, default false."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Time: int = ...,
+        North: float = ...,
+        East: float = ...,
+        Altitude: float = ...,
+        VelocityNorth: float = ...,
+        VelocityEast: float = ...,
+        VelocityDown: float = ...,
+        Heading: float = ...,
+        Cooperative: bool = ...,
+    ) -> None: ...
+
+class SafetyVerdict(LmcpObject):
+    """cratous.SafetyVerdict: CRATOUS type 9."""
+
+    Requirement: str
+    """string, default ''."""
+    Verdict: _cratous.Verdict
+    """CRATOUS/Verdict, default Holds."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Vehicles: list[int]
+    """int64[], default empty."""
+    Margin: float
+    """real64, default 0.0."""
+    Unit: str
+    """string, default ''."""
+    Note: str
+    """string, default ''."""
+    def __init__(
+        self,
+        *,
+        Requirement: str = ...,
+        Verdict: _cratous.Verdict | str = ...,
+        Time: int = ...,
+        Vehicles: Iterable[int] = ...,
+        Margin: float = ...,
+        Unit: str = ...,
+        Note: str = ...,
+    ) -> None: ...
+
+class MissionEnd(LmcpObject):
+    """cratous.MissionEnd: CRATOUS type 10."""
+
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Outcome: str
+    """string, default ''."""
+    def __init__(
+        self,
+        *,
+        Time: int = ...,
+        Outcome: str = ...,
+    ) -> None: ...
+
+class GatedCommand(LmcpObject):
+    """cratous.GatedCommand: CRATOUS type 11."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Epoch: int
+    """int64, default 0."""
+    Sender: _cratous.Authority
+    """CRATOUS/Authority, default UxAS."""
+    Command: LmcpObject | None
+    """LmcpObject, default null, may be null."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Epoch: int = ...,
+        Sender: _cratous.Authority | str = ...,
+        Command: LmcpObject | None = ...,
+    ) -> None: ...
+
+class GateState(LmcpObject):
+    """cratous.GateState: CRATOUS type 12."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Owner: _cratous.Authority
+    """CRATOUS/Authority, default UxAS."""
+    Epoch: int
+    """int64, default 0."""
+    Offered: bool
+    """bool, default false."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Time: int = ...,
+        Owner: _cratous.Authority | str = ...,
+        Epoch: int = ...,
+        Offered: bool = ...,
+    ) -> None: ...

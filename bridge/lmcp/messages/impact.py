@@ -1,0 +1,5 @@
+"""Messages of the series IMPACT; their types are in the stub of the same name."""
+
+from cratous.bridge.lmcp.objects import members_of
+
+__getattr__, __dir__ = members_of("IMPACT")
