@@ -24,6 +24,7 @@ COMMANDS = {
     "conform": "Run published vectors against the kernels.",
     "certify": "Judge a finished flight again from its log.",
     "monitor": "Watch a message log for violations of G1 to G5.",
+    "uxas": "Run a UxAS configuration: services and bridges.",
     "algebra": "Check, draw or enumerate a process-algebra text.",
     "version": "Print the version.",
 }

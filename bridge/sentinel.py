@@ -1,0 +1,250 @@
+"""Sentinel frames: how UxAS and AMASE put messages on TCP and serial lines.
+
+    +=+=+=+= <length> #@#@#@#@ <payload> !%!%!%!% <sum> ?^?^?^?^      (without the blanks)
+
+length and sum are decimal ASCII; length counts the payload's bytes, sum is their plain sum modulo
+2^32. The length is what counts: a payload may hold any bytes, sentinels too.
+
+    stream = FrameStream(on_drop=log)
+    for payload in stream.feed(received): ...
+
+`FrameStream` takes bytes in any segmentation and gives the same payloads for each. What is no frame
+is dropped, counted and reported with its place in the stream, and the reader goes on at the next
+head sentinel: one byte after a head that led nowhere, behind a frame that is whole but for its sum.
+It holds no more than the bytes received of one frame within `max_payload`; what a frame announces
+is not allocated. A frame that is never finished holds the line until its length has arrived: a
+bridge that has waited long enough (its own clock) calls `abandon`. Format: UxAS 3.2, OpenAMASE.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter, deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from cratous.bridge.bytesum import byte_sum
+from cratous.spec.errors import BadInput
+
+HEAD, BODY, TAIL, END = b"+=+=+=+=", b"#@#@#@#@", b"!%!%!%!%", b"?^?^?^?^"
+MAX_PAYLOAD = 16 * 1024 * 1024  # bytes; ten times the largest message of the UxAS examples
+_DIGITS = 10  # uint32 has no more
+_NUMBER = re.compile(rb"[0-9]{1,10}")
+_KEPT_DROPS = 100
+
+# Reasons of drops: keys of `FrameStream.counts`.
+OUTSIDE = "bytes outside of a frame"
+BAD_LENGTH = "wrong length field"
+TOO_LONG = "payload longer than the limit"
+NO_TAIL = "no tail sentinel where the payload ends"
+BAD_SUM_FIELD = "wrong checksum field"
+BAD_SUM = "wrong checksum"
+UNFINISHED = "unfinished frame"
+
+
+@dataclass(frozen=True, slots=True)
+class Drop:
+    """Something that was no frame: reason (a constant of this module), where in the stream [bytes
+    from its start], and what was expected and got, for people."""
+
+    reason: str
+    offset: int
+    expected: str = ""
+    got: str = ""
+
+    def error(self, where: str = "stream") -> BadInput:
+        """The same as the error that users see."""
+        return BadInput(
+            self.reason, where=f"{where}: byte {self.offset}", expected=self.expected, got=self.got
+        )
+
+
+def frame(payload: bytes) -> bytes:
+    """The frame of a payload.
+
+    >>> frame(b"abc")
+    b'+=+=+=+=3#@#@#@#@abc!%!%!%!%294?^?^?^?^'
+    """
+    return b"".join(
+        (HEAD, b"%d" % len(payload), BODY, payload, TAIL, b"%d" % byte_sum(payload), END)
+    )
+
+
+def unframe(data: bytes, where: str = "frame") -> bytes:
+    """The payload of exactly one frame; BadInput says what is wrong with it, and at which byte."""
+    stream = FrameStream(max_payload=max(len(data), 1))
+    payloads = stream.feed(data)
+    if stream.pending:
+        payloads += stream.close()
+    if stream.drops:
+        raise stream.drops[0].error(where)
+    if len(payloads) != 1:
+        raise BadInput("not one frame", where=where, expected="1 frame", got=f"{len(payloads)}")
+    return payloads[0]
+
+
+class FrameStream:
+    """The payloads in one direction of a connection; see the module.
+
+    max_payload: longest payload accepted [bytes]. on_drop: called with every Drop, as soon as it is
+    certain. frames: payloads given so far. counts: drops by reason. dropped_bytes: all bytes that
+    belonged to no payload's frame. drops: the last 100 of them. pending: bytes held back because
+    what follows decides. None of these depends on how the bytes were segmented, but `pending`.
+    """
+
+    def __init__(
+        self, *, max_payload: int = MAX_PAYLOAD, on_drop: Callable[[Drop], None] | None = None
+    ) -> None:
+        if max_payload < 1:
+            raise BadInput("wrong limit", item="max_payload", expected="> 0", got=str(max_payload))
+        self.max_payload = max_payload
+        self.frames = 0
+        self.dropped_bytes = 0
+        self.counts: Counter[str] = Counter()
+        self.drops: deque[Drop] = deque(maxlen=_KEPT_DROPS)
+        self._on_drop = on_drop
+        self._buffer = bytearray()
+        self._start = 0  # place of the buffer's first byte in the stream
+        self._in_step = True  # what came last was a frame, or nothing yet
+        self._need = 0  # bytes that the buffer must hold before anything can be decided
+
+    @property
+    def pending(self) -> int:
+        """Bytes held back [bytes]; not 0 for long means a peer that does not finish its frame."""
+        return len(self._buffer)
+
+    def feed(self, data: bytes | bytearray | memoryview) -> list[bytes]:
+        """Take the next bytes of the stream; the payloads that they complete, in order."""
+        self._buffer += data
+        if len(self._buffer) < self._need:
+            return []
+        return self._read()
+
+    def abandon(self) -> list[bytes]:
+        """Give up the frame that is not finished: dropped as UNFINISHED, its bytes read on.
+
+        Returns the payloads of whole frames that stood behind its head.
+        """
+        if self._buffer.startswith(HEAD[:1]) and self._buffer:
+            self._drop(UNFINISHED, 0, "the rest of the frame", f"{len(self._buffer)} bytes")
+            self._skip(1)
+        return self._read()
+
+    def close(self) -> list[bytes]:
+        """The stream has ended: as `abandon`, until nothing is left."""
+        payloads: list[bytes] = []
+        while self._buffer:
+            payloads += self.abandon()
+        return payloads
+
+    def _drop(self, reason: str, at: int, expected: str = "", got: str = "") -> None:
+        drop = Drop(reason, self._start + at, expected, got)
+        self.counts[reason] += 1
+        self.drops.append(drop)
+        self._in_step = False
+        if self._on_drop is not None:
+            self._on_drop(drop)
+
+    def _skip(self, size: int) -> None:
+        del self._buffer[:size]
+        self._start += size
+        self.dropped_bytes += size
+
+    def _read(self) -> list[bytes]:
+        """Everything that can be decided with the bytes at hand."""
+        payloads: list[bytes] = []
+        buffer, at = self._buffer, 0  # before `at` all is decided
+        while True:
+            head = buffer.find(HEAD, at)
+            if head < 0:
+                head = len(buffer) - _tail_overlap(buffer, at)
+            if head > at:
+                if self._in_step:
+                    self._drop(OUTSIDE, at, HEAD.decode(), _shown(bytes(buffer[at : at + 1])))
+                self.dropped_bytes += head - at
+                at = head
+            size, payload = self._frame(at)
+            if size == 0:
+                break
+            at += size
+            if payload is None:
+                self.dropped_bytes += size
+            else:
+                payloads.append(payload)
+                self.frames += 1
+                self._in_step = True
+        del buffer[:at]
+        self._start += at
+        self._need = max(0, self._need - at)
+        return payloads
+
+    def _frame(self, at: int) -> tuple[int, bytes | None]:
+        """What stands at a head: (bytes done with, payload or None); (0, None) is not decided."""
+        buffer, held = self._buffer, len(self._buffer)
+        if held < at + len(HEAD) + 1:
+            self._need = held + 1
+            return 0, None
+        number = _NUMBER.match(buffer, at + len(HEAD))
+        after = number.end() if number else at + len(HEAD)
+        found = bytes(buffer[after : after + len(BODY)])
+        if not number or not BODY.startswith(found):
+            got = _until_wrong(bytes(buffer[at + len(HEAD) : after + len(BODY)]), BODY)
+            self._drop(BAD_LENGTH, at, f"1 to {_DIGITS} digits and {BODY.decode()}", got)
+            return 1, None
+        if len(found) < len(BODY):
+            self._need = held + 1
+            return 0, None
+        length = int(number.group())
+        if length > self.max_payload:
+            self._drop(TOO_LONG, at, f"at most {self.max_payload} bytes", f"{length}")
+            return 1, None
+        start = after + len(BODY)
+        end = start + length
+        self._need = end + len(TAIL) + 1
+        if held < self._need:
+            # The payload is not looked into: a frame inside of it is a part of it.
+            return 0, None
+        if buffer[end : end + len(TAIL)] != TAIL:
+            got = _shown(bytes(buffer[end : end + len(TAIL)]))
+            self._drop(NO_TAIL, at, f"{TAIL.decode()} after {length} bytes", got)
+            return 1, None
+        number = _NUMBER.match(buffer, end + len(TAIL))
+        after = number.end() if number else end + len(TAIL)
+        found = bytes(buffer[after : after + len(END)])
+        if not number or not END.startswith(found):
+            got = _until_wrong(bytes(buffer[end + len(TAIL) : after + len(END)]), END)
+            self._drop(BAD_SUM_FIELD, at, f"1 to {_DIGITS} digits and {END.decode()}", got)
+            return 1, None
+        if len(found) < len(END):
+            self._need = held + 1
+            return 0, None
+        payload = bytes(buffer[start:end])
+        total, given = byte_sum(payload), int(number.group())
+        done = after + len(END) - at
+        if total != given:
+            self._drop(BAD_SUM, at, f"{total}", f"{given}")
+            return done, None
+        return done, payload
+
+
+def _shown(data: bytes) -> str:
+    return repr(data)[1:]
+
+
+def _until_wrong(data: bytes, sentinel: bytes) -> str:
+    """Digits and the beginning of a sentinel, up to and with the first byte that is wrong."""
+    digits = _NUMBER.match(data)
+    at = digits.end() if digits else 0
+    for expected in sentinel if digits else b"":
+        if data[at] != expected:
+            break
+        at += 1
+    return _shown(data[: at + 1])
+
+
+def _tail_overlap(buffer: bytearray, at: int) -> int:
+    """How many bytes at the end, from `at` on, may be the beginning of a head."""
+    for size in range(min(len(HEAD) - 1, len(buffer) - at), 0, -1):
+        if buffer.endswith(HEAD[:size]):
+            return size
+    return 0
