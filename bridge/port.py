@@ -86,7 +86,10 @@ class Port(Protocol):
     """What the runtime needs of a port."""
 
     counts: Counts
-    due_s: float | None
+
+    @property
+    def due_s(self) -> float | None:
+        """When `step` has something to do even if nothing arrives."""
 
     def handles(self) -> list[tuple[Any, int]]:
         """Sockets or file descriptors to poll, each with its zmq.POLLIN / POLLOUT flags."""

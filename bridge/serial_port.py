@@ -6,6 +6,7 @@ counted as lost.
 
 from __future__ import annotations
 
+import os
 from collections import deque
 from typing import Any
 
@@ -160,14 +161,14 @@ class SerialPort:
         assert self._line is not None
         try:
             while self._out:
-                count = self._line.write(self._out[0][self._offset :]) or 0
+                # pyserial's own write waits in a busy loop for a line that takes nothing
+                count = os.write(self._line.fileno(), self._out[0][self._offset :])
                 self._offset += count
                 self._bytes -= count
-                if self._offset < len(self._out[0]):
-                    return
-                self._out.popleft()
-                self._offset = 0
-        except serial.SerialTimeoutException:
+                if self._offset == len(self._out[0]):
+                    self._out.popleft()
+                    self._offset = 0
+        except (BlockingIOError, InterruptedError):
             return
         except (serial.SerialException, OSError) as error:
             self._lost_line(str(error))

@@ -111,7 +111,7 @@ class Doorkeeper:
         """Answer all questions that wait."""
         while True:
             try:
-                frames = self._sock.recv_multipart(zmq.NOBLOCK)
+                frames: list[bytes] = self._sock.recv_multipart(zmq.NOBLOCK)
             except zmq.Again:
                 return
             version, request, domain, _place, _identity, mechanism, *rest = [*frames, b""]

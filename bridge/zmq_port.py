@@ -4,8 +4,10 @@ PUB with PULL (the side that binds), SUB with PUSH (the side that connects). A m
 `address$attributes$payload`; IMPACT's has two, its address and the LMCP bytes. Transports: inproc,
 ipc, tcp, and udp (a datagram a message, by `udp_port`).
 
-Backpressure: a PUB whose subscriber is full sends to the others and counts the loss, which ZeroMQ
-alone would not tell; a PUSH without a reader keeps a bounded queue, then loses by the policy.
+Backpressure: a PUB whose subscriber is full sends to the others, and counts and reports how often
+that happened; how many messages that one loses until it reads again ZeroMQ does not tell, so
+`since_full` bounds it from above. A PUSH without a reader keeps a bounded queue, then loses by the
+policy.
 """
 
 from __future__ import annotations
@@ -75,6 +77,7 @@ class ZmqPort:
         self._context, self._curve = context, curve
         self._waiting: deque[tuple[bytes, ...]] = deque()
         self._bytes = 0
+        self.since_full = 0  # messages sent since a subscriber was first full, that one included
         try:
             if receiver is not None:
                 self._in = self._open(receiver)
@@ -153,18 +156,26 @@ class ZmqPort:
         """Give what is queued a moment to go, then close the sockets."""
         if self._out is not None and not self._out.closed:
             self._flush()
+            if self.since_full:
+                self._report(
+                    "WARN",
+                    f"{self._tally.name}: {SLOW}: of the {self.since_full} messages sent since one "
+                    "was first full, it has lost an unknown part",
+                )
             if self._waiting:
                 count = len(self._waiting)
                 self._waiting.clear()
                 self._bytes = 0
                 self._tally.counts.lost["closed before all was sent"] += count
                 self._report("WARN", f"{self._tally.name}: closed with {count} messages unsent")
-        for sock, _ in self._monitors:
-            sock.close(linger=0)
-        self._monitors.clear()
         for sock in (self._in, self._out):
             if sock is not None and not sock.closed:
-                sock.disable_monitor()
+                sock.disable_monitor()  # while its reader is there: its last event waits for one
+        for monitor, _ in self._monitors:
+            monitor.close(linger=0)
+        self._monitors.clear()
+        for sock in (self._in, self._out):
+            if sock is not None:
                 sock.close(linger=200)
 
     def _open(self, end: End) -> Any:
@@ -187,8 +198,11 @@ class ZmqPort:
                 sock.bind(text)
             else:
                 sock.connect(text.replace("//*:", "//127.0.0.1:"))
-        except zmq.ZMQError as error:
+        except (zmq.ZMQError, BadInput) as error:
+            sock.disable_monitor()
             sock.close(linger=0)
+            if isinstance(error, BadInput):
+                raise
             raise BadInput(
                 f"{'cannot listen' if end.bind else 'cannot connect'} ({error})",
                 where=end.address.text,
@@ -197,17 +211,22 @@ class ZmqPort:
         return sock
 
     def _publish(self, parts: tuple[bytes, ...]) -> None:
-        try:
-            self._out.send_multipart(parts, zmq.NOBLOCK)
-        except zmq.Again:
-            # one of the subscribers is full: it alone loses this message
-            self._tally.lose(SLOW, self._tally.name)
-            self._out.setsockopt(zmq.XPUB_NODROP, 0)
+        self.counts.sent += 1
+        self.since_full += self.since_full > 0
+        for _ in range(2):
             try:
                 self._out.send_multipart(parts, zmq.NOBLOCK)
-            finally:
-                self._out.setsockopt(zmq.XPUB_NODROP, 1)
-        self.counts.sent += 1
+                return
+            except zmq.Again:
+                _ = self._out.events  # has the socket learn what was read meanwhile
+        # a subscriber is full: it alone loses this message, and those until it reads again
+        self.since_full = max(1, self.since_full)
+        self._tally.lose(SLOW, f"{self.since_full} messages sent since one was first full")
+        self._out.setsockopt(zmq.XPUB_NODROP, 0)
+        try:
+            self._out.send_multipart(parts, zmq.NOBLOCK)
+        finally:
+            self._out.setsockopt(zmq.XPUB_NODROP, 1)
 
     def _try(self, parts: tuple[bytes, ...]) -> bool:
         try:

@@ -209,7 +209,7 @@ class Bus:
             for listener in self._taps:
                 listener(envelope)
             for service in self._receivers(envelope):
-                if self._services.get(service.name) is not service:
+                if not self._here(service):
                     continue  # it has left while this message was delivered
                 if not self._echo and service.name == envelope.source:
                     continue
@@ -229,11 +229,13 @@ class Bus:
         while self._wakes and self._wakes[0][0] <= time_ms:
             due, _, service, key = heapq.heappop(self._wakes)
             self.now_ms = max(self.now_ms, due)
-            state = self._states[service.name]
-            self._step(service, None, lambda s=service, x=state, k=key: s.wake(x, k, self.now_ms))
+            self._wake(service, key)
             delivered += self.run()
         self.now_ms = max(self.now_ms, time_ms)
         return delivered
+
+    def _here(self, service: Any) -> bool:
+        return self._services.get(service.name) is service
 
     def _receivers(self, envelope: Envelope) -> tuple[Any, ...]:
         # the sender is not a part of the key, so routes are few
@@ -258,6 +260,10 @@ class Bus:
     def _hand(self, service: Any, envelope: Envelope) -> None:
         state = self._states[service.name]
         self._step(service, envelope, lambda: service.handle(state, envelope, self.now_ms))
+
+    def _wake(self, service: Any, key: Any) -> None:
+        state = self._states[service.name]
+        self._step(service, None, lambda: service.wake(state, key, self.now_ms))
 
     def _step(
         self,
