@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import socket
 import time
 from collections.abc import Iterator
@@ -61,10 +62,8 @@ def test_a_cut_command_is_bad_input(command: wire.Command, data: st.DataObject) 
 @given(st.binary(max_size=200))
 def test_any_bytes_are_a_command_or_bad_input(data: bytes) -> None:
     for text in (data, b"\xaa\xa1\x01\x02" + data):
-        try:
+        with contextlib.suppress(BadInput):
             wire.unpack(text)
-        except BadInput:
-            pass
 
 
 def test_the_bytes_of_rfc_36() -> None:
@@ -169,7 +168,6 @@ def test_a_silent_peer_is_pinged_then_gone(net: Net) -> None:
     assert "EXIT" not in net.kinds("a")
     net.nodes.remove(b)
     net.skip_s += 40.0
-    a.step(time.monotonic() + net.skip_s)
     net.until(lambda: net.kinds("a")[-1] == "EXIT")
     assert any("silent" in text for text in net.reports)
 

@@ -211,9 +211,11 @@ def _no_plan(reasons: Iterable[str]) -> Any:
 class LiveTask(TaskService):
     """A task's service as TaskManagerService has it made; it lives until it is killed."""
 
-    def __init__(self, desk: LiveDesk, task_id: int, kind: TaskKind) -> None:
+    def __init__(self, desk: LiveDesk, task: Any, kind: TaskKind) -> None:
+        """task: the LMCP task that it serves."""
         self._desk: LiveDesk = desk
-        self._task_id = task_id
+        self._body = task
+        self._task_id = task_id = task.TaskID
         self.name = f"{NAMES[kind]}[{task_id}]"
 
     @property
@@ -234,6 +236,12 @@ class LiveTask(TaskService):
         if getattr(body, "AssociatedTaskID", self._task_id) != self._task_id:
             return state, ()
         return super().handle(state, envelope, now_ms)
+
+    def stop(self, state: Any) -> None:
+        """The task is no more, unless another has taken its place already."""
+        known = self._desk.world.task(self._task_id)
+        if known is not None and known.body == self._body:
+            self._desk.world.forget("task", self._task_id)
 
 
 class TaskManagerService:

@@ -246,7 +246,7 @@ class ServiceManager:
                 for part in getattr(body, field):
                     if not desk.world.knows(part):
                         desk.world.add(part, where)
-            self._add(live.LiveTask(desk, task.TaskID, live.TASKS[item.type]), number)
+            self._add(live.LiveTask(desk, task, live.TASKS[item.type]), number)
             return
         problems: list[BadInput] = []
         self._check(item, [*self._config.entries, item], problems)
@@ -287,7 +287,15 @@ def _whole(text: str) -> bool:
 
 
 def _unknown(item: Entry, known: Any) -> BadInput:
-    if item.type in registry.NOT_YET or item.type in registry.TASKS_NOT_YET:
+    if item.type in registry.TASKS_NOT_YET:
+        return BadInput(
+            f"tasks of type {item.type} are not covered yet",
+            where=item.where,
+            item=f"{item.kind}.Type",
+            expected=", ".join(live.TASKS),
+            got=item.type,
+        )
+    if item.type in registry.NOT_YET:
         return BadInput(
             f"{item.type} of UxAS is not covered yet",
             where=item.where,

@@ -58,6 +58,10 @@ class World:
         """The newest task with an id."""
         return self._kept.get("task", {}).get(number)
 
+    def forget(self, sort: str, number: int) -> None:
+        """There is no such object any more."""
+        self._kept.get(sort, {}).pop(number, None)
+
     def knows(self, body: Any) -> bool:
         """True if there is an object with the id of this one already."""
         sort, number = _key(body)
@@ -82,7 +86,7 @@ class World:
         }[kind]
         for sort in sorts:
             for number in getattr(body, numbers):
-                self._kept.get(sort, {}).pop(number, None)
+                self.forget(sort, number)
 
 
 def _key(body: Any) -> tuple[str, int]:
