@@ -104,6 +104,11 @@ class Port(Protocol):
         """Free sockets and files; safe to call twice."""
 
 
+def is_due(at_s: float | None, now_s: float) -> bool:
+    """True if something has a time [s] and that has come."""
+    return at_s is not None and now_s >= at_s
+
+
 def often(count: int) -> bool:
     """True for 1, 2, 4, 8...: how often something that repeats itself is reported."""
     return count > 0 and count & (count - 1) == 0

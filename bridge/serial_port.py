@@ -14,7 +14,7 @@ import serial
 import zmq
 
 from cratous.bridge import sentinel
-from cratous.bridge.port import Incoming, Limits, Report, Tally
+from cratous.bridge.port import Incoming, Limits, Report, Tally, is_due
 from cratous.spec.errors import BadInput
 
 _RETRY_S = 1.0
@@ -75,7 +75,7 @@ class SerialPort:
         """Read and write without waiting; the payloads that are whole."""
         self._now_s = now_s
         found: list[bytes] = []
-        if self._line is None and self._again_s is not None and now_s >= self._again_s:
+        if self._line is None and is_due(self._again_s, now_s):
             self._reopen()
         if self._line is not None:
             try:
@@ -89,7 +89,8 @@ class SerialPort:
             self._begun_s = None
         if self._stream.pending and self._begun_s is None:
             self._begun_s = now_s
-        if self._begun_s is not None and now_s - self._begun_s >= self._limits.frame_s:
+        late_s = None if self._begun_s is None else self._begun_s + self._limits.frame_s
+        if is_due(late_s, now_s):
             self._tally.refuse(LATE, f"{self._limits.frame_s:g} s")
             found += self._stream.abandon()
             self._begun_s = None

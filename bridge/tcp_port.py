@@ -15,7 +15,7 @@ from typing import Any
 import zmq
 
 from cratous.bridge import sentinel
-from cratous.bridge.port import Address, Incoming, Limits, Report, Tally
+from cratous.bridge.port import Address, Incoming, Limits, Report, Tally, is_due
 from cratous.spec.errors import BadInput
 
 _CHUNK = 65536
@@ -66,6 +66,7 @@ class TcpPort:
         self._listener: socket.socket | None = None
         self._again_s = 0.0
         self._pause_s = _RETRY_S[0]
+        self._failures = 0  # attempts since it was connected
         self._paused_s: float | None = None  # no connections are accepted until then
         self._now_s = 0.0
         self._closed = False
@@ -183,10 +184,10 @@ class TcpPort:
 
     def _maintain(self) -> None:
         now = self._now_s
-        if self._paused_s is not None and now >= self._paused_s and self._listener is not None:
+        if self._listener is not None and is_due(self._paused_s, now):
             self._paused_s = None
             self._poll.modify(self._listener.fileno(), select.EPOLLIN)
-        if not self._server and not self._peers and now >= self._again_s:
+        if not self._server and not self._peers and is_due(self._again_s, now):
             self._connect()
 
     def _accept(self) -> None:
@@ -254,12 +255,14 @@ class TcpPort:
             self._retry("nobody listens" if itself else f"error {code}")
             return
         peer.connecting = False
+        self._failures = 0
         self._pause_s = _RETRY_S[0]
         self._poll.modify(peer.sock.fileno(), select.EPOLLIN)
         self._report("INFO", f"{self._where.text}: connected")
 
     def _retry(self, why: str) -> None:
-        if self._pause_s == _RETRY_S[0]:
+        self._failures += 1
+        if self._failures == 1:
             self._report("INFO", f"{self._where.text}: not connected ({why}); trying again")
         self._again_s = self._now_s + self._pause_s
         self._pause_s = min(2 * self._pause_s, _RETRY_S[1])
@@ -298,7 +301,7 @@ class TcpPort:
         late = [
             p
             for p in self._peers.values()
-            if p.begun_s is not None and self._now_s - p.begun_s >= limit
+            if p.begun_s is not None and is_due(p.begun_s + limit, self._now_s)
         ]
         for peer in late:
             found.extend(Incoming((p,), peer.name) for p in peer.stream.abandon())

@@ -19,7 +19,7 @@ from typing import Any
 import zmq
 
 from cratous.bridge import zre_wire as wire
-from cratous.bridge.port import Limits, Report, Tally
+from cratous.bridge.port import Limits, Report, Tally, is_due
 from cratous.spec.errors import BadInput
 
 BEACON_PORT = 5670
@@ -163,7 +163,7 @@ class ZreNode:
         self._now_s = now_s
         if self._closed:
             return []
-        if self._beacon_s is None or now_s >= self._beacon_s:
+        if self._beacon_s is None or is_due(self._beacon_s, now_s):
             self._shine(self._port)
             self._beacon_s = now_s + self._interval_s
         self._read_beacons()

@@ -17,7 +17,7 @@ from typing import Any
 import zmq
 
 from cratous.bridge import envelope as wire
-from cratous.bridge.port import Limits, Tally, address
+from cratous.bridge.port import Limits, Tally, address, is_due
 from cratous.bridge.zmq_curve import Curve
 from cratous.bridge.zmq_port import End, ZmqPort
 from cratous.services.bus import Bus, Envelope
@@ -136,7 +136,7 @@ class Satellite:
         poller = zmq.Poller()
         for sock, flags in self.port.handles():
             poller.register(sock, flags)
-        while time.monotonic() < end_s:
+        while not is_due(end_s, time.monotonic()):
             self.port.send((probe,))
             poller.poll(_PROBE_MS)
             if any(incoming.parts == (probe,) for incoming in self.port.step(0.0)):

@@ -18,6 +18,7 @@ from typing import Any
 import zmq
 
 from cratous.bridge import lmcp
+from cratous.bridge.port import is_due
 from cratous.services.bus import Bus, Envelope
 from cratous.services.planning.desk import status
 from cratous.services.uxas.bridge_kinds import curve_of
@@ -30,6 +31,7 @@ from cratous.spec.errors import BadInput, CratousError, NoPlan
 
 _LONGEST_POLL_MS = 200  # so that a signal or a discrete clock is seen
 _FILES = 65536
+_NEVER_MS = 2**62
 
 
 class Process:
@@ -127,10 +129,10 @@ class Process:
             return
         end_s = None if until_s is None else self.clock.real_s() + until_s
         while not (self.stopping or self.manager.ended):
-            left_s = None if end_s is None else end_s - self.clock.real_s()
-            if left_s is not None and left_s <= 0:
+            now_s = self.clock.real_s()
+            if is_due(end_s, now_s):
                 break
-            self.turn(left_s)
+            self.turn(None if end_s is None else end_s - now_s)
 
     def turn(self, most_s: float | None = None) -> None:
         """Wait for the next thing, at most `most_s`, and do all that is there to do."""
@@ -155,9 +157,10 @@ class Process:
     def _run_virtual(self, until_s: float | None) -> None:
         self.bus.run()
         end_ms = None if until_s is None else int(1000 * until_s)
+        span = range(_NEVER_MS if end_ms is None else end_ms + 1)
         while not (self.stopping or self.manager.ended):
             due_ms = self.bus.next_wake_ms()
-            if due_ms is None or (end_ms is not None and due_ms > end_ms):
+            if due_ms is None or due_ms not in span:
                 break
             self.bus.run_until(due_ms)
         if end_ms is not None and not self.manager.ended:
