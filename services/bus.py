@@ -6,26 +6,82 @@ were published; a message's own publications follow everything that is already q
 here reads a wall clock or a random number, so the same inputs give the same log.
 
 Topics are full type names (`afrl.cmasi.AirVehicleState`); a subscription to a base type receives
-its descendants. Bodies are LMCP objects of `cratous.bridge.lmcp`.
+its descendants. A message may bear an address of its own instead (`Send`): that of one service
+(`eid100.sid55`), of all services of an entity (`eid100.sidall`), or of a group; then only those
+get it who subscribe to that address. Bodies are LMCP objects of `cratous.bridge.lmcp`.
+
+A service may also have `prefixes`: it gets every message whose address begins with one of them
+(bridges, loggers); `wake(state, key, now_ms)`, called when a `Wake` that it gave is due; and
+`stop(state)`, called when it leaves. Wakes are due in virtual time: by time, then by age.
 """
 
 from __future__ import annotations
 
+import heapq
 from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 
 @dataclass(frozen=True)
 class Envelope:
-    """A message on its way: sequence number, virtual time [ms], sender, topic and body."""
+    """A message on its way: sequence number, virtual time [ms], sender, topic and body.
+
+    address: where it is sent if not to the subscribers of its type; group, entity_id, service_id:
+    the sender as UxAS names it; raw: the body's bytes as they came in from outside, if they did.
+    """
 
     seq: int
     time_ms: int
     source: str
     topic: str
     body: Any
+    address: str = ""
+    group: str = ""
+    entity_id: int = 0
+    service_id: int = 0
+    raw: bytes | None = None
+
+    @property
+    def to(self) -> str:
+        """The address that it bears on the wire: its own, or its type."""
+        return self.address or self.topic
+
+
+class Send(NamedTuple):
+    """A body for an address (one service, all of an entity, a group) instead of its type."""
+
+    body: Any
+    address: str = ""
+    group: str = ""
+
+
+class Wake(NamedTuple):
+    """A service's wish to be called again after some virtual time [ms], with a key of its own."""
+
+    after_ms: int
+    key: Any = None
+
+
+class Identity(NamedTuple):
+    """Who a service is on the wire: entity, service id, group of its messages."""
+
+    entity_id: int = 0
+    service_id: int = 0
+    group: str = ""
+
+    @property
+    def addresses(self) -> tuple[str, ...]:
+        """The addresses at which it is reached: alone, and with all services of its entity."""
+        if not self.service_id:
+            return ()
+        return unicast(self.entity_id, self.service_id), f"eid{self.entity_id}.sidall"
+
+
+def unicast(entity_id: int, service_id: int) -> str:
+    """The address of one service: `eid100.sid55`."""
+    return f"eid{entity_id}.sid{service_id}"
 
 
 class Service(Protocol):
@@ -38,28 +94,67 @@ class Service(Protocol):
         """The state before the first message."""
 
     def handle(self, state: Any, envelope: Envelope, now_ms: int) -> tuple[Any, Iterable[Any]]:
-        """One step: the new state, and the bodies to publish, in order."""
+        """One step: the new state, and the bodies (or Send, Wake) to publish, in order."""
+
+
+Fault = Callable[[str, "Envelope | None", Exception], None]
 
 
 class Bus:
     """Delivers published bodies to the services that subscribe to their type or a base of it."""
 
-    def __init__(self, topics_of: Callable[[Any], tuple[str, ...]]) -> None:
-        """topics_of(body) gives the full type name of a body, then those of its bases."""
+    def __init__(
+        self,
+        topics_of: Callable[[Any], tuple[str, ...]],
+        *,
+        on_fault: Fault | None = None,
+        echo: bool = True,
+    ) -> None:
+        """topics_of(body) gives the full type name of a body, then those of its bases.
+
+        on_fault(name, envelope, error) gets what a handler raises, and the service keeps its
+        state; without it errors go up to the caller. echo: a service gets its own messages too.
+        """
         self._topics_of = topics_of
-        self._services: list[Service] = []
+        self._on_fault = on_fault
+        self._echo = echo
+        self._services: dict[str, Any] = {}
         self._states: dict[str, Any] = {}
+        self._identities: dict[str, Identity] = {}
         self._queue: deque[Envelope] = deque()
+        self._wakes: list[tuple[int, int, Any, Any]] = []
+        self._routes: dict[tuple[str, str], tuple[Any, ...]] = {}
         self._taps: list[Callable[[Envelope], None]] = []
         self._seq = 0
+        self._wake_count = 0
         self.now_ms = 0
 
-    def add(self, service: Service) -> None:
-        """Join a service; its name must be new."""
+    def add(self, service: Service, identity: Identity = Identity()) -> None:
+        """Join a service; its name must be new. What `begin(state)` of it gives is published."""
         if service.name in self._states:
             raise ValueError(f"a service named {service.name!r} is already on the bus")
-        self._services.append(service)
+        self._services[service.name] = service
+        self._identities[service.name] = identity
         self._states[service.name] = service.start()
+        self._routes.clear()
+        begin = getattr(service, "begin", None)
+        if begin is not None:
+            self._step(service, None, lambda: begin(self._states[service.name]))
+
+    def remove(self, name: str) -> None:
+        """Let a service leave: its `stop(state)` is called; state, wakes and routes are gone."""
+        service = self._services.pop(name)
+        state = self._states.pop(name)
+        self._identities.pop(name)
+        self._wakes = [wake for wake in self._wakes if wake[2] is not service]
+        heapq.heapify(self._wakes)
+        self._routes.clear()
+        stop = getattr(service, "stop", None)
+        if stop is not None:
+            try:
+                stop(state)
+            except Exception as error:
+                self._fault(name, None, error)
 
     def tap(self, listener: Callable[[Envelope], None]) -> None:
         """Call listener with each message, in order, before any service gets it (the log)."""
@@ -69,11 +164,39 @@ class Bus:
         """The present state of a service."""
         return self._states[name]
 
-    def publish(self, body: Any, source: str) -> None:
-        """Queue a body; it is delivered by `run`."""
+    def names(self) -> tuple[str, ...]:
+        """The services on the bus, in the order in which they joined."""
+        return tuple(self._services)
+
+    def identity(self, name: str) -> Identity:
+        """Who a service is on the wire."""
+        return self._identities[name]
+
+    def publish(self, body: Any, source: str, address: str = "", group: str = "") -> None:
+        """Queue a body (for an address, if one is given); it is delivered by `run`."""
+        who = self._identities.get(source, Identity())
         topic = self._topics_of(body)[0]
-        self._queue.append(Envelope(self._seq, self.now_ms, source, topic, body))
+        address = "" if address == topic else address
+        self.put(
+            Envelope(
+                self._seq,
+                self.now_ms,
+                source,
+                topic,
+                body,
+                address,
+                group or who.group,
+                who.entity_id,
+                who.service_id,
+            )
+        )
+
+    def put(self, envelope: Envelope) -> None:
+        """Queue a message with the sender that it names (from outside); numbered anew."""
+        if envelope.seq != self._seq:
+            envelope = replace(envelope, seq=self._seq)
         self._seq += 1
+        self._queue.append(envelope)
 
     def run(self) -> int:
         """Deliver until nothing is queued; returns how many messages were delivered."""
@@ -83,13 +206,89 @@ class Bus:
             delivered += 1
             for listener in self._taps:
                 listener(envelope)
-            topics = self._topics_of(envelope.body)
-            for service in self._services:
-                if any(topic in service.subscribes for topic in topics):
-                    state, bodies = service.handle(
-                        self._states[service.name], envelope, self.now_ms
-                    )
-                    self._states[service.name] = state
-                    for body in bodies:
-                        self.publish(body, service.name)
+            for service in self._receivers(envelope):
+                if not self._here(service):
+                    continue  # it has left while this message was delivered
+                if not self._echo and service.name == envelope.source:
+                    continue
+                self._hand(service, envelope)
         return delivered
+
+    def next_wake_ms(self) -> int | None:
+        """When the next wake is due, or None."""
+        return self._wakes[0][0] if self._wakes else None
+
+    def run_until(self, time_ms: int) -> int:
+        """Deliver, and let time go on to `time_ms`, one wake after the other; messages delivered.
+
+        Each wake happens at its own time, however late this is called.
+        """
+        delivered = self.run()
+        while self._wakes and self._wakes[0][0] <= time_ms:
+            due, _, service, key = heapq.heappop(self._wakes)
+            self.now_ms = max(self.now_ms, due)
+            self._wake(service, key)
+            delivered += self.run()
+        self.now_ms = max(self.now_ms, time_ms)
+        return delivered
+
+    def _here(self, service: Any) -> bool:
+        return self._services.get(service.name) is service
+
+    def _receivers(self, envelope: Envelope) -> tuple[Any, ...]:
+        # the sender is not a part of the key, so routes are few
+        key = (envelope.topic, envelope.address)
+        found = self._routes.get(key)
+        if found is None:
+            if len(self._routes) > 10_000:  # addresses come from outside
+                self._routes.clear()
+            names = (envelope.address,) if envelope.address else self._topics_of(envelope.body)
+            found = self._routes[key] = tuple(
+                service for service in self._services.values() if self._wants(service, names)
+            )
+        return found
+
+    def _wants(self, service: Any, names: tuple[str, ...]) -> bool:
+        if any(name in service.subscribes for name in names):
+            return True
+        if names[0] in self._identities[service.name].addresses:
+            return True
+        return names[0].startswith(tuple(getattr(service, "prefixes", ())))
+
+    def _hand(self, service: Any, envelope: Envelope) -> None:
+        state = self._states[service.name]
+        self._step(service, envelope, lambda: service.handle(state, envelope, self.now_ms))
+
+    def _wake(self, service: Any, key: Any) -> None:
+        state = self._states[service.name]
+        self._step(service, None, lambda: service.wake(state, key, self.now_ms))
+
+    def _step(
+        self,
+        service: Any,
+        envelope: Envelope | None,
+        call: Callable[[], tuple[Any, Iterable[Any]]],
+    ) -> None:
+        try:
+            state, bodies = call()
+            bodies = list(bodies)
+        except Exception as error:
+            if self._on_fault is None:
+                raise
+            self._fault(service.name, envelope, error)
+            return
+        self._states[service.name] = state
+        for body in bodies:
+            if isinstance(body, Wake):
+                self._wake_count += 1
+                due = self.now_ms + max(0, body.after_ms)
+                heapq.heappush(self._wakes, (due, self._wake_count, service, body.key))
+            elif isinstance(body, Send):
+                self.publish(body.body, service.name, body.address, body.group)
+            else:
+                self.publish(body, service.name)
+
+    def _fault(self, name: str, envelope: Envelope | None, error: Exception) -> None:
+        if self._on_fault is None:
+            raise error
+        self._on_fault(name, envelope, error)

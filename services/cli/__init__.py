@@ -26,6 +26,7 @@ COMMANDS = {
     "monitor": "Watch a message log for violations of G1 to G5.",
     "log": "List, filter, follow, export, import and replay message logs.",
     "lmcp": "Read, write, explain and compare LMCP messages.",
+    "uxas": "Run a UxAS configuration: services and bridges.",
     "algebra": "Check, draw or enumerate a process-algebra text.",
     "version": "Print the version.",
 }

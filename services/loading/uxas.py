@@ -26,7 +26,11 @@ def load_uxas(path: Path) -> Mission:
 
     Raises BadInput for what is wrong, missing, or not covered yet (named).
     """
-    cfg = read_cfg(Path(path))
+    return mission_of(read_cfg(Path(path)), str(path))
+
+
+def mission_of(cfg: Configuration, source: str) -> Mission:
+    """The mission that a configuration and its messages make, from a file or as they came in."""
     cast = _Cast(cfg)
     request = cast.request()
     notes = [*cfg.notes, *cast.notes]
@@ -49,7 +53,7 @@ def load_uxas(path: Path) -> Mission:
     folder = cfg.path.resolve().parent.name
     mission = Mission(
         name=parts.safe_name(folder or cfg.path.stem),
-        source=str(path),
+        source=source,
         frame=frame,
         vehicles=vehicles,
         tasks=tasks,

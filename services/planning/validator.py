@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
 from cratous.services.frames import compass
-from cratous.services.planning.desk import Desk, status
+from cratous.services.planning.desk import Desk, Inputs, status
 
 
 class Waiting(NamedTuple):
@@ -55,19 +55,23 @@ class AutomationRequestValidatorService:
         state = Waiting(request_id, state.open)
         if wrong:
             return state, [status(request_id, "Error", [("reason", text) for text in wrong])]
-        states = [
-            lmcp.new(
-                "PlanningState",
-                EntityID=vehicle,
-                PlanningPosition=self._desk.location(inputs.starts[vehicle]),
-                PlanningHeading=compass(inputs.starts[vehicle].heading_rad),
-            )
-            for vehicle in body.EntityList
-        ]
         unique = lmcp.new(
             "UniqueAutomationRequest",
             RequestID=request_id,
             OriginalRequest=body,
-            PlanningStates=states,
+            PlanningStates=planning_states(self._desk, inputs, body.EntityList),
         )
         return state._replace(open=(*state.open, request_id)), [unique]
+
+
+def planning_states(desk: Desk, inputs: Inputs, vehicles: Iterable[int]) -> list[Any]:
+    """Where each of the vehicles plans from."""
+    return [
+        lmcp.new(
+            "PlanningState",
+            EntityID=vehicle,
+            PlanningPosition=desk.location(inputs.starts[vehicle]),
+            PlanningHeading=compass(inputs.starts[vehicle].heading_rad),
+        )
+        for vehicle in vehicles
+    ]

@@ -1,0 +1,175 @@
+"""Sentinel frames over a serial line, as UxAS's serial bridge sends them (57600 baud, 8N1).
+
+A line that is gone (a cable, a modem) is opened again and again; meanwhile what should go out is
+counted as lost.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from typing import Any
+
+import serial
+import zmq
+
+from cratous.bridge import sentinel
+from cratous.bridge.port import Incoming, Limits, Report, Tally, is_due
+from cratous.spec.errors import BadInput
+
+_RETRY_S = 1.0
+STALLED = "the line is too slow"
+GONE = "the line is not there"
+LATE = "frame not finished in time"
+
+
+class SerialPort:
+    """A serial port for sentinel frames; `parts` of a message is its payload alone."""
+
+    def __init__(
+        self,
+        device: str,
+        baud: int = 57600,
+        *,
+        limits: Limits | None = None,
+        report: Report = lambda _severity, _text: None,
+        where: str = "",
+    ) -> None:
+        """Opens the device; BadInput if that fails (the first time only)."""
+        self._device, self._baud = device, baud
+        self._limits = limits or Limits()
+        self._report = report
+        self._tally = Tally(device, report)
+        self.counts = self._tally.counts
+        self._out: deque[bytes] = deque()
+        self._offset = 0
+        self._bytes = 0
+        self._begun_s: float | None = None
+        self._again_s: float | None = None
+        self._now_s = 0.0
+        self._stream = self._fresh()
+        try:
+            self._line: serial.Serial | None = self._open()
+        except (serial.SerialException, OSError, ValueError) as error:
+            raise BadInput(
+                f"the serial line cannot be opened ({error})",
+                where=where,
+                item="SerialPortAddress",
+                expected="a device and a baud rate that it knows",
+                got=f"{device}, {baud} baud",
+            ) from None
+
+    @property
+    def due_s(self) -> float | None:
+        """When a frame is late, or the line is tried again."""
+        late = None if self._begun_s is None else self._begun_s + self._limits.frame_s
+        return min((t for t in (late, self._again_s) if t is not None), default=None)
+
+    def handles(self) -> list[tuple[Any, int]]:
+        """The line, with POLLOUT while something waits."""
+        if self._line is None:
+            return []
+        return [(self._line.fileno(), zmq.POLLIN | (zmq.POLLOUT if self._out else 0))]
+
+    def step(self, now_s: float) -> list[Incoming]:
+        """Read and write without waiting; the payloads that are whole."""
+        self._now_s = now_s
+        found: list[bytes] = []
+        if self._line is None and is_due(self._again_s, now_s):
+            self._reopen()
+        if self._line is not None:
+            try:
+                data = self._line.read(65536)
+                found += self._stream.feed(data)
+            except (serial.SerialException, OSError) as error:
+                self._lost_line(str(error))
+            else:
+                self._flush()
+        if found or not self._stream.pending:
+            self._begun_s = None
+        if self._stream.pending and self._begun_s is None:
+            self._begun_s = now_s
+        late_s = None if self._begun_s is None else self._begun_s + self._limits.frame_s
+        if is_due(late_s, now_s):
+            self._tally.refuse(LATE, f"{self._limits.frame_s:g} s")
+            found += self._stream.abandon()
+            self._begun_s = None
+        self.counts.received += len(found)
+        return [Incoming((payload,), self._device) for payload in found]
+
+    def send(self, parts: tuple[bytes, ...]) -> None:
+        """Queue one message; what waits too long loses by the policy."""
+        if self._line is None:
+            self._tally.lose(GONE)
+            return
+        frame = sentinel.frame(b"".join(parts))
+        room = self._limits.waiting_bytes
+        if self._limits.when_full == "DropOldest":
+            while self._bytes + len(frame) > room and len(self._out) > 1:
+                self._bytes -= len(self._out[1])
+                del self._out[1]
+                self._tally.lose(STALLED, "the oldest message")
+        if self._out and self._bytes + len(frame) > room:
+            self._tally.lose(STALLED, f"{self._bytes} bytes wait")
+            return
+        self._out.append(frame)
+        self._bytes += len(frame)
+        self.counts.sent += 1
+        self._flush()
+
+    def close(self) -> None:
+        """Close the line."""
+        if self._line is not None:
+            self._flush()
+        if self._line is not None:
+            if self._out:
+                self._tally.lose("closed before all was sent", f"{len(self._out)} messages")
+            self._line.close()
+            self._line = None
+        self._again_s = None
+
+    def _fresh(self) -> sentinel.FrameStream:
+        def dropped(drop: sentinel.Drop) -> None:
+            self._tally.refuse(drop.reason, str(drop.error(self._device)))
+
+        return sentinel.FrameStream(max_payload=self._limits.payload_bytes, on_drop=dropped)
+
+    def _open(self) -> serial.Serial:
+        return serial.Serial(self._device, self._baud, timeout=0, write_timeout=0)
+
+    def _reopen(self) -> None:
+        try:
+            self._line = self._open()
+        except (serial.SerialException, OSError):
+            self._again_s = self._now_s + _RETRY_S
+            return
+        self._again_s = None
+        self._stream = self._fresh()
+        self._report("INFO", f"{self._device}: the line is there again")
+
+    def _lost_line(self, why: str) -> None:
+        self._report("WARN", f"{self._device}: the line is gone ({why}); trying again")
+        if self._out:
+            self.counts.lost[GONE] += len(self._out)
+        self._out.clear()
+        self._offset = self._bytes = 0
+        if self._line is not None:
+            self._line.close()
+        self._line = None
+        self._again_s = self._now_s + _RETRY_S
+
+    def _flush(self) -> None:
+        assert self._line is not None
+        try:
+            while self._out:
+                # pyserial's own write waits in a busy loop for a line that takes nothing
+                count = os.write(self._line.fileno(), self._out[0][self._offset :])
+                self._offset += count
+                self._bytes -= count
+                if self._offset == len(self._out[0]):
+                    self._out.popleft()
+                    self._offset = 0
+        except (BlockingIOError, InterruptedError):
+            return
+        except (serial.SerialException, OSError) as error:
+            self._lost_line(str(error))

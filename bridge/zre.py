@@ -1,0 +1,418 @@
+"""A peer of ZRE (RFC 36), the protocol of Zyre: peers find each other by UDP beacons and talk
+over ZeroMQ, one to one (whisper) or to a group (shout).
+
+Without threads: `step` does all that is due and gives what has happened. A peer that is silent is
+pinged after five seconds and gone after thirty, as RFC 36 has it; one that lost messages, speaks
+another version or is one too many is refused with a reason. Compatible with C Zyre 2.
+"""
+
+from __future__ import annotations
+
+import errno
+import fcntl
+import socket
+import struct
+import uuid as uuids
+from dataclasses import dataclass, field
+from typing import Any
+
+import zmq
+
+from cratous.bridge import zre_wire as wire
+from cratous.bridge.port import Limits, Report, Tally, is_due
+from cratous.spec.errors import BadInput
+
+BEACON_PORT = 5670
+_EVASIVE_S, _EXPIRED_S = 5.0, 30.0
+_IDENTITY = b"\x01"  # stands before the uuid in the identity of a peer's socket
+_BATCH = 2000
+_GET_ADDRESS, _GET_BROADCAST = 0x8915, 0x8919  # ioctl of Linux
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened: ENTER, EXIT, JOIN, LEAVE, WHISPER or SHOUT, and whose it is."""
+
+    kind: str
+    peer: str
+    name: str
+    group: str = ""
+    headers: dict[str, str] = field(default_factory=dict)
+    content: tuple[bytes, ...] = ()
+    address: str = ""
+
+
+@dataclass
+class _Peer:
+    sock: Any
+    endpoint: str
+    name: str = ""
+    ready: bool = False  # it has said hello
+    sent: int = 0
+    wanted: int = 0
+    seen_s: float = 0.0
+    pinged: bool = False
+    groups: set[str] = field(default_factory=set)
+    headers: dict[str, str] = field(default_factory=dict)
+
+
+def interface(device: str, where: str = "") -> tuple[str, str]:
+    """(address, broadcast address) of a network device, e.g. `lo` or `eth0`; BadInput if none."""
+    found = []
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
+        try:
+            for code in (_GET_ADDRESS, _GET_BROADCAST):
+                answer = fcntl.ioctl(sock, code, struct.pack("256s", device.encode()[:15]))
+                found.append(socket.inet_ntoa(answer[20:24]))
+        except OSError as error:
+            raise BadInput(
+                "no such network device",
+                where=where,
+                item="NetworkDevice",
+                expected=", ".join(name for _, name in socket.if_nameindex()),
+                got=f"{device} ({error.strerror})",
+            ) from None
+    address, broadcast = found
+    if broadcast in ("0.0.0.0", address):
+        broadcast = "127.255.255.255" if address.startswith("127.") else "255.255.255.255"
+    return address, broadcast
+
+
+class ZreNode:
+    """One peer; see the module."""
+
+    def __init__(
+        self,
+        context: zmq.Context[Any],
+        name: str,
+        *,
+        device: str = "lo",
+        headers: dict[str, str] | None = None,
+        beacon_port: int = BEACON_PORT,
+        interval_s: float = 1.0,
+        limits: Limits | None = None,
+        report: Report = lambda _severity, _text: None,
+        where: str = "",
+    ) -> None:
+        """Listens and sends beacons from the first `step` on. BadInput if the device is not there."""
+        self._context, self.name = context, name
+        self._headers = dict(headers or {})
+        self._limits = limits or Limits()
+        self._report = report
+        self._interval_s = interval_s
+        self._uuid = uuids.uuid4().bytes
+        self._peers: dict[bytes, _Peer] = {}
+        self._groups: list[str] = []
+        self._status = 0
+        self._beacon_s: float | None = None
+        self._now_s = 0.0
+        self._events: list[Event] = []
+        self._closed = False
+        self._address, broadcast = interface(device, where)
+        self._to = (broadcast, beacon_port)
+        self._tally = Tally(f"zyre {name}", report)
+        self.counts = self._tally.counts
+        self._udp = _beacon_socket(beacon_port, where)
+        self._inbox = context.socket(zmq.ROUTER)
+        try:
+            self._inbox.linger = 0
+            self._inbox.rcvhwm = self._limits.high_water
+            self._inbox.maxmsgsize = self._limits.payload_bytes + 8192
+            self._inbox.router_handover = True  # a peer that comes again takes its old place
+            port = self._inbox.bind_to_random_port(f"tcp://{self._address}")
+        except zmq.ZMQError as error:
+            self._udp.close()
+            self._inbox.close()
+            raise BadInput(
+                f"cannot listen ({error})", where=where, item="NetworkDevice", got=device
+            ) from None
+        self._port = int(port)
+
+    @property
+    def uuid(self) -> str:
+        """Its name among all peers, 32 hexadecimal digits."""
+        return self._uuid.hex().upper()
+
+    @property
+    def endpoint(self) -> str:
+        """Where its inbox is."""
+        return f"tcp://{self._address}:{self._port}"
+
+    @property
+    def due_s(self) -> float | None:
+        """When the next beacon or ping is due."""
+        if self._closed:
+            return None
+        times = [self._beacon_s or 0.0]
+        for peer in self._peers.values():
+            times.append(peer.seen_s + (_EXPIRED_S if peer.pinged else _EVASIVE_S))
+        return min(times)
+
+    def peers(self) -> dict[str, str]:
+        """The names of the peers that have said hello, by uuid."""
+        return {_hex(u): peer.name for u, peer in self._peers.items() if peer.ready}
+
+    def handles(self) -> list[tuple[Any, int]]:
+        """The inbox and the socket of the beacons."""
+        if self._closed:
+            return []
+        return [(self._inbox, zmq.POLLIN), (self._udp.fileno(), zmq.POLLIN)]
+
+    def step(self, now_s: float) -> list[Event]:
+        """Send what is due, read what is there; the events, in order."""
+        self._now_s = now_s
+        if self._closed:
+            return []
+        if self._beacon_s is None or is_due(self._beacon_s, now_s):
+            self._shine(self._port)
+            self._beacon_s = now_s + self._interval_s
+        self._read_beacons()
+        self._read_inbox()
+        self._check_silence()
+        events, self._events = self._events, []
+        return events
+
+    def join(self, group: str) -> None:
+        """Join a group; all peers are told."""
+        if group not in self._groups:
+            self._groups.append(group)
+            self._membership(wire.JOIN, group)
+
+    def leave(self, group: str) -> None:
+        """Leave a group."""
+        if group in self._groups:
+            self._groups.remove(group)
+            self._membership(wire.LEAVE, group)
+
+    def whisper(self, peer: str, content: tuple[bytes, ...]) -> bool:
+        """Send to one peer; False (and counted) if it is not there or does not read."""
+        found = self._peers.get(bytes.fromhex(peer))
+        if found is None or not found.ready:
+            self._tally.lose("no such peer", peer)
+            return False
+        return self._send(found, wire.Command(wire.WHISPER, 0), content)
+
+    def shout(self, group: str, content: tuple[bytes, ...]) -> int:
+        """Send to all peers of a group; returns to how many."""
+        sent = 0
+        for peer in self._peers.values():
+            if peer.ready and group in peer.groups:
+                sent += self._send(peer, wire.Command(wire.SHOUT, 0, group=group), content)
+        return sent
+
+    def close(self) -> None:
+        """Say good-bye by a beacon with port 0 and close everything."""
+        if self._closed:
+            return
+        self._shine(0)
+        for peer in self._peers.values():
+            peer.sock.close(linger=100)
+        self._peers.clear()
+        self._udp.close()
+        self._inbox.close(linger=0)
+        self._closed = True
+
+    def _shine(self, port: int) -> None:
+        try:
+            self._udp.sendto(wire.beacon(self._uuid, port), self._to)
+        except OSError as error:
+            self._tally.lose("beacon not taken by the network", error.strerror or str(error))
+
+    def _read_beacons(self) -> None:
+        for _ in range(_BATCH):
+            try:
+                data, (host, _port) = self._udp.recvfrom(1024)
+            except (BlockingIOError, InterruptedError):
+                return
+            except OSError as error:
+                if error.errno != errno.ECONNREFUSED:
+                    self._tally.refuse("beacon", error.strerror or str(error))
+                continue
+            found = wire.read_beacon(data)
+            if found is None or found[0] == self._uuid:
+                continue
+            uuid, port = found
+            if port == 0:
+                self._remove(uuid, "it has left")
+            else:
+                peer = self._require(uuid, f"tcp://{host}:{port}")
+                if peer is not None:
+                    self._refresh(peer)
+
+    def _require(self, uuid: bytes, endpoint: str) -> _Peer | None:
+        """The peer with a uuid, connected to and greeted if it is new."""
+        peer = self._peers.get(uuid)
+        if peer is not None:
+            return peer
+        if len(self._peers) >= self._limits.connections:
+            self._tally.refuse("too many peers", f"{endpoint}; {len(self._peers)} are known")
+            return None
+        sock = self._context.socket(zmq.DEALER)
+        sock.linger = 0
+        sock.identity = _IDENTITY + self._uuid
+        sock.sndhwm = self._limits.high_water
+        try:
+            sock.connect(endpoint)
+        except zmq.ZMQError as error:
+            sock.close()
+            self._tally.refuse("endpoint that cannot be used", f"{endpoint} ({error})")
+            return None
+        peer = self._peers[uuid] = _Peer(sock, endpoint, seen_s=self._now_s)
+        self._send(
+            peer,
+            wire.Command(
+                wire.HELLO,
+                0,
+                endpoint=self.endpoint,
+                groups=tuple(self._groups),
+                status=self._status,
+                name=self.name,
+                headers=self._headers,
+            ),
+        )
+        return peer
+
+    def _send(self, peer: _Peer, command: wire.Command, content: tuple[bytes, ...] = ()) -> bool:
+        from dataclasses import replace
+
+        sequence = (peer.sent + 1) & 0xFFFF
+        try:
+            frame = wire.pack(replace(command, sequence=sequence))
+            peer.sock.send_multipart((frame, *content), zmq.NOBLOCK)
+        except zmq.Again:
+            self._tally.lose("peer does not read", f"{peer.name or peer.endpoint}")
+            return False
+        peer.sent = sequence
+        if command.number in (wire.WHISPER, wire.SHOUT):
+            self.counts.sent += 1
+        return True
+
+    def _read_inbox(self) -> None:
+        for _ in range(_BATCH):
+            try:
+                identity, *frames = self._inbox.recv_multipart(zmq.NOBLOCK)
+            except zmq.Again:
+                return
+            if len(identity) != 17 or identity[:1] != _IDENTITY or not frames:
+                self._tally.refuse("not a ZRE peer", identity.hex())
+                continue
+            uuid = identity[1:]
+            try:
+                command = wire.unpack(frames[0])
+                self._command(uuid, command, tuple(frames[1:]))
+            except BadInput as error:
+                self._tally.refuse(error.what, f"{_hex(uuid)}: {error}")
+                if error.what == "other version of ZRE":
+                    self._remove(uuid, str(error))
+
+    def _command(self, uuid: bytes, command: wire.Command, content: tuple[bytes, ...]) -> None:
+        peer = self._peers.get(uuid)
+        if command.number == wire.HELLO:
+            if peer is not None and peer.ready:  # it has started anew
+                self._remove(uuid, "it says hello again")
+            if not command.endpoint.startswith("tcp://"):
+                raise BadInput("endpoint that cannot be used", got=command.endpoint)
+            peer = self._require(uuid, command.endpoint)
+            if peer is None:
+                return
+            peer.ready, peer.wanted = True, command.sequence
+            peer.name, peer.headers = command.name, dict(command.headers)
+            self._event("ENTER", uuid, peer)
+            for group in command.groups:
+                peer.groups.add(group)
+                self._event("JOIN", uuid, peer, group)
+            self._refresh(peer)
+            return
+        if peer is None or not peer.ready:
+            raise BadInput("no hello yet", expected="HELLO first", got=f"command {command.number}")
+        peer.wanted = (peer.wanted + 1) & 0xFFFF
+        if command.sequence != peer.wanted:
+            self._tally.refuse(
+                "messages of a peer are lost",
+                f"{peer.name}: expected {peer.wanted}, got {command.sequence}",
+            )
+            self._remove(uuid, "messages of it are lost")
+            return
+        self._refresh(peer)
+        number, group = command.number, command.group
+        if number == wire.WHISPER:
+            self.counts.received += 1
+            self._event("WHISPER", uuid, peer, content=content)
+        elif number == wire.SHOUT:
+            self.counts.received += 1
+            self._event("SHOUT", uuid, peer, group, content)
+        elif number == wire.JOIN:
+            peer.groups.add(group)
+            self._event("JOIN", uuid, peer, group)
+        elif number == wire.LEAVE:
+            peer.groups.discard(group)
+            self._event("LEAVE", uuid, peer, group)
+        elif number == wire.PING:
+            self._send(peer, wire.Command(wire.PING_OK, 0))
+        elif number == wire.GOODBYE:
+            self._remove(uuid, "it has left")
+
+    def _membership(self, number: int, group: str) -> None:
+        self._status = (self._status + 1) & 0xFF
+        for peer in self._peers.values():
+            self._send(peer, wire.Command(number, 0, group=group, status=self._status))
+
+    def _refresh(self, peer: _Peer) -> None:
+        peer.seen_s, peer.pinged = self._now_s, False
+
+    def _check_silence(self) -> None:
+        for uuid, peer in list(self._peers.items()):
+            silent = self._now_s - peer.seen_s
+            if silent >= _EXPIRED_S:
+                self._remove(uuid, f"silent for {_EXPIRED_S:g} s")
+            elif silent >= _EVASIVE_S and not peer.pinged:
+                peer.pinged = True
+                if peer.ready:
+                    self._send(peer, wire.Command(wire.PING, 0))
+
+    def _remove(self, uuid: bytes, why: str) -> None:
+        peer = self._peers.pop(uuid, None)
+        if peer is None:
+            return
+        peer.sock.close(linger=0)
+        if peer.ready:
+            self._event("EXIT", uuid, peer)
+            self._report("INFO", f"zyre {self.name}: {peer.name} is gone ({why})")
+
+    def _event(
+        self,
+        kind: str,
+        uuid: bytes,
+        peer: _Peer,
+        group: str = "",
+        content: tuple[bytes, ...] = (),
+    ) -> None:
+        headers = dict(peer.headers) if kind == "ENTER" else {}
+        self._events.append(
+            Event(kind, _hex(uuid), peer.name, group, headers, content, peer.endpoint)
+        )
+
+
+def _hex(uuid: bytes) -> str:
+    return uuid.hex().upper()
+
+
+def _beacon_socket(port: int, where: str) -> socket.socket:
+    sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        sock.setblocking(False)
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_BROADCAST, 1)
+        # several peers of one machine hear the same beacons
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
+        sock.bind(("", port))
+    except OSError as error:
+        sock.close()
+        raise BadInput(
+            "cannot listen for beacons",
+            where=where,
+            item="BeaconPort",
+            expected="a UDP port that can be shared",
+            got=f"{port} ({error.strerror})",
+        ) from None
+    return sock

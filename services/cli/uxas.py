@@ -1,0 +1,107 @@
+"""`cratous uxas`: run a UxAS configuration, with the options and folders of `uxas` itself."""
+
+from __future__ import annotations
+
+import signal
+import time
+from pathlib import Path
+from typing import Any
+
+import click
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "-cfgPath",
+    "cfg_path",
+    type=click.Path(path_type=Path),
+    default=Path("cfg.xml"),
+    show_default=True,
+    help="The configuration.",
+)
+@click.option(
+    "-runUntil", "run_until", type=click.IntRange(0), default=0, help="Seconds; 0: RunDuration_s."
+)
+@click.option("-version", "version", is_flag=True, help="Print the versions and go on.")
+@click.option("--without", multiple=True, metavar="TYPE", help="Leave out services of a type.")
+@click.option("--check", is_flag=True, help="Check the configuration, start nothing.")
+@click.option("--virtual-time", is_flag=True, help="Wait for nothing; no bridges.")
+@click.option("--allow-unproved", is_flag=True, help="Plan with kernels that have no proof.")
+def uxas(
+    cfg_path: Path,
+    run_until: int,
+    version: bool,
+    without: tuple[str, ...],
+    check: bool,
+    virtual_time: bool,
+    allow_unproved: bool,
+) -> int:
+    """Run a UxAS configuration: its services and bridges, in one process.
+
+    Logs go to ./log, data to ./datawork, as with `uxas`; paths of message files are relative to
+    the present folder. Ends after -runUntil or RunDuration_s seconds, at KillService -1, or at
+    Ctrl-C.
+
+    Example:  cratous uxas -cfgPath cfg.xml -runUntil 60
+
+    Exit codes: 0 it ran to its end, 2 the configuration is refused.
+    """
+    from cratous.services.uxas.logs import Logs
+    from cratous.services.uxas.process import Process, data_folders
+    from cratous.services.uxas.settings import read
+
+    if version:
+        _versions()
+    config = read(cfg_path)
+    root = config.root
+    log = Logs(
+        root["ConsoleLoggerSeverityLevel"],
+        root["MainFileLoggerSeverityLevel"],
+        None if check else Path("log"),
+        echo=lambda text: click.echo(text, err=True),
+        thread_id=root["isLoggingThreadId"],
+    )
+    try:
+        _require_proofs(config, log, allow_unproved)
+        if not check:
+            data_folders(config, Path("."))
+        time.sleep(0 if check or virtual_time else root["StartDelay_ms"] / 1000)
+        with Process(
+            config, log, without=frozenset(without), virtual=virtual_time, say=click.echo
+        ) as process:
+            if check:
+                click.echo(f"{cfg_path}: {len(process.manager.services) - 1} services and bridges")
+                return 0
+            for number in (signal.SIGINT, signal.SIGTERM):
+                signal.signal(number, lambda *_: _stop(process))
+            log("INFO", f"running {cfg_path} as entity {root['EntityID']}")
+            limit = run_until or root["RunDuration_s"]
+            process.run(None if limit is None else float(limit))
+        log("INFO", "ended")
+    finally:
+        log.close()
+    return 0
+
+
+def _stop(process: Any) -> None:
+    process.stopping = True
+
+
+def _require_proofs(config: Any, log: Any, allow_unproved: bool) -> None:
+    """Where the pipeline plans, its kernels are proved or the user has said otherwise."""
+    from cratous.services.uxas.registry import KINDS, VALIDATOR
+
+    if any(VALIDATOR in KINDS[e.type].together for e in config.entries if e.type in KINDS):
+        from cratous.core import ledger
+
+        standing = ledger.require(allow_unproved=allow_unproved)
+        log("WARN" if standing.problems else "INFO", f"proofs: {standing.line}")
+
+
+def _versions() -> None:
+    from cratous import __version__
+    from cratous.bridge.lmcp import model
+
+    click.echo(f"cratous {__version__}")
+    for name in model.SERIES:
+        click.echo(f"{name}: {model.load(name).version}")

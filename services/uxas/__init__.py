@@ -1,0 +1,1 @@
+"""UxAS as one process of ours: configuration, service manager, services, bridges, the loop."""

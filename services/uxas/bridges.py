@@ -1,0 +1,175 @@
+"""Bridges: a port to the outside as a service of the bus, with UxAS's rules of what passes.
+
+Out: messages whose address begins with a subscribed prefix; where the bridge is of the kind that
+keeps foreign messages in (`own_only`), those of our own entity alone; never its own imports, never
+what is addressed to the bridge itself, never KillService. In: LMCP that decodes; its source
+attributes as they came, or those of the bridge where it considers messages self-generated. What
+does not pass for another reason than these rules is counted and logged.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+from cratous.bridge import envelope as wire
+from cratous.bridge import lmcp
+from cratous.bridge.port import Incoming, Port, Tally
+from cratous.services.bus import Envelope, Identity, unicast
+from cratous.services.uxas.frame import Host
+from cratous.spec.errors import BadInput
+
+KILL = "uxas.messages.uxnative.KillService"
+CREATE = "uxas.messages.uxnative.CreateNewService"
+_NAME_BYTES = 256  # of an address or a group that comes from outside
+
+
+@dataclass(frozen=True)
+class Rules:
+    """What a kind of bridge lets pass, and how it names the source of what comes in.
+
+    own_only: only our entity's messages go out. group: source group of imports that are
+    considered self-generated. self_generated: whether they are. aliases: new addresses of imports.
+    impact: two parts, IMPACT's address and LMCP bytes, from entity `external_id`; throttle: the
+    same AirVehicleConfiguration goes out once.
+    """
+
+    prefixes: tuple[str, ...]
+    own_only: bool
+    group: str
+    self_generated: bool
+    aliases: dict[str, str] = field(default_factory=dict)
+    impact: bool = False
+    external_id: int = 0
+    throttle: bool = False
+
+
+class Bridge:
+    """A port on the bus; the runtime calls `pump` when the port has something."""
+
+    subscribes: tuple[str, ...] = ()
+
+    def __init__(self, name: str, host: Host, identity: Identity, port: Port, rules: Rules) -> None:
+        self.name, self.port, self.rules = name, port, rules
+        self.prefixes = tuple(p for p in rules.prefixes if p)
+        self._host, self._identity = host, identity
+        self._tally = Tally(name, host.log)
+        self._tally.counts = port.counts
+        self._sent_configurations: dict[int, Any] = {}
+        self.on_closed: Callable[[], None] = lambda: None
+
+    def start(self) -> None:
+        return None
+
+    def handle(self, state: None, envelope: Envelope, now_ms: int) -> tuple[None, Iterable[Any]]:
+        """Send a message out, if the rules let it."""
+        if self.exports(envelope):
+            try:
+                parts = self._parts(envelope)
+            except BadInput as error:
+                self._tally.lose("message has no form on the wire", str(error))
+                return None, ()
+            self.port.send(parts)
+        return None, ()
+
+    def stop(self, state: None) -> None:
+        """Close the port and say what it has done."""
+        self.port.close()
+        self._host.log("INFO", f"{self.name}: closed; {self.port.counts.line()}")
+        self.on_closed()
+
+    def exports(self, envelope: Envelope) -> bool:
+        """True if the rules let a message out."""
+        mine = unicast(self._identity.entity_id, self._identity.service_id)
+        if envelope.topic == KILL or envelope.to == mine:
+            return False
+        source = (envelope.entity_id, envelope.service_id)
+        if envelope.source == self.name or source == self._identity[:2]:
+            return False
+        if self.rules.own_only and envelope.entity_id != self._identity.entity_id:
+            return False
+        return not (self.rules.throttle and self._known(envelope.body))
+
+    def pump(self, now_s: float) -> int:
+        """Put what has arrived on the bus; returns how many messages."""
+        count = 0
+        for incoming in self.port.step(now_s):
+            try:
+                self._host.bus.put(self._import(incoming))
+                count += 1
+            except BadInput as error:
+                self._tally.refuse(error.what, f"{incoming.peer}: {error}")
+        return count
+
+    def _known(self, body: Any) -> bool:
+        if type(body).__name__ != "AirVehicleConfiguration":
+            return False
+        same = self._sent_configurations.get(body.ID) == body
+        self._sent_configurations[body.ID] = body
+        return same
+
+    def _parts(self, envelope: Envelope) -> tuple[bytes, ...]:
+        payload = envelope.raw or lmcp.binary.pack(envelope.body)
+        if self.rules.impact:
+            series, name = envelope.body.type_name.split("/")
+            return f"lmcp:{series.upper()}:{name}".encode(), payload
+        return (pack(envelope, payload),)
+
+    def _import(self, incoming: Incoming) -> Envelope:
+        if self.rules.impact:
+            _, payload = incoming.parts
+            body = lmcp.binary.unpack(payload)
+            who = Identity(self.rules.external_id, self._identity.service_id, "fusion")
+            return self._envelope(body, payload, "", who)
+        message = wire.parse(incoming.parts[0])
+        found = unpack(message)
+        who = Identity(number(message.entity_id), number(message.service_id), message.group)
+        if self.rules.self_generated:
+            who = self._identity._replace(group=self.rules.group)
+        topic = found.all_names[0]
+        address = self.rules.aliases.get(message.address, message.address)
+        if address != topic and address in lmcp.types:
+            raise BadInput("payload of another type", item=address, expected=address, got=topic)
+        if address == unicast(self._identity.entity_id, self._identity.service_id):
+            raise BadInput("addressed to the bridge itself", got=address)
+        return self._envelope(found, message.payload, "" if address == topic else address, who)
+
+    def _envelope(self, body: Any, raw: bytes, address: str, who: Identity) -> Envelope:
+        topic = body.all_names[0]
+        now = self._host.bus.now_ms
+        return Envelope(0, now, self.name, topic, body, address, who.group, *who[:2], raw)
+
+
+def pack(envelope: Envelope, payload: bytes | None = None) -> bytes:
+    """A message of the bus as the bytes of one frame."""
+    if payload is None:
+        payload = envelope.raw or lmcp.binary.pack(envelope.body)
+    return wire.enclose(
+        envelope.topic,
+        payload,
+        group=envelope.group,
+        entity_id=envelope.entity_id,
+        service_id=envelope.service_id,
+        address=envelope.address,
+    ).pack()
+
+
+def unpack(message: wire.AddressedMessage) -> Any:
+    """The LMCP object of a message; BadInput if there is none or a name is too long."""
+    if message.content_type != wire.LMCP:
+        raise BadInput(
+            "unknown content type", item="contentType", expected="lmcp", got=message.content_type
+        )
+    if len(message.address) > _NAME_BYTES or len(message.group) > _NAME_BYTES:
+        raise BadInput("name too long", item="address or group", expected=f"{_NAME_BYTES} bytes")
+    return lmcp.binary.unpack(message.payload, message.descriptor or message.address)
+
+
+def number(text: str) -> int:
+    """An id of the wire; empty is 0, as AMASE sends it."""
+    if not text:
+        return 0
+    if not text.isascii() or not text.isdigit() or len(text) > 19:
+        raise BadInput("not an id", item="sourceEntityId, sourceServiceId", got=text[:40])
+    return int(text)

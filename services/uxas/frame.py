@@ -1,0 +1,60 @@
+"""What a service gets when it is made: the host. And the clock that the host's loop follows."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from cratous.services.bus import Bus, Identity
+from cratous.services.uxas.logs import Logs
+
+
+class Clock:
+    """Milliseconds since the start: of the machine, or as the entities' states tell.
+
+    With Test_SimulationTime on the bus time is discrete: it stands at 0 until a state says
+    otherwise, and never goes back.
+    """
+
+    def __init__(self, monotonic: Callable[[], float] = time.monotonic) -> None:
+        self._monotonic = monotonic
+        self._zero_s = monotonic()
+        self.discrete = False
+        self._told_ms = 0
+
+    def real_s(self) -> float:
+        """Seconds of the machine since the start."""
+        return self._monotonic() - self._zero_s
+
+    def now_ms(self) -> int:
+        """The time that the services see [ms]."""
+        return self._told_ms if self.discrete else int(1000 * self.real_s())
+
+    def tell(self, time_ms: int) -> None:
+        """A state says what time it is [ms]."""
+        self._told_ms = max(self._told_ms, time_ms)
+
+
+@dataclass
+class Host:
+    """The process that a service lives in: bus, loggers, clock, who and where it is.
+
+    shared: what services of one process have in common (the planning desk), by name.
+    """
+
+    bus: Bus
+    log: Logs
+    clock: Clock
+    entity_id: int
+    entity_type: str
+    config: Path
+    root: dict[str, Any] = field(default_factory=dict)
+    shared: dict[str, Any] = field(default_factory=dict)
+    say: Callable[[str], None] = print
+
+    def identity(self, service_id: int, group: str = "") -> Identity:
+        """The wire identity of a service of this process."""
+        return Identity(self.entity_id, service_id, group)

@@ -1,0 +1,183 @@
+"""The bus over several processes: one holds the hub, the others join it over ZeroMQ.
+
+The hub's process binds HubPULL and HubPUB; a satellite connects HubPUSH and HubSUB. A satellite's
+services publish to the hub and hear everything from it, their own process' messages too, so that
+there is one total order for all: the hub's. The frames are UxAS's, `address$attributes$payload`;
+anybody may listen at HubPUB. `Probe` frames (content type `hub`) tell a satellite that it hears.
+
+A satellite that does not read loses messages, counted here; what no satellite wants is not sent.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from typing import Any
+
+import zmq
+
+from cratous.bridge import envelope as wire
+from cratous.bridge.port import Limits, Tally, address, is_due
+from cratous.bridge.zmq_curve import Curve
+from cratous.bridge.zmq_port import End, ZmqPort
+from cratous.services.bus import Bus, Envelope
+from cratous.services.uxas.bridges import number, pack, unpack
+from cratous.services.uxas.frame import Host
+from cratous.spec.errors import BadInput
+
+PROBE = "hub"
+SCHEMES = ("tcp", "ipc", "inproc")
+_JOIN_S = 10.0
+_PROBE_MS = 50
+
+
+class Hub:
+    """The process that orders: publishes what its bus delivers, takes in what satellites push."""
+
+    prefixes = ("",)
+
+    def __init__(self, host: Host, context: Any, pub: str, pull: str, curve: Curve | None) -> None:
+        self._host = host
+        self.port = _port(host, context, ("PUB", pub), ("PULL", pull), True, curve)
+        self._tally = Tally("hub", host.log)
+        self._tally.counts = self.port.counts
+        host.bus.tap(self._publish)
+
+    def pump(self, now_s: float) -> int:
+        """Take in what satellites have pushed."""
+        count = 0
+        for incoming in self.port.step(now_s):
+            try:
+                message = wire.parse(incoming.parts[0])
+                if message.content_type == PROBE:
+                    self.port.send(incoming.parts)
+                    continue
+                self._host.bus.put(_envelope(self._host.bus, message))
+                count += 1
+            except BadInput as error:
+                self._tally.refuse(error.what, f"hub: {error}")
+        return count
+
+    def close(self) -> None:
+        """Close the sockets."""
+        self.port.close()
+
+    def _publish(self, envelope: Envelope) -> None:
+        try:
+            self.port.send((pack(envelope),))
+        except BadInput as error:
+            self._tally.lose("message has no form on the wire", str(error))
+
+
+class RemoteBus(Bus):
+    """A satellite's bus: what is published goes to the hub, what the hub says is delivered."""
+
+    satellite: Satellite | None = None
+
+    def put(self, envelope: Envelope) -> None:
+        """Push to the hub; before it is joined, as any bus."""
+        if self.satellite is None:
+            super().put(envelope)
+        else:
+            self.satellite.push(envelope)
+
+    def hear(self, envelope: Envelope) -> None:
+        """Queue a message that the hub has ordered."""
+        super().put(envelope)
+
+
+class Satellite:
+    """The other side: joins a hub and feeds a `RemoteBus`."""
+
+    def __init__(self, host: Host, context: Any, sub: str, push: str, curve: Curve | None) -> None:
+        """BadInput if no hub answers within ten seconds."""
+        assert isinstance(host.bus, RemoteBus)
+        self._host, self._bus = host, host.bus
+        self.port = _port(host, context, ("PUSH", push), ("SUB", sub), False, curve)
+        self._tally = Tally("satellite", host.log)
+        self._tally.counts = self.port.counts
+        try:
+            self._join(push)
+        except BaseException:
+            self.port.close()
+            raise
+        self._bus.satellite = self
+
+    def push(self, envelope: Envelope) -> None:
+        """Send one message to the hub."""
+        try:
+            self.port.send((pack(envelope),))
+        except BadInput as error:
+            self._tally.lose("message has no form on the wire", str(error))
+
+    def pump(self, now_s: float) -> int:
+        """Deliver what the hub has ordered."""
+        count = 0
+        for incoming in self.port.step(now_s):
+            try:
+                message = wire.parse(incoming.parts[0])
+                if message.content_type == PROBE:
+                    continue
+                self._bus.hear(_envelope(self._bus, message))
+                count += 1
+            except BadInput as error:
+                self._tally.refuse(error.what, f"hub: {error}")
+        return count
+
+    def close(self) -> None:
+        """Leave the hub."""
+        self.port.close()
+
+    def _join(self, push: str) -> None:
+        """Until a probe of ours comes back: then nothing of what follows can be missed."""
+        nonce = f"hub.probe.{os.getpid()}.{time.monotonic_ns()}"
+        probe = wire.AddressedMessage(nonce, PROBE, nonce, "", "0", "0", b"?").pack()
+        end_s = time.monotonic() + _JOIN_S
+        poller = zmq.Poller()
+        for sock, flags in self.port.handles():
+            poller.register(sock, flags)
+        while not is_due(end_s, time.monotonic()):
+            self.port.send((probe,))
+            poller.poll(_PROBE_MS)
+            if any(incoming.parts == (probe,) for incoming in self.port.step(0.0)):
+                return
+        raise BadInput(
+            "no hub answers",
+            where=self._host.root.get("where", str(self._host.config)),
+            item="UxAS.HubPUSH",
+            expected="a process with HubPULL and HubPUB at these addresses",
+            got=push,
+        )
+
+
+def _port(
+    host: Host,
+    context: Any,
+    out: tuple[str, str],
+    into: tuple[str, str],
+    bind: bool,
+    curve: Curve | None,
+) -> ZmqPort:
+    where = str(host.config)
+    sender = End(out[0], address(out[1], SCHEMES, where=where, item=f"UxAS.Hub{out[0]}"), bind)
+    receiver = End(
+        into[0],
+        address(into[1], SCHEMES, where=where, item=f"UxAS.Hub{into[0]}"),
+        bind,
+        ("",) if into[0] == "SUB" else (),
+    )
+    return ZmqPort(context, sender, receiver, limits=Limits(), curve=curve, report=host.log)
+
+
+def _envelope(bus: Bus, message: wire.AddressedMessage) -> Envelope:
+    body = unpack(message)
+    topic = body.all_names[0]
+    entity, service = number(message.entity_id), number(message.service_id)
+    source = f"eid{entity}.sid{service}"
+    for name in bus.names():  # a message of our own comes back with our own name
+        if bus.identity(name)[:2] == (entity, service) and service:
+            source = name
+    target = "" if message.address == topic else message.address
+    return Envelope(
+        0, bus.now_ms, source, topic, body, target, message.group, entity, service, message.payload
+    )

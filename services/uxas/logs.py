@@ -1,0 +1,79 @@
+"""The loggers of a running UxAS: console and file, each from a severity on.
+
+Defaults as UxAS has them: the console from WARN on, the file `log/log_<start in ms>` from DEBUG on;
+the folder `log` stands in the present folder. A line is `<time> <severity> <text>`.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import IO
+
+from cratous.spec.errors import BadInput
+
+SEVERITIES = ("DEBUG", "INFO", "WARN", "ERROR")
+
+
+class Logs:
+    """Console and file; call it with a severity and a sentence."""
+
+    def __init__(
+        self,
+        console: str = "WARN",
+        file: str = "DEBUG",
+        folder: Path | None = None,
+        *,
+        echo: Callable[[str], None] | None = None,
+        thread_id: bool = False,
+    ) -> None:
+        """folder None writes no file. echo prints to the console; the default is stderr."""
+        self._levels = {name: k for k, name in enumerate(SEVERITIES)}
+        self._console, self._file = self._levels[console], self._levels[file]
+        self._echo = echo or _stderr
+        self._thread_id = thread_id
+        self.path: Path | None = None
+        self._out: IO[str] | None = None
+        self.counts = dict.fromkeys(SEVERITIES, 0)
+        if folder is not None:
+            try:
+                folder.mkdir(parents=True, exist_ok=True)
+                self.path = folder / f"log_{time.time_ns() // 1_000_000}"
+                self._out = self.path.open("a", encoding="utf-8", buffering=1)
+            except OSError as error:
+                raise BadInput(
+                    f"the log cannot be written ({error.strerror})",
+                    where=str(folder),
+                    expected="a folder that can be written",
+                ) from None
+
+    def __call__(self, severity: str, text: str) -> None:
+        """Log one sentence."""
+        level = self._levels[severity]
+        self.counts[severity] += 1
+        if level >= self._console:
+            self._echo(f"{severity} {text}")
+        if self._out is not None and level >= self._file:
+            stamp = time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime())
+            milli = time.time_ns() // 1_000_000 % 1000
+            thread = f" [{threading.get_ident()}]" if self._thread_id else ""
+            line = text.replace("\n", "\\n")
+            try:
+                self._out.write(f"{stamp}.{milli:03d}Z{thread} {severity} {line}\n")
+            except OSError as error:  # a full disk must not stop the flight
+                self._echo(f"ERROR the log file cannot be written any more ({error.strerror})")
+                self._out = None
+
+    def close(self) -> None:
+        """Close the file."""
+        if self._out is not None:
+            self._out.close()
+            self._out = None
+
+
+def _stderr(text: str) -> None:
+    import sys
+
+    print(text, file=sys.stderr, flush=True)

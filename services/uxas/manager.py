@@ -1,0 +1,317 @@
+"""The service manager: makes services and bridges from a configuration, and at run time.
+
+Ids count up in the order of the file from FirstServiceID (50, the manager's own), services first.
+All that is wrong with a configuration is found before anything is opened, and refused together.
+CreateNewService makes a service (a task's, or any of the registry); KillService ends one and frees
+what it held; KillService of the manager's own id ends all services, of -1 the process.
+"""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.services.bus import Bus, Envelope
+from cratous.services.loading.problems import refuse
+from cratous.services.planning.desk import status
+from cratous.services.uxas import bridge_kinds, live, registry
+from cratous.services.uxas.bridges import CREATE, KILL, Bridge
+from cratous.services.uxas.frame import Host
+from cratous.services.uxas.settings import Configuration, Entry, entry, nearest, values_of
+from cratous.spec.errors import BadInput, CratousError
+
+FIRST_ID = 50
+
+
+class ServiceManager:
+    """A service itself (id FirstServiceID), so that it hears CreateNewService and KillService."""
+
+    name = "ServiceManager"
+    subscribes: tuple[str, ...] = (CREATE, KILL)
+
+    def __init__(self, host: Host, config: Configuration, context: Any) -> None:
+        self._host, self._config, self._context = host, config, context
+        self.first_id: int = config.root["FirstServiceID"] or FIRST_ID
+        self._last_id = self.first_id
+        self._names: dict[int, str] = {}
+        self.bridges: dict[int, Bridge] = {}
+        self.ended = False
+        self.on_change: Callable[[], None] = lambda: None
+        host.shared["new_id"] = self.new_id
+        # what the loader of missions wants to know of a configuration
+        host.shared["services"] = tuple(
+            (e.type, dict(e.attributes), int(e.where.rpartition(":")[2] or 0))
+            for e in config.entries
+            if e.kind == "Service"
+        )
+
+    def new_id(self) -> int:
+        """The next id of this process that is not taken."""
+        self._last_id += 1
+        while self._last_id in self._names:
+            self._last_id += 1
+        return self._last_id
+
+    @property
+    def services(self) -> dict[int, str]:
+        """The names of services and bridges by id."""
+        return dict(self._names)
+
+    def build(self, without: frozenset[str] = frozenset()) -> None:
+        """Make all services and bridges of the configuration; BadInput names what is wrong.
+
+        without: types that the user has asked to leave out.
+        """
+        entries = [e for e in self._config.entries if e.type not in without]
+        for left_out in self._config.entries:
+            if left_out.type in without:
+                self._host.log("WARN", f"{left_out.where}: {left_out.type} is left out, as asked")
+        problems: list[BadInput] = []
+        for item in entries:
+            self._check(item, entries, problems)
+        refuse(problems)
+        self._host.bus.add(self, self._host.identity(self.first_id))
+        self._names[self.first_id] = self.name
+        ordered = [e for e in entries if e.kind == "Service"]
+        ordered += [e for e in entries if e.kind == "Bridge"]
+        try:
+            for item in ordered:
+                self._make(item, self.new_id())
+        except BaseException:
+            self.close()
+            raise
+
+    def start(self) -> None:
+        return None
+
+    def handle(self, state: None, envelope: Envelope, now_ms: int) -> tuple[None, Iterable[Any]]:
+        if envelope.topic == KILL:
+            self.kill(envelope.body.ServiceID)
+            return None, ()
+        try:
+            self._create(envelope)
+        except CratousError as error:
+            self._host.log("ERROR", f"CreateNewService from {envelope.source} is refused: {error}")
+            facts = [("CreateNewService", str(envelope.body.ServiceID)), ("reason", str(error))]
+            return None, [status(0, "Error", facts)]
+        return None, ()
+
+    def kill(self, number: int) -> None:
+        """End a service or bridge: -1 the process, the manager's id all services."""
+        if number in (-1, self.first_id):
+            self._host.log("INFO", "KillService: all services end")
+            for other in [n for n in self._names if n != self.first_id]:
+                self._end(other)
+            self.ended = self.ended or number == -1
+            return
+        if number not in self._names:
+            # with several processes on one bus it may be another's
+            self._host.log("DEBUG", f"KillService: no service {number} in this process")
+            return
+        self._end(number)
+
+    def close(self) -> None:
+        """End all, bridges first."""
+        for number in [*self.bridges, *[n for n in self._names if n != self.first_id]]:
+            if number in self._names:
+                self._end(number)
+
+    def _end(self, number: int) -> None:
+        name = self._names.pop(number)
+        self.bridges.pop(number, None)
+        self._host.bus.remove(name)
+        self._host.log("INFO", f"service {number} ({name}) has ended")
+        self.on_change()
+
+    def _check(self, item: Entry, entries: list[Entry], problems: list[BadInput]) -> None:
+        if item.kind == "Bridge":
+            kind = bridge_kinds.BRIDGES.get(item.type)
+            if kind is None:
+                problems.append(_unknown(item, bridge_kinds.BRIDGES))
+                return
+            bridge_kinds.check(item, kind, problems)
+            return
+        service = registry.KINDS.get(item.type)
+        if service is None:
+            problems.append(_unknown(item, registry.KINDS))
+            return
+        values_of(service.attributes, item.attributes, item.where, item.type, problems)
+        for element in item.children:
+            if element.tag not in service.children:
+                expected = nearest(str(element.tag), service.children)
+                problems.append(
+                    BadInput(
+                        "unknown element",
+                        where=item.place(element),
+                        item=f"{item.type}.<{element.tag}>",
+                        expected=expected,
+                    )
+                )
+        same = [e for e in entries if e.type == item.type]
+        if service.single and same[0] is not item:
+            problems.append(
+                BadInput(
+                    "a second one in one process",
+                    where=item.where,
+                    item=item.type,
+                    expected=f"one; the first stands at {same[0].where}",
+                )
+            )
+        for other in service.together:
+            if not any(e.type == other for e in entries):
+                problems.append(
+                    BadInput(
+                        f"it shares memory with {other}",
+                        where=item.where,
+                        item=item.type,
+                        expected=f"both in one process: add {other}",
+                    )
+                )
+
+    def _make(self, item: Entry, number: int) -> None:
+        if item.kind == "Bridge":
+            self._make_bridge(item, number)
+            return
+        kind = registry.KINDS[item.type]
+        problems: list[BadInput] = []
+        values = values_of(kind.attributes, item.attributes, item.where, item.type, problems)
+        refuse(problems)
+        for name in kind.ignored:
+            if name in item.attributes and values[name] != kind.attributes[name].default:
+                text = f"{item.where}: {item.type}.{name}={item.attributes[name]}"
+                self._host.log("WARN", f"{text}: {kind.ignored[name]}")
+        name = self._name(item.type, number)
+        self._add(kind.make(self._host, item, values, name, number), number)
+
+    def _make_bridge(self, item: Entry, number: int) -> None:
+        kind = bridge_kinds.BRIDGES[item.type]
+        problems: list[BadInput] = []
+        values, children = bridge_kinds.check(item, kind, problems)
+        refuse(problems)
+        name = self._name(item.type, number)
+        identity = self._host.identity(number)
+        try:
+            bridge = kind.make(
+                bridge_kinds.Given(
+                    self._host, item, values, children, identity, name, self._context
+                )
+            )
+        except BadInput as error:
+            if error.where == item.where:
+                raise
+            raise BadInput(
+                error.what,
+                where=item.where,
+                item=error.where or error.item,
+                expected=error.expected,
+                got=error.got,
+            ) from None
+        self._add(bridge, number)
+        self.bridges[number] = bridge
+        self.on_change()
+
+    def _add(self, service: Any, number: int) -> None:
+        if service.name in self._host.bus.names():
+            raise BadInput("such a service runs already", item=service.name)
+        self._names[number] = service.name
+        self._host.bus.add(service, self._host.identity(number))
+        self._host.log("INFO", f"service {number} is {service.name}")
+
+    def _name(self, kind: str, number: int) -> str:
+        return f"{kind}[{number}]" if kind in self._host.bus.names() else kind
+
+    def _create(self, envelope: Envelope) -> None:
+        body = envelope.body
+        number = body.ServiceID
+        where = f"CreateNewService {number}"
+        item, task = _parsed(body.XmlConfiguration, where)
+        if number <= 0:
+            number = self.new_id()
+        if number in self._names:
+            raise BadInput(
+                "the id is taken", where=where, item="ServiceID", got=self._names[number]
+            )
+        if item.type in live.TASKS:
+            desk = registry.desk_of(self._host)
+            if task is None:
+                raise BadInput(
+                    "no task", where=where, item="<TaskRequest>", expected=f"a {item.type}"
+                )
+            known = desk.world.task(task.TaskID)
+            if known is None or known.body != task:
+                desk.world.add(task, where)
+            for field in ("EntityConfigurations", "EntityStates", "KeepInZones", "KeepOutZones"):
+                for part in getattr(body, field):
+                    if not desk.world.knows(part):
+                        desk.world.add(part, where)
+            self._add(live.LiveTask(desk, task, live.TASKS[item.type]), number)
+            return
+        problems: list[BadInput] = []
+        self._check(item, [*self._config.entries, item], problems)
+        refuse(problems)
+        self._make(item, number)
+
+
+def _parsed(text: str, where: str) -> tuple[Entry, Any]:
+    """The Service element of a CreateNewService and the task inside, if there is one.
+
+    UxAS escapes the angle brackets and leaves the closing tag to the receiver.
+    """
+    text = text.strip()
+    if text.startswith("&lt;"):
+        text = html.unescape(text)
+    if not text.endswith("</Service>") and not _whole(text):
+        text += "</Service>"
+    element = lmcp.xml.parse(text, where)
+    if element.tag != "Service":
+        raise BadInput("not a service", where=where, expected="<Service>", got=f"<{element.tag}>")
+    item = entry(element, where)
+    requests = [child for child in element if child.tag == "TaskRequest"]
+    task = None
+    if requests and len(requests[0]):
+        from lxml import etree
+
+        notes: list[str] = []
+        task = lmcp.xml.loads(etree.tostring(requests[0][0]), where, notes)[0]
+    return item, task
+
+
+def _whole(text: str) -> bool:
+    try:
+        lmcp.xml.parse(text)
+    except BadInput:
+        return False
+    return True
+
+
+def _unknown(item: Entry, known: Any) -> BadInput:
+    if item.type in registry.TASKS_NOT_YET:
+        return BadInput(
+            f"tasks of type {item.type} are not covered yet",
+            where=item.where,
+            item=f"{item.kind}.Type",
+            expected=", ".join(live.TASKS),
+            got=item.type,
+        )
+    if item.type in registry.NOT_YET:
+        return BadInput(
+            f"{item.type} of UxAS is not covered yet",
+            where=item.where,
+            item=f"{item.kind}.Type",
+            expected=f"a configuration without it, or --without {item.type} to leave it out",
+            got=item.type,
+        )
+    return BadInput(
+        f"unknown {item.kind.lower()} type",
+        where=item.where,
+        item=f"{item.kind}.Type",
+        expected=nearest(item.type, known),
+        got=item.type,
+    )
+
+
+def startup(bus: Bus) -> None:
+    """Say that all services of the configuration are there."""
+    bus.publish(lmcp.new("StartupComplete"), ServiceManager.name)

@@ -1,0 +1,261 @@
+"""A running UxAS: bus, manager, ports and the loop that turns them. One thread, no timers.
+
+Time runs as the machine's by default (`Clock`); what is due happens at its own virtual time, in
+order, however late the loop comes to it. `virtual=True` waits for nothing: time jumps from one
+wake to the next, so that the same configuration gives the same messages; it takes no bridges.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import resource
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import zmq
+
+from cratous.bridge import lmcp
+from cratous.bridge.port import is_due
+from cratous.services.bus import Bus, Envelope
+from cratous.services.planning.desk import status
+from cratous.services.uxas.bridge_kinds import curve_of
+from cratous.services.uxas.frame import Clock, Host
+from cratous.services.uxas.hub import Hub, RemoteBus, Satellite
+from cratous.services.uxas.logs import Logs
+from cratous.services.uxas.manager import ServiceManager, startup
+from cratous.services.uxas.settings import Configuration
+from cratous.spec.errors import BadInput, CratousError, NoPlan
+
+_LONGEST_POLL_MS = 200  # so that a signal or a discrete clock is seen
+_FILES = 65536
+_NEVER_MS = 2**62
+
+
+class Process:
+    """One UxAS process; `run` until its end, then `close`. Use as a context manager."""
+
+    def __init__(
+        self,
+        config: Configuration,
+        log: Logs,
+        *,
+        without: frozenset[str] = frozenset(),
+        virtual: bool = False,
+        say: Callable[[str], None] = print,
+        clock: Clock | None = None,
+    ) -> None:
+        """BadInput names what is wrong with the configuration; nothing stays open then."""
+        root = config.root
+        self.log, self.config, self._virtual = log, config, virtual
+        self.clock = clock or Clock()
+        self.context: zmq.Context[Any] = zmq.Context()
+        self.context.max_sockets = 4096
+        self._hub: Hub | None = None
+        self._satellite: Satellite | None = None
+        self._doorkeeper: Any = None
+        self._poller: zmq.Poller | None = None
+        self._handles: list[tuple[Any, int]] = []
+        self.stopping = False
+        joined = _addresses(config, ("HubSUB", "HubPUSH"))
+        hosts = _addresses(config, ("HubPUB", "HubPULL"))
+        if joined and hosts:
+            raise BadInput(
+                "a hub and a satellite at once",
+                where=config.where,
+                item="UxAS.HubSUB",
+                expected="HubPUB and HubPULL, or HubSUB and HubPUSH",
+            )
+        make = RemoteBus if joined else Bus
+        self.bus = make(lmcp.full_names, on_fault=self._fault, echo=False)
+        self.host = Host(
+            self.bus,
+            log,
+            self.clock,
+            root["EntityID"],
+            root["EntityType"],
+            config.path,
+            {**root, "where": config.where},
+            {"admit": self._admit},
+            say,
+        )
+        if joined and root["FirstServiceID"] is None:
+            raise BadInput(
+                "ids of its own are needed",
+                where=config.where,
+                item="UxAS.FirstServiceID",
+                expected="a number whose followers no other process on the hub has",
+            )
+        _raise_file_limit()
+        self.manager = ServiceManager(self.host, config, self.context)
+        try:
+            curve = curve_of(root, config.where, config.path, "hub")
+            if curve is not None:
+                self._admit(curve)
+            if hosts:
+                self._hub = Hub(self.host, self.context, *hosts, curve)
+            if joined:
+                self._satellite = Satellite(self.host, self.context, *joined, curve)
+            self.manager.build(without)
+            if virtual and (self.manager.bridges or hosts or joined):
+                raise BadInput(
+                    "virtual time has no outside",
+                    where=config.where,
+                    expected="a configuration without bridges and hub",
+                )
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> Process:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    @property
+    def ports(self) -> list[Any]:
+        """All that has sockets: hub or satellite, then bridges."""
+        found: list[Any] = [p for p in (self._hub, self._satellite) if p is not None]
+        return found + list(self.manager.bridges.values())
+
+    def run(self, until_s: float | None = None) -> None:
+        """Turn until `until_s` seconds are over, KillService -1 comes, or `stopping` is set."""
+        startup(self.bus)
+        if self._virtual:
+            self._run_virtual(until_s)
+            return
+        end_s = None if until_s is None else self.clock.real_s() + until_s
+        while not (self.stopping or self.manager.ended):
+            now_s = self.clock.real_s()
+            if is_due(end_s, now_s):
+                break
+            self.turn(None if end_s is None else end_s - now_s)
+
+    def turn(self, most_s: float | None = None) -> None:
+        """Wait for the next thing, at most `most_s`, and do all that is there to do."""
+        self._wait(most_s)
+        if self._doorkeeper is not None:
+            self._doorkeeper.step()
+        now_s = time.monotonic()
+        for port in self.ports:
+            port.pump(now_s)
+        self.bus.run_until(self.clock.now_ms())
+
+    def close(self) -> None:
+        """End all services, close all sockets. Safe to call twice."""
+        if self.context.closed:
+            return
+        self.manager.close()
+        for part in (self._hub, self._satellite, self._doorkeeper):
+            if part is not None:
+                part.close()
+        self.context.destroy(linger=200)
+
+    def _run_virtual(self, until_s: float | None) -> None:
+        self.bus.run()
+        end_ms = None if until_s is None else int(1000 * until_s)
+        span = range(_NEVER_MS if end_ms is None else end_ms + 1)
+        while not (self.stopping or self.manager.ended):
+            due_ms = self.bus.next_wake_ms()
+            if due_ms is None or due_ms not in span:
+                break
+            self.bus.run_until(due_ms)
+        if end_ms is not None and not self.manager.ended:
+            self.bus.run_until(end_ms)
+
+    def _wait(self, most_s: float | None) -> None:
+        handles = [h for port in self.ports for h in port.port.handles()]
+        if self._doorkeeper is not None:
+            handles += self._doorkeeper.handles()
+        if self._poller is None or handles != self._handles:
+            self._poller, self._handles = zmq.Poller(), handles
+            for handle, flags in handles:
+                self._poller.register(handle, flags)
+        wait_ms = float(_LONGEST_POLL_MS)
+        if most_s is not None:
+            wait_ms = min(wait_ms, 1000 * most_s)
+        due_ms = self.bus.next_wake_ms()
+        if due_ms is not None and not self.clock.discrete:
+            wait_ms = min(wait_ms, due_ms - 1000 * self.clock.real_s())
+        now_s = time.monotonic()
+        for port in self.ports:
+            if port.port.due_s is not None:
+                wait_ms = min(wait_ms, 1000 * (port.port.due_s - now_s))
+        wait = max(0, int(wait_ms + 0.999))
+        if handles:
+            with contextlib.suppress(InterruptedError):
+                self._poller.poll(wait)
+        else:
+            time.sleep(wait / 1000)
+
+    def _admit(self, curve: Any) -> None:
+        from cratous.bridge.zmq_curve import Doorkeeper
+
+        if self._doorkeeper is None:
+            self._doorkeeper = Doorkeeper(self.context)
+        self._doorkeeper.admit(curve)
+
+    def _fault(self, name: str, envelope: Envelope | None, error: Exception) -> None:
+        what = f"message {envelope.seq} ({envelope.topic})" if envelope else "its own doing"
+        kind = "" if isinstance(error, CratousError) else f"{type(error).__name__}: "
+        self.log("ERROR", f"{name} fails at {what}: {kind}{error}")
+        if os.environ.get("CRATOUS_DEBUG"):
+            import traceback
+
+            self.log("DEBUG", "".join(traceback.format_exception(error)))
+        desk = self.host.shared.get("desk")
+        if desk is None or not _plans(name):
+            return
+        reasons = error.reasons if isinstance(error, NoPlan) else (f"{name}: {kind}{error}",)
+        for number in desk.in_work:
+            facts = [("reason", text) for text in reasons]
+            self.bus.publish(status(number, "Error", facts), name)
+
+
+def _plans(name: str) -> bool:
+    from cratous.services.uxas.registry import KINDS, VALIDATOR
+
+    kind = KINDS.get(name)
+    return (kind is not None and VALIDATOR in kind.together) or "[" in name
+
+
+def _addresses(config: Configuration, names: tuple[str, str]) -> tuple[str, str] | None:
+    values = config.root[names[0]], config.root[names[1]]
+    if not any(values):
+        return None
+    for name, value in zip(names, values, strict=True):
+        if not value:
+            raise BadInput(
+                "half of a pair",
+                where=config.where,
+                item=f"UxAS.{name}",
+                expected=f"{names[0]} and {names[1]}",
+            )
+    return values
+
+
+def _raise_file_limit() -> None:
+    """Let many connections stand: as many files as the system lets us have, up to 65,536."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    most = _FILES if hard == resource.RLIM_INFINITY else min(hard, _FILES)
+    if soft != resource.RLIM_INFINITY and soft < most:
+        with contextlib.suppress(ValueError, OSError):
+            resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
+
+
+def data_folders(config: Configuration, here: Path) -> None:
+    """Make `datawork`, as UxAS does; with isDataTimestamp a folder inside, named by the time."""
+    folder = here / "datawork"
+    if config.root["isDataTimestamp"]:
+        folder = folder / str(time.time_ns() // 1_000_000)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise BadInput(
+            f"the data folder cannot be made ({error.strerror})",
+            where=str(folder),
+            expected="a folder that can be written",
+        ) from None

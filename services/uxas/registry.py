@@ -1,0 +1,184 @@
+"""The services that a configuration may name: their attributes, and how each is made.
+
+What UxAS has and we do not have yet is known by name too, so that it is refused with a sentence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from cratous.services.uxas import live, small
+from cratous.services.uxas.frame import Host
+from cratous.services.uxas.settings import Attr, Entry, choice, flag, number, whole
+from cratous.services.uxas.world import World
+
+Make = Callable[["Host", Entry, dict[str, Any], str, int], Any]
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A service type: attributes, names of child elements, maker, whether only one may be there.
+
+    together: other types that must be in the same process, because they share memory.
+    """
+
+    attributes: Mapping[str, Attr]
+    make: Make
+    children: tuple[str, ...] = ()
+    single: bool = False
+    together: tuple[str, ...] = ()
+    ignored: Mapping[str, str] = field(default_factory=dict)
+
+
+VALIDATOR = "AutomationRequestValidatorService"
+
+
+def desk_of(host: Host) -> live.LiveDesk:
+    """The planning desk of a process, with the world that it plans in; made when first asked for."""
+    if "desk" not in host.shared:
+        world = World()
+        host.bus.add(world)
+        host.shared["desk"] = live.LiveDesk(world)
+    desk: live.LiveDesk = host.shared["desk"]
+    return desk
+
+
+def _validator(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    services = host.shared.get("services", ())
+    return live.LiveValidator(host, desk_of(host), v["MaxResponseTime_ms"], services)
+
+
+def _pipeline(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return live.pipeline(entry.type, desk_of(host))
+
+
+def _task_manager(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return live.TaskManagerService(name, host, desk_of(host), host.shared["new_id"])
+
+
+def _messages(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return small.send_messages(host, entry, v, name)
+
+
+def _time(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return small.SimulationTime(name, host.clock)
+
+
+def _hello(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return small.HelloWorld(name, number, v["StringToSend"], v["SendPeriod_ms"], host)
+
+
+def _report(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    vehicle = host.entity_id if v["VehicleID"] is None else v["VehicleID"]
+    return small.StatusReportService(
+        name, vehicle, v["ReportPeriod_ms"], v["StaleStateTime_ms"], v["KeepAliveExpiration_ms"]
+    )
+
+
+def _pipeline_kind(
+    attributes: Mapping[str, Attr], ignored: Mapping[str, str] | None = None
+) -> Kind:
+    return Kind(attributes, _pipeline, (), True, (VALIDATOR,), ignored or {})
+
+
+_NOT_USED = "it is accepted and not used: routes and plans follow the mission and the vehicle"
+
+KINDS: dict[str, Kind] = {
+    VALIDATOR: Kind({"MaxResponseTime_ms": whole(5000, 1)}, _validator, single=True),
+    "TaskManagerService": Kind({}, _task_manager, single=True),
+    "RoutePlannerVisibilityService": _pipeline_kind(
+        {
+            "TurnRadiusOffset_m": number(0.0),
+            "MinimumWaypointSeparation_m": number(50.0),
+            "isRoutAggregator": flag(False),
+            "OsmFileName": Attr(),
+        },
+        ignored=dict.fromkeys(
+            (
+                "TurnRadiusOffset_m",
+                "MinimumWaypointSeparation_m",
+                "isRoutAggregator",
+                "OsmFileName",
+            ),
+            _NOT_USED,
+        ),
+    ),
+    "RouteAggregatorService": _pipeline_kind(
+        {"FastPlan": flag(False)}, ignored={"FastPlan": _NOT_USED}
+    ),
+    "AssignmentTreeBranchBoundService": _pipeline_kind(
+        {
+            "NumberNodesMaximum": whole(0, -(2**31)),
+            "CostFunction": choice("MINMAX", "MINMAX", "CUMULATIVE"),
+        },
+        ignored={
+            "NumberNodesMaximum": "the search goes on beyond the first plan, to its own limit"
+        },
+    ),
+    "PlanBuilderService": _pipeline_kind(
+        {
+            "AssignmentStartPointLead_m": number(50.0),
+            "AddLoiterToEndOfMission": flag(False),
+            "DefaultLoiterRadius_m": number(300.0),
+            "TurnType": choice("TurnShort", "TurnShort", "FlyOver"),
+        },
+        ignored=dict.fromkeys(
+            (
+                "AssignmentStartPointLead_m",
+                "AddLoiterToEndOfMission",
+                "DefaultLoiterRadius_m",
+                "TurnType",
+            ),
+            _NOT_USED,
+        ),
+    ),
+    "SendMessagesService": Kind({"PathToMessageFiles": Attr()}, _messages, ("Message",)),
+    "Test_SimulationTime": Kind({}, _time, single=True),
+    "HelloWorld": Kind(
+        {"StringToSend": Attr(default="Hello World!"), "SendPeriod_ms": whole(1000, 1)}, _hello
+    ),
+    "StatusReportService": Kind(
+        {
+            "VehicleID": whole(None),
+            "ReportPeriod_ms": whole(5000, 100),
+            "StaleStateTime_ms": whole(5000, 10),
+            "KeepAliveExpiration_ms": whole(7000, 1000),
+        },
+        _report,
+    ),
+}
+
+NOT_YET = (
+    "AutomationDiagramDataService",
+    "BatchSummaryService",
+    "LoiterLeash",
+    "MessageLoggerDataService",
+    "OperatingRegionStateService",
+    "OsmPlannerService",
+    "RoutePlannerService",
+    "SensorManagerService",
+    "SerialAutomationRequestTestService",
+    "SimpleWaypointPlanManagerService",
+    "SteeringService",
+    "TaskTrackerService",
+    "WaypointPlanManagerService",
+)
+"""Services of UxAS that we do not have; named in a configuration they are refused."""
+
+TASKS_NOT_YET = (
+    "afrl.cmasi.AreaSearchTask",
+    "afrl.impact.AngledAreaSearchTask",
+    "afrl.impact.BlockadeTask",
+    "afrl.impact.CommRelayTask",
+    "afrl.impact.CordonTask",
+    "afrl.impact.EscortTask",
+    "afrl.impact.ImpactLineSearchTask",
+    "afrl.impact.ImpactPointSearchTask",
+    "afrl.impact.MultiVehicleWatchTask",
+    "afrl.impact.PatternSearchTask",
+    "afrl.impact.WatchTask",
+    "uxas.messages.task.AssignmentCoordinatorTask",
+    "uxas.messages.task.RendezvousTask",
+)

@@ -1,0 +1,241 @@
+"""Small services: messages from files, simulated time, status reports, a greeting."""
+
+from __future__ import annotations
+
+import os.path
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.services.bus import Envelope, Send, Wake
+from cratous.services.uxas.frame import Clock, Host
+from cratous.services.uxas.settings import Attr, Entry, values_of, whole
+from cratous.spec.errors import BadInput
+
+STARTUP = "uxas.messages.uxnative.StartupComplete"
+Step = tuple[Any, Iterable[Any]]
+
+MESSAGE_ATTRIBUTES = {
+    "MessageFileName": Attr(needed=True),
+    "MessageKey": Attr(),
+    "SendTime_ms": whole(None),
+    "SendPeriod_ms": whole(None, 1),
+    "NumberTimesToSend": whole(None, 1),
+}
+
+
+class Planned(NamedTuple):
+    """A message to send: body, address ("" for its type), first time, period and count (0: ever)."""
+
+    body: Any
+    address: str
+    time_ms: int
+    period_ms: int
+    times: int
+
+
+class SendMessagesService:
+    """Sends messages from files at their times after StartupComplete, once or periodically."""
+
+    subscribes: tuple[str, ...] = (STARTUP,)
+
+    def __init__(self, name: str, planned: tuple[Planned, ...]) -> None:
+        self.name, self._planned = name, planned
+
+    def start(self) -> bool:
+        return False
+
+    def handle(self, state: bool, envelope: Envelope, now_ms: int) -> Step:
+        """Only the first StartupComplete counts."""
+        if state:
+            return state, ()
+        return True, [Wake(plan.time_ms, (k, 1)) for k, plan in enumerate(self._planned)]
+
+    def wake(self, state: bool, key: tuple[int, int], now_ms: int) -> Step:
+        """Send message k for the n-th time."""
+        k, sent = key
+        plan = self._planned[k]
+        out: list[Any] = [Send(plan.body, plan.address)]
+        if plan.period_ms and (not plan.times or sent < plan.times):
+            out.append(Wake(plan.period_ms, (k, sent + 1)))
+        return state, out
+
+
+def send_messages(host: Host, entry: Entry, values: dict[str, Any], name: str) -> Any:
+    """The service of a configuration's entry; reads all files now, so that errors come at start.
+
+    A relative path is relative to the present folder, as in UxAS; where the files are not there,
+    the configuration's folder, its `rundir` and its `inputs` are looked into (and logged).
+    """
+    problems: list[BadInput] = []
+    planned: list[Planned] = []
+    declared = values["PathToMessageFiles"] or "."
+    beside = host.config.parent
+    bases = (Path(declared), beside / declared, beside / "rundir" / declared, beside / "inputs")
+    for element in entry.children:
+        where = entry.place(element)
+        found = values_of(MESSAGE_ATTRIBUTES, element.attrib, where, "Message", problems)
+        if not found["MessageFileName"]:
+            continue
+        try:
+            bodies = _bodies(host, bases, found["MessageFileName"], where)
+        except BadInput as error:
+            problems.append(error)
+            continue
+        timed = found["SendTime_ms"] is not None  # a period counts only without a time
+        planned += [
+            Planned(
+                body,
+                found["MessageKey"],
+                found["SendTime_ms"] or 0,
+                0 if timed else found["SendPeriod_ms"] or 0,
+                found["NumberTimesToSend"] or 0,
+            )
+            for body in bodies
+        ]
+    from cratous.services.loading.problems import refuse
+
+    refuse(problems)
+    return SendMessagesService(name, tuple(planned))
+
+
+def _bodies(host: Host, bases: tuple[Path, ...], name: str, where: str) -> list[Any]:
+    paths = [Path(os.path.normpath(base / name)) for base in bases]
+    path = next((p for p in paths if p.is_file()), None)
+    if path is None:
+        raise BadInput(
+            "a message file is missing",
+            where=where,
+            item="MessageFileName",
+            expected=" or ".join(dict.fromkeys(str(p) for p in paths)),
+            got=name,
+        )
+    if path != paths[0]:
+        host.log("INFO", f"{where}: {name} is read from {path}")
+    notes: list[str] = []
+    bodies = lmcp.xml.read_file(path, notes)
+    for note in notes:
+        host.log("WARN", note)
+    return bodies
+
+
+class SimulationTime:
+    """Test_SimulationTime: the bus' clock stands still until an entity's state tells the time."""
+
+    subscribes: tuple[str, ...] = ("afrl.cmasi.EntityState",)
+
+    def __init__(self, name: str, clock: Clock) -> None:
+        self.name, self._clock = name, clock
+
+    def start(self) -> int:
+        self._clock.discrete = True
+        return 0
+
+    def handle(self, state: int, envelope: Envelope, now_ms: int) -> Step:
+        self._clock.tell(envelope.body.Time)
+        return envelope.body.Time, ()
+
+    def stop(self, state: int) -> None:
+        """Time of the machine again."""
+        self._clock.discrete = False
+
+
+class HelloWorld:
+    """Says a text every so often, and prints what others say."""
+
+    subscribes: tuple[str, ...] = ("afrl.cmasi.KeyValuePair",)
+
+    def __init__(self, name: str, service_id: int, text: str, period_ms: int, host: Host) -> None:
+        self.name, self._id, self._text = name, service_id, text
+        self._period_ms, self._host = period_ms, host
+
+    def start(self) -> int:
+        return 0
+
+    def begin(self, state: int) -> Step:
+        """The first greeting comes at once."""
+        return state, [Wake(0)]
+
+    def handle(self, state: int, envelope: Envelope, now_ms: int) -> Step:
+        pair = envelope.body
+        self._host.say(
+            f"*** RECEIVED:: Received Id[{self._id}] Sent Id[{pair.Key}] Message[{pair.Value}] ***"
+        )
+        return state + 1, ()
+
+    def wake(self, state: int, key: Any, now_ms: int) -> Step:
+        greeting = lmcp.new("KeyValuePair", Key=str(self._id), Value=self._text)
+        return state, [greeting, Wake(self._period_ms)]
+
+
+class Report(NamedTuple):
+    """The present report, and how often a state and a keep-alive have come."""
+
+    report: Any
+    states: int = 0
+    alive: int = 0
+
+
+class StatusReportService:
+    """Every so often says how a vehicle is: connected entities, tasks, fresh state, authority.
+
+    A state that is older than `stale_ms`, or an autopilot's keep-alive older than `expires_ms`,
+    is no longer called valid.
+    """
+
+    subscribes: tuple[str, ...] = (
+        "afrl.cmasi.EntityState",
+        "uxas.messages.uxnative.EntityJoin",
+        "uxas.messages.uxnative.EntityExit",
+        "uxas.messages.uxnative.AutopilotKeepAlive",
+    )
+
+    def __init__(
+        self, name: str, vehicle_id: int, period_ms: int, stale_ms: int, expires_ms: int
+    ) -> None:
+        self.name, self._vehicle = name, vehicle_id
+        self._period_ms, self._stale_ms, self._expires_ms = period_ms, stale_ms, expires_ms
+
+    def start(self) -> Report:
+        return Report(lmcp.new("OnboardStatusReport", VehicleID=self._vehicle))
+
+    def begin(self, state: Report) -> Step:
+        """The first report comes after one period."""
+        return state, [Wake(self._period_ms, ("report", 0))]
+
+    def handle(self, state: Report, envelope: Envelope, now_ms: int) -> Step:
+        body, kind = envelope.body, envelope.topic.rpartition(".")[2]
+        if kind in ("EntityJoin", "EntityExit"):
+            here = set(state.report.ConnectedEntities)
+            here = here | {body.EntityID} if kind == "EntityJoin" else here - {body.EntityID}
+            report = state.report.copy(ConnectedEntities=sorted(here))
+            return state._replace(report=report), ()
+        if kind == "AutopilotKeepAlive":
+            report = state.report.copy(
+                ValidAuthorization=body.AutopilotEnabled,
+                SpeedAuthorization=body.SpeedAuthorized,
+                GimbalAuthorization=body.GimbalEnabled,
+            )
+            made = state._replace(report=report, alive=state.alive + 1)
+            return made, [Wake(self._expires_ms, ("alive", made.alive))]
+        if self._vehicle != body.ID:
+            return state, ()
+        report = state.report.copy(
+            VehicleTime=body.Time, CurrentTaskList=list(body.AssociatedTasks), ValidState=True
+        )
+        made = state._replace(report=report, states=state.states + 1)
+        return made, [Wake(self._stale_ms, ("state", made.states))]
+
+    def wake(self, state: Report, key: tuple[str, int], now_ms: int) -> Step:
+        what, count = key
+        if what == "report":
+            return state, [state.report.copy(), Wake(self._period_ms, key)]
+        if what == "state" and count == state.states:
+            return state._replace(report=state.report.copy(ValidState=False)), ()
+        if what == "alive" and count == state.alive:
+            off = state.report.copy(
+                ValidAuthorization=False, SpeedAuthorization=False, GimbalAuthorization=False
+            )
+            return state._replace(report=off), ()
+        return state, ()

@@ -1,0 +1,102 @@
+"""What the messages have told so far: the newest of each entity, task, zone and region.
+
+From this a mission is made when a request comes, by the same loader that reads UxAS folders.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from cratous.services.bus import Envelope
+from cratous.services.loading.uxas_cfg import Configuration, Sent
+
+MOST = 100_000  # objects remembered of one kind
+
+
+class World:
+    """A service that remembers; it publishes nothing."""
+
+    subscribes: tuple[str, ...] = (
+        "afrl.cmasi.EntityConfiguration",
+        "afrl.cmasi.EntityState",
+        "afrl.cmasi.Task",
+        "afrl.cmasi.AbstractZone",
+        "afrl.cmasi.OperatingRegion",
+        "afrl.cmasi.RemoveTasks",
+        "afrl.cmasi.RemoveZones",
+        "afrl.cmasi.RemoveEntities",
+    )
+
+    def __init__(self, name: str = "WorldState") -> None:
+        self.name = name
+        self._kept: dict[str, dict[int, Sent]] = {}
+
+    def start(self) -> dict[str, dict[int, Sent]]:
+        return self._kept
+
+    def handle(
+        self, state: dict[str, dict[int, Sent]], envelope: Envelope, now_ms: int
+    ) -> tuple[Any, Iterable[Any]]:
+        self.add(envelope.body, f"message {envelope.seq} from {envelope.source}", now_ms)
+        return state, ()
+
+    def add(self, body: Any, where: str, time_ms: int = 0) -> None:
+        """Remember an object in place of the older one with its id."""
+        kind = type(body).__name__
+        if kind.startswith("Remove"):
+            self._remove(kind, body)
+            return
+        sort, number = _key(body)
+        kept = self._kept.setdefault(sort, {})
+        if number not in kept and len(kept) >= MOST:
+            kept.pop(next(iter(kept)))
+        kept[number] = Sent(body, where, time_ms)
+
+    def task(self, number: int) -> Sent | None:
+        """The newest task with an id."""
+        return self._kept.get("task", {}).get(number)
+
+    def forget(self, sort: str, number: int) -> None:
+        """There is no such object any more."""
+        self._kept.get(sort, {}).pop(number, None)
+
+    def knows(self, body: Any) -> bool:
+        """True if there is an object with the id of this one already."""
+        sort, number = _key(body)
+        return number in self._kept.get(sort, {})
+
+    def of(self, sort: str) -> list[Any]:
+        """All objects of a sort: configuration, state, task, zone, region."""
+        return [sent.body for sent in self._kept.get(sort, {}).values()]
+
+    def configuration(
+        self, path: Path, root: dict[str, str], services: Any, request: Sent
+    ) -> Configuration:
+        """Everything so far and a request, as the loader takes it."""
+        kept = [sent for sort in sorted(self._kept) for sent in self._kept[sort].values()]
+        return Configuration(path, root, services, (*kept, request), ())
+
+    def _remove(self, kind: str, body: Any) -> None:
+        sorts, numbers = {
+            "RemoveTasks": (("task",), "TaskList"),
+            "RemoveZones": (("zone",), "ZoneList"),
+            "RemoveEntities": (("configuration", "state"), "EntityList"),
+        }[kind]
+        for sort in sorts:
+            for number in getattr(body, numbers):
+                self.forget(sort, number)
+
+
+def _key(body: Any) -> tuple[str, int]:
+    if hasattr(body, "TaskID"):
+        return "task", body.TaskID
+    if hasattr(body, "ZoneID"):
+        return "zone", body.ZoneID
+    names = body.all_names
+    if "afrl.cmasi.EntityState" in names:
+        return "state", body.ID
+    if "afrl.cmasi.EntityConfiguration" in names:
+        return "configuration", body.ID
+    return "region", body.ID

@@ -1,0 +1,257 @@
+"""UxAS as a process: configurations and their refusals, services that come and go, virtual time."""
+
+from __future__ import annotations
+
+import socket
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from uxas_tools import LIMIT_S, free_port, process, started, write_cfg
+
+from cratous.bridge import lmcp
+from cratous.services.cli import main
+from cratous.services.loading.problems import BadMission
+from cratous.spec.errors import BadInput
+
+# --- configurations ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("body", "root", "line", "text"),
+    [
+        ('<Service Type="HeloWorld"/>', "", 2, "unknown service type; expected HelloWorld"),
+        ('<Service Type="SteeringService"/>', "", 2, "SteeringService of UxAS is not covered yet"),
+        ('<Service Type="HelloWorld" SendPeriod_s="1"/>', "", 2, "expected SendPeriod_ms"),
+        ('<Service Type="HelloWorld" SendPeriod_ms="soon"/>', "", 2, "a whole number from 1"),
+        ("<Service/>", "", 2, "no Type"),
+        ('<Servise Type="HelloWorld"/>', "", 2, "unknown element"),
+        ('<Service Type="HelloWorld"><Message/></Service>', "", 2, "unknown element"),
+        ("", 'EntityId="7"', 1, "unknown attribute; expected EntityID"),
+        ("", 'ConsoleLoggerSeverityLevel="LOUD"', 1, "DEBUG or INFO or WARN or ERROR"),
+        ("", 'RunDuration_s="-1"', 1, "a whole number from 0"),
+        ("", 'HubPUB="tcp://127.0.0.1:1"', 1, "half of a pair"),
+        ('\n<Bridge Type="TcpBridge"/>', "", 3, "unknown bridge type"),
+        ('<Bridge Type="LmcpObjectNetworkTcpBridge" TcpAddress="5555"/>', "", 2, "not an address"),
+        ('<Bridge Type="LmcpObjectNetworkTcpBridge" Server="maybe"/>', "", 2, "TRUE or FALSE"),
+        (
+            '<Bridge Type="LmcpObjectNetworkTcpBridge">\n<SubscribeToMessage/></Bridge>',
+            "",
+            3,
+            "attribute missing",
+        ),
+        ('<Bridge Type="LmcpObjectNetworkSerialBridge"/>', "", 2, "attribute missing"),
+        (
+            '<Bridge Type="LmcpObjectNetworkZeroMqZyreBridge" NetworkDevice="no0"/>',
+            "",
+            2,
+            "no such network device",
+        ),
+        (
+            '<Bridge Type="LmcpObjectNetworkZeroMqZyreBridge" GossipEndpoint="tcp://h:1"/>',
+            "",
+            2,
+            "gossip is not covered",
+        ),
+        ('<Service Type="PlanBuilderService"/>', "", 2, "it shares memory with"),
+        ('<Service Type="Test_SimulationTime"/>\n' * 2, "", 3, "a second one in one process"),
+        (
+            '<Service Type="SendMessagesService"><Message MessageFileName="no.xml"/></Service>',
+            "",
+            2,
+            "a message file is missing",
+        ),
+    ],
+)
+def test_a_bad_configuration_is_refused_with_file_and_line(
+    tmp_path: Path, body: str, root: str, line: int, text: str
+) -> None:
+    path = write_cfg(tmp_path, body, root)
+    if root.startswith("EntityId"):
+        path.write_text(path.read_text().replace(' EntityID="100"', ""))
+    with pytest.raises(BadInput) as caught:
+        process(path)
+    assert f"{path}:{line}" in str(caught.value)
+    assert text in str(caught.value)
+
+
+def test_all_problems_are_told_together(tmp_path: Path) -> None:
+    path = write_cfg(tmp_path, '<Service Type="A"/>\n<Bridge Type="B"/>\n<Service Type="C"/>')
+    with pytest.raises(BadMission) as caught:
+        process(path)
+    assert [p.where.rpartition(":")[2] for p in caught.value.problems] == ["2", "3", "4"]
+
+
+def test_types_are_left_out_only_if_asked(tmp_path: Path) -> None:
+    path = write_cfg(tmp_path, '<Service Type="SteeringService"/>')
+    one, said = process(path, without=frozenset({"SteeringService"}))
+    assert said.has("SteeringService is left out, as asked")
+    one.close()
+
+
+def test_a_bridge_whose_port_is_taken_leaves_nothing_open(tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        busy, free = taken.getsockname()[1], free_port()
+        tcp = '<Bridge Type="LmcpObjectNetworkTcpBridge" Server="TRUE" TcpAddress="tcp://127.0.0.1:{}"/>'
+        path = write_cfg(tmp_path, tcp.format(free) + "\n" + tcp.format(busy))
+        with pytest.raises(BadInput, match="cannot listen") as caught:
+            process(path)
+        assert caught.value.where == f"{path}:3"
+        socket.create_server(("127.0.0.1", free)).close()
+
+
+def test_the_command_refuses_checks_and_prints(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["uxas"]) == 2
+    assert "cfg.xml" in capsys.readouterr().err
+    write_cfg(tmp_path, '<Service Type="HelloWorld"/>')
+    assert main(["uxas", "--check"]) == 0
+    assert "1 services" in capsys.readouterr().out
+    assert not (tmp_path / "log").exists()
+    assert main(["uxas", "-version", "--virtual-time", "-runUntil", "3"]) == 0
+    assert "CMASI: 3" in capsys.readouterr().out
+    assert (tmp_path / "datawork").is_dir()
+    logs = list((tmp_path / "log").iterdir())
+    assert len(logs) == 1
+    assert "service 51 is HelloWorld" in logs[0].read_text()
+
+
+# --- services -----------------------------------------------------------------------------------
+
+HELLO = '<Service Type="HelloWorld" StringToSend="{}" SendPeriod_ms="{}"/>\n'
+
+
+def trace(path: Path, until_s: float) -> list[tuple[Any, ...]]:
+    one, _ = process(path, virtual=True)
+    seen: list[tuple[Any, ...]] = []
+    one.bus.tap(lambda e: seen.append((e.seq, e.time_ms, e.source, e.topic, repr(e.body))))
+    one.run(until_s)
+    one.close()
+    return seen
+
+
+def test_virtual_time_gives_the_same_messages_at_exact_times(tmp_path: Path) -> None:
+    path = write_cfg(tmp_path, HELLO.format("a", 300) + HELLO.format("b", 700))
+    first, second = trace(path, 3600.0), trace(path, 3600.0)
+    assert first == second
+    assert len(first) > 15_000
+    times = [
+        t for _, t, source, topic, _ in first if source == "HelloWorld" and "KeyValue" in topic
+    ]
+    assert times == list(range(0, 3_600_001, 300))
+
+
+def test_greetings_are_heard_by_others_only(tmp_path: Path) -> None:
+    path = write_cfg(tmp_path, HELLO.format("hi", 1000) + HELLO.format("ho", 1000))
+    one, said = process(path, virtual=True)
+    one.run(0.5)
+    assert [s for s in said if "RECEIVED" in s] == [
+        "*** RECEIVED:: Received Id[52] Sent Id[51] Message[hi] ***",
+        "*** RECEIVED:: Received Id[51] Sent Id[52] Message[ho] ***",
+    ]
+    one.close()
+
+
+def test_messages_are_sent_once_periodically_and_to_addresses(tmp_path: Path) -> None:
+    (tmp_path / "inputs").mkdir()
+    (tmp_path / "inputs" / "pair.xml").write_text(
+        '<KeyValuePair Series="CMASI"><Key>k</Key></KeyValuePair>'
+    )
+    path = write_cfg(
+        tmp_path,
+        """<Service Type="SendMessagesService" PathToMessageFiles="../elsewhere/">
+        <Message MessageFileName="pair.xml" SendTime_ms="250"/>
+        <Message MessageFileName="pair.xml" SendPeriod_ms="400" NumberTimesToSend="3"/>
+        <Message MessageFileName="pair.xml" SendTime_ms="300" MessageKey="eid100.sid77"/>
+        </Service>""",
+    )
+    one, said = process(path, virtual=True)
+    seen: list[tuple[int, str]] = []
+    one.bus.tap(lambda e: seen.append((e.time_ms, e.to)))
+    one.run(10.0)
+    pair = "afrl.cmasi.KeyValuePair"
+    assert [s for s in seen if "Startup" not in s[1]] == [
+        (0, pair),
+        (250, pair),
+        (300, "eid100.sid77"),
+        (400, pair),
+        (800, pair),
+    ]
+    assert said.has("inputs/pair.xml")
+    one.close()
+
+
+def test_reports_go_stale_with_the_states(tmp_path: Path) -> None:
+    report = '<Service Type="StatusReportService" VehicleID="7" ReportPeriod_ms="1000" StaleStateTime_ms="2500"/>'
+    one, _ = process(write_cfg(tmp_path, report), virtual=True)
+    seen: list[Any] = []
+    one.bus.tap(lambda e: "Onboard" in e.topic and seen.append(e.body))
+    one.bus.publish(lmcp.new("EntityJoin", EntityID=9), "x")
+    one.bus.publish(lmcp.new("AirVehicleState", ID=7, Time=5, AssociatedTasks=[3]), "x")
+    one.bus.publish(lmcp.new("AirVehicleState", ID=8), "x")
+    one.run(4.0)
+    assert [r.ValidState for r in seen] == [True, True, False, False]
+    assert (seen[0].VehicleTime, seen[0].ConnectedEntities, seen[0].CurrentTaskList) == (
+        5,
+        [9],
+        [3],
+    )
+    one.close()
+
+
+def test_simulated_time_stands_until_a_state_tells(tmp_path: Path) -> None:
+    body = '<Service Type="Test_SimulationTime"/>\n' + HELLO.format("x", 1000)
+    one, _ = process(write_cfg(tmp_path, body))
+    seen: list[tuple[int, str]] = []
+    one.bus.tap(lambda e: "KeyValue" in e.topic and seen.append(e.time_ms))
+    for _ in range(5):
+        one.turn(0.01)
+    assert seen == [0]
+    one.bus.publish(lmcp.new("AirVehicleState", Time=2500), "sim")
+    one.turn(0.01)
+    one.turn(0.01)
+    assert seen == [0, 1000, 2000]
+    one.close()
+
+
+def test_services_are_made_and_ended_at_run_time_and_leave_nothing(tmp_path: Path) -> None:
+    port = free_port()
+    tcp = f'<Bridge Type="LmcpObjectNetworkTcpBridge" Server="TRUE" TcpAddress="tcp://127.0.0.1:{port}"/>'
+    one, said = process(write_cfg(tmp_path, HELLO.format("x", 100) + tcp))
+    before = one.bus.names()
+
+    def tell(kind: str, **fields: Any) -> None:
+        one.bus.publish(lmcp.new(kind, **fields), "test")
+        one.turn(0.001)
+
+    hello = '&lt;Service Type="HelloWorld" StringToSend="new"&gt;'  # as UxAS sends it
+    tell("CreateNewService", ServiceID=200, XmlConfiguration=hello)
+    assert one.manager.services[200] == "HelloWorld[200]"
+    tell("CreateNewService", ServiceID=200, XmlConfiguration=hello)
+    assert said.has("the id is taken")
+    tell("CreateNewService", XmlConfiguration='<Service Type="Nonsense"/>')
+    assert said.has("unknown service type")
+    tell("CreateNewService", XmlConfiguration="<Service")
+    assert said.has("refused")
+    tell("KillService", ServiceID=200)
+    assert one.bus.names() == before
+    assert one.bus.next_wake_ms() is not None
+    tell("KillService", ServiceID=52)
+    socket.create_server(("127.0.0.1", port)).close()  # its port is free again
+    tell("KillService", ServiceID=51)
+    assert one.bus.next_wake_ms() is None, "its timer is gone"
+    assert one.bus.names() == ("ServiceManager",)
+    tell("KillService", ServiceID=-1)
+    assert one.manager.ended
+    one.close()
+
+
+def test_run_duration_and_kill_end_the_process(tmp_path: Path) -> None:
+    path = write_cfg(tmp_path, HELLO.format("x", 100), 'RunDuration_s="1"')
+    begun = time.monotonic()
+    with started(path) as running:
+        assert running.wait(LIMIT_S) == 0
+    assert time.monotonic() - begun >= 1.0

@@ -1,0 +1,124 @@
+"""What the tests of `cratous uxas` share: configurations, loops with a limit, a CMASI client."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from cratous.bridge import envelope as wire
+from cratous.bridge import lmcp, sentinel
+from cratous.services.uxas.logs import Logs
+from cratous.services.uxas.process import Process
+from cratous.services.uxas.settings import read
+
+HEAD = '<UxAS FormatVersion="1.0" EntityID="100" EntityType="Aircraft" {}>\n'
+LIMIT_S = 30.0
+
+
+def free_port() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        return int(probe.getsockname()[1])
+
+
+def write_cfg(folder: Path, body: str, root: str = "") -> Path:
+    path = folder / "cfg.xml"
+    path.write_text(HEAD.format(root) + body + "\n</UxAS>\n")
+    return path
+
+
+class Said(list):
+    """A logger's console."""
+
+    def has(self, text: str) -> bool:
+        return any(text in line for line in self)
+
+
+def process(path: Path, **more: Any) -> tuple[Process, Said]:
+    """A process in this test's thread; it runs only while `until` turns it."""
+    said = Said()
+    return Process(read(path), Logs("DEBUG", echo=said.append), say=said.append, **more), said
+
+
+def until(done: Any, *processes: Process, limit_s: float = LIMIT_S) -> None:
+    end = time.monotonic() + limit_s
+    while not done():
+        assert time.monotonic() < end, "the time limit is over"
+        for one in processes:
+            one.turn(0.002)
+
+
+class Client:
+    """A client as a test-suite would have it: a plain socket and sentinel frames."""
+
+    def __init__(self, port: int) -> None:
+        end = time.monotonic() + LIMIT_S
+        while True:
+            try:
+                self.sock = socket.create_connection(("127.0.0.1", port), timeout=5)
+                break
+            except OSError:
+                assert time.monotonic() < end, "nobody listens"
+                time.sleep(0.05)
+        self.sock.setblocking(False)
+        self.stream = sentinel.FrameStream()
+        self.got: list[wire.AddressedMessage] = []
+
+    def send(self, body: Any, entity: int = 0, service: int = 0) -> None:
+        message = wire.enclose(
+            body.all_names[0], lmcp.binary.pack(body), entity_id=entity, service_id=service
+        )
+        self.raw(sentinel.frame(message.pack()))
+
+    def raw(self, data: bytes) -> None:
+        self.sock.setblocking(True)
+        self.sock.sendall(data)
+        self.sock.setblocking(False)
+
+    def read(self) -> list[wire.AddressedMessage]:
+        with contextlib.suppress(BlockingIOError):
+            while data := self.sock.recv(1 << 16):
+                self.got += [wire.parse(p) for p in self.stream.feed(data)]
+        return self.got
+
+    def kinds(self) -> list[str]:
+        return [message.descriptor.rpartition(".")[2] for message in self.read()]
+
+    def wait(self, kind: str) -> Any:
+        """The first message of a kind, from another process."""
+        end = time.monotonic() + LIMIT_S
+        while kind not in self.kinds():
+            assert time.monotonic() < end, f"no {kind} came, but {self.kinds()}"
+            time.sleep(0.01)
+        return lmcp.binary.unpack(self.got[self.kinds().index(kind)].payload)
+
+    def close(self) -> None:
+        self.sock.close()
+
+
+@contextlib.contextmanager
+def started(path: Path, *options: str) -> Any:
+    """`cratous uxas` as a process of its own, in the configuration's folder."""
+    running = subprocess.Popen(
+        [sys.executable, "-m", "cratous", "uxas", "-cfgPath", str(path), *options],
+        cwd=path.parent,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+    )
+    try:
+        yield running
+    finally:
+        if running.poll() is None:
+            running.terminate()
+        try:
+            running.wait(15)
+        except subprocess.TimeoutExpired:
+            running.kill()
+            running.wait(5)
