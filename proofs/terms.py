@@ -6,13 +6,14 @@ that stands for a function which is not looked into.
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
 from typing import Any, get_type_hints
 
 import z3
 
 from cratous.core.kernel import Vec2
-from cratous.proofs.symbolic import PATHS, Sym, SymBool, SymInt, SymReal, _raw, wrap
+from cratous.proofs.symbolic import PATHS, Sym, SymBool, SymInt, SymReal, _raw, as_real, wrap
 
 
 class Stub:
@@ -20,23 +21,29 @@ class Stub:
 
     def __init__(self, name: str, function: Callable[..., Any]) -> None:
         self.name = name
-        self.result = get_type_hints(function)["return"]
+        hints = get_type_hints(function)
+        self.result = hints["return"]
+        self.kinds = [hints[n] for n in inspect.signature(function).parameters]
         self.calls: list[tuple[Any, ...]] = []
         self.results: dict[str, Any] = {}
 
     def __call__(self, *args: Any) -> Any:
-        key = "; ".join(normal(arg) for arg in args)
+        # an integer literal beside a real is one: equal arguments must have one text
+        key = "; ".join(
+            normal(arg, kind is float) for arg, kind in zip(args, self.kinds, strict=True)
+        )
         if key not in self.results:
             self.results[key] = fresh(f"{self.name}#{len(self.calls)}", self.result)
             self.calls.append(args)
         return self.results[key]
 
 
-def normal(value: Any) -> str:
-    """A normal form of an argument: polynomials expanded and sorted."""
+def normal(value: Any, real: bool = False) -> str:
+    """A normal form of an argument: polynomials expanded and sorted; `real`: of that type."""
     if isinstance(value, tuple):
         return ", ".join(normal(part) for part in value)
-    return str(z3.simplify(known(value), som=True, sort_sums=True).sexpr())
+    term = as_real(known(value)) if real else known(value)
+    return str(z3.simplify(term, som=True, sort_sums=True).sexpr())
 
 
 def fresh(name: str, kind: Any) -> Any:
