@@ -1,12 +1,11 @@
 """Between two neighbouring parameters of a leg's crossings, a leg's contact with an edge does not
 change: its points there are all on the edge or all off it."""
 
-from typing import Any
-
 from cratous.core.geofence_passage import cross, crossing, foot
 from cratous.core.kernel import Vec2
 from cratous.core.polygon import on_segment, orient
 from cratous.proofs.claim import Claim
+from cratous.proofs.crossings import feet_named, undisturbed
 from cratous.spec import geofence
 
 
@@ -19,21 +18,13 @@ def claim(c: Claim) -> None:
     moves = c.any_of(p.x != q.x, p.y != q.y)
     c.opaque(crossing, cross, foot, on_segment, orient)
     at, first, second = c.use(crossing, p, q, a, b), c.use(foot, p, q, a), c.use(foot, p, q, b)
-
-    def not_between(ratio: Any) -> Any:
-        # a parameter num / den that is not strictly between low and high
-        return (ratio.num - low * ratio.den) * (ratio.num - high * ratio.den) >= 0
-
-    c.premise(c.implies(at.den != 0, not_between(at)))
-    for end in (first, second):
-        c.premise(c.implies(at.den == 0, not_between(end)))
+    undisturbed(c, p, q, a, b, low, high)
     here, there = (Vec2(*c.define(geofence.along, p, q, s)) for s in (t, u))
     on = c.use(on_segment, here, a, b)
     c.lemma("geofence_contact_with_an_edge_is_at_its_crossing", p=p, q=q, a=a, b=b, t=t)
     c.lemma("geofence_foot_has_the_square_of_the_leg", p=p, q=q, a=a, b=b)
-    # the parameters of the feet, where the leg has a length
     s, w = c.reals("s w")
-    c.premise(c.implies(moves, c.all_of(s * first.den == first.num, w * second.den == second.num)))
+    feet_named(c, p, q, a, b, s, w)
     c.step(c.implies(c.all_of(on, at.den != 0), False), "no contact but at the crossing")
     parallel = c.all_of(on, at.den == 0, moves)
     apart = (first.num - u * first.den) * (second.num - u * second.den) <= 0
