@@ -9,7 +9,7 @@ from cratous.spec import geofence
 def claim(c: Claim) -> None:
     p, a, b = c.vector("p"), c.vector("a"), c.vector("b")
     d, t = c.reals("d t")
-    c.opaque(edge_distance, geofence.squared_distance)
+    c.opaque(edge_distance)
     inside = c.all_of(t >= 0, t <= 1)
     c.lemma("geofence_edge_distance_is_the_least", when=inside, p=p, a=a, b=b, t=t)
     verdict = c.use(edge_against, p, a, b, d)
