@@ -55,19 +55,19 @@ def narrowed_place(place: int, against: int) -> int:
     return min(place, against)
 
 
-@kernel(implements="geofence.intersection")
+@kernel(implements="geofence.intersection_step")
 def everywhere_step(least: int, place: int) -> int:
     """Add a region to an intersection."""
     return both_places(least, place)
 
 
-@kernel(implements="geofence.union")
+@kernel(implements="geofence.union_step")
 def anywhere_step(greatest: int, place: int) -> int:
     """Add a region to a union."""
     return either_place(greatest, place)
 
 
-@kernel(implements="geofence.in_open")
+@kernel(implements="geofence.place_of")
 def place_result(place: int) -> int:
     """The place in all of them together."""
     return place

@@ -35,3 +35,8 @@ def crossing_named(c: Claim, p: Any, q: Any, a: Any, b: Any, s: Any, t: Any) -> 
     on_w = k * s == (a.x - p.x) * uy - (a.y - p.y) * ux
     on_u = k * t == (a.x - p.x) * wy - (a.y - p.y) * wx
     c.premise(c.implies(k != 0, c.all_of(on_w, on_u)))
+
+
+def share(c: Claim, num: Any, den: Any) -> Any:
+    """num / den, or 0 where den is 0."""
+    return c.when(den == 0, den - den, num / c.when(den == 0, den - den + 1, den))

@@ -199,6 +199,22 @@ def in_closed(place: int) -> bool:
     return place >= 0
 
 
+class Parts(NamedTuple):
+    """To which parts of a region a point belongs."""
+
+    open: bool
+    closed: bool
+
+
+def place_of(parts: Parts) -> int:
+    """1 in the open part, 0 in the closed one alone, -1 in neither."""
+    if parts.open:
+        return 1
+    if parts.closed:
+        return 0
+    return -1
+
+
 def in_open_layer(alt: float, floor: float, ceiling: float) -> bool:
     """The altitude belongs to the open part of a layer."""
     return altitude_in_keep_in(alt, floor, ceiling)
@@ -217,6 +233,16 @@ def intersection(one: bool, other: bool) -> bool:
 def union(one: bool, other: bool) -> bool:
     """A part of a union, from the same parts of both regions."""
     return one or other
+
+
+def intersection_step(parts: Parts, open_: bool, closed: bool) -> Parts:
+    """Add a region to an intersection."""
+    return Parts(intersection(parts.open, open_), intersection(parts.closed, closed))
+
+
+def union_step(parts: Parts, open_: bool, closed: bool) -> Parts:
+    """Add a region to a union."""
+    return Parts(union(parts.open, open_), union(parts.closed, closed))
 
 
 def complement(other_part: bool) -> bool:

@@ -15,7 +15,7 @@ from cratous.core.polygon import (
 )
 from cratous.proofs.chains import closed_chain
 from cratous.proofs.claim import Claim
-from cratous.proofs.crossings import crossing_named, feet_named
+from cratous.proofs.crossings import share
 from cratous.proofs.sweeping import swept
 from cratous.spec import geofence
 
@@ -30,15 +30,16 @@ def claim(c: Claim) -> None:
     def edge(a: Any, b: Any) -> None:
         c.lemma("geofence_crossings_telescope_along_an_edge", p=p, q=m, a=a, b=b)
         c.lemma("geofence_an_end_on_an_edge_is_a_contact", p=p, q=m, a=a, b=b)
-        s, t, f, g, i, j, k, o, r = c.reals("s t f g i j k o r")
-        crossing_named(c, p, m, a, b, s, t)
-        feet_named(c, p, m, a, b, f, g)
-        for v, w in zip((s - s, s - s + 1, s, f, g), (i, j, k, o, r), strict=True):
+        # the parameters that the lemma wants: of the crossing and the feet, and of their edge points
+        wx, wy, ux, uy = m.x - p.x, m.y - p.y, b.x - a.x, b.y - a.y
+        det = wx * uy - wy * ux
+        s = share(c, (a.x - p.x) * uy - (a.y - p.y) * ux, det)
+        t = share(c, (a.x - p.x) * wy - (a.y - p.y) * wx, det)
+        f, g = (share(c, (v.x - p.x) * wx + (v.y - p.y) * wy, wx * wx + wy * wy) for v in (a, b))
+        named: dict[str, Any] = {"s": s, "t": t, "f": f, "g": g}
+        for name, v in zip("ijkor", (s - s, s - s + 1, s, f, g), strict=True):
             at = c.define(geofence.along, p, m, v)
-            ux, uy = b.x - a.x, b.y - a.y
-            c.premise((ux * ux + uy * uy) * w == (at.x - a.x) * ux + (at.y - a.y) * uy)
-            c.premise(c.implies(ux * ux + uy * uy == 0, w == 0))
-        named = {"s": s, "t": t, "f": f, "g": g, "i": i, "j": j, "k": k, "o": o, "r": r}
+            named[name] = share(c, (at.x - a.x) * ux + (at.y - a.y) * uy, ux * ux + uy * uy)
         c.lemma("geofence_contact_puts_the_boundary_as_near", p=p, m=m, a=a, b=b, d=d, **named)
 
     def invariant(state: list[Any], first: Any, last: Any) -> Any:
