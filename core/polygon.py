@@ -39,11 +39,13 @@ def on_segment(p: Vec2, a: Vec2, b: Vec2) -> bool:
 @kernel(implements="geofence.crosses_ray")
 def crosses_ray(p: Vec2, a: Vec2, b: Vec2) -> bool:
     """True iff the edge a-b, without its upper end, meets the open ray from p towards +x."""
-    if a.y <= p.y and b.y > p.y:
+    a_below = a.y <= p.y
+    b_below = b.y <= p.y
+    if a_below == b_below:
+        return False
+    if a_below:
         return orient(a, b, p) > 0
-    if b.y <= p.y and a.y > p.y:
-        return orient(a, b, p) < 0
-    return False
+    return orient(a, b, p) < 0
 
 
 @kernel(implements="geofence.location_step")

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from cratous.core.kernel import Fold
-from cratous.proofs.claim import Claim
+from cratous.proofs.claim import Claim, _term
 from cratous.proofs.lift import REPLACED
 
 Run = tuple[Fold[Any], Any, tuple[Any, ...]]
@@ -37,6 +37,8 @@ def closed_chain(
     lemmas and premises on one more edge; begin(first): premises on the first vertex; goal(results): what follows for the folds' results. models: folds
     over definitions, which run along; their accumulators and results come after the others.
     """
+    if c.prefix:
+        return  # used as a lemma, an induction has no goals to offer, as with `Claim.fold`
     first, last, to = c.vector("first"), c.vector("last"), c.vector("to")
     folds = [REPLACED.get(fold, fold) for fold, _, _ in (*runs, *models)]
     accumulators = [acc for _, acc, _ in (*runs, *models)]
@@ -48,17 +50,27 @@ def closed_chain(
             c.kernels.append(fold.name)
     begin(first)
     starts = [fold.start for fold in folds]
-    c.step(invariant(starts, first, first), f"{text}: base, a chain without edges")
-    before = invariant(accumulators, first, last)
+    c._owe("base", f"{text}: a chain without edges", _term(invariant(starts, first, first)))
+    # the folds are run only where the invariant holds, so what they owe is owed there
+    before = _given(c, invariant(accumulators, first, last))
     edge(last, to)
     after = [
         read(fold.step, acc, last, to, *context)
         for read, fold, acc, context in zip(readers, folds, accumulators, contexts, strict=True)
     ]
-    c.step(c.implies(before, invariant(after, first, to)), f"{text}: step, one more edge")
-    closed = invariant(accumulators, first, first)
+    c._owe("step", f"{text}: one more edge", _term(invariant(after, first, to)))
+    c.facts = c.facts[:before]
+    _given(c, invariant(accumulators, first, first))
     results = [
         read(fold.finish, acc)
         for read, fold, acc in zip(readers, folds, accumulators, strict=True)
     ]
-    c.show(c.implies(closed, goal(results)), f"{text}: use, the chain is closed")
+    c._owe("use", f"{text}: the chain is closed", _term(goal(results)))
+    c.facts = c.facts[:before]
+
+
+def _given(c: Claim, condition: Any) -> int:
+    """Take a condition for granted for now; returns how many facts there were before."""
+    before = len(c.facts)
+    c.facts.append(_term(condition))
+    return before
