@@ -41,11 +41,13 @@ class _Shape:
         hints = get_type_hints(fold.step)
         widths = [_width(hints[n]) for n in names]
         self.kinds = [hints[n] for n in names[1:]]
-        columns = [str(column.value) for column in filtered(fold.step).program.columns]
+        program = filtered(fold.step).program
+        columns = [str(column.value) for column in program.columns]
         state, items = widths[0], sum(widths[1 : 1 + arguments])
         self.state = columns[:state]
         self.items = columns[state : state + items]
         self.context = columns[state + items :]
+        self.labels = program.labels[state + items :]
 
 
 def _certainty(found: Filter) -> str:
@@ -156,7 +158,7 @@ def folded(fold: Fold[Any], arguments: int = 2, rest: Rest | None = None) -> Cal
 def _refuse_not_finite(
     where: str, shape: _Shape, columns: list[np.ndarray], index: np.ndarray
 ) -> None:
-    for label, column in zip(shape.context, columns, strict=True):
+    for label, column in zip(shape.labels, columns, strict=True):
         bad = np.flatnonzero(~np.isfinite(column))
         if bad.size:
             raise BadInput(

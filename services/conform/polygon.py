@@ -64,7 +64,8 @@ def judge(case: dict[str, Any]) -> Result:
             if got != wanted:
                 text = f"{what}: expected {wanted}, got {got} (vertices {order}); "
                 text += f"point {point!r}, {len(vertices)} vertices"
-                return failed(name, f"{what}: {wanted} taken for {got}", text, checks)
+                label = f"{wanted} taken for {got}"
+                return failed(name, label if what == "location" else f"{what}: {label}", text, checks)
     return passed(name, checks)
 
 
