@@ -59,7 +59,7 @@ def _points(points: Any, where: str, item: str, space: bool) -> np.ndarray:
     wanted = "(..., 3): x, y, altitude" if space else "(..., 2) or (..., 3): x, y, altitude"
     try:
         given = np.asarray(points)
-        found = given.astype(np.float64)
+        found = given.astype(np.float64, copy=False)
     except (TypeError, ValueError, OverflowError) as error:
         raise BadInput(
             "no array of numbers", where=where, item=item, expected=wanted, got=repr(points)[:80]
@@ -77,9 +77,9 @@ def _points(points: Any, where: str, item: str, space: bool) -> np.ndarray:
             expected=wanted,
             got=str(found.shape),
         )
-    bad = np.argwhere(~np.isfinite(found))
-    if bad.size:
-        at = tuple(bad[0].tolist())
+    finite = np.isfinite(found)
+    if not finite.all():
+        at = tuple(np.argwhere(~finite)[0].tolist())
         name = f"{item}[{', '.join(map(str, at))}]"
         raise BadInput(
             "not finite", where=where, item=name, expected="a number", got=str(found[at])

@@ -195,9 +195,7 @@ def region(
     for name, value in (("floor_m", floor_m), ("ceiling_m", ceiling_m)):
         if value is not None and not (math.isfinite(value) and abs(value) < UNBOUNDED_M):
             expected = "a number, or None for no bound"
-            raise BadInput(
-                "not finite", where=where, item=name, expected=expected, got=str(value)
-            )
+            raise BadInput("not finite", where=where, item=name, expected=expected, got=str(value))
     if floor_m is not None and ceiling_m is not None and not floor_m < ceiling_m:
         raise BadInput(
             "the region has no height",

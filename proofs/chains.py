@@ -62,8 +62,7 @@ def closed_chain(
     c.facts = c.facts[:before]
     _given(c, invariant(accumulators, first, first))
     results = [
-        read(fold.finish, acc)
-        for read, fold, acc in zip(readers, folds, accumulators, strict=True)
+        read(fold.finish, acc) for read, fold, acc in zip(readers, folds, accumulators, strict=True)
     ]
     c._owe("use", f"{text}: the chain is closed", _term(goal(results)))
     c.facts = c.facts[:before]

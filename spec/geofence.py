@@ -123,17 +123,13 @@ def within_at(p: Point, a: Point, b: Point, d: float, t: float) -> bool:
     return t >= 0 and t <= 1 and squared_distance(p, along(a, b, t)) <= d * d
 
 
-def legs_nearer_at(
-    p: Point, q: Point, a: Point, b: Point, d: float, s: float, t: float
-) -> bool:
+def legs_nearer_at(p: Point, q: Point, a: Point, b: Point, d: float, s: float, t: float) -> bool:
     """The points of p-q at s and of a-b at t are nearer to each other than d."""
     inside = s >= 0 and s <= 1 and t >= 0 and t <= 1
     return inside and squared_distance(along(p, q, s), along(a, b, t)) < d * d
 
 
-def legs_within_at(
-    p: Point, q: Point, a: Point, b: Point, d: float, s: float, t: float
-) -> bool:
+def legs_within_at(p: Point, q: Point, a: Point, b: Point, d: float, s: float, t: float) -> bool:
     """The points of p-q at s and of a-b at t are no farther from each other than d."""
     inside = s >= 0 and s <= 1 and t >= 0 and t <= 1
     return inside and squared_distance(along(p, q, s), along(a, b, t)) <= d * d

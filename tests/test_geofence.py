@@ -144,7 +144,11 @@ def test_arrays_are_exact_where_doubles_are_not():
     # the edge through the origin: a point with tiny coordinates on it, and one ulp off it
     shape = polygon([(-3.0 * 2**30, -1.0 * 2**30), (3.0 * 2**30, 1.0 * 2**30), (0, 2.0**31)])
     tiny = 2.0**-60
-    points = [(3 * tiny, tiny), (3 * tiny, math.nextafter(tiny, 1)), (3 * tiny, math.nextafter(tiny, 0))]
+    points = [
+        (3 * tiny, tiny),
+        (3 * tiny, math.nextafter(tiny, 1)),
+        (3 * tiny, math.nextafter(tiny, 0)),
+    ]
     assert geofence.places(points, shape).tolist() == [0, 1, -1]
     huge = polygon([(0, 0), (2.0**900, 0), (0, 2.0**900)])
     assert geofence.places([(2.0**899, 2.0**899), (2.0**899, 2.0**898)], huge).tolist() == [0, 1]
@@ -224,7 +228,17 @@ def test_distances_are_exact(seed):
 
 def test_buffers_round_corners_and_meet_at_their_boundary():
     square = polygon(SQUARE)
-    points = [(13, 14), (13, 14.5), (12.9, 14), (5, 15), (5, 5), (5, 10), (3, 5), (2.9, 5), (3.1, 5)]
+    points = [
+        (13, 14),
+        (13, 14.5),
+        (12.9, 14),
+        (5, 15),
+        (5, 5),
+        (5, 10),
+        (3, 5),
+        (2.9, 5),
+        (3.1, 5),
+    ]
     wide = geofence.buffered_places(points, square, 5, inwards=False)
     assert wide.tolist() == [0, -1, 1, 0, 1, 1, 1, 1, 1]
     narrow = geofence.buffered_places(points, square, 3, inwards=True)
@@ -314,7 +328,10 @@ def test_climbing_legs_are_judged_at_each_point():
 
 
 def test_unions_of_keep_ins_may_be_crossed():
-    west, east = polygon([(0, 0), (6, 0), (6, 9), (0, 9)]), polygon([(5, 0), (9, 0), (9, 9), (5, 9)])
+    west, east = (
+        polygon([(0, 0), (6, 0), (6, 9), (0, 9)]),
+        polygon([(5, 0), (9, 0), (9, 9), (5, 9)]),
+    )
     assert geofence.leg_stays_inside((1, 1), (8, 8), (west, east))
     beside = polygon([(6, 0), (9, 0), (9, 9), (6, 9)])
     # a shared edge belongs to neither open part
@@ -337,7 +354,7 @@ def test_stretches_are_what_dense_points_see(seed):
         for one, other in itertools.pairwise(stretches):
             assert one.end == other.begin
             assert one.place != other.place
-        for k in range(0, 61):
+        for k in range(61):
             t = Fraction(k, 60)
             point = (p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1]))
             places = {s.place for s in stretches if s.begin <= t <= s.end}

@@ -21,7 +21,11 @@ from cratous.spec import well_clear as meaning
 from cratous.spec.errors import BadInput
 
 gate.load_all()
-QUICK = ["exactly_one_gives_way", "geofence_orient_is_the_turn", "geofence_straddles_is_its_definition"]
+QUICK = [
+    "exactly_one_gives_way",
+    "geofence_orient_is_the_turn",
+    "geofence_straddles_is_its_definition",
+]
 
 
 # -- the structural hash ----------------------------------------------------------------------
@@ -241,7 +245,9 @@ def test_contradictory_assumptions_prove_nothing():
 
 
 def test_two_theorems_of_one_name_are_refused_with_both_places(tmp_path: Path):
-    (tmp_path / "geofence_orient_is_the_turn.py").write_text('"""Mine."""\n\n\ndef claim(c):\n    pass\n')
+    (tmp_path / "geofence_orient_is_the_turn.py").write_text(
+        '"""Mine."""\n\n\ndef claim(c):\n    pass\n'
+    )
     with pytest.raises(BadInput, match="two theorems are called") as caught:
         prover.load_claim("geofence_orient_is_the_turn", tmp_path)
     assert "proofs/theorems/geofence_orient_is_the_turn.py" in caught.value.where

@@ -15,7 +15,11 @@ from cratous.spec.errors import BadInput
 
 pytest.importorskip("cvc5")
 gate.load_all()
-QUICK = ["exactly_one_gives_way", "geofence_orient_is_the_turn", "geofence_straddles_is_its_definition"]
+QUICK = [
+    "exactly_one_gives_way",
+    "geofence_orient_is_the_turn",
+    "geofence_straddles_is_its_definition",
+]
 
 
 def test_cvc5_confirms_what_is_true():

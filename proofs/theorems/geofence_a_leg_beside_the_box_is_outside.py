@@ -29,7 +29,9 @@ def claim(c: Claim) -> None:
         seen, met = states
         telescoped = c.same(c.same(above(first), above(last)), c.negation(seen.odd))
         left = p.x < south
-        parity = c.any_of(c.all_of(left, telescoped), c.all_of(c.negation(left), c.negation(seen.odd)))
+        parity = c.any_of(
+            c.all_of(left, telescoped), c.all_of(c.negation(left), c.negation(seen.odd))
+        )
         within = c.all_of(boxed(first), boxed(last))
         return c.all_of(within, c.negation(seen.on), c.negation(met), parity)
 

@@ -27,7 +27,14 @@ def claim(c: Claim) -> None:
     crossing_named(c, here, there, a, b, s, r)
     c.lemma(
         "geofence_contact_is_at_a_point_of_the_leg",
-        p=here, q=there, a=a, b=b, s=s, t=r, f=f, g=g,
+        p=here,
+        q=there,
+        a=a,
+        b=b,
+        s=s,
+        t=r,
+        f=f,
+        g=g,
     )
     same: dict[str, Any] = {"p": p, "q": q, "a": a, "b": b, "low": low, "high": high}
     for v in (s - s, s - s + 1, s, f, g):
@@ -36,7 +43,12 @@ def claim(c: Claim) -> None:
         for at in (t, u):
             c.lemma(
                 "geofence_contact_is_constant_between_crossings",
-                when=inside, t=w, u=at, s=i, w=j, **same,
+                when=inside,
+                t=w,
+                u=at,
+                s=i,
+                w=j,
+                **same,
             )
         there_ = Vec2(*c.define(geofence.along, p, q, w))
         part = Vec2(*c.define(geofence.along, here, there, v))

@@ -22,7 +22,10 @@ def claim(c: Claim) -> None:
     # the common direction: ds of the leg is dt of the edge; where one is a point, the other moves
     leg, edge = wx * wx + wy * wy, ux * ux + uy * uy
     both = wx * ux + wy * uy
-    ds, dt = c.when(leg == 0, 1, c.when(edge == 0, 0, both)), c.when(leg == 0, 0, c.when(edge == 0, 1, leg))
+    ds, dt = (
+        c.when(leg == 0, 1, c.when(edge == 0, 0, both)),
+        c.when(leg == 0, 0, c.when(edge == 0, 1, leg)),
+    )
     c.step(c.all_of(ds * wx == dt * ux, ds * wy == dt * uy), "the same way on both")
 
     def reached(v: Any, dv: Any, k: Any) -> None:

@@ -8,9 +8,7 @@ from cratous.proofs.claim import Claim
 def claim(c: Claim) -> None:
     p, a, b, d, e = (c.vector(name) for name in ("p", "a", "b", "d", "e"))
     c.show(c.same(c.use(on_segment, p, a, b), c.use(on_segment, p, b, a)), "on an edge, reversed")
-    c.show(
-        c.same(c.use(crosses_ray, p, a, b), c.use(crosses_ray, p, b, a)), "a crossing, reversed"
-    )
+    c.show(c.same(c.use(crosses_ray, p, a, b), c.use(crosses_ray, p, b, a)), "a crossing, reversed")
     c.opaque(on_segment, crosses_ray)
     # any order of the edges is reached by exchanging neighbours
     seen = Seen(c.boolean("on"), c.boolean("odd"))

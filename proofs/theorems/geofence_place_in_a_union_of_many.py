@@ -5,7 +5,7 @@ from typing import Any
 
 from cratous.core.geofence_regions import place_in_any
 from cratous.proofs.claim import Claim
-from cratous.spec.geofence import Parts, in_closed, in_open, union_step, place_of
+from cratous.spec.geofence import Parts, in_closed, in_open, place_of, union_step
 
 
 def model_step(parts: Any, place: Any) -> Any:

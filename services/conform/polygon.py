@@ -65,7 +65,9 @@ def judge(case: dict[str, Any]) -> Result:
                 text = f"{what}: expected {wanted}, got {got} (vertices {order}); "
                 text += f"point {point!r}, {len(vertices)} vertices"
                 label = f"{wanted} taken for {got}"
-                return failed(name, label if what == "location" else f"{what}: {label}", text, checks)
+                return failed(
+                    name, label if what == "location" else f"{what}: {label}", text, checks
+                )
     return passed(name, checks)
 
 
