@@ -31,17 +31,21 @@ def on_segment(p: Vec2, a: Vec2, b: Vec2) -> bool:
     """True iff p is a point of the closed segment from a to b."""
     if orient(a, b, p) != 0:
         return False
-    return (p.x - a.x) * (p.x - b.x) <= 0 and (p.y - a.y) * (p.y - b.y) <= 0
+    # no rounding in these: where they refuse, no filter is needed
+    within_x = min(a.x, b.x) <= p.x and p.x <= max(a.x, b.x)
+    return within_x and min(a.y, b.y) <= p.y and p.y <= max(a.y, b.y)
 
 
 @kernel(implements="geofence.crosses_ray")
 def crosses_ray(p: Vec2, a: Vec2, b: Vec2) -> bool:
     """True iff the edge a-b, without its upper end, meets the open ray from p towards +x."""
-    if a.y <= p.y and b.y > p.y:
+    a_below = a.y <= p.y
+    b_below = b.y <= p.y
+    if a_below == b_below:
+        return False
+    if a_below:
         return orient(a, b, p) > 0
-    if b.y <= p.y and a.y > p.y:
-        return orient(a, b, p) < 0
-    return False
+    return orient(a, b, p) < 0
 
 
 @kernel(implements="geofence.location_step")
@@ -128,6 +132,41 @@ def keep_in_leg_ok(
 ) -> bool:
     """True iff a leg stays strictly inside a keep-in, between its floor and ceiling."""
     return where > 0 and not meets and low_m > floor_m and high_m < ceiling_m
+
+
+@kernel(implements="geofence.share_a_point")
+def edges_clash(after: int, a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> bool:
+    """True iff the edges a-b and c-d have a point in common that edges of a simple chain must not.
+
+    after: 1 if c-d follows on a-b (c is b), -1 if a-b follows on c-d (a is d), else 0. Neighbours
+    may share that vertex and nothing else.
+    """
+    if after > 0:
+        return on_segment(d, a, b) or on_segment(a, c, d)
+    if after < 0:
+        return on_segment(b, c, d) or on_segment(c, a, b)
+    return segments_meet(a, b, c, d)
+
+
+@kernel(implements="geofence.turn")
+def area_step(twice: float, a: Vec2, b: Vec2, p: Vec2) -> float:
+    """Add the triangle of p and the edge a-b to twice the signed area so far."""
+    return twice + orient(p, a, b)
+
+
+@kernel(implements="geofence.turn")
+def area_result(twice: float) -> float:
+    """Twice the signed area: positive if the chain turns from +x towards +y."""
+    return twice
+
+
+twice_area = fold(
+    name="twice_area",
+    implements="geofence.turn",
+    step=area_step,
+    start=0,
+    finish=area_result,
+)
 
 
 def edges_of(vertices: Sequence[tuple[float, float]]) -> tuple[tuple[Vec2, Vec2], ...]:

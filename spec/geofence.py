@@ -1,10 +1,21 @@
-"""What it means to be on an edge, inside a polygon, in contact with its boundary.
+"""What it means to be on an edge, inside a polygon, near a boundary, within a zone; the topology.
 
-A polygon is a simple closed chain of edges. Its boundary is the union of its closed edges. A point
-off the boundary is inside iff the open ray from it towards +x meets the chain an odd number of
-times, each edge counted without its upper end (Jordan: the parity does not depend on the ray).
-Points of a segment are written p + t (q - p), 0 <= t <= 1. A keep-out contains its boundary, a
-keep-in does not; floor and ceiling belong to the zone's boundary too.
+A *polygon* is a simple closed chain of edges: at least three different vertices, and no two edges
+with a point in common but the vertex that neighbours share. Its *boundary* is the union of its
+closed edges. A point off the boundary is *inside* iff the open ray from it towards +x meets the
+chain an odd number of times, each edge counted without its upper end. That the parity belongs to
+the point's side and not to the ray is proved: it does not change along any leg that misses the
+boundary, and it changes where a leg passes through one edge (Jordan). Points of a segment are
+written p + t (q - p), 0 <= t <= 1.
+
+Every region is a pair of sets: its *open* part, without, and its *closed* part, with the boundary.
+A *place* says in which of the two a point is: 1 in both, 0 in the closed one alone (boundary),
+-1 in neither (outside). A layer of altitudes is open or closed with its floor and ceiling. An
+intersection takes both parts of both regions, a union those of either; taking a region away adds
+the complement, whose open part is what is outside of the closed one. A keep-out forbids its closed
+part, a keep-in allows its open part: so a boundary is never allowed.
+
+Distances are Euclidean, to the nearest point of the closed edge or boundary, and stated in squares.
 """
 
 from typing import NamedTuple
@@ -95,3 +106,166 @@ def any_step(found: bool, here: bool) -> bool:
 def any_result(found: bool) -> bool:
     """Whether it was found anywhere."""
     return found
+
+
+def squared_distance(p: Point, m: Point) -> float:
+    """The square of the distance between two points."""
+    return (m.x - p.x) * (m.x - p.x) + (m.y - p.y) * (m.y - p.y)
+
+
+def nearer_at(p: Point, a: Point, b: Point, d: float, t: float) -> bool:
+    """The point of the closed segment a-b at parameter t is nearer to p than d."""
+    return t >= 0 and t <= 1 and squared_distance(p, along(a, b, t)) < d * d
+
+
+def within_at(p: Point, a: Point, b: Point, d: float, t: float) -> bool:
+    """The point of the closed segment a-b at parameter t is no farther from p than d."""
+    return t >= 0 and t <= 1 and squared_distance(p, along(a, b, t)) <= d * d
+
+
+def legs_nearer_at(p: Point, q: Point, a: Point, b: Point, d: float, s: float, t: float) -> bool:
+    """The points of p-q at s and of a-b at t are nearer to each other than d."""
+    inside = s >= 0 and s <= 1 and t >= 0 and t <= 1
+    return inside and squared_distance(along(p, q, s), along(a, b, t)) < d * d
+
+
+def legs_within_at(p: Point, q: Point, a: Point, b: Point, d: float, s: float, t: float) -> bool:
+    """The points of p-q at s and of a-b at t are no farther from each other than d."""
+    inside = s >= 0 and s <= 1 and t >= 0 and t <= 1
+    return inside and squared_distance(along(p, q, s), along(a, b, t)) <= d * d
+
+
+def foot_at(p: Point, a: Point, b: Point, t: float) -> bool:
+    """The line a-b at parameter t is perpendicular below p."""
+    m = along(a, b, t)
+    return (p.x - m.x) * (b.x - a.x) + (p.y - m.y) * (b.y - a.y) == 0
+
+
+def sign(value: float) -> int:
+    """-1, 0 or 1."""
+    if value == 0:
+        return 0
+    if value > 0:
+        return 1
+    return -1
+
+
+class Found(NamedTuple):
+    """What a pass over the edges has found: one nearer than the buffer? one no farther?"""
+
+    nearer: bool
+    within: bool
+
+
+def found_step(found: Found, nearer: bool, within: bool) -> Found:
+    """Add one edge."""
+    return Found(any_step(found.nearer, nearer), any_step(found.within, within))
+
+
+def against(found: Found) -> int:
+    """-1: a point of the boundary is nearer than the buffer; 0: none, but one is just so near."""
+    if found.nearer:
+        return -1
+    if found.within:
+        return 0
+    return 1
+
+
+class Least(NamedTuple):
+    """The least number that a pass has met, if any."""
+
+    any: bool
+    value: float
+
+
+def least_step(least: Least, here: float) -> Least:
+    """Add one number."""
+    if least.any and least.value <= here:
+        return least
+    return Least(True, here)
+
+
+def in_open(place: int) -> bool:
+    """A point of this place belongs to the region's open part."""
+    return place > 0
+
+
+def in_closed(place: int) -> bool:
+    """A point of this place belongs to the region's closed part."""
+    return place >= 0
+
+
+class Parts(NamedTuple):
+    """To which parts of a region a point belongs."""
+
+    open: bool
+    closed: bool
+
+
+def place_of(parts: Parts) -> int:
+    """1 in the open part, 0 in the closed one alone, -1 in neither."""
+    if parts.open:
+        return 1
+    if parts.closed:
+        return 0
+    return -1
+
+
+def in_open_layer(alt: float, floor: float, ceiling: float) -> bool:
+    """The altitude belongs to the open part of a layer."""
+    return altitude_in_keep_in(alt, floor, ceiling)
+
+
+def in_closed_layer(alt: float, floor: float, ceiling: float) -> bool:
+    """The altitude belongs to the closed part of a layer."""
+    return altitude_in_keep_out(alt, floor, ceiling)
+
+
+def intersection(one: bool, other: bool) -> bool:
+    """A part of an intersection, from the same parts of both regions."""
+    return one and other
+
+
+def union(one: bool, other: bool) -> bool:
+    """A part of a union, from the same parts of both regions."""
+    return one or other
+
+
+def intersection_step(parts: Parts, open_: bool, closed: bool) -> Parts:
+    """Add a region to an intersection."""
+    return Parts(intersection(parts.open, open_), intersection(parts.closed, closed))
+
+
+def union_step(parts: Parts, open_: bool, closed: bool) -> Parts:
+    """Add a region to a union."""
+    return Parts(union(parts.open, open_), union(parts.closed, closed))
+
+
+def complement(other_part: bool) -> bool:
+    """A part of a complement, from the other part of the region."""
+    return not other_part
+
+
+def widened(part: bool, near: bool) -> bool:
+    """A part of a widened region: in it, or so near to it (open: nearer; closed: no farther)."""
+    return part or near
+
+
+def narrowed(part: bool, near: bool) -> bool:
+    """A part of a narrowed region: in it, and not so near (open: no farther; closed: nearer)."""
+    return part and not near
+
+
+def altitude(p_alt: float, q_alt: float, t: float) -> float:
+    """The altitude of a straight leg at parameter t."""
+    return p_alt + t * (q_alt - p_alt)
+
+
+def share_a_point(p: Point, q: Point, a: Point, b: Point, s: float, t: float, shared: bool) -> bool:
+    """Two edges of a chain have this point in common, which those of a simple one must not have.
+
+    shared: p-q ends where a-b begins, and so the point s = 1, t = 0 is no fault.
+    """
+    if shared and s == 1 and t == 0:
+        return False
+    return common_point(p, q, a, b, s, t)

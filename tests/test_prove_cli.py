@@ -15,7 +15,7 @@ from cratous.proofs import ledger, mutate, mutation_record, prover, recheck
 from cratous.services.cli import main
 
 FEW = "*its_definition"
-ONE = "straddles_is_its_definition"
+ONE = "geofence_straddles_is_its_definition"
 
 
 @pytest.fixture(autouse=True)
@@ -63,7 +63,7 @@ def test_changed_proves_what_differs_from_the_ledger(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     """With a ledger about two theorems only, of which one has changed since."""
-    names = ["straddles_is_its_definition", "exactly_one_gives_way"]
+    names = ["geofence_straddles_is_its_definition", "exactly_one_gives_way"]
     inventory = ledger.prove_all(names)
     data = ledger.records(inventory)
     data["kernels"]["gives_way"]["key"]["source"] = "another"
@@ -74,8 +74,8 @@ def test_changed_proves_what_differs_from_the_ledger(
     monkeypatch.setattr(gate, "read", lambda path=gate.LEDGER: real(file))
     changed = ledger.changed_theorems()
     assert "exactly_one_gives_way" in changed
-    assert "straddles_is_its_definition" not in changed
-    assert set(changed) == set(prover.theorem_files()) - {"straddles_is_its_definition"}
+    assert "geofence_straddles_is_its_definition" not in changed
+    assert set(changed) == set(prover.theorem_files()) - {"geofence_straddles_is_its_definition"}
 
 
 def test_recheck_counts_theorems_and_obligations(
@@ -104,7 +104,7 @@ def test_a_contradiction_of_the_second_solver_fails(
     monkeypatch.setattr(recheck, "write", lambda *_, **__: None)
     assert main(["prove", "--only", ONE, "--recheck"]) == 1
     out = capsys.readouterr().out
-    assert "contradicted straddles_is_its_definition 1: goal: the claim" in out
+    assert "contradicted geofence_straddles_is_its_definition 1: goal: the claim" in out
     assert "1 contradicted" in out
 
 

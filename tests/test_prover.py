@@ -21,7 +21,11 @@ from cratous.spec import well_clear as meaning
 from cratous.spec.errors import BadInput
 
 gate.load_all()
-QUICK = ["exactly_one_gives_way", "orient_is_the_turn", "straddles_is_its_definition"]
+QUICK = [
+    "exactly_one_gives_way",
+    "geofence_orient_is_the_turn",
+    "geofence_straddles_is_its_definition",
+]
 
 
 # -- the structural hash ----------------------------------------------------------------------
@@ -60,9 +64,9 @@ def test_sorts_values_and_binders_count():
 
 def test_a_theorem_has_the_same_keys_in_every_process():
     one, other = (
-        ledger.prove_theorems(["straddles_is_its_definition"], jobs=1)[0] for _ in range(2)
+        ledger.prove_theorems(["geofence_straddles_is_its_definition"], jobs=1)[0] for _ in range(2)
     )
-    here = prover.prove_file("straddles_is_its_definition")
+    here = prover.prove_file("geofence_straddles_is_its_definition")
     keys = [[o.key for o in theorem.outcomes] for theorem in (one, other, here)]
     assert keys[0] == keys[1] == keys[2]
     assert all(len(key) == 64 for key in keys[0])
@@ -70,10 +74,10 @@ def test_a_theorem_has_the_same_keys_in_every_process():
 
 # -- the cache ----------------------------------------------------------------------------------
 def test_a_second_run_asks_the_solver_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    cold = prover.prove_file("orient_is_the_turn", cache=Cache(tmp_path))
+    cold = prover.prove_file("geofence_orient_is_the_turn", cache=Cache(tmp_path))
     warm = Cache(tmp_path)
     monkeypatch.setattr(prover, "_ask", lambda *_: pytest.fail("the solver was asked again"))
-    assert prover.prove_file("orient_is_the_turn", cache=warm) == cold
+    assert prover.prove_file("geofence_orient_is_the_turn", cache=warm) == cold
     assert warm.hits > 0
 
 
@@ -241,10 +245,12 @@ def test_contradictory_assumptions_prove_nothing():
 
 
 def test_two_theorems_of_one_name_are_refused_with_both_places(tmp_path: Path):
-    (tmp_path / "orient_is_the_turn.py").write_text('"""Mine."""\n\n\ndef claim(c):\n    pass\n')
+    (tmp_path / "geofence_orient_is_the_turn.py").write_text(
+        '"""Mine."""\n\n\ndef claim(c):\n    pass\n'
+    )
     with pytest.raises(BadInput, match="two theorems are called") as caught:
-        prover.load_claim("orient_is_the_turn", tmp_path)
-    assert "proofs/theorems/orient_is_the_turn.py" in caught.value.where
+        prover.load_claim("geofence_orient_is_the_turn", tmp_path)
+    assert "proofs/theorems/geofence_orient_is_the_turn.py" in caught.value.where
 
 
 def test_an_unknown_theorem_is_refused():
@@ -287,7 +293,7 @@ def test_a_path_that_no_premise_allows_is_named():
 @pytest.mark.parametrize(
     ("name", "logic"),
     [
-        ("orient_is_the_turn", "QF_NRA"),
+        ("geofence_orient_is_the_turn", "QF_NRA"),
         ("eligible_is_its_definition", "QF_BV"),
         ("exactly_one_gives_way", "QF_LIA"),
     ],
@@ -320,8 +326,8 @@ def test_nonlinear_integers_and_mixtures_have_their_logic():
 def test_junit_and_sarif_say_what_failed_and_where():
     import xml.etree.ElementTree as ET
 
-    good = prover.prove_file("straddles_is_its_definition")
-    bad = prover.prove("orient_is_the_turn", _broken_claim(), "Broken.")
+    good = prover.prove_file("geofence_straddles_is_its_definition")
+    bad = prover.prove("geofence_orient_is_the_turn", _broken_claim(), "Broken.")
     problem = "core/gate.py:24: gate_takeover: no theorem is about this kernel"
     suite = ET.fromstring(formats.junit([good, bad], [problem]).encode())
     assert (suite.get("tests"), suite.get("failures")) == ("3", "2")
@@ -329,7 +335,7 @@ def test_junit_and_sarif_say_what_failed_and_where():
     data = json.loads(formats.sarif([good, bad], [problem]))
     first, second = data["runs"][0]["results"]
     uri = first["locations"][0]["physicalLocation"]["artifactLocation"]["uri"]
-    assert uri == "proofs/theorems/orient_is_the_turn.py"
+    assert uri == "proofs/theorems/geofence_orient_is_the_turn.py"
     place = second["locations"][0]["physicalLocation"]
     assert place["artifactLocation"]["uri"] == "core/gate.py"
     assert place["region"]["startLine"] == 24

@@ -15,7 +15,11 @@ from cratous.spec.errors import BadInput
 
 pytest.importorskip("cvc5")
 gate.load_all()
-QUICK = ["exactly_one_gives_way", "orient_is_the_turn", "straddles_is_its_definition"]
+QUICK = [
+    "exactly_one_gives_way",
+    "geofence_orient_is_the_turn",
+    "geofence_straddles_is_its_definition",
+]
 
 
 def test_cvc5_confirms_what_is_true():
@@ -52,7 +56,7 @@ def test_text_that_is_no_smt_lib_is_an_error():
 
 def test_a_contradiction_is_seen(monkeypatch: pytest.MonkeyPatch):
     """A proof that z3 got wrong: here its obligation is replaced by a false one."""
-    (theorem,) = ledger.prove_theorems(["straddles_is_its_definition"])
+    (theorem,) = ledger.prove_theorems(["geofence_straddles_is_its_definition"])
     false = _text(z3.Real("x") > 0)
     monkeypatch.setattr(prover, "smt2", lambda obligation, title: false)
     found = recheck.recheck([theorem])
@@ -62,7 +66,7 @@ def test_a_contradiction_is_seen(monkeypatch: pytest.MonkeyPatch):
 
 def test_no_answer_is_no_answer(monkeypatch: pytest.MonkeyPatch):
     """A solver that spends its CPU time is ended by the system, and nothing is concluded."""
-    (theorem,) = ledger.prove_theorems(["straddles_is_its_definition"])
+    (theorem,) = ledger.prove_theorems(["geofence_straddles_is_its_definition"])
     monkeypatch.setattr(recheck, "CPU_SECONDS", 0)
 
     def busy(text: str, logic: str, options: dict[str, str] | None = None) -> str:
@@ -75,13 +79,13 @@ def test_no_answer_is_no_answer(monkeypatch: pytest.MonkeyPatch):
 
 
 def test_the_file_is_keyed_by_obligation(tmp_path: Path):
-    theorems = ledger.prove_theorems(["straddles_is_its_definition"])
+    theorems = ledger.prove_theorems(["geofence_straddles_is_its_definition"])
     found = recheck.recheck(theorems)
     file = tmp_path / "recheck.json"
     recheck.write(found, theorems, file)
     data = recheck.read(file)
     assert data["solver"] == recheck.version()
-    assert data["theorems"]["straddles_is_its_definition"]["cvc5"] == "confirmed"
+    assert data["theorems"]["geofence_straddles_is_its_definition"]["cvc5"] == "confirmed"
     assert set(data["obligations"]) == {o.key for o in theorems[0].outcomes}
     assert recheck.text(found, theorems) == file.read_text()
     assert recheck.read(tmp_path / "none.json")["obligations"] == {}

@@ -1,7 +1,8 @@
 """Conformance: published vectors against the kernels that decide, and against the wires.
 
-A suite reads the cases of a file (JSON lines, also gzipped; or what its own function `cases` reads)
-and judges each: by the exact reading of kernels, or by what the codecs make of the bytes. A case passes, fails, or is of a kind that the suite does not cover; the last is
+A suite reads the cases of a file (JSON lines or a list, also gzipped; or what its own function
+`cases` reads) and judges each: by the exact reading of kernels, or by what the codecs make of the
+bytes. A case passes, fails, or is of a kind that the suite does not cover; the last is
 said and counted apart, never as passed. Suites are imported when they are asked for.
 """
 
@@ -20,7 +21,7 @@ from cratous.spec.errors import BadInput
 
 SUITES = {
     "well-clear": "Horizontal and vertical well-clear violation with modified tau, now.",
-    "polygon": "Location of a point in a polygon: inside, outside or on the boundary.",
+    "polygon": "Places of points in polygons and layers, nearness with a buffer, exact distances.",
     "lmcp": "LMCP messages in binary and XML, both ways, and malformed ones.",
     "frames": "Captured sentinel frames and envelopes, and what breaks a TCP bridge.",
 }
@@ -93,28 +94,39 @@ class FileReport:
 
 
 def cases(file: Path) -> Iterator[tuple[int, dict[str, Any]]]:
-    """(line number, case) of a JSON-lines file, also gzipped; raises BadInput with the line."""
+    """(number, case) of a file of JSON lines, or one JSON list; also gzipped.
+
+    Raises BadInput with the line.
+    """
     opener = gzip.open if file.suffix == ".gz" else open
     number = 0
     try:
         with opener(file, "rt", encoding="utf-8") as lines:
             for number, line in enumerate(lines, 1):
+                if number == 1 and line.lstrip().startswith("["):
+                    yield from _listed(file, line + lines.read())
+                    return
                 if not line.strip():
                     continue
-                case = json.loads(line)
-                if not isinstance(case, dict):
-                    raise BadInput(
-                        "a case is a JSON object",
-                        where=f"{file}:{number}",
-                        got=type(case).__name__,
-                    )
-                yield number, case
+                yield number, _case(json.loads(line), f"{file}:{number}")
     except FileNotFoundError as error:
         raise BadInput("there is no such file", where=str(file)) from error
     except (OSError, EOFError, UnicodeDecodeError) as error:
         raise BadInput(f"the file cannot be read: {error}", where=str(file)) from error
     except json.JSONDecodeError as error:
         raise BadInput(f"this is no JSON: {error.msg}", where=f"{file}:{number}") from error
+
+
+def _case(value: Any, where: str) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise BadInput("a case is a JSON object", where=where, got=type(value).__name__)
+    return value
+
+
+def _listed(file: Path, text: str) -> Iterator[tuple[int, dict[str, Any]]]:
+    """The cases of a file that is one JSON list, numbered from 1."""
+    for number, value in enumerate(json.loads(text), 1):
+        yield number, _case(value, f"{file}, case {number}")
 
 
 def run(judge: Suite, file: Path, show: int) -> FileReport:

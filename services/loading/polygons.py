@@ -1,17 +1,16 @@
 """Polygons of zones: is it one, what does its padding make of it, and circles as polygons.
 
-Whether edges meet is decided by the kernels on exact rationals. The padded outline itself is
-computed (with mitred corners, by shapely) and then held against the rules like any other.
+Whether they are one is decided by the proved kernels (`core.geofence_validity`). The padded outline
+itself is computed (with mitred corners, by shapely) and then held against the rules like any other.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from fractions import Fraction
 from math import cos, pi, sin
 
-from cratous.core.polygon import edges_of, on_segment, segments_meet
+from cratous.core.geofence_validity import fault_of
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Zone, ZoneKind
 
@@ -22,31 +21,8 @@ MITRE_LIMIT = 5.0
 
 def polygon_problem(vertices: Sequence[Corner]) -> str:
     """Why these corners are no simple polygon, in words; empty if they are."""
-    count = len(vertices)
-    if count < 3:
-        return f"{count} vertices, and a polygon has at least 3"
-    if any(value - value != 0 for corner in vertices for value in corner):
-        return "a vertex is not finite"
-    first: dict[Corner, int] = {}
-    for k, corner in enumerate(vertices):
-        if corner in first:
-            return f"vertex {k + 1} repeats vertex {first[corner] + 1}"
-        first[corner] = k
-    edges = edges_of([(Fraction(x), Fraction(y)) for x, y in vertices])  # type: ignore[misc]
-    for i in range(count):
-        a, b = edges[i]
-        c = edges[(i + 1) % count][1]
-        if on_segment(c, a, b) or on_segment(a, b, c):
-            return f"a spike at vertex {(i + 1) % count + 1}: the outline turns back on itself"
-    for i in range(count):
-        for j in range(i + 2, count):
-            if (j + 1) % count != i and segments_meet(*edges[i], *edges[j]):
-                return f"{_edge(i, count)} meets {_edge(j, count)}"
-    return ""
-
-
-def _edge(k: int, count: int) -> str:
-    return f"edge {k + 1} (vertex {k + 1} to {(k + 1) % count + 1})"
+    fault = fault_of(vertices)
+    return "" if fault is None else fault.text
 
 
 def padded(zone: Zone, where: str, item: str) -> Zone:

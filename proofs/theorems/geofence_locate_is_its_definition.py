@@ -23,7 +23,7 @@ def claim(c: Claim) -> None:
     acc = Seen(c.boolean("on"), c.boolean("odd"))
     model = Count(c.boolean("model_on"), c.whole("crossings"))
     c.opaque(on_segment, crosses_ray)
-    c.lemma("crosses_ray_is_its_definition", p=p, a=a, b=b)
+    c.lemma("geofence_crosses_ray_is_its_definition", p=p, a=a, b=b)
 
     def related(seen: Any, count: Any) -> Any:
         odd = c.same(seen.odd, count.crossings % 2 == 1)
