@@ -1,8 +1,8 @@
 """The compiled reading: a kernel over numpy arrays, by numba; and the exact one, on rationals.
 
-A kernel without division is printed from its graph as straight-line code, so that the compiler
-can work on several states at once; any other kernel is compiled from its own source and that of
-everything it calls, unchanged but for the decorators. The text is written into a module in a
+A kernel without division, or with a record as result, is printed from its graph as straight-line
+code, so that the compiler can work on several states at once; any other kernel is compiled from its
+own source and that of everything it calls, unchanged but for the decorators. The text is written into a module in a
 private cache folder that is named by the hash of that text, and compiled there. So machine code
 can never outlive the source it was made from. No fastmath, no parallel loops: the result of each
 element is what CPython computes on doubles.
@@ -23,7 +23,7 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
-from cratous.core.graph import Node, NotInSubset, Program, program
+from cratous.core.graph import Node, NotInSubset, Program, Record, leaves, program
 from cratous.core.kernel import Fold
 from cratous.core.printing import name as text_of
 from cratous.core.printing import straight
@@ -31,6 +31,8 @@ from cratous.core.sources import digest
 from cratous.spec.errors import BadInput
 
 FLAGS = "njit(cache=True, fastmath=False, error_model='python')"
+QUIET = FLAGS.replace("'python'", "'numpy'")
+"""For straight-line code that divides: it carries out both branches and keeps the chosen one."""
 KINDS: dict[Any, Any] = {bool: np.bool_, int: np.int64, float: np.float64}
 
 
@@ -62,7 +64,11 @@ def load(text: str) -> Any:
 
 # -- straight-line code from the graph ------------------------------------------------------
 def loop_text(
-    columns: tuple[Node, ...], scalars: frozenset[str], outs: str, body: list[str]
+    columns: tuple[Node, ...],
+    scalars: frozenset[str],
+    outs: str,
+    body: list[str],
+    flags: str = FLAGS,
 ) -> str:
     """`_map(outs..., columns...)`: the body for every element; `scalars` are single values."""
     arguments = [str(c.value) if c.value in scalars else f"a_{c.value}" for c in columns]
@@ -72,7 +78,7 @@ def loop_text(
         "from numba import njit",
         "",
         "",
-        f"@{FLAGS}",
+        f"@{flags}",
         f"def _map({', '.join([outs, *arguments])}):",
         "    for i in range(out.size):",
     ]
@@ -88,6 +94,44 @@ def _straight_map(source: Program, scalars: frozenset[str]) -> Any:
     assert isinstance(result, Node)
     body = [*straight([result], "        "), f"        out[i] = {text_of(result)}"]
     return load(loop_text(source.columns, scalars, "out", body))._map
+
+
+@functools.cache
+def _record_map(source: Program, scalars: frozenset[str]) -> Any:
+    parts = leaves(source.result)
+    outs = ["out", *[f"out_{k}" for k in range(1, len(parts))]]
+    store = [f"        {out}[i] = {text_of(part)}" for out, part in zip(outs, parts, strict=True)]
+    body = [*straight(parts, "        "), *store]
+    text = loop_text(source.columns, scalars, ", ".join(outs), body, QUIET)
+    return load(text)._map
+
+
+def _records(source: Program, *columns: Any, out: Any = None) -> Any:
+    """A kernel with a record as result: the record of its fields' arrays."""
+    flat, shape = checked(source, columns)
+    parts = leaves(source.result)
+    given = [None] * len(parts) if out is None else list(out)
+    if len(given) != len(parts):
+        raise BadInput(
+            "out does not fit",
+            where=source.name,
+            item="out",
+            expected=f"{len(parts)} arrays",
+            got=str(len(given)),
+        )
+    kinds = {"float": np.float64, "int": np.int64, "bool": np.bool_}
+    found = [
+        outcome(source.name, o, shape, kinds[part.kind])
+        for o, part in zip(given, parts, strict=True)
+    ]
+    _record_map(source, single(source, flat))(*found, *flat)
+    return _record(source.result, [array.reshape(shape) for array in found])
+
+
+def _record(shape: Any, arrays: list[Any]) -> Any:
+    if isinstance(shape, Record):
+        return shape.kind(*[_record(field, arrays) for field in shape.fields])
+    return arrays.pop(0)
 
 
 # -- the kernel's own source ------------------------------------------------------------
@@ -241,13 +285,17 @@ def _typed(where: str, kind: str, label: str, value: Any) -> Any:
 
 
 @functools.cache
-def compiled(kernel: Callable[..., Any]) -> Callable[..., np.ndarray]:
+def compiled(kernel: Callable[..., Any]) -> Callable[..., Any]:
     """The kernel as a function of arrays: one array for each scalar, vectors field by field.
 
     Columns are broadcast to one shape; the result has it too, and elements of type bool, int64 or
     float64 as the kernel's. `out` may be given for it; BadInput if it, or a column, does not fit.
+    A kernel with a record as result gives that record of arrays, and `out` is a tuple of arrays.
     """
-    kind = KINDS[get_type_hints(kernel)["return"]]
+    returns = get_type_hints(kernel)["return"]
+    if returns not in KINDS:
+        return functools.partial(_records, program(kernel))
+    kind = KINDS[returns]
     try:
         source: Program | None = program(kernel)
     except NotInSubset:

@@ -10,6 +10,7 @@ once, lemmas may not go in a circle: a slip there would weaken a theorem without
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, get_type_hints
@@ -27,6 +28,7 @@ from cratous.proofs.symbolic import (
     SymMask,
     SymReal,
     _raw,
+    as_real,
     wrap,
 )
 
@@ -46,23 +48,29 @@ class Stub:
 
     def __init__(self, name: str, function: Callable[..., Any]) -> None:
         self.name = name
-        self.result = get_type_hints(function)["return"]
+        hints = get_type_hints(function)
+        self.result = hints["return"]
+        self.kinds = [hints[n] for n in inspect.signature(function).parameters]
         self.calls: list[tuple[Any, ...]] = []
         self.results: dict[str, Any] = {}
 
     def __call__(self, *args: Any) -> Any:
-        key = "; ".join(_normal(arg) for arg in args)
+        # an integer literal beside a real is one: equal arguments must have one text
+        key = "; ".join(
+            _normal(arg, kind is float) for arg, kind in zip(args, self.kinds, strict=True)
+        )
         if key not in self.results:
             self.results[key] = _fresh(f"{self.name}#{len(self.calls)}", self.result)
             self.calls.append(args)
         return self.results[key]
 
 
-def _normal(value: Any) -> str:
-    """A normal form of an argument: polynomials expanded and sorted."""
+def _normal(value: Any, real: bool = False) -> str:
+    """A normal form of an argument: polynomials expanded and sorted; `real`: of that type."""
     if isinstance(value, tuple):
         return ", ".join(_normal(part) for part in value)
-    return str(z3.simplify(_known(value), som=True, sort_sums=True).sexpr())
+    term = as_real(_known(value)) if real else _known(value)
+    return str(z3.simplify(term, som=True, sort_sums=True).sexpr())
 
 
 def _fresh(name: str, kind: Any) -> Any:

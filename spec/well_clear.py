@@ -7,6 +7,7 @@ most TTHR. Vertical volume: within ZTHR, or co-altitude is at most TCOA away. Se
 The definitions divide and speak of positions at instants; the kernels do neither.
 """
 
+from math import sqrt
 from typing import NamedTuple
 
 
@@ -112,3 +113,174 @@ def violation(
 def parabola(a: float, b: float, c: float, t: float) -> float:
     """The value of a t^2 + b t + c."""
     return a * t * t + b * t + c
+
+
+# -- other volumes --------------------------------------------------------------------------
+def tau(s: Plane, v: Plane) -> float:
+    """Plain tau [s], range over closing speed times range: for a converging pair."""
+    return dot(s, s) / -dot(s, v)
+
+
+def time_of_entry(s: Plane, v: Plane, dthr: float) -> float:
+    """tep [s]: half the chord through the circle before the closest approach.
+
+    For v not zero and a course that comes within dthr.
+    """
+    tcpa = time_of_closest_approach(s, v)
+    closest = position(s, v, tcpa)
+    return tcpa - sqrt((dthr * dthr - dot(closest, closest)) / dot(v, v))
+
+
+def passes_within(s: Plane, v: Plane, dthr: float) -> bool:
+    """The two converge, and their closest approach is within dthr."""
+    if not converging(s, v):
+        return False
+    return within(position(s, v, time_of_closest_approach(s, v)), dthr)
+
+
+def soon(time: float, limit: float) -> bool:
+    """A time is not past and at most so far away."""
+    return time >= 0 and time <= limit
+
+
+def horizontal_violation_tcpa(s: Plane, v: Plane, dthr: float, tthr: float) -> bool:
+    """As `horizontal_violation`, with the time of closest approach in place of tau_mod."""
+    if within(s, dthr):
+        return True
+    if not passes_within(s, v, dthr):
+        return False
+    return soon(time_of_closest_approach(s, v), tthr)
+
+
+def horizontal_violation_tep(s: Plane, v: Plane, dthr: float, tthr: float) -> bool:
+    """As `horizontal_violation`, with the time of entry in place of tau_mod."""
+    if within(s, dthr):
+        return True
+    if not passes_within(s, v, dthr):
+        return False
+    return soon(time_of_entry(s, v, dthr), tthr)
+
+
+def horizontal_violation_tau(s: Plane, v: Plane, dthr: float, tthr: float) -> bool:
+    """As `horizontal_violation`, with plain tau: known for not being convex in time."""
+    if within(s, dthr):
+        return True
+    if not passes_within(s, v, dthr):
+        return False
+    return soon(tau(s, v), tthr)
+
+
+def horizontal_violation_tcpa_at(s: Plane, v: Plane, dthr: float, tthr: float, t: float) -> bool:
+    """With the time of closest approach, after t seconds of straight flight."""
+    return horizontal_violation_tcpa(position(s, v, t), v, dthr, tthr)
+
+
+def horizontal_violation_tep_at(s: Plane, v: Plane, dthr: float, tthr: float, t: float) -> bool:
+    """With the time of entry, after t seconds of straight flight."""
+    return horizontal_violation_tep(position(s, v, t), v, dthr, tthr)
+
+
+def within_at(s: Plane, v: Plane, radius: float, t: float) -> bool:
+    """At most radius apart horizontally after t seconds of straight flight."""
+    return within(position(s, v, t), radius)
+
+
+def vertical_violation_vmod(sz: float, vz: float, zthr: float, vmod: float) -> bool:
+    """The vertical volume with VMOD: within ZTHR now, or closing and so within vmod seconds."""
+    if -zthr <= sz and sz <= zthr:
+        return True
+    if vz == 0:
+        return False
+    # when the nearer face of the layer is reached
+    face = zthr
+    if sz < 0:
+        face = -zthr
+    return soon((face - sz) / vz, vmod)
+
+
+def layer_violation(sz: float, vz: float, zthr: float, tcoa: float, vmod: float) -> bool:
+    """The vertical volume with either lead: TCOA to co-altitude, VMOD to the layer.
+
+    With vmod 0 it is `vertical_violation`, with tcoa 0 `vertical_violation_vmod`.
+    """
+    return vertical_violation(sz, vz, zthr, tcoa) or vertical_violation_vmod(sz, vz, zthr, vmod)
+
+
+def layer_violation_at(
+    sz: float, vz: float, zthr: float, tcoa: float, vmod: float, t: float
+) -> bool:
+    """The vertical volume with either lead after t seconds of straight flight."""
+    return layer_violation(sz + t * vz, vz, zthr, tcoa, vmod)
+
+
+def cylinder_violation(s: Plane, sz: float, radius: float, half_height: float) -> bool:
+    """Inside a closed cylinder: at most radius apart, and at most half_height in altitude."""
+    return within(s, radius) and -half_height <= sz and sz <= half_height
+
+
+def cylinder_conflict(s: Plane, sz: float, radius: float, half_height: float) -> bool:
+    """Inside an open cylinder, as DAIDALUS's CD3D reads it: touching it is no conflict."""
+    return dot(s, s) < radius * radius and -half_height < sz and sz < half_height
+
+
+def cylinder_violation_at(
+    s: Plane, v: Plane, sz: float, vz: float, radius: float, half_height: float, t: float
+) -> bool:
+    """Inside the closed cylinder after t seconds of straight flight."""
+    return cylinder_violation(position(s, v, t), sz + t * vz, radius, half_height)
+
+
+def violation_taumod_at(
+    s: Plane,
+    v: Plane,
+    sz: float,
+    vz: float,
+    dthr: float,
+    zthr: float,
+    tthr: float,
+    tcoa: float,
+    vmod: float,
+    t: float,
+) -> bool:
+    """Well clear by tau_mod, with either vertical lead, is lost after t seconds."""
+    vertical = layer_violation_at(sz, vz, zthr, tcoa, vmod, t)
+    return vertical and horizontal_violation_at(s, v, dthr, tthr, t)
+
+
+def violation_tcpa_at(
+    s: Plane,
+    v: Plane,
+    sz: float,
+    vz: float,
+    dthr: float,
+    zthr: float,
+    tthr: float,
+    tcoa: float,
+    vmod: float,
+    t: float,
+) -> bool:
+    """Well clear by the time of closest approach is lost after t seconds."""
+    vertical = layer_violation_at(sz, vz, zthr, tcoa, vmod, t)
+    return vertical and horizontal_violation_tcpa_at(s, v, dthr, tthr, t)
+
+
+def violation_tep_at(
+    s: Plane,
+    v: Plane,
+    sz: float,
+    vz: float,
+    dthr: float,
+    zthr: float,
+    tthr: float,
+    tcoa: float,
+    vmod: float,
+    t: float,
+) -> bool:
+    """Well clear by the time of entry is lost after t seconds."""
+    vertical = layer_violation_at(sz, vz, zthr, tcoa, vmod, t)
+    return vertical and horizontal_violation_tep_at(s, v, dthr, tthr, t)
+
+
+def in_span(first: float, last: float, t: float) -> bool:
+    """An instant between the first and the last one, both included."""
+    return first <= t and t <= last

@@ -76,13 +76,13 @@ def test_the_committed_ledger_vouches_for_the_committed_code():
 ATTACKS = {
     # what is edited: (file, old, new, what the gate says)
     "a kernel": (
-        "core/well_clear.py", "if ss <= dd:", "if ss < dd:",
+        "core/well_clear_now.py", "if ss <= dd:", "if ss < dd:",
         "horizontal_violation: changed since the proof: its source"),
     "a callee": (
-        "core/well_clear.py", "return b < 0 and 0 - b", "return b <= 0 and 0 - b",
+        "core/well_clear_during.py", "return b < 0 and 0 - b", "return b <= 0 and 0 - b",
         "violation_within: changed since the proof: its source"),
     "a record's order of fields": (
-        "core/well_clear.py", "    first: float\n    last: float", "    last: float\n    first: float",
+        "core/well_clear_during.py", "    first: float\n    last: float", "    last: float\n    first: float",
         "vertical_window: changed since the proof: its source"),
     "a constant": ("core/gate.py", "return Gate(1, gate.epoch + 1, False)",
                    "return Gate(1, gate.epoch + 0, False)", "gate_takeover: changed"),
@@ -91,15 +91,15 @@ ATTACKS = {
     "a definition": ("spec/well_clear.py", "return dot(s, v) < 0", "return dot(s, v) <= 0",
                      "its definition in spec"),
     "a theorem weakened to true": (
-        "proofs/theorems/violation_is_symmetric.py", "c.show(c.same(ours, theirs))",
+        "proofs/theorems/well_clear_violation_is_symmetric.py", "c.show(c.same(ours, theirs))",
         "c.show(c.same(ours, ours))", "violation: changed since the proof: its theorems"),
     "a lemma weakened": (
-        "proofs/theorems/horizontal_violation_scales.py", "c.premise(k > 0)",
+        "proofs/theorems/well_clear_horizontal_violation_scales.py", "c.premise(k > 0)",
         "c.premise(k == 1)", "violation_within: changed since the proof: its theorems"),
     "a theorem's sentence": (
-        "proofs/theorems/violation_is_symmetric.py", "Well clear is symmetric", "All is well",
+        "proofs/theorems/well_clear_violation_is_symmetric.py", "Well clear is symmetric", "All is well",
         "its theorems"),
-    "a theorem removed": ("proofs/theorems/violation_is_symmetric.py", None, None,
+    "a theorem removed": ("proofs/theorems/well_clear_violation_is_symmetric.py", None, None,
                           "violation: changed since the proof: its theorems"),
     "the prover": ("proofs/prover.py", '"unsat": "proved"', '"sat": "proved"', "the prover"),
     "the lifter": ("proofs/symbolic.py", "lambda x, y: x <= y", "lambda x, y: x < y",
@@ -114,7 +114,7 @@ ATTACKS = {
         "core/prediction.py", '@driver(checked_by=("violation_within",))',
         '@driver(checked_by=())', "first_violation_s: changed since the proof: its source"),
     "a kernel's mark removed": (
-        "core/well_clear.py", '@kernel(implements="well_clear.violation")\n', "",
+        "core/well_clear_now.py", '@kernel(implements="well_clear.violation")\n', "",
         "violation: it was proved but is no longer registered"),
     "the ledger file": ("core/ledger.json", '"status": "proved"', '"status": "Proved"',
                         "was edited"),
@@ -264,14 +264,14 @@ path.write_text(json.dumps(data, indent=1, sort_keys=True) + chr(10))
 @pytest.mark.parametrize(
     ("edit", "place", "old", "new", "wanted"),
     [
-        ("", "core/well_clear.py", "if ss <= dd:", "if ss < dd:", "NOT PROVED"),
+        ("", "core/well_clear_now.py", "if ss <= dd:", "if ss < dd:", "NOT PROVED"),
         (
-            'data["theorems"]["violation_is_symmetric"]["sentence"] = "All is well."',
+            'data["theorems"]["well_clear_violation_is_symmetric"]["sentence"] = "All is well."',
             "", "", "", "differs from these proofs",
         ),
         (
-            'del data["theorems"]["violation_is_symmetric"]\n'
-            'data["kernels"]["violation"]["theorems"].remove("violation_is_symmetric")',
+            'del data["theorems"]["well_clear_violation_is_symmetric"]\n'
+            'data["kernels"]["violation"]["theorems"].remove("well_clear_violation_is_symmetric")',
             "", "", "", "differs from these proofs",
         ),
     ],

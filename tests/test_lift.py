@@ -7,6 +7,7 @@ by these comparisons or by a check of what the lifter owes.
 
 from __future__ import annotations
 
+import contextlib
 import inspect
 import math
 from fractions import Fraction
@@ -17,6 +18,7 @@ import pytest
 import z3
 
 from cratous.core import ledger as gate
+from cratous.core import well_clear_interval as interval
 from cratous.core.kernel import REGISTRY, Fold
 from cratous.proofs import claim as claim_module
 from cratous.proofs import lift as lifter
@@ -148,8 +150,9 @@ def differences(function, count=SAMPLES):
     for row in inputs(function, masks, count):
         given = dict(zip(leaves, _flat(row), strict=True))
         for name, argument in arguments:
-            given[name] = Fraction(math.isqrt(int(max(0, argument(given)[0]))))
-        wanted = run(function, row)
+            given[name] = whole_root(argument(given)[0])
+        with whole_roots(function):
+            wanted = run(function, row)
         answer = evaluate(given)
         got, conditions = answer[: len(terms)], answer[len(terms) :]
         if isinstance(wanted, str):
@@ -160,6 +163,30 @@ def differences(function, count=SAMPLES):
         if not all(same):
             found.append((row, got, wanted))
     return found
+
+
+def whole_root(value):
+    """Stands for the root on both sides, so that the comparison stays rational."""
+    return Fraction(math.isqrt(int(max(0, value))))
+
+
+def checked_root(value):
+    """The same in the running function, which refuses a negative one."""
+    return math.sqrt(value) if value < 0 else whole_root(value)
+
+
+@contextlib.contextmanager
+def whole_roots(function):
+    """While this lasts, the function and what it may call take `whole_root`s."""
+    scopes = [vars(interval), vars(well_clear), function.__globals__]
+    scopes = [scope for scope in scopes if scope.get("sqrt") is math.sqrt]
+    for scope in scopes:
+        scope["sqrt"] = checked_root
+    try:
+        yield
+    finally:
+        for scope in scopes:
+            scope["sqrt"] = math.sqrt
 
 
 def _kind(value):

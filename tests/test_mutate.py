@@ -107,11 +107,13 @@ def by_diff(report, end):
 
 
 def test_faults_are_killed_by_the_theorem_that_they_break():
-    report = mutate.run(["vertical_violation"], theorems=["vertical_violation_is_its_definition"])
+    report = mutate.run(
+        ["vertical_violation"], theorems=["well_clear_vertical_violation_is_its_definition"]
+    )
     kernel = [r for r in report.results if r.target == "core.well_clear.vertical_violation"]
     assert {r.verdict for r in kernel} <= {"killed", "equivalent"}
     assert {r.by for r in kernel if r.verdict == "killed"} == {
-        "vertical_violation_is_its_definition"
+        "well_clear_vertical_violation_is_its_definition"
     }
     assert all(r.note for r in kernel if r.verdict == "equivalent")
     definition = [r for r in report.results if r.target == "spec.well_clear.vertical_violation"]

@@ -128,7 +128,7 @@ def claim(c):
             "'reaches_home', which is not registered",
         ),
         ("of_a_missing_kernel", "from my_pkg.reserve import nowhere", "    pass", "is not there"),
-        ("violation_is_symmetric", "", "    pass", "two theorems are called"),
+        ("well_clear_violation_is_symmetric", "", "    pass", "two theorems are called"),
         ("broken", "from", "    pass", "no Python"),
     ],
 )

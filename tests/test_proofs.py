@@ -107,7 +107,7 @@ def test_contradictory_premises_prove_nothing():
 
 
 def test_too_little_effort_is_unknown_and_unknown_is_not_proved():
-    claim = prover.load_claim("horizontal_violation_within_misses_no_instant")[0]
+    claim = prover.load_claim("well_clear_horizontal_violation_within_misses_no_instant")[0]
     theorem = _prove(claim, rlimit=2000)
     assert not theorem.proved
     assert {o.status for o in theorem.outcomes} & {"unknown"}
@@ -129,7 +129,7 @@ def test_a_lemma_owes_its_premises():
     def claim(c: Claim) -> None:
         s, v = c.vector("s"), c.vector("v")
         dthr, tthr = c.reals("dthr tthr")  # no premise: DTHR may be negative here
-        c.lemma("horizontal_violation_is_its_definition", s=s, v=v, dthr=dthr, tthr=tthr)
+        c.lemma("well_clear_horizontal_violation_is_its_definition", s=s, v=v, dthr=dthr, tthr=tthr)
         c.show(c.same(c.use(well_clear.horizontal_violation, s, v, dthr, tthr), True))
 
     theorem = _prove(claim)
@@ -148,7 +148,7 @@ def test_an_opaque_function_is_not_taken_for_granted():
         c.premise(tthr >= 0)
         c.use(well_clear.vertical_violation, dthr, dthr, dthr, dthr)
         c.opaque(well_clear.horizontal_violation)
-        c.lemma("horizontal_violation_is_its_definition", s=s, v=v, dthr=dthr, tthr=tthr)
+        c.lemma("well_clear_horizontal_violation_is_its_definition", s=s, v=v, dthr=dthr, tthr=tthr)
         wrong = c.use(well_clear.horizontal_violation, v, s, dthr, tthr)
         c.show(c.same(wrong, c.define(meaning.horizontal_violation, s, v, dthr, tthr)))
 
@@ -239,7 +239,10 @@ def test_lifted_term_equals_running_function(entry):
     if entry.name == "eligible":
         pytest.skip("works on masks: the next test")
     symbols = {name: _symbols(hint, name) for name, hint in hints.items()}
-    lifted = _flat(lift(entry.function, *symbols.values()).value)
+    whole = lift(entry.function, *symbols.values())
+    if whole.roots:
+        pytest.skip("it takes roots: compared in test_lift.py")
+    lifted = _flat(whole.value)
     rng = random.Random(entry.name)
     for _ in range(60):
         found: list = []

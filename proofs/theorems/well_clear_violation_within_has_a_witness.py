@@ -22,7 +22,7 @@ def claim(c: Claim) -> None:
     predicted = c.use(violation_within, s, v, sz, vz, dthr, zthr, tthr, tcoa, h)
     k, first, last = c.use(vertical_window, sz, vz, zthr, tcoa, h)
     window = {"sz": sz, "vz": vz, "zthr": zthr, "tcoa": tcoa, "h": h}
-    c.lemma("vertical_window_is_exact", t=h - h, **window)
+    c.lemma("well_clear_vertical_window_is_exact", t=h - h, **window)
 
     # the two inner candidates, named by the equations that define them
     at = Vec2(s.x * k + first * v.x, s.y * k + first * v.y)
@@ -31,7 +31,7 @@ def claim(c: Claim) -> None:
     c.premise(c.implies(vv > 0, vv * closest + sv == 0))
     c.premise(c.implies(vv > 0, 2 * vv * least + 2 * sv + tthr * k * vv == 0))
     c.lemma(
-        "horizontal_violation_within_has_a_witness",
+        "well_clear_horizontal_violation_within_has_a_witness",
         when=first <= last,
         s=at,
         v=v,
@@ -49,8 +49,8 @@ def claim(c: Claim) -> None:
         c.premise(k * t == first + scaled)
         inside = c.all_of(t >= 0, t <= h)
         there = Vec2(s.x + t * v.x, s.y + t * v.y)
-        c.lemma("vertical_window_is_exact", when=inside, t=t, **window)
-        c.lemma("horizontal_violation_scales", s=there, v=v, dthr=dthr, tthr=tthr, k=k)
+        c.lemma("well_clear_vertical_window_is_exact", when=inside, t=t, **window)
+        c.lemma("well_clear_horizontal_violation_scales", s=there, v=v, dthr=dthr, tthr=tthr, k=k)
         c.congruence(
             well_clear.horizontal_violation,
             (Vec2(at.x + scaled * v.x, at.y + scaled * v.y), v, dthr * k, tthr * k),

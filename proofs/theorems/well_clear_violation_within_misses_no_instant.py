@@ -21,11 +21,11 @@ def claim(c: Claim) -> None:
     )
     predicted = c.use(violation_within, s, v, sz, vz, dthr, zthr, tthr, tcoa, h)
     k, first, last = c.use(vertical_window, sz, vz, zthr, tcoa, h)
-    c.lemma("vertical_window_is_exact", sz=sz, vz=vz, zthr=zthr, tcoa=tcoa, h=h, t=t)
+    c.lemma("well_clear_vertical_window_is_exact", sz=sz, vz=vz, zthr=zthr, tcoa=tcoa, h=h, t=t)
     inside = c.all_of(first <= t * k, t * k <= last)
     at = Vec2(s.x * k + first * v.x, s.y * k + first * v.y)
     c.lemma(
-        "horizontal_violation_within_misses_no_instant",
+        "well_clear_horizontal_violation_within_misses_no_instant",
         when=inside,
         s=at,
         v=v,
@@ -35,6 +35,6 @@ def claim(c: Claim) -> None:
         t=t * k - first,
     )
     there = Vec2(s.x + t * v.x, s.y + t * v.y)
-    c.lemma("horizontal_violation_scales", s=there, v=v, dthr=dthr, tthr=tthr, k=k)
+    c.lemma("well_clear_horizontal_violation_scales", s=there, v=v, dthr=dthr, tthr=tthr, k=k)
     lost = c.define(well_clear.violation_at, s, v, sz, vz, dthr, zthr, tthr, tcoa, t)
     c.show(c.implies(lost, predicted))

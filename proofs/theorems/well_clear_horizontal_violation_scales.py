@@ -14,9 +14,9 @@ def claim(c: Claim) -> None:
     c.premise(tthr >= 0)
     c.premise(k > 0)
     scaled = Vec2(k * s.x, k * s.y)
-    c.lemma("horizontal_violation_is_its_definition", s=s, v=v, dthr=dthr, tthr=tthr)
+    c.lemma("well_clear_horizontal_violation_is_its_definition", s=s, v=v, dthr=dthr, tthr=tthr)
     c.lemma(
-        "horizontal_violation_is_its_definition",
+        "well_clear_horizontal_violation_is_its_definition",
         s=scaled,
         v=v,
         dthr=k * dthr,
