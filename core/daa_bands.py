@@ -29,6 +29,8 @@ from cratous.spec.daa import G_M_S2, NEAR, NONE, RECOVERY, Parameters, sensitivi
 
 SAMPLE_S = 1.0
 """Changes of altitude are sampled so often while the vertical speed changes [s]."""
+EDGE = 1e-7
+"""A value this near to an edge lies on it (rad, m/s, m): the own value is a grid value."""
 SLACK = 1e-9
 """A grid step this near to the limit [steps] is the limit."""
 
@@ -105,7 +107,9 @@ def grid(p: Parameters, own: Aircraft, dimension: int) -> Grid:
     """The trajectories of one dimension, or its target altitudes."""
     x0 = own_value(own, dimension)
     low, high = value_range(p, dimension, x0)
-    now = np.array([[own.east_m, own.north_m, own.alt_m, own.ve_m_s, own.vn_m_s, own.vu_m_s]], dtype=np.float64)
+    now = np.array(
+        [[own.east_m, own.north_m, own.alt_m, own.ve_m_s, own.vn_m_s, own.vu_m_s]], dtype=np.float64
+    )
     if dimension == ALT:
         step = p.step_alt_m
         count = math.floor((high - low) / step + SLACK) + 1
@@ -218,6 +222,54 @@ def severity(region: int) -> int:
     return 0 if region in (NONE, RECOVERY) else region
 
 
+def region_of(bands: tuple[Band, ...], value: float, circle: bool) -> int:
+    """The region of a value; on an edge, the milder of the two."""
+    near = [
+        b.region
+        for b in bands
+        if b.low - EDGE <= value <= b.high + EDGE
+        or (circle and abs(value - b.low) >= 2 * math.pi - EDGE)
+        or (circle and abs(value - b.high) >= 2 * math.pi - EDGE)
+    ]
+    return min(near, key=severity, default=UNKNOWN)
+
+
+class Directive(NamedTuple):
+    """Nearest values that resolve: to the right or up, to the left or down; None: none there."""
+
+    up: float | None
+    down: float | None
+    prefer_up: bool
+
+
+def directive(bands: tuple[Band, ...], own: float, corrective: int, circle: bool) -> Directive:
+    """The nearest edges of bands below the corrective region on both sides of the own value.
+
+    Directions are looked for within half a turn. Ties go to the right or up.
+    """
+    turn = 2 * math.pi
+    free = [b for b in bands if 0 <= severity(b.region) < corrective and b.region != UNKNOWN]
+    if circle:
+        free = [
+            b._replace(low=b.low + k * turn, high=b.high + k * turn)
+            for b in free
+            for k in (-1, 0, 1)
+        ]
+    up = min((max(b.low, own) for b in free if b.high > own + EDGE), default=math.inf)
+    down = max((min(b.high, own) for b in free if b.low < own - EDGE), default=-math.inf)
+    if circle and up >= own + math.pi - SLACK:
+        up = math.inf
+    if circle and down <= own - math.pi + SLACK:
+        down = -math.inf
+    prefer = math.isfinite(up) and up - own <= own - down
+    wrap = turn if circle else math.inf
+    return Directive(
+        (up % wrap if circle else up) if math.isfinite(up) else None,
+        (down % wrap if circle else down) if math.isfinite(down) else None,
+        prefer,
+    )
+
+
 class Raw(NamedTuple):
     """Bands around the own value, not wrapped, before any memory of earlier bands."""
 
@@ -254,7 +306,14 @@ def raw_bands(p: Parameters, own: Aircraft, traffic: Traffic, dimension: int, re
     if state[4]:
         said = Recovery(True, saturated, None, int(recovery[2]), None, None)
         if not saturated:
-            said = Recovery(True, False, float(recovery[1]), int(recovery[2]), float(recovery[3]), float(recovery[4]))
+            said = Recovery(
+                True,
+                False,
+                float(recovery[1]),
+                int(recovery[2]),
+                float(recovery[3]),
+                float(recovery[4]),
+            )
     recovered = bool(state[4]) and not saturated
     at_once = g.step_s == 0 and (dimension != ALT or not (g.rate_m_s and g.accel_m_s2))
     corrective = p.corrective_region
@@ -278,9 +337,13 @@ def raw_bands(p: Parameters, own: Aircraft, traffic: Traffic, dimension: int, re
 
 
 def last_times(
-    p: Parameters, own: Aircraft, traffic: Traffic, i: int, entry_s: float
+    p: Parameters, own: Aircraft, traffic: Traffic, i: int, entry_s: float, exact: bool = False
 ) -> tuple[float | None, ...]:
-    """Last time to manoeuvre out of conflict with intruder i, in each dimension [s]; None: too late."""
+    """Last time to manoeuvre out of conflict with intruder i, in each dimension [s]; None: too late.
+
+    The way to a step is sampled at the steps before it, as in DAIDALUS; exact: looked at in whole,
+    as bands do.
+    """
     found: list[float | None] = []
     region = p.corrective_region
     for dimension in range(4):
@@ -288,7 +351,7 @@ def last_times(
         safe_r = np.ones(len(g.targets) or len(g.right), dtype=np.bool_)
         safe_l = np.ones(len(g.left), dtype=np.bool_)
         time_s = machine(last_time)(
-            g.right, g.left, g.step_s, g.targets, g.rate_m_s, g.accel_m_s2, SAMPLE_S,
+            g.right, g.left, g.step_s, g.step_s if exact else 0.0, g.targets, g.rate_m_s, g.accel_m_s2, SAMPLE_S,
             traffic.states, i, traffic.kinds[region], traffic.volumes[region],
             p.lookahead_time_s, p.bands_add_time_to_maneuver, entry_s,
             traffic.alerting_s[region].copy(), safe_r, safe_l,
@@ -316,5 +379,3 @@ def unknown(p: Parameters, own: Aircraft, dimension: int, why: str) -> Guidance:
     return Guidance(
         DIMENSIONS[dimension], x0, (band,), UNKNOWN, False, None, None, False, Recovery(), {}, why
     )
-
-

@@ -17,7 +17,17 @@ from cratous.core.daa_alerting import level_times, raw_levels
 from cratous.core.daa_bands import Raw, Traffic, last_times, out_of_range, raw_bands
 from cratous.core.daa_machine import machine
 from cratous.core.daa_state import Aircraft, LevelTimes
-from cratous.spec.daa import FAR, NEAR, TAUMOD, TCAS, Alerter, Level, Parameters, Volume, sensitivity
+from cratous.spec.daa import (
+    FAR,
+    NEAR,
+    TAUMOD,
+    TCAS,
+    Alerter,
+    Level,
+    Parameters,
+    Volume,
+    sensitivity,
+)
 
 
 class Tables(NamedTuple):

@@ -11,8 +11,8 @@ from cratous.core.kernel import driver, kernel
 
 @driver(checked_by=("piece_conflict", "straight_conflict", "in_conflict"))
 def evaluate(
-    right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen, kinds, volumes,
-    horizons, begin_s, radius_m, half_m, recovering, lookahead_s, counted, project_s, early,
+    right, left, step_s, piece_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen, kinds,
+    volumes, horizons, begin_s, radius_m, half_m, recovering, lookahead_s, counted, project_s, early,
     single, safe_r, safe_l,
 ):  # fmt: skip
     """Safe steps to the right and left, or safe altitudes if there are targets.
@@ -26,13 +26,13 @@ def evaluate(
             early, single, safe_r,
         )  # fmt: skip
     a = safe_steps(
-        right, step_s, others, chosen, kinds, volumes, horizons, begin_s, radius_m, half_m,
+        right, step_s, piece_s, others, chosen, kinds, volumes, horizons, begin_s, radius_m, half_m,
         recovering, lookahead_s, counted, project_s, early, single, safe_r,
     )  # fmt: skip
     if a and early:
         return True
     b = safe_steps(
-        left, step_s, others, chosen, kinds, volumes, horizons, begin_s, radius_m, half_m,
+        left, step_s, piece_s, others, chosen, kinds, volumes, horizons, begin_s, radius_m, half_m,
         recovering, lookahead_s, counted, project_s, early, single, safe_l,
     )  # fmt: skip
     return a or b
@@ -63,7 +63,7 @@ def recover(
         sizes[i, 0], sizes[i, 1] = nmac_m, nmac_half_m
     result[0], result[1], result[2], result[3], result[4] = 1.0, 0.0, 0.0, radius_m, half_m
     if not evaluate(
-        right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen, cylinders,
+        right, left, step_s, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen, cylinders,
         sizes, horizons, 0.0, 0.0, 0.0, False, lookahead_s, counted, 0.0, True, False, safe_r, safe_l,
     ):  # fmt: skip
         return
@@ -72,7 +72,7 @@ def recover(
         for i in range(kinds.size):
             sizes[i, 0], sizes[i, 1] = radius_m, half_m
         if evaluate(
-            right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen,
+            right, left, step_s, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen,
             cylinders, sizes, horizons, 0.0, 0.0, 0.0, False, lookahead_s, counted, 0.0, True,
             False, safe_r, safe_l,
         ):  # fmt: skip
@@ -80,7 +80,7 @@ def recover(
             while green_s - red_s > 0.5:
                 middle_s = (red_s + green_s) / 2
                 if evaluate(
-                    right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen,
+                    right, left, step_s, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen,
                     kinds, volumes, horizons, middle_s, radius_m, half_m, True, lookahead_s,
                     counted, 0.0, True, False, safe_r, safe_l,
                 ):  # fmt: skip
@@ -90,7 +90,7 @@ def recover(
             if green_s < lookahead_s:
                 time_s = min(lookahead_s, green_s + stability_s)
                 if evaluate(
-                    right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen,
+                    right, left, step_s, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen,
                     kinds, volumes, horizons, time_s, radius_m, half_m, True, lookahead_s,
                     counted, 0.0, False, False, safe_r, safe_l,
                 ):  # fmt: skip
@@ -131,7 +131,7 @@ def in_region(
             horizons[i] = min(lookahead_s, alerting_s[i])
         one[0] = i
         evaluate(
-            right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, one, kinds,
+            right, left, step_s, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, one, kinds,
             volumes, horizons, 0.0, 0.0, 0.0, False, lookahead_s, counted, 0.0, False, False,
             one_r, one_l,
         )  # fmt: skip
@@ -210,12 +210,12 @@ def guide(
 
 @driver(checked_by=("piece_conflict", "straight_conflict", "in_conflict"))
 def last_time(
-    right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, i, kinds, volumes,
+    right, left, step_s, piece_s, targets, rate_m_s, accel_m_s2, sample_s, others, i, kinds, volumes,
     lookahead_s, counted, entry_s, horizons, safe_r, safe_l,
 ):  # fmt: skip
     """The last time in [0, entry_s] at which a manoeuvre still avoids intruder i [s]; -1: none.
 
-    Both fly straight on until then. Found by halving to 0.5 s, on the early side.
+    piece_s: as in `safe_steps`. Both fly straight on until then. Found by halving to 0.5 s, on the early side.
     """
     one = kinds[:1].copy()
     one[0] = i
@@ -230,7 +230,7 @@ def last_time(
             if red_s - green_s <= 0.5:
                 break
         if evaluate(
-            right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, one, kinds,
+            right, left, step_s, piece_s, targets, rate_m_s, accel_m_s2, sample_s, others, one, kinds,
             volumes, horizons, 0.0, 0.0, 0.0, False, lookahead_s, counted, middle_s, True,
             True, safe_r, safe_l,
         ):  # fmt: skip

@@ -80,12 +80,13 @@ def until(lookahead_s: float, horizon_s: float, manoeuvre_s: float, counted: boo
 
 @driver(checked_by=("piece_conflict", "straight_conflict", "lost_before", "until"))
 def safe_steps(
-    own, step_s, others, chosen, kinds, volumes, horizons, begin_s, radius_m, half_m, recovering,
+    own, step_s, piece_s, others, chosen, kinds, volumes, horizons, begin_s, radius_m, half_m, recovering,
     lookahead_s, counted, project_s, early, single, safe,
 ):  # fmt: skip
     """Which steps of one side are free of conflict with all chosen intruders, into `safe`.
 
-    own: (K + 1, 6) positions [m] and velocities [m/s] at the steps; others: (n, 6) states now;
+    own: (K + 1, 6) positions [m] and velocities [m/s] at the steps; piece_s:
+    how long a piece is looked at, step_s, or 0 to sample the way at the steps; others: (n, 6) states now;
     chosen: indices; kinds: (n), volumes: (n, 5), horizons: (n) [s] of each; recovering: the
     cylinder (radius_m, half_m) is to be avoided before begin_s; project_s: the manoeuvre begins
     after so much straight flight; early: stop as soon as two neighbours are safe.
@@ -134,7 +135,7 @@ def safe_steps(
                     final_s = horizons[i]
                 blocked = piece_conflict(
                     kinds[i], s, v, sz, vz, d, z, tthr, tcoa, vmod,
-                    step_s, at_s, begin_s, final_s,
+                    piece_s, at_s, begin_s, final_s,
                 )  # fmt: skip
             if recovering and not blocked:
                 held_s = min(begin_s, horizons[i])
@@ -149,7 +150,7 @@ def safe_steps(
                         final_s = held_s
                     blocked = piece_conflict(
                         3, s, v, sz, vz, radius_m, half_m, 0.0, 0.0, 0.0,
-                        step_s, at_s, 0.0, final_s,
+                        piece_s, at_s, 0.0, final_s,
                     )  # fmt: skip
             if not clear:
                 red = True

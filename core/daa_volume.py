@@ -40,9 +40,7 @@ def in_conflict(
     kind: 1 by tcpa, 2 by tep, 3 cylinder, any other by tau_mod; thresholds >= 0 [m, s].
     """
     if kind == 1:
-        return violation_during_tcpa(
-            s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s
-        )
+        return violation_during_tcpa(s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s)
     if kind == 2:
         return violation_during_tep(s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s)
     if kind == 3:
@@ -79,6 +77,4 @@ def conflict_span(
         )
     if kind == 3:
         return cylinder_interval(s, v, sz, vz, dthr_m, zthr_m, b_s, t_s)
-    return violation_interval_taumod(
-        s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s
-    )
+    return violation_interval_taumod(s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s)

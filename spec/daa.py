@@ -164,7 +164,14 @@ class Key(NamedTuple):
 
 
 _SUFFIXES = ("_m_s2", "_rad_s", "_m_s", "_rad", "_m", "_s")
-_UNIT_OF = {"_m_s2": "m/s^2", "_rad_s": "deg/s", "_m_s": "knot", "_rad": "deg", "_m": "ft", "_s": "s"}
+_UNIT_OF = {
+    "_m_s2": "m/s^2",
+    "_rad_s": "deg/s",
+    "_m_s": "knot",
+    "_rad": "deg",
+    "_m": "ft",
+    "_s": "s",
+}
 _NMI = {"min_horizontal_recovery", "h_vel_z_distance", "dta_radius"}
 _POSITIVE = {"step_hdir", "step_hs", "step_vs", "step_alt", "lookahead_time"}
 _RANGES = {

@@ -207,7 +207,11 @@ class _Reader:
             if name is None:
                 continue
             rest = key.removeprefix(f"{name}_")
-            if rest.startswith("load_core_detection_") or any(rest.endswith(f"_{t}") for t in THRESHOLDS) or "_TCAS_" in key:
+            if (
+                rest.startswith("load_core_detection_")
+                or any(rest.endswith(f"_{t}") for t in THRESHOLDS)
+                or "_TCAS_" in key
+            ):
                 del self.left[key]
         for entry in self.left.values():
             close = [k for k in KEYS if k.split("_")[-1] == entry.key.split("_")[-1]]
@@ -233,7 +237,9 @@ def parse(text: str, file: str = "configuration", base: Parameters | None = None
     if listed is not None:
         names = [n.strip() for n in listed.value.split(",") if n.strip()]
         if len(set(names)) < len(names):
-            raise BadInput("an alerter is listed twice", where=listed.where, item="alerters", got=listed.value)
+            raise BadInput(
+                "an alerter is listed twice", where=listed.where, item="alerters", got=listed.value
+            )
         changes["alerters"] = tuple(reader.alerter(n, listed.where) for n in names)
     reader.finish(names)
     made = dataclasses.replace(base or Parameters(), **changes)
@@ -245,13 +251,23 @@ def check(p: Parameters, where: str) -> None:
     """Raise BadInput for values that do not fit together."""
 
     def wrong(item: str, expected: str, got: str) -> None:
-        raise BadInput("values do not fit together", where=where, item=item, expected=expected, got=got)
+        raise BadInput(
+            "values do not fit together", where=where, item=item, expected=expected, got=got
+        )
 
-    for low, high in (("min_hs_m_s", "max_hs_m_s"), ("min_vs_m_s", "max_vs_m_s"), ("min_alt_m", "max_alt_m")):
+    for low, high in (
+        ("min_hs_m_s", "max_hs_m_s"),
+        ("min_vs_m_s", "max_vs_m_s"),
+        ("min_alt_m", "max_alt_m"),
+    ):
         if getattr(p, low) >= getattr(p, high):
             wrong(low, f"less than {high}", f"{getattr(p, low):g} and {getattr(p, high):g}")
     if p.turn_rate_rad_s and p.bank_angle_rad:
-        wrong("bank_angle", "turn_rate or bank_angle, not both", f"{p.turn_rate_rad_s:g} and {p.bank_angle_rad:g} rad")
+        wrong(
+            "bank_angle",
+            "turn_rate or bank_angle, not both",
+            f"{p.turn_rate_rad_s:g} and {p.bank_angle_rad:g} rad",
+        )
     if p.bank_angle_rad >= math.pi / 2:
         wrong("bank_angle", "less than 90 deg", f"{p.bank_angle_rad:g} rad")
     if p.alerting_m > p.alerting_n:
@@ -306,20 +322,29 @@ def write(made: Configuration) -> str:
         for number, level in enumerate(alerter.levels, 1):
             head = f"{alerter.name}_alert_{number}"
             lines.append(f"{head}_region = {REGIONS[level.region]}")
-            for name, time in (("alerting_time", level.alerting_time_s), ("early_alerting_time", level.early_alerting_time_s)):
+            for name, time in (
+                ("alerting_time", level.alerting_time_s),
+                ("early_alerting_time", level.early_alerting_time_s),
+            ):
                 lines.append(f"{head}_{name} = {_text(time, units.get(f'{head}_{name}', 's'))}")
             for (d, (_, unit)), spread in zip(SPREADS.items(), level.spread, strict=True):
-                lines.append(f"{head}_spread_{d} = {_text(spread, units.get(f'{head}_spread_{d}', unit))}")
+                lines.append(
+                    f"{head}_spread_{d} = {_text(spread, units.get(f'{head}_spread_{d}', unit))}"
+                )
             lines.append(f"{head}_detector = {level.detector}")
             if level.detector in seen:
                 continue
             seen.add(level.detector)
             v = level.volume
-            lines.append(f"{alerter.name}_load_core_detection_{level.detector} = {DETECTORS[v.kind]}")
+            lines.append(
+                f"{alerter.name}_load_core_detection_{level.detector} = {DETECTORS[v.kind]}"
+            )
             if v.kind == TCAS:
                 continue
             for key_name, (into, _, unit) in THRESHOLDS.items():
-                if (key_name in ("D", "H")) != (v.kind == CYLINDER) or (key_name == "VMOD_T" and not v.vmod_s):
+                if (key_name in ("D", "H")) != (v.kind == CYLINDER) or (
+                    key_name == "VMOD_T" and not v.vmod_s
+                ):
                     continue
                 full = f"{alerter.name}_{level.detector}_{key_name}"
                 lines.append(f"{full} = {_text(getattr(v, into), units.get(full, unit))}")

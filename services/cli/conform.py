@@ -22,7 +22,7 @@ LIST = "\n".join(f"  {name}: {text}" for name, text in suites.SUITES.items())
 def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> int:
     """Run published vectors against the kernels.
 
-    SUITE is `well-clear` or `polygon`; FILES are JSON lines, also gzipped. Every case is decided
+    SUITE is `well-clear`, `polygon` or `detect-and-avoid`; FILES are JSON lines, also gzipped. Every case is decided
     by the exact reading of the proved kernels. A case of a kind that the suite does not cover is
     listed as not covered and never counted as passed.
 
@@ -30,16 +30,22 @@ def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> in
 
     Exit codes: 0 nothing failed, 1 a case failed, 2 bad input, 3 no case was covered.
     """
-    judge = suites.suite(suite)
+    suites.suite(suite)
     if not files:
         raise BadInput("no file is given", item="FILES", expected="at least one file of vectors")
     reports = []
     for file in files:
+        judge, summary = suites.suite(suite)
         report = suites.run(judge, file, show)
+        report.summary = summary()
         reports.append(report)
         if as_json:
             continue
         click.echo(report.line)
+        for line in report.summary:
+            click.echo(line)
+        for case, label, text in report.evidence[:show]:
+            click.echo(f"    {case}: not ours, {label}: {text}")
         for label, count in sorted(report.differences.items()):
             click.echo(f"  {count} x {label}")
         for result in report.shown:
@@ -61,6 +67,8 @@ def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> in
                     "failed": r.failed,
                     "not_covered": dict(sorted(r.skipped.items())),
                     "differences": dict(sorted(r.differences.items())),
+                    "excused": dict(sorted(r.excused.items())),
+                    "summary": r.summary,
                     "shown": [{"id": s.case, "kind": s.label, "text": s.text} for s in r.shown],
                 }
                 for r in reports
