@@ -11,7 +11,7 @@ from collections import deque
 from dataclasses import dataclass, field
 
 from cratous.core.daa_state import Band
-from cratous.core.kernel import fold, kernel
+from cratous.core.kernel import driver, kernel
 from cratous.spec.daa import NONE, RECOVERY
 
 
@@ -21,22 +21,6 @@ def count_reached(before: int, value: int, level: int) -> int:
     if value >= level:
         return before + 1
     return before
-
-
-@kernel(implements="daa_meaning.the_count")
-def counted(count: int) -> int:
-    """The count itself."""
-    return count
-
-
-reached = fold(
-    name="reached",
-    implements="daa_meaning.reached",
-    step=count_reached,
-    start=0,
-    finish=counted,
-)
-"""How many of the values (level,) reach a level."""
 
 
 @kernel(implements="daa_meaning.enough")
@@ -57,10 +41,14 @@ def goes_on(now_s: float, before_s: float, gap_s: float) -> bool:
     return now_s > before_s and now_s - before_s <= gap_s
 
 
+@driver(checked_by=("count_reached", "enough"))
 def m_of_n(values: deque[int], m: int) -> int:
     """The highest value that at least m of them reach; 0 if none."""
     for level in sorted(set(values), reverse=True):
-        if enough(reached([(v,) for v in values], level), m):
+        count = 0
+        for value in values:
+            count = count_reached(count, value, level)
+        if enough(count, m):
             return level
     return 0
 
@@ -90,9 +78,9 @@ class Shown:
     def update(self, raw: int, now_s: float, persistence_s: float) -> int:
         """The level to show now."""
         level = self.filtered(raw)
-        if level > self.level:
-            self.level, self.raised_s = level, now_s
-        elif level < self.level and may_drop(now_s, self.raised_s, persistence_s):
+        if level > self.level or (
+            level < self.level and may_drop(now_s, self.raised_s, persistence_s)
+        ):
             self.level, self.raised_s = level, now_s
         return self.level
 

@@ -7,10 +7,8 @@ the straight flight from step k on within the horizon. Recovery asks for another
 cylinder) before the instant begin_s, and for the volume itself only from then on.
 """
 
-import math
-
 from cratous.core.daa_volume import in_conflict
-from cratous.core.kernel import Vec2, driver, kernel
+from cratous.core.kernel import Vec2, driver, fold, kernel
 
 
 @kernel(implements="daa_meaning.lost_on_piece")
@@ -67,6 +65,22 @@ def straight_conflict(
 def lost_before(before: bool, piece: bool) -> bool:
     """Whether the way to a step loses a volume: it did before, or the piece from here does."""
     return before or piece
+
+
+@kernel(implements="daa_meaning.the_way")
+def lost_on_way(lost: bool) -> bool:
+    """Whether the way loses a volume, after all of its pieces."""
+    return lost
+
+
+way_conflicts = fold(
+    name="way_conflicts",
+    implements="daa_meaning.step_conflicts",
+    step=lost_before,
+    start=False,
+    finish=lost_on_way,
+)
+"""Whether any of the pieces (piece_conflict,) of a way loses a volume."""
 
 
 @kernel(implements="daa_meaning.horizon")
