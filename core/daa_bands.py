@@ -282,9 +282,24 @@ class Raw(NamedTuple):
     state: np.ndarray
 
 
-def raw_bands(p: Parameters, own: Aircraft, traffic: Traffic, dimension: int, recover: bool) -> Raw:
-    """The bands of one dimension now."""
+def raw_bands(
+    p: Parameters,
+    own: Aircraft,
+    traffic: Traffic,
+    dimension: int,
+    recover: bool,
+    no_descent: bool = False,
+) -> Raw:
+    """The bands of one dimension now; no_descent: values below the own one are not offered."""
     g = grid(p, own, dimension)
+    below = 0
+    if no_descent and dimension == VS:
+        below = len(g.left) - 1
+        g = g._replace(left=g.left[:1])
+    elif no_descent and dimension == ALT:
+        below = int(np.searchsorted(g.targets, g.own))
+        below = min(below, len(g.targets) - 2)
+        g = g._replace(targets=g.targets[below:])
     size_r = len(g.targets) or len(g.right)
     safe_r = np.ones((5, size_r), dtype=np.bool_)
     safe_l = np.ones((5, len(g.left)), dtype=np.bool_)
@@ -322,10 +337,14 @@ def raw_bands(p: Parameters, own: Aircraft, traffic: Traffic, dimension: int, re
         said, recovered = Recovery(True, False, 0.0, 0, radius, half), True
         safe_r[4], safe_l[4] = safe_r[corrective], safe_l[corrective]
     right = colours(safe_r, state, recovered)
+    refused = np.full(below, NEAR, dtype=np.int64)
     if dimension == ALT:
-        bands = merged(g.targets, right, g.low, g.high)
+        down = g.low + g.step * np.arange(below)
+        bands = merged(
+            np.concatenate([down, g.targets]), np.concatenate([refused, right]), g.low, g.high
+        )
     else:
-        left = colours(safe_l, state, recovered)[::-1]
+        left = np.concatenate([colours(safe_l, state, recovered), refused])[::-1]
         cells = np.concatenate([left, right])
         edges = g.own + g.step * np.arange(-len(left), len(right) + 1)
         bands = merged(edges, cells, g.low, g.high)

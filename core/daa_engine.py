@@ -16,7 +16,7 @@ import numpy as np
 from cratous.core.daa_alerting import level_times, raw_levels
 from cratous.core.daa_bands import Raw, Traffic, last_times, out_of_range, raw_bands
 from cratous.core.daa_machine import machine
-from cratous.core.daa_state import Aircraft, LevelTimes
+from cratous.core.daa_state import HDIR, Aircraft, LevelTimes
 from cratous.spec.daa import (
     FAR,
     NEAR,
@@ -168,12 +168,18 @@ def look(
     return Seen(own, tuple(others), index, tuple(int(x) for x in levels), times, traffic)
 
 
-def bands_now(p: Parameters, seen: Seen, dimension: int) -> Raw | None:
-    """The bands of a dimension without history; None if the own value is out of range."""
+def bands_now(p: Parameters, seen: Seen, dimension: int, terminal: bool = False) -> Raw | None:
+    """The bands of a dimension without history; None if the own value is out of range.
+
+    terminal: a conflict in the terminal area: nothing downward is offered, and with dta_logic -1 no
+    recovery of direction.
+    """
     if out_of_range(p, seen.own, dimension):
         return None
     recover = (p.recovery_hdir, p.recovery_hs, p.recovery_vs, p.recovery_alt)[dimension]
-    return raw_bands(p, seen.own, seen.traffic, dimension, recover)
+    if terminal and dimension == HDIR and p.dta_logic < 0:
+        recover = False
+    return raw_bands(p, seen.own, seen.traffic, dimension, recover, terminal)
 
 
 def corrective_entry(p: Parameters, seen: Seen, i: int) -> float | None:

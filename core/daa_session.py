@@ -21,6 +21,7 @@ from cratous.core.daa_bands import (
 )
 from cratous.core.daa_engine import (
     Seen,
+    alerter_index,
     bands_now,
     corrective_entry,
     last_times_of,
@@ -102,7 +103,35 @@ class Session:
         p = self.parameters
         self.time_s = -math.inf
         self.shown: dict[str, Shown] = {}
+        self.area: dict[str, Shown] = {}
         self.bands = [BandMemory(p.alerting_m, p.alerting_n) for _ in DIMENSIONS]
+
+    def _terminal(
+        self, own: Aircraft, others: Sequence[Aircraft], inside: Sequence[bool]
+    ) -> tuple[bool, ...]:
+        """Whether each active aircraft is in the terminal area, by M of N."""
+        p = self.parameters
+        flags = list(inside) or [False] * (len(others) + 1)
+        active = [own] * len(others) if p.ownship_centric_alerting else list(others)
+        where = [flags[0]] * len(others) if p.ownship_centric_alerting else flags[1:]
+        found = {}
+        for a, here in zip(active, where, strict=True):
+            if a.id not in found:
+                memory = self.area.setdefault(a.id, Shown(p.alerting_m, p.alerting_n))
+                found[a.id] = memory.filtered(int(here)) > 0
+        return tuple(found[a.id] for a in active)
+
+    def _alerters(
+        self, own: Aircraft, others: Sequence[Aircraft], there: Sequence[bool]
+    ) -> tuple[int, ...] | None:
+        """Alerter indices, the terminal area's where the active aircraft is in it."""
+        p = self.parameters
+        if not there or not p.dta_alerter:
+            return None
+        return tuple(
+            p.dta_alerter - 1 if here else alerter_index(p, own, o)
+            for here, o in zip(there, others, strict=True)
+        )
 
     def _alert(self, seen: Seen, i: int, now_s: float, remembers: bool) -> Alert:
         p = self.parameters
@@ -148,11 +177,12 @@ class Session:
         own: Aircraft,
         others: Sequence[Aircraft],
         dimensions: Sequence[int] = range(4),
-        alerters: Sequence[int] | None = None,
+        inside: Sequence[bool] = (),
     ) -> Instant:
         """The next instant; all aircraft at time_s [s], velocities relative to the air.
 
-        dimensions: for which guidance is wanted. Raises BadInput for states that cannot be used.
+        dimensions: for which guidance is wanted. inside: whether each aircraft, ownship first, is
+        in the terminal area. Raises BadInput for states that cannot be used.
         """
         p = self.parameters
         if not math.isfinite(time_s):
@@ -162,9 +192,13 @@ class Session:
             self.forget()
         remembers = p.hysteresis_time_s > 0
         self.time_s = time_s
-        seen = look(p, own, others, alerters)
+        there = self._terminal(own, others, inside) if any(inside) or self.area else ()
+        seen = look(p, own, others, self._alerters(own, others, there))
         alerts = tuple(self._alert(seen, i, time_s, remembers) for i in range(len(others)))
-        raw = tuple(bands_now(p, seen, d) if d in dimensions else None for d in range(4))
+        area = any(there) and any(
+            seen.traffic.conflict[r].any() for r in range(p.corrective_region + 1, NEAR + 1)
+        )
+        raw = tuple(bands_now(p, seen, d, area) if d in dimensions else None for d in range(4))
         guidance = tuple(self._guidance(seen, d, raw[d], remembers) for d in dimensions)
         conflict = {
             region: tuple(o.id for i, o in enumerate(others) if seen.traffic.conflict[region, i])

@@ -13,6 +13,7 @@ from cratous.spec.well_clear import (
     violation_tcpa_at,
     violation_tep_at,
 )
+from cratous.spec.well_clear import within as well_within
 
 
 def violated_at(
@@ -118,3 +119,8 @@ def goes_on(now: float, before: float, gap: float) -> bool:
 def turned(v: Plane, c: float, s: float) -> Plane:
     """A velocity turned to the right by the angle with cosine c and sine s."""
     return Plane(c * v.x + s * v.y, c * v.y - s * v.x)
+
+
+def in_area(east: float, north: float, alt: float, radius: float, height: float) -> bool:
+    """In a cylinder that stands on the ground: not farther from its axis than radius, not above it."""
+    return well_within(Plane(east, north), radius) and not alt > height

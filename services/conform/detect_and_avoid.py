@@ -56,7 +56,7 @@ def _time(value: Any) -> float | None:
 
 def _aircraft(state: dict[str, Any], alerter: int) -> Aircraft:
     s, v = numbers(state["s"], "s", 3), numbers(state["v"], "v", 3)
-    return Aircraft(str(state["id"]), *s, *v, alerter)
+    return Aircraft(str(state["id"]), s[0], s[1], s[2], v[0], v[1], v[2], alerter)
 
 
 class Suite:
@@ -96,7 +96,7 @@ class Suite:
         found.compare()
         self.tally += found.tally
         if found.ours:
-            label, text = found.ours[0]
+            label = found.ours[0][0]
             return failed(name, label, "; ".join(t for _, t in found.ours), found.checks)
         return passed(name, found.checks, tuple(found.excused))
 
@@ -205,11 +205,11 @@ class Differences:
         self.note("alert level", alert.level == wanted,
                   f"{alert.id}: alert level expected {wanted}, got {alert.level}")  # fmt: skip
         for k, (first, last) in enumerate(theirs["levels_in_out"]):
-            got = alert.times[k] if k < len(alert.times) else None
-            good = got is not None and same_time(_time(first), got.first_s)
-            good = good and got is not None and same_time(_time(last), got.last_s)
+            span = alert.times[k] if k < len(alert.times) else None
+            good = span is not None and same_time(_time(first), span.first_s)
+            good = good and span is not None and same_time(_time(last), span.last_s)
             self.note("violation times", good,
-                      f"{alert.id} level {k + 1}: times expected {first}..{last}, got {got}")  # fmt: skip
+                      f"{alert.id} level {k + 1}: times expected {first}..{last}, got {span}")  # fmt: skip
         self.note("time to corrective volume", same_time(_time(theirs["t2cv"]), alert.to_corrective_s),
                   f"{alert.id}: expected {theirs['t2cv']}, got {alert.to_corrective_s}")  # fmt: skip
         if "ltm" not in theirs:
