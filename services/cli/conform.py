@@ -22,25 +22,31 @@ LIST = "\n".join(f"  {name}: {text}" for name, text in suites.SUITES.items())
 def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> int:
     """Run published vectors against the kernels and the wires.
 
-    SUITE is `well-clear`, `polygon`, `lmcp` or `frames`; FILES are JSON lines, also gzipped
-    (`frames` takes captured bytes). Geometry is decided by the exact reading of the proved kernels,
-    messages by the codecs that talk to others. A case of a kind that the suite does not cover is
+    FILES are JSON lines, also gzipped (`frames` takes captured bytes). Geometry is decided by the
+    exact reading of the proved kernels, messages by the codecs that talk to others, guidance and
+    plans by what the product itself would say. A case of a kind that the suite does not cover is
     listed as not covered and never counted as passed.
 
     Example:  cratous conform polygon vectors.jsonl.gz
 
     Exit codes: 0 nothing failed, 1 a case failed, 2 bad input, 3 no case was covered.
     """
-    judge = suites.suite(suite)
+    suites.suite(suite)
     if not files:
         raise BadInput("no file is given", item="FILES", expected="at least one file of vectors")
     reports = []
     for file in files:
+        judge, summary = suites.suite(suite)
         report = suites.run(judge, file, show)
+        report.summary = summary()
         reports.append(report)
         if as_json:
             continue
         click.echo(report.line)
+        for line in report.summary:
+            click.echo(line)
+        for case, label, text in report.evidence[:show]:
+            click.echo(f"    {case}: not ours, {label}: {text}")
         for label, count in sorted(report.differences.items()):
             click.echo(f"  {count} x {label}")
         for result in report.shown:
@@ -62,6 +68,8 @@ def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> in
                     "failed": r.failed,
                     "not_covered": dict(sorted(r.skipped.items())),
                     "differences": dict(sorted(r.differences.items())),
+                    "excused": dict(sorted(r.excused.items())),
+                    "summary": r.summary,
                     "shown": [{"id": s.case, "kind": s.label, "text": s.text} for s in r.shown],
                 }
                 for r in reports

@@ -24,6 +24,7 @@ SUITES = {
     "polygon": "Places of points in polygons and layers, nearness with a buffer, exact distances.",
     "lmcp": "LMCP messages in binary and XML, both ways, and malformed ones.",
     "frames": "Captured sentinel frames and envelopes, and what breaks a TCP bridge.",
+    "detect-and-avoid": "Alerts, bands, recovery, last times and resolutions of DAIDALUS.",
 }
 
 
@@ -32,7 +33,8 @@ class Result:
     """What came of one case: `passed`, `failed` or `not covered`.
 
     label: kind of difference, or of what is not covered; text: expected and got, for people.
-    checks: how many single verdicts of kernels were compared.
+    checks: how many single verdicts of kernels were compared. excused: differences for which there
+    is evidence that they are not ours, as (label, text).
     """
 
     case: str
@@ -40,11 +42,12 @@ class Result:
     label: str = ""
     text: str = ""
     checks: int = 0
+    excused: tuple[tuple[str, str], ...] = ()
 
 
-def passed(case: str, checks: int = 1) -> Result:
+def passed(case: str, checks: int = 1, excused: tuple[tuple[str, str], ...] = ()) -> Result:
     """The kernels say what the vector says."""
-    return Result(case, "passed", checks=checks)
+    return Result(case, "passed", checks=checks, excused=excused)
 
 
 def failed(case: str, label: str, text: str, checks: int = 1) -> Result:
@@ -60,15 +63,27 @@ def not_covered(case: str, label: str) -> Result:
 Suite = Callable[[dict[str, Any]], Result]
 
 
-def suite(name: str) -> Suite:
-    """The function that judges one case; raises BadInput for a name that is none."""
+def nothing_more() -> list[str]:
+    """No summary."""
+    return []
+
+
+def suite(name: str) -> tuple[Suite, Callable[[], list[str]]]:
+    """For one file: the function that judges a case, and one that gives lines of summary.
+
+    A suite whose cases follow each other begins anew with each file. Raises BadInput for a name
+    that is none.
+    """
     if name not in SUITES:
         raise BadInput(
             "there is no such suite", item="SUITE", expected=" or ".join(SUITES), got=name
         )
     module = importlib.import_module(f"cratous.services.conform.{name.replace('-', '_')}")
+    if hasattr(module, "suite"):
+        made = module.suite()
+        return made.judge, made.summary
     judge: Suite = module.judge
-    return judge
+    return judge, nothing_more
 
 
 @dataclass
@@ -82,6 +97,9 @@ class FileReport:
     skipped: Counter[str] = field(default_factory=Counter)
     differences: Counter[str] = field(default_factory=Counter)
     shown: list[Result] = field(default_factory=list)
+    excused: Counter[str] = field(default_factory=Counter)
+    evidence: list[tuple[str, str, str]] = field(default_factory=list)
+    summary: list[str] = field(default_factory=list)
 
     @property
     def line(self) -> str:
@@ -149,6 +167,9 @@ def run(judge: Suite, file: Path, show: int) -> FileReport:
                 got=error.got,
             ) from error
         report.checks += result.checks
+        for label, text in result.excused:
+            report.excused[label] += 1
+            report.evidence.append((result.case, label, text))
         if result.status == "passed":
             report.passed += 1
         elif result.status == "not covered":

@@ -1,0 +1,184 @@
+"""The steps of a manoeuvre in direction, speed or climb, and whether one conflicts.
+
+Definitions: `spec.daa_meaning`. A manoeuvre goes through grid steps k = 0..K, one each step_s
+seconds, and from any of them straight on. Step k conflicts with an intruder if the volume is
+violated on a piece of the way to it, pieces flown straight from step j for one step time, or on
+the straight flight from step k on within the horizon. Recovery asks for another volume (a
+cylinder) before the instant begin_s, and for the volume itself only from then on.
+"""
+
+from cratous.core.daa_volume import in_conflict
+from cratous.core.kernel import Vec2, driver, fold, kernel
+
+
+@kernel(implements="daa_meaning.lost_on_piece")
+def piece_conflict(
+    kind: int,
+    s: Vec2,
+    v: Vec2,
+    sz: float,
+    vz: float,
+    dthr_m: float,
+    zthr_m: float,
+    tthr_s: float,
+    tcoa_s: float,
+    vmod_s: float,
+    piece_s: float,
+    at_s: float,
+    from_s: float,
+    until_s: float,
+) -> bool:
+    """True iff a piece begun at at_s, relative state (s, v, sz, vz) there, loses the volume.
+
+    piece_s: how long it is flown; pieces begun before from_s or after until_s do not count [s].
+    """
+    if at_s < from_s or at_s > until_s:
+        return False
+    return in_conflict(kind, s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, 0, piece_s)
+
+
+@kernel(implements="daa_meaning.lost_from_step")
+def straight_conflict(
+    kind: int,
+    s: Vec2,
+    v: Vec2,
+    sz: float,
+    vz: float,
+    dthr_m: float,
+    zthr_m: float,
+    tthr_s: float,
+    tcoa_s: float,
+    vmod_s: float,
+    at_s: float,
+    from_s: float,
+    until_s: float,
+) -> bool:
+    """True iff straight flight from at_s on, relative state (s, v, sz, vz) there, loses the volume
+    at some instant of [from_s, until_s] that is not before at_s."""
+    return in_conflict(
+        kind, s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s,
+        max(from_s - at_s, 0), until_s - at_s,
+    )  # fmt: skip
+
+
+@kernel(implements="daa_meaning.step_conflicts")
+def lost_before(before: bool, piece: bool) -> bool:
+    """Whether the way to a step loses a volume: it did before, or the piece from here does."""
+    return before or piece
+
+
+@kernel(implements="daa_meaning.the_way")
+def lost_on_way(lost: bool) -> bool:
+    """Whether the way loses a volume, after all of its pieces."""
+    return lost
+
+
+way_conflicts = fold(
+    name="way_conflicts",
+    implements="daa_meaning.step_conflicts",
+    step=lost_before,
+    start=False,
+    finish=lost_on_way,
+)
+"""Whether any of the pieces (piece_conflict,) of a way loses a volume."""
+
+
+@kernel(implements="daa_meaning.horizon")
+def until(lookahead_s: float, horizon_s: float, manoeuvre_s: float, counted: bool) -> float:
+    """Until when a volume is looked for [s]: horizon_s after a manoeuvre that takes manoeuvre_s, or
+    in all if the manoeuvre is counted; never beyond the look-ahead."""
+    if counted:
+        return min(lookahead_s, horizon_s)
+    return min(lookahead_s, horizon_s + manoeuvre_s)
+
+
+@driver(checked_by=("piece_conflict", "straight_conflict", "lost_before", "until"))
+def safe_steps(
+    own, step_s, piece_s, others, chosen, kinds, volumes, horizons, begin_s, radius_m, half_m, recovering,
+    lookahead_s, counted, project_s, early, single, safe,
+):  # fmt: skip
+    """Which steps of one side are free of conflict with all chosen intruders, into `safe`.
+
+    own: (K + 1, 6) positions [m] and velocities [m/s] at the steps; piece_s:
+    how long a piece is looked at, step_s, or 0 to sample the way at the steps; others: (n, 6) states now;
+    chosen: indices; kinds: (n), volumes: (n, 5), horizons: (n) [s] of each; recovering: the
+    cylinder (radius_m, half_m) is to be avoided before begin_s; project_s: the manoeuvre begins
+    after so much straight flight; early: stop as soon as two neighbours are safe.
+    Returns whether two neighbouring steps are safe.
+    """
+    last = own.shape[0] - 1
+    found = False
+    first = 0
+    for k in range(last + 1):
+        safe[k] = True
+    for k in range(last + 1):
+        at_s = k * step_s
+        sx0 = own[k, 0] + own[0, 3] * project_s
+        sy0 = own[k, 1] + own[0, 4] * project_s
+        sz0 = own[k, 2] + own[0, 5] * project_s
+        blocked = False
+        red = False
+        lead = first
+        for c in range(chosen.size):
+            # the intruder that was in the way last is asked first
+            q = c
+            if c == 0:
+                q = lead
+            elif c <= lead:
+                q = c - 1
+            i = chosen[q]
+            t = at_s + project_s
+            s = Vec2(sx0 - others[i, 0] - others[i, 3] * t, sy0 - others[i, 1] - others[i, 4] * t)
+            v = Vec2(own[k, 3] - others[i, 3], own[k, 4] - others[i, 4])
+            sz = sz0 - others[i, 2] - others[i, 5] * t
+            vz = own[k, 5] - others[i, 5]
+            d, z, tthr, tcoa, vmod = (
+                volumes[i, 0], volumes[i, 1], volumes[i, 2], volumes[i, 3], volumes[i, 4],
+            )  # fmt: skip
+            clear = True
+            end_s = until(lookahead_s, horizons[i], at_s, counted)
+            if begin_s <= horizons[i] and (not red or step_s > 0):
+                clear = not straight_conflict(
+                    kinds[i], s, v, sz, vz, d, z, tthr, tcoa, vmod, at_s, begin_s, end_s
+                )
+            # a piece within a clear straight flight is clear
+            covered = clear and begin_s <= min(at_s, horizons[i]) and at_s + step_s <= end_s
+            if step_s > 0 and not covered:
+                final_s = lookahead_s
+                if counted:
+                    final_s = horizons[i]
+                blocked = piece_conflict(
+                    kinds[i], s, v, sz, vz, d, z, tthr, tcoa, vmod,
+                    piece_s, at_s, begin_s, final_s,
+                )  # fmt: skip
+            if recovering and not blocked:
+                held_s = min(begin_s, horizons[i])
+                end_s = until(lookahead_s, held_s, at_s, counted)
+                if straight_conflict(
+                    3, s, v, sz, vz, radius_m, half_m, 0.0, 0.0, 0.0, at_s, 0.0, end_s
+                ):
+                    clear = False
+                if step_s > 0:
+                    final_s = lookahead_s
+                    if counted:
+                        final_s = held_s
+                    blocked = piece_conflict(
+                        3, s, v, sz, vz, radius_m, half_m, 0.0, 0.0, 0.0,
+                        piece_s, at_s, 0.0, final_s,
+                    )  # fmt: skip
+            if not clear:
+                red = True
+                first = q
+            if blocked or (red and step_s == 0):
+                break
+        if blocked:
+            for j in range(k, last + 1):
+                safe[j] = False
+            break
+        if red:
+            safe[k] = False
+        elif single or (k > 0 and safe[k - 1]):
+            found = True
+            if early:
+                break
+    return found

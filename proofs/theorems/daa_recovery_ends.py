@@ -1,0 +1,18 @@
+"""A recovery distance that is made smaller is never below the least one and falls by at least the
+factor times the least distance, unless it has reached it: so the search for recovery ends."""
+
+from cratous.core.daa_guide import shrunk
+from cratous.proofs.claim import Claim
+from cratous.spec import daa_meaning
+
+
+def claim(c: Claim) -> None:
+    size, least, factor = c.reals("size least factor")
+    c.premise(least > 0)
+    c.premise(size >= least)
+    c.premise(factor > 0)
+    c.premise(factor < 1)
+    after = c.use(shrunk, size, least, factor)
+    c.show(c.define(daa_meaning.shrunk, size, after, least), "smaller")
+    c.show(c.any_of(after == least, size - after >= factor * least), "by a fixed amount")
+    c.show(c.implies(size == least, after == least), "and stays there")

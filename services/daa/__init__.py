@@ -1,0 +1,106 @@
+"""Detect and avoid for users: files in, alerts, bands, metrics, pictures and reasons out.
+
+`run` gives one `Instant` for each step of an encounter file. All in SI; see docs/detect-and-avoid.md.
+
+    from pathlib import Path
+    from cratous.services.daa import named_or_file, run
+
+    for step in run(Path("encounter.daa"), named_or_file("do_365b").parameters):
+        print(step.instant.time_s, [a.level for a in step.instant.alerts])
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from cratous.core.daa_frame import Local, project
+from cratous.core.daa_session import Instant, Session
+from cratous.core.daa_state import Aircraft, Sigma
+from cratous.core.daa_terminal import in_terminal_area
+from cratous.spec.daa import Parameters
+from cratous.spec.daa_file import Row, read
+from cratous.spec.daa_presets import named_or_file, names, preset
+from cratous.spec.errors import BadInput
+
+__all__ = [
+    "Aircraft", "Instant", "Session", "Sigma", "Step", "named_or_file", "names", "preset", "run",
+]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of a file: the rows it was made from, the wind [m/s, blowing to], what was said."""
+
+    rows: tuple[Row, ...]
+    wind_m_s: tuple[float, float]
+    parameters: Parameters
+    instant: Instant
+
+
+def aircraft(rows: tuple[Row, ...]) -> tuple[list[Aircraft], tuple[float, float]]:
+    """The states of a step in the plane at the ownship, relative to the air; and the wind.
+
+    The wind is the ownship's ground velocity less its heading and airspeed, where they are given.
+    """
+    own = rows[0]
+    wind = (0.0, 0.0)
+    if "heading" in own.values and "airspeed" in own.values:
+        heading, speed = own.values["heading"], own.values["airspeed"]
+        wind = (
+            own.values["vx"] - speed * math.sin(heading),
+            own.values["vy"] - speed * math.cos(heading),
+        )
+    found = []
+    for row in rows:
+        if row.geodetic is not own.geodetic:
+            raise BadInput("positions of two kinds in one step", item=row.id,
+                           expected="all geodetic or all Cartesian")  # fmt: skip
+        v = row.values
+        place = Local(v.get("x", 0.0), v.get("y", 0.0), v["vx"], v["vy"])
+        if row.geodetic:
+            place = project(
+                own.values["lat"], own.values["lon"], v["lat"], v["lon"], v["vx"], v["vy"]
+            )
+        sigma = Sigma(
+            *(v.get(k, 0.0) for k in ("s_ew", "s_ns", "s_en", "s_z", "v_ew", "v_ns", "v_en", "v_z"))
+        )
+        found.append(
+            Aircraft(
+                row.id,
+                place.east_m,
+                place.north_m,
+                v["alt"],
+                place.ve_m_s - wind[0],
+                place.vn_m_s - wind[1],
+                v["vs"],
+                int(v.get("alerter", 1)),
+                sigma,
+            )
+        )
+    return found, wind
+
+
+def run(
+    file: Path,
+    parameters: Parameters,
+    ownship: str = "",
+    dimensions: tuple[int, ...] = (0, 1, 2, 3),
+) -> Iterator[Step]:
+    """What is said at each step of an encounter file; raises BadInput."""
+    encounters = read(file, ownship)
+    session: Session | None = None
+    for time_s, rows in encounters.steps:
+        wanted = dataclasses.replace(parameters, **{**encounters.settings, **rows[0].settings})
+        if session is None or session.parameters != wanted:
+            session = Session(wanted)  # any change of a parameter ends the history
+        states, wind = aircraft(rows)
+        inside = [
+            in_terminal_area(wanted, r.values.get("lat"), r.values.get("lon"), r.values["alt"])
+            for r in rows
+        ]
+        instant = session.step(time_s, states[0], states[1:], dimensions, inside=inside)
+        yield Step(rows, wind, wanted, instant)
