@@ -22,8 +22,9 @@ LIST = "\n".join(f"  {name}: {text}" for name, text in suites.SUITES.items())
 def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> int:
     """Run published vectors against the kernels.
 
-    SUITE is `well-clear` or `polygon`; FILES are JSON lines, also gzipped. Every case is decided
-    by the exact reading of the proved kernels. A case of a kind that the suite does not cover is
+    SUITE is `well-clear`, `polygon` or `assignment`; FILES are JSON lines, also gzipped. Every case
+    is decided by the exact reading of the proved kernels; `assignment` searches, and replays each
+    solution with the proved kernels. A case of a kind that the suite does not cover is
     listed as not covered and never counted as passed.
 
     Example:  cratous conform polygon vectors.jsonl.gz

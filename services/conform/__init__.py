@@ -20,6 +20,7 @@ from cratous.spec.errors import BadInput
 
 SUITES = {
     "well-clear": "Horizontal and vertical well-clear violation with modified tau, now.",
+    "assignment": "Optimal assignments: recorded optima, and best costs of OpenUxAS.",
     "polygon": "Location of a point in a polygon: inside, outside or on the boundary.",
 }
 
@@ -57,14 +58,21 @@ def not_covered(case: str, label: str) -> Result:
 Suite = Callable[[dict[str, Any]], Result]
 
 
-def suite(name: str) -> Suite:
+@dataclass(frozen=True)
+class Beside:
+    """A suite that also reads files which lie beside that of its cases."""
+
+    judge: Callable[[dict[str, Any], Path], Result]
+
+
+def suite(name: str) -> Suite | Beside:
     """The function that judges one case; raises BadInput for a name that is none."""
     if name not in SUITES:
         raise BadInput(
             "there is no such suite", item="SUITE", expected=" or ".join(SUITES), got=name
         )
     module = importlib.import_module(f"cratous.services.conform.{name.replace('-', '_')}")
-    judge: Suite = module.judge
+    judge: Suite | Beside = module.judge
     return judge
 
 
@@ -115,7 +123,7 @@ def cases(file: Path) -> Iterator[tuple[int, dict[str, Any]]]:
         raise BadInput(f"this is no JSON: {error.msg}", where=f"{file}:{number}") from error
 
 
-def run(judge: Suite, file: Path, show: int) -> FileReport:
+def run(judge: Suite | Beside, file: Path, show: int) -> FileReport:
     """Judge every case of a file; at most `show` differences are kept in full.
 
     Raises BadInput for a case that cannot be read: it is neither passed nor failed.
@@ -123,7 +131,7 @@ def run(judge: Suite, file: Path, show: int) -> FileReport:
     report = FileReport(str(file))
     for number, case in cases(file):
         try:
-            result = judge(case)
+            result = judge.judge(case, file) if isinstance(judge, Beside) else judge(case)
         except BadInput as error:
             error.where = error.where or f"{file}:{number}"
             raise BadInput(
