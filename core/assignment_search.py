@@ -14,7 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from cratous.core.assignment_steps import covers_step, earliest_start, weighted
+from cratous.core.assignment_steps import (
+    covers_step,
+    earliest_start,
+    opened,
+    raised,
+    weighted,
+)
 from cratous.core.assignment_tables import deals
 
 
@@ -34,7 +40,7 @@ def place(
     done = state[0]
     j = task[o]
     way = travel[v, state[1 + v], o]
-    if (done >> j) & 1 or (need[j] & ~done) != 0 or way > 1073741823:
+    if (done >> j) & 1 or not opened(done, need[j]) or way > 1073741823:
         return False
     base = 3 + 2 * vehicles
     ref = release[j]
@@ -43,7 +49,7 @@ def place(
         if ref_kind[r] == 2 and (ref_group[r] & done) == 0:
             return False
         if waits:
-            ref = max(ref, state[base + r] + row_lo[p])
+            ref = raised(ref, state[base + r], row_lo[p])
     floor = state[1 + 2 * vehicles] if floors else 0
     begin = earliest_start(state[1 + vehicles + v], way, floor, ref)
     end = begin + duration[o]

@@ -89,7 +89,22 @@ def check(problem: AssignmentProblem) -> None:
         bool(p.cost.energy and not p.energy_mj), "energy counts but is not given", "energy_mj",
         "a table like travel_ms", "none",
     )  # fmt: skip
+    _timeless(p)
     _range(p)
+
+
+def _timeless(p: AssignmentProblem) -> None:
+    """Refuse what lets a vehicle do two tasks at one instant: which comes first would be open."""
+    for v, table in enumerate(p.travel_ms):
+        for a, choice in enumerate(p.choices):
+            if choice.duration_ms > 0 or p.vehicles[v] not in choice.vehicles:
+                continue
+            for k, way in enumerate(table[a]):
+                other = p.choices[k].task_id != choice.task_id
+                _refuse(
+                    other and way == 0, "a task without duration has a way without length after it",
+                    f"travel_ms[{v}][{a}][{k}]", "a duration or a way above 0", "both 0",
+                )  # fmt: skip
 
 
 def _range(p: AssignmentProblem) -> None:
