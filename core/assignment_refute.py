@@ -19,12 +19,12 @@ from cratous.core.assignment_search import cost_now, expand, place, rehash
 from cratous.core.assignment_tables import CELLS_MAX, heads, latest_tables, shortest_ways
 from cratous.core.kernel import driver
 
-EFFORT = 20_000
+EFFORT = 2_000_000
 """Steps spent on one question to `deals`."""
 DEALS_TASKS = 20
 LATEST = (1 << 30) - 1
 """No task of an instance ends as late as this [ms] (`TIME_MAX_MS`); tables hold 32 bits."""
-CHUNK = 512
+CHUNK = 32
 """Rows of a layer that are expanded before anybody is asked whether to stop."""
 ROOM_BYTES = 150_000_000
 """What the states of one layer may take."""

@@ -31,6 +31,9 @@ from cratous.services.planning.assign_problem import Part, arrays, check, is_com
 from cratous.services.planning.assign_replay import replayed
 from cratous.spec.assignment import ORDER, TIME, AssignmentProblem, Choice, Solution, Step
 
+DEALS_SURE = 16
+"""Instances of so many tasks are refuted at once; larger ones from 90 % of the cost upwards."""
+
 Progress = Callable[[int, int | None, int], None]
 """Told (nodes, incumbent's cost or None, bound) whenever one of them changes."""
 
@@ -150,7 +153,7 @@ def _anneal(run: _Run, made: list[Instance], firsts: list[Moves | None]) -> None
     for again in range(1, 4):
         for _, k, moves in ends[:2]:
             n = made[k].tasks
-            steps = (12_000 if n > 12 else 3_000) * n
+            steps = (40_000 if n > 16 else 12_000 if n > 12 else 3_000) * n
             if n > 10 and not run.over():
                 cost, better = improve(made[k], moves, steps, run.limits.seed + again)
                 run.better(cost, k, better)
@@ -159,7 +162,8 @@ def _anneal(run: _Run, made: list[Instance], firsts: list[Moves | None]) -> None
 def _prove(run: _Run, made: list[Instance]) -> list[Proof]:
     """A proof of a bound for each branch; better solutions are taken on the way."""
     proofs = [Proof("estimate", 0) for _ in made]
-    for share in (0, 900, 950, 980, 1000):
+    most = max((i.tasks for i in made), default=0)
+    for share in (0, 1000) if most <= DEALS_SURE else (900, 950, 980, 1000):
         for k, instance in enumerate(made):
             if proofs[k].bound >= run.cost or run.over():
                 continue
