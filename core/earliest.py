@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from cratous.core.assignment_steps import raised
 from cratous.core.kernel import driver
 from cratous.core.timing import row_holds, schedule_holds
 from cratous.spec.plan import (
@@ -144,7 +145,7 @@ class _Raiser:
         if row_holds(row.kind, self.start[row.i], self.end[row.i], reference, row.lo, row.hi):
             return False
         if row.kind in (AFTER_END, AFTER_START, NOT_BEFORE):
-            return self.raise_to(row.i, reference + row.lo)
+            return self.raise_to(row.i, raised(self.start[row.i], reference, row.lo))
         need = self.end[row.i] - row.hi
         if row.kind == WITHIN_START:
             # the earliest start counts, so every member has to move

@@ -23,6 +23,8 @@ COMMANDS = {
     "prove": "Prove the kernels and write the ledger (in a checkout).",
     "conform": "Run published vectors against the kernels and the wires.",
     "certify": "Judge a finished flight again from its log.",
+    "assign": "Solve an assignment problem, with a certificate.",
+    "certify-plan": "Check the certificate of an assignment.",
     "monitor": "Watch a message log for violations of G1 to G5.",
     "log": "List, filter, follow, export, import and replay message logs.",
     "lmcp": "Read, write, explain and compare LMCP messages.",
@@ -41,8 +43,9 @@ class LazyGroup(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in COMMANDS:
             return None
-        module = importlib.import_module(f"cratous.services.cli.{cmd_name}")
-        command: click.Command = getattr(module, cmd_name)
+        name = cmd_name.replace("-", "_")
+        module = importlib.import_module(f"cratous.services.cli.{name}")
+        command: click.Command = getattr(module, name)
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

@@ -25,6 +25,7 @@ SUITES = {
     "lmcp": "LMCP messages in binary and XML, both ways, and malformed ones.",
     "frames": "Captured sentinel frames and envelopes, and what breaks a TCP bridge.",
     "detect-and-avoid": "Alerts, bands, recovery, last times and resolutions of DAIDALUS.",
+    "assignment": "Optimal assignments: recorded optima, and best costs of OpenUxAS.",
 }
 
 
@@ -63,12 +64,19 @@ def not_covered(case: str, label: str) -> Result:
 Suite = Callable[[dict[str, Any]], Result]
 
 
+@dataclass(frozen=True)
+class Beside:
+    """A suite that also reads files which lie beside that of its cases."""
+
+    judge: Callable[[dict[str, Any], Path], Result]
+
+
 def nothing_more() -> list[str]:
     """No summary."""
     return []
 
 
-def suite(name: str) -> tuple[Suite, Callable[[], list[str]]]:
+def suite(name: str) -> tuple[Suite | Beside, Callable[[], list[str]]]:
     """For one file: the function that judges a case, and one that gives lines of summary.
 
     A suite whose cases follow each other begins anew with each file. Raises BadInput for a name
@@ -82,7 +90,7 @@ def suite(name: str) -> tuple[Suite, Callable[[], list[str]]]:
     if hasattr(module, "suite"):
         made = module.suite()
         return made.judge, made.summary
-    judge: Suite = module.judge
+    judge: Suite | Beside = module.judge
     return judge, nothing_more
 
 
@@ -147,16 +155,17 @@ def _listed(file: Path, text: str) -> Iterator[tuple[int, dict[str, Any]]]:
         yield number, _case(value, f"{file}, case {number}")
 
 
-def run(judge: Suite, file: Path, show: int) -> FileReport:
+def run(judge: Suite | Beside, file: Path, show: int) -> FileReport:
     """Judge every case of a file; at most `show` differences are kept in full.
 
     Raises BadInput for a case that cannot be read: it is neither passed nor failed.
     """
     report = FileReport(str(file))
-    module = importlib.import_module(judge.__module__)
+    of = judge.judge if isinstance(judge, Beside) else judge
+    module = importlib.import_module(of.__module__)
     for number, case in getattr(module, "cases", cases)(file):
         try:
-            result = judge(case)
+            result = judge.judge(case, file) if isinstance(judge, Beside) else judge(case)
         except BadInput as error:
             error.where = error.where or f"{file}:{number}"
             raise BadInput(

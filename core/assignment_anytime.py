@@ -1,0 +1,145 @@
+"""Search a plain instance for as long as there is time: first leaf, annealing, refutation.
+
+The bound that is returned is proved by the refutation whose origins are returned with it. All
+results depend on the seed and the limits alone; only `stop`, if it looks at a clock, can make a
+difference, and then only to how far the search gets.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from cratous.core.assignment_compiled import machine
+from cratous.core.assignment_improve import anneal, leaf
+from cratous.core.assignment_instance import TASKS_MAX, Instance
+from cratous.core.assignment_order import by_sets, is_sets
+from cratous.core.assignment_refute import Ahead, Outcome, first_state, look_ahead, refute
+from cratous.core.assignment_search import bound
+from cratous.core.assignment_steps import earliest_start, raised
+from cratous.core.kernel import driver
+
+Moves = tuple[tuple[int, int], ...]
+NONE = 1 << 60
+
+
+@dataclass
+class Proof:
+    """What shows that no solution of an instance costs less than `bound`.
+
+    kind: `tables` (the tables over sets give it), `layers` (a refutation of `limit` by `origins`),
+    or `estimate` (the first state's bound).
+    """
+
+    kind: str
+    bound: int
+    limit: int = 0
+    origins: tuple[np.ndarray, ...] = field(default=(), repr=False)
+
+
+def greedy(instance: Instance) -> tuple[int, Moves | None]:
+    """(nodes, the first leaf's moves, or None if it ends in a dead end)."""
+    i, n = instance, instance.tasks
+    order, who, how = np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64)
+    nodes = int(machine(leaf)(order, who, how, 0, *_parts(i)))
+    if nodes < 0:
+        return n, None
+    return nodes, tuple((int(who[j]), int(how[j])) for j in order)
+
+
+def improve(
+    instance: Instance, moves: Moves, steps: int, seed: int, hot: float = 0.15
+) -> tuple[int, Moves]:
+    """(cost, moves) of the best that annealing finds in so many steps from these moves.
+
+    The cost is NONE if even that misses a latest end.
+    """
+    i, n = instance, instance.tasks
+    order = np.array([i.task[o] for _, o in moves], np.int64)
+    who, how = np.zeros(n, np.int64), np.zeros(n, np.int64)
+    for v, o in moves:
+        who[i.task[o]], how[i.task[o]] = v, o
+    cost = int(machine(anneal)(order, who, how, steps, seed, hot, *_parts(i)))
+    found = tuple((int(who[j]), int(how[j])) for j in order)
+    late = cost >= NONE or any(end > i.due[i.task[o]] for _, o, _, _, end in timed(i, found))
+    return NONE if late else cost, found
+
+
+def timed(instance: Instance, moves: Moves) -> list[tuple[int, int, int, int, int]]:
+    """(vehicle, option, arrival, start, end) of moves, at their earliest times [ms]."""
+    i = instance
+    free, at = [int(r) for r in i.ready], [i.duration.size] * i.vehicles
+    starts: dict[int, int] = {}
+    ends: dict[int, int] = {}
+    found = []
+    for v, o in moves:
+        j = int(i.task[o])
+        arrive = free[v] + int(i.travel[v, at[v], o])
+        ref = int(i.release[j])
+        for p in range(int(i.row_first[j]), int(i.row_first[j + 1])) if i.waits else ():
+            r = int(i.row_ref[p])
+            members = [int(m) for m in i.member[i.member_first[r] : i.member_first[r + 1]]]
+            if i.ref_kind[r] == 1:
+                at_ref = max(ends[m] for m in members)
+            else:
+                at_ref = min(starts[m] for m in members if m in starts)
+            ref = raised(ref, at_ref, int(i.row_lo[p]))
+        begin = earliest_start(free[v], arrive - free[v], 0, ref)
+        starts[j], ends[j] = begin, begin + int(i.duration[o])
+        free[v], at[v] = ends[j], o
+        found.append((v, o, arrive, begin, ends[j]))
+    return found
+
+
+def _parts(i: Instance) -> tuple[object, ...]:
+    return (
+        i.travel, i.added, i.duration, i.task, i.may, i.ready, i.release, i.due, i.ref_kind,
+        i.member_first, i.member, i.row_first, i.row_ref, i.row_lo, i.weight, i.waits,
+    )  # fmt: skip
+
+
+def estimate(instance: Instance, ahead: Ahead) -> int:
+    """The bound of the first state (instances of at most 62 tasks)."""
+    i, n = instance, instance.tasks
+    scratch = [np.zeros(n, np.int64) for _ in range(3)]
+    return int(
+        machine(bound)(
+            first_state(i), n, i.vehicles, i.duration.size, ahead.reach, ahead.nearest,
+            ahead.cheapest, i.duration, i.task, i.may, ahead.least, ahead.head, ahead.tail, i.due,
+            i.weight, *scratch,
+        )
+    )  # fmt: skip
+
+
+@driver(checked_by=("earliest_start", "latest_departure", "covers_step", "keeps_step", "weighted"))
+def settle_bound(
+    instance: Instance,
+    limit: int,
+    width: int,
+    stop: Callable[[int], bool] | None = None,
+    ahead: Ahead | None = None,
+) -> tuple[int, Moves | None, Proof, Outcome | None]:
+    """The optimum below `limit` as far as `width` allows: (cost, moves or None, proof, search).
+
+    moves None: nothing below the limit was found; the proof's bound says what is certain.
+    """
+    if instance.tasks > TASKS_MAX:
+        return limit, None, Proof("estimate", 0), None
+    ahead = look_ahead(instance) if ahead is None else ahead
+    low = estimate(instance, ahead)
+    if low >= limit:
+        return limit, None, Proof("estimate", low), None
+    if is_sets(instance):
+        cost, moves = by_sets(instance, ahead)
+        if moves is not None or cost >= limit:
+            found = moves if cost < limit else None
+            return min(cost, limit), found, Proof("tables", cost), None
+    done = refute(instance, limit, width, ahead, stop)
+    known = min(done.known, done.cost)
+    if known < low:
+        return done.cost, done.moves, Proof("estimate", low), done
+    complete = done.known >= limit
+    kind = Proof("layers", known, limit, done.origins) if complete else Proof("estimate", low)
+    return done.cost, done.moves, kind, done

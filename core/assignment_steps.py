@@ -1,0 +1,116 @@
+"""The steps of an assignment search, each a kernel: when a task starts, what covers what, what fits.
+
+Integers, milliseconds after mission start. Definitions: `spec.assignment`. The compiled searches
+(`core.assignment_search`, `core.assignment_tables`) and the checker of certificates
+(`core.assignment_check`) call these very functions.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from cratous.core.kernel import fold, kernel
+
+
+@kernel(implements="assignment.may_start")
+def earliest_start(free: int, travel: int, floor: int, ref: int) -> int:
+    """The earliest instant at which a vehicle can start a task [ms].
+
+    free: when it is free; travel: its way to the task; floor: no task placed later starts before;
+    ref: what order and timing rows demand. All in ms.
+    """
+    return max(max(free + travel, floor), ref)
+
+
+@kernel(implements="assignment.leaves_in_time")
+def latest_departure(due: int, after: int, release: int, duration: int, travel: int) -> int:
+    """The latest departure [ms] from which a task, and then all that follows it, is in time.
+
+    due: the task's latest end; after: latest departure from the task for what follows; release:
+    its earliest start; duration, travel: of the task and of the way to it. -2**60: there is none.
+    """
+    end = min(due, after)
+    if release + duration > end:
+        return -1152921504606846976
+    return end - duration - travel
+
+
+@kernel(implements="assignment.keeps_step")
+def keeps_step(ok: bool, free: int, latest: int) -> bool:
+    """Add one vehicle to whether all leave in time: it is free at `free`, must leave by `latest`."""
+    return ok and free <= latest
+
+
+@kernel(implements="assignment.is_covered_step")
+def covers_step(ok: bool, mine: int, other: int) -> bool:
+    """Add one time to whether a state is nowhere later than another: `mine` against `other` [ms]."""
+    return ok and mine <= other
+
+
+@kernel(implements="assignment.covered_result")
+def covers_result(ok: bool) -> bool:
+    """Whether no time of the one state is later than that of the other."""
+    return ok
+
+
+covers = fold(
+    name="covers",
+    implements="assignment.is_covered",
+    step=covers_step,
+    start=True,
+    finish=covers_result,
+)
+
+
+@kernel(implements="assignment.weighted")
+def weighted(makespan: int, team: int, added: int, per_makespan: int, per_team: int) -> int:
+    """The cost: weighted latest end, weighted sum of the vehicles' last ends, and what legs cost.
+
+    makespan, team: [ms]; added: weighted distances and energies so far; per_*: weights, >= 0.
+    """
+    return makespan * per_makespan + team * per_team + added
+
+
+class Chain(NamedTuple):
+    """A vehicle's chain so far: all legs held, and when the vehicle is free [ms]."""
+
+    ok: bool
+    free: int
+
+
+@kernel(implements="assignment.chain_step")
+def chain_step(chain: Chain, travel: int, start: int, end: int, duration: int) -> Chain:
+    """Add one task to a chain: the vehicle is there by its start, and it takes its duration.
+
+    travel: way from the task before (for the first: from mission start, with the time until the
+    vehicle is ready); start, end: of the task; duration: of the task. All in ms.
+    """
+    ok = chain.ok and start >= chain.free + travel and end == start + duration
+    return Chain(ok, end)
+
+
+@kernel(implements="assignment.chain_result")
+def chain_result(chain: Chain) -> bool:
+    """Whether every leg of the chain held."""
+    return chain.ok
+
+
+chain_holds = fold(
+    name="chain_holds",
+    implements="assignment.leg_is_flown",
+    step=chain_step,
+    start=Chain(True, 0),
+    finish=chain_result,
+)
+
+
+@kernel(implements="assignment.row_is_raised")
+def raised(start: int, ref: int, lo: int) -> int:
+    """The earliest start [ms] that is not before `start` and keeps lo [ms] from the reference."""
+    return max(start, ref + lo)
+
+
+@kernel(implements="assignment.all_needed_done")
+def opened(done: int, need: int) -> bool:
+    """True iff all tasks of the mask `need` are among those of the mask `done`."""
+    return done & need == need

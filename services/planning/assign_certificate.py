@@ -1,0 +1,235 @@
+"""Certificates: a solution with what shows its bound, as a file that can be checked without the search.
+
+The file holds the problem, the steps, the claim, and per branch a proof: `layers` (the origins of
+all states from which less could still have been reached; the checker makes the states anew and
+asks for every child that is not listed), `tables` (the checker makes the tables over sets anew),
+`estimate` (the bound of the first state), or `solvers` (z3 and cvc5 find nothing below the cost).
+A solution is called optimal only if the proved bound is its cost.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+import zlib
+from dataclasses import asdict, dataclass, replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cratous.core.assignment_anytime import NONE, Proof, estimate
+from cratous.core.assignment_check import least_cost
+from cratous.core.assignment_order import by_sets, is_sets
+from cratous.core.assignment_refute import look_ahead
+from cratous.services.planning.assign_problem import arrays, check, is_compiled, parts
+from cratous.services.planning.assign_replay import replayed
+from cratous.services.planning.assign_solvers import none_below, schedule_holds
+from cratous.spec.assignment import AssignmentProblem, Choice, Cost, Solution, Step
+from cratous.spec.errors import BadInput
+
+FORMAT = "cratous-assignment-certificate/1"
+BYTES_MAX = 50_000_000
+SOLVER_TASKS = 8
+"""Problems of at most so many tasks are put to z3 and cvc5 where nothing else proves them."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a check found: status, cost, bound, and the first thing that is wrong, or ""."""
+
+    status: str
+    cost: int | None
+    bound: int
+    wrong: str = ""
+
+
+def certified(problem: AssignmentProblem, found: Solution) -> tuple[Solution, dict[str, Any]]:
+    """The solution with the status that its certificate supports, and the certificate."""
+    proofs = list(found.proof) if isinstance(found.proof, list) else []
+    written = [_proof(proof) for proof in proofs]
+    searched = any(proof.kind == "search" for proof in proofs)
+    low = min((w["bound"] for w in written), default=0)
+    if found.cost is not None and (searched or low < found.cost):
+        few = len(problem.tasks) <= SOLVER_TASKS and not (
+            problem.cost.distance or problem.cost.energy
+        )
+        proved = few and not _all_compiled(problem) and none_below(problem, found.cost)[0]
+        if proved:
+            written, low = [{"kind": "solvers", "bound": found.cost}], found.cost
+        elif searched:
+            written, low = [], 0
+    if found.cost is None:
+        status, low = found.status, found.bound
+    else:
+        low = min(low, found.cost)
+        status = "optimal" if found.cost <= low else "feasible"
+    body: dict[str, Any] = {
+        "format": FORMAT,
+        "problem": asdict(problem),
+        "claim": {"status": status, "cost": found.cost, "bound": low},
+        "steps": [asdict(step) for step in found.steps],
+        "proofs": written,
+    }
+    text = json.dumps(body, sort_keys=True)
+    if len(text) > BYTES_MAX:
+        less = [w if w["kind"] != "layers" else {"kind": "estimate", "bound": 0} for w in written]
+        body["proofs"] = less
+        checked = _bounds(problem, less)
+        low = min(low, checked[0])
+        status = "optimal" if found.cost is not None and found.cost <= low else found.status
+        body["claim"] = {"status": status, "cost": found.cost, "bound": low}
+    body["sha256"] = _digest(body)
+    return replace(found, status=status, bound=low), body
+
+
+def _all_compiled(problem: AssignmentProblem) -> bool:
+    return all(is_compiled(problem, part) for part in parts(problem)[0])
+
+
+def _proof(proof: Proof) -> dict[str, Any]:
+    found: dict[str, Any] = {"kind": proof.kind, "bound": proof.bound}
+    if proof.kind == "layers":
+        small = [np.ascontiguousarray(o, np.int32).tobytes() for o in proof.origins]
+        found["limit"] = proof.limit
+        found["sizes"] = [len(o) for o in proof.origins]
+        found["origins"] = base64.b64encode(zlib.compress(b"".join(small), 6)).decode("ascii")
+    return found
+
+
+def _digest(body: dict[str, Any]) -> str:
+    rest = {key: value for key, value in body.items() if key != "sha256"}
+    return hashlib.sha256(json.dumps(rest, sort_keys=True).encode()).hexdigest()
+
+
+def write(file: Path, certificate: dict[str, Any]) -> None:
+    """Write a certificate."""
+    file.write_text(json.dumps(certificate, sort_keys=True) + "\n", encoding="utf-8")
+
+
+def read(file: Path) -> dict[str, Any]:
+    """A certificate from a file; BadInput for one that is none."""
+    try:
+        body = json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise BadInput("there is no such file", where=str(file)) from error
+    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
+        raise BadInput(f"this is no certificate: {error}", where=str(file)) from error
+    if not isinstance(body, dict) or body.get("format") != FORMAT:
+        raise BadInput("this is no certificate", where=str(file), expected=FORMAT)
+    return body
+
+
+def verify(body: dict[str, Any]) -> Verdict:
+    """Check a certificate from the problem on: digest, schedule by kernels and z3, bounds, claim."""
+    claim = body.get("claim") or {}
+    try:
+        status, cost, bound = claim["status"], claim["cost"], int(claim["bound"])
+        problem, steps = _problem(body["problem"]), [Step(**step) for step in body["steps"]]
+        if body.get("sha256") != _digest(body):
+            return Verdict(status, cost, bound, "the digest is not that of the content")
+        check(problem)
+        if cost is not None:
+            got = replayed(problem, steps)
+            if got != cost:
+                return Verdict(status, cost, bound, f"the schedule costs {got}, not {cost}")
+            right, text = schedule_holds(problem, steps)
+            if not right:
+                return Verdict(status, cost, bound, f"z3 finds that it does not hold: {text}")
+        low, wrong = _bounds(problem, body["proofs"], cost)
+    except BadInput as error:
+        return Verdict(str(claim.get("status")), claim.get("cost"), 0, str(error))
+    except (KeyError, TypeError, ValueError, zlib.error) as error:
+        return Verdict(str(claim.get("status")), claim.get("cost"), 0, f"not readable: {error}")
+    if wrong:
+        return Verdict(status, cost, bound, wrong)
+    return Verdict(status, cost, bound, _claims(status, cost, bound, low))
+
+
+def _claims(status: str, cost: int | None, bound: int, low: int) -> str:
+    """What of the claim does not follow from the proved bound."""
+    if bound > low:
+        return f"the proofs show a bound of {low}, not {bound}"
+    if status == "optimal" and (cost is None or cost > low):
+        return "it is said to be optimal, but the bound is below its cost"
+    if status == "infeasible" and low < NONE:
+        return "that nothing exists is not shown"
+    if status not in ("optimal", "feasible", "infeasible", "unknown"):
+        return f"there is no status {status!r}"
+    return (
+        "" if (cost is None) == (status in ("infeasible", "unknown")) else "cost and status clash"
+    )
+
+
+def _bounds(
+    problem: AssignmentProblem, proofs: list[dict[str, Any]], cost: int | None = None
+) -> tuple[int, str]:
+    """(what the proofs show of all branches, what is wrong with one of them)."""
+    branches, all_of_them = parts(problem)
+    if any(p["kind"] == "solvers" for p in proofs):
+        if len(proofs) != 1 or cost is None:
+            return 0, "solvers' evidence is for the whole problem"
+        agreed, said = none_below(problem, cost)
+        return (cost, "") if agreed else (0, f"the solvers do not agree: {said}")
+    if not proofs:
+        return 0, ""
+    if len(proofs) != len(branches) or not all_of_them:
+        return 0, "there is not one proof for each branch"
+    low: int = NONE
+    shown: int
+    for number, (branch, proof) in enumerate(zip(branches, proofs, strict=True)):
+        relaxed = branch if branch.plain else _plain(branch)
+        if problem.semantics != "time" and not is_compiled(problem, relaxed):
+            low = 0
+            continue
+        instance = arrays(problem, relaxed)
+        if proof["kind"] == "layers":
+            shown, wrong = least_cost(instance, int(proof["limit"]), _origins(proof))
+        elif proof["kind"] == "tables":
+            shown, wrong = (
+                (by_sets(instance)[0], "") if is_sets(instance) else (0, "no tables here")
+            )
+        elif proof["kind"] == "estimate" and instance.tasks <= 62:
+            shown, wrong = estimate(instance, look_ahead(instance)), ""
+        else:
+            shown, wrong = 0, ""
+        if wrong:
+            return 0, f"branch {number + 1}: {wrong}"
+        low = min(low, shown)
+    return low, ""
+
+
+def _plain(branch: Any) -> Any:
+    from cratous.core.assignment_instance import is_plain
+
+    rows = tuple(row for row in branch.rows if is_plain((row,)))
+    return replace(branch, rows=rows, plain=True)
+
+
+def _origins(proof: dict[str, Any]) -> list[np.ndarray]:
+    raw = np.frombuffer(zlib.decompress(base64.b64decode(proof["origins"])), np.int32)
+    if raw.size != 3 * sum(proof["sizes"]):
+        raise ValueError("the origins have a wrong length")
+    ends = np.cumsum([0, *proof["sizes"]])
+    table = raw.reshape(-1, 3)
+    return [table[a:b] for a, b in pairwise(ends)]
+
+
+def _problem(data: dict[str, Any]) -> AssignmentProblem:
+    def table(rows: Any) -> Any:
+        return tuple(tuple(tuple(row) for row in part) for part in rows)
+
+    fields = dict(data)
+    fields["choices"] = tuple(
+        Choice(**{**c, "vehicles": tuple(c["vehicles"])}) for c in data["choices"]
+    )
+    fields["cost"] = Cost(**data["cost"])
+    for name in ("vehicles", "ready_ms"):
+        fields[name] = tuple(data[name])
+    for name in ("release_ms", "due_ms"):
+        fields[name] = tuple((task, at) for task, at in data[name])
+    for name in ("travel_ms", "distance_mm", "energy_mj"):
+        fields[name] = table(data[name])
+    return AssignmentProblem(**fields)

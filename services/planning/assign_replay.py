@@ -1,0 +1,110 @@
+"""Replaying a solution: every leg, row, option and order, by the proved kernels, in integers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cratous.core.assignment_steps import chain_holds, weighted
+from cratous.core.earliest import next_wait_ms, rows_hold
+from cratous.core.timing import eligible, later
+from cratous.services.planning.assign_problem import Part, parts
+from cratous.spec import algebra_runs
+from cratous.spec.assignment import ORDER, AssignmentProblem, Choice, Step
+from cratous.spec.errors import BadInput
+from cratous.spec.plan import AFTER_END, AFTER_START, Row
+
+
+def replayed(problem: AssignmentProblem, steps: Sequence[Step]) -> int:
+    """The cost of the solution; BadInput with the reason if it is none."""
+    branch = branch_of(problem, steps)
+    chains: dict[int, list[Step]] = {v: [] for v in problem.vehicles}
+    for step in steps:
+        if step.vehicle_id not in chains:
+            raise _wrong(f"there is no vehicle {step.vehicle_id}")
+        chains[step.vehicle_id].append(step)
+    last, team, added = 0, 0, 0
+    for v, vehicle in enumerate(problem.vehicles):
+        chain = chains[vehicle]
+        legs = _legs(problem, v, chain)
+        if not chain_holds([leg[:4] for leg in legs]):
+            raise _wrong(f"vehicle {vehicle} cannot fly its tasks at these times")
+        added += sum(leg[4] for leg in legs)
+        if chain:
+            last, team = later(last, chain[-1].end_ms), team + chain[-1].end_ms
+    starts = {step.task_id: step.start_ms for step in steps}
+    ends = {step.task_id: step.end_ms for step in steps}
+    if not rows_hold(rows_in(problem, branch), starts, ends):
+        raise _wrong("an order or timing constraint does not hold")
+    if problem.semantics == ORDER:
+        order = tuple(step.task_id for step in steps)
+        if not algebra_runs.complete(branch.term, order):
+            raise _wrong("the tasks cannot be assigned in this order")
+    return weighted(last, team, added, problem.cost.makespan, problem.cost.team)
+
+
+def rows_in(problem: AssignmentProblem, branch: Part) -> tuple[Row, ...]:
+    """The rows that bind times: in semantics `order` plain precedence does not."""
+    if problem.semantics != ORDER:
+        return branch.rows
+    return tuple(r for r in branch.rows if not (r.kind in (AFTER_END, AFTER_START) and r.lo == 0))
+
+
+def branch_of(problem: AssignmentProblem, steps: Sequence[Step]) -> Part:
+    """The branch whose tasks these are and whose rows hold; else one with these tasks."""
+    done = {step.task_id for step in steps}
+    if len(done) < len(steps):
+        raise _wrong("a task is done twice")
+    starts = {step.task_id: step.start_ms for step in steps}
+    ends = {step.task_id: step.end_ms for step in steps}
+    same = [part for part in parts(problem)[0] if set(part.tasks) == done]
+    for part in same:
+        if rows_hold(rows_in(problem, part), starts, ends):
+            return part
+    if not same:
+        raise _wrong("the tasks are those of no branch of the relations")
+    return same[0]
+
+
+def _legs(
+    problem: AssignmentProblem, v: int, chain: Sequence[Step]
+) -> list[tuple[int, int, int, int, int]]:
+    """(travel, start, end, duration, what the leg costs) of one vehicle's tasks."""
+    legs, at, free = [], len(problem.choices), 0
+    for step in chain:
+        k, choice = _choice(problem, step)
+        able = sum(1 << problem.vehicles.index(u) for u in choice.vehicles)
+        way = problem.travel_ms[v][at][k]
+        if way is None or not eligible(able, 1 << v):
+            raise _wrong(f"vehicle {step.vehicle_id} cannot do task {step.task_id} there")
+        travel = way + (problem.ready_ms[v] if at == len(problem.choices) else 0)
+        wait = step.start_ms - (free + travel)
+        if (
+            choice.lap_max_ms is not None
+            and next_wait_ms(wait, choice.lap_ms, choice.lap_max_ms) != wait
+        ):
+            raise _wrong(
+                f"vehicle {step.vehicle_id} cannot wait {wait} ms before task {step.task_id}"
+            )
+        cost = 0
+        for rows, weight in (
+            (problem.distance_mm, problem.cost.distance), (problem.energy_mj, problem.cost.energy),
+        ):  # fmt: skip
+            if weight and rows:
+                cost += weight * (rows[v][at][k] or 0)
+        legs.append((travel, step.start_ms, step.end_ms, choice.duration_ms, cost))
+        at, free = k, step.end_ms
+    return legs
+
+
+def _choice(problem: AssignmentProblem, step: Step) -> tuple[int, Choice]:
+    for k, choice in enumerate(problem.choices):
+        if (choice.task_id, choice.option_id) == (step.task_id, step.option_id):
+            return k, choice
+    raise _wrong(f"task {step.task_id} has no option {step.option_id}")
+
+
+def _wrong(why: str) -> BadInput:
+    return BadInput("this is no solution", item="steps", expected="a schedule that holds", got=why)
+
+
+__all__ = ["branch_of", "replayed", "rows_in"]

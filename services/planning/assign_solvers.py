@@ -1,0 +1,172 @@
+"""What z3, and cvc5 beside it, say of a problem: is a schedule right, can it be better, what clashes.
+
+z3's effort is counted (`rlimit`), not timed, so an answer does not depend on the machine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import z3
+
+from cratous.services.planning.assign_meaning import (
+    Named,
+    choice,
+    constraints,
+    costs_less,
+    end,
+    flights,
+    meaning,
+    place,
+    start,
+)
+from cratous.services.planning.assign_problem import Part, check, parts
+from cratous.services.planning.assign_replay import branch_of
+from cratous.spec.assignment import AssignmentProblem, Step
+
+EFFORT = 60_000_000
+"""z3's resource limit for one question, about 15 s."""
+SECOND_MS = 60_000
+
+
+def schedule_holds(problem: AssignmentProblem, steps: Sequence[Step]) -> tuple[bool, str]:
+    """Whether z3 finds the schedule right by the problem's own constraints; the words of the first
+    constraint that is not."""
+    branch = branch_of(problem, steps)
+    times: list[Any] = []
+    for number, step in enumerate(steps):
+        times += [start(step.task_id) == step.start_ms, end(step.task_id) == step.end_ms]
+        times.append(place(step.task_id) == number)
+        v = problem.vehicles.index(step.vehicle_id)
+        for k in branch.choices:
+            one = problem.choices[k]
+            if (one.task_id, one.option_id) == (step.task_id, step.option_id):
+                times.append(choice(k, v))
+    said = [(text, formula) for text, formula in meaning(branch.term, problem.semantics)]
+    said += [
+        (n.text, f) for n in _windows(problem) for b, f in n.formulas if _same(problem, b, branch)
+    ]
+    for text, formula in said:
+        if _ask([*times, z3.Not(formula)]) != z3.unsat:
+            return False, text
+    if _ask([*times, *flights(problem, branch)]) != z3.sat:
+        return False, "what the vehicles can fly"
+    return True, ""
+
+
+def _windows(problem: AssignmentProblem) -> list[Named]:
+    return [n for n in constraints(problem)[0] if n.text.startswith("task ")]
+
+
+def _same(problem: AssignmentProblem, number: int, branch: Part) -> bool:
+    return parts(problem)[0][number].term == branch.term
+
+
+def _ask(formulas: Sequence[Any], effort: int = EFFORT) -> Any:
+    solver = z3.SolverFor("QF_LIA")
+    solver.set("rlimit", effort)
+    solver.set("random_seed", 1)
+    solver.add(*formulas)
+    return solver.check()
+
+
+def none_below(problem: AssignmentProblem, limit: int) -> tuple[bool, str]:
+    """Whether z3 and cvc5 both show that nothing costs less than the limit, and what they said."""
+    said = []
+    for number, branch in enumerate(parts(problem)[0]):
+        formulas = [
+            *[f for _, f in meaning(branch.term, problem.semantics)],
+            *[f for n in _windows(problem) for b, f in n.formulas if b == number],
+            *flights(problem, branch),
+            *costs_less(problem, branch, limit),
+        ]
+        one = str(_ask(formulas))
+        two = _cvc5(formulas) if one == "unsat" else "not asked"
+        said.append(f"branch {number + 1}: z3 {one}, cvc5 {two}")
+        if (one, two) != ("unsat", "unsat"):
+            return False, "; ".join(said)
+    return True, "; ".join(said)
+
+
+def _cvc5(formulas: Sequence[Any]) -> str:
+    """sat, unsat or unknown by cvc5 on the SMT-LIB text, or `not installed`."""
+    try:
+        import cvc5
+    except ImportError:
+        return "not installed"
+    writer = z3.Solver()
+    for formula in formulas:
+        # cardinalities are z3's own: sums of ones and zeros say the same
+        writer.add(_plain(formula))
+    solver = cvc5.Solver()
+    solver.setOption("tlimit-per", str(SECOND_MS))
+    solver.setLogic("QF_LIA")
+    parser = cvc5.InputParser(solver)
+    text = writer.to_smt2().replace("(check-sat)", "")
+    parser.setStringInput(cvc5.InputLanguage.SMT_LIB_2_6, text, "assignment")
+    manager = parser.getSymbolManager()
+    while True:
+        command = parser.nextCommand()
+        if command.isNull():
+            break
+        command.invoke(solver, manager)
+    result = solver.checkSat()
+    return "unsat" if result.isUnsat() else "sat" if result.isSat() else "unknown"
+
+
+def _plain(formula: Any) -> Any:
+    kind = formula.decl().kind() if z3.is_app(formula) else None
+    ones = [z3.If(part, 1, 0) for part in formula.children()] if z3.is_app(formula) else []
+    if kind == z3.Z3_OP_PB_EQ:
+        return z3.Sum(ones) == 1
+    if kind == z3.Z3_OP_PB_AT_MOST:
+        return z3.Sum(ones) <= 1
+    return formula
+
+
+def why_infeasible(problem: AssignmentProblem) -> tuple[tuple[str, ...], bool]:
+    """A smallest set of constraints that contradict each other, in words, and whether that is sure.
+
+    Empty and sure: a plan exists. Smallest: without any one of them there is one. The flights
+    (travel, durations, eligibility) are taken as they are.
+    """
+    check(problem)
+    named, branches = constraints(problem)
+    answer, core = _clash(problem, named, branches)
+    if answer != z3.unsat:
+        return (), bool(answer == z3.sat)
+    keep, sure = [n for n in named if n.text in core], True
+    for one in list(keep):
+        if one not in keep:
+            continue
+        trial = [n for n in keep if n is not one]
+        answer, core = _clash(problem, trial, branches)
+        if answer == z3.unsat:
+            keep = [n for n in trial if n.text in core]
+        elif answer == z3.unknown:
+            sure = False
+    if not keep:
+        return ("no vehicles can fly all tasks, whatever the times",), sure
+    return tuple(n.text for n in keep), sure
+
+
+def _clash(
+    problem: AssignmentProblem, named: Sequence[Named], branches: Sequence[Part]
+) -> tuple[Any, set[str]]:
+    """z3's answer to whether there is a plan, and the words of a clash if there is none."""
+    core: set[str] = set()
+    for number, branch in enumerate(branches):
+        solver = z3.SolverFor("QF_LIA")
+        solver.set("rlimit", EFFORT)
+        solver.set("unsat_core", True)
+        solver.add(*flights(problem, branch))
+        for k, one in enumerate(named):
+            for b, formula in one.formulas:
+                if b == number:
+                    solver.assert_and_track(formula, f"n{k}_{len(solver.assertions())}")
+        answer = solver.check()
+        if answer != z3.unsat:
+            return answer, set()
+        core |= {named[int(str(name)[1:].split("_")[0])].text for name in solver.unsat_core()}
+    return z3.unsat, core
