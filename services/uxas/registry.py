@@ -77,6 +77,16 @@ def _report(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int)
     )
 
 
+def _message_logger(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    from pathlib import Path
+
+    from cratous.services.message_logger import MessageLogger
+
+    return MessageLogger.from_parts(
+        entry.attributes, entry.children, Path("datawork/SavedMessages"), entry.where, name=name
+    )
+
+
 def _pipeline_kind(
     attributes: Mapping[str, Attr], ignored: Mapping[str, str] | None = None
 ) -> Kind:
@@ -135,6 +145,11 @@ KINDS: dict[str, Kind] = {
         ),
     ),
     "SendMessagesService": Kind({"PathToMessageFiles": Attr()}, _messages, ("Message",)),
+    "MessageLoggerDataService": Kind(
+        {"LogFileMessageCountLimit": whole(0), "FilesPerSubDirectory": whole(0)},
+        _message_logger,
+        ("LogMessage",),
+    ),
     "Test_SimulationTime": Kind({}, _time, single=True),
     "HelloWorld": Kind(
         {"StringToSend": Attr(default="Hello World!"), "SendPeriod_ms": whole(1000, 1)}, _hello
@@ -154,7 +169,6 @@ NOT_YET = (
     "AutomationDiagramDataService",
     "BatchSummaryService",
     "LoiterLeash",
-    "MessageLoggerDataService",
     "OperatingRegionStateService",
     "OsmPlannerService",
     "RoutePlannerService",
