@@ -106,8 +106,9 @@ def document(data: dict[str, Any], keys: Keys) -> str:
         "fault changes nothing, everywhere or where the theorems apply (the list says which);",
         "*undecided* counts as not killed; *stillborn* mutants cannot be run.",
         "",
-        f"**{sum(total.values())} mutants: {counts}; {score} killed of those that are viable and "
-        "not proved equivalent.**",
+        f"**{sum(total.values())} mutants in {len(targets)} functions: {counts}; {score} killed of "
+        f"those that are viable and not proved equivalent. {len(old)} functions are not up to "
+        "date.**",
         "",
         "| kind | " + " | ".join(VERDICTS) + " |",
         "|---|" + "---|" * len(VERDICTS),
