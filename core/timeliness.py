@@ -9,11 +9,11 @@ from typing import NamedTuple
 from cratous.core.kernel import fold, kernel
 
 
-@kernel(implements="timeliness.in_time")
+@kernel(implements="timeliness.in_time", nonnegative=("bound",))
 def in_time(last: int, now: int, bound: int) -> bool:
     """True iff from the last message to now the last was never older than the bound [ms].
 
-    last: when the last message came [ms]; now: the present [ms], not before it.
+    last: when the last message came [ms]; now: the present [ms]; bound: [ms], >= 0.
     """
     return last <= now and now - last <= bound
 
@@ -22,7 +22,8 @@ def in_time(last: int, now: int, bound: int) -> bool:
 def lasted(since: int, now: int, least: int) -> bool:
     """True iff what has been so since then has been so during the last `least` milliseconds.
 
-    since: from when on without a break [ms]; now: the present [ms]; least: how long [ms], >= 0.
+    since: from when on without a break [ms]; now: the present, not before it [ms]; least: how long
+    [ms], >= 0.
     """
     return now - since >= least
 
@@ -43,7 +44,7 @@ class Beats(NamedTuple):
     ok: bool
 
 
-@kernel(implements="timeliness.in_time")
+@kernel(implements="timeliness.in_time", nonnegative=("bound",))
 def beats_step(beats: Beats, time: int, bound: int) -> Beats:
     """Add a heartbeat, or the end of the mission [ms]; bound: the longest gap [ms]."""
     return Beats(time, beats.ok and in_time(beats.last, time, bound))

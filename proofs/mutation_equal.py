@@ -9,7 +9,7 @@ from typing import Any, get_type_hints
 import z3
 
 from cratous.proofs.asking import ask, values
-from cratous.proofs.lift import Visit, lift
+from cratous.proofs.lift import LiftError, Visit, lift
 from cratous.proofs.mutation_inputs import shaped
 from cratous.proofs.mutation_statements import claim_of, in_place
 from cratous.proofs.mutation_terms import FAR, NEAR, SAME, flat, is_free, premise_text
@@ -39,7 +39,11 @@ class Equality:
             SymMask(z3.BitVec(name, 64)) if k in masks else fresh(name, hints[name])
             for k, name in enumerate(inspect.signature(self.original).parameters)
         )
-        if self._differs(mutant, symbols, [], FAR)[0] == "unsat":
+        try:
+            everywhere = self._differs(mutant, symbols, [], FAR)[0]
+        except (LiftError, TypeError):
+            everywhere = "unknown"  # some arguments must be literals, as theorems give them
+        if everywhere == "unsat":
             return "equivalent", "equal everywhere", None
         leaves, domain = self._domain(mutant)
         premises = {premise_text(p) for p in domain}

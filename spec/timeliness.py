@@ -12,7 +12,7 @@ from __future__ import annotations
 def in_time(t: int, last: int, now: int, bound: int) -> bool:
     """At the instant t, from the last message to now, the last was not older than the bound.
 
-    FOR ALL t. A message that came after `now` is none: then nothing is in time.
+    FOR ALL t. A message that came after `now` is none: then nothing is in time. Premise: bound >= 0.
     """
     return last <= now and not (last <= t and t <= now and t > last + bound)
 
@@ -20,7 +20,8 @@ def in_time(t: int, last: int, now: int, bound: int) -> bool:
 def lasted(t: int, since: int, now: int, least: int) -> bool:
     """If t lies in the last `least` milliseconds, then it was so at t already.
 
-    FOR ALL t. since: it has been so at every instant from this one to now. Premise: least >= 0.
+    FOR ALL t. since: it has been so at every instant from this one to now. Premises: since <= now,
+    least >= 0.
     """
     return not (now - least <= t and t <= now) or since <= t
 

@@ -24,6 +24,8 @@ from cratous.proofs.mutation_premises import judge_premises
 from cratous.proofs.mutation_report import MutationReport
 from cratous.proofs.mutation_results import PremiseResult, Result
 from cratous.proofs.mutation_statements import targets
+from cratous.proofs.mutation_terms import equal, with_values
+from cratous.proofs.symbolic import wrap
 
 gate.load_all()
 KEYS, NOWHERE = Keys(), Store(None)
@@ -182,6 +184,37 @@ def test_a_mask_has_no_order_so_such_a_mutant_is_stillborn():
     )
     assert ordered.verdict == "stillborn"
     assert joined.verdict == "killed"
+
+
+def test_a_definition_that_takes_literals_alone_is_judged_where_theorems_give_them():
+    (turned,) = judged(
+        "spec.schedule.vehicle_is_eligible",
+        ["eligible_is_its_definition"],
+        "+ return mask >> k & 1 == 1 and bit >> k & 1 == 2",
+    )
+    assert turned.verdict == "killed"
+
+
+def test_a_literal_of_a_theorem_stands_for_the_real_that_it_is():
+    half, two = (Fraction(1, 2),), (Fraction(2),)
+    literal = (wrap(z3.IntVal(2)),)
+    assert ask(equal(literal, half), 100_000) == "unsat"
+    assert ask(equal(literal, two), 100_000) == "sat"
+    x, y = wrap(z3.Real("x")), wrap(z3.Real("y"))
+    above, mixed, other = x.term > 1, x.term > y.term, y.term > 1
+    assert with_values([above, other], (x,), two) is True
+    assert with_values([above, other], (x,), half) is False
+    assert with_values([above, mixed], (x,), two) is None
+    assert with_values([above], (x + y,), two) is None
+
+
+def test_an_error_of_the_judge_is_not_taken_for_a_stillborn_mutant(monkeypatch):
+    def broken(*more):
+        raise TypeError("a defect")
+
+    monkeypatch.setattr(mutation_judge, "equal", broken)
+    with pytest.raises(TypeError, match="a defect"):
+        judged("core.gate.gives_way", ["exactly_one_gives_way"], "+ return own_id < intruder_id")
 
 
 def test_the_starts_of_folds_are_mutated():

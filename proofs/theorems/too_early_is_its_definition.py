@@ -14,3 +14,8 @@ def claim(c: Claim) -> None:
     c.show(c.implies(said, at_any), "the plan is ahead at every instant")
     witness = c.define(timeliness.too_early, at + margin, at, planned, margin)
     c.show(c.implies(c.negation(said), c.negation(witness)), "else it comes within the margin")
+    c.show(
+        c.define(timeliness.too_early, at - 1, at, planned, margin), "no word on what was before"
+    )
+    after = c.define(timeliness.too_early, at + margin + 1, at, planned, margin)
+    c.show(after, "no word on what comes after the margin")

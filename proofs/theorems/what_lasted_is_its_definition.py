@@ -8,6 +8,7 @@ from cratous.spec import timeliness
 def claim(c: Claim) -> None:
     since, now, least, t = (c.integer(name) for name in ("since", "now", "least", "t"))
     c.premise(least >= 0)
+    c.premise(since <= now)
     said = c.use(lasted, since, now, least)
     at_any = c.define(timeliness.lasted, t, since, now, least)
     c.show(c.implies(said, at_any), "it lasted at every instant")
