@@ -109,7 +109,7 @@ def test_the_command_refuses_checks_and_prints(
     assert "cfg.xml" in capsys.readouterr().err
     write_cfg(tmp_path, '<Service Type="HelloWorld"/>')
     assert main(["uxas", "--check"]) == 0
-    assert "1 services" in capsys.readouterr().out
+    assert "1 services and bridges" in capsys.readouterr().out
     assert not (tmp_path / "log").exists()
     assert main(["uxas", "-version", "--virtual-time", "-runUntil", "3"]) == 0
     assert "CMASI: 3" in capsys.readouterr().out

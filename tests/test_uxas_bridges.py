@@ -485,7 +485,7 @@ def test_the_waterway_mission_for_a_cmasi_client(shared: Path, tmp_path: Path) -
     for name in sorted((folder / "inputs/tasks").iterdir()):
         bodies += lmcp.xml.read_file(name, [])
     options = [part for name in LEFT_OUT for part in ("--without", name)]
-    with started(path, "-runUntil", "60", *options) as running:
+    with started(path, "-runUntil", "300", *options) as running:
         client = Client(port)
         for body in bodies[:-1]:
             client.send(body)

@@ -45,9 +45,13 @@ class Process:
         without: frozenset[str] = frozenset(),
         virtual: bool = False,
         say: Callable[[str], None] = print,
+        data: Path | None = None,
         clock: Clock | None = None,
     ) -> None:
-        """BadInput names what is wrong with the configuration; nothing stays open then."""
+        """BadInput names what is wrong with the configuration; nothing stays open then.
+
+        data: the folder for what services write; without one, none may.
+        """
         root = config.root
         self.log, self.config, self._virtual = log, config, virtual
         self.clock = clock or Clock()
@@ -78,7 +82,7 @@ class Process:
             root["EntityType"],
             config.path,
             {**root, "where": config.where},
-            {"admit": self._admit},
+            {"admit": self._admit, "data": data},
             say,
         )
         if joined and root["FirstServiceID"] is None:
@@ -246,8 +250,8 @@ def _raise_file_limit() -> None:
             resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
 
 
-def data_folders(config: Configuration, here: Path) -> None:
-    """Make `datawork`, as UxAS does; with isDataTimestamp a folder inside, named by the time."""
+def data_folder(config: Configuration, here: Path) -> Path:
+    """`datawork`, made as UxAS does; with isDataTimestamp a folder inside, named by the time."""
     folder = here / "datawork"
     if config.root["isDataTimestamp"]:
         folder = folder / str(time.time_ns() // 1_000_000)
@@ -259,3 +263,4 @@ def data_folders(config: Configuration, here: Path) -> None:
             where=str(folder),
             expected="a folder that can be written",
         ) from None
+    return folder

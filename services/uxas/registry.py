@@ -5,6 +5,8 @@ What UxAS has and we do not have yet is known by name too, so that it is refused
 
 from __future__ import annotations
 
+import importlib
+import importlib.util
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,6 +15,7 @@ from cratous.services.uxas import live, small
 from cratous.services.uxas.frame import Host
 from cratous.services.uxas.settings import Attr, Entry, choice, flag, number, whole
 from cratous.services.uxas.world import World
+from cratous.spec.errors import BadInput
 
 Make = Callable[["Host", Entry, dict[str, Any], str, int], Any]
 
@@ -150,11 +153,31 @@ KINDS: dict[str, Kind] = {
     ),
 }
 
+LOGGER = "MessageLoggerDataService"
+_LOGGER_MODULE = "cratous.services.message_logger"
+
+
+def _logger(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    folder = host.shared.get("data")
+    if folder is None:
+        raise BadInput("no folder to write to", where=entry.where, item=entry.type)
+    (folder / "SavedMessages").mkdir(parents=True, exist_ok=True)
+    make = importlib.import_module(_LOGGER_MODULE).MessageLogger.from_parts
+    return make(entry.attributes, entry.children, folder / "SavedMessages", entry.where, name=name)
+
+
+if importlib.util.find_spec(_LOGGER_MODULE) is not None:
+    KINDS[LOGGER] = Kind(
+        {"LogFileMessageCountLimit": whole(0), "FilesPerSubDirectory": whole(0)},
+        _logger,
+        ("LogMessage",),
+    )
+
 NOT_YET = (
     "AutomationDiagramDataService",
     "BatchSummaryService",
     "LoiterLeash",
-    "MessageLoggerDataService",
+    LOGGER,
     "OperatingRegionStateService",
     "OsmPlannerService",
     "RoutePlannerService",
