@@ -204,8 +204,8 @@ def test_reports_go_stale_with_the_states(tmp_path: Path) -> None:
 
 def test_simulated_time_stands_until_a_state_tells(tmp_path: Path) -> None:
     body = '<Service Type="Test_SimulationTime"/>\n' + HELLO.format("x", 1000)
-    one, _ = process(write_cfg(tmp_path, body))
-    seen: list[tuple[int, str]] = []
+    one, said = process(write_cfg(tmp_path, body))
+    seen: list[int] = []
     one.bus.tap(lambda e: "KeyValue" in e.topic and seen.append(e.time_ms))
     for _ in range(5):
         one.turn(0.01)
@@ -214,6 +214,13 @@ def test_simulated_time_stands_until_a_state_tells(tmp_path: Path) -> None:
     one.turn(0.01)
     one.turn(0.01)
     assert seen == [0, 1000, 2000]
+    # a date, a number of no sense, or a simulation that begins anew is no time that passes
+    for time_ms, count in ((1_700_000_000_000, 3), (2**62, 3), (0, 3), (700, 4), (690, 4)):
+        one.bus.publish(lmcp.new("AirVehicleState", Time=time_ms), "sim")
+        one.turn(0.01)
+        one.turn(0.01)
+        assert len(seen) == count, time_ms
+    assert said.has("time leaps to 1700000000000 ms")
     one.close()
 
 

@@ -91,6 +91,8 @@ def uxas(
 
 
 def _stop(process: Any) -> None:
+    if process.stopping:  # asked twice: do not wait for the plan that is being made
+        raise KeyboardInterrupt
     process.stopping = True
 
 

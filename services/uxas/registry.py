@@ -66,7 +66,7 @@ def _messages(host: Host, entry: Entry, v: dict[str, Any], name: str, number: in
 
 
 def _time(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return small.SimulationTime(name, host.clock)
+    return small.SimulationTime(name, host.clock, host.log)
 
 
 def _hello(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
