@@ -30,6 +30,7 @@ class ServiceManager:
 
     name = "ServiceManager"
     subscribes: tuple[str, ...] = (CREATE, KILL)
+    prefixes = ("eid",)  # UxAS sends KillService to the service's own address
 
     def __init__(self, host: Host, config: Configuration, context: Any) -> None:
         self._host, self._config, self._context = host, config, context
@@ -85,6 +86,8 @@ class ServiceManager:
     def handle(self, state: None, envelope: Envelope, now_ms: int) -> tuple[None, Iterable[Any]]:
         if envelope.topic == KILL:
             self.kill(envelope.body.ServiceID)
+            return None, ()
+        if envelope.topic != CREATE:
             return None, ()
         try:
             self._create(envelope)
