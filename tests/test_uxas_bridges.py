@@ -571,3 +571,43 @@ def test_a_second_task_of_the_same_id_takes_the_place_of_the_first(
     assert [n for n in one.bus.names() if "[3]" in n] == ["CmasiPointSearchTaskService[3]"]
     desk = one.host.shared["desk"]
     assert desk.world.task(3).body.SearchLocation.Latitude == 2.0
+
+
+def test_a_request_without_a_response_is_answered_in_time_and_strays_do_not_end_it(
+    shared: Path, tmp_path: Path, opened: list[Any]
+) -> None:
+    slow = PIPELINE.replace(
+        '"AutomationRequestValidatorService"',
+        '"AutomationRequestValidatorService" MaxResponseTime_ms="1000"',
+    )
+    one, said, port = tcp_server(tmp_path, more=slow)
+    opened.append(one)
+    client = Client(port)
+    opened.append(client)
+    folder = shared / "examples/openuxas/waterway/inputs"
+    for name in ("AirVehicleConfiguration_V400", "AirVehicleState_V400"):
+        client.send(lmcp.xml.read_file(folder / f"{name}.xml", [])[0])
+    (task,) = lmcp.xml.read_file(next((folder / "tasks").glob("1000*")), [])
+    client.send(task)
+    until(lambda: "TaskInitialized" in client.kinds(), one)
+    number = next(n for n, name in one.manager.services.items() if name == "PlanBuilderService")
+    client.send(lmcp.new("KillService", ServiceID=number))
+    request = lmcp.new("AutomationRequest", EntityList=[400], TaskList=[1000])
+    client.send(request)
+    desk = one.host.shared["desk"]
+    until(lambda: desk.in_work == (1,), one)
+    begun_ms = one.bus.now_ms
+    for _ in range(9):
+        client.send(lmcp.new("TaskPlanOptions", CorrespondingAutomationRequestID=77, TaskID=1000))
+        client.send(lmcp.new("AssignmentCostMatrix", CorrespondingAutomationRequestID=77))
+
+    def told() -> list[str]:
+        return [line for line in said if "AssignmentTreeBranchBoundService fails at" in line]
+
+    until(lambda: len(told()) == 4, one)  # 9 of one kind: at the 1st, 2nd, 4th and 8th
+    until(lambda: "AutomationResponse" in client.kinds(), one)
+    assert one.bus.now_ms - begun_ms >= 500
+    assert desk.in_work == ()
+    reasons = [p.Value for p in client.wait("AutomationResponse").Info]
+    assert reasons == ["no response within MaxResponseTime_ms = 1000"]
+    assert "expected 1; got 77" in told()[0]
