@@ -7,8 +7,8 @@ here reads a wall clock or a random number, so the same inputs give the same log
 
 Topics are full type names (`afrl.cmasi.AirVehicleState`); a subscription to a base type receives
 its descendants. A message may bear an address of its own instead (`Send`): that of one service
-(`eid100.sid55`) or of all services of an entity (`eid100.sidall`), who get it if they subscribe to
-its type; or that of a group, whose subscribers get it. Bodies are LMCP objects of `cratous.bridge.lmcp`.
+(`eid100.sid55`), of all services of an entity (`eid100.sidall`) or of their group, who get it if
+they subscribe to its type; or any other, whose subscribers get it. Bodies are LMCP objects of `cratous.bridge.lmcp`.
 
 A service may also have `prefixes`: it gets every message whose address begins with one of them
 (bridges, loggers); `wake(state, key, now_ms)`, called when a `Wake` that it gave is due; and
@@ -73,10 +73,11 @@ class Identity(NamedTuple):
 
     @property
     def addresses(self) -> tuple[str, ...]:
-        """The addresses at which it is reached: alone, and with all services of its entity."""
+        """The addresses at which it is reached: alone, with all of its entity, with its group."""
+        group = (self.group,) if self.group else ()
         if not self.service_id:
-            return ()
-        return unicast(self.entity_id, self.service_id), f"eid{self.entity_id}.sidall"
+            return group
+        return unicast(self.entity_id, self.service_id), f"eid{self.entity_id}.sidall", *group
 
 
 def unicast(entity_id: int, service_id: int) -> str:

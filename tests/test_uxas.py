@@ -155,6 +155,18 @@ def test_greetings_are_heard_by_others_only(tmp_path: Path) -> None:
     one.close()
 
 
+def test_services_of_a_group_name_it_and_are_reached_by_it(tmp_path: Path) -> None:
+    hello = '<Service Type="HelloWorld" MessageGroup="fusion"/>'
+    one, said = process(write_cfg(tmp_path, hello), virtual=True)
+    seen: list[Any] = []
+    one.bus.tap(lambda e: "KeyValue" in e.topic and seen.append(e))
+    one.bus.publish(lmcp.new("KeyValuePair", Key="k"), "test", "fusion")
+    one.run(0.0)
+    assert [e.group for e in seen] == ["fusion", ""] or [e.group for e in seen] == ["", "fusion"]
+    assert said.has("Received Id[51] Sent Id[k]")
+    one.close()
+
+
 def test_messages_are_sent_once_periodically_and_to_addresses(tmp_path: Path) -> None:
     (tmp_path / "inputs").mkdir()
     (tmp_path / "inputs" / "pair.xml").write_text(

@@ -19,10 +19,11 @@ from cratous.services.planning.desk import status
 from cratous.services.uxas import bridge_kinds, live, registry
 from cratous.services.uxas.bridges import CREATE, KILL, Bridge
 from cratous.services.uxas.frame import Host
-from cratous.services.uxas.settings import Configuration, Entry, entry, nearest, values_of
+from cratous.services.uxas.settings import Attr, Configuration, Entry, entry, nearest, values_of
 from cratous.spec.errors import BadInput, CratousError
 
 FIRST_ID = 50
+_COMMON = {"MessageGroup": Attr()}  # of every service: the group of its messages and its address
 
 
 class ServiceManager:
@@ -130,14 +131,16 @@ class ServiceManager:
             return
         kind = registry.KINDS[item.type]
         problems: list[BadInput] = []
-        values = values_of(kind.attributes, item.attributes, item.where, item.type, problems)
+        known = {**kind.attributes, **_COMMON}
+        values = values_of(known, item.attributes, item.where, item.type, problems)
         refuse(problems)
         for name in kind.ignored:
             if name in item.attributes and values[name] != kind.attributes[name].default:
                 text = f"{item.where}: {item.type}.{name}={item.attributes[name]}"
                 self._host.log("WARN", f"{text}: {kind.ignored[name]}")
         name = self._name(item.type, number)
-        self._add(kind.make(self._host, item, values, name, number), number)
+        service = kind.make(self._host, item, values, name, number)
+        self._add(service, number, values["MessageGroup"])
 
     def _make_bridge(self, item: Entry, number: int) -> None:
         kind = bridge_kinds.BRIDGES[item.type]
@@ -166,11 +169,11 @@ class ServiceManager:
         self.bridges[number] = bridge
         self.on_change()
 
-    def _add(self, service: Any, number: int) -> None:
+    def _add(self, service: Any, number: int, group: str = "") -> None:
         if service.name in self._host.bus.names():
             raise BadInput("such a service runs already", item=service.name)
         self._names[number] = service.name
-        self._host.bus.add(service, self._host.identity(number))
+        self._host.bus.add(service, self._host.identity(number, group))
         self._host.log("INFO", f"service {number} is {service.name}")
 
     def _name(self, kind: str, number: int) -> str:
@@ -233,7 +236,8 @@ def _check(item: Entry, entries: list[Entry], problems: list[BadInput]) -> None:
     if service is None:
         problems.append(_unknown(item, registry.KINDS))
         return
-    values_of(service.attributes, item.attributes, item.where, item.type, problems)
+    known = {**service.attributes, **_COMMON}
+    values_of(known, item.attributes, item.where, item.type, problems)
     for element in item.children:
         if element.tag not in service.children:
             expected = nearest(str(element.tag), service.children)
