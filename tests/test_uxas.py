@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+import sqlite3
 import time
 from pathlib import Path
 from typing import Any
@@ -274,3 +275,22 @@ def test_run_duration_and_kill_end_the_process(tmp_path: Path) -> None:
     with started(path) as running:
         assert running.wait(LIMIT_S) == 0
     assert time.monotonic() - begun >= 1.0
+
+
+def test_the_message_logger_is_mounted_where_it_is_there(tmp_path: Path) -> None:
+    pytest.importorskip("cratous.services.message_logger")
+    logger = (
+        '<Service Type="MessageLoggerDataService" LogFileMessageCountLimit="100">'
+        '<LogMessage MessageType="afrl" NumberMessagesToSkip="0"/></Service>\n'
+    )
+    path = write_cfg(tmp_path, logger + HELLO.format("x", 100))
+    with pytest.raises(BadInput, match="no folder to write to"):
+        process(path)
+    one, said = process(path, virtual=True, data=tmp_path / "datawork")
+    one.run(1.0)
+    one.close()
+    (log,) = (tmp_path / "datawork" / "SavedMessages").glob("*.sqlite")
+    with sqlite3.connect(log) as database:
+        (count,) = database.execute("SELECT count(*) FROM messages").fetchone()
+    assert count == 11
+    assert not said.has("fails")
