@@ -7,8 +7,8 @@ here reads a wall clock or a random number, so the same inputs give the same log
 
 Topics are full type names (`afrl.cmasi.AirVehicleState`); a subscription to a base type receives
 its descendants. A message may bear an address of its own instead (`Send`): that of one service
-(`eid100.sid55`), of all services of an entity (`eid100.sidall`), or of a group; then only those
-get it who subscribe to that address. Bodies are LMCP objects of `cratous.bridge.lmcp`.
+(`eid100.sid55`), of all services of an entity (`eid100.sidall`) or of their group, who get it if
+they subscribe to its type; or any other, whose subscribers get it. Bodies are LMCP objects of `cratous.bridge.lmcp`.
 
 A service may also have `prefixes`: it gets every message whose address begins with one of them
 (bridges, loggers); `wake(state, key, now_ms)`, called when a `Wake` that it gave is due; and
@@ -73,10 +73,11 @@ class Identity(NamedTuple):
 
     @property
     def addresses(self) -> tuple[str, ...]:
-        """The addresses at which it is reached: alone, and with all services of its entity."""
+        """The addresses at which it is reached: alone, with all of its entity, with its group."""
+        group = (self.group,) if self.group else ()
         if not self.service_id:
-            return ()
-        return unicast(self.entity_id, self.service_id), f"eid{self.entity_id}.sidall"
+            return group
+        return unicast(self.entity_id, self.service_id), f"eid{self.entity_id}.sidall", *group
 
 
 def unicast(entity_id: int, service_id: int) -> str:
@@ -242,18 +243,23 @@ class Bus:
         if found is None:
             if len(self._routes) > 10_000:  # addresses come from outside
                 self._routes.clear()
-            names = (envelope.address,) if envelope.address else self._topics_of(envelope.body)
+            topics = self._topics_of(envelope.body)
             found = self._routes[key] = tuple(
-                service for service in self._services.values() if self._wants(service, names)
+                service
+                for service in self._services.values()
+                if self._wants(service, envelope.address, topics)
             )
         return found
 
-    def _wants(self, service: Any, names: tuple[str, ...]) -> bool:
-        if any(name in service.subscribes for name in names):
+    def _wants(self, service: Any, address: str, topics: tuple[str, ...]) -> bool:
+        if (address or topics[0]).startswith(tuple(getattr(service, "prefixes", ()))):
             return True
-        if names[0] in self._identities[service.name].addresses:
+        if address and address in service.subscribes:
             return True
-        return names[0].startswith(tuple(getattr(service, "prefixes", ())))
+        if address and address not in self._identities[service.name].addresses:
+            return False
+        # by its own address too it gets only what it knows
+        return any(topic in service.subscribes for topic in topics)
 
     def _hand(self, service: Any, envelope: Envelope) -> None:
         state = self._states[service.name]

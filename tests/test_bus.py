@@ -80,7 +80,23 @@ def test_unicast_cast_to_all_and_groups():
         bus.publish(body, "x", address)
     bus.run()
     # eid100.sid5 is nobody's: a service's address is exact, not a prefix of sid51
-    assert (len(first.got), len(second.got), len(far.got)) == (2, 2, 2)
+    assert (len(first.got), len(second.got), len(far.got)) == (2, 2, 1)
+    bus.publish(lmcp.new("TaskInitialized"), "x", "eid100.sid51")
+    bus.run()
+    assert kinds(first)[2:] == [], "its own address does not bring it what it does not know"
+
+
+def test_a_group_is_reached_by_its_name():
+    one, two, other = Listener("a", STATE), Listener("b", STATE), Listener("c", STATE)
+    bus = Bus(lmcp.full_names)
+    for k, (listener, group) in enumerate(((one, "uavs"), (two, "uavs"), (other, ""))):
+        bus.add(listener, Identity(100, 51 + k, group))
+    seen: list[Envelope] = []
+    bus.tap(seen.append)
+    bus.publish(lmcp.new("AirVehicleState"), "a", "uavs")
+    bus.run()
+    assert (len(one.got), len(two.got), len(other.got)) == (1, 1, 0)
+    assert seen[0].group == "uavs"
 
 
 def test_sends_carry_address_and_group_and_the_senders_identity():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+import sqlite3
 import time
 from pathlib import Path
 from typing import Any
@@ -109,7 +110,7 @@ def test_the_command_refuses_checks_and_prints(
     assert "cfg.xml" in capsys.readouterr().err
     write_cfg(tmp_path, '<Service Type="HelloWorld"/>')
     assert main(["uxas", "--check"]) == 0
-    assert "1 services" in capsys.readouterr().out
+    assert "1 services and bridges" in capsys.readouterr().out
     assert not (tmp_path / "log").exists()
     assert main(["uxas", "-version", "--virtual-time", "-runUntil", "3"]) == 0
     assert "CMASI: 3" in capsys.readouterr().out
@@ -152,6 +153,18 @@ def test_greetings_are_heard_by_others_only(tmp_path: Path) -> None:
         "*** RECEIVED:: Received Id[52] Sent Id[51] Message[hi] ***",
         "*** RECEIVED:: Received Id[51] Sent Id[52] Message[ho] ***",
     ]
+    one.close()
+
+
+def test_services_of_a_group_name_it_and_are_reached_by_it(tmp_path: Path) -> None:
+    hello = '<Service Type="HelloWorld" MessageGroup="fusion"/>'
+    one, said = process(write_cfg(tmp_path, hello), virtual=True)
+    seen: list[Any] = []
+    one.bus.tap(lambda e: "KeyValue" in e.topic and seen.append(e))
+    one.bus.publish(lmcp.new("KeyValuePair", Key="k"), "test", "fusion")
+    one.run(0.0)
+    assert [e.group for e in seen] == ["fusion", ""] or [e.group for e in seen] == ["", "fusion"]
+    assert said.has("Received Id[51] Sent Id[k]")
     one.close()
 
 
@@ -204,8 +217,8 @@ def test_reports_go_stale_with_the_states(tmp_path: Path) -> None:
 
 def test_simulated_time_stands_until_a_state_tells(tmp_path: Path) -> None:
     body = '<Service Type="Test_SimulationTime"/>\n' + HELLO.format("x", 1000)
-    one, _ = process(write_cfg(tmp_path, body))
-    seen: list[tuple[int, str]] = []
+    one, said = process(write_cfg(tmp_path, body))
+    seen: list[int] = []
     one.bus.tap(lambda e: "KeyValue" in e.topic and seen.append(e.time_ms))
     for _ in range(5):
         one.turn(0.01)
@@ -214,6 +227,13 @@ def test_simulated_time_stands_until_a_state_tells(tmp_path: Path) -> None:
     one.turn(0.01)
     one.turn(0.01)
     assert seen == [0, 1000, 2000]
+    # a date, a number of no sense, or a simulation that begins anew is no time that passes
+    for time_ms, count in ((1_700_000_000_000, 3), (2**62, 3), (0, 3), (700, 4), (690, 4)):
+        one.bus.publish(lmcp.new("AirVehicleState", Time=time_ms), "sim")
+        one.turn(0.01)
+        one.turn(0.01)
+        assert len(seen) == count, time_ms
+    assert said.has("time leaps to 1700000000000 ms")
     one.close()
 
 
@@ -255,3 +275,22 @@ def test_run_duration_and_kill_end_the_process(tmp_path: Path) -> None:
     with started(path) as running:
         assert running.wait(LIMIT_S) == 0
     assert time.monotonic() - begun >= 1.0
+
+
+def test_the_message_logger_is_mounted_where_it_is_there(tmp_path: Path) -> None:
+    pytest.importorskip("cratous.services.message_logger")
+    logger = (
+        '<Service Type="MessageLoggerDataService" LogFileMessageCountLimit="100">'
+        '<LogMessage MessageType="afrl" NumberMessagesToSkip="0"/></Service>\n'
+    )
+    path = write_cfg(tmp_path, logger + HELLO.format("x", 100))
+    with pytest.raises(BadInput, match="no folder to write to"):
+        process(path)
+    one, said = process(path, virtual=True, data=tmp_path / "datawork")
+    one.run(1.0)
+    one.close()
+    (log,) = (tmp_path / "datawork" / "SavedMessages").glob("*.sqlite")
+    with sqlite3.connect(log) as database:
+        (count,) = database.execute("SELECT count(*) FROM messages").fetchone()
+    assert count == 11
+    assert not said.has("fails")

@@ -3,9 +3,13 @@ several processes on one bus, and a mission planned for a CMASI client."""
 
 from __future__ import annotations
 
+import gzip
 import json
+import re
 import socket
+import threading
 import time
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -154,8 +158,6 @@ def test_bad_input_is_refused_with_a_reason_and_others_are_unaffected(
     bad.send(lmcp.new("AirVehicleState", ID=78))
     until(lambda: len(messages) == 2, one)
     assert [m.body.ID for m in messages] == [77, 78]
-    import re
-
     assert any(line.startswith("WARN") and re.search(reason, line) for line in said), said
     assert sum(one.manager.bridges[51].port.counts.refused.values()) == 1
 
@@ -415,8 +417,6 @@ def test_all_processes_see_one_order_and_keys_guard_the_hub(
         + keys.format("friend")
         + ' CurveServerKeyFile="../keys/server.key"',
     )
-    import threading
-
     made: list[Any] = []
     joining = threading.Thread(target=lambda: made.append(process(path)[0]))
     joining.start()  # a satellite waits for its hub, which this thread turns
@@ -485,7 +485,7 @@ def test_the_waterway_mission_for_a_cmasi_client(shared: Path, tmp_path: Path) -
     for name in sorted((folder / "inputs/tasks").iterdir()):
         bodies += lmcp.xml.read_file(name, [])
     options = [part for name in LEFT_OUT for part in ("--without", name)]
-    with started(path, "-runUntil", "60", *options) as running:
+    with started(path, "-runUntil", "300", *options) as running:
         client = Client(port)
         for body in bodies[:-1]:
             client.send(body)
@@ -543,8 +543,6 @@ def test_each_request_gets_one_response_in_order_with_reasons(
         (3, "TaskRelationships|expected"),
         (6, "task 1000"),
     ):
-        import re
-
         assert re.search(text, reasons[k]), reasons[k]
     assert reasons[5], "a kind of task that is not covered is named"
     assert said.has("unknown service type") or said.has("not covered yet")
@@ -571,3 +569,72 @@ def test_a_second_task_of_the_same_id_takes_the_place_of_the_first(
     assert [n for n in one.bus.names() if "[3]" in n] == ["CmasiPointSearchTaskService[3]"]
     desk = one.host.shared["desk"]
     assert desk.world.task(3).body.SearchLocation.Latitude == 2.0
+
+
+def test_a_request_without_a_response_is_answered_in_time_and_strays_do_not_end_it(
+    shared: Path, tmp_path: Path, opened: list[Any]
+) -> None:
+    slow = PIPELINE.replace(
+        '"AutomationRequestValidatorService"',
+        '"AutomationRequestValidatorService" MaxResponseTime_ms="1000"',
+    )
+    one, said, port = tcp_server(tmp_path, more=slow)
+    opened.append(one)
+    client = Client(port)
+    opened.append(client)
+    folder = shared / "examples/openuxas/waterway/inputs"
+    for name in ("AirVehicleConfiguration_V400", "AirVehicleState_V400"):
+        client.send(lmcp.xml.read_file(folder / f"{name}.xml", [])[0])
+    (task,) = lmcp.xml.read_file(next((folder / "tasks").glob("1000*")), [])
+    client.send(task)
+    until(lambda: "TaskInitialized" in client.kinds(), one)
+    number = next(n for n, name in one.manager.services.items() if name == "PlanBuilderService")
+    client.send(lmcp.new("KillService", ServiceID=number))
+    request = lmcp.new("AutomationRequest", EntityList=[400], TaskList=[1000])
+    client.send(request)
+    desk = one.host.shared["desk"]
+    until(lambda: desk.in_work == (1,), one)
+    begun_ms = one.bus.now_ms
+    for _ in range(9):
+        client.send(lmcp.new("TaskPlanOptions", CorrespondingAutomationRequestID=77, TaskID=1000))
+        client.send(lmcp.new("AssignmentCostMatrix", CorrespondingAutomationRequestID=77))
+
+    def told() -> list[str]:
+        return [line for line in said if "AssignmentTreeBranchBoundService fails at" in line]
+
+    until(lambda: len(told()) == 4, one)  # 9 of one kind: at the 1st, 2nd, 4th and 8th
+    until(lambda: "AutomationResponse" in client.kinds(), one)
+    assert one.bus.now_ms - begun_ms >= 500
+    assert desk.in_work == ()
+    reasons = [p.Value for p in client.wait("AutomationResponse").Info]
+    assert reasons == ["no response within MaxResponseTime_ms = 1000"]
+    assert "expected 1; got 77" in told()[0]
+
+
+def test_a_recorded_simulator_session_tells_the_world(
+    shared: Path, tmp_path: Path, opened: list[Any]
+) -> None:
+    """The bytes that OpenAMASE sent to a client, sent to ours."""
+    data = gzip.decompress(
+        (shared / "vectors/amase/session-waterway-rate10.tcp.bin.gz").read_bytes()
+    )
+    server = socket.create_server(("127.0.0.1", 0))
+    opened.append(server)
+    body = TCP.replace("TRUE", "FALSE").format(server.getsockname()[1], "", ALL)
+    one, said = process(write_cfg(tmp_path, PIPELINE + body))
+    opened.append(one)
+    kinds: Counter[str] = Counter()
+    one.bus.tap(lambda e: kinds.update([e.topic.rpartition(".")[2]]))
+    until(lambda: one.manager.bridges[57].port.peers == 1, one)
+    peer, _ = server.accept()
+    opened.append(peer)
+    sending = threading.Thread(target=peer.sendall, args=(data,))
+    sending.start()
+    until(lambda: kinds["AirVehicleState"] >= 3331 and kinds["SessionStatus"] >= 1672, one)
+    sending.join()
+    assert kinds["AirVehicleState"] == 3331
+    states = {body.ID: body for body in one.host.shared["desk"].world.of("state")}
+    assert sorted(states) == [400, 500]
+    assert states[400].Time > 600_000, "the newest state of each is kept"
+    assert not one.manager.bridges[57].port.counts.refused
+    assert not said.has("fails at")

@@ -90,8 +90,8 @@ class Client:
         return [message.descriptor.rpartition(".")[2] for message in self.read()]
 
     def wait(self, kind: str) -> Any:
-        """The first message of a kind, from another process."""
-        end = time.monotonic() + LIMIT_S
+        """The first message of a kind, from another process, which may have to compile first."""
+        end = time.monotonic() + 5 * LIMIT_S
         while kind not in self.kinds():
             assert time.monotonic() < end, f"no {kind} came, but {self.kinds()}"
             time.sleep(0.01)

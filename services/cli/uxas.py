@@ -47,31 +47,38 @@ def uxas(
     Exit codes: 0 it ran to its end, 2 the configuration is refused.
     """
     from cratous.services.uxas.logs import Logs
-    from cratous.services.uxas.process import Process, data_folders
+    from cratous.services.uxas.process import Process, data_folder
     from cratous.services.uxas.settings import read
 
     if version:
         _versions()
     config = read(cfg_path)
     root = config.root
+    if check:
+        from cratous.services.uxas.manager import check as check_all
+
+        count = len(check_all(config, frozenset(without)))
+        click.echo(f"{cfg_path}: {count} services and bridges")
+        return 0
     log = Logs(
         root["ConsoleLoggerSeverityLevel"],
         root["MainFileLoggerSeverityLevel"],
-        None if check else Path("log"),
+        Path("log"),
         echo=lambda text: click.echo(text, err=True),
         thread_id=root["isLoggingThreadId"],
     )
     try:
         _require_proofs(config, log, allow_unproved)
-        if not check:
-            data_folders(config, Path("."))
-        time.sleep(0 if check or virtual_time else root["StartDelay_ms"] / 1000)
+        data = data_folder(config, Path("."))
+        time.sleep(0 if virtual_time else root["StartDelay_ms"] / 1000)
         with Process(
-            config, log, without=frozenset(without), virtual=virtual_time, say=click.echo
+            config,
+            log,
+            without=frozenset(without),
+            virtual=virtual_time,
+            say=click.echo,
+            data=data,
         ) as process:
-            if check:
-                click.echo(f"{cfg_path}: {len(process.manager.services) - 1} services and bridges")
-                return 0
             for number in (signal.SIGINT, signal.SIGTERM):
                 signal.signal(number, lambda *_: _stop(process))
             log("INFO", f"running {cfg_path} as entity {root['EntityID']}")
@@ -84,6 +91,8 @@ def uxas(
 
 
 def _stop(process: Any) -> None:
+    if process.stopping:  # asked twice: do not wait for the plan that is being made
+        raise KeyboardInterrupt
     process.stopping = True
 
 

@@ -16,14 +16,20 @@ class Clock:
     """Milliseconds since the start: of the machine, or as the entities' states tell.
 
     With Test_SimulationTime on the bus time is discrete: it stands at 0 until a state says
-    otherwise, and never goes back.
+    otherwise, and never goes back. A leap of more than an hour, or back by more than ten seconds
+    (another simulation, an absolute date), is no time that passes: the clock goes on from where it
+    stands, and what follows counts from the new origin.
     """
+
+    LEAP_MS = 3_600_000
+    BACK_MS = 10_000
 
     def __init__(self, monotonic: Callable[[], float] = time.monotonic) -> None:
         self._monotonic = monotonic
         self._zero_s = monotonic()
         self.discrete = False
         self._told_ms = 0
+        self._heard_ms = 0  # the time that a state told last, whatever its origin
 
     def real_s(self) -> float:
         """Seconds of the machine since the start."""
@@ -33,9 +39,16 @@ class Clock:
         """The time that the services see [ms]."""
         return self._told_ms if self.discrete else int(1000 * self.real_s())
 
-    def tell(self, time_ms: int) -> None:
-        """A state says what time it is [ms]."""
-        self._told_ms = max(self._told_ms, time_ms)
+    def tell(self, time_ms: int) -> bool:
+        """A state says what time it is [ms]; False if that was a leap."""
+        step = time_ms - self._heard_ms
+        if step in range(-self.BACK_MS, 1):
+            return True  # the states of several vehicles come one after the other
+        self._heard_ms = time_ms
+        if step not in range(1, self.LEAP_MS + 1):
+            return False
+        self._told_ms += step
+        return True
 
 
 @dataclass

@@ -220,7 +220,15 @@ class LiveTask(TaskService):
 
     @property
     def _task(self) -> Task:  # type: ignore[override]
-        return self._desk.mission.task(self._task_id)
+        for task in self._desk.mission.tasks if self._desk.in_work else ():
+            if task.id == self._task_id:
+                return task
+        raise BadInput(
+            "no request with this task is being planned here",
+            item="TaskID",
+            expected="a request of this process' AutomationRequestValidatorService",
+            got=str(self._task_id),
+        )
 
     def begin(self, state: Any) -> tuple[Any, Iterable[Any]]:
         """Say that the task is there."""

@@ -19,10 +19,11 @@ from cratous.services.planning.desk import status
 from cratous.services.uxas import bridge_kinds, live, registry
 from cratous.services.uxas.bridges import CREATE, KILL, Bridge
 from cratous.services.uxas.frame import Host
-from cratous.services.uxas.settings import Configuration, Entry, entry, nearest, values_of
+from cratous.services.uxas.settings import Attr, Configuration, Entry, entry, nearest, values_of
 from cratous.spec.errors import BadInput, CratousError
 
 FIRST_ID = 50
+_COMMON = {"MessageGroup": Attr()}  # of every service: the group of its messages and its address
 
 
 class ServiceManager:
@@ -30,6 +31,7 @@ class ServiceManager:
 
     name = "ServiceManager"
     subscribes: tuple[str, ...] = (CREATE, KILL)
+    prefixes = ("eid",)  # UxAS sends KillService to the service's own address
 
     def __init__(self, host: Host, config: Configuration, context: Any) -> None:
         self._host, self._config, self._context = host, config, context
@@ -64,14 +66,10 @@ class ServiceManager:
 
         without: types that the user has asked to leave out.
         """
-        entries = [e for e in self._config.entries if e.type not in without]
+        entries = check(self._config, without)
         for left_out in self._config.entries:
             if left_out.type in without:
                 self._host.log("WARN", f"{left_out.where}: {left_out.type} is left out, as asked")
-        problems: list[BadInput] = []
-        for item in entries:
-            self._check(item, entries, problems)
-        refuse(problems)
         self._host.bus.add(self, self._host.identity(self.first_id))
         self._names[self.first_id] = self.name
         ordered = [e for e in entries if e.kind == "Service"]
@@ -89,6 +87,8 @@ class ServiceManager:
     def handle(self, state: None, envelope: Envelope, now_ms: int) -> tuple[None, Iterable[Any]]:
         if envelope.topic == KILL:
             self.kill(envelope.body.ServiceID)
+            return None, ()
+        if envelope.topic != CREATE:
             return None, ()
         try:
             self._create(envelope)
@@ -125,65 +125,22 @@ class ServiceManager:
         self._host.log("INFO", f"service {number} ({name}) has ended")
         self.on_change()
 
-    def _check(self, item: Entry, entries: list[Entry], problems: list[BadInput]) -> None:
-        if item.kind == "Bridge":
-            kind = bridge_kinds.BRIDGES.get(item.type)
-            if kind is None:
-                problems.append(_unknown(item, bridge_kinds.BRIDGES))
-                return
-            bridge_kinds.check(item, kind, problems)
-            return
-        service = registry.KINDS.get(item.type)
-        if service is None:
-            problems.append(_unknown(item, registry.KINDS))
-            return
-        values_of(service.attributes, item.attributes, item.where, item.type, problems)
-        for element in item.children:
-            if element.tag not in service.children:
-                expected = nearest(str(element.tag), service.children)
-                problems.append(
-                    BadInput(
-                        "unknown element",
-                        where=item.place(element),
-                        item=f"{item.type}.<{element.tag}>",
-                        expected=expected,
-                    )
-                )
-        same = [e for e in entries if e.type == item.type]
-        if service.single and same[0] is not item:
-            problems.append(
-                BadInput(
-                    "a second one in one process",
-                    where=item.where,
-                    item=item.type,
-                    expected=f"one; the first stands at {same[0].where}",
-                )
-            )
-        for other in service.together:
-            if not any(e.type == other for e in entries):
-                problems.append(
-                    BadInput(
-                        f"it shares memory with {other}",
-                        where=item.where,
-                        item=item.type,
-                        expected=f"both in one process: add {other}",
-                    )
-                )
-
     def _make(self, item: Entry, number: int) -> None:
         if item.kind == "Bridge":
             self._make_bridge(item, number)
             return
         kind = registry.KINDS[item.type]
         problems: list[BadInput] = []
-        values = values_of(kind.attributes, item.attributes, item.where, item.type, problems)
+        known = {**kind.attributes, **_COMMON}
+        values = values_of(known, item.attributes, item.where, item.type, problems)
         refuse(problems)
         for name in kind.ignored:
             if name in item.attributes and values[name] != kind.attributes[name].default:
                 text = f"{item.where}: {item.type}.{name}={item.attributes[name]}"
                 self._host.log("WARN", f"{text}: {kind.ignored[name]}")
         name = self._name(item.type, number)
-        self._add(kind.make(self._host, item, values, name, number), number)
+        service = kind.make(self._host, item, values, name, number)
+        self._add(service, number, values["MessageGroup"])
 
     def _make_bridge(self, item: Entry, number: int) -> None:
         kind = bridge_kinds.BRIDGES[item.type]
@@ -212,11 +169,11 @@ class ServiceManager:
         self.bridges[number] = bridge
         self.on_change()
 
-    def _add(self, service: Any, number: int) -> None:
+    def _add(self, service: Any, number: int, group: str = "") -> None:
         if service.name in self._host.bus.names():
             raise BadInput("such a service runs already", item=service.name)
         self._names[number] = service.name
-        self._host.bus.add(service, self._host.identity(number))
+        self._host.bus.add(service, self._host.identity(number, group))
         self._host.log("INFO", f"service {number} is {service.name}")
 
     def _name(self, kind: str, number: int) -> str:
@@ -249,9 +206,69 @@ class ServiceManager:
             self._add(live.LiveTask(desk, task, live.TASKS[item.type]), number)
             return
         problems: list[BadInput] = []
-        self._check(item, [*self._config.entries, item], problems)
+        _check(item, [*self._config.entries, item], problems)
         refuse(problems)
         self._make(item, number)
+
+
+def check(config: Configuration, without: frozenset[str] = frozenset()) -> list[Entry]:
+    """The entries to make; BadInput with all that is wrong with types, attributes and elements.
+
+    without: types that the user has asked to leave out.
+    """
+    entries = [e for e in config.entries if e.type not in without]
+    problems: list[BadInput] = []
+    for item in entries:
+        _check(item, entries, problems)
+    refuse(problems)
+    return entries
+
+
+def _check(item: Entry, entries: list[Entry], problems: list[BadInput]) -> None:
+    if item.kind == "Bridge":
+        kind = bridge_kinds.BRIDGES.get(item.type)
+        if kind is None:
+            problems.append(_unknown(item, bridge_kinds.BRIDGES))
+            return
+        bridge_kinds.check(item, kind, problems)
+        return
+    service = registry.KINDS.get(item.type)
+    if service is None:
+        problems.append(_unknown(item, registry.KINDS))
+        return
+    known = {**service.attributes, **_COMMON}
+    values_of(known, item.attributes, item.where, item.type, problems)
+    for element in item.children:
+        if element.tag not in service.children:
+            expected = nearest(str(element.tag), service.children)
+            problems.append(
+                BadInput(
+                    "unknown element",
+                    where=item.place(element),
+                    item=f"{item.type}.<{element.tag}>",
+                    expected=expected,
+                )
+            )
+    same = [e for e in entries if e.type == item.type]
+    if service.single and same[0] is not item:
+        problems.append(
+            BadInput(
+                "a second one in one process",
+                where=item.where,
+                item=item.type,
+                expected=f"one; the first stands at {same[0].where}",
+            )
+        )
+    for other in service.together:
+        if not any(e.type == other for e in entries):
+            problems.append(
+                BadInput(
+                    f"it shares memory with {other}",
+                    where=item.where,
+                    item=item.type,
+                    expected=f"both in one process: add {other}",
+                )
+            )
 
 
 def _parsed(text: str, where: str) -> tuple[Entry, Any]:
@@ -295,7 +312,7 @@ def _unknown(item: Entry, known: Any) -> BadInput:
             expected=", ".join(live.TASKS),
             got=item.type,
         )
-    if item.type in registry.NOT_YET:
+    if item.type in registry.NOT_YET:  # and not in KINDS
         return BadInput(
             f"{item.type} of UxAS is not covered yet",
             where=item.where,

@@ -11,6 +11,7 @@ import contextlib
 import os
 import resource
 import time
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from typing import Any
 import zmq
 
 from cratous.bridge import lmcp
-from cratous.bridge.port import is_due
+from cratous.bridge.port import is_due, often
 from cratous.services.bus import Bus, Envelope
 from cratous.services.planning.desk import status
 from cratous.services.uxas.bridge_kinds import curve_of
@@ -32,6 +33,7 @@ from cratous.spec.errors import BadInput, CratousError, NoPlan
 _LONGEST_POLL_MS = 200  # so that a signal or a discrete clock is seen
 _FILES = 65536
 _NEVER_MS = 2**62
+_REQUEST = ("CorrespondingAutomationRequestID", "RequestID", "ResponseID")
 
 
 class Process:
@@ -45,9 +47,13 @@ class Process:
         without: frozenset[str] = frozenset(),
         virtual: bool = False,
         say: Callable[[str], None] = print,
+        data: Path | None = None,
         clock: Clock | None = None,
     ) -> None:
-        """BadInput names what is wrong with the configuration; nothing stays open then."""
+        """BadInput names what is wrong with the configuration; nothing stays open then.
+
+        data: the folder for what services write; without one, none may.
+        """
         root = config.root
         self.log, self.config, self._virtual = log, config, virtual
         self.clock = clock or Clock()
@@ -58,6 +64,7 @@ class Process:
         self._doorkeeper: Any = None
         self._poller: zmq.Poller | None = None
         self._handles: list[tuple[Any, int]] = []
+        self._faults: Counter[tuple[str, str, str]] = Counter()
         self.stopping = False
         joined = _addresses(config, ("HubSUB", "HubPUSH"))
         hosts = _addresses(config, ("HubPUB", "HubPULL"))
@@ -78,7 +85,7 @@ class Process:
             root["EntityType"],
             config.path,
             {**root, "where": config.where},
-            {"admit": self._admit},
+            {"admit": self._admit, "data": data},
             say,
         )
         if joined and root["FirstServiceID"] is None:
@@ -201,7 +208,11 @@ class Process:
     def _fault(self, name: str, envelope: Envelope | None, error: Exception) -> None:
         what = f"message {envelope.seq} ({envelope.topic})" if envelope else "its own doing"
         kind = "" if isinstance(error, CratousError) else f"{type(error).__name__}: "
-        self.log("ERROR", f"{name} fails at {what}: {kind}{error}")
+        same = (name, envelope.topic if envelope else "", type(error).__name__)
+        self._faults[same] += 1
+        if often(self._faults[same]):
+            more = f" ({self._faults[same]} of this kind so far)" if self._faults[same] > 1 else ""
+            self.log("ERROR", f"{name} fails at {what}: {kind}{error}{more}")
         if os.environ.get("CRATOUS_DEBUG"):
             import traceback
 
@@ -210,7 +221,10 @@ class Process:
         if desk is None or not _plans(name):
             return
         reasons = error.reasons if isinstance(error, NoPlan) else (f"{name}: {kind}{error}",)
-        for number in desk.in_work:
+        body = envelope.body if envelope else None
+        named = {getattr(body, field, 0) for field in _REQUEST}
+        # a stray message of another request must not end the one in work
+        for number in named.intersection(desk.in_work):
             facts = [("reason", text) for text in reasons]
             self.bus.publish(status(number, "Error", facts), name)
 
@@ -246,8 +260,8 @@ def _raise_file_limit() -> None:
             resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
 
 
-def data_folders(config: Configuration, here: Path) -> None:
-    """Make `datawork`, as UxAS does; with isDataTimestamp a folder inside, named by the time."""
+def data_folder(config: Configuration, here: Path) -> Path:
+    """`datawork`, made as UxAS does; with isDataTimestamp a folder inside, named by the time."""
     folder = here / "datawork"
     if config.root["isDataTimestamp"]:
         folder = folder / str(time.time_ns() // 1_000_000)
@@ -259,3 +273,4 @@ def data_folders(config: Configuration, here: Path) -> None:
             where=str(folder),
             expected="a folder that can be written",
         ) from None
+    return folder

@@ -5,6 +5,8 @@ What UxAS has and we do not have yet is known by name too, so that it is refused
 
 from __future__ import annotations
 
+import importlib
+import importlib.util
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,6 +15,7 @@ from cratous.services.uxas import live, small
 from cratous.services.uxas.frame import Host
 from cratous.services.uxas.settings import Attr, Entry, choice, flag, number, whole
 from cratous.services.uxas.world import World
+from cratous.spec.errors import BadInput
 
 Make = Callable[["Host", Entry, dict[str, Any], str, int], Any]
 
@@ -63,7 +66,7 @@ def _messages(host: Host, entry: Entry, v: dict[str, Any], name: str, number: in
 
 
 def _time(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return small.SimulationTime(name, host.clock)
+    return small.SimulationTime(name, host.clock, host.log)
 
 
 def _hello(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
@@ -74,16 +77,6 @@ def _report(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int)
     vehicle = host.entity_id if v["VehicleID"] is None else v["VehicleID"]
     return small.StatusReportService(
         name, vehicle, v["ReportPeriod_ms"], v["StaleStateTime_ms"], v["KeepAliveExpiration_ms"]
-    )
-
-
-def _message_logger(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    from pathlib import Path
-
-    from cratous.services.message_logger import MessageLogger
-
-    return MessageLogger.from_parts(
-        entry.attributes, entry.children, Path("datawork/SavedMessages"), entry.where, name=name
     )
 
 
@@ -145,11 +138,6 @@ KINDS: dict[str, Kind] = {
         ),
     ),
     "SendMessagesService": Kind({"PathToMessageFiles": Attr()}, _messages, ("Message",)),
-    "MessageLoggerDataService": Kind(
-        {"LogFileMessageCountLimit": whole(0), "FilesPerSubDirectory": whole(0)},
-        _message_logger,
-        ("LogMessage",),
-    ),
     "Test_SimulationTime": Kind({}, _time, single=True),
     "HelloWorld": Kind(
         {"StringToSend": Attr(default="Hello World!"), "SendPeriod_ms": whole(1000, 1)}, _hello
@@ -165,10 +153,31 @@ KINDS: dict[str, Kind] = {
     ),
 }
 
+LOGGER = "MessageLoggerDataService"
+_LOGGER_MODULE = "cratous.services.message_logger"
+
+
+def _logger(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    folder = host.shared.get("data")
+    if folder is None:
+        raise BadInput("no folder to write to", where=entry.where, item=entry.type)
+    (folder / "SavedMessages").mkdir(parents=True, exist_ok=True)
+    make = importlib.import_module(_LOGGER_MODULE).MessageLogger.from_parts
+    return make(entry.attributes, entry.children, folder / "SavedMessages", entry.where, name=name)
+
+
+if importlib.util.find_spec(_LOGGER_MODULE) is not None:
+    KINDS[LOGGER] = Kind(
+        {"LogFileMessageCountLimit": whole(0), "FilesPerSubDirectory": whole(0)},
+        _logger,
+        ("LogMessage",),
+    )
+
 NOT_YET = (
     "AutomationDiagramDataService",
     "BatchSummaryService",
     "LoiterLeash",
+    LOGGER,
     "OperatingRegionStateService",
     "OsmPlannerService",
     "RoutePlannerService",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os.path
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -125,15 +125,20 @@ class SimulationTime:
 
     subscribes: tuple[str, ...] = ("afrl.cmasi.EntityState",)
 
-    def __init__(self, name: str, clock: Clock) -> None:
-        self.name, self._clock = name, clock
+    def __init__(self, name: str, clock: Clock, log: Callable[[str, str], None]) -> None:
+        self.name, self._clock, self._log = name, clock, log
 
     def start(self) -> int:
         self._clock.discrete = True
         return 0
 
     def handle(self, state: int, envelope: Envelope, now_ms: int) -> Step:
-        self._clock.tell(envelope.body.Time)
+        if not self._clock.tell(envelope.body.Time):
+            self._log(
+                "WARN",
+                f"{self.name}: time leaps to {envelope.body.Time} ms in the state of "
+                f"{envelope.body.ID}; the clock goes on from where it stands",
+            )
         return envelope.body.Time, ()
 
     def stop(self, state: int) -> None:
