@@ -7,8 +7,8 @@ from cratous.core.well_clear import (
     horizontal_violation,
     layer_violation,
     vertical_interval,
-    violation_taumod,
     violation_interval_taumod,
+    violation_taumod,
 )
 from cratous.proofs.claim import Claim
 

@@ -7,8 +7,8 @@ from cratous.core.well_clear import (
     horizontal_violation_tcpa,
     layer_violation,
     vertical_interval,
-    violation_tcpa,
     violation_interval_tcpa,
+    violation_tcpa,
 )
 from cratous.proofs.claim import Claim
 

@@ -7,8 +7,8 @@ from cratous.core.well_clear import (
     horizontal_violation_tep,
     layer_violation,
     vertical_interval,
-    violation_tep,
     violation_interval_tep,
+    violation_tep,
 )
 from cratous.proofs.claim import Claim
 
