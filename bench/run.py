@@ -1,7 +1,8 @@
 """Benchmarks: ratios of two things measured in one run, on one core; prints a table.
 
-The well-clear rows are those of `exact_well_clear.py`, where the peer is C; those of points in
-polygons are those of `containment.py`, by CPU time; those of messages are in `lmcp_codec.py`.
+The well-clear rows are those of `exact_well_clear.py` and `interval_well_clear.py`, where the
+peer is C; those of points in polygons are those of `containment.py`, by CPU time; those of messages
+are in `lmcp_codec.py`.
 
 `python bench/run.py --write` puts the table into bench/README.md.
 """
@@ -25,6 +26,7 @@ from cratous.core.well_clear import horizontal_violation, violation_within
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import containment
 import exact_well_clear
+import interval_well_clear
 import lmcp_codec
 
 README = Path(__file__).resolve().parent / "README.md"
@@ -88,7 +90,8 @@ def rows() -> list[tuple[str, float, str, float]]:
     a = best(lambda: [exact(locate, edges, p) for p in points], 3) / 300 * 1e9
     b = best(lambda: [shape.contains(shapely.Point(p)) for p in points], 3) / 300 * 1e9
     found.append(("point in 10-gon, exact, one by one", a, "shapely contains, one by one", b))
-    return exact_well_clear.rows() + containment.rows() + found + lmcp_codec.rows()
+    wells = exact_well_clear.rows() + interval_well_clear.rows()
+    return wells + containment.rows() + found + lmcp_codec.rows()
 
 
 def table() -> str:

@@ -24,8 +24,9 @@ def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> in
 
     FILES are JSON lines, also gzipped (`frames` takes captured bytes). Geometry is decided by the
     exact reading of the proved kernels, messages by the codecs that talk to others, guidance and
-    plans by what the product itself would say. A case of a kind that the suite does not cover is
-    listed as not covered and never counted as passed.
+    plans by what the product itself would say. A case of a kind that the suite does not cover, or
+    one on a knife edge (where another system's own tolerance explains the difference), is listed
+    apart and never counted as passed.
 
     Example:  cratous conform polygon vectors.jsonl.gz
 
@@ -51,14 +52,20 @@ def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> in
             click.echo(f"  {count} x {label}")
         for result in report.shown:
             click.echo(f"    {result.case}: {result.text}")
+        for label, count in sorted(report.edges.items()):
+            click.echo(f"  {count} x knife edge: {label}")
+        for result in report.edge_cases[:show]:
+            click.echo(f"    {result.case}: {result.text}")
     good, bad = sum(r.passed for r in reports), sum(r.failed for r in reports)
     skipped: Counter[str] = sum((r.skipped for r in reports), Counter())
-    code = 1 if bad else (0 if good else 3)
+    edges = sum(r.edges.total() for r in reports)
+    code = 1 if bad else (0 if good + edges else 3)
     if as_json:
         data = {
             "suite": suite,
             "passed": good,
             "failed": bad,
+            "knife_edges": edges,
             "checks": sum(r.checks for r in reports),
             "not_covered": dict(sorted(skipped.items())),
             "files": [
@@ -71,6 +78,10 @@ def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> in
                     "excused": dict(sorted(r.excused.items())),
                     "summary": r.summary,
                     "shown": [{"id": s.case, "kind": s.label, "text": s.text} for s in r.shown],
+                    "knife_edges": dict(sorted(r.edges.items())),
+                    "knife_edge_cases": [
+                        {"id": s.case, "kind": s.label, "text": s.text} for s in r.edge_cases
+                    ],
                 }
                 for r in reports
             ],
@@ -81,5 +92,6 @@ def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> in
     if skipped:
         kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(skipped.items()))
         click.echo(f"not covered: {kinds}")
-    click.echo(f"{good} passed, {bad} failed")
+    tail = f", {edges} on a knife edge" if edges else ""
+    click.echo(f"{good} passed, {bad} failed{tail}")
     return code

@@ -2,8 +2,9 @@
 
 A suite reads the cases of a file (JSON lines or a list, also gzipped; or what its own function
 `cases` reads) and judges each: by the exact reading of kernels, or by what the codecs make of the
-bytes. A case passes, fails, or is of a kind that the suite does not cover; the last is
-said and counted apart, never as passed. Suites are imported when they are asked for.
+bytes. A case passes, fails, lies on a knife edge (another system's own tolerance explains the
+difference), or is of a kind that the suite does not cover; the last two are said and counted apart,
+never as passed. Suites are imported when they are asked for.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from typing import Any
 from cratous.spec.errors import BadInput
 
 SUITES = {
-    "well-clear": "Horizontal and vertical well-clear violation with modified tau, now.",
+    "well-clear": "Well-clear violation now and over a span: tau_mod, tcpa, tep, cylinder.",
     "polygon": "Places of points in polygons and layers, nearness with a buffer, exact distances.",
     "lmcp": "LMCP messages in binary and XML, both ways, and malformed ones.",
     "frames": "Captured sentinel frames and envelopes, and what breaks a TCP bridge.",
@@ -31,7 +32,7 @@ SUITES = {
 
 @dataclass(frozen=True)
 class Result:
-    """What came of one case: `passed`, `failed` or `not covered`.
+    """What came of one case: `passed`, `failed`, `knife edge` or `not covered`.
 
     label: kind of difference, or of what is not covered; text: expected and got, for people.
     checks: how many single verdicts of kernels were compared. excused: differences for which there
@@ -54,6 +55,11 @@ def passed(case: str, checks: int = 1, excused: tuple[tuple[str, str], ...] = ()
 def failed(case: str, label: str, text: str, checks: int = 1) -> Result:
     """They do not."""
     return Result(case, "failed", label, text, checks)
+
+
+def edge(case: str, label: str, text: str, checks: int = 1) -> Result:
+    """They differ from what the vector says, and its system's own tolerance explains it."""
+    return Result(case, "knife edge", label, text, checks)
 
 
 def not_covered(case: str, label: str) -> Result:
@@ -103,16 +109,20 @@ class FileReport:
     failed: int = 0
     checks: int = 0
     skipped: Counter[str] = field(default_factory=Counter)
+    edges: Counter[str] = field(default_factory=Counter)
     differences: Counter[str] = field(default_factory=Counter)
     shown: list[Result] = field(default_factory=list)
     excused: Counter[str] = field(default_factory=Counter)
     evidence: list[tuple[str, str, str]] = field(default_factory=list)
     summary: list[str] = field(default_factory=list)
+    edge_cases: list[Result] = field(default_factory=list)
 
     @property
     def line(self) -> str:
         """One line for the terminal."""
         text = f"{self.file}: {self.passed} passed, {self.failed} failed"
+        if self.edges:
+            text += f", {self.edges.total()} on a knife edge"
         if self.skipped:
             kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(self.skipped.items()))
             text += f", not covered: {kinds}"
@@ -183,11 +193,15 @@ def run(judge: Suite | Beside, file: Path, show: int) -> FileReport:
             report.passed += 1
         elif result.status == "not covered":
             report.skipped[result.label] += 1
+        elif result.status == "knife edge":
+            report.edges[result.label] += 1
+            report.edge_cases.append(result)
         else:
             report.failed += 1
             report.differences[result.label] += 1
             if len(report.shown) < show:
                 report.shown.append(result)
-    if not report.passed + report.failed + report.skipped.total():
+    counted = report.passed + report.failed + report.skipped.total() + report.edges.total()
+    if not counted:
         raise BadInput("the file has no cases", where=str(file), expected="JSON lines")
     return report
