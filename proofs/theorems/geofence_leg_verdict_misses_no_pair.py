@@ -32,7 +32,13 @@ def claim(c: Claim) -> None:
         "geofence_leg_verdict_misses_no_pair_of_crossing_lines",
         when=det != 0,
         **lines,
-        d=d, s=s, t=t, s0=s0, t0=t0, ks=ways[0], kt=ways[1],
+        d=d,
+        s=s,
+        t=t,
+        s0=s0,
+        t0=t0,
+        ks=ways[0],
+        kt=ways[1],
     )
     leg, edge, both = wx * wx + wy * wy, ux * ux + uy * uy, wx * ux + wy * uy
     ds = c.when(leg == 0, 1, c.when(edge == 0, 0, both))
@@ -42,7 +48,11 @@ def claim(c: Claim) -> None:
         "geofence_leg_verdict_misses_no_pair_of_parallels",
         when=det == 0,
         **lines,
-        d=d, s=s, t=t, ks=far[0], kt=far[1],
+        d=d,
+        s=s,
+        t=t,
+        ks=far[0],
+        kt=far[1],
         dx=a.x + t * ux - p.x - s * wx,
         dy=a.y + t * uy - p.y - s * wy,
     )
