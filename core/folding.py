@@ -142,7 +142,7 @@ def folded(fold: Fold[Any], arguments: int = 2, rest: Rest | None = None) -> Cal
         columns = [np.ascontiguousarray(c, dtype=np.float64) for c in flat]
         edges = tuple(np.ascontiguousarray(c, dtype=np.float64) for c in items)
         truth = get_type_hints(fold.finish)["return"] is bool
-        out = np.empty(size, dtype=np.bool_ if truth else np.int8)
+        out: np.ndarray = np.empty(size, dtype=np.bool_ if truth else np.int8)
         code = np.empty(size, dtype=np.uint8)
         compiled(out, code, *edges, *columns)
         index = np.flatnonzero(code)

@@ -48,8 +48,7 @@ def _location(items: tuple[Any, ...], columns: list[np.ndarray]) -> np.ndarray:
 
 def _contact(items: tuple[Any, ...], columns: list[np.ndarray]) -> np.ndarray:
     def decide(leg: list[np.ndarray]) -> np.ndarray:
-        found: np.ndarray = exactly(segments_meet)(*leg, *items).any(axis=1)
-        return found
+        return np.asarray(exactly(segments_meet)(*leg, *items).any(axis=1))
 
     return _pairs(decide, items, columns)
 

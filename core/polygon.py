@@ -8,7 +8,7 @@ exact in the exact reading for any number of vertices.
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from cratous.core.kernel import Vec2, fold, kernel
+from cratous.core.kernel import Fold, Vec2, fold, kernel
 
 OUTSIDE, BOUNDARY, INSIDE = -1, 0, 1
 
@@ -160,7 +160,7 @@ def area_result(twice: float) -> float:
     return twice
 
 
-twice_area = fold(
+twice_area: Fold[float] = fold(
     name="twice_area",
     implements="geofence.turn",
     step=area_step,

@@ -165,7 +165,7 @@ def test_points_broadcast_and_give_their_shape():
     assert each.shape == (13, 13, 2)
     near = geofence.against_buffer(grid, shape, np.ones((13, 1)))
     assert near.shape == (13, 13)
-    starts, ends = np.zeros((4, 1, 2)) + 5, [*np.zeros((3, 2)), [20], [5], [10]]
+    starts, ends = np.full((4, 1, 2), 5), np.array([[20, 20], [5, 5], [10, 10]])
     assert geofence.contact(starts, ends, shape).tolist() == [[True, False, True]] * 4
 
 

@@ -1,5 +1,5 @@
 """The squared distance that the kernel gives for an edge is that of one of its points: an end, or the
-foot of the perpendicular; its denominator is positive."""
+foot of the perpendicular; its denominator is positive, and 1 where an end is nearest."""
 
 from cratous.core.geofence_distance import edge_distance
 from cratous.proofs.claim import Claim
@@ -11,6 +11,7 @@ def claim(c: Claim) -> None:
     c.premise(c.define(geofence.foot_at, p, a, b, t))
     found = c.use(edge_distance, p, a, b)
     c.show(found.den > 0, "a positive denominator")
+    c.show(c.implies(c.any_of(t <= 0, t >= 1), found.den == 1), "1 at an end")
 
     def attained(at: object) -> object:
         there = c.define(geofence.along, a, b, at)

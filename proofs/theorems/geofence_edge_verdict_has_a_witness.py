@@ -1,6 +1,8 @@
 """An edge that the kernel calls nearer to a point than the buffer, or just so near, has a point that
 is: one of its ends, or the foot of the perpendicular from the point."""
 
+from typing import Any
+
 from cratous.core.geofence_distance import edge_against, edge_distance
 from cratous.proofs.claim import Claim
 from cratous.spec import geofence
@@ -15,7 +17,7 @@ def claim(c: Claim) -> None:
     c.lemma("geofence_edge_distance_is_attained", p=p, a=a, b=b, t=t)
     verdict = c.use(edge_against, p, a, b, d)
 
-    def reached(definition: object) -> object:
+    def reached(definition: Any) -> object:
         at = [c.define(definition, p, a, b, d, place) for place in (t - t, t - t + 1, t)]
         return c.any_of(*at)
 

@@ -1,6 +1,8 @@
 """The least place is the intersection's, the greatest the union's and the negative the complement's,
 for the open parts and for the closed parts; layers of altitudes are as they are defined."""
 
+from typing import Any
+
 from cratous.core.geofence_regions import (
     both_places,
     either_place,
@@ -26,7 +28,7 @@ def claim(c: Claim) -> None:
             c.show(c.same(c.define(part, found), wanted), f"{text}, {name} part")
         c.show(c.any_of(found == -1, found == 0, found == 1), f"{text}, a place")
 
-    def each(combine: object) -> tuple[object, object]:
+    def each(combine: Any) -> tuple[object, object]:
         made = [
             c.define(combine, c.define(part, one), c.define(part, other))
             for part in (open_, closed)
