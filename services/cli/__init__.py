@@ -21,6 +21,7 @@ COMMANDS = {
     "run": "Plan, prove, fly, monitor and certify a mission.",
     "plan": "Plan a mission and check the plan; nothing flies.",
     "prove": "Prove the kernels and write the ledger (in a checkout).",
+    "daa": "Alerts, bands and reasons for an encounter file.",
     "conform": "Run published vectors against the kernels.",
     "certify": "Judge a finished flight again from its log.",
     "monitor": "Watch a message log for violations of G1 to G5.",
