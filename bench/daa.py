@@ -32,7 +32,9 @@ def encounter(rng: np.random.Generator, n: int) -> tuple[Aircraft, list[Aircraft
         x, y = rng.uniform(-spread_m, spread_m, 2) if spread_m else (0.0, 0.0)
         z = alt + (rng.normal() * 300 if spread_m else 0.0)
         climb = rng.choice([0.0, rng.normal() * 5])
-        return Aircraft(name, x, y, z, speed * np.sin(course), speed * np.cos(course), climb, alerter)
+        return Aircraft(
+            name, x, y, z, speed * np.sin(course), speed * np.cos(course), climb, alerter
+        )
 
     own = one("own", 0.0, 1)
     return own, [one(f"i{k}", 18520.0, int(rng.integers(1, 4))) for k in range(n)]
@@ -82,7 +84,9 @@ def main() -> int:
         mean, most = bands_ms(n)
         print(f"| {n} intruders | {mean:.1f} | {most:.1f} | {peer:.1f} | {peer / mean:.1f} |")
     rate = alerts_per_s()
-    print(f"| alert levels, encounters of 3 a second | {rate:,.0f} | | {PEER_ENCOUNTERS_S:,} | {rate / PEER_ENCOUNTERS_S:.1f} |")
+    print(
+        f"| alert levels, encounters of 3 a second | {rate:,.0f} | | {PEER_ENCOUNTERS_S:,} | {rate / PEER_ENCOUNTERS_S:.1f} |"
+    )
     return 0
 
 

@@ -1,6 +1,7 @@
 """Benchmarks: ratios of two things measured in one run, on one core; prints a table.
 
-The well-clear rows are those of `exact_well_clear.py`, where the peer is C.
+The well-clear rows are those of `exact_well_clear.py` and `interval_well_clear.py`, where the
+peer is C.
 
 `python bench/run.py --write` puts the table into bench/README.md.
 """
@@ -23,6 +24,7 @@ from cratous.core.well_clear import horizontal_violation, violation_within
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import exact_well_clear
+import interval_well_clear
 
 README = Path(__file__).resolve().parent / "README.md"
 MARK = "<!-- table -->"
@@ -85,7 +87,7 @@ def rows() -> list[tuple[str, float, str, float]]:
     a = best(lambda: [exact(locate, edges, p) for p in points], 3) / 300 * 1e9
     b = best(lambda: [shape.contains(shapely.Point(p)) for p in points], 3) / 300 * 1e9
     found.append(("point in 10-gon, exact, one by one", a, "shapely contains, one by one", b))
-    return exact_well_clear.rows() + found
+    return exact_well_clear.rows() + interval_well_clear.rows() + found
 
 
 def table() -> str:

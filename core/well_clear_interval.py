@@ -95,7 +95,7 @@ def times_taumod(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, b_s: float, t_s
     disc = max(dthr_m * dthr_m * vv - cross * cross, 0)
     # the smaller root of |s(t)|^2 + TTHR s(t).v = DTHR^2; it is not after the entry to the circle
     lead = tthr_s * vv
-    first = (0 - 2 * sv - lead - sqrt(max(4 * disc + lead * lead, 0))) / (2 * vv)
+    first = (0 - sv - (lead + sqrt(max(4 * disc + lead * lead, 0))) / 2) / vv
     return Span(max(first, b_s), min((sqrt(disc) - sv) / vv, t_s))
 
 
@@ -213,7 +213,9 @@ def violation_times_taumod(
 ) -> Span:
     """First and last instant of [b_s, t_s] at which well clear by tau_mod is lost, if any is."""
     begin, end = times_vertical(sz, vz, zthr_m, tcoa_s, vmod_s, b_s, t_s)
-    return times_taumod(s, v, dthr_m, tthr_s, begin, end)
+    first, last = times_taumod(s, v, dthr_m, tthr_s, begin, end)
+    # within [b_s, t_s] in every reading, however wide the enclosure of a tiny speed
+    return Span(min(first, t_s), max(last, b_s))
 
 
 @kernel(implements="well_clear.violation_tcpa_at")
@@ -251,7 +253,9 @@ def violation_times_tcpa(
 ) -> Span:
     """First and last instant of [b_s, t_s] at which well clear by tcpa is lost, if any is."""
     begin, end = times_vertical(sz, vz, zthr_m, tcoa_s, vmod_s, b_s, t_s)
-    return times_tcpa(s, v, dthr_m, tthr_s, begin, end)
+    first, last = times_tcpa(s, v, dthr_m, tthr_s, begin, end)
+    # within [b_s, t_s] in every reading, however wide the enclosure of a tiny speed
+    return Span(min(first, t_s), max(last, b_s))
 
 
 @kernel(implements="well_clear.violation_tep_at")
@@ -289,7 +293,9 @@ def violation_times_tep(
 ) -> Span:
     """First and last instant of [b_s, t_s] at which well clear by tep is lost, if any is."""
     begin, end = times_vertical(sz, vz, zthr_m, tcoa_s, vmod_s, b_s, t_s)
-    return times_tep(s, v, dthr_m, tthr_s, begin, end)
+    first, last = times_tep(s, v, dthr_m, tthr_s, begin, end)
+    # within [b_s, t_s] in every reading, however wide the enclosure of a tiny speed
+    return Span(min(first, t_s), max(last, b_s))
 
 
 @kernel(implements="well_clear.cylinder_violation_at")

@@ -50,10 +50,10 @@ def test_a_wrong_vector_fails_and_says_how(wrong: str):
 
 
 def test_what_is_not_covered_is_not_passed(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    file = _file(tmp_path, {**CLEAR, "det": "WCV_TEP"}, {**CLEAR, "det": "CDCylinder"})
+    file = _file(tmp_path, {**CLEAR, "det": "WCV_TAU"}, {**CLEAR, "det": "TCAS3D"})
     assert main(["conform", "well-clear", str(file)]) == 3
     out = capsys.readouterr().out.splitlines()
-    assert "not covered: 1 detector CDCylinder, 1 detector WCV_TEP" in out[0]
+    assert "not covered: 1 detector TCAS3D, 1 detector WCV_TAU" in out[0]
     assert out[-1] == "0 passed, 0 failed"
     for kind in ("contain3d", "moving2d", "recovery2d"):
         assert polygon.judge({**CORNER, "kind": kind}).status == "not covered"
@@ -157,12 +157,54 @@ def test_the_examples_of_the_page_hold(root: Path, tmp_path: Path):
         assert judge(json.loads(example)).status == "passed"
 
 
+SPAN = {
+    **CLEAR, "s": [3000, 0, 0], "v": [-60, 0, 0], "D": 1250, "TTHR": 0, "TCOA": 0, "B": 0, "T": 60,
+    "x_exact_h": False, "conflict": True, "tin": 29.166666666666668, "tout": 60,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("detector", ["WCV_TAUMOD", "WCV_TCPA", "WCV_TEP", "CDCylinder"])
+def test_instants_over_a_span_are_compared(detector: str):
+    case = {**SPAN, "det": detector}
+    assert well_clear.judge(case).status == "passed"
+    edge = well_clear.judge({**case, "tin": 29.16666666667})
+    assert (edge.status, edge.label[:6]) == ("knife edge", "entry:")
+    for wrong in ({"tin": 29.1667}, {"tout": 59.9}, {"conflict": False}, {"tin": 0}):
+        result = well_clear.judge({**case, **wrong})
+        assert result.status == "failed", wrong
+        assert "over [B, T]" in result.label
+
+
+def test_a_knife_edge_is_said_and_not_passed(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    touching = {**CLEAR, "B": 0, "T": 60, "conflict": False, "tin": "inf", "tout": "-inf"}
+    file = _file(tmp_path, touching, SPAN)
+    assert main(["conform", "well-clear", str(file)]) == 0
+    out = capsys.readouterr().out.splitlines()
+    assert out[0].endswith("1 passed, 0 failed, 1 on a knife edge")
+    assert "1 x knife edge: detection: within 16348 units in the last place" in out[1]
+    assert out[2].startswith("    edge: over [0, 60] s ours is")
+    assert out[-1] == "1 passed, 0 failed, 1 on a knife edge"
+    assert main(["conform", "well-clear", str(file), "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert data["knife_edges"] == 1
+    assert [case["id"] for case in data["files"][0]["knife_edge_cases"]] == ["edge"]
+    inside = {**touching, "s": [1249.9, 0, 0]}
+    assert well_clear.judge(inside).status == "failed"
+
+
 # -- published vectors ------------------------------------------------------------------------
-def test_published_well_clear_vectors(shared: Path):
-    file = shared / "vectors" / "daidalus" / "open-wcv-WCV_TAUMOD.jsonl.gz"
+@pytest.mark.parametrize(
+    ("detector", "edges"),
+    [("WCV_TAUMOD", 36), ("WCV_TCPA", 37), ("WCV_TEP", 39), ("CDCylinder", 43)],
+)
+def test_published_well_clear_vectors(shared: Path, detector: str, edges: int):
+    file = shared / "vectors" / "daidalus" / f"open-wcv-{detector}.jsonl.gz"
     report = run(suite("well-clear"), file, 3)
     assert [r.text for r in report.shown] == []
-    assert (report.passed, report.failed, report.checks) == (2000, 0, 8000)
+    assert (report.passed, report.failed) == (2000 - edges, 0)
+    assert report.edges.total() == len(report.edge_cases) == edges
+    assert report.checks >= 9000
+    assert sum(n for label, n in report.edges.items() if "detection" in label) <= 31
 
 
 @pytest.mark.parametrize("number", range(1, 7))

@@ -24,7 +24,7 @@ def edited(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
         )
     for file in ("__init__.py", "__main__.py"):
         shutil.copy(root / "src" / "cratous" / file, home / "cratous")
-    kernel = home / "cratous" / "core" / "well_clear.py"
+    kernel = home / "cratous" / "core" / "well_clear_now.py"
     text = kernel.read_text()
     assert "if ss <= dd:" in text
     kernel.write_text(text.replace("if ss <= dd:", "if ss < dd:"))

@@ -83,7 +83,7 @@ ATTACKS = {
         "violation_within: changed since the proof: its source"),
     "a record's order of fields": (
         "core/well_clear_during.py", "    first: float\n    last: float", "    last: float\n    first: float",
-        "vertical_window: changed since the proof: its source"),
+        "layer_window: changed since the proof: its source"),
     "a constant": ("core/gate.py", "return Gate(1, gate.epoch + 1, False)",
                    "return Gate(1, gate.epoch + 0, False)", "gate_takeover: changed"),
     "a fold's start": ("core/timing.py", "start=True", "start=False",
@@ -160,7 +160,7 @@ def test_another_version_of_a_tool_is_noticed(name: str, monkeypatch: pytest.Mon
 # -- attacks that leave the source as it is ---------------------------------------------------
 def test_planted_byte_code_is_caught(product: Path) -> None:
     """A .pyc with the source's date and size, but with another kernel in it."""
-    file = product / "cratous" / "core" / "well_clear.py"
+    file = product / "cratous" / "core" / "well_clear_now.py"
     text = file.read_text()
     wrong = text.replace("if ss <= dd:", "if ss >= dd:")
     assert len(wrong) == len(text)
@@ -313,7 +313,7 @@ def test_a_driver_that_no_longer_calls_its_checker_is_refused_by_the_prover(prod
 
 
 def test_comments_and_layout_change_nothing(product: Path) -> None:
-    file = product / "cratous" / "core" / "well_clear.py"
+    file = product / "cratous" / "core" / "well_clear_now.py"
     original = file.read_text()
     file.write_text(original.replace("    if ss <= dd:", "    # a remark\n    if  ss<=dd :"))
     try:

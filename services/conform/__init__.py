@@ -1,8 +1,9 @@
 """Conformance: published vectors against the kernels that decide.
 
 A suite reads the cases of a file (JSON lines, also gzipped), runs the exact reading of kernels on
-each and compares. A case passes, fails, or is of a kind that the suite does not cover; the last is
-said and counted apart, never as passed. Suites are imported when they are asked for.
+each and compares. A case passes, fails, lies on a knife edge (another system's own tolerance
+explains the difference), or is of a kind that the suite does not cover; the last two are said and
+counted apart, never as passed. Suites are imported when they are asked for.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from typing import Any
 from cratous.spec.errors import BadInput
 
 SUITES = {
-    "well-clear": "Horizontal and vertical well-clear violation with modified tau, now.",
+    "well-clear": "Well-clear violation now and over a span: tau_mod, tcpa, tep, cylinder.",
     "detect-and-avoid": "Alerts, bands, recovery, last times and resolutions of DAIDALUS.",
     "polygon": "Location of a point in a polygon: inside, outside or on the boundary.",
 }
@@ -27,11 +28,10 @@ SUITES = {
 
 @dataclass(frozen=True)
 class Result:
-    """What came of one case: `passed`, `failed` or `not covered`.
+    """What came of one case: `passed`, `failed`, `knife edge` or `not covered`.
 
     label: kind of difference, or of what is not covered; text: expected and got, for people.
-    checks: how many single verdicts of kernels were compared. excused: differences for which there
-    is evidence that they are not ours, as (label, text).
+    checks: how many single verdicts of kernels were compared.
     """
 
     case: str
@@ -39,17 +39,21 @@ class Result:
     label: str = ""
     text: str = ""
     checks: int = 0
-    excused: tuple[tuple[str, str], ...] = ()
 
 
-def passed(case: str, checks: int = 1, excused: tuple[tuple[str, str], ...] = ()) -> Result:
+def passed(case: str, checks: int = 1) -> Result:
     """The kernels say what the vector says."""
-    return Result(case, "passed", checks=checks, excused=excused)
+    return Result(case, "passed", checks=checks)
 
 
 def failed(case: str, label: str, text: str, checks: int = 1) -> Result:
     """They do not."""
     return Result(case, "failed", label, text, checks)
+
+
+def edge(case: str, label: str, text: str, checks: int = 1) -> Result:
+    """They differ from what the vector says, and its system's own tolerance explains it."""
+    return Result(case, "knife edge", label, text, checks)
 
 
 def not_covered(case: str, label: str) -> Result:
@@ -60,27 +64,24 @@ def not_covered(case: str, label: str) -> Result:
 Suite = Callable[[dict[str, Any]], Result]
 
 
-def nothing_more() -> list[str]:
-    """No summary."""
-    return []
+def suite(name: str) -> Suite:
+    """The function that judges one case; raises BadInput for a name that is none.
 
-
-def suite(name: str) -> tuple[Suite, Callable[[], list[str]]]:
-    """For one file: the function that judges a case, and one that gives lines of summary.
-
-    A suite whose cases follow each other begins anew with each file. Raises BadInput for a name
-    that is none.
+    A suite whose cases follow each other has a history: ask anew for each file.
     """
     if name not in SUITES:
         raise BadInput(
             "there is no such suite", item="SUITE", expected=" or ".join(SUITES), got=name
         )
     module = importlib.import_module(f"cratous.services.conform.{name.replace('-', '_')}")
-    if hasattr(module, "suite"):
-        made = module.suite()
-        return made.judge, made.summary
-    judge: Suite = module.judge
-    return judge, nothing_more
+    judge: Suite = module.suite() if hasattr(module, "suite") else module.judge
+    return judge
+
+
+def summary_of(judge: Suite) -> list[str]:
+    """Lines of counts, of a suite that keeps them."""
+    lines: list[str] = getattr(getattr(judge, "__self__", None), "summary", list)()
+    return lines
 
 
 @dataclass
@@ -92,16 +93,18 @@ class FileReport:
     failed: int = 0
     checks: int = 0
     skipped: Counter[str] = field(default_factory=Counter)
+    edges: Counter[str] = field(default_factory=Counter)
     differences: Counter[str] = field(default_factory=Counter)
     shown: list[Result] = field(default_factory=list)
-    excused: Counter[str] = field(default_factory=Counter)
-    evidence: list[tuple[str, str, str]] = field(default_factory=list)
     summary: list[str] = field(default_factory=list)
+    edge_cases: list[Result] = field(default_factory=list)
 
     @property
     def line(self) -> str:
         """One line for the terminal."""
         text = f"{self.file}: {self.passed} passed, {self.failed} failed"
+        if self.edges:
+            text += f", {self.edges.total()} on a knife edge"
         if self.skipped:
             kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(self.skipped.items()))
             text += f", not covered: {kinds}"
@@ -152,18 +155,19 @@ def run(judge: Suite, file: Path, show: int) -> FileReport:
                 got=error.got,
             ) from error
         report.checks += result.checks
-        for label, text in result.excused:
-            report.excused[label] += 1
-            report.evidence.append((result.case, label, text))
         if result.status == "passed":
             report.passed += 1
         elif result.status == "not covered":
             report.skipped[result.label] += 1
+        elif result.status == "knife edge":
+            report.edges[result.label] += 1
+            report.edge_cases.append(result)
         else:
             report.failed += 1
             report.differences[result.label] += 1
             if len(report.shown) < show:
                 report.shown.append(result)
-    if not report.passed + report.failed + report.skipped.total():
+    counted = report.passed + report.failed + report.skipped.total() + report.edges.total()
+    if not counted:
         raise BadInput("the file has no cases", where=str(file), expected="JSON lines")
     return report

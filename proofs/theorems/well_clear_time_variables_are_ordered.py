@@ -1,0 +1,36 @@
+"""Outside DTHR, converging, on a course that comes within it, the time variables are ordered:
+0 < tep <= tau_mod <= tcpa <= tau; and there each kernel says `violated` exactly when TTHR is at least
+its own time variable."""
+
+from cratous.core.well_clear import (
+    horizontal_violation,
+    horizontal_violation_tau,
+    horizontal_violation_tcpa,
+    horizontal_violation_tep,
+)
+from cratous.proofs.claim import Claim
+from cratous.spec import well_clear
+
+
+def claim(c: Claim) -> None:
+    s, v = c.vector("s"), c.vector("v")
+    dthr, tthr = c.reals("dthr tthr")
+    c.premise(dthr >= 0)
+    c.premise(tthr >= 0)
+    c.premise(c.negation(c.define(well_clear.within, s, dthr)))
+    c.premise(c.define(well_clear.passes_within, s, v, dthr))
+    tep = c.define(well_clear.time_of_entry, s, v, dthr)
+    modified = c.define(well_clear.tau_mod, s, v, dthr)
+    tcpa = c.define(well_clear.time_of_closest_approach, s, v)
+    plain = c.define(well_clear.tau, s, v)
+    for kernel, time in (
+        (horizontal_violation, modified),
+        (horizontal_violation_tcpa, tcpa),
+        (horizontal_violation_tep, tep),
+        (horizontal_violation_tau, plain),
+    ):
+        c.show(c.same(c.use(kernel, s, v, dthr, tthr), time <= tthr), kernel.__name__)
+    c.show(modified <= tcpa, "tau_mod <= tcpa")
+    c.show(tcpa <= plain, "tcpa <= tau")
+    c.show(tep > 0, "0 < tep")
+    c.show(tep <= modified, "tep <= tau_mod")

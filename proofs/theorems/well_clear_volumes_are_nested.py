@@ -1,0 +1,27 @@
+"""With the same thresholds the horizontal volumes are nested: the circle lies in the volume with
+plain tau, this in the one with tcpa, this in the one with tau_mod, and this in the one with tep."""
+
+from cratous.core.well_clear import (
+    horizontal_violation,
+    horizontal_violation_tau,
+    horizontal_violation_tcpa,
+    horizontal_violation_tep,
+)
+from cratous.proofs.claim import Claim
+from cratous.spec import well_clear
+
+
+def claim(c: Claim) -> None:
+    s, v = c.vector("s"), c.vector("v")
+    dthr, tthr = c.reals("dthr tthr")
+    c.premise(dthr >= 0)
+    c.premise(tthr >= 0)
+    circle = c.define(well_clear.within, s, dthr)
+    plain = c.use(horizontal_violation_tau, s, v, dthr, tthr)
+    tcpa = c.use(horizontal_violation_tcpa, s, v, dthr, tthr)
+    modified = c.use(horizontal_violation, s, v, dthr, tthr)
+    tep = c.use(horizontal_violation_tep, s, v, dthr, tthr)
+    c.show(c.implies(circle, plain), "the circle in tau")
+    c.show(c.implies(plain, tcpa), "tau in tcpa")
+    c.show(c.implies(tcpa, modified), "tcpa in tau_mod")
+    c.show(c.implies(modified, tep), "tau_mod in tep")
