@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.ready
 
-.PHONY: help venv demo test test-fast lint types prove recheck mutate crosshair bench docs lock clean
+.PHONY: help venv demo test test-fast lint types prove recheck mutate crosshair daa-fuzz bench docs lock clean
 
 help:
 	@echo "make demo      set up, then plan, prove, fly, monitor and certify the crossing mission"
@@ -15,6 +15,7 @@ help:
 	@echo "make recheck   put every proof to the second solver (cvc5), some minutes"
 	@echo "make mutate    look for faults of kernels that no theorem would notice, some minutes"
 	@echo "make crosshair look for bugs in functions that are no kernels, two minutes"
+	@echo "make daa-fuzz  detect and avoid on 100,000 random and degenerate encounters"
 	@echo "make bench     benchmarks (ratios, see bench/README.md)"
 	@echo "make docs      regenerate the generated documents"
 
@@ -55,6 +56,9 @@ mutate: venv
 
 crosshair: venv
 	$(BIN)/python -m crosshair check --analysis_kind=asserts --per_condition_timeout=10 tests/crosshair_targets.py
+
+daa-fuzz: venv
+	$(BIN)/python tests/daa_scenes.py 100000
 
 bench: venv
 	$(BIN)/python bench/run.py
