@@ -17,7 +17,7 @@ from cratous.core.daa_frame import project
 from cratous.core.daa_memory import BandMemory, Shown, m_of_n
 from cratous.core.daa_reason import reasons_at
 from cratous.core.daa_session import Session
-from cratous.core.daa_state import ALT, HDIR, HS, UNKNOWN, VS, Aircraft, Band
+from cratous.core.daa_state import ALT, HDIR, HS, UNKNOWN, VS, Aircraft, Band, Sigma
 from cratous.core.daa_steps import piece_conflict, straight_conflict, until, way_conflicts
 from cratous.core.daa_turn import turn_offset, turned
 from cratous.core.kernel import Vec2
@@ -270,6 +270,29 @@ def test_every_region_needs_a_level(p: Parameters):
     assert seen.traffic.mapped[MID].tolist() == [True, False]
     assert seen.levels == (2, 0)
     assert VS != ALT
+
+
+def test_a_spread_raises_the_level(p: Parameters):
+    own, other = head_on(9000.0)
+    aside = other._replace(east_m=2500.0, north_m=9000.0)
+    assert look(p, own, [aside]).levels == (0,)
+    alerter = p.alerters[0]
+    levels = [
+        x._replace(spread=x.spread._replace(hdir_rad=math.radians(20))) for x in alerter.levels
+    ]
+    wide = dataclasses.replace(p, alerters=(alerter._replace(levels=tuple(levels)),))
+    assert look(wide, own, [aside]).levels[0] > 0
+    assert look(wide, own, [aside._replace(alt_m=5000.0)]).levels == (0,)
+
+
+def test_uncertainty_is_refused_and_not_ignored():
+    p = preset("do_365b_sum").parameters
+    own, other = head_on()
+    assert look(p, own, [other]).levels[0] > 0
+    vague = other._replace(sigma=Sigma(s_ew_m=30.0))
+    with pytest.raises(BadInput, match="uncertainty") as error:
+        look(p, own, [vague])
+    assert error.value.item == "i"
 
 
 # -- history ----------------------------------------------------------------------------
