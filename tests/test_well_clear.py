@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import doctest
 import random
+import re
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -212,3 +214,10 @@ def test_the_witness_of_the_report_is_one():
     s, v = Vec2(600, 140), Vec2(-20, 0)
     seen = [horizontal_violation_tau(Vec2(s.x + t * v.x, s.y), v, 150, 16) for t in (20, 27, 28)]
     assert seen == [True, False, True]
+
+
+def test_the_guide_runs(root: Path):
+    text = (root / "docs" / "well-clear.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"^```python\n(.*?)\n```", text, re.M | re.S)
+    assert example.count("assert ") >= 6
+    exec(compile(example, "docs/well-clear.md", "exec"), {})

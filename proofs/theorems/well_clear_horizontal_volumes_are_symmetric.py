@@ -29,8 +29,8 @@ def claim(c: Claim) -> None:
     for kernel in NOW:
         ours, theirs = (c.use(kernel, p, w, dthr, tthr) for p, w in ((s, v), (back_s, back_v)))
         c.show(c.same(ours, theirs), kernel.__name__)
-    for kernel in SPANS:
+    for spans in SPANS:
         ours, theirs = (
-            c.use(kernel, p, w, dthr, tthr, begin, end) for p, w in ((s, v), (back_s, back_v))
+            c.use(spans, p, w, dthr, tthr, begin, end) for p, w in ((s, v), (back_s, back_v))
         )
-        c.show(c.same(ours, theirs), kernel.__name__)
+        c.show(c.same(ours, theirs), spans.__name__)

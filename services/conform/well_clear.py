@@ -61,9 +61,9 @@ def judge(case: dict[str, Any]) -> Result:
         volume = cylinder(not_negative(case, "D"), not_negative(case, "Z"))
         rows = _cylinder(s, volume, horizontal, vertical)
     else:
-        limits = [not_negative(case, key) for key in ("D", "Z", "TTHR", "TCOA")]
+        dthr, zthr, tthr, tcoa = (not_negative(case, key) for key in ("D", "Z", "TTHR", "TCOA"))
         model, kernel = DETECTORS[detector]
-        volume = Volume(*limits, model=model)
+        volume = Volume(dthr, zthr, tthr, tcoa, model=model)
         rows = _point(s, v, volume, kernel, horizontal, vertical)
     wrong = [(what, wanted, got) for what, wanted, got in rows if bool(got) is not wanted]
     kind = case.get("kind", "")
