@@ -5,6 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.ready
 
 .PHONY: help venv demo test test-fast lint types prove recheck mutate crosshair fuzz bench docs lock clean
+.PHONY: help venv demo test test-fast lint types prove recheck mutate crosshair daa-fuzz bench docs lock clean
 
 help:
 	@echo "make demo      set up, then plan, prove, fly, monitor and certify the crossing mission"
@@ -16,6 +17,7 @@ help:
 	@echo "make mutate    look for faults of kernels that no theorem would notice; pays for what has changed"
 	@echo "make crosshair look for bugs in functions that are no kernels, two minutes"
 	@echo "make fuzz      a million changed LMCP messages and frames, some minutes"
+	@echo "make daa-fuzz  detect and avoid on 100,000 random and degenerate encounters"
 	@echo "make bench     benchmarks (ratios, see bench/README.md)"
 	@echo "make docs      regenerate the generated documents"
 
@@ -59,6 +61,8 @@ crosshair: venv
 
 fuzz: venv
 	$(BIN)/python tests/fuzz_lmcp.py --count 1000000
+daa-fuzz: venv
+	$(BIN)/python tests/daa_scenes.py 100000
 
 bench: venv
 	$(BIN)/python bench/run.py

@@ -16,11 +16,13 @@ import numpy as np
 from cratous.core.daa_alerting import level_times, raw_levels
 from cratous.core.daa_bands import Raw, Traffic, last_times, out_of_range, raw_bands
 from cratous.core.daa_machine import machine
+from cratous.core.daa_spread import spread_conflict
 from cratous.core.daa_state import HDIR, Aircraft, LevelTimes
 from cratous.spec.daa import (
     FAR,
     NEAR,
     TAUMOD,
+    TAUMOD_SUM,
     TCAS,
     Alerter,
     Level,
@@ -28,6 +30,7 @@ from cratous.spec.daa import (
     Volume,
     sensitivity,
 )
+from cratous.spec.errors import BadInput
 
 
 class Tables(NamedTuple):
@@ -97,6 +100,22 @@ def region_level(alerter: Alerter, region: int) -> tuple[int, Level] | None:
     return next(((k, x) for k, x in enumerate(alerter.levels) if x.region == region), None)
 
 
+def refuse_uncertainty(p: Parameters, own: Aircraft, others: Sequence[Aircraft]) -> None:
+    """Raise BadInput where sensor uncertainty would matter: its volumes are not decided here.
+
+    Without standard deviations, WCV_TAUMOD_SUM is WCV_TAUMOD.
+    """
+    if not any(x.volume.kind == TAUMOD_SUM for a in p.alerters for x in a.levels):
+        return
+    for a in (own, *others):
+        if any(a.sigma):
+            raise BadInput(
+                "sensor uncertainty mitigation is not supported yet", item=a.id,
+                expected="standard deviations of 0, or a configuration with WCV_TAUMOD",
+                got=f"WCV_TAUMOD_SUM with {a.sigma}",
+            )  # fmt: skip
+
+
 class Seen(NamedTuple):
     """One instant: who is there, which alerter judges whom, raw levels, times, and conflicts."""
 
@@ -112,6 +131,7 @@ def look(
     p: Parameters, own: Aircraft, others: Sequence[Aircraft], alerters: Sequence[int] | None = None
 ) -> Seen:
     """Raw alert levels and conflicts; alerters: indices that override those of the parameters."""
+    refuse_uncertainty(p, own, others)
     t = tables_at(p, own.alt_m)
     index = tuple(alerters if alerters is not None else (alerter_index(p, own, o) for o in others))
     n = len(others)
@@ -128,6 +148,14 @@ def look(
         machine(level_times)(
             relative, judged, t.counts, t.kinds, t.volumes, p.lookahead_time_s, first, last
         )
+    for i, a in enumerate(index):
+        for k in range(len(p.alerters[a].levels) if a >= 0 else 0, int(levels[i]), -1):
+            level = p.alerters[a].levels[k - 1]
+            if any(level.spread) and spread_conflict(
+                p, own, there[i], int(t.kinds[a, k - 1]), t.volumes[a, k - 1], level
+            ):
+                levels[i] = k
+                break
     times = tuple(
         tuple(
             LevelTimes(

@@ -102,7 +102,7 @@ class Session:
         """Forget all history."""
         p = self.parameters
         self.time_s = -math.inf
-        self.shown: dict[str, Shown] = {}
+        self.shown: dict[tuple[str, int], Shown] = {}
         self.area: dict[str, Shown] = {}
         self.bands = [BandMemory(p.alerting_m, p.alerting_n) for _ in DIMENSIONS]
 
@@ -137,9 +137,9 @@ class Session:
         p = self.parameters
         name, a = seen.others[i].id, seen.alerters[i]
         levels = p.alerters[a].levels if a >= 0 else ()
-        memory = self.shown.get(name)
+        memory = self.shown.get((name, a))
         if memory is None or not remembers:
-            memory = self.shown[name] = Shown(p.alerting_m, p.alerting_n)
+            memory = self.shown[name, a] = Shown(p.alerting_m, p.alerting_n)
         raw = seen.levels[i]
         held = memory.level if remembers else 0
         if raw < held <= len(levels):

@@ -17,7 +17,12 @@ ALLOWED = {
     "bridge": {"spec", "core"},
     "services": {"spec", "core", "bridge"},
 }
-SPEC_DATA = {"cratous.spec.mission", "cratous.spec.plan", "cratous.spec.errors"}
+SPEC_DATA = {
+    "cratous.spec.mission",
+    "cratous.spec.plan",
+    "cratous.spec.errors",
+    "cratous.spec.daa",
+}
 CORE_OUTSIDE = {"numpy", "numba"}
 PROOF_COMMANDS = {"services/cli/prove.py", "services/cli/certify.py"}
 

@@ -35,8 +35,7 @@ class Result:
     """What came of one case: `passed`, `failed`, `knife edge` or `not covered`.
 
     label: kind of difference, or of what is not covered; text: expected and got, for people.
-    checks: how many single verdicts of kernels were compared. excused: differences for which there
-    is evidence that they are not ours, as (label, text).
+    checks: how many single verdicts of kernels were compared.
     """
 
     case: str
@@ -44,12 +43,11 @@ class Result:
     label: str = ""
     text: str = ""
     checks: int = 0
-    excused: tuple[tuple[str, str], ...] = ()
 
 
-def passed(case: str, checks: int = 1, excused: tuple[tuple[str, str], ...] = ()) -> Result:
+def passed(case: str, checks: int = 1) -> Result:
     """The kernels say what the vector says."""
-    return Result(case, "passed", checks=checks, excused=excused)
+    return Result(case, "passed", checks=checks)
 
 
 def failed(case: str, label: str, text: str, checks: int = 1) -> Result:
@@ -77,27 +75,24 @@ class Beside:
     judge: Callable[[dict[str, Any], Path], Result]
 
 
-def nothing_more() -> list[str]:
-    """No summary."""
-    return []
+def suite(name: str) -> Suite | Beside:
+    """The function that judges one case; raises BadInput for a name that is none.
 
-
-def suite(name: str) -> tuple[Suite | Beside, Callable[[], list[str]]]:
-    """For one file: the function that judges a case, and one that gives lines of summary.
-
-    A suite whose cases follow each other begins anew with each file. Raises BadInput for a name
-    that is none.
+    A suite whose cases follow each other has a history: ask anew for each file.
     """
     if name not in SUITES:
         raise BadInput(
             "there is no such suite", item="SUITE", expected=" or ".join(SUITES), got=name
         )
     module = importlib.import_module(f"cratous.services.conform.{name.replace('-', '_')}")
-    if hasattr(module, "suite"):
-        made = module.suite()
-        return made.judge, made.summary
-    judge: Suite | Beside = module.judge
-    return judge, nothing_more
+    judge: Suite | Beside = module.suite() if hasattr(module, "suite") else module.judge
+    return judge
+
+
+def summary_of(judge: Suite | Beside) -> list[str]:
+    """Lines of counts, of a suite that keeps them."""
+    lines: list[str] = getattr(getattr(judge, "__self__", None), "summary", list)()
+    return lines
 
 
 @dataclass
@@ -112,8 +107,6 @@ class FileReport:
     edges: Counter[str] = field(default_factory=Counter)
     differences: Counter[str] = field(default_factory=Counter)
     shown: list[Result] = field(default_factory=list)
-    excused: Counter[str] = field(default_factory=Counter)
-    evidence: list[tuple[str, str, str]] = field(default_factory=list)
     summary: list[str] = field(default_factory=list)
     edge_cases: list[Result] = field(default_factory=list)
 
@@ -186,9 +179,6 @@ def run(judge: Suite | Beside, file: Path, show: int) -> FileReport:
                 got=error.got,
             ) from error
         report.checks += result.checks
-        for label, text in result.excused:
-            report.excused[label] += 1
-            report.evidence.append((result.case, label, text))
         if result.status == "passed":
             report.passed += 1
         elif result.status == "not covered":

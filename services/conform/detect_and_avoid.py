@@ -15,13 +15,14 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections import Counter
+from collections.abc import Callable
 from typing import Any
 
 from cratous.core.daa_bands import out_of_range
 from cratous.core.daa_engine import look
 from cratous.core.daa_session import Instant, Session
 from cratous.core.daa_state import DIMENSIONS, HDIR, Aircraft, Guidance
-from cratous.services.conform import Result, failed, not_covered, passed
+from cratous.services.conform import Result, edge, failed, not_covered, passed
 from cratous.services.conform.values import finite, identity, numbers
 from cratous.spec.daa import REGIONS, Parameters
 from cratous.spec.daa_presets import preset
@@ -96,9 +97,12 @@ class Suite:
         found.compare()
         self.tally += found.tally
         if found.ours:
-            label = found.ours[0][0]
-            return failed(name, label, "; ".join(t for _, t in found.ours), found.checks)
-        return passed(name, found.checks, tuple(found.excused))
+            text = "; ".join(t for _, t in found.ours)
+            return failed(name, found.ours[0][0], text, found.checks)
+        if found.excused:
+            text = "; ".join(t for _, t in found.excused)
+            return edge(name, found.excused[0][0], text, found.checks)
+        return passed(name, found.checks)
 
     def summary(self) -> list[str]:
         """Lines with the counts of what was compared and how it differed."""
@@ -282,6 +286,6 @@ def _shown(g: Guidance) -> list[tuple[float, float, str]]:
     return [(round(b.low, 4), round(b.high, 4), REGIONS[b.region]) for b in g.bands]
 
 
-def suite() -> Suite:
-    """A judge with no history."""
-    return Suite()
+def suite() -> Callable[[dict[str, Any]], Result]:
+    """A judge without history."""
+    return Suite().judge

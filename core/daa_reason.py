@@ -1,0 +1,130 @@
+"""Why a grid value is not safe: which intruder, which volume, on the way or after it, and when.
+
+The same kernels are asked as by the bands, for one value, intruder by intruder.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cratous.core.daa_bands import SAMPLE_S, Raw
+from cratous.core.daa_climb import altitude_conflict
+from cratous.core.daa_engine import Seen
+from cratous.core.daa_machine import machine
+from cratous.core.daa_steps import piece_conflict, straight_conflict, until
+from cratous.core.daa_volume import conflict_span
+from cratous.core.kernel import Vec2, driver
+from cratous.spec.daa import NEAR, Parameters
+
+
+class Reason(NamedTuple):
+    """What is in the way of a value.
+
+    intruder: its id; region: whose volume; on_way: while manoeuvring, not after it; first_s,
+    last_s: when the volume is violated [s from now]; miss_m, above_m: least horizontal distance in
+    that time and vertical distance at it [m]; limit_m, limit_z_m: the volume's thresholds.
+    """
+
+    intruder: str
+    region: int
+    on_way: bool
+    first_s: float | None
+    last_s: float | None
+    miss_m: float | None
+    above_m: float | None
+    limit_m: float
+    limit_z_m: float
+
+
+def _least(state: np.ndarray, first_s: float, last_s: float) -> tuple[float, float]:
+    """Least horizontal distance in a time span, and vertical distance then."""
+    x, y, z, u, v, w = (float(q) for q in state)
+    vv = u * u + v * v
+    t = min(max(-(x * u + y * v) / vv, first_s), last_s) if vv > 0 else first_s
+    return math.hypot(x + t * u, y + t * v), abs(z + t * w)
+
+
+@driver(checked_by=("piece_conflict", "straight_conflict"))
+def step_reasons(p: Parameters, seen: Seen, raw: Raw, side: int, k: int) -> list[Reason]:
+    """What is in the way of step k to the right (side 1) or left (side -1), most severe first."""
+    g, traffic = raw.grid, seen.traffic
+    path = g.right if side > 0 else g.left
+    found: list[Reason] = []
+    for region in range(NEAR, 0, -1):
+        if not raw.state[region]:
+            continue
+        for i, name in enumerate(traffic.ids):
+            if not traffic.mapped[region, i]:
+                continue
+            horizon_s = p.lookahead_time_s
+            if not traffic.conflict[region, i]:
+                horizon_s = min(horizon_s, float(traffic.alerting_s[region, i]))
+            kind = int(traffic.kinds[region, i])
+            volume = traffic.volumes[region, i].tolist()
+            for j in range(k + 1):
+                at_s = j * g.step_s
+                relative = path[j] - traffic.states[i]
+                relative[:3] -= at_s * traffic.states[i, 3:]
+                state: Any = (
+                    kind, Vec2(relative[0], relative[1]), Vec2(relative[3], relative[4]),
+                    relative[2], relative[5], *volume,
+                )  # fmt: skip
+                on_piece: Any = piece_conflict
+                straight: Any = straight_conflict
+                times_of: Any = conflict_span
+                counted = p.bands_add_time_to_maneuver
+                last_s = horizon_s if counted else p.lookahead_time_s
+                way = g.step_s > 0 and on_piece(*state, g.step_s, at_s, 0, last_s)
+                end_s = until(p.lookahead_time_s, horizon_s, at_s, counted)
+                after = j == k and straight(*state, at_s, 0, end_s)
+                if not way and not after:
+                    continue
+                span = times_of(*state, 0, g.step_s if way else end_s - at_s)
+                miss, above = _least(relative, span.first_s, span.last_s)
+                times = (at_s + span.first_s, at_s + span.last_s)
+                found.append(
+                    Reason(name, region, bool(way), *times, miss, above, volume[0], volume[1])
+                )
+                break
+    return found
+
+
+@driver(checked_by=("in_conflict", "climb", "height"))
+def altitude_reasons(p: Parameters, seen: Seen, raw: Raw, k: int) -> list[Reason]:
+    """What is in the way of target altitude k, most severe first; the times are not computed."""
+    g, traffic = raw.grid, seen.traffic
+    found: list[Reason] = []
+    for region in range(NEAR, 0, -1):
+        if not raw.state[region]:
+            continue
+        for i, name in enumerate(traffic.ids):
+            if not traffic.mapped[region, i]:
+                continue
+            horizon_s = p.lookahead_time_s
+            if not traffic.conflict[region, i]:
+                horizon_s = min(horizon_s, float(traffic.alerting_s[region, i]))
+            volume = traffic.volumes[region, i].tolist()
+            if machine(altitude_conflict)(
+                g.right[0], traffic.states[i], traffic.kinds[region, i], *volume, g.targets[k],
+                g.rate_m_s, g.accel_m_s2, SAMPLE_S, 0.0, horizon_s, p.lookahead_time_s,
+                p.bands_add_time_to_maneuver, False, 0.0,
+            ):  # fmt: skip
+                found.append(
+                    Reason(name, region, False, None, None, None, None, volume[0], volume[1])
+                )
+    return found
+
+
+def reasons_at(p: Parameters, seen: Seen, raw: Raw, value: float) -> list[Reason]:
+    """What is in the way of the grid value nearest to `value` (not wrapped around the circle)."""
+    g = raw.grid
+    if len(g.targets):
+        k = int(np.argmin(np.abs(g.targets - value)))
+        return altitude_reasons(p, seen, raw, k)
+    side = 1 if value >= g.own else -1
+    path = g.right if side > 0 else g.left
+    k = min(round(abs(value - g.own) / g.step), len(path) - 1)
+    return step_reasons(p, seen, raw, side, k)

@@ -1,0 +1,49 @@
+"""At every instant of straight flight, well clear by modified tau that is lost with some thresholds is
+lost with greater ones."""
+
+from cratous.core.kernel import Vec2
+from cratous.core.well_clear import horizontal_violation, layer_violation
+from cratous.proofs.claim import Claim
+from cratous.spec import well_clear
+
+
+def claim(c: Claim) -> None:
+    s, v = c.vector("s"), c.vector("v")
+    sz, vz, t = c.reals("sz vz t")
+    names = "dthr zthr tthr tcoa vmod"
+    small, great = c.reals(names), c.reals(" ".join(name + "2" for name in names.split()))
+    for low, high in zip(small, great, strict=True):
+        c.premise(low >= 0)
+        c.premise(low <= high)
+    c.opaque(
+        horizontal_violation,
+        layer_violation,
+        well_clear.horizontal_violation,
+        well_clear.layer_violation,
+    )
+    (dthr, zthr, tthr, tcoa, vmod), (dthr2, zthr2, tthr2, tcoa2, vmod2) = small, great
+    there, up = Vec2(s.x + t * v.x, s.y + t * v.y), sz + t * vz
+    c.lemma(
+        "well_clear_horizontal_taumod_is_monotone",
+        s=there, v=v, dthr=dthr, tthr=tthr, dthr2=dthr2, tthr2=tthr2,
+    )  # fmt: skip
+    c.lemma(
+        "well_clear_vertical_volume_is_monotone",
+        sz=up, vz=vz, zthr=zthr, tcoa=tcoa, vmod=vmod, zthr2=zthr2, tcoa2=tcoa2, vmod2=vmod2,
+    )  # fmt: skip
+    for d, z, tt, tc, vm in (small, great):
+        c.lemma("well_clear_horizontal_violation_is_its_definition", s=there, v=v, dthr=d, tthr=tt)
+        c.lemma(
+            "well_clear_layer_violation_is_its_definition",
+            sz=up, vz=vz, zthr=z, tcoa=tc, vmod=vm,
+        )  # fmt: skip
+    c.show(
+        c.implies(
+            c.use(horizontal_violation, there, v, dthr, tthr),
+            c.use(horizontal_violation, there, v, dthr2, tthr2),
+        ),
+        "horizontally",
+    )
+    before = c.define(well_clear.violation_taumod_at, s, v, sz, vz, *small, t)
+    after = c.define(well_clear.violation_taumod_at, s, v, sz, vz, *great, t)
+    c.show(c.implies(before, after))

@@ -1,0 +1,147 @@
+"""`cratous daa`: alerts, bands, metrics, pictures and reasons for an encounter file."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import click
+
+from cratous.spec.errors import BadInput
+
+CONFIG = click.option(
+    "--config", "-c", default="do_365b", show_default=True,
+    help="A preset (see `cratous daa presets`) or a .conf file.",
+)  # fmt: skip
+OWN = click.option("--ownship", default="", help="Which aircraft; by default the first one.")
+OUT = click.option(
+    "--out", "-o", type=click.Path(path_type=Path, dir_okay=False), help="Write to this file."
+)
+FILE = click.argument("file", type=click.Path(path_type=Path, dir_okay=False))
+JSON = click.option("--json", "as_json", is_flag=True, help="JSON instead of CSV or text.")
+
+
+@click.group()
+def daa() -> None:
+    """Detect and avoid: what alerting and guidance say about an encounter.
+
+    FILE is an encounter file (.daa, .xyz); see docs/detect-and-avoid.md.
+
+    Example:  cratous daa bands encounter.daa --config do_365b
+    """
+
+
+def _steps(file: Path, config: str, ownship: str, dimensions: tuple[int, ...]) -> Iterator[Any]:
+    from cratous.services.daa import named_or_file, run
+
+    return run(file, named_or_file(config).parameters, ownship, dimensions)
+
+
+def _put(text: str, out: Path | None) -> None:
+    if out is None:
+        click.echo(text, nl=not text.endswith("\n"))
+        return
+    try:
+        out.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise BadInput(f"the file cannot be written: {error}", where=str(out)) from error
+
+
+def _table(kind: str) -> Callable[..., int]:
+    def command(file: Path, config: str, ownship: str, out: Path | None, as_json: bool) -> int:
+        from cratous.services.daa.tables import ROWS, as_csv
+
+        dimensions = (0, 1, 2, 3) if kind == "bands" else ()
+        rows = [
+            row
+            for step in _steps(file, config, ownship, dimensions)
+            for row in ROWS[kind](step.instant)
+        ]
+        _put(json.dumps(rows, allow_nan=False) if as_json else as_csv(rows), out)
+        return 0
+
+    return command
+
+
+for _kind, _help in (
+    ("alerts", "Alert level of each intruder at each step."),
+    ("bands", "Bands of all four dimensions at each step, with resolutions."),
+    ("metrics", "Separation and closest approach of each intruder at each step."),
+):
+    daa.command(_kind, help=_help)(FILE(CONFIG(OWN(OUT(JSON(_table(_kind)))))))
+
+
+@daa.command()
+@FILE
+@CONFIG
+@OWN
+@OUT
+def plot(file: Path, config: str, ownship: str, out: Path | None) -> int:
+    """Bands and alerts over time, and the plan view, as SVG or PNG."""
+    from cratous.services.daa.plot import draw
+
+    target = out or Path(file.stem + ".svg")
+    draw(list(_steps(file, config, ownship, (0, 1, 2, 3))), target)
+    click.echo(f"{target} written")
+    return 0
+
+
+@daa.command()
+@FILE
+@CONFIG
+@OWN
+@OUT
+@JSON
+@click.option(
+    "--time",
+    "time_s",
+    type=float,
+    help="The step at this time [s]; by default the first with an alert.",
+)
+def explain(
+    file: Path, config: str, ownship: str, out: Path | None, as_json: bool, time_s: float | None
+) -> int:
+    """Why: for each alert, band edge and resolution of one step."""
+    from cratous.services.daa.explain import explain as words
+    from cratous.services.daa.tables import as_data
+
+    steps = list(_steps(file, config, ownship, (0, 1, 2, 3)))
+    if time_s is not None:
+        chosen = next(
+            (s for s in steps if math.isclose(s.instant.time_s, time_s, abs_tol=1e-6)), None
+        )
+        if chosen is None:
+            span = (
+                f"{steps[0].instant.time_s:g} to {steps[-1].instant.time_s:g} s"
+                if steps
+                else "none"
+            )
+            raise BadInput(
+                "there is no step at this time",
+                where=str(file),
+                item="--time",
+                expected=span,
+                got=f"{time_s:g} s",
+            )
+    else:
+        chosen = next((s for s in steps if any(a.level for a in s.instant.alerts)), steps[0])
+    lines = words(chosen.parameters, chosen.instant)
+    if as_json:
+        _put(json.dumps({**as_data(chosen.instant), "reasons": lines}, allow_nan=False), out)
+    else:
+        _put("\n".join(lines), out)
+    return 0
+
+
+@daa.command()
+@click.argument("config", default="")
+def presets(config: str) -> int:
+    """List the presets, or print one (or a .conf file) with all its keys."""
+    from cratous.spec.daa_conf import write
+    from cratous.spec.daa_presets import named_or_file, names
+
+    _put(write(named_or_file(config)) if config else "\n".join(names()), None)
+    return 0

@@ -1,0 +1,112 @@
+"""Random and degenerate encounters for detect and avoid, and what must hold of every answer.
+
+Run as a program: `python tests/daa_scenes.py 100000` (see `make daa-fuzz`).
+"""
+
+from __future__ import annotations
+
+import math
+import random
+import sys
+import time
+from collections.abc import Iterator
+
+from cratous.core.daa_frame import project
+from cratous.core.daa_session import Instant, Session
+from cratous.core.daa_state import UNKNOWN, Aircraft
+from cratous.spec.daa_presets import names, preset
+from cratous.spec.errors import BadInput
+
+POLES = (math.pi / 2, -math.pi / 2, 0.0, 1.55, -1.2)
+LINES = (math.pi, -math.pi, 0.0, 3.1415, -3.1415)
+
+
+def aircraft(rng: random.Random, name: str, scale: float, speed: float) -> Aircraft:
+    """One aircraft, with one chance in four of something degenerate in each quantity."""
+
+    def pick(usual: float, *odd: float) -> float:
+        return rng.choice(odd) if rng.random() < 0.25 else usual
+
+    x = pick(rng.gauss(0, scale), 0.0, 1e-9, 1e6)
+    y = pick(rng.gauss(0, scale), 0.0, -1e-9, -1e6)
+    z = pick(rng.uniform(0, 8000), 0.0, -400.0, 30.48, 1e5)
+    u = pick(rng.gauss(0, speed), 0.0, 1e-12, 1e4)
+    v = pick(rng.gauss(0, speed), 0.0, -1e-12, -1e4)
+    w = pick(rng.gauss(0, 5), 0.0, 30.48, -200.0)
+    return Aircraft(name, x, y, z, u, v, w, rng.choice((0, 1, 1, 1, 2, 3, 7)))
+
+
+def scene(rng: random.Random) -> tuple[Aircraft, list[Aircraft]]:
+    """An ownship and up to four intruders; often one is in the same place or flies alike."""
+    scale, speed = (50.0, 8.0) if rng.random() < 0.3 else (8000.0, 120.0)
+    own = aircraft(rng, "own", scale, speed)._replace(east_m=0.0, north_m=0.0)
+    others = []
+    for k in range(rng.randrange(5)):
+        other = aircraft(rng, f"i{k}", scale, speed)
+        kind = rng.random()
+        if kind < 0.1:
+            other = own._replace(id=other.id)
+        elif kind < 0.2:
+            other = other._replace(ve_m_s=own.ve_m_s, vn_m_s=own.vn_m_s, vu_m_s=own.vu_m_s)
+        elif kind < 0.3:
+            lat, lon = rng.choice(POLES), rng.choice(LINES)
+            there = project(lat, lon, rng.choice(POLES), rng.choice(LINES), 50.0, 50.0)
+            other = other._replace(
+                east_m=there.east_m, north_m=there.north_m, ve_m_s=there.ve_m_s, vn_m_s=there.vn_m_s
+            )
+        others.append(other)
+    if others and rng.random() < 0.02:
+        others[0] = others[0]._replace(id="own")
+    return own, others
+
+
+def numbers(value: object) -> Iterator[float]:
+    """All floats in nested tuples."""
+    if isinstance(value, float):
+        yield value
+    elif isinstance(value, tuple):
+        for part in value:
+            yield from numbers(part)
+
+
+def check(instant: Instant) -> None:
+    """No number is NaN or infinite; bands tile their range in order, or say why there are none."""
+    said = (instant.alerts, instant.guidance, instant.metrics)
+    assert all(math.isfinite(x) for x in numbers(said)), instant
+    for g in instant.guidance:
+        assert g.bands, g
+        assert bool(g.why) == any(b.region == UNKNOWN for b in g.bands), g
+        for a, b in zip(g.bands, g.bands[1:], strict=False):
+            assert abs(a.high - b.low) < 1e-6, g
+        assert all(b.low < b.high for b in g.bands), g
+
+
+def run(count: int, seed: int, seconds: float = math.inf) -> tuple[int, int]:
+    """So many instants of sessions under all presets; returns (answered, refused)."""
+    rng = random.Random(seed)
+    sessions = [Session(preset(name).parameters) for name in names() if not name.endswith("sum")]
+    answered = refused = 0
+    now, end = 0.0, time.monotonic() + seconds
+    for _ in range(count):
+        if time.monotonic() > end:
+            break
+        # sometimes time stands still or goes backwards
+        now += rng.choice((1.0, 1.0, 1.0, 0.0, -2.0, 100.0))
+        own, others = scene(rng)
+        duplicate = any(o.id == "own" for o in others)
+        try:
+            instant = rng.choice(sessions).step(now, own, others)
+        except BadInput:
+            assert duplicate, (own, others)
+            refused += 1
+            continue
+        assert not duplicate
+        check(instant)
+        answered += 1
+    return answered, refused
+
+
+if __name__ == "__main__":
+    total = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
+    done = run(total, int(sys.argv[2]) if len(sys.argv) > 2 else 1)
+    print(f"{done[0]} answered, {done[1]} refused with a reason, no NaN, no crash")
