@@ -117,12 +117,10 @@ def _cvc5(formulas: Sequence[Any]) -> str:
 
 def _plain(formula: Any) -> Any:
     kind = formula.decl().kind() if z3.is_app(formula) else None
-    ones = [z3.If(part, 1, 0) for part in formula.children()] if z3.is_app(formula) else []
-    if kind == z3.Z3_OP_PB_EQ:
-        return z3.Sum(ones) == 1
-    if kind == z3.Z3_OP_PB_AT_MOST:
-        return z3.Sum(ones) <= 1
-    return formula
+    if kind not in (z3.Z3_OP_PB_EQ, z3.Z3_OP_PB_AT_MOST):
+        return formula
+    count = sum([z3.If(part, 1, 0) for part in formula.children()], z3.IntVal(0))
+    return count == 1 if kind == z3.Z3_OP_PB_EQ else count <= 1
 
 
 def why_infeasible(problem: AssignmentProblem) -> tuple[tuple[str, ...], bool]:
