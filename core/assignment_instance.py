@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cratous.core.kernel import driver
 from cratous.spec.plan import AFTER_END, AFTER_START, NOT_AFTER, NOT_BEFORE, Row
 
 FAR = 1 << 40
@@ -73,7 +72,6 @@ def is_plain(rows: Sequence[Row]) -> bool:
     return all(row.kind in (AFTER_END, AFTER_START, NOT_BEFORE, NOT_AFTER) for row in rows)
 
 
-@driver(checked_by=("schedule_holds",))
 def instance(
     tasks: Sequence[int],
     rows: Sequence[Row],

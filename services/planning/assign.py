@@ -176,8 +176,8 @@ def _go_on(run: _Run, made: list[Instance]) -> None:
         if unlimited and rounds >= ROUNDS:
             return
         rounds += 1
-        hot = (0.02, 0.05, 0.1)[rounds % 3]
-        steps = (WORK << min(rounds // 3, 4)) // made[k].tasks
+        hot = (0.5, 0.2, 1.0)[rounds % 3] / made[k].tasks
+        steps = (WORK << min(rounds // 3, 2)) // made[k].tasks
         _try(run, made[k], k, moves, steps, 3 + rounds, hot)
 
 
@@ -189,6 +189,7 @@ def _try(
         steps = min(steps, max(0, run.limits.nodes - run.nodes))
     if run.over():
         steps = 0
+    hot = min(hot, 2.0 / instance.tasks)
     cost, better = improve(instance, moves, steps, run.limits.seed + again, hot)
     run.nodes += steps
     run.better(cost, k, better)

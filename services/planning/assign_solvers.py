@@ -36,7 +36,8 @@ def schedule_holds(problem: AssignmentProblem, steps: Sequence[Step]) -> tuple[b
     branch = branch_of(problem, steps)
     times: list[Any] = []
     for number, step in enumerate(steps):
-        times += [start(step.task_id) == step.start_ms, end(step.task_id) == step.end_ms]
+        begin, stop = step.start_ms, step.end_ms
+        times += [start(step.task_id) == begin, end(step.task_id) == stop]
         times.append(place(step.task_id) == number)
         v = problem.vehicles.index(step.vehicle_id)
         for k in branch.choices:
