@@ -64,4 +64,5 @@ def _whole(attributes: Mapping[str, str], name: str, where: str) -> int | None:
 
 def _bad(name: str, expected: str, got: str | None, where: str) -> BadInput:
     item = f"AssignmentTreeBranchBoundService.{name}"
-    return BadInput("not a value of this attribute", where=where, item=item, expected=expected, got=str(got))
+    what = "unknown cost function" if name == "CostFunction" else "not a value of this attribute"
+    return BadInput(what, where=where, item=item, expected=expected, got=str(got))
