@@ -323,7 +323,8 @@ class _Search:
                 return
             # once over the limit, go on only to find a first leaf, and not for ever
             over = self.nodes - self.problem.node_limit
-            if over > 0 and (self.best is not None or over > 4 * self.problem.node_limit):
+            patience = 4 * (self.problem.node_limit or NODE_LIMIT)
+            if over > 0 and (self.best is not None or over > patience):
                 self.stopped = True
                 return
             chains = tuple(

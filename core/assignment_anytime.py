@@ -14,11 +14,12 @@ import numpy as np
 
 from cratous.core.assignment_compiled import machine
 from cratous.core.assignment_improve import anneal, leaf
-from cratous.core.assignment_instance import TASKS_MAX, Instance
+from cratous.core.assignment_instance import FAR, TASKS_MAX, Instance
 from cratous.core.assignment_order import by_sets, is_sets
 from cratous.core.assignment_refute import Ahead, Outcome, first_state, look_ahead, refute
 from cratous.core.assignment_search import bound
-from cratous.core.assignment_steps import earliest_start, raised
+from cratous.core.assignment_steps import earliest_start, raised, weighted
+from cratous.core.assignment_tables import heads, shortest_ways
 from cratous.core.kernel import driver
 
 Moves = tuple[tuple[int, int], ...]
@@ -100,9 +101,12 @@ def _parts(i: Instance) -> tuple[object, ...]:
     )  # fmt: skip
 
 
-def estimate(instance: Instance, ahead: Ahead) -> int:
-    """The bound of the first state (instances of at most 62 tasks)."""
+def estimate(instance: Instance, ahead: Ahead | None = None) -> int:
+    """A bound that takes no search: the first state's, or above 62 tasks `rough_bound`."""
     i, n = instance, instance.tasks
+    if n > TASKS_MAX:
+        return rough_bound(i)
+    ahead = look_ahead(i) if ahead is None else ahead
     scratch = [np.zeros(n, np.int64) for _ in range(3)]
     return int(
         machine(bound)(
@@ -111,6 +115,28 @@ def estimate(instance: Instance, ahead: Ahead) -> int:
             i.weight, *scratch,
         )
     )  # fmt: skip
+
+
+def rough_bound(instance: Instance) -> int:
+    """The longest path through the rows, and the least work of all tasks shared by all vehicles."""
+    i = instance
+    reach = machine(shortest_ways)(i.travel, i.duration, i.may)
+    head, least, tail = machine(heads)(
+        i.travel, i.duration, i.task, i.may, i.ready, i.release, i.ref_kind, i.member_first,
+        i.member, i.row_first, i.row_ref, i.row_lo, i.waits, reach,
+    )  # fmt: skip
+    brief, cheap = np.full(i.tasks, FAR), np.full(i.tasks, FAR)
+    for o in range(i.duration.size):
+        j, others = i.task[o], np.append(i.task != i.task[o], True)
+        for v in range(i.vehicles):
+            if i.may[v, o]:
+                brief[j] = min(brief[j], i.travel[v, others, o].min() + i.duration[o])
+                cheap[j] = min(cheap[j], i.added[v, others, o].min())
+    work = int(brief.sum())
+    ready = sorted(int(r) for r in i.ready)
+    shared = min(-(-(work + sum(ready[:k])) // k) for k in range(1, len(ready) + 1))
+    last = max(shared, int((head + least + tail).max()))
+    return weighted(last, work, int(cheap.sum()), int(i.weight[0]), int(i.weight[1]))
 
 
 @driver(checked_by=("earliest_start", "latest_departure", "covers_step", "keeps_step", "weighted"))
@@ -126,7 +152,7 @@ def settle_bound(
     moves None: nothing below the limit was found; the proof's bound says what is certain.
     """
     if instance.tasks > TASKS_MAX:
-        return limit, None, Proof("estimate", 0), None
+        return limit, None, Proof("estimate", estimate(instance)), None
     ahead = look_ahead(instance) if ahead is None else ahead
     low = estimate(instance, ahead)
     if low >= limit:

@@ -40,7 +40,7 @@ def decode(
         v = who[j]
         o = how[j]
         way = travel[v, at[v], o]
-        if way > 1073741823:
+        if way >= 1 << 40:
             return 1 << 60
         ref = release[j]
         for place in range(row_first[j], row_first[j + 1]):
@@ -124,7 +124,7 @@ def leaf(
                 continue
             for v in range(vehicles):
                 way = travel[v, at[v], o]
-                if may[v, o] == 0 or way > 1073741823:
+                if may[v, o] == 0 or way >= 1 << 40:
                     continue
                 nodes += 1
                 begin = earliest_start(free[v], way, 0, ref)

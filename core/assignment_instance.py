@@ -13,13 +13,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cratous.core.kernel import driver
 from cratous.spec.plan import AFTER_END, AFTER_START, NOT_AFTER, NOT_BEFORE, Row
 
 FAR = 1 << 40
 """No way there [ms]; every real time of an instance is far below (`TIME_MAX_MS`)."""
-TIME_MAX_MS = 1 << 29
-"""Sums of times in an instance stay below this: six days."""
+TIME_MAX_MS = 1 << 38
+"""Sums of times in an instance stay below this: eight years."""
+TABLE_MAX_MS = 1 << 29
+"""Tables hold 32 bits: they are made where all times stay below this, six days."""
 TASKS_MAX = 62
 
 
@@ -71,7 +72,6 @@ def is_plain(rows: Sequence[Row]) -> bool:
     return all(row.kind in (AFTER_END, AFTER_START, NOT_BEFORE, NOT_AFTER) for row in rows)
 
 
-@driver(checked_by=("schedule_holds",))
 def instance(
     tasks: Sequence[int],
     rows: Sequence[Row],
@@ -151,3 +151,12 @@ def instance(
 
 def _mask(group: Sequence[int]) -> int:
     return sum(1 << task for task in group)
+
+
+def horizon(i: Instance) -> int:
+    """No schedule without needless waiting ends later than this [ms]."""
+    ways = i.travel[i.travel < FAR]
+    longest = int(ways.max()) if ways.size else 0
+    lags = int(i.row_lo.sum()) if i.row_lo.size else 0
+    times = int(i.ready.max()) + int(i.release.sum()) + int(i.duration.sum())
+    return times + i.tasks * longest + lags

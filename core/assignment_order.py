@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from cratous.core.assignment_compiled import machine
-from cratous.core.assignment_instance import Instance
+from cratous.core.assignment_instance import TABLE_MAX_MS, Instance, horizon
 from cratous.core.assignment_refute import Ahead, look_ahead
 from cratous.core.assignment_tables import CELLS_MAX, latest_tables
 from cratous.core.kernel import driver
@@ -57,7 +57,8 @@ def is_sets(instance: Instance) -> bool:
     free = (i.release == 0).all() and (i.due >= 1 << 40).all()
     plain = tuple(i.weight) in ((1, 0), (0, 1)) and not i.added.any()
     cells = (i.vehicles * i.duration.size + i.vehicles) << min(i.tasks, 40)
-    return bool(i.waits == 0 and free and plain and i.tasks <= SETS_TASKS and cells <= CELLS_MAX)
+    small = i.tasks <= SETS_TASKS and cells <= CELLS_MAX and horizon(i) < TABLE_MAX_MS
+    return bool(i.waits == 0 and free and plain and small)
 
 
 @driver(checked_by=("latest_departure", "keeps_step"))

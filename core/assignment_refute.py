@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cratous.core.assignment_compiled import machine
-from cratous.core.assignment_instance import FAR, Instance
+from cratous.core.assignment_instance import FAR, TABLE_MAX_MS, Instance, horizon
 from cratous.core.assignment_search import cost_now, expand, place, rehash
 from cratous.core.assignment_tables import CELLS_MAX, heads, latest_tables, shortest_ways
 from cratous.core.kernel import driver
@@ -23,10 +23,10 @@ EFFORT = 2_000_000
 """Steps spent on one question to `deals`."""
 DEALS_TASKS = 20
 LATEST = (1 << 30) - 1
-"""No task of an instance ends as late as this [ms] (`TIME_MAX_MS`); tables hold 32 bits."""
+"""No task of an instance with tables ends as late as this [ms] (`TABLE_MAX_MS`); tables hold 32 bits."""
 CHUNK = 32
 """Rows of a layer that are expanded before anybody is asked whether to stop."""
-ROOM_BYTES = 150_000_000
+ROOM_BYTES = 50_000_000
 """What the states of one layer may take."""
 
 
@@ -107,12 +107,14 @@ def tables(instance: Instance, ahead: Ahead, limit: int) -> Tables:
     i, due = instance, instance.due.copy()
     if i.weight[0] > 0:
         due = np.minimum(due, (limit - 1) // int(i.weight[0]) - ahead.tail)
+    full = due
     due = np.minimum(due, LATEST)
     kinds, n = len(ahead.leader), i.tasks
     if i.weight[0] == 0 and (i.due >= FAR).all():
         return Tables(0, i.due, np.zeros((1, 1, 1), np.int32), np.zeros((1, 1), np.int32))
-    if n > DEALS_TASKS or (kinds * i.duration.size + i.vehicles) << n > CELLS_MAX:
-        return Tables(0, due, np.zeros((1, 1, 1), np.int32), np.zeros((1, 1), np.int32))
+    too_long = horizon(i) >= TABLE_MAX_MS
+    if n > DEALS_TASKS or too_long or (kinds * i.duration.size + i.vehicles) << n > CELLS_MAX:
+        return Tables(0, full, np.zeros((1, 1, 1), np.int32), np.zeros((1, 1), np.int32))
     latest = np.empty((kinds, i.duration.size, 1 << n), np.int32)
     start = np.empty((i.vehicles, 1 << n), np.int32)
     anywhere = machine(shortest_ways)(i.travel, i.duration, np.ones_like(i.may))

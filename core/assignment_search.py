@@ -40,7 +40,7 @@ def place(
     done = state[0]
     j = task[o]
     way = travel[v, state[1 + v], o]
-    if (done >> j) & 1 or not opened(done, need[j]) or way > 1073741823:
+    if (done >> j) & 1 or not opened(done, need[j]) or way >= 1 << 40:
         return False
     base = 3 + 2 * vehicles
     ref = release[j]

@@ -114,3 +114,14 @@ def raised(start: int, ref: int, lo: int) -> int:
 def opened(done: int, need: int) -> bool:
     """True iff all tasks of the mask `need` are among those of the mask `done`."""
     return done & need == need
+
+
+@kernel(implements="assignment.waits_in_laps")
+def wait_holds(wait: int, laps: int, lap: int, lap_max: int) -> bool:
+    """True iff a vehicle can wait so long: not at all, or in so many laps of a circle.
+
+    wait: [ms]; laps: how many; lap, lap_max: shortest and longest time of one lap [ms], >= 0.
+    """
+    if wait == 0:
+        return True
+    return laps >= 1 and laps * lap <= wait and wait <= laps * lap_max

@@ -119,7 +119,7 @@ def latest_tables(
                         continue
                     if alone == 1 and may[v, o] == 0:
                         continue
-                    if travel[v, k, o] > 1073741823:
+                    if travel[v, k, o] >= 1 << 40:
                         continue
                     after = int(latest[g, o, chosen & ~(1 << j)])
                     leave = latest_departure(
@@ -137,7 +137,7 @@ def latest_tables(
                 j = task[o]
                 if (chosen >> j) & 1 == 0 or (need[j] & chosen) != 0 or may[v, o] == 0:
                     continue
-                if travel[v, options, o] > 1073741823:
+                if travel[v, options, o] >= 1 << 40:
                     continue
                 after = int(latest[g, o, chosen & ~(1 << j)])
                 leave = latest_departure(

@@ -8,6 +8,7 @@ from __future__ import annotations
 from cratous.core.compiled import compiled
 from cratous.core.polygon import orient
 from cratous.core.well_clear import horizontal_violation, violation, violation_within
+from cratous.services.planning import assign
 
 
 def warm() -> int:
@@ -18,7 +19,8 @@ def warm() -> int:
     compiled(violation)(*state, zero, zero, 50.0, 30.0, 10.0, zero)
     compiled(violation_within)(*state, zero, zero, 50.0, 30.0, 10.0, zero, 60.0)
     compiled(orient)(*state, zero, zero)
-    return 4
+    assign.warm()
+    return 5
 
 
 if __name__ == "__main__":

@@ -189,3 +189,10 @@ def chain_result(chain: Flown) -> bool:
 def all_needed_done(k: int, done: int, need: int) -> bool:
     """If task number k is needed it is done. FOR ALL k in 0..61: the task that needs them opens."""
     return (need >> k) & 1 == 0 or (done >> k) & 1 == 1
+
+
+def waits_in_laps(wait: int, laps: int, lap: int, lap_max: int) -> bool:
+    """The vehicle does not wait, or flies at least one lap, and so many laps can take that long: all
+    shortest ones take no more, all longest ones no less. THERE IS a number of laps."""
+    too_long, too_short = lap * laps > wait, lap_max * laps < wait
+    return wait == 0 or not (laps < 1 or too_long or too_short)

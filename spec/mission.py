@@ -176,7 +176,8 @@ class Mission:
 
     instances: ids of the vehicles with an ICAROUS instance (all protected ones unless avoidance
     is switched off). cost: "MINMAX" (makespan) or "CUMULATIVE". order: "time" (precedence holds
-    in time, design decision 1) or "order" (as UxAS: order of assignment only).
+    in time, design decision 1) or "order" (as UxAS: order of assignment only). node_limit: nodes of
+    the assignment search (0: its first leaf); None: as many as usual.
     """
 
     name: str
@@ -194,6 +195,7 @@ class Mission:
     simulation: Simulation = field(default_factory=Simulation)
     seed: int = 0
     notes: tuple[str, ...] = ()
+    node_limit: int | None = None
 
     def vehicle(self, vehicle_id: int) -> Vehicle:
         """The vehicle with this id; KeyError if there is none."""

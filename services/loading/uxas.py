@@ -12,6 +12,7 @@ from math import isfinite
 from pathlib import Path
 
 from cratous.services.loading import uxas_parts as parts
+from cratous.services.loading.assignment_attributes import Settings, settings_of
 from cratous.services.loading.checks import too_many_instances
 from cratous.services.loading.document import item_key
 from cratous.services.loading.places import Places
@@ -50,6 +51,8 @@ def mission_of(cfg: Configuration, source: str) -> Mission:
         f"UxAS names no well-clear volume: DTHR {volume.dthr_m:g} m, ZTHR {volume.zthr_m:g} m, "
         f"TTHR {volume.tthr_s:g} s, TCOA {volume.tcoa_s:g} s (our default)"
     )
+    settings = _settings(cfg, notes)
+    order = "order" if _compatible(cfg) else "time"
     folder = cfg.path.resolve().parent.name
     mission = Mission(
         name=parts.safe_name(folder or cfg.path.stem),
@@ -60,8 +63,9 @@ def mission_of(cfg: Configuration, source: str) -> Mission:
         daa=Daa(volume),
         zones=tuple(zones),
         relations=request.body.TaskRelationships.strip(),
-        cost=_cost(cfg, notes),
-        order="order" if cfg.root.get("Compatibility") == "uxas" else "time",
+        cost=settings.cost or "MINMAX",
+        order=settings.semantics or order,
+        node_limit=settings.nodes,
         instances=instances,
         notes=tuple(dict.fromkeys([*notes, *guard_notes])),
     )
@@ -276,23 +280,15 @@ def _instances(
     return tuple(sorted(ids)[: int(text)]), []
 
 
-def _cost(cfg: Configuration, notes: list[str]) -> str:
+def _compatible(cfg: Configuration) -> bool:
+    return bool(cfg.root.get("Compatibility") == "uxas")
+
+
+def _settings(cfg: Configuration, notes: list[str]) -> Settings:
+    """What the assignment service is told; BadInput for an attribute that is none."""
     found = cfg.service("AssignmentTreeBranchBoundService")
-    if found is None:
-        return "MINMAX"
-    attributes, where = found
-    cost = attributes.get("CostFunction", "MINMAX")
-    if cost not in ("MINMAX", "CUMULATIVE"):
-        raise BadInput(
-            "unknown cost function",
-            where=where,
-            item="AssignmentTreeBranchBoundService.CostFunction",
-            expected="MINMAX or CUMULATIVE",
-            got=cost,
-        )
-    nodes = attributes.get("NumberNodesMaximum")
-    if nodes is not None:
-        notes.append(
-            f"NumberNodesMaximum={nodes} is not used: the search goes on beyond the first plan"
-        )
-    return cost
+    settings = Settings() if found is None else settings_of(*found)
+    if settings.nodes == 0 and not _compatible(cfg):
+        notes.append("NumberNodesMaximum=0 is not used: the search goes on beyond the first plan")
+        settings = replace(settings, nodes=None)
+    return settings

@@ -23,14 +23,18 @@ from cratous.core.assignment_anytime import (
     settle_bound,
     timed,
 )
-from cratous.core.assignment_instance import Instance
+from cratous.core.assignment_instance import TASKS_MAX, Instance
 from cratous.core.assignment_order import by_sets
-from cratous.core.assignment_refute import look_ahead, refute
+from cratous.core.assignment_refute import DEALS_TASKS, look_ahead, refute
 from cratous.services.planning import assign_general
 from cratous.services.planning.assign_problem import Part, arrays, check, is_compiled, parts
 from cratous.services.planning.assign_replay import replayed
 from cratous.spec.assignment import ORDER, TIME, AssignmentProblem, Choice, Solution, Step
 
+WORK = 16_000_000
+"""Tasks that are decoded in one annealing: steps times tasks."""
+ROUNDS, ROUNDS_MAX = 12, 10_000
+"""Annealings of a problem of many tasks without and with a limit."""
 DEALS_SURE = 16
 """Instances of so many tasks are refuted at once; larger ones from 90 % of the cost upwards."""
 
@@ -63,11 +67,12 @@ class _Run:
     best: tuple[int, Moves] | None = None
     trace: list[tuple[int, int]] = field(default_factory=list)
 
-    def over(self, more: int = 0) -> bool:
-        """Whether the limits are reached."""
+    def over(self, more: int = 0, share: float = 1.0) -> bool:
+        """Whether this share of the limits is used up."""
         limits, nodes = self.limits, self.nodes + more
-        late = limits.seconds is not None and time.monotonic() - self.began > limits.seconds
-        return late or (limits.nodes is not None and nodes > limits.nodes)
+        spent = time.monotonic() - self.began
+        late = limits.seconds is not None and spent > share * limits.seconds
+        return late or (limits.nodes is not None and nodes > share * limits.nodes)
 
     def better(self, cost: int, branch: int, moves: Moves) -> None:
         """Take a solution if it is the best so far."""
@@ -139,29 +144,61 @@ def _large(part: Part) -> bool:
 
 def _anneal(run: _Run, made: list[Instance], firsts: list[Moves | None]) -> None:
     """Improve the first leaves: short everywhere, longer for the best of few branches."""
-    order = [k for k, moves in enumerate(firsts) if moves is not None]
     ends: list[tuple[int, int, Moves]] = []
-    for k in order:
+    alive = [k for k, moves in enumerate(firsts) if moves is not None]
+    for k in alive:
         moves = firsts[k]
         assert moves is not None
         n = made[k].tasks
-        steps = max(300, min(2_000 * n, 600_000 // len(order)))
-        cost, better = improve(made[k], moves, steps, run.limits.seed)
+        cost, better = _try(run, made[k], k, moves, min(2_000 * n, WORK // n // len(alive)), 0)
         ends.append((cost, k, better))
-        run.better(cost, k, better)
     ends.sort(key=lambda end: end[:2])
     for again in range(1, 4):
         for _, k, moves in ends[:2]:
             n = made[k].tasks
-            steps = (40_000 if n > 16 else 12_000 if n > 12 else 3_000) * n
-            if n > 10 and not run.over():
-                cost, better = improve(made[k], moves, steps, run.limits.seed + again)
-                run.better(cost, k, better)
+            if n > 10:
+                _try(run, made[k], k, moves, WORK // n if n > 12 else 3_000 * n, again)
+    _go_on(run, made)
+
+
+def _go_on(run: _Run, made: list[Instance]) -> None:
+    """Many tasks: improve the best again and again, cooler and warmer, until a limit is reached.
+
+    Refuting takes over below that, so there only the share of time is spent that it leaves over.
+    """
+    rounds = 0
+    while run.best is not None and made[run.best[0]].tasks > DEALS_TASKS and rounds < ROUNDS_MAX:
+        k, moves = run.best
+        spent = 1.0 if made[k].tasks > TASKS_MAX else 0.6
+        if run.over(share=spent) or run.near():
+            return
+        unlimited = run.limits.seconds is None and run.limits.nodes is None
+        if unlimited and rounds >= ROUNDS:
+            return
+        rounds += 1
+        hot = (0.5, 0.2, 1.0)[rounds % 3] / made[k].tasks
+        steps = (WORK << min(rounds // 3, 2)) // made[k].tasks
+        _try(run, made[k], k, moves, steps, 3 + rounds, hot)
+
+
+def _try(
+    run: _Run, instance: Instance, k: int, moves: Moves, steps: int, again: int, hot: float = 0.15
+) -> tuple[int, Moves]:
+    """Anneal from a solution, within what is left of the node limit; steps count as nodes."""
+    if run.limits.nodes is not None:
+        steps = min(steps, max(0, run.limits.nodes - run.nodes))
+    if run.over():
+        steps = 0
+    hot = min(hot, 2.0 / instance.tasks)
+    cost, better = improve(instance, moves, steps, run.limits.seed + again, hot)
+    run.nodes += steps
+    run.better(cost, k, better)
+    return cost, better
 
 
 def _prove(run: _Run, made: list[Instance]) -> list[Proof]:
     """A proof of a bound for each branch; better solutions are taken on the way."""
-    proofs = [Proof("estimate", 0) for _ in made]
+    proofs = [Proof("estimate", estimate(instance)) for instance in made]
     most = max((i.tasks for i in made), default=0)
     for share in (0, 1000) if most <= DEALS_SURE else (900, 950, 980, 1000):
         for k, instance in enumerate(made):

@@ -23,7 +23,6 @@ import numpy as np
 from cratous.core.assignment_anytime import NONE, Proof, estimate
 from cratous.core.assignment_check import least_cost
 from cratous.core.assignment_order import by_sets, is_sets
-from cratous.core.assignment_refute import look_ahead
 from cratous.services.planning.assign_problem import arrays, check, is_compiled, parts
 from cratous.services.planning.assign_replay import replayed
 from cratous.services.planning.assign_solvers import none_below, schedule_holds
@@ -191,8 +190,8 @@ def _bounds(
             shown, wrong = (
                 (by_sets(instance)[0], "") if is_sets(instance) else (0, "no tables here")
             )
-        elif proof["kind"] == "estimate" and instance.tasks <= 62:
-            shown, wrong = estimate(instance, look_ahead(instance)), ""
+        elif proof["kind"] == "estimate":
+            shown, wrong = estimate(instance), ""
         else:
             shown, wrong = 0, ""
         if wrong:

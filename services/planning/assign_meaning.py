@@ -198,5 +198,5 @@ def costs_less(problem: AssignmentProblem, branch: Part, limit: int) -> list[Any
             if p.vehicles[v] in p.choices[k].vehicles:
                 said.append(z3.Implies(choice(k, v), lasts[v] >= end(p.choices[k].task_id)))
         said.append(latest >= lasts[v])
-    said.append(p.cost.makespan * latest + p.cost.team * z3.Sum(lasts) < limit)
+    said.append(p.cost.makespan * latest + p.cost.team * sum(lasts, z3.IntVal(0)) < limit)
     return said

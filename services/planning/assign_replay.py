@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from cratous.core.assignment_steps import chain_holds, weighted
-from cratous.core.earliest import next_wait_ms, rows_hold
+from cratous.core.assignment_steps import chain_holds, wait_holds, weighted
+from cratous.core.earliest import rows_hold
 from cratous.core.timing import eligible, later
 from cratous.services.planning.assign_problem import Part, parts
 from cratous.spec import algebra_runs
@@ -78,13 +78,12 @@ def _legs(
             raise _wrong(f"vehicle {step.vehicle_id} cannot do task {step.task_id} there")
         travel = way + (problem.ready_ms[v] if at == len(problem.choices) else 0)
         wait = step.start_ms - (free + travel)
-        if (
-            choice.lap_max_ms is not None
-            and next_wait_ms(wait, choice.lap_ms, choice.lap_max_ms) != wait
-        ):
-            raise _wrong(
-                f"vehicle {step.vehicle_id} cannot wait {wait} ms before task {step.task_id}"
-            )
+        if choice.lap_max_ms is not None:
+            laps = -(-wait // max(1, choice.lap_max_ms))
+            if not wait_holds(wait, laps, choice.lap_ms, choice.lap_max_ms):
+                raise _wrong(
+                    f"vehicle {step.vehicle_id} cannot wait {wait} ms before task {step.task_id}"
+                )
         cost = 0
         for rows, weight in (
             (problem.distance_mm, problem.cost.distance), (problem.energy_mj, problem.cost.energy),

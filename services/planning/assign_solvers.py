@@ -36,7 +36,8 @@ def schedule_holds(problem: AssignmentProblem, steps: Sequence[Step]) -> tuple[b
     branch = branch_of(problem, steps)
     times: list[Any] = []
     for number, step in enumerate(steps):
-        times += [start(step.task_id) == step.start_ms, end(step.task_id) == step.end_ms]
+        begin, stop = step.start_ms, step.end_ms
+        times += [start(step.task_id) == begin, end(step.task_id) == stop]
         times.append(place(step.task_id) == number)
         v = problem.vehicles.index(step.vehicle_id)
         for k in branch.choices:
@@ -117,12 +118,10 @@ def _cvc5(formulas: Sequence[Any]) -> str:
 
 def _plain(formula: Any) -> Any:
     kind = formula.decl().kind() if z3.is_app(formula) else None
-    ones = [z3.If(part, 1, 0) for part in formula.children()] if z3.is_app(formula) else []
-    if kind == z3.Z3_OP_PB_EQ:
-        return z3.Sum(ones) == 1
-    if kind == z3.Z3_OP_PB_AT_MOST:
-        return z3.Sum(ones) <= 1
-    return formula
+    if kind not in (z3.Z3_OP_PB_EQ, z3.Z3_OP_PB_AT_MOST):
+        return formula
+    count = sum([z3.If(part, 1, 0) for part in formula.children()], z3.IntVal(0))
+    return count == 1 if kind == z3.Z3_OP_PB_EQ else count <= 1
 
 
 def why_infeasible(problem: AssignmentProblem) -> tuple[tuple[str, ...], bool]:

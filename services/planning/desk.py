@@ -111,8 +111,9 @@ class Inputs:
     def problem(self, travel_ms: Callable[[int, int, int], int | None]) -> Problem:
         """The assignment problem with travel times from elsewhere (the cost matrix)."""
         return stages.problem_of(
-            self.mission, self.options, travel_ms, self.branches, self.fixed, self.now_ms
-        )
+            self.mission, self.options, travel_ms, self.branches, self.fixed, self.now_ms,
+            self.mission.node_limit,
+        )  # fmt: skip
 
 
 class Desk:

@@ -1,0 +1,23 @@
+"""A wait holds for the checker exactly when it is none or a number of laps of possible length; and the
+fewest laps that are long enough are as good as any other number."""
+
+from cratous.core.assignment_steps import wait_holds
+from cratous.proofs.claim import Claim
+from cratous.spec import assignment
+
+
+def claim(c: Claim) -> None:
+    wait, laps, more = c.integer("wait"), c.integer("laps"), c.integer("more")
+    lap, lap_max = c.integer("lap"), c.integer("lap_max")
+    for time in (wait, lap, lap_max):
+        c.premise(c.all_of(time >= 0, time <= 2**40))
+    for number in (laps, more):
+        c.premise(c.all_of(number >= 0, number <= 2**20))
+    holds = c.use(wait_holds, wait, laps, lap, lap_max)
+    c.show(c.same(holds, c.define(assignment.waits_in_laps, wait, laps, lap, lap_max)))
+    c.premise(laps <= more)
+    c.premise(laps >= 1)
+    c.premise(wait <= laps * lap_max)
+    c.step(laps * lap <= more * lap, "more laps take longer")
+    other = c.use(wait_holds, wait, more, lap, lap_max)
+    c.show(c.implies(other, holds), "the fewest are as good")

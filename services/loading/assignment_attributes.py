@@ -1,0 +1,68 @@
+"""Attributes of the AssignmentTreeBranchBoundService: those of UxAS, a deadline and the semantics.
+
+| attribute | default | meaning |
+|---|---|---|
+| CostFunction | MINMAX | MINMAX, or CUMULATIVE |
+| NumberNodesMaximum | none | nodes of the search; 0: the first leaf; negative: no limit |
+| Deadline_ms | none | the same as a count of nodes, at `NODES_PER_MS` |
+| Semantics | time | `time`, or `order` as UxAS |
+
+A plan and its log may not depend on how fast a machine is, so a deadline is turned into a number of
+nodes. What UxAS reads as 0 by default (stop at the first leaf) is done here only if it is asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from cratous.spec.errors import BadInput
+
+NODES_PER_MS = 5
+"""Nodes that the search of missions makes in a millisecond, on a slow core."""
+NO_LIMIT = 10_000_000
+KNOWN = ("CostFunction", "NumberNodesMaximum", "Deadline_ms", "Semantics")
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What the attributes say; None where they say nothing."""
+
+    cost: str | None = None
+    nodes: int | None = None
+    semantics: str | None = None
+
+
+def settings_of(attributes: Mapping[str, str], where: str = "") -> Settings:
+    """The settings; BadInput for a value that is none. Other attributes are left to the caller."""
+    cost = attributes.get("CostFunction")
+    if cost not in (None, "MINMAX", "CUMULATIVE"):
+        raise _bad("CostFunction", "MINMAX or CUMULATIVE", cost, where)
+    semantics = attributes.get("Semantics")
+    if semantics not in (None, "time", "order"):
+        raise _bad("Semantics", "time or order", semantics, where)
+    nodes = _whole(attributes, "NumberNodesMaximum", where)
+    if nodes is not None and nodes < 0:
+        nodes = NO_LIMIT
+    patience = _whole(attributes, "Deadline_ms", where)
+    if patience is not None:
+        if patience <= 0:
+            raise _bad("Deadline_ms", "more than 0", str(patience), where)
+        nodes = min(NO_LIMIT if nodes is None else nodes, patience * NODES_PER_MS)
+    return Settings(cost, nodes, semantics)
+
+
+def _whole(attributes: Mapping[str, str], name: str, where: str) -> int | None:
+    text = attributes.get(name)
+    if text is None:
+        return None
+    try:
+        return int(text)
+    except ValueError:
+        raise _bad(name, "a whole number", text, where) from None
+
+
+def _bad(name: str, expected: str, got: str | None, where: str) -> BadInput:
+    item = f"AssignmentTreeBranchBoundService.{name}"
+    what = "unknown cost function" if name == "CostFunction" else "not a value of this attribute"
+    return BadInput(what, where=where, item=item, expected=expected, got=str(got))
