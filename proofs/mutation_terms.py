@@ -64,12 +64,14 @@ def with_values(conditions: list[z3.BoolRef], args: tuple[Any, ...], row: tuple)
     leaves = [known(value) for value in flat(args)]
     if len({leaf.get_id() for leaf in leaves}) < len(leaves):
         return None
-    pairs = [
-        (equation.arg(0), equation.arg(1))
-        if z3.is_eq(equation)
-        else (leaf, z3.BoolVal(not z3.is_not(equation)))
-        for leaf, equation in zip(leaves, equal(args, row), strict=True)
-    ]
+    pairs = []
+    for leaf, equation in zip(leaves, equal(args, row), strict=True):
+        if not z3.is_eq(equation):
+            pairs.append((leaf, z3.BoolVal(not z3.is_not(equation))))
+        else:
+            # a solver's number turns `x == 2` round
+            first = equation.arg(0).eq(leaf)
+            pairs.append((leaf, equation.arg(1) if first else equation.arg(0)))
     names = {str(leaf) for leaf in leaves}
     own = [condition for condition in conditions if free_names(condition) & names]
     found = [z3.simplify(z3.substitute(condition, *pairs)) for condition in own]
