@@ -20,8 +20,8 @@ from cratous.spec.errors import BadInput
 
 SUITES = {
     "well-clear": "Horizontal and vertical well-clear violation with modified tau, now.",
-    "assignment": "Optimal assignments: recorded optima, and best costs of OpenUxAS.",
     "polygon": "Location of a point in a polygon: inside, outside or on the boundary.",
+    "assignment": "Optimal assignments: recorded optima, and best costs of OpenUxAS.",
 }
 
 
