@@ -23,7 +23,6 @@ COMMANDS = {
     "prove": "Prove the kernels and write the ledger (in a checkout).",
     "conform": "Run published vectors against the kernels and the wires.",
     "daa": "Alerts, bands and reasons for an encounter file.",
-    "conform": "Run published vectors against the kernels.",
     "certify": "Judge a finished flight again from its log.",
     "assign": "Solve an assignment problem, with a certificate.",
     "certify-plan": "Check the certificate of an assignment.",
