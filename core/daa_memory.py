@@ -7,6 +7,7 @@ time holds a level that is shown. History is forgotten after a gap, or if time d
 
 from __future__ import annotations
 
+import itertools
 from collections import deque
 from dataclasses import dataclass, field
 
@@ -95,7 +96,10 @@ class BandMemory:
 
     m: int
     n: int
+    persistence_s: float = 0.0
     last: deque[tuple[Band, ...]] = field(default_factory=deque)
+    held: Band | None = None
+    held_s: float = float("-inf")
 
     def filtered(self, bands: tuple[Band, ...], recovering: bool) -> tuple[Band, ...]:
         """The bands to show. RECOVERY counts as the most severe region, and is shown only while
@@ -111,7 +115,9 @@ class BandMemory:
         found: list[Band] = []
         low = edges[0]
         for high in edges[1:]:
-            if high - low <= SLIVER and high != edges[-1]:
+            if high - low <= SLIVER:
+                if found and high == edges[-1]:
+                    found[-1] = found[-1]._replace(high=high)
                 continue
             middle = (low + high) / 2
             regions = deque(
@@ -127,4 +133,40 @@ class BandMemory:
             else:
                 found.append(Band(low, high, region))
             low = high
+        return tuple(found)
+
+    def persistent(self, bands: tuple[Band, ...], own: float, now_s: float) -> tuple[Band, ...]:
+        """The bands with the conflict band of the own value held for the persistence time.
+
+        Where the own value would become free (NONE) sooner than this after it came into
+        conflict, the last band that it was in is laid over milder ones.
+        """
+        if self.persistence_s <= 0:
+            return bands
+        now = next((b for b in bands if b.low <= own < b.high), None)
+        if now is not None and NONE < now.region < RECOVERY:
+            if self.held is None:
+                self.held_s = now_s
+            self.held = now
+            return bands
+        held = self.held
+        if (
+            now is None
+            or now.region == RECOVERY
+            or held is None
+            or may_drop(now_s, self.held_s, self.persistence_s)
+        ):
+            self.held = None
+            return bands
+        edges = sorted({x for b in (*bands, held) for x in (b.low, b.high)})
+        found: list[Band] = []
+        for low, high in itertools.pairwise(edges):
+            middle = (low + high) / 2
+            region = next((b.region for b in bands if b.low <= middle < b.high), NONE)
+            if held.low <= middle < held.high and (region == RECOVERY or region < held.region):
+                region = held.region
+            if found and found[-1].region == region:
+                found[-1] = found[-1]._replace(high=high)
+            elif high - low > SLIVER:
+                found.append(Band(low, high, region))
         return tuple(found)

@@ -104,7 +104,8 @@ class Session:
         self.time_s = -math.inf
         self.shown: dict[tuple[str, int], Shown] = {}
         self.area: dict[str, Shown] = {}
-        self.bands = [BandMemory(p.alerting_m, p.alerting_n) for _ in DIMENSIONS]
+        hold = p.persistence_time_s if p.bands_persistence else 0.0
+        self.bands = [BandMemory(p.alerting_m, p.alerting_n, hold) for _ in DIMENSIONS]
 
     def _terminal(
         self, own: Aircraft, others: Sequence[Aircraft], inside: Sequence[bool]
@@ -160,7 +161,9 @@ class Session:
             return unknown(p, seen.own, dimension, out_of_range(p, seen.own, dimension))
         bands = on_circle(raw.bands) if circle else tuple(raw.bands)
         if remembers:
-            bands = self.bands[dimension].filtered(bands, raw.recovery.computed)
+            memory = self.bands[dimension]
+            bands = memory.filtered(bands, raw.recovery.computed)
+            bands = memory.persistent(bands, raw.grid.own, self.time_s)
         own = raw.grid.own
         region = region_of(bands, own, circle)
         needed = severity(region) >= p.corrective_region

@@ -1,6 +1,6 @@
 """Random and degenerate encounters for detect and avoid, and what must hold of every answer.
 
-Run as a program: `python tests/daa_scenes.py 100000` (see `make daa-fuzz`).
+Run as a program: `python tests/daa_scenes.py COUNT [SEED [SECONDS]]` (see `make daa-fuzz`).
 """
 
 from __future__ import annotations
@@ -108,5 +108,6 @@ def run(count: int, seed: int, seconds: float = math.inf) -> tuple[int, int]:
 
 if __name__ == "__main__":
     total = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
-    done = run(total, int(sys.argv[2]) if len(sys.argv) > 2 else 1)
+    seed = int(sys.argv[2]) if len(sys.argv) > 2 else 1
+    done = run(total, seed, float(sys.argv[3]) if len(sys.argv) > 3 else math.inf)
     print(f"{done[0]} answered, {done[1]} refused with a reason, no NaN, no crash")

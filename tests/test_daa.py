@@ -20,10 +20,13 @@ from cratous.core.daa_session import Session
 from cratous.core.daa_state import ALT, HDIR, HS, UNKNOWN, VS, Aircraft, Band, Sigma
 from cratous.core.daa_steps import piece_conflict, straight_conflict, until, way_conflicts
 from cratous.core.daa_turn import turn_offset, turned
+from cratous.core.daa_volume import in_conflict
+from cratous.core.daa_zones import contours, hazard_zone
 from cratous.core.kernel import Vec2
 from cratous.services import conform
 from cratous.spec import daa_meaning
 from cratous.spec.daa import (
+    CYLINDER,
     FAR,
     MID,
     NEAR,
@@ -32,6 +35,8 @@ from cratous.spec.daa import (
     TAUMOD,
     TCAS,
     TCAS_LEVELS,
+    TCPA,
+    TEP,
     Parameters,
     Volume,
 )
@@ -293,6 +298,37 @@ def test_uncertainty_is_refused_and_not_ignored():
     with pytest.raises(BadInput, match="uncertainty") as error:
         look(p, own, [vague])
     assert error.value.item == "i"
+
+
+@pytest.mark.parametrize("kind", [TAUMOD, TCPA, TEP, CYLINDER])
+def test_hazard_zones_are_where_the_volume_is_violated(kind: int):
+    from shapely import Point, Polygon
+
+    own, other = head_on()
+    other = other._replace(ve_m_s=40.0)
+    volume = Volume(kind, 1200.0, 100.0, 30.0 if kind != CYLINDER else 0.0)
+    shape = Polygon(hazard_zone(own, other, volume).points)
+    assert shape.is_valid
+    limits = (volume.dthr_m, volume.zthr_m, volume.tthr_s, 0.0, 0.0)
+    v = Vec2(own.ve_m_s - other.ve_m_s, own.vn_m_s - other.vn_m_s)
+    rng = np.random.default_rng(2)
+    inside = 0
+    for x, y in rng.uniform(-7000, 7000, (1200, 2)):
+        lost = in_conflict(kind, Vec2(-x, -y), v, 0.0, 0.0, *limits, 0.0, 0.0)
+        inside += lost
+        if abs(shape.exterior.distance(Point(x, y))) > 5.0:
+            assert shape.contains(Point(x, y)) == lost, (x, y)
+    assert inside > 10
+
+
+def test_contours_hold_the_conflict_ahead(p: Parameters):
+    own, other = head_on()
+    seen = look(p, own, [other])
+    shapes = contours(p, seen, 0)
+    assert len(shapes) == 1
+    first = seen.times[0][1].first_s
+    assert any(math.hypot(e - 0.0, n - first * 100.0) < 1.0 for e, n in shapes[0].points)
+    assert contours(p, look(p, own, [other._replace(alt_m=9000.0)]), 0) == []
 
 
 # -- history ----------------------------------------------------------------------------

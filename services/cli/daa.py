@@ -137,6 +137,25 @@ def explain(
 
 
 @daa.command()
+@FILE
+@CONFIG
+@OWN
+@OUT
+@click.option("--sweep", is_flag=True, help="Sweep hazard zones by the alerting time.")
+def zones(file: Path, config: str, ownship: str, out: Path | None, sweep: bool) -> int:
+    """Hazard zones and contours of every step as JSON polygons (east, north in metres)."""
+    from cratous.services.daa.tables import zone_rows
+
+    rows = [
+        row
+        for s in _steps(file, config, ownship, ())
+        for row in zone_rows(s.parameters, s.instant, sweep)
+    ]
+    _put(json.dumps(rows, allow_nan=False), out)
+    return 0
+
+
+@daa.command()
 @click.argument("config", default="")
 def presets(config: str) -> int:
     """List the presets, or print one (or a .conf file) with all its keys."""

@@ -7,8 +7,11 @@ import io
 from collections.abc import Iterable
 from typing import Any
 
+from cratous.core.daa_engine import region_level, thresholds
 from cratous.core.daa_session import Instant
+from cratous.core.daa_zones import contours, hazard_zone
 from cratous.services.daa.explain import region_text
+from cratous.spec.daa import Parameters
 
 ALERTS = (
     "time_s", "id", "alerter", "level", "level_without_history", "region", "first_s", "last_s",
@@ -64,6 +67,25 @@ def band_rows(instant: Instant) -> list[dict[str, Any]]:
 def metric_rows(instant: Instant) -> list[dict[str, Any]]:
     """One row an intruder."""
     return [{"time_s": instant.time_s, **m._asdict()} for m in instant.metrics]
+
+
+def zone_rows(p: Parameters, instant: Instant, sweep: bool) -> list[dict[str, Any]]:
+    """Hazard zone and contours of each intruder for the corrective region, as polygons."""
+    rows = []
+    for i, other in enumerate(instant.seen.others):
+        a = instant.seen.alerters[i]
+        found = region_level(p.alerters[a], p.corrective_region) if a >= 0 else None
+        if found is None:
+            continue
+        level = found[1]
+        volume = thresholds(level.volume, instant.own.alt_m)
+        zone = hazard_zone(instant.own, other, volume, level.alerting_time_s if sweep else 0.0)
+        shapes = [("hazard zone", zone), *(("contour", c) for c in contours(p, instant.seen, i))]
+        rows += [
+            {"time_s": instant.time_s, "id": other.id, "what": what, "points_m": list(c.points)}
+            for what, c in shapes
+        ]
+    return rows
 
 
 ROWS = {"alerts": alert_rows, "bands": band_rows, "metrics": metric_rows}
