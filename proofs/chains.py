@@ -13,8 +13,9 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from cratous.core.kernel import Fold
-from cratous.proofs.claim import Claim, _term
+from cratous.proofs.claim import Claim
 from cratous.proofs.lift import REPLACED
+from cratous.proofs.terms import statement
 
 Run = tuple[Fold[Any], Any, tuple[Any, ...]]
 """A fold, an arbitrary accumulator of it, and its context."""
@@ -50,7 +51,7 @@ def closed_chain(
             c.kernels.append(fold.name)
     begin(first)
     starts = [fold.start for fold in folds]
-    c._owe("base", f"{text}: a chain without edges", _term(invariant(starts, first, first)))
+    c._owe("base", f"{text}: a chain without edges", statement(invariant(starts, first, first)))
     # the folds are run only where the invariant holds, so what they owe is owed there
     before = _given(c, invariant(accumulators, first, last))
     edge(last, to)
@@ -58,18 +59,18 @@ def closed_chain(
         read(fold.step, acc, last, to, *context)
         for read, fold, acc, context in zip(readers, folds, accumulators, contexts, strict=True)
     ]
-    c._owe("step", f"{text}: one more edge", _term(invariant(after, first, to)))
+    c._owe("step", f"{text}: one more edge", statement(invariant(after, first, to)))
     c.facts = c.facts[:before]
     _given(c, invariant(accumulators, first, first))
     results = [
         read(fold.finish, acc) for read, fold, acc in zip(readers, folds, accumulators, strict=True)
     ]
-    c._owe("use", f"{text}: the chain is closed", _term(goal(results)))
+    c._owe("use", f"{text}: the chain is closed", statement(goal(results)))
     c.facts = c.facts[:before]
 
 
 def _given(c: Claim, condition: Any) -> int:
     """Take a condition for granted for now; returns how many facts there were before."""
     before = len(c.facts)
-    c.facts.append(_term(condition))
+    c.facts.append(statement(condition))
     return before

@@ -9,10 +9,10 @@ from cratous.core.kernel import fold, kernel
 
 
 class Building(NamedTuple):
-    """stage; count: parts of the assignment; at: the part that was asked for last."""
+    """stage; parts: how many the assignment has; at: the part that was asked for last."""
 
     stage: int
-    count: int
+    parts: int
     at: int
 
 
@@ -41,11 +41,11 @@ def building_step(b: Building, event: int, number: int) -> Built:
             return Built(Building(2, 0, 0), 3, 0, False)
         return Built(Building(1, number, 0), 1, 0, False)
     if event == 2 and b.stage == 1 and number == b.at:
-        if b.at + 1 < b.count:
-            return Built(Building(1, b.count, b.at + 1), 1, b.at + 1, True)
-        return Built(Building(2, b.count, b.at), 2, b.at, True)
+        if b.at + 1 < b.parts:
+            return Built(Building(1, b.parts, b.at + 1), 1, b.at + 1, True)
+        return Built(Building(2, b.parts, b.at), 2, b.at, True)
     if event == 3 and b.stage < 2:
-        return Built(Building(2, b.count, b.at), 3, b.at, False)
+        return Built(Building(2, b.parts, b.at), 3, b.at, False)
     return Built(b, 4, number, False)
 
 
@@ -65,7 +65,7 @@ class WatchedParts(NamedTuple):
     """A builder's progress, the stages of two of its parts, and its answers."""
 
     stage: int
-    count: int
+    parts: int
     at: int
     first: int
     second: int
@@ -79,16 +79,16 @@ def watched_parts_step(
     w: WatchedParts, event: int, number: int, one: int, other: int
 ) -> WatchedParts:
     """One step, with an eye on the parts `one` and `other`."""
-    b, act, part, done = building_step(Building(w.stage, w.count, w.at), event, number)
+    b, act, part, done = building_step(Building(w.stage, w.parts, w.at), event, number)
     first = part_after(w.first, act == 1 and part == one, done and number == one)
     second = part_after(w.second, act == 1 and part == other, done and number == other)
     planned = w.planned or act == 2
     failed = w.failed or act == 3
     once = (act != 2 and act != 3) or (not w.planned and not w.failed)
     lived = first != 3 and second != 3 and (second == 0 or first == 2)
-    whole = not planned or other >= b.count or second == 2
+    whole = not planned or other >= b.parts or second == 2
     held = w.held and lived and once and whole
-    return WatchedParts(b.stage, b.count, b.at, first, second, planned, failed, held)
+    return WatchedParts(b.stage, b.parts, b.at, first, second, planned, failed, held)
 
 
 @kernel(implements="contracts.building.in_order")

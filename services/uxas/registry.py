@@ -5,12 +5,11 @@ What UxAS has and we do not have yet is known by name too, so that it is refused
 
 from __future__ import annotations
 
-import importlib
-import importlib.util
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from cratous.services.message_logger import MessageLogger
 from cratous.services.uxas import live, small
 from cratous.services.uxas.frame import Host
 from cratous.services.uxas.settings import Attr, Entry, choice, flag, number, whole
@@ -80,6 +79,16 @@ def _report(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int)
     )
 
 
+def _logger(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    folder = host.shared.get("data")
+    if folder is None:
+        raise BadInput("no folder to write to", where=entry.where, item=entry.type)
+    (folder / "SavedMessages").mkdir(parents=True, exist_ok=True)
+    return MessageLogger.from_parts(
+        entry.attributes, entry.children, folder / "SavedMessages", entry.where, name=name
+    )
+
+
 def _pipeline_kind(
     attributes: Mapping[str, Attr], ignored: Mapping[str, str] | None = None
 ) -> Kind:
@@ -138,6 +147,11 @@ KINDS: dict[str, Kind] = {
         ),
     ),
     "SendMessagesService": Kind({"PathToMessageFiles": Attr()}, _messages, ("Message",)),
+    "MessageLoggerDataService": Kind(
+        {"LogFileMessageCountLimit": whole(0), "FilesPerSubDirectory": whole(0)},
+        _logger,
+        ("LogMessage",),
+    ),
     "Test_SimulationTime": Kind({}, _time, single=True),
     "HelloWorld": Kind(
         {"StringToSend": Attr(default="Hello World!"), "SendPeriod_ms": whole(1000, 1)}, _hello
@@ -153,31 +167,10 @@ KINDS: dict[str, Kind] = {
     ),
 }
 
-LOGGER = "MessageLoggerDataService"
-_LOGGER_MODULE = "cratous.services.message_logger"
-
-
-def _logger(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    folder = host.shared.get("data")
-    if folder is None:
-        raise BadInput("no folder to write to", where=entry.where, item=entry.type)
-    (folder / "SavedMessages").mkdir(parents=True, exist_ok=True)
-    make = importlib.import_module(_LOGGER_MODULE).MessageLogger.from_parts
-    return make(entry.attributes, entry.children, folder / "SavedMessages", entry.where, name=name)
-
-
-if importlib.util.find_spec(_LOGGER_MODULE) is not None:
-    KINDS[LOGGER] = Kind(
-        {"LogFileMessageCountLimit": whole(0), "FilesPerSubDirectory": whole(0)},
-        _logger,
-        ("LogMessage",),
-    )
-
 NOT_YET = (
     "AutomationDiagramDataService",
     "BatchSummaryService",
     "LoiterLeash",
-    LOGGER,
     "OperatingRegionStateService",
     "OsmPlannerService",
     "RoutePlannerService",
