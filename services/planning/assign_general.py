@@ -56,10 +56,9 @@ def solve(
     cost = replayed(problem, steps)
     exhausted = found.exhausted and all_of_them
     known = cost if exhausted else min(low, cost)
-    kind = [Proof("search", cost)] if exhausted and low < cost else bounds
     return Solution(
-        "feasible", steps, cost, known, found.nodes, 0, ((found.nodes, cost),), proof=kind
-    )
+        "feasible", steps, cost, known, found.nodes, 0, ((found.nodes, cost),), proof=bounds
+    )  # fmt: skip
 
 
 def relaxed(problem: AssignmentProblem, part: Part) -> Proof:
