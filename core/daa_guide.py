@@ -9,7 +9,7 @@ from cratous.core.daa_steps import safe_steps
 from cratous.core.kernel import driver, kernel
 
 
-@driver(checked_by=("piece_conflict", "straight_conflict", "in_conflict"))
+@driver(checked_by=("in_conflict", "piece_counts", "straight_from"))
 def evaluate(
     right, left, step_s, piece_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen, kinds,
     volumes, horizons, begin_s, radius_m, half_m, recovering, lookahead_s, counted, project_s, early,
@@ -44,7 +44,7 @@ def shrunk(size_m: float, least_m: float, factor: float) -> float:
     return max(least_m, size_m * (1 - factor))
 
 
-@driver(checked_by=("piece_conflict", "straight_conflict", "in_conflict", "shrunk"))
+@driver(checked_by=("in_conflict", "piece_counts", "straight_from", "shrunk"))
 def recover(
     right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen, kinds, volumes,
     horizons, lookahead_s, counted, radius_m, half_m, nmac_m, nmac_half_m, shrinking, factor,
@@ -107,7 +107,7 @@ def recover(
             return
 
 
-@driver(checked_by=("piece_conflict", "straight_conflict", "in_conflict"))
+@driver(checked_by=("in_conflict", "piece_counts", "straight_from"))
 def in_region(
     right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, mapped, conflict, kinds,
     volumes, alerting_s, lookahead_s, counted, safe_r, safe_l, one_r, one_l, peripheral, chosen,
@@ -158,7 +158,7 @@ def in_region(
     return count, found
 
 
-@driver(checked_by=("piece_conflict", "straight_conflict", "in_conflict", "shrunk"))
+@driver(checked_by=("in_conflict", "piece_counts", "straight_from", "shrunk"))
 def guide(
     right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, mapped, conflict, kinds,
     volumes, alerting_s, lookahead_s, counted, corrective, recovery_on, radius_m, half_m, nmac_m,
@@ -208,7 +208,7 @@ def guide(
     )  # fmt: skip
 
 
-@driver(checked_by=("piece_conflict", "straight_conflict", "in_conflict"))
+@driver(checked_by=("in_conflict", "piece_counts", "straight_from"))
 def last_time(
     right, left, step_s, piece_s, targets, rate_m_s, accel_m_s2, sample_s, others, i, kinds, volumes,
     lookahead_s, counted, entry_s, horizons, safe_r, safe_l,

@@ -14,8 +14,8 @@ from cratous.core.daa_bands import SAMPLE_S, Raw
 from cratous.core.daa_climb import altitude_conflict
 from cratous.core.daa_engine import Seen
 from cratous.core.daa_machine import machine
-from cratous.core.daa_steps import piece_conflict, straight_conflict, until
-from cratous.core.daa_volume import conflict_span
+from cratous.core.daa_steps import piece_counts, straight_from, until
+from cratous.core.daa_volume import conflict_span, in_conflict
 from cratous.core.kernel import Vec2, driver
 from cratous.spec.daa import NEAR, Parameters
 
@@ -47,7 +47,7 @@ def _least(state: np.ndarray, first_s: float, last_s: float) -> tuple[float, flo
     return math.hypot(x + t * u, y + t * v), abs(z + t * w)
 
 
-@driver(checked_by=("piece_conflict", "straight_conflict"))
+@driver(checked_by=("in_conflict", "piece_counts", "straight_from"))
 def step_reasons(p: Parameters, seen: Seen, raw: Raw, side: int, k: int) -> list[Reason]:
     """What is in the way of step k to the right (side 1) or left (side -1), most severe first."""
     g, traffic = raw.grid, seen.traffic
@@ -72,14 +72,13 @@ def step_reasons(p: Parameters, seen: Seen, raw: Raw, side: int, k: int) -> list
                     kind, Vec2(relative[0], relative[1]), Vec2(relative[3], relative[4]),
                     relative[2], relative[5], *volume,
                 )  # fmt: skip
-                on_piece: Any = piece_conflict
-                straight: Any = straight_conflict
+                lost: Any = in_conflict
                 times_of: Any = conflict_span
                 counted = p.bands_add_time_to_maneuver
                 last_s = horizon_s if counted else p.lookahead_time_s
-                way = g.step_s > 0 and on_piece(*state, g.step_s, at_s, 0, last_s)
+                way = g.step_s > 0 and piece_counts(at_s, 0, last_s) and lost(*state, 0, g.step_s)
                 end_s = until(p.lookahead_time_s, horizon_s, at_s, counted)
-                after = j == k and straight(*state, at_s, 0, end_s)
+                after = j == k and lost(*state, straight_from(at_s, 0), end_s - at_s)
                 if not way and not after:
                     continue
                 span = times_of(*state, 0, g.step_s if way else end_s - at_s)

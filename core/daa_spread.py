@@ -23,7 +23,7 @@ def _near(g: Grid, spread: float) -> Grid:
     return g._replace(right=g.right[:count], left=g.left[:count])
 
 
-@driver(checked_by=("piece_conflict", "straight_conflict", "in_conflict"))
+@driver(checked_by=("in_conflict", "piece_counts", "straight_from"))
 def spread_conflict(
     p: Parameters,
     own: Aircraft,

@@ -11,54 +11,16 @@ from cratous.core.daa_volume import in_conflict
 from cratous.core.kernel import Vec2, driver, fold, kernel
 
 
-@kernel(implements="daa_meaning.lost_on_piece")
-def piece_conflict(
-    kind: int,
-    s: Vec2,
-    v: Vec2,
-    sz: float,
-    vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
-    vmod_s: float,
-    piece_s: float,
-    at_s: float,
-    from_s: float,
-    until_s: float,
-) -> bool:
-    """True iff a piece begun at at_s, relative state (s, v, sz, vz) there, loses the volume.
-
-    piece_s: how long it is flown; pieces begun before from_s or after until_s do not count [s].
-    """
-    if at_s < from_s or at_s > until_s:
-        return False
-    return in_conflict(kind, s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, 0, piece_s)
+@kernel(implements="daa_meaning.counts")
+def piece_counts(at_s: float, from_s: float, until_s: float) -> bool:
+    """True iff a piece begun at at_s is looked at: not before from_s, not after until_s [s]."""
+    return at_s >= from_s and at_s <= until_s
 
 
 @kernel(implements="daa_meaning.lost_from_step")
-def straight_conflict(
-    kind: int,
-    s: Vec2,
-    v: Vec2,
-    sz: float,
-    vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
-    vmod_s: float,
-    at_s: float,
-    from_s: float,
-    until_s: float,
-) -> bool:
-    """True iff straight flight from at_s on, relative state (s, v, sz, vz) there, loses the volume
-    at some instant of [from_s, until_s] that is not before at_s."""
-    return in_conflict(
-        kind, s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s,
-        max(from_s - at_s, 0), until_s - at_s,
-    )  # fmt: skip
+def straight_from(at_s: float, from_s: float) -> float:
+    """How long after a step at at_s the straight flight from it is looked at: from from_s on [s]."""
+    return max(from_s - at_s, 0)
 
 
 @kernel(implements="daa_meaning.step_conflicts")
@@ -80,7 +42,7 @@ way_conflicts = fold(
     start=False,
     finish=lost_on_way,
 )
-"""Whether any of the pieces (piece_conflict,) of a way loses a volume."""
+"""Whether any of the pieces (lost,) of a way loses a volume."""
 
 
 @kernel(implements="daa_meaning.horizon")
@@ -92,7 +54,7 @@ def until(lookahead_s: float, horizon_s: float, manoeuvre_s: float, counted: boo
     return min(lookahead_s, horizon_s + manoeuvre_s)
 
 
-@driver(checked_by=("piece_conflict", "straight_conflict", "lost_before", "until"))
+@driver(checked_by=("in_conflict", "piece_counts", "straight_from", "lost_before", "until"))
 def safe_steps(
     own, step_s, piece_s, others, chosen, kinds, volumes, horizons, begin_s, radius_m, half_m, recovering,
     lookahead_s, counted, project_s, early, single, safe,
@@ -138,33 +100,33 @@ def safe_steps(
             clear = True
             end_s = until(lookahead_s, horizons[i], at_s, counted)
             if begin_s <= horizons[i] and (not red or step_s > 0):
-                clear = not straight_conflict(
-                    kinds[i], s, v, sz, vz, d, z, tthr, tcoa, vmod, at_s, begin_s, end_s
-                )
+                clear = not in_conflict(
+                    kinds[i], s, v, sz, vz, d, z, tthr, tcoa, vmod,
+                    straight_from(at_s, begin_s), end_s - at_s,
+                )  # fmt: skip
             # a piece within a clear straight flight is clear
             covered = clear and begin_s <= min(at_s, horizons[i]) and at_s + step_s <= end_s
             if step_s > 0 and not covered:
                 final_s = lookahead_s
                 if counted:
                     final_s = horizons[i]
-                blocked = piece_conflict(
-                    kinds[i], s, v, sz, vz, d, z, tthr, tcoa, vmod,
-                    piece_s, at_s, begin_s, final_s,
+                blocked = piece_counts(at_s, begin_s, final_s) and in_conflict(
+                    kinds[i], s, v, sz, vz, d, z, tthr, tcoa, vmod, 0.0, piece_s,
                 )  # fmt: skip
             if recovering and not blocked:
                 held_s = min(begin_s, horizons[i])
                 end_s = until(lookahead_s, held_s, at_s, counted)
-                if straight_conflict(
-                    3, s, v, sz, vz, radius_m, half_m, 0.0, 0.0, 0.0, at_s, 0.0, end_s
-                ):
+                if in_conflict(
+                    3, s, v, sz, vz, radius_m, half_m, 0.0, 0.0, 0.0,
+                    straight_from(at_s, 0.0), end_s - at_s,
+                ):  # fmt: skip
                     clear = False
                 if step_s > 0:
                     final_s = lookahead_s
                     if counted:
                         final_s = held_s
-                    blocked = piece_conflict(
-                        3, s, v, sz, vz, radius_m, half_m, 0.0, 0.0, 0.0,
-                        piece_s, at_s, 0.0, final_s,
+                    blocked = piece_counts(at_s, 0.0, final_s) and in_conflict(
+                        3, s, v, sz, vz, radius_m, half_m, 0.0, 0.0, 0.0, 0.0, piece_s,
                     )  # fmt: skip
             if not clear:
                 red = True

@@ -18,7 +18,7 @@ from cratous.core.daa_memory import BandMemory, Shown, m_of_n
 from cratous.core.daa_reason import reasons_at
 from cratous.core.daa_session import Session
 from cratous.core.daa_state import ALT, HDIR, HS, UNKNOWN, VS, Aircraft, Band, Sigma
-from cratous.core.daa_steps import piece_conflict, straight_conflict, until, way_conflicts
+from cratous.core.daa_steps import piece_counts, straight_from, until, way_conflicts
 from cratous.core.daa_turn import turn_offset, turned
 from cratous.core.daa_volume import in_conflict
 from cratous.core.daa_zones import contours, hazard_zone
@@ -146,7 +146,7 @@ def test_steps_against_sampled_instants():
         volume = (1222.0, 137.0, 35.0, 0.0, 0.0)
         kind = int(rng.integers(0, 4))
         at, begin, end = rng.uniform(0, 20), rng.uniform(0, 20), rng.uniform(20, 60)
-        red = straight_conflict(kind, s, v, sz, vz, *volume, at, begin, end)
+        red = in_conflict(kind, s, v, sz, vz, *volume, straight_from(at, begin), end - at)
         lost = any(
             daa_meaning.lost_from_step(
                 daa_meaning.violated_at(kind, s, v, sz, vz, *volume, t), t, at, begin, end
@@ -155,7 +155,7 @@ def test_steps_against_sampled_instants():
         )
         found += lost
         assert red or not lost
-        blocked = piece_conflict(kind, s, v, sz, vz, *volume, 2.0, at, begin, end)
+        blocked = piece_counts(at, begin, end) and in_conflict(kind, s, v, sz, vz, *volume, 0, 2.0)
         on_piece = any(
             daa_meaning.lost_on_piece(
                 daa_meaning.violated_at(kind, s, v, sz, vz, *volume, t), t, 2.0, at, begin, end

@@ -1,7 +1,7 @@
 """A step is not called safe if a volume is violated at any instant of a piece on the way to it, or of
 the straight flight from it within the horizon: for every kind of volume and every state."""
 
-from cratous.core.daa_steps import piece_conflict, straight_conflict
+from cratous.core.daa_steps import piece_counts, straight_from
 from cratous.core.daa_volume import in_conflict
 from cratous.proofs.claim import Claim
 from cratous.spec import daa_meaning
@@ -20,13 +20,18 @@ def claim(c: Claim) -> None:
     size = {"dthr": dthr, "zthr": zthr, "tthr": tthr, "tcoa": tcoa, "vmod": vmod}
     violated = c.define(daa_meaning.violated_at, kind, s, v, sz, vz, *limits, t)
     on_piece = c.define(daa_meaning.lost_on_piece, violated, t, piece, at, begin, end)
-    blocked = c.use(piece_conflict, kind, s, v, sz, vz, *limits, piece, at, begin, end)
-    c.lemma("daa_conflict_misses_no_instant", when=on_piece, begin=0, end=piece, **state, **size)
+    blocked = c.all_of(
+        c.use(piece_counts, at, begin, end),
+        c.use(in_conflict, kind, s, v, sz, vz, *limits, at - at, piece),
+    )
+    c.lemma(
+        "daa_conflict_misses_no_instant", when=on_piece, begin=at - at, end=piece, **state, **size
+    )
     c.show(c.implies(on_piece, blocked), "on the way")
     later = c.define(daa_meaning.lost_from_step, violated, t, at, begin, end)
-    red = c.use(straight_conflict, kind, s, v, sz, vz, *limits, at, begin, end)
-    from_ = c.when(begin - at >= 0, begin - at, t - t)
+    since = c.use(straight_from, at, begin)
+    red = c.use(in_conflict, kind, s, v, sz, vz, *limits, since, end - at)
     c.lemma(
-        "daa_conflict_misses_no_instant", when=later, begin=from_, end=end - at, **state, **size
+        "daa_conflict_misses_no_instant", when=later, begin=since, end=end - at, **state, **size
     )
     c.show(c.implies(later, red), "straight on")
