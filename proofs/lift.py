@@ -79,8 +79,41 @@ _LIFTING: list[Callable[..., Any]] = []
 _ASKED: dict[tuple[int, ...], tuple[list[z3.BoolRef], bool]] = {}
 
 
+_NAMES: dict[int, tuple[z3.ExprRef, frozenset[str]]] = {}
+
+
+def _names(term: z3.ExprRef) -> frozenset[str]:
+    """The names of the values in a term, looked up once for each part of it."""
+    known = _NAMES.get(term.get_id())
+    if known is None:
+        if z3.is_const(term) and term.decl().kind() == z3.Z3_OP_UNINTERPRETED:
+            found = frozenset([str(term)])
+        else:
+            found = frozenset().union(*[_names(part) for part in term.children()])
+        # the term is kept, so that its id stays its own
+        known = _NAMES[term.get_id()] = (term, found)
+    return known[1]
+
+
+def _relevant(conditions: list[z3.BoolRef]) -> list[z3.BoolRef]:
+    """Those that share values with the last one, directly or through others.
+
+    The rest is about other values: it was possible before, and says nothing about the last one.
+    """
+    left = conditions[:-1]
+    found, names = [conditions[-1]], set(_names(conditions[-1]))
+    while True:
+        more = [c for c in left if _names(c) & names]
+        if not more:
+            return found
+        left = [c for c in left if not _names(c) & names]
+        found += more
+        names.update(*[_names(c) for c in more])
+
+
 def _feasible(conditions: list[z3.BoolRef]) -> bool:
-    """False only if the conditions are known to contradict each other; asked once each."""
+    """False only if the last condition is known to contradict the others; asked once each."""
+    conditions = _relevant(conditions)
     key = tuple(sorted({condition.get_id() for condition in conditions}))
     if key not in _ASKED:
         solver = z3.Solver()
