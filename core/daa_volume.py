@@ -6,14 +6,12 @@ in `spec.daa.DETECTORS`. Relative state is ownship minus intruder, in any horizo
 
 from cratous.core.kernel import Vec2, kernel
 from cratous.core.well_clear_during import (
-    cylinder_during,
     violation_during_taumod,
     violation_during_tcpa,
     violation_during_tep,
 )
 from cratous.core.well_clear_interval import (
     Span,
-    cylinder_interval,
     violation_interval_taumod,
     violation_interval_tcpa,
     violation_interval_tep,
@@ -37,14 +35,13 @@ def in_conflict(
 ) -> bool:
     """True iff the volume is violated at some t in [b_s, t_s] of straight flight.
 
-    kind: 1 by tcpa, 2 by tep, 3 cylinder, any other by tau_mod; thresholds >= 0 [m, s].
+    kind: 1 by tcpa, 2 by tep, 3 cylinder (tep with all times 0), any other by tau_mod;
+    thresholds >= 0 [m, s].
     """
     if kind == 1:
         return violation_during_tcpa(s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s)
-    if kind == 2:
+    if kind == 2 or kind == 3:
         return violation_during_tep(s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s)
-    if kind == 3:
-        return cylinder_during(s, v, sz, vz, dthr_m, zthr_m, b_s, t_s)
     return violation_during_taumod(s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s)
 
 
@@ -71,10 +68,8 @@ def conflict_span(
         return violation_interval_tcpa(
             s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s
         )
-    if kind == 2:
+    if kind == 2 or kind == 3:
         return violation_interval_tep(
             s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s
         )
-    if kind == 3:
-        return cylinder_interval(s, v, sz, vz, dthr_m, zthr_m, b_s, t_s)
     return violation_interval_taumod(s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s)

@@ -8,7 +8,6 @@ instant of the straight flight from it within a horizon. The definitions name th
 
 from cratous.spec.well_clear import (
     Plane,
-    cylinder_violation_at,
     violation_taumod_at,
     violation_tcpa_at,
     violation_tep_at,
@@ -20,13 +19,11 @@ def violated_at(
     kind: int, s: Plane, v: Plane, sz: float, vz: float, dthr: float, zthr: float, tthr: float,
     tcoa: float, vmod: float, t: float,
 ) -> bool:  # fmt: skip
-    """The volume of that kind is violated after t seconds of straight flight."""
+    """The volume of that kind is violated after t seconds; kind 3, a cylinder, is tep without times."""
     if kind == 1:
         return violation_tcpa_at(s, v, sz, vz, dthr, zthr, tthr, tcoa, vmod, t)
-    if kind == 2:
+    if kind == 2 or kind == 3:
         return violation_tep_at(s, v, sz, vz, dthr, zthr, tthr, tcoa, vmod, t)
-    if kind == 3:
-        return cylinder_violation_at(s, v, sz, vz, dthr, zthr, t)
     return violation_taumod_at(s, v, sz, vz, dthr, zthr, tthr, tcoa, vmod, t)
 
 

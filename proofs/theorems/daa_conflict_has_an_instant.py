@@ -35,8 +35,8 @@ def witnesses(
     c.opaque(*HORIZONTAL.values(), layer_window)
     dthr, zthr, *times = limits
     found = {}
-    for part, name in (("a", "taumod"), ("b", "tcpa"), ("c", "tep"), ("d", "tep")):
-        tthr, tcoa, vmod = times if part != "d" else (0, 0, 0)
+    for part, name in (("a", "taumod"), ("b", "tcpa"), ("c", "tep")):
+        tthr, tcoa, vmod = times
         witness = c.real(f"witness_{part}{label}")
         k, low, high = c.use(layer_window, sz + begin * vz, vz, zthr, tcoa, vmod, end - begin)
         at = Vec2(
@@ -66,16 +66,16 @@ def claim(c: Claim) -> None:
         well_clear.violation_taumod_at,
         well_clear.violation_tcpa_at,
         well_clear.violation_tep_at,
-        well_clear.cylinder_violation_at,
     )
     limits = (dthr, zthr, tthr, tcoa, vmod)
     state = {"s": s, "v": v, "sz": sz, "vz": vz, "begin": begin, "end": end}
     full = {"dthr": dthr, "zthr": zthr, "tthr": tthr, "tcoa": tcoa, "vmod": vmod}
-    still = {"dthr": dthr, "zthr": zthr, "tthr": 0, "tcoa": 0, "vmod": 0}
     found = witnesses(c, "", s, v, sz, vz, limits, begin, end)
     for part, name, size in (
-        ("a", "taumod", full), ("b", "tcpa", full), ("c", "tep", full), ("d", "tep", still),
-    ):  # fmt: skip
+        ("a", "taumod", full),
+        ("b", "tcpa", full),
+        ("c", "tep", full),
+    ):
         witness = found[f"witness_{part}"]
         c.lemma(f"well_clear_detection_{name}_is_the_interval", witness=witness, **state, **size)
         c.lemma(f"well_clear_interval_{name}_first_and_last_violate", **state, **size)
@@ -89,16 +89,6 @@ def claim(c: Claim) -> None:
         entry, _ = c.use(interval, s, v, sz, vz, *limits, begin, end)
         one, other = (s, v, sz, vz, *limits, entry), (s, v, sz, vz, *limits, first)
         c.congruence(at_instant, one, other)
-    entry, _ = c.use(violation_interval_tep, s, v, sz, vz, dthr, zthr, 0, 0, 0, begin, end)
-    one, other = (
-        (s, v, sz, vz, dthr, zthr, 0, 0, 0, entry),
-        (s, v, sz, vz, dthr, zthr, 0, 0, 0, first),
-    )
-    c.congruence(well_clear.violation_tep_at, one, other)
-    c.lemma(
-        "well_clear_tep_without_time_is_the_cylinder",
-        s=s, v=v, sz=sz, vz=vz, radius=dthr, half=zthr, t=first,
-    )  # fmt: skip
     lost = c.define(daa_meaning.violated_at, kind, s, v, sz, vz, *limits, first)
     c.show(c.same(detected, first <= last), "detection")
     c.show(c.implies(detected, c.all_of(begin <= first, first <= end, lost)), "first instant")

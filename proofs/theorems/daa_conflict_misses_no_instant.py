@@ -27,19 +27,12 @@ def claim(c: Claim) -> None:
         well_clear.violation_taumod_at,
         well_clear.violation_tcpa_at,
         well_clear.violation_tep_at,
-        well_clear.cylinder_violation_at,
     )
     limits = (dthr, zthr, tthr, tcoa, vmod)
     state = {"s": s, "v": v, "sz": sz, "vz": vz, "begin": begin, "end": end, "t": t}
     size = {"dthr": dthr, "zthr": zthr, "tthr": tthr, "tcoa": tcoa, "vmod": vmod}
     for name in ("taumod", "tcpa", "tep"):
         c.lemma(f"well_clear_detection_{name}_misses_no_instant", **state, **size)
-    still = {"dthr": dthr, "zthr": zthr, "tthr": 0, "tcoa": 0, "vmod": 0}
-    c.lemma("well_clear_detection_tep_misses_no_instant", **state, **still)
-    c.lemma(
-        "well_clear_tep_without_time_is_the_cylinder",
-        s=s, v=v, sz=sz, vz=vz, radius=dthr, half=zthr, t=t,
-    )  # fmt: skip
     found = c.use(in_conflict, kind, s, v, sz, vz, *limits, begin, end)
     lost = c.define(daa_meaning.violated_at, kind, s, v, sz, vz, *limits, t)
     c.show(c.implies(lost, found))
