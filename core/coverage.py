@@ -20,7 +20,7 @@ from cratous.spec.mission import Pattern, Task
 Corner = tuple[float, float]
 FINEST_M = 10.0
 """Squares are this large, or larger where there would be more than MOST."""
-MOST = 10_000
+MOST = 1_000_000
 ROUND = 64
 """Corners of the polygon around a disc."""
 
@@ -93,35 +93,43 @@ def square_side_m(vertices: Sequence[Corner], most: int = MOST) -> float:
 
 @driver(checked_by=("locate", "meets_boundary"))
 def squares(vertices: Sequence[Corner], side_m: float) -> list[Corner]:
-    """Centres of all squares of a grid that have a point in common with the polygon."""
+    """Centres, from south to north, of all squares of a grid that share a point with the polygon."""
     edges = edges_of(vertices)
     norths, easts = [p[0] for p in vertices], [p[1] for p in vertices]
     half, found = side_m / 2, []
     for i in range(max(1, math.ceil((max(norths) - min(norths)) / side_m))):
         x = min(norths) + (i + 0.5) * side_m
-        row = [
-            e for e in edges if min(e[0].x, e[1].x) <= x + half and max(e[0].x, e[1].x) >= x - half
-        ]
+        row = [e for e in edges if _reaches(e[0].x, e[1].x, x - half, x + half)]
+        inside: bool | None = None
         for j in range(max(1, math.ceil((max(easts) - min(easts)) / side_m))):
             y = min(easts) + (j + 0.5) * side_m
-            near = [
-                e
-                for e in row
-                if min(e[0].y, e[1].y) <= y + half and max(e[0].y, e[1].y) >= y - half
-            ]
-            if not near:
-                # no edge comes near: the square is inside or outside as a whole
-                beside = [e for e in edges if min(e[0].y, e[1].y) <= y <= max(e[0].y, e[1].y)]
-                if locate(beside, Vec2(x, y)) >= 0:
+            near = [e for e in row if _reaches(e[0].y, e[1].y, y - half, y + half)]
+            if near:
+                inside = None
+                if _shares_a_point(x, y, half, near, edges):
                     found.append((x, y))
                 continue
-            a, b = Vec2(x - half, y - half), Vec2(x - half, y + half)
-            c, d = Vec2(x + half, y + half), Vec2(x + half, y - half)
-            sides = ((a, b), (b, c), (c, d), (d, a))
-            inside = locate(edges, Vec2(x, y)) >= 0 or any(locate(sides, e[0]) >= 0 for e in near)
-            if inside or any(meets_boundary(near, p, q) for p, q in sides):
+            # no edge comes near: the square is where its middle is, and so are those beside it
+            if inside is None:
+                beside = [e for e in edges if _reaches(e[0].y, e[1].y, y, y)]
+                inside = locate(beside, Vec2(x, y)) >= 0
+            if inside:
                 found.append((x, y))
     return found
+
+
+def _reaches(one: float, other: float, low: float, high: float) -> bool:
+    return min(one, other) <= high and max(one, other) >= low
+
+
+def _shares_a_point(x: float, y: float, half: float, near: Sequence[Any], edges: Any) -> bool:
+    """A square with an edge of the polygon near it has a point in common with the polygon."""
+    a, b = Vec2(x - half, y - half), Vec2(x - half, y + half)
+    c, d = Vec2(x + half, y + half), Vec2(x + half, y - half)
+    sides = ((a, b), (b, c), (c, d), (d, a))
+    if any(meets_boundary(near, p, q) for p, q in sides):
+        return True
+    return locate(edges, Vec2(x, y)) >= 0 or any(locate(sides, e[0]) >= 0 for e in near)
 
 
 def _counter_clockwise(footprint: Sequence[Corner]) -> tuple[Corner, ...]:
@@ -131,13 +139,18 @@ def _counter_clockwise(footprint: Sequence[Corner]) -> tuple[Corner, ...]:
 def perhaps_seen(centres: Any, side_m: float, footprint: Sequence[Corner]) -> Any:
     """Indices of the squares that seem to lie in a convex footprint, in plain floats.
 
-    centres: array of shape (n, 2). For planning, and to leave squares out before the kernel.
+    centres: array of shape (n, 2), from south to north. For planning, and to leave squares out before the kernel.
     """
     import numpy as np
 
     corners, half = _counter_clockwise(footprint), side_m / 2
     low, high = np.min(corners, axis=0) + half, np.max(corners, axis=0) - half
-    maybe = ((centres >= low) & (centres <= high)).all(axis=1).nonzero()[0]
+    first, last = (
+        np.searchsorted(centres[:, 0], low[0]),
+        np.searchsorted(centres[:, 0], high[0], "right"),
+    )
+    easts = centres[first:last, 1]
+    maybe = first + ((easts >= low[1]) & (easts <= high[1])).nonzero()[0]
     for a, b in edges_of(corners):
         if len(maybe) == 0:
             break
@@ -151,7 +164,7 @@ def perhaps_seen(centres: Any, side_m: float, footprint: Sequence[Corner]) -> An
 def seen_squares(centres: Any, side_m: float, footprint: Sequence[Corner]) -> list[int]:
     """Indices of the squares of which every point lies in a convex footprint.
 
-    centres: array of shape (n, 2). The array pass only leaves out squares; each that it lets
+    centres: array of shape (n, 2), from south to north. The array pass only leaves out squares; each that it lets
     through is decided by the kernel.
     """
     edges, half = edges_of(_counter_clockwise(footprint)), side_m / 2

@@ -126,16 +126,16 @@ def lane(strip: Strip, heading_rad: float, seen: Swath, alt_m: float, lead_m: fl
     return Piece(poses[0], poses[1], tuple(Position(*pose[:3]) for pose in poses))
 
 
-def orders(count: int, stride_most: int) -> list[tuple[int, ...]]:
-    """In which order parallel lanes may be flown: neighbours next, or with some left out at first.
+def orders(count: int, stride: int) -> list[tuple[int, ...]]:
+    """In which order parallel lanes may be flown: neighbours next, or every so manyth first.
 
     With a turn wider than a lane, flying every k-th lane and then those between is shorter.
     """
     found = []
-    for stride in range(1, max(1, min(stride_most, count - 1)) + 1):
+    for every in sorted({1, max(1, min(stride, count - 1))}):
         order: list[int] = []
-        for first in range(stride):
-            column = list(range(first, count, stride))
+        for first in range(every):
+            column = list(range(first, count, every))
             order += column[::-1] if first % 2 else column
         found.append(tuple(order))
     return found

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 from cratous.core.coverage import (
@@ -45,7 +46,7 @@ from cratous.services.sensor import elevation_rad, footprints, looks_over, sampl
 from cratous.spec.mission import Camera, Pattern, Position, Task, View, Zone
 from cratous.spec.plan import Pose
 
-OPTIONS_MOST = 8
+OPTIONS_MOST = 4
 """How many ways over an area are offered."""
 DEARER = 1.5
 """A way that is longer than the shortest by more than this factor is not offered."""
@@ -54,6 +55,8 @@ LEADS = (0.8, 0.0)
 GLANCE_S = 2.0
 """Each part of a swath stays in view for so long, so that nothing is missed between frames."""
 VIEWS_MOST = 4
+MEASURED_MOST = 8_000
+"""Coverage is measured in planning for ways with no more footprints than this."""
 TURN_RESERVE = 1.15
 """The innermost turn of a spiral, in turn radii."""
 
@@ -85,64 +88,65 @@ def area_ways(
     height_m = flyer.alt_m - terrain_m
     site = _Site(task, flyer, camera, height_m, vertices, square_side_m(vertices))
     maps = roadmaps(zones, flyer.radius_m)
-    centres = squares(vertices, site.side_m)
     views = (task.view, *task.views)
     for view in views[:VIEWS_MOST]:
-        found, refused = [], ""
-        for lead in LEADS:
-            made = _candidates(site, view, lead * flyer.radius_m)
-            if isinstance(made, str):
-                refused = made
-                break
-            found.append(sorted(made, key=lambda c: c.length_m))
-        if refused:
-            yield no_way("", refused)
+        made = _candidates(site, view, LEADS[0] * flyer.radius_m)
+        if isinstance(made, str):
+            yield no_way("", made)
             continue
-        best_m = found[0][0].length_m
-        for rank, (roomy, tight) in enumerate(zip(*found, strict=True)):
-            if roomy.length_m > DEARER * best_m:
-                times = roomy.length_m / best_m
-                yield no_way(roomy.label, f"it is {times:.2f} times as long as the shortest")
+        found = sorted(made, key=lambda c: c.length_m)
+        best_m = found[0].length_m
+        for rank, candidate in enumerate(found):
+            if candidate.length_m > DEARER * best_m:
+                times = candidate.length_m / best_m
+                yield no_way(candidate.label, f"it is {times:.2f} times as long as the shortest")
             elif rank >= OPTIONS_MOST:
-                yield no_way(roomy.label, f"{OPTIONS_MOST} that are no longer are offered")
+                yield no_way(candidate.label, f"{OPTIONS_MOST} that are no longer are offered")
             else:
-                yield _way(site, view, (roomy, tight), zones, maps, centres)
+                way = _way(site, view, candidate, zones, maps)
+                if way.reason:
+                    # less room before the lanes may do where the zones are near
+                    way = _tighter(site, view, way, zones, maps)
+                yield way
     if len(views) > VIEWS_MOST:
         yield no_way("", f"only the first {VIEWS_MOST} directions of view are offered")
+
+
+def _tighter(
+    site: _Site, view: View | None, way: Way, zones: Sequence[Zone], maps: Sequence[Roadmap]
+) -> Way:
+    """The way of the same name with less room to settle, if that helps; else what was refused."""
+    made = _candidates(site, view, LEADS[1] * site.flyer.radius_m)
+    same = [c for c in made if isinstance(c, Candidate) and c.label == way.label]
+    tight = _way(site, view, same[0], zones, maps) if same else way
+    return way if tight.reason else tight
 
 
 def _way(
     site: _Site,
     view: View | None,
-    tries: Sequence[Candidate],
+    candidate: Candidate,
     zones: Sequence[Zone],
     maps: Sequence[Roadmap],
-    centres: Sequence[tuple[float, float]],
 ) -> Way:
-    """The first of the tries that the zones leave room for, with its turns and its coverage."""
-    reason = ""
-    for candidate in tries:
-        bad = _broken_lane(candidate, zones)
-        if bad:
-            reason = bad
-            continue
-        path = joined(candidate.pieces, site.flyer.radius_m, maps)
-        if not path.points:
-            reason = path.reason
-            continue
-        first, last = candidate.pieces[0].start, candidate.pieces[-1].end
-        return Way(
-            candidate.label,
-            first,
-            last,
-            path.points,
-            flight_ms(path.length_m, site.flyer.speed_m_s),
-            _share(site, view, path.points, centres),
-            "",
-            elevation_rad(site.camera, view),
-            view.azimuth_rad if view is not None else 0.0,
-        )
-    return no_way(tries[0].label, reason)
+    """A candidate with its turns and its coverage, or the reason why the zones forbid it."""
+    bad = _broken_lane(candidate, zones)
+    if bad:
+        return no_way(candidate.label, bad)
+    path = joined(candidate.pieces, site.flyer.radius_m, maps)
+    if not path.points:
+        return no_way(candidate.label, path.reason)
+    return Way(
+        candidate.label,
+        candidate.pieces[0].start,
+        candidate.pieces[-1].end,
+        path.points,
+        flight_ms(path.length_m, site.flyer.speed_m_s),
+        _share(site, view, path.points),
+        "",
+        elevation_rad(site.camera, view),
+        view.azimuth_rad if view is not None else 0.0,
+    )
 
 
 def _broken_lane(candidate: Candidate, zones: Sequence[Zone]) -> str:
@@ -153,18 +157,25 @@ def _broken_lane(candidate: Candidate, zones: Sequence[Zone]) -> str:
     return ""
 
 
+_squares = lru_cache(maxsize=8)(squares)
+
+
 def _share(
     site: _Site,
     view: View | None,
     points: tuple[Position, ...],
-    centres: Sequence[tuple[float, float]],
-) -> float:
-    """The share of the area that a flight along the points sees, with a margin for its wobble."""
+) -> float | None:
+    """The share of the area that a flight along the points sees, with a margin for its wobble.
+
+    None where measuring it would take long: the lanes are made to cover, the flight is measured.
+    """
     import numpy as np
 
     places = sample_line(points, max(10.0, site.flyer.speed_m_s / 2))
+    if len(places) > MEASURED_MOST:
+        return None
     looks = looks_over(places, view, site.height_m)
-    left = np.array(centres)
+    left = np.array(_squares(site.vertices, site.side_m))
     for corners in footprints(looks, site.height_m, site.camera, (1 + MARGIN) / 2):
         if not np.isnan(corners[0, 0]) and len(left):
             seen = perhaps_seen(left, site.side_m, _corners(corners))
