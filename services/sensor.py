@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cratous.core.kernel import Vec2
 from cratous.core.polygon import edges_of, locate
@@ -151,6 +151,42 @@ def looks_of(
     points = line[::2]
     gaps = (points**2).sum(axis=1) - 2 * wanted @ points.T
     return np.column_stack([places, heading, points[gaps.argmin(axis=1)]])
+
+
+def looks_over(places: np.ndarray, view: View | None, height_m: float) -> np.ndarray:
+    """Where the gimbal aims over an area: straight down, or where the wanted view looks.
+
+    places: north, east along a flight, two or more; one look each.
+    """
+    import numpy as np
+
+    steps = np.gradient(places, axis=0)
+    heading = np.arctan2(steps[:, 1], steps[:, 0])
+    n, e = aim(places[:, 0], places[:, 1], heading, view, height_m)
+    return np.column_stack([places, heading, n, e])
+
+
+def aim(north_m: Any, east_m: Any, heading_rad: Any, view: View | None, height_m: float) -> Any:
+    """The ground point (north, east) that a view looks at from a place; below it without one."""
+    import numpy as np
+
+    if view is None:
+        return north_m, east_m
+    away = view_distance_m(view, height_m)
+    bearing = view.azimuth_rad + (0.0 if view.inertial else 1.0) * heading_rad
+    return north_m + away * np.cos(bearing), east_m + away * np.sin(bearing)
+
+
+def elevation_rad(camera: Camera, view: View | None) -> float:
+    """Where the camera is tilted to for a view; straight down without one, as far as it goes."""
+    wanted = view.elevation_rad if view is not None else -math.pi / 2
+    return max(camera.min_elevation_rad, min(camera.max_elevation_rad, wanted))
+
+
+def sample_distance_m(camera: Camera, view: View | None, height_m: float) -> float:
+    """Ground sample distance across the middle of the image [m a pixel]; pixels must be known."""
+    slant = height_m / math.sin(-elevation_rad(camera, view))
+    return 2 * slant * math.tan(camera.hfov_rad / 2) / camera.pixels
 
 
 def view_distance_m(view: View | None, height_m: float) -> float:

@@ -81,6 +81,31 @@ def location(count: Count) -> int:
     return -1
 
 
+def left_of(p: Point, a: Point, b: Point) -> bool:
+    """p lies to the left of the line from a to b, or on it."""
+    return turn(a, b, p) >= 0
+
+
+def square_point_left_of(
+    a: Point, b: Point, centre: Point, half: float, u: float, v: float
+) -> bool:
+    """The point of a square at (u, v), both in [-1, 1], is left of the line a-b or on it.
+
+    The square has its sides along the axes; half: half of a side, at least 0.
+    """
+    return left_of(Point(centre.x + u * half, centre.y + v * half), a, b)
+
+
+def every_step(so_far: bool, here: bool) -> bool:
+    """One more place has been looked at: does it hold in all so far?"""
+    return so_far and here
+
+
+def every_result(so_far: bool) -> bool:
+    """Whether it holds everywhere."""
+    return so_far
+
+
 def common_point(p: Point, q: Point, a: Point, b: Point, s: float, t: float) -> bool:
     """The point of p-q at s and the point of a-b at t are the same point of both segments."""
     one, other = along(p, q, s), along(a, b, t)

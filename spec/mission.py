@@ -50,6 +50,8 @@ class Camera:
     min_azimuth_rad: float = -3.14159265
     max_azimuth_rad: float = 3.14159265
     wavelength: str = "AllAny"
+    pixels: int = 0
+    """How many pixels an image is wide; 0: not known."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +76,28 @@ class TaskKind(StrEnum):
     POINT_SEARCH = "point_search"
     MUST_FLY = "must_fly"
     LOITER = "loiter"
+    AREA_SEARCH = "area_search"
+    PATTERN_SEARCH = "pattern_search"
+
+
+SEARCHES = (
+    TaskKind.LINE_SEARCH,
+    TaskKind.POINT_SEARCH,
+    TaskKind.AREA_SEARCH,
+    TaskKind.PATTERN_SEARCH,
+)
+"""The kinds that are served by what cameras see."""
+AREAS = (TaskKind.AREA_SEARCH, TaskKind.PATTERN_SEARCH)
+"""The kinds of which a whole area has to be seen."""
+
+
+class Pattern(StrEnum):
+    """How a pattern search covers the surroundings of its point."""
+
+    SPIRAL = "spiral"
+    SQUARE = "square"
+    SECTOR = "sector"
+    SWEEP = "sweep"
 
 
 @dataclass(frozen=True)
@@ -81,12 +105,31 @@ class View:
     """From where the sensor looks at the target: boresight azimuth and elevation [rad].
 
     azimuth is clockwise from the direction of flight, or from north if `inertial`;
-    elevation is negative downwards. None as a view means: any.
+    elevation is negative downwards. None as a view means: any. azimuth_extent_rad: width of the
+    wedge of directions that will do, centred on azimuth; 0: that direction alone.
     """
 
     azimuth_rad: float
     elevation_rad: float
     inertial: bool = False
+    azimuth_extent_rad: float = 0.0
+
+
+@dataclass(frozen=True)
+class Loiter:
+    """A closed way around `centre`: `circular`, `racetrack` or `figure_eight`.
+
+    radius_m: of the turns (0: the vehicle's own); axis_rad: direction of the long axis, from
+    north; length_m: of a racetrack's straights, or between a figure-eight's turn centres (which
+    is at least 2 radius_m); direction: `clockwise`, `counter_clockwise` or `any`.
+    """
+
+    centre: Position
+    radius_m: float
+    shape: str = "circular"
+    axis_rad: float = 0.0
+    length_m: float = 0.0
+    direction: str = "any"
 
 
 @dataclass(frozen=True)
@@ -94,7 +137,13 @@ class Task:
     """One task. `eligible` empty means: every vehicle.
 
     points: the line (line_search), the target (point_search), the point to fly through
-    (must_fly) or the centre (loiter). duration_ms: loiter or dwell time. radius_m: loiter radius.
+    (must_fly), the centre (loiter, pattern_search) or the corners of a polygon (area_search).
+    duration_ms: loiter or dwell time. radius_m: loiter radius. views: what else will do besides
+    `view`. standoff_m: how near the aircraft may come to a point that it searches. loiter: the
+    way to fly in a loiter, or while looking at a point. gsd_m: coarsest ground sample distance
+    that will do [m a pixel], 0: any. sweep_rad: direction of an area's lanes, None: any;
+    start_point: where the search of an area has to begin. extent_m: a pattern reaches so far from
+    its centre: over a disc (spiral, sector), or a square (square, sweep).
     """
 
     id: int
@@ -106,6 +155,14 @@ class Task:
     radius_m: float = 0.0
     view: View | None = None
     wavelength: str = "AllAny"
+    views: tuple[View, ...] = ()
+    standoff_m: float = 0.0
+    loiter: Loiter | None = None
+    gsd_m: float = 0.0
+    sweep_rad: float | None = None
+    start_point: Position | None = None
+    pattern: Pattern | None = None
+    extent_m: float = 0.0
 
 
 class ZoneKind(StrEnum):

@@ -59,6 +59,7 @@ class PlanItem:
     end_ms: int
     end_heading_rad: float
     view_elevation_rad: float | None = None
+    view_azimuth_rad: float = 0.0
 
 
 class Row(NamedTuple):

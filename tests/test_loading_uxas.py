@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from math import degrees
 from pathlib import Path
@@ -38,7 +39,7 @@ def edit(path: Path, old: str, new: str) -> None:
 
 
 def small_assign(tmp_path: Path) -> Path:
-    """The second example without its area searches, which are not covered yet."""
+    """The second example without its area searches."""
     folder = copied(tmp_path, "assigntasks")
     request = folder / "inputs" / "AutomationRequest_All.xml"
     edit(request, "|(.(p1 +(p3 p5)) .(p2 p4 p6))", "|(.(p1 p3) .(p2 p4))")
@@ -76,10 +77,22 @@ def test_a_cfg_file_is_the_same_as_its_folder(waterway: Mission) -> None:
     assert (again.vehicles, again.tasks) == (waterway.vehicles, waterway.tasks)
 
 
-def test_a_task_type_that_is_not_covered() -> None:
-    with pytest.raises(BadInput, match="AreaSearchTask are not covered yet") as caught:
-        load(SHARED / "assigntasks")
-    assert "AreaSearchTask_5.xml" in caught.value.where
+def test_area_searches_of_an_example_are_read() -> None:
+    mission = load(SHARED / "assigntasks")
+    areas = [task for task in mission.tasks if task.kind is TaskKind.AREA_SEARCH]
+    assert [task.id for task in areas] == [5, 6]
+    assert all(len(task.points) >= 3 for task in areas)
+
+
+def test_a_task_type_that_is_not_covered(tmp_path: Path) -> None:
+    folder = copied(tmp_path, "assigntasks")
+    file = folder / "inputs" / "AreaSearchTask_5.xml"
+    edit(file, "AreaSearchTask", "CommRelayTask")
+    text = file.read_text(encoding="utf-8").replace('Series="CMASI"', 'Series="IMPACT"', 1)
+    file.write_text(re.sub("(?s)<SearchArea>.*?</SearchArea>", "", text), encoding="utf-8")
+    with pytest.raises(BadInput) as caught:
+        load(folder)
+    assert "AreaSearchTask_5.xml" in str(caught.value)
 
 
 def test_zones_of_the_operating_region(tmp_path: Path) -> None:

@@ -112,6 +112,8 @@ def _inside(places: list[tuple[float, float]], scale: Scale) -> list[tuple[float
 def _task(task: dict[str, Any], scale: Scale) -> dict[str, Any]:
     places = _places(task["points"])
     x, y = scale.xy(*places[0])
+    if task.get("kind") == "area_search":
+        places.append(places[0])
     return {
         "id": task["id"],
         "label": task["label"],
@@ -119,7 +121,7 @@ def _task(task: dict[str, Any], scale: Scale) -> dict[str, Any]:
         "y": y,
         "lone": len(places) == 1,
         "points": scale.line(places),
-        "radius": round(task["radius_m"] * scale.factor, 1),
+        "radius": round((task["radius_m"] or task.get("extent_m", 0.0)) * scale.factor, 1),
     }
 
 

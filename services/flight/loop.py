@@ -237,7 +237,8 @@ class _Flight:
             chain = self.executive.chains[vid]
             item = chain.item
             task = self.mission.task(item.task_id) if item is not None else None
-            target = None if chain.suspended else target_of(chain, task)
+            terrain_m = self.mission.frame.terrain_m
+            target = None if chain.suspended else target_of(chain, task, node.state, terrain_m)
             payloads = camera_states(
                 node.vehicle, node.state, target, self.projection, self.mission.frame
             )

@@ -11,20 +11,60 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import location
 from cratous.services.flight.dynamics import AirState, clamp, wrap
 from cratous.services.frames import Projection
-from cratous.services.sensor import footprint
-from cratous.spec.mission import Frame, Position, Task, TaskKind, Vehicle
+from cratous.services.sensor import aim, footprint
+from cratous.spec.mission import AREAS, Frame, Position, Task, TaskKind, Vehicle, View
 
 
-def target_of(chain: Chain, task: Task | None) -> Position | None:
-    """The ground point to look at: on the line, as far along it as the path is flown."""
+def target_of(
+    chain: Chain, task: Task | None, state: AirState, terrain_m: float
+) -> Position | None:
+    """The ground point to look at: on the line, as far along it as the path is flown; the point;
+    or, over an area, below the aircraft or where the task's view looks."""
     if task is None or chain.phase is not Phase.TASK or not task.points:
         return None
     if task.kind is TaskKind.LINE_SEARCH:
-        line = Track(task.points)
+        line = Track(_as_flown(chain, task.points))
         return line.at(line.length_m * chain.served())
     if task.kind is TaskKind.POINT_SEARCH:
         return task.points[0]
+    if task.kind in AREAS:
+        p = state.position
+        view = chosen_view(chain, task)
+        n, e = aim(p.north_m, p.east_m, state.heading_rad, view, p.alt_m - terrain_m)
+        return Position(float(n), float(e), terrain_m)
     return None
+
+
+def chosen_view(chain: Chain, task: Task) -> View | None:
+    """The view for which the flown option was made: of several, the one with its elevation."""
+    item = chain.item
+    if item is None or item.view_elevation_rad is None or not task.views:
+        return task.view
+    wanted = (item.view_elevation_rad, item.view_azimuth_rad)
+    views = [view for view in (task.view, *task.views) if view is not None]
+    return min(
+        views,
+        key=lambda v: (
+            abs(v.elevation_rad - wanted[0])
+            + abs(math.remainder(v.azimuth_rad - wanted[1], 2 * math.pi))
+        ),
+    )
+
+
+def _as_flown(chain: Chain, points: tuple[Position, ...]) -> tuple[Position, ...]:
+    """A line in the direction in which the chosen path follows it."""
+    assert chain.item is not None
+    line, path = Track(points), Track(chain.item.path)
+
+    def apart_m(backward: bool) -> float:
+        total = 0.0
+        for share in (0.0, 0.2, 0.4, 0.6, 0.8, 1.0):
+            a = line.at(line.length_m * (1 - share if backward else share))
+            b = path.at(path.length_m * share)
+            total += math.hypot(a.north_m - b.north_m, a.east_m - b.east_m)
+        return total
+
+    return points[::-1] if min((False, True), key=apart_m) else points
 
 
 def camera_states(

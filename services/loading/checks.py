@@ -16,11 +16,16 @@ from cratous.core.kernel import Vec2
 from cratous.core.polygon import edges_of, keep_in_leg_ok, keep_out_leg_ok, locate
 from cratous.services.loading.polygons import polygon_problem
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Mission, Position, TaskKind, Zone, ZoneKind
+from cratous.spec.mission import Mission, Pattern, Position, TaskKind, Zone, ZoneKind
 
 Where = Callable[[str], str]
 MAX_REACH_M = 100_000.0
-ONE_POINT = (TaskKind.POINT_SEARCH, TaskKind.MUST_FLY, TaskKind.LOITER)
+ONE_POINT = (
+    TaskKind.POINT_SEARCH,
+    TaskKind.MUST_FLY,
+    TaskKind.LOITER,
+    TaskKind.PATTERN_SEARCH,
+)
 
 
 def mission_problems(mission: Mission, where: Where) -> list[BadInput]:
@@ -96,6 +101,34 @@ def _tasks(mission: Mission, where: Where) -> Iterator[BadInput]:
                 expected="2 or more different points",
                 got=f"{len(set(task.points))}",
             )
+        if task.kind == TaskKind.AREA_SEARCH:
+            problem = polygon_problem([point[:2] for point in task.points])
+            if problem:
+                yield BadInput(
+                    f"the area of task {task.id} is not a valid polygon: {problem}",
+                    where=where(item),
+                    item=item,
+                    expected="a simple polygon, edges meeting only at shared corners",
+                    got=problem,
+                )
+        if task.kind == TaskKind.PATTERN_SEARCH and task.pattern is None:
+            item = f"tasks[{k}].pattern"
+            yield BadInput(
+                "a pattern_search task needs a pattern",
+                where=where(item),
+                item=item,
+                expected="one of " + ", ".join(Pattern),
+                got="none",
+            )
+        if task.kind == TaskKind.PATTERN_SEARCH and not task.extent_m > 0:
+            item = f"tasks[{k}].extent_m"
+            yield BadInput(
+                "a pattern_search task needs an extent",
+                where=where(item),
+                item=item,
+                expected="more than 0 m",
+                got=f"{task.extent_m:g} m",
+            )
         if task.kind == TaskKind.LOITER and task.duration_ms <= 0:
             item = f"tasks[{k}].duration_s"
             yield BadInput(
@@ -136,6 +169,10 @@ def _points(mission: Mission) -> Iterator[tuple[str, tuple[float, ...]]]:
     for k, task in enumerate(mission.tasks):
         for j, point in enumerate(task.points):
             yield f"tasks[{k}].points[{j}]", point
+        if task.start_point is not None:
+            yield f"tasks[{k}].start", task.start_point
+        if task.loiter is not None:
+            yield f"tasks[{k}].loiter.centre", task.loiter.centre
     for k, zone in enumerate(mission.zones):
         for j, vertex in enumerate(zone.vertices):
             yield f"zones[{k}].vertices[{j}]", vertex

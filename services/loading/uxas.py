@@ -17,6 +17,8 @@ from cratous.services.loading.checks import too_many_instances
 from cratous.services.loading.document import item_key
 from cratous.services.loading.places import Places
 from cratous.services.loading.uxas_cfg import Configuration, Sent, read_cfg
+from cratous.services.loading.uxas_tasks import Interests
+from cratous.services.loading.uxas_tasks import task as read_task
 from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR, finish
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Daa, Frame, Mission, Task, Vehicle
@@ -93,6 +95,7 @@ class _Cast:
         self.zones: dict[int, Sent] = {}
         self.regions: dict[int, Sent] = {}
         self.requests: list[Sent] = []
+        self.interests = Interests()
         other: list[str] = []
         for sent in cfg.messages:
             body, kind = sent.body, type(sent.body).__name__
@@ -102,6 +105,8 @@ class _Cast:
                 self.states[body.ID] = sent
             elif kind in ("KeepInZone", "KeepOutZone"):
                 self.zones[body.ZoneID] = sent
+            elif self.interests.add(sent):
+                continue
             elif kind == "OperatingRegion":
                 self.regions[body.ID] = sent
             elif kind == "AutomationRequest":
@@ -194,7 +199,7 @@ def _tasks(
                 got=str(number),
             )
         sources[f"tasks[{k}]"] = cast.tasks[number].where
-        task = parts.task(cast.tasks[number], places, vehicles, notes)
+        task = read_task(cast.tasks[number], places, vehicles, notes, cast.interests)
         found.append(_eligible(task, cast, vehicles, f"tasks[{k}].eligible", sources))
     return tuple(_named_only(found, request, notes))
 

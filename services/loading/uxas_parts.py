@@ -1,4 +1,4 @@
-"""Single CMASI objects (vehicle, task, zone) as parts of a `Mission`."""
+"""Single CMASI objects (vehicle, zone, place, shape) as parts of a `Mission`."""
 
 from __future__ import annotations
 
@@ -11,16 +11,10 @@ from cratous.services.loading.places import Places, msl
 from cratous.services.loading.polygons import circle, rectangle
 from cratous.services.loading.uxas_cfg import Sent
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Camera, Position, Task, TaskKind, Vehicle, View, Zone, ZoneKind
+from cratous.spec.mission import Camera, Position, Vehicle, Zone, ZoneKind
 
 DEFAULT_CLIMB_M_S = 5.0
 UNBOUNDED_M = (-1000.0, 100_000.0)
-TASK_KINDS = {
-    "LineSearchTask": TaskKind.LINE_SEARCH,
-    "PointSearchTask": TaskKind.POINT_SEARCH,
-    "MustFlyTask": TaskKind.MUST_FLY,
-    "LoiterTask": TaskKind.LOITER,
-}
 
 
 def safe_name(text: str) -> str:
@@ -40,7 +34,7 @@ def locations(body: Any) -> Iterator[tuple[float, float]]:
             yield from locations(getattr(body, name))
 
 
-def _point(location: Any, places: Places, sent: Sent, item: str) -> Position:
+def point(location: Any, places: Places, sent: Sent, item: str) -> Position:
     if location is None:
         raise BadInput("a place is missing", where=sent.where, item=item, expected="a Location3D")
     values = (location.Latitude, location.Longitude, location.Altitude)
@@ -85,7 +79,7 @@ def vehicle(configuration: Sent, state: Sent, places: Places, notes: list[str]) 
             got=f"{bank:g}",
         )
     speed = body.NominalSpeed if body.NominalSpeed > 0 else profile.Airspeed
-    position = _point(state.body.Location, places, state, "Location")
+    position = point(state.body.Location, places, state, "Location")
     nominal = msl(
         body.NominalAltitude,
         body.NominalAltitudeType.name,
@@ -140,81 +134,10 @@ def _cameras(configuration: Any, state: Any) -> tuple[Camera, ...]:
                     min_azimuth_rad=radians(gimbal.MinAzimuth),
                     max_azimuth_rad=radians(gimbal.MaxAzimuth),
                     wavelength=camera.SupportedWavelengthBand.name,
+                    pixels=int(width),
                 )
             )
     return tuple(found)
-
-
-def task(sent: Sent, places: Places, vehicles: tuple[Vehicle, ...], notes: list[str]) -> Task:
-    """A task; BadInput that names the type if it is not covered yet."""
-    body, kind = sent.body, type(sent.body).__name__
-    if kind not in TASK_KINDS:
-        raise BadInput(
-            f"tasks of type {kind} are not covered yet",
-            where=sent.where,
-            item=f"task {body.TaskID}",
-            expected="one of " + ", ".join(TASK_KINDS),
-            got=kind,
-        )
-    points: tuple[Position, ...]
-    duration_ms, radius_m, view, wavelength = 0, 0.0, None, "AllAny"
-    if kind == "LineSearchTask":
-        points = tuple(
-            _point(place, places, sent, f"PointList[{k}]") for k, place in enumerate(body.PointList)
-        )
-        view = _view(body, body.UseInertialViewAngles, notes)
-    elif kind == "PointSearchTask":
-        points = (_point(body.SearchLocation, places, sent, "SearchLocation"),)
-        view = _view(body, True, notes)
-        if body.StandoffDistance > 0:
-            raise BadInput(
-                "a standoff distance is not covered yet",
-                where=sent.where,
-                item="StandoffDistance",
-                expected="0",
-                got=f"{body.StandoffDistance:g}",
-            )
-    elif kind == "MustFlyTask":
-        points = (_point(body.Position, places, sent, "Position"),)
-        if not body.UseAltitude:
-            able = [
-                v for v in vehicles if not body.EligibleEntities or v.id in body.EligibleEntities
-            ]
-            height = (able or list(vehicles))[0].position.alt_m
-            points = (points[0]._replace(alt_m=height),)
-            notes.append(f"task {body.TaskID} uses no altitude: {height:g} m MSL is taken")
-    else:
-        action = body.DesiredAction
-        points = (_point(action and action.Location, places, sent, "DesiredAction.Location"),)
-        duration_ms, radius_m = int(action.Duration), float(action.Radius)
-    if kind.endswith("SearchTask"):
-        duration_ms = int(body.DwellTime)
-        bands = [band.name for band in body.DesiredWavelengthBands]
-        wavelength = bands[0] if len(bands) == 1 else "AllAny"
-        if len(bands) > 1:
-            notes.append(f"task {body.TaskID}: any of the bands {', '.join(bands)} will do")
-    return Task(
-        id=body.TaskID,
-        kind=TASK_KINDS[kind],
-        label=body.Label or f"task {body.TaskID}",
-        points=points,
-        eligible=tuple(body.EligibleEntities),
-        duration_ms=duration_ms,
-        radius_m=radius_m,
-        view=view,
-        wavelength=wavelength,
-    )
-
-
-def _view(body: Any, inertial: bool, notes: list[str]) -> View | None:
-    """The centreline of the first wedge; None means any direction."""
-    wedges = list(body.ViewAngleList)
-    if not wedges:
-        return None
-    if len(wedges) > 1:
-        notes.append(f"task {body.TaskID}: the first of {len(wedges)} view angles is used")
-    first = wedges[0]
-    return View(radians(first.AzimuthCenterline), radians(first.VerticalCenterline), bool(inertial))
 
 
 def zone(sent: Sent, places: Places, terrain_m: float, notes: list[str]) -> Zone:
@@ -247,11 +170,18 @@ def zone(sent: Sent, places: Places, terrain_m: float, notes: list[str]) -> Zone
 def _vertices(
     sent: Sent, kind: ZoneKind, places: Places, notes: list[str]
 ) -> tuple[tuple[float, float], ...]:
-    shape = sent.body.Boundary
-    name = type(shape).__name__
-    if name == "Polygon":
+    name, outside = f"zone {sent.body.ZoneID}", kind == ZoneKind.KEEP_OUT
+    return corners_of(sent.body.Boundary, sent, "Boundary", name, places, notes, outside=outside)
+
+
+def corners_of(
+    shape: Any, sent: Sent, item: str, name: str, places: Places, notes: list[str], *, outside: bool
+) -> tuple[tuple[float, float], ...]:
+    """Corners of a Polygon, Rectangle or Circle; a circle's polygon lies around it if `outside`."""
+    kind = type(shape).__name__
+    if kind == "Polygon":
         corners = [
-            _point(place, places, sent, f"Boundary.BoundaryPoints[{k}]")[:2]
+            point(place, places, sent, f"{item}.BoundaryPoints[{k}]")[:2]
             for k, place in enumerate(shape.BoundaryPoints)
         ]
         if (
@@ -259,26 +189,26 @@ def _vertices(
             and hypot(corners[0][0] - corners[-1][0], corners[0][1] - corners[-1][1]) < 1e-6
         ):
             corners.pop()
-            notes.append(f"zone {sent.body.ZoneID} is closed by its first point: read once")
+            notes.append(f"{name} is closed by its first point: read once")
         return tuple(corners)
-    if name not in ("Rectangle", "Circle"):
+    if kind not in ("Rectangle", "Circle"):
         raise BadInput(
-            "a zone without a shape",
+            f"{name} has no shape",
             where=sent.where,
-            item="Boundary",
+            item=item,
             expected="a Polygon, Rectangle or Circle",
-            got=name,
+            got="nothing" if shape is None else kind,
         )
-    centre = _point(shape.CenterPoint, places, sent, "Boundary.CenterPoint")[:2]
-    sizes = (shape.Width, shape.Height) if name == "Rectangle" else (shape.Radius,)
+    centre = point(shape.CenterPoint, places, sent, f"{item}.CenterPoint")[:2]
+    sizes = (shape.Width, shape.Height) if kind == "Rectangle" else (shape.Radius,)
     if not all(isfinite(size) and size > 0 for size in sizes):
         raise BadInput(
-            "a zone without a size",
+            f"{name} has no size",
             where=sent.where,
-            item="Boundary",
+            item=item,
             expected="more than 0 m",
             got=", ".join(f"{size:g} m" for size in sizes),
         )
-    if name == "Rectangle":
+    if kind == "Rectangle":
         return tuple(rectangle(centre, shape.Width, shape.Height, radians(shape.Rotation)))
-    return tuple(circle(centre, shape.Radius, outside=kind == ZoneKind.KEEP_OUT))
+    return tuple(circle(centre, shape.Radius, outside=outside))

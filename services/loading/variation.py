@@ -92,14 +92,22 @@ def _turned_task(task: Task, at: tuple[float, float], turns: dict[int, float]) -
     if len(task.eligible) != 1 or task.eligible[0] not in turns:
         return task
     turn = turns[task.eligible[0]]
-    points = []
-    for point in task.points:
+
+    def turned(point: Position) -> Position:
         north, east = point.north_m - at[0], point.east_m - at[1]
-        points.append(
-            Position(
-                at[0] + north * cos(turn) - east * sin(turn),
-                at[1] + north * sin(turn) + east * cos(turn),
-                point.alt_m,
-            )
+        return Position(
+            at[0] + north * cos(turn) - east * sin(turn),
+            at[1] + north * sin(turn) + east * cos(turn),
+            point.alt_m,
         )
-    return replace(task, points=tuple(points))
+
+    loiter, start, sweep = task.loiter, task.start_point, task.sweep_rad
+    if loiter is not None:
+        loiter = replace(loiter, centre=turned(loiter.centre), axis_rad=loiter.axis_rad + turn)
+    return replace(
+        task,
+        points=tuple(turned(point) for point in task.points),
+        loiter=loiter,
+        start_point=None if start is None else turned(start),
+        sweep_rad=None if sweep is None else sweep + turn,
+    )

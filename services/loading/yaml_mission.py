@@ -18,6 +18,7 @@ from cratous.services.loading.places import Places
 from cratous.services.loading.polygons import padded
 from cratous.services.loading.problems import refuse
 from cratous.services.loading.schema import schema_problems
+from cratous.services.loading.yaml_task import yaml_task
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import (
     Camera,
@@ -25,12 +26,9 @@ from cratous.spec.mission import (
     Frame,
     Mission,
     Simulation,
-    Task,
-    TaskKind,
     Traffic,
     Vehicle,
     Velocity,
-    View,
     WellClear,
     Zone,
     ZoneKind,
@@ -97,7 +95,9 @@ def _mission(document: Document, seed: int) -> Mission:
         source=document.path,
         frame=frame,
         vehicles=vehicles,
-        tasks=tuple(_task(entry, places) for entry in data["tasks"]),
+        tasks=tuple(
+            yaml_task(entry, places, document.where, k) for k, entry in enumerate(data["tasks"])
+        ),
         daa=_daa(data.get("daa", {})),
         zones=tuple(_zone(entry, places) for entry in data.get("zones", [])),
         traffic=tuple(_traffic(entry, places) for entry in data.get("traffic", [])),
@@ -138,33 +138,14 @@ def _vehicle(data: dict[str, Any], places: Places) -> Vehicle:
 
 def _camera(data: dict[str, Any]) -> Camera:
     found: dict[str, Any] = {
-        name: data[name] for name in ("payload_id", "aspect", "wavelength") if name in data
+        name: data[name]
+        for name in ("payload_id", "aspect", "wavelength", "pixels")
+        if name in data
     }
     for name, value in data.items():
         if name.endswith("_deg"):
             found[f"{name.removesuffix('_deg')}_rad"] = radians(float(value))
     return Camera(**found)
-
-
-def _task(data: dict[str, Any], places: Places) -> Task:
-    view = data.get("view")
-    return Task(
-        id=int(data["id"]),
-        kind=TaskKind(data["kind"]),
-        label=data.get("label", f"task {data['id']}"),
-        points=tuple(places.position(point) for point in data["points"]),
-        eligible=tuple(int(number) for number in data.get("eligible", [])),
-        duration_ms=round(float(data.get("duration_s", 0)) * 1000),
-        radius_m=float(data.get("radius_m", 0.0)),
-        view=None
-        if view is None
-        else View(
-            radians(float(view["azimuth_deg"])),
-            radians(float(view["elevation_deg"])),
-            view.get("inertial", False),
-        ),
-        wavelength=data.get("wavelength", "AllAny"),
-    )
 
 
 def _zone(data: dict[str, Any], places: Places) -> Zone:

@@ -6,17 +6,20 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from cratous.core.dubins import turn_radius_m
 from cratous.core.well_clear import dips_to_zero
 from cratous.services.monitor.coverage import CoverageWatch
 from cratous.services.monitor.samples import Sample
 from cratous.spec.guarantees import Kind, Outcome, Verdict
-from cratous.spec.mission import Mission, Position, TaskKind
+from cratous.spec.mission import AREAS, SEARCHES, Loiter, Mission, Position, Task, TaskKind
 from cratous.spec.plan import Plan
 
 SERVED = 0.99
 """A search is served when the footprints covered at least this fraction of its line or point."""
 
 
+BANK_RESERVE = 1.1
+"""A loiter without a radius is flown this much wider than the vehicle's tightest turn."""
 CAPTURE_M = 50.0
 """A point is flown through within this distance, and a loiter kept within it of its circle [m]."""
 
@@ -31,6 +34,7 @@ class Doing:
     failed: str = ""
     near_ms: int = 0
     touched: bool = False
+    too_near: bool = False
 
 
 class CompletionWatch:
@@ -39,6 +43,7 @@ class CompletionWatch:
     def __init__(self, mission: Mission, plan: Plan) -> None:
         self._coverage = CoverageWatch(mission)
         self._kinds = {task.id: task for task in mission.tasks}
+        self._vehicles = {vehicle.id: vehicle for vehicle in mission.vehicles}
         self._step_ms = mission.simulation.step_ms
         self._tasks = {item.task_id: Doing(item.vehicle_id) for item in plan.items}
         self._outcome: str | None = None
@@ -75,11 +80,25 @@ class CompletionWatch:
             task, who = self._kinds[number], doing.vehicle
             if not doing.active or who not in before or who not in after:
                 continue
+            if task.standoff_m:
+                leg = before[who], after[who]
+                doing.too_near |= comes_near(*leg, task.points[0], task.standoff_m)
             if task.kind in (TaskKind.MUST_FLY, TaskKind.LOITER):
-                reach = CAPTURE_M + (task.radius_m if task.kind is TaskKind.LOITER else 0.0)
-                if comes_near(before[who], after[who], task.points[0], reach):
+                reach = CAPTURE_M + self._size_m(task, who)
+                if comes_near(before[who], after[who], centre_of(task), reach):
                     doing.touched = True
                     doing.near_ms += after[who].time_ms - before[who].time_ms
+
+    def _size_m(self, task: Task, vehicle: int) -> float:
+        """How far from its centre a loiter reaches; 0 for the point of a must-fly."""
+        if task.kind is not TaskKind.LOITER:
+            return 0.0
+        who = self._vehicles[vehicle]
+        loiter = task.loiter or Loiter(task.points[0], task.radius_m)
+        radius = loiter.radius_m or BANK_RESERVE * turn_radius_m(who.speed_m_s, who.max_bank_rad)
+        if loiter.shape == "figure_eight":
+            return radius + max(loiter.length_m / 2, radius)
+        return radius + (loiter.length_m / 2 if loiter.shape == "racetrack" else 0.0)
 
     def end(self, body: Any) -> None:
         """The mission ended."""
@@ -126,12 +145,14 @@ class CompletionWatch:
             margin=margin,
             unit="% of the search" if margin is not None else "",
             checks=1,
-            method="locate on footprints" if covered is not None else "dips_to_zero",
+            method=_method(self._kinds[task]),
         )
 
     def _missed(self, number: int) -> str:
         """What a must-fly or loiter task lacks to be served; empty if nothing."""
         task, doing = self._kinds[number], self._tasks[number]
+        if doing.too_near:
+            return f"came within the standoff of {task.standoff_m:g} m"
         if task.kind in (TaskKind.MUST_FLY, TaskKind.LOITER) and not doing.touched:
             return f"its point was never within {CAPTURE_M:g} m of what the task asks"
         # the first and the last step of a loiter are not counted in full
@@ -139,6 +160,17 @@ class CompletionWatch:
         if task.kind is TaskKind.LOITER and lacking > 0:
             return f"loitered {doing.near_ms / 1000:.2f} of {task.duration_ms / 1000:.2f} s"
         return ""
+
+
+def _method(task: Task) -> str:
+    if task.kind in AREAS:
+        return "square_within on footprints"
+    return "locate on footprints" if task.kind in SEARCHES else "dips_to_zero"
+
+
+def centre_of(task: Task) -> Position:
+    """The point of a must-fly, or the centre of a loiter."""
+    return task.loiter.centre if task.loiter is not None else task.points[0]
 
 
 def comes_near(before: Sample, after: Sample, point: Position, reach_m: float) -> bool:

@@ -1,7 +1,9 @@
 """How much of a search the sensors saw: from the footprints that the vehicles reported.
 
 A point of a line (sampled at most 10 m apart) or the one point of a point search is seen when it
-lies in a reported footprint or on its edge, by the kernel `locate`.
+lies in a reported footprint or on its edge, by the kernel `locate`. An area is cut into squares;
+one is seen when all of it lies in one footprint, by the kernel `square_within`, and those that are
+not count in full against the search: the fraction given is a lower bound.
 """
 
 from __future__ import annotations
@@ -10,10 +12,18 @@ import math
 from itertools import pairwise
 from typing import Any
 
+from cratous.core.coverage import (
+    area_m2,
+    outline,
+    seen_squares,
+    share_covered,
+    square_side_m,
+    squares,
+)
 from cratous.core.kernel import Vec2
 from cratous.core.polygon import edges_of, locate
 from cratous.services.frames import Projection
-from cratous.spec.mission import Mission, Task, TaskKind
+from cratous.spec.mission import AREAS, SEARCHES, Mission, Task
 
 SAMPLE_M = 10.0
 
@@ -33,19 +43,43 @@ def sample(task: Task) -> list[tuple[float, float]]:
     return [*found, corners[-1]]
 
 
+class _Area:
+    """The squares of one area that nobody has seen yet."""
+
+    def __init__(self, task: Task) -> None:
+        import numpy as np
+
+        vertices = outline(task)
+        self._area_m2, self._side_m = area_m2(vertices), square_side_m(vertices)
+        self._left = np.array(squares(vertices, self._side_m))
+
+    def look(self, corners: list[tuple[float, float]]) -> None:
+        """A footprint (north, east) takes away the squares within it."""
+        import numpy as np
+
+        if len(self._left):
+            seen = seen_squares(self._left, self._side_m, corners)
+            self._left = np.delete(self._left, seen, axis=0)
+
+    def fraction(self) -> float:
+        """At least this much has been seen."""
+        return share_covered(len(self._left), self._side_m, self._area_m2)
+
+
 class CoverageWatch:
     """What has been seen of every search task."""
 
     def __init__(self, mission: Mission) -> None:
         self._projection = Projection(mission.frame)
-        kinds = (TaskKind.LINE_SEARCH, TaskKind.POINT_SEARCH)
-        self._unseen = {t.id: sample(t) for t in mission.tasks if t.kind in kinds}
+        searches = [t for t in mission.tasks if t.kind in SEARCHES]
+        self._areas = {t.id: _Area(t) for t in searches if t.kind in AREAS}
+        self._unseen = {t.id: sample(t) for t in searches if t.kind not in AREAS}
         self._total = {task: len(points) for task, points in self._unseen.items()}
 
     def state(self, body: Any, active: list[int]) -> None:
         """A vehicle's state with its payloads, while it was doing the `active` tasks."""
         for task in active:
-            if not self._unseen.get(task):
+            if task not in self._areas and not self._unseen.get(task):
                 continue
             for payload in body.PayloadStateList:
                 corners = getattr(payload, "Footprint", None)
@@ -54,6 +88,9 @@ class CoverageWatch:
 
     def _look(self, task: int, corners: list[tuple[float, float]]) -> None:
         quad = [self._projection.to_local(*corner) for corner in corners]
+        if task in self._areas:
+            self._areas[task].look(quad)
+            return
         low = [min(p[k] for p in quad) for k in (0, 1)]
         high = [max(p[k] for p in quad) for k in (0, 1)]
         edges = edges_of(quad)
@@ -66,6 +103,8 @@ class CoverageWatch:
 
     def fraction(self, task: int) -> float | None:
         """Fraction seen so far; None for a task that is no search."""
+        if task in self._areas:
+            return self._areas[task].fraction()
         if task not in self._total:
             return None
         return 1 - len(self._unseen[task]) / self._total[task]

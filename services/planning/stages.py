@@ -200,6 +200,7 @@ def build(
                 end_ms=placed.end_ms,
                 end_heading_rad=option.end.heading_rad,
                 view_elevation_rad=option.view_elevation_rad,
+                view_azimuth_rad=option.view_azimuth_rad,
             )
         )
         at[placed.vehicle] = placed.candidate

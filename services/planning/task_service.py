@@ -10,7 +10,8 @@ from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
 from cratous.services.frames import compass
 from cratous.services.planning.desk import Desk
-from cratous.services.planning.options import Option, camera_for
+from cratous.services.planning.flyers import camera_for
+from cratous.services.planning.options import Option
 from cratous.services.planning.stages import hold_of
 from cratous.spec.mission import Task, TaskKind
 from cratous.spec.plan import Hold
@@ -20,6 +21,8 @@ NAMES = {
     TaskKind.POINT_SEARCH: "CmasiPointSearchTaskService",
     TaskKind.MUST_FLY: "MustFlyTaskService",
     TaskKind.LOITER: "LoiterTaskService",
+    TaskKind.AREA_SEARCH: "CmasiAreaSearchTaskService",
+    TaskKind.PATTERN_SEARCH: "PatternSearchTaskService",
 }
 
 Pending = dict[tuple[int, int], Any]
@@ -127,13 +130,12 @@ class TaskService:
         actions: list[Any] = []
         if option.view_elevation_rad is not None:
             camera = camera_for(self._task, option.flyer.cameras)
-            view = self._task.view
             actions.append(
                 lmcp.new(
                     "GimbalAngleAction",
                     AssociatedTaskList=[self._task.id],
                     PayloadID=camera.payload_id if camera else 0,
-                    Azimuth=math.degrees(view.azimuth_rad) if view else 0.0,
+                    Azimuth=math.degrees(option.view_azimuth_rad),
                     Elevation=math.degrees(option.view_elevation_rad),
                 )
             )

@@ -1,0 +1,310 @@
+"""CMASI and IMPACT tasks as tasks of a `Mission`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from math import isfinite, radians
+from typing import Any
+
+from cratous.services.loading.places import Places
+from cratous.services.loading.uxas_cfg import Sent
+from cratous.services.loading.uxas_parts import corners_of, point
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Loiter, Pattern, Position, Task, TaskKind, Vehicle, View
+
+SHAPES = {
+    "VehicleDefault": "circular",
+    "Circular": "circular",
+    "Racetrack": "racetrack",
+    "FigureEight": "figure_eight",
+}
+DIRECTIONS = {
+    "VehicleDefault": "any",
+    "Clockwise": "clockwise",
+    "CounterClockwise": "counter_clockwise",
+}
+PATTERNS = {"Spiral": Pattern.SPIRAL, "Sector": Pattern.SECTOR, "Sweep": Pattern.SWEEP}
+
+
+@dataclass(frozen=True)
+class Interests:
+    """Points, lines and areas of interest by id, which IMPACT tasks name."""
+
+    points: dict[int, Sent] = field(default_factory=dict)
+    lines: dict[int, Sent] = field(default_factory=dict)
+    areas: dict[int, Sent] = field(default_factory=dict)
+
+    def add(self, sent: Sent) -> bool:
+        """Keep the message if it is one of them."""
+        kind = type(sent.body).__name__
+        if kind == "PointOfInterest":
+            self.points[sent.body.PointID] = sent
+        elif kind == "LineOfInterest":
+            self.lines[sent.body.LineID] = sent
+        elif kind == "AreaOfInterest":
+            self.areas[sent.body.AreaID] = sent
+        else:
+            return False
+        return True
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """One task message with everything that its reading needs."""
+
+    sent: Sent
+    places: Places
+    vehicles: tuple[Vehicle, ...]
+    interests: Interests
+    notes: list[str]
+
+    @property
+    def body(self) -> Any:
+        return self.sent.body
+
+    @property
+    def name(self) -> str:
+        return f"task {self.body.TaskID}"
+
+    def point(self, location: Any, item: str) -> Position:
+        return point(location, self.places, self.sent, item)
+
+    def refused(self, what: str, item: str, expected: str, got: str) -> BadInput:
+        return BadInput(what, where=self.sent.where, item=item, expected=expected, got=got)
+
+    def named(self, known: Mapping[int, Sent], number: int, item: str, kind: str) -> Any:
+        """The point, line or area of interest with this id."""
+        if number not in known:
+            raise self.refused(
+                f"{self.name} names a {kind} of interest that does not exist",
+                item,
+                "one of " + (", ".join(map(str, sorted(known))) or "none"),
+                str(number),
+            )
+        return known[number].body
+
+
+def task(
+    sent: Sent,
+    places: Places,
+    vehicles: tuple[Vehicle, ...],
+    notes: list[str],
+    interests: Interests,
+) -> Task:
+    """A task; BadInput that names the type if it is not covered."""
+    body, kind = sent.body, type(sent.body).__name__
+    if kind not in READERS:
+        raise BadInput(
+            f"tasks of type {kind} are not covered",
+            where=sent.where,
+            item=f"task {body.TaskID}",
+            expected="one of " + ", ".join(READERS),
+            got=kind,
+        )
+    reading = _Reading(sent, places, vehicles, interests, notes)
+    found: dict[str, Any] = READERS[kind](reading)
+    if kind.endswith("SearchTask"):
+        found = {**_search(reading, found["kind"]), **found}
+    return Task(
+        id=body.TaskID,
+        label=body.Label or reading.name,
+        eligible=tuple(body.EligibleEntities),
+        **found,
+    )
+
+
+def _search(reading: _Reading, kind: TaskKind) -> dict[str, Any]:
+    """What all search tasks say: dwell, wavelength, ground sample distance."""
+    body, notes = reading.body, reading.notes
+    bands = [band.name for band in body.DesiredWavelengthBands]
+    if len(bands) > 1:
+        notes.append(f"{reading.name}: any of the bands {', '.join(bands)} will do")
+    gsd = float(body.GroundSampleDistance)
+    if not (isfinite(gsd) and gsd >= 0):
+        raise reading.refused(
+            f"{reading.name} has no ground sample distance",
+            "GroundSampleDistance",
+            "0 or more meters a pixel",
+            f"{gsd:g}",
+        )
+    if body.DwellTime > 0 and kind is not TaskKind.POINT_SEARCH:
+        notes.append(f"{reading.name}: its dwell of {body.DwellTime} ms at any point is not held")
+    return {
+        "duration_ms": int(body.DwellTime),
+        "wavelength": bands[0] if len(bands) == 1 else "AllAny",
+        "gsd_m": gsd,
+    }
+
+
+def _views(reading: _Reading, inertial: bool) -> dict[str, Any]:
+    """The wedges, any of which will do, by their centrelines; none means any direction."""
+    found = [
+        View(
+            radians(wedge.AzimuthCenterline),
+            radians(wedge.VerticalCenterline),
+            bool(inertial),
+            radians(wedge.AzimuthExtent),
+        )
+        for wedge in reading.body.ViewAngleList
+    ]
+    return {"view": found[0] if found else None, "views": tuple(found[1:])}
+
+
+def _line(reading: _Reading) -> dict[str, Any]:
+    body = reading.body
+    if type(body).__name__ == "ImpactLineSearchTask":
+        places = reading.named(reading.interests.lines, body.LineID, "LineID", "line").Line
+        item = f"line {body.LineID}"
+    else:
+        places, item = body.PointList, "PointList"
+    points = tuple(reading.point(place, f"{item}[{k}]") for k, place in enumerate(places))
+    views = _views(reading, body.UseInertialViewAngles)
+    return {"kind": TaskKind.LINE_SEARCH, "points": points, **views}
+
+
+def _place(reading: _Reading) -> Position:
+    """The point of interest that an IMPACT task names, else the coordinates that it gives."""
+    body, number = reading.body, reading.body.SearchLocationID
+    if number and (number in reading.interests.points or body.SearchLocation is None):
+        known = reading.interests.points
+        place = reading.named(known, number, "SearchLocationID", "point")
+        return reading.point(place.Location, f"point {number}")
+    return reading.point(body.SearchLocation, "SearchLocation")
+
+
+def _point(reading: _Reading) -> dict[str, Any]:
+    body = reading.body
+    impact = type(body).__name__ == "ImpactPointSearchTask"
+    place = _place(reading) if impact else reading.point(body.SearchLocation, "SearchLocation")
+    standoff = float(body.StandoffDistance)
+    if not (isfinite(standoff) and standoff >= 0):
+        raise reading.refused(
+            f"{reading.name} has no standoff",
+            "StandoffDistance",
+            "0 or more meters",
+            f"{standoff:g}",
+        )
+    found = {
+        "kind": TaskKind.POINT_SEARCH,
+        "points": (place,),
+        "standoff_m": standoff,
+        **_views(reading, True),
+    }
+    if impact and body.DesiredAction is not None:
+        loiter, duration_ms = _action(reading)
+        dwell = max(duration_ms, int(body.DwellTime))
+        found.update(loiter=loiter, duration_ms=dwell)
+    return found
+
+
+def _action(reading: _Reading) -> tuple[Loiter, int]:
+    """The loiter that a task desires, and for how long [ms]."""
+    action = reading.body.DesiredAction
+    item = "DesiredAction"
+    if action is None:
+        raise reading.refused(f"{reading.name} has no loiter", item, "a LoiterAction", "nothing")
+    shape = action.LoiterType.name
+    if shape not in SHAPES:
+        raise reading.refused(
+            f"{reading.name} cannot be flown", f"{item}.LoiterType", ", ".join(SHAPES), shape
+        )
+    if action.Duration <= 0:
+        raise reading.refused(
+            f"{reading.name} never ends", f"{item}.Duration", "more than 0 ms", f"{action.Duration}"
+        )
+    sizes = {"Radius": float(action.Radius), "Length": float(action.Length)}
+    for name, value in sizes.items():
+        if not (isfinite(value) and value >= 0):
+            raise reading.refused(
+                f"{reading.name} has no size", f"{item}.{name}", "0 or more meters", f"{value:g}"
+            )
+    direction = DIRECTIONS[action.Direction.name]
+    centre = reading.point(action.Location, f"{item}.Location")
+    axis = radians(action.Axis)
+    loiter = Loiter(centre, sizes["Radius"], SHAPES[shape], axis, sizes["Length"], direction)
+    return loiter, int(action.Duration)
+
+
+def _loiter(reading: _Reading) -> dict[str, Any]:
+    loiter, duration_ms = _action(reading)
+    return {
+        "kind": TaskKind.LOITER,
+        "points": (loiter.centre,),
+        "duration_ms": duration_ms,
+        "radius_m": loiter.radius_m,
+        "loiter": loiter,
+    }
+
+
+def _must_fly(reading: _Reading) -> dict[str, Any]:
+    body = reading.body
+    place = reading.point(body.Position, "Position")
+    if not body.UseAltitude:
+        able = [
+            v
+            for v in reading.vehicles
+            if not body.EligibleEntities or v.id in body.EligibleEntities
+        ]
+        height = (able or list(reading.vehicles))[0].position.alt_m
+        place = place._replace(alt_m=height)
+        reading.notes.append(f"{reading.name} uses no altitude: {height:g} m MSL is taken")
+    return {"kind": TaskKind.MUST_FLY, "points": (place,)}
+
+
+def _area(reading: _Reading) -> dict[str, Any]:
+    return {**_outline(reading, reading.body.SearchArea, "SearchArea"), **_views(reading, True)}
+
+
+def _outline(reading: _Reading, shape: Any, item: str) -> dict[str, Any]:
+    corners = corners_of(
+        shape,
+        reading.sent,
+        item,
+        f"the area of {reading.name}",
+        reading.places,
+        reading.notes,
+        outside=True,
+    )
+    ground = reading.places.terrain_m
+    points = tuple(Position(north, east, ground) for north, east in corners)
+    return {"kind": TaskKind.AREA_SEARCH, "points": points}
+
+
+def _angled(reading: _Reading) -> dict[str, Any]:
+    body = reading.body
+    area = reading.named(reading.interests.areas, body.SearchAreaID, "SearchAreaID", "area").Area
+    start = body.StartPoint
+    return {
+        **_outline(reading, area, f"area {body.SearchAreaID}"),
+        "sweep_rad": radians(body.SweepAngle),
+        "start_point": None if start is None else reading.point(start, "StartPoint"),
+    }
+
+
+def _pattern(reading: _Reading) -> dict[str, Any]:
+    body = reading.body
+    extent = float(body.Extent)
+    if not (isfinite(extent) and extent > 0):
+        raise reading.refused(
+            f"{reading.name} has no extent", "Extent", "more than 0 m", f"{extent:g} m"
+        )
+    return {
+        "kind": TaskKind.PATTERN_SEARCH,
+        "points": (_place(reading),),
+        "pattern": PATTERNS[body.Pattern.name],
+        "extent_m": extent,
+    }
+
+
+READERS: dict[str, Callable[[_Reading], dict[str, Any]]] = {
+    "LineSearchTask": _line,
+    "PointSearchTask": _point,
+    "AreaSearchTask": _area,
+    "MustFlyTask": _must_fly,
+    "LoiterTask": _loiter,
+    "ImpactLineSearchTask": _line,
+    "ImpactPointSearchTask": _point,
+    "AngledAreaSearchTask": _angled,
+    "PatternSearchTask": _pattern,
+}

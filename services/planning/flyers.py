@@ -1,0 +1,79 @@
+"""Classes of vehicles that fly alike, and ways: paths of a task before they are checked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from cratous.core.dubins import pose_after, turn_radius_m
+from cratous.core.visibility import start_point
+from cratous.spec.mission import Camera, Position, Task, Vehicle
+from cratous.spec.plan import Pose
+
+BANK_RESERVE = 1.1
+"""Planned turns are this much wider than the tightest ones, so that the autopilot can correct."""
+HEADING_STEP_DEG = 20
+MOMENT_MS = 1_000
+"""How long a pass over a point lasts if the task asks for no dwell [ms]."""
+
+
+class Flyer(NamedTuple):
+    """A class of vehicles that fly alike."""
+
+    speed_m_s: float
+    radius_m: float
+    alt_m: float
+    max_climb_m_s: float
+    cameras: tuple[Camera, ...]
+
+
+class Way(NamedTuple):
+    """A path of a task before it is checked, or none and the reason.
+
+    coverage: the fraction of what has to be seen that the camera sees, None: not asked.
+    elevation_rad, azimuth_rad: where the camera has to point; None: the task does not say.
+    """
+
+    label: str
+    start: Pose
+    end: Pose
+    points: tuple[Position, ...]
+    duration_ms: int
+    coverage: float | None = None
+    reason: str = ""
+    elevation_rad: float | None = None
+    azimuth_rad: float = 0.0
+
+
+def no_way(label: str, reason: str) -> Way:
+    """A way that was thought of and is not flown."""
+    nowhere = Pose(0.0, 0.0, 0.0, 0.0)
+    return Way(label, nowhere, nowhere, (), 0, None, reason)
+
+
+def flyer_of(vehicle: Vehicle) -> Flyer:
+    """The class of a vehicle; it cruises at the altitude of its start in the mission."""
+    radius = BANK_RESERVE * turn_radius_m(vehicle.speed_m_s, vehicle.max_bank_rad)
+    alt = vehicle.position.alt_m
+    return Flyer(vehicle.speed_m_s, radius, alt, vehicle.max_climb_m_s, vehicle.cameras)
+
+
+def flight_ms(length_m: float, speed_m_s: float) -> int:
+    """Time to fly a length [ms], rounded up."""
+    return math.ceil(1000 * length_m / speed_m_s - 1e-6)
+
+
+def camera_for(task: Task, cameras: Sequence[Camera]) -> Camera | None:
+    """The widest camera that sees the wanted wavelength."""
+    fit = [c for c in cameras if "AllAny" in (task.wavelength, c.wavelength)]
+    fit += [c for c in cameras if c.wavelength == task.wavelength and c not in fit]
+    return max(fit, key=lambda c: c.hfov_rad, default=None)
+
+
+def straight(label: str, middle: Pose, duration_ms: int, speed_m_s: float) -> Way:
+    """A straight pass with a pose in its middle."""
+    half = speed_m_s * duration_ms / 2000
+    start, end = pose_after(middle, 0, -half, 1.0), pose_after(middle, 0, half, 1.0)
+    points = (start_point(start), start_point(middle), start_point(end))
+    return Way(label, start, end, points, duration_ms)

@@ -1,0 +1,197 @@
+"""Ways along a line, past or around a point, through a point, and round a loiter."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise
+
+from cratous.core.dubins import LEFT, RIGHT
+from cratous.core.laps import flown, lap_length_m, lap_of
+from cratous.services.planning.flyers import (
+    HEADING_STEP_DEG,
+    MOMENT_MS,
+    Flyer,
+    Way,
+    flight_ms,
+    no_way,
+    straight,
+)
+from cratous.services.planning.smoothing import ENOUGH, line_path
+from cratous.services.sensor import coverage, elevation_rad, share_seen, view_distance_m
+from cratous.spec.mission import Camera, Loiter, Position, Task, View
+from cratous.spec.plan import Pose
+
+LOITER_ENTRIES = 8
+VIEWS_MOST = 16
+"""More directions of view than these are not offered, so that options stay few."""
+STANDOFF_MARGIN_M = 25.0
+"""How much farther than the standoff a pass is planned, so that a wobble stays outside."""
+SIDES = {"any": (RIGHT, LEFT), "clockwise": (RIGHT,), "counter_clockwise": (LEFT,)}
+
+
+def views_of(task: Task) -> tuple[View | None, ...]:
+    """All views that will do; None alone: any."""
+    return (task.view, *task.views)
+
+
+def line_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float) -> Iterator[Way]:
+    """Both directions of a line for each wanted view, offset to where that view looks at it."""
+    views = views_of(task)
+    for number, view in enumerate(views[:VIEWS_MOST], 1):
+        for label, points in (("forward", task.points), ("backward", task.points[::-1])):
+            line = replace(task, points=points, view=view)
+            made = line_path(line, camera, flyer.radius_m, flyer.alt_m, terrain_m)
+            seen = None if camera is None else coverage(made.points, line, camera, terrain_m)
+            duration = flight_ms(made.length_m, flyer.speed_m_s)
+            named = label if len(views) == 1 else f"{label}, view {number}"
+            way = Way(named, made.start, made.end, made.points, duration, seen)
+            yield _looking(way, camera, view)
+    yield from _left_out(len(views))
+
+
+def _left_out(count: int) -> Iterator[Way]:
+    if count > VIEWS_MOST:
+        label = f"views {VIEWS_MOST + 1} to {count}"
+        yield no_way(label, f"only the first {VIEWS_MOST} directions of view are offered")
+
+
+def _looking(way: Way, camera: Camera | None, view: View | None) -> Way:
+    if camera is None:
+        return way
+    azimuth = view.azimuth_rad if view is not None else 0.0
+    return way._replace(elevation_rad=elevation_rad(camera, view), azimuth_rad=azimuth)
+
+
+def must_fly_ways(task: Task, flyer: Flyer) -> Iterator[Way]:
+    """Straight through the point, from every side."""
+    point = _at_altitude(task.points[0], flyer)
+    for degrees in range(0, 360, HEADING_STEP_DEG):
+        pose = Pose(*point, math.radians(degrees))
+        yield straight(f"heading {degrees} deg", pose, MOMENT_MS, flyer.speed_m_s)
+
+
+def _at_altitude(point: Position, flyer: Flyer) -> Position:
+    return point if point.alt_m > 0 else Position(point.north_m, point.east_m, flyer.alt_m)
+
+
+def point_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float) -> Iterator[Way]:
+    """Passes from which the point is seen for the whole dwell; circles if none lasts so long."""
+    target, dwell = task.points[0], max(task.duration_ms, MOMENT_MS)
+    if task.loiter is not None:
+        for way in _rounds(task.loiter, dwell, flyer):
+            yield _checked(way, task, task.view, camera, terrain_m)
+        return
+    found, farthest = [], 0.0
+    for view, look, heading, label in _aims(task):
+        away = view_distance_m(view, flyer.alt_m - terrain_m)
+        if view is None and task.standoff_m > 0:
+            away = task.standoff_m + STANDOFF_MARGIN_M
+        farthest = max(farthest, away)
+        pose = Pose(
+            target.north_m - away * math.cos(look),
+            target.east_m - away * math.sin(look),
+            flyer.alt_m,
+            heading,
+        )
+        way = straight(label, pose, dwell, flyer.speed_m_s)
+        found.append(_checked(way, task, view, camera, terrain_m))
+    yield from found
+    if all(way.reason or (way.coverage is not None and way.coverage < ENOUGH) for way in found):
+        # too long for a straight pass: circle around the target instead
+        centre = Position(target.north_m, target.east_m, flyer.alt_m)
+        around = Loiter(centre, max(flyer.radius_m, farthest))
+        for way in _rounds(around, dwell, flyer):
+            yield _checked(way, task, task.view, camera, terrain_m)
+    yield from _left_out(len(views_of(task)))
+
+
+def _aims(task: Task) -> Iterator[tuple[View | None, float, float, str]]:
+    """View, direction of the look, heading and name of each pass [rad]; a bounded number."""
+    every = range(0, 360, HEADING_STEP_DEG)
+    views = views_of(task)[:VIEWS_MOST]
+    only = views[0]
+    if len(views) == 1 and (only is None or only.azimuth_extent_rad == 0):
+        for degrees in every:
+            heading = math.radians(degrees)
+            name = f"heading {degrees} deg"
+            if only is not None:
+                look = only.azimuth_rad + (0.0 if only.inertial else heading)
+                yield only, look, heading, name
+            elif task.standoff_m > 0:
+                yield None, heading - math.pi / 2, heading, f"{name}, looking left"
+                yield None, heading + math.pi / 2, heading, f"{name}, looking right"
+            else:
+                yield None, heading, heading, name
+        return
+    for view in views:
+        assert view is not None
+        half = round(math.degrees(view.azimuth_extent_rad) / 2) if view else 0
+        offsets = sorted(
+            {o for k in every for o in (k, -k) if o <= half and -o <= half and o < 180}
+        )
+        for offset in offsets[:: max(1, math.ceil(len(offsets) * len(views) / 18))]:
+            azimuth = view.azimuth_rad + math.radians(offset)
+            for turn in (0, 90, -90):
+                degrees = round(math.degrees(azimuth)) + turn
+                heading = math.radians(degrees if view.inertial else turn)
+                look = azimuth if view.inertial else azimuth + heading
+                name = f"look {round(math.degrees(azimuth)) % 360} deg, heading "
+                yield view, look, heading, f"{name}{round(math.degrees(heading)) % 360} deg"
+
+
+def _checked(
+    way: Way, task: Task, view: View | None, camera: Camera | None, terrain_m: float
+) -> Way:
+    """The way with the share of the dwell that the camera sees the point, and its standoff kept."""
+    if way.reason:
+        return way
+    nearest_m = _nearest_m(way.points, task.points[0])
+    if nearest_m < task.standoff_m:
+        return way._replace(
+            reason=f"it comes within {nearest_m:.0f} m of the point, "
+            f"and the standoff is {task.standoff_m:g} m"
+        )
+    if camera is None:
+        return way
+    seen = share_seen(way.points, replace(task, view=view), camera, terrain_m)
+    return _looking(way._replace(coverage=seen), camera, view)
+
+
+def _nearest_m(points: tuple[Position, ...], target: Position) -> float:
+    """Least horizontal distance of a polyline from a point [m]."""
+    best = math.inf
+    for p, q in pairwise(points):
+        n, e = q.north_m - p.north_m, q.east_m - p.east_m
+        t = (target.north_m - p.north_m) * n + (target.east_m - p.east_m) * e
+        t = min(max(t / (n * n + e * e or 1.0), 0.0), 1.0)
+        gap = (p.north_m + t * n - target.north_m, p.east_m + t * e - target.east_m)
+        best = min(best, math.hypot(*gap))
+    return best
+
+
+def loiter_ways(task: Task, flyer: Flyer) -> Iterator[Way]:
+    """Laps of exactly the task's duration, entered along the lap at several places."""
+    loiter = task.loiter or Loiter(task.points[0], task.radius_m)
+    yield from _rounds(loiter, task.duration_ms, flyer)
+
+
+def _rounds(loiter: Loiter, duration_ms: int, flyer: Flyer) -> Iterator[Way]:
+    loiter = replace(loiter, centre=_at_altitude(loiter.centre, flyer))
+    radius = max(loiter.radius_m, flyer.radius_m)
+    if 0 < loiter.radius_m < radius:
+        yield no_way(
+            loiter.shape,
+            f"its turn radius of {radius:.0f} m is wider than the loiter's {loiter.radius_m:g} m",
+        )
+        return
+    length = flyer.speed_m_s * duration_ms / 1000
+    for k in range(LOITER_ENTRIES):
+        for side in SIDES[loiter.direction]:
+            lap = lap_of(loiter, radius, side == RIGHT)
+            at = lap_length_m(lap) * k / LOITER_ENTRIES
+            start, end, points = flown(lap, radius, at, length)
+            turn = "right" if side == RIGHT else "left"
+            label = f"{loiter.shape}, {turn} turns, entry {k + 1} of {LOITER_ENTRIES}"
+            yield Way(label, start, end, points, duration_ms)
