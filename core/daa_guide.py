@@ -61,6 +61,8 @@ def recover(
     for i in range(kinds.size):
         cylinders[i] = 3
         sizes[i, 0], sizes[i, 1] = nmac_m, nmac_half_m
+        # a cylinder has no times
+        sizes[i, 2], sizes[i, 3], sizes[i, 4] = 0.0, 0.0, 0.0
     result[0], result[1], result[2], result[3], result[4] = 1.0, 0.0, 0.0, radius_m, half_m
     if not evaluate(
         right, left, step_s, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen, cylinders,

@@ -110,9 +110,10 @@ def safe_steps(
                 final_s = lookahead_s
                 if counted:
                     final_s = horizons[i]
-                blocked = piece_counts(at_s, begin_s, final_s) and in_conflict(
+                lost = piece_counts(at_s, begin_s, final_s) and in_conflict(
                     kinds[i], s, v, sz, vz, d, z, tthr, tcoa, vmod, 0.0, piece_s,
                 )  # fmt: skip
+                blocked = lost_before(blocked, lost)
             if recovering and not blocked:
                 held_s = min(begin_s, horizons[i])
                 end_s = until(lookahead_s, held_s, at_s, counted)
