@@ -337,12 +337,16 @@ def check_everything(path: Path | None = None) -> Standing:
     )
 
 
+LISTED = 40
+"""So many kernels are named when the ledger refuses; the others are counted."""
+
+
 def require(*, allow_unproved: bool = False, path: Path | None = None) -> Standing:
     """The standing, or `Refused` with the name of each kernel and what changed."""
     standing = check_everything(path)
     if standing.problems and not allow_unproved:
-        shown = "\n".join(f"  {p.name}: {p.what}" for p in standing.problems[:12])
-        more = len(standing.problems) - 12
+        shown = "\n".join(f"  {p.name}: {p.what}" for p in standing.problems[:LISTED])
+        more = len(standing.problems) - LISTED
         if more > 0:
             shown += f"\n  and {more} more"
         raise Refused(
