@@ -4,12 +4,13 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.ready
 
-.PHONY: help venv demo test test-fast lint types prove recheck mutate crosshair fuzz bench docs lock clean
-.PHONY: help venv demo test test-fast lint types prove recheck mutate crosshair daa-fuzz bench docs lock clean
+.PHONY: help venv demo test test-fast test-long lint types prove recheck mutate crosshair fuzz bench docs lock clean
+.PHONY: help venv demo test test-fast test-long lint types prove recheck mutate crosshair daa-fuzz bench docs lock clean
 
 help:
 	@echo "make demo      set up, then plan, prove, fly, monitor and certify the crossing mission"
-	@echo "make test      set up, then run all tests"
+	@echo "make test      set up, then run the tests"
+	@echo "make test-long the tests that take many minutes"
 	@echo "make venv      only set up (.venv, pinned dependencies, compiled kernels)"
 	@echo "make lint      style, types, kernel subset"
 	@echo "make prove     prove every kernel anew and hold the ledger against it"
@@ -35,10 +36,13 @@ demo: venv
 	@echo "open out/crossing/report.html in a browser"
 
 test: venv
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "not long"
+
+test-long: venv
+	$(BIN)/python -m pytest -m long
 
 test-fast: venv
-	$(BIN)/python -m pytest -m "not slow"
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "not slow and not long"
 
 lint: venv
 	$(BIN)/ruff check .

@@ -205,7 +205,7 @@ def test_order_only_is_solved_to_the_optimum(seed: int) -> None:
     assert differs(problem(seed, timed=False, semantics=ORDER)) == ""
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("part", range(20))
 def test_thousands_of_terms(part: int) -> None:
     wrong = []

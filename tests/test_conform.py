@@ -185,7 +185,7 @@ def test_files_that_are_none(
 
 def test_unknown_suite_and_no_file(capsys: pytest.CaptureFixture[str]):
     assert main(["conform", "weather", "x"]) == 2
-    assert "expected well-clear or detect-and-avoid or polygon" in capsys.readouterr().err
+    assert "expected well-clear or polygon or lmcp" in capsys.readouterr().err
     assert main(["conform", "polygon"]) == 2
     with pytest.raises(BadInput):
         suite("weather")

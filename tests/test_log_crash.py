@@ -51,6 +51,6 @@ def test_killed_writers_leave_readable_logs(tmp_path: Path) -> None:
     assert sum(int(str(r.get("read", 0))) > 0 for r in results) >= 5
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_many_killed_writers_leave_readable_logs(tmp_path: Path) -> None:
     check(kill_writers(tmp_path, 100, "2"))

@@ -116,7 +116,7 @@ def test_faults_are_killed_by_the_theorem_that_they_break():
     report = mutate.run(
         ["vertical_violation"], theorems=["well_clear_vertical_violation_is_its_definition"]
     )
-    kernel = [r for r in report.results if r.target == "core.well_clear.vertical_violation"]
+    kernel = [r for r in report.results if r.target == "core.well_clear_now.vertical_violation"]
     assert {r.verdict for r in kernel} <= {"killed", "equivalent"}
     assert {r.by for r in kernel if r.verdict == "killed"} == {
         "well_clear_vertical_violation_is_its_definition"
@@ -217,6 +217,7 @@ def test_an_error_of_the_judge_is_not_taken_for_a_stillborn_mutant(monkeypatch):
         judged("core.gate.gives_way", ["exactly_one_gives_way"], "+ return own_id < intruder_id")
 
 
+@pytest.mark.long
 def test_the_starts_of_folds_are_mutated():
     report = mutate.run(["locate", "schedule_holds"], premises=False)
     starts = [r for r in report.results if r.kind == "fold"]
@@ -256,6 +257,7 @@ def test_no_mutant_is_judged_by_a_theorem_that_does_not_hold(monkeypatch):
         mutate.run(["gives_way"], theorems=["exactly_one_gives_way"], premises=False)
 
 
+@pytest.mark.long
 def test_results_are_stored_and_the_same_in_two_processes(monkeypatch):
     names = ["later", "runs_forward", "gives_way"]
     first = mutate.run(names, jobs=2)
@@ -267,6 +269,7 @@ def test_results_are_stored_and_the_same_in_two_processes(monkeypatch):
     assert mutate.run(names) == first
 
 
+@pytest.mark.long
 def test_a_run_that_was_stopped_goes_on_where_it_was(monkeypatch, tmp_path):
     store = Store(tmp_path / "verdicts")
     whole = mutate.run(["gives_way"], premises=False, store=store)
