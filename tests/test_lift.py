@@ -193,7 +193,21 @@ def _kind(value):
     return "truth" if isinstance(value, bool) else "number"
 
 
-@pytest.mark.parametrize("function", KERNELS, ids=lambda f: f.__name__)
+DEEP = ("daa_", "geofence_", "well_clear_during", "well_clear_interval", "well_clear_times")
+"""Modules whose kernels have so many paths that lifting them takes minutes."""
+
+
+def by_depth(functions):
+    """The functions, those of deep modules marked."""
+    return [
+        pytest.param(f, marks=pytest.mark.long)
+        if f.__module__.rpartition(".")[2].startswith(DEEP)
+        else f
+        for f in functions
+    ]
+
+
+@pytest.mark.parametrize("function", by_depth(KERNELS), ids=lambda f: f.__name__)
 def test_a_lifted_kernel_is_the_running_kernel(function):
     assert differences(function) == []
 

@@ -290,7 +290,8 @@ def test_the_lint_names_what_is_outside_of_the_subset():
 
 
 # -- the theorems themselves ------------------------------------------------------------------
-QUICK = [n for n in prover.theorem_files() if "within" not in n and "witness" not in n]
+# all theorems are proved by `cratous prove`; these few show that one can be proved alone
+QUICK = [n for n in prover.theorem_files() if n.startswith(("gate_", "timing_", "contracts_"))]
 
 
 @pytest.mark.parametrize("name", QUICK)

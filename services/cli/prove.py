@@ -116,7 +116,13 @@ def _refuse(problems: list[str]) -> None:
 
 
 def _recheck(
-    theorems: list[Any], folder: Path, jobs: int, as_json: bool, keep: bool, whole: bool
+    theorems: list[Any],
+    folder: Path,
+    jobs: int,
+    as_json: bool,
+    keep: bool,
+    whole: bool,
+    new: bool,
 ) -> dict[str, Any]:
     from cratous.proofs import recheck
 
@@ -124,7 +130,11 @@ def _recheck(
     bar = _Bar("cvc5", 1, not as_json and sys.stderr.isatty())
     with bar:
         found = recheck.recheck(
-            theorems, folder=folder, jobs=jobs, tell=lambda c, n, of: bar.step("cvc5", n, of)
+            theorems,
+            folder=folder,
+            jobs=jobs,
+            tell=lambda c, n, of: bar.step("cvc5", n, of),
+            record=recheck.read() if new else None,
         )
     if keep:
         recheck.write(found, theorems, whole=whole)
@@ -202,6 +212,11 @@ def _mutate(
 @click.option(
     "--recheck", is_flag=True, help="Put every obligation to cvc5 as well; with --only, of these."
 )
+@click.option(
+    "--new",
+    is_flag=True,
+    help="With --recheck: only obligations on which proofs/recheck.json has no verdict.",
+)
 @click.option("--mutate", is_flag=True, help="Also look for faults that no theorem would notice.")
 @click.option("--package", "package_name", metavar="NAME", help="A package with own kernels.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
@@ -220,6 +235,7 @@ def prove(
     changed: bool,
     check: bool,
     recheck: bool,
+    new: bool,
     mutate: bool,
     package_name: str | None,
     as_json: bool,
@@ -304,7 +320,7 @@ def prove(
     data: dict[str, Any] = {}
     if recheck:
         keep = home.product and not check
-        data["recheck"] = _recheck(theorems, folder, workers, as_json, keep, whole)
+        data["recheck"] = _recheck(theorems, folder, workers, as_json, keep, whole, new)
     if mutate:
         pattern = only if only is not None else ("*" if whole else "")
         keep = home.product and not check
