@@ -31,7 +31,13 @@ from cratous.spec import authority, geofence, schedule, well_clear
 
 gate.load_all()
 SAMPLES = 2000
-MASKS = {"eligible": {0, 1}, "vehicle_is_eligible": {0, 1, 2}, "masks": {0, 1, 2}}
+MASKS = {
+    "eligible": {0, 1},
+    "opened": {0, 1},
+    "all_needed_done": {0, 1},
+    "vehicle_is_eligible": {0, 1, 2},
+    "masks": {0, 1, 2},
+}
 KERNELS = [e.function for e in REGISTRY.values() if e.kind == "kernel"]
 DEFINITIONS = [
     function

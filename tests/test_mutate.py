@@ -291,7 +291,7 @@ def test_a_verdict_depends_on_function_theorems_judge_and_solver(monkeypatch):
     assert key != KEYS.target("core.gate.gives_way", other)
     fewer = Keys(theorems=["exactly_one_gives_way"])
     assert fewer.target("core.gate.gives_way", function) != key
-    unrelated = [name for name in KEYS.theorems if name != "orient_is_the_turn"]
+    unrelated = [name for name in KEYS.theorems if name != "geofence_orient_is_the_turn"]
     assert Keys(theorems=unrelated).target("core.gate.gives_way", function) == key
     assert KEYS.mutant(key, "a") != KEYS.mutant(key, "b")
     monkeypatch.setattr("cratous.proofs.mutation_keys.judging", lambda: "another")

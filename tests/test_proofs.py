@@ -236,8 +236,8 @@ def _known(term):
 def test_lifted_term_equals_running_function(entry):
     hints = get_type_hints(entry.function)
     del hints["return"]
-    if entry.name == "eligible":
-        pytest.skip("works on masks: the next test")
+    if entry.name in ("eligible", "opened"):
+        pytest.skip("it works on masks: compared in test_lift.py")
     symbols = {name: _symbols(hint, name) for name, hint in hints.items()}
     whole = lift(entry.function, *symbols.values())
     if whole.roots:

@@ -30,9 +30,9 @@ def _json(capsys: pytest.CaptureFixture[str], *options: str) -> tuple[int, dict]
 
 def test_cold_and_warm_say_the_same(capsys: pytest.CaptureFixture[str]):
     before = gate.LEDGER.read_bytes()
-    code, cold = _json(capsys, "--only", "orient*")
+    code, cold = _json(capsys, "--only", "geofence_orient*")
     assert code == 0
-    _, warm = _json(capsys, "--only", "orient*")
+    _, warm = _json(capsys, "--only", "geofence_orient*")
     assert warm["theorems"] == cold["theorems"]
     assert cold["proved"] == 1
     assert gate.LEDGER.read_bytes() == before, "a part writes no ledger"

@@ -13,7 +13,7 @@ from cratous.proofs.claim import Claim
 from cratous.proofs.recall import Recall, files, key
 from cratous.spec.errors import BadInput
 
-NAME = "violation_within_misses_no_instant"
+NAME = "daa_height_follows_the_climb"
 gate.load_all()
 
 
@@ -47,9 +47,9 @@ def test_a_proved_theorem_is_recalled_as_it_was_and_not_stated_again(memory, mon
     "place",
     [
         f"proofs/theorems/{NAME}.py",
-        "proofs/theorems/vertical_window_is_exact.py",
-        "core/well_clear.py",
-        "spec/well_clear.py",
+        "proofs/theorems/daa_climb_is_flown.py",
+        "core/daa_climb.py",
+        "spec/daa_meaning.py",
         "core/kernel.py",
         "proofs/prover.py",
         "proofs/lift.py",

@@ -93,7 +93,11 @@ def test_the_file_is_keyed_by_obligation(tmp_path: Path):
 
 
 def test_a_part_replaces_its_own_theorems_alone(tmp_path: Path):
-    names = ["straddles_is_its_definition", "orient_is_the_turn", "violation_is_symmetric"]
+    names = [
+        "geofence_straddles_is_its_definition",
+        "geofence_orient_is_the_turn",
+        "exactly_one_gives_way",
+    ]
     theorems = ledger.prove_theorems(names)
     whole, part = tmp_path / "whole.json", tmp_path / "part.json"
     recheck.write(recheck.recheck(theorems), theorems, whole)
