@@ -4,8 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.ready
 
-.PHONY: help venv demo test test-fast test-long lint types prove recheck mutate crosshair fuzz bench docs lock clean
-.PHONY: help venv demo test test-fast test-long lint types prove recheck mutate crosshair daa-fuzz bench docs lock clean
+.PHONY: help venv demo test test-fast test-long lint types prove recheck mutate crosshair fuzz daa-fuzz bench docs lock clean
 
 help:
 	@echo "make demo      set up, then plan, prove, fly, monitor and certify the crossing mission"
@@ -14,7 +13,7 @@ help:
 	@echo "make venv      only set up (.venv, pinned dependencies, compiled kernels)"
 	@echo "make lint      style, types, kernel subset"
 	@echo "make prove     prove every kernel anew and hold the ledger against it"
-	@echo "make recheck   put every proof to the second solver (cvc5), some minutes"
+	@echo "make recheck   put every proof to the second solver (cvc5), an hour or more"
 	@echo "make mutate    look for faults of kernels that no theorem would notice; pays for what has changed"
 	@echo "make crosshair look for bugs in functions that are no kernels, two minutes"
 	@echo "make fuzz      a million changed LMCP messages and frames, some minutes"
@@ -65,6 +64,7 @@ crosshair: venv
 
 fuzz: venv
 	$(BIN)/python tests/fuzz_lmcp.py --count 1000000
+
 daa-fuzz: venv
 	$(BIN)/python tests/daa_scenes.py 100000
 
