@@ -1,9 +1,11 @@
 """The second solver: cvc5 on every obligation, as exported SMT-LIB text and nothing else.
 
-Each obligation is read by cvc5 under its exact logic and, if that gives no answer, under ALL, and
-for polynomials by cylindrical coverings alone, in a process of its own with 5 s of CPU each. A theorem is `confirmed` if cvc5 finds every obligation
-unsatisfiable, `contradicted` if it finds one satisfiable that z3 proved, else `no answer`. The
-verdicts are kept in `proofs/recheck.json` by the hash of the obligation, for the proof inventory.
+Each obligation is read by cvc5 under its exact logic and, if that gives no answer, for polynomials
+by cylindrical coverings alone, and under ALL, in a process of its own with 5 s of CPU each. A
+theorem is `confirmed` if cvc5 finds every obligation unsatisfiable, `contradicted` if it finds one
+satisfiable that z3 proved, else `no answer`. The verdicts are kept in `proofs/recheck.json` by the
+hash of the obligation, for the proof inventory. Answers are stored one by one as they come, so a
+run that was stopped goes on where it was; where there was no answer, cvc5 is asked again.
 """
 
 from __future__ import annotations
@@ -21,8 +23,9 @@ from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any
 
-from cratous.core.sources import ROOT
+from cratous.core.sources import ROOT, digest
 from cratous.proofs import forked, prover
+from cratous.proofs.mutation_keys import Store
 from cratous.spec.errors import BadInput
 
 FILE = ROOT / "proofs" / "recheck.json"
@@ -177,9 +180,23 @@ def _ask(job: _Job) -> tuple[str, str, float]:
     return NO_ANSWER, "", spent
 
 
-def _worker(jobs: list[_Job], share: int, of: int, out: Connection) -> None:
+def _stored(job: _Job, store: Store, solver: str) -> tuple[str, str, float]:
+    """The answer that the store has, or cvc5's, which is stored if it is one."""
+    key = digest(["cvc5", solver, job.key])
+    kept = store.get(key)
+    if kept is not None:
+        return kept["verdict"], kept["logic"], 0.0
+    verdict, logic, seconds = _ask(job)
+    if verdict != NO_ANSWER:
+        store.put(key, {"verdict": verdict, "logic": logic})
+    return verdict, logic, seconds
+
+
+def _worker(
+    jobs: list[_Job], share: int, of: int, out: Connection, store: Store, solver: str
+) -> None:
     for job in jobs[share::of]:
-        out.send(job.check(*_ask(job)))
+        out.send(job.check(*_stored(job, store, solver)))
     out.close()
 
 
@@ -190,13 +207,16 @@ def recheck(
     jobs: int = 1,
     tell: Callable[[Check, int, int], None] | None = None,
     record: dict[str, Any] | None = None,
+    store: Store | None = None,
 ) -> Recheck:
     """Put every proved obligation to cvc5.
 
     tell: called with each check, how many are done, and of how many. record: verdicts as `read`
-    gives them; what this version of the solver has a verdict on there is not asked again.
+    gives them; what this version of the solver has a verdict on there is not asked again. store:
+    where answers are kept between runs; by default nowhere.
     """
     solver = version()
+    kept = store or Store(None)
     known: dict[str, dict[str, Any]] = {}
     if record is not None and record.get("solver") == solver:
         known = record["obligations"]
@@ -211,7 +231,7 @@ def recheck(
     pipes: list[tuple[Connection, Any]] = []
     for share in range(jobs):
         here, there = fork.Pipe(duplex=False)
-        process = fork.Process(target=_worker, args=(todo, share, jobs, there))
+        process = fork.Process(target=_worker, args=(todo, share, jobs, there, kept, solver))
         process.start()
         there.close()
         pipes.append((here, process))

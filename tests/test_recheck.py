@@ -11,6 +11,7 @@ import z3
 from cratous.core import ledger as gate
 from cratous.proofs import ledger, prover, recheck
 from cratous.proofs.claim import Obligation
+from cratous.proofs.mutation_keys import Store
 from cratous.spec.errors import BadInput
 
 pytest.importorskip("cvc5")
@@ -126,3 +127,27 @@ def test_without_cvc5_the_user_is_told(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(recheck.importlib.metadata, "version", absent)
     with pytest.raises(BadInput, match="second solver is not installed"):
         recheck.version()
+
+
+def test_a_run_that_was_stopped_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """What was answered is stored; what was not is asked again, and damage counts as absent."""
+    (theorem,) = ledger.prove_theorems(["geofence_straddles_is_its_definition"])
+    store = Store(tmp_path)
+    first = recheck.recheck([theorem], store=store)
+    asked = tmp_path / "asked"
+
+    def refuse(text: str, logic: str, options: dict[str, str] | None = None) -> str:
+        asked.touch()
+        return "unknown"
+
+    monkeypatch.setattr(recheck, "solve", refuse)
+    assert recheck.recheck([theorem], store=store).verdict(theorem.name) == "confirmed"
+    assert not asked.exists()
+    assert first.count("confirmed") == 1
+    for file in tmp_path.glob("*/*"):
+        file.write_text("{")
+    assert recheck.recheck([theorem], store=store).verdict(theorem.name) == "no answer"
+    assert asked.exists()
+    asked.unlink()
+    assert recheck.recheck([theorem], store=store).verdict(theorem.name) == "no answer"
+    assert asked.exists()

@@ -124,7 +124,9 @@ def _recheck(
     whole: bool,
     new: bool,
 ) -> dict[str, Any]:
+    from cratous.core.private import private_cache
     from cratous.proofs import recheck
+    from cratous.proofs.mutation_keys import Store
 
     begun = time.monotonic()
     bar = _Bar("cvc5", 1, not as_json and sys.stderr.isatty())
@@ -135,6 +137,7 @@ def _recheck(
             jobs=jobs,
             tell=lambda c, n, of: bar.step("cvc5", n, of),
             record=recheck.read() if new else None,
+            store=Store(private_cache() / "recheck"),
         )
     if keep:
         recheck.write(found, theorems, whole=whole)
