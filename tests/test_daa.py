@@ -106,9 +106,8 @@ def test_a_changed_vector_fails(vectors: Path):
 
 # -- degenerate encounters ---------------------------------------------------------------
 def test_random_and_degenerate_encounters():
-    answered, refused = load_scenes().run(1500, seed=3, seconds=15)
+    answered, _ = load_scenes().run(1500, seed=3, seconds=15)
     assert answered > 50
-    assert refused >= 0
 
 
 @pytest.mark.parametrize(
