@@ -15,6 +15,7 @@ import functools
 import importlib
 import importlib.metadata
 import json
+import os
 import sys
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -238,6 +239,12 @@ def theorem_file(name: str, home: Home) -> Path | None:
     return None
 
 
+def theorem_names(home: Home) -> set[str]:
+    """What could be a theorem of this home or of the product: the names of the files."""
+    folders = [folder for folder in {home.theorems, PRODUCT.theorems} if folder.is_dir()]
+    return {name[:-3] for each in folders for name in os.listdir(each) if name.endswith(".py")}
+
+
 @functools.cache
 def _statement(path: Path) -> str:
     return digest(statement_parts(path, engine()))
@@ -257,8 +264,7 @@ def theorem_digest(names: Iterable[str], theorems: dict[str, Any], home: Home = 
     Lemmas are what the ledger lists for a theorem and whatever its file names as text.
     """
     todo, parts = list(names), {}
-    folders = {home.theorems, PRODUCT.theorems}
-    known = {file.stem for folder in folders for file in folder.glob("*.py")}
+    known = theorem_names(home)
     while todo:
         name = todo.pop()
         if name in parts:

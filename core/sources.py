@@ -55,7 +55,12 @@ def ours(value: Any) -> bool:
 
 def place(file: Path) -> str:
     """A file's name for people and for hashes: relative to its package, without the machine."""
-    for name, root in PACKAGES.items():
+    return _place(file, tuple(PACKAGES.items()))
+
+
+@functools.cache
+def _place(file: Path, packages: tuple[tuple[str, Path], ...]) -> str:
+    for name, root in packages:
         if file.is_relative_to(root):
             inside = file.relative_to(root).as_posix()
             return inside if name == "cratous" else f"{name}/{inside}"

@@ -38,6 +38,11 @@ def _hash(file: Path) -> str:
 
 
 @functools.cache
+def _named(file: Path) -> str:
+    return f"{place(file)}={_hash(file)}"
+
+
+@functools.cache
 def _dynamic(file: Path) -> bool:
     text = file.read_bytes()
     return file != REGISTRY_ITSELF and any(word in text for word in DYNAMIC)
@@ -54,7 +59,7 @@ def _everything(home: Home) -> tuple[Path, ...]:
 
 def files(name: str, home: Home = PRODUCT) -> tuple[Path, ...]:
     """Every file on which the theorem may depend, but for the prover's own."""
-    known = {f.stem for folder in {home.theorems, PRODUCT.theorems} for f in folder.glob("*.py")}
+    known = gate.theorem_names(home)
     todo, roots = [name], {}
     while todo:
         file = gate.theorem_file(todo[-1], home)
@@ -68,8 +73,8 @@ def files(name: str, home: Home = PRODUCT) -> tuple[Path, ...]:
 
 def key(name: str, home: Home = PRODUCT) -> str:
     """The hash under which the theorem is kept, as the files stand now."""
-    hashed = [f"{place(file)}={_hash(file)}" for file in files(name, home)]
-    prover = [f"{place(file)}={_hash(file)}" for file in sorted(gate.engine())]
+    hashed = [_named(file) for file in files(name, home)]
+    prover = [_named(file) for file in sorted(gate.engine())]
     versions = [gate.solver_version(), platform.python_version(), str(RLIMIT)]
     return digest([home.name, name, *hashed, "the prover", *prover, *versions])
 
