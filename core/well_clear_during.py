@@ -20,7 +20,7 @@ def dips_to_zero(a: float, b: float, c: float, h: float) -> bool:
     return b < 0 and 0 - b < 2 * a * h and b * b >= 4 * a * c
 
 
-@kernel(implements="well_clear.horizontal_violation_within")
+@kernel(implements="well_clear.horizontal_violation_within", nonnegative=("dthr_m", "tthr_s"))
 def horizontal_violation_within(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, h_s: float) -> bool:
     """True iff the horizontal volume is violated at some t in [0, h_s] of straight flight."""
     ss = s.x * s.x + s.y * s.y
@@ -44,7 +44,7 @@ class Window(NamedTuple):
     last: float
 
 
-@kernel(implements="well_clear.vertical_violation_at")
+@kernel(implements="well_clear.vertical_violation_at", nonnegative=("zthr_m", "tcoa_s"))
 def vertical_window(sz: float, vz: float, zthr_m: float, tcoa_s: float, h_s: float) -> Window:
     """When within [0, h_s] the vertical volume is violated; first > last means never.
 
@@ -63,7 +63,7 @@ def vertical_window(sz: float, vz: float, zthr_m: float, tcoa_s: float, h_s: flo
     return Window(w, first, min(zthr_m - z, h_s * w))
 
 
-@kernel(implements="well_clear.violation_at")
+@kernel(implements="well_clear.violation_at", nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s"))
 def violation_within(
     s: Vec2,
     v: Vec2,
@@ -85,7 +85,7 @@ def violation_within(
 
 
 # -- the other volumes ----------------------------------------------------------------------
-@kernel(implements="well_clear.within_at")
+@kernel(implements="well_clear.within_at", nonnegative=("radius_m",))
 def within_during(s: Vec2, v: Vec2, radius_m: float, h_s: float) -> bool:
     """True iff the two are at most radius_m apart horizontally at some t in [0, h_s]."""
     vv = v.x * v.x + v.y * v.y
@@ -93,7 +93,7 @@ def within_during(s: Vec2, v: Vec2, radius_m: float, h_s: float) -> bool:
     return dips_to_zero(vv, 2 * sv, s.x * s.x + s.y * s.y - radius_m * radius_m, h_s)
 
 
-@kernel(implements="well_clear.horizontal_violation_tcpa_at")
+@kernel(implements="well_clear.horizontal_violation_tcpa_at", nonnegative=("dthr_m", "tthr_s"))
 def horizontal_violation_within_tcpa(
     s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, h_s: float
 ) -> bool:
@@ -109,7 +109,7 @@ def horizontal_violation_within_tcpa(
     return cross * cross <= dd * vv and sv < 0 and 0 - sv <= (h_s + tthr_s) * vv
 
 
-@kernel(implements="well_clear.horizontal_violation_tep_at")
+@kernel(implements="well_clear.horizontal_violation_tep_at", nonnegative=("dthr_m", "tthr_s"))
 def horizontal_violation_within_tep(
     s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, h_s: float
 ) -> bool:
@@ -118,7 +118,7 @@ def horizontal_violation_within_tep(
     return within_during(s, v, dthr_m, h_s + tthr_s)
 
 
-@kernel(implements="well_clear.layer_violation_at")
+@kernel(implements="well_clear.layer_violation_at", nonnegative=("zthr_m", "tcoa_s", "vmod_s"))
 def layer_window(
     sz: float, vz: float, zthr_m: float, tcoa_s: float, vmod_s: float, h_s: float
 ) -> Window:
@@ -138,7 +138,10 @@ def layer_window(
     return Window(w, first, min(zthr_m - z, h_s * w))
 
 
-@kernel(implements="well_clear.violation_taumod_at")
+@kernel(
+    implements="well_clear.violation_taumod_at",
+    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+)
 def violation_during_taumod(
     s: Vec2,
     v: Vec2,
@@ -162,7 +165,10 @@ def violation_during_taumod(
     return horizontal_violation_within(at, v, dthr_m * k, tthr_s * k, last - first)
 
 
-@kernel(implements="well_clear.violation_tcpa_at")
+@kernel(
+    implements="well_clear.violation_tcpa_at",
+    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+)
 def violation_during_tcpa(
     s: Vec2,
     v: Vec2,
@@ -186,7 +192,10 @@ def violation_during_tcpa(
     return horizontal_violation_within_tcpa(at, v, dthr_m * k, tthr_s * k, last - first)
 
 
-@kernel(implements="well_clear.violation_tep_at")
+@kernel(
+    implements="well_clear.violation_tep_at",
+    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+)
 def violation_during_tep(
     s: Vec2,
     v: Vec2,
@@ -210,7 +219,7 @@ def violation_during_tep(
     return horizontal_violation_within_tep(at, v, dthr_m * k, tthr_s * k, last - first)
 
 
-@kernel(implements="well_clear.cylinder_violation_at")
+@kernel(implements="well_clear.cylinder_violation_at", nonnegative=("radius_m", "half_height_m"))
 def cylinder_during(
     s: Vec2,
     v: Vec2,

@@ -35,7 +35,7 @@ def or_empty(first_s: float, last_s: float) -> Span:
 
 
 # -- vertical -------------------------------------------------------------------------------
-@kernel(implements="well_clear.layer_violation_at")
+@kernel(implements="well_clear.layer_violation_at", nonnegative=("zthr_m", "tcoa_s", "vmod_s"))
 def times_vertical(
     sz: float, vz: float, zthr_m: float, tcoa_s: float, vmod_s: float, b_s: float, t_s: float
 ) -> Span:
@@ -55,7 +55,7 @@ def times_vertical(
     return Span(max(first, b_s), min((zthr_m - z) / w, t_s))
 
 
-@kernel(implements="well_clear.layer_violation_at")
+@kernel(implements="well_clear.layer_violation_at", nonnegative=("zthr_m", "tcoa_s", "vmod_s"))
 def vertical_interval(
     sz: float, vz: float, zthr_m: float, tcoa_s: float, vmod_s: float, b_s: float, t_s: float
 ) -> Span:
@@ -70,7 +70,7 @@ def vertical_interval(
 
 
 # -- horizontal -----------------------------------------------------------------------------
-@kernel(implements="well_clear.within_at")
+@kernel(implements="well_clear.within_at", nonnegative=("dthr_m",))
 def course_reaches(s: Vec2, v: Vec2, dthr_m: float) -> bool:
     """True iff the straight course comes within dthr_m at some time, past or future."""
     vv = v.x * v.x + v.y * v.y
@@ -80,7 +80,7 @@ def course_reaches(s: Vec2, v: Vec2, dthr_m: float) -> bool:
     return cross * cross <= dthr_m * dthr_m * vv
 
 
-@kernel(implements="well_clear.horizontal_violation_at")
+@kernel(implements="well_clear.horizontal_violation_at", nonnegative=("dthr_m", "tthr_s"))
 def times_taumod(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, b_s: float, t_s: float) -> Span:
     """First and last instant of [b_s, t_s] at which the volume with tau_mod is violated, if any is.
 
@@ -99,7 +99,7 @@ def times_taumod(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, b_s: float, t_s
     return Span(max(first, b_s), min((sqrt(disc) - sv) / vv, t_s))
 
 
-@kernel(implements="well_clear.horizontal_violation_at")
+@kernel(implements="well_clear.horizontal_violation_at", nonnegative=("dthr_m", "tthr_s"))
 def horizontal_interval_taumod(
     s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, b_s: float, t_s: float
 ) -> Span:
@@ -113,7 +113,7 @@ def horizontal_interval_taumod(
     return or_empty(first, last)
 
 
-@kernel(implements="well_clear.horizontal_violation_tcpa_at")
+@kernel(implements="well_clear.horizontal_violation_tcpa_at", nonnegative=("dthr_m", "tthr_s"))
 def times_tcpa(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, b_s: float, t_s: float) -> Span:
     """First and last instant of [b_s, t_s] at which the volume with tcpa is violated, if any is.
 
@@ -131,7 +131,7 @@ def times_tcpa(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, b_s: float, t_s: 
     return Span(max(first, b_s), min((root - sv) / vv, t_s))
 
 
-@kernel(implements="well_clear.horizontal_violation_tcpa_at")
+@kernel(implements="well_clear.horizontal_violation_tcpa_at", nonnegative=("dthr_m", "tthr_s"))
 def horizontal_interval_tcpa(
     s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, b_s: float, t_s: float
 ) -> Span:
@@ -145,7 +145,7 @@ def horizontal_interval_tcpa(
     return or_empty(first, last)
 
 
-@kernel(implements="well_clear.horizontal_violation_tep_at")
+@kernel(implements="well_clear.horizontal_violation_tep_at", nonnegative=("dthr_m", "tthr_s"))
 def times_tep(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, b_s: float, t_s: float) -> Span:
     """First and last instant of [b_s, t_s] at which the volume with tep is violated, if any is.
 
@@ -163,7 +163,7 @@ def times_tep(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, b_s: float, t_s: f
     return Span(max(first, b_s), min((root - sv) / vv, t_s))
 
 
-@kernel(implements="well_clear.horizontal_violation_tep_at")
+@kernel(implements="well_clear.horizontal_violation_tep_at", nonnegative=("dthr_m", "tthr_s"))
 def horizontal_interval_tep(
     s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, b_s: float, t_s: float
 ) -> Span:
@@ -178,7 +178,10 @@ def horizontal_interval_tep(
 
 
 # -- in space -------------------------------------------------------------------------------
-@kernel(implements="well_clear.violation_taumod_at")
+@kernel(
+    implements="well_clear.violation_taumod_at",
+    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+)
 def violation_interval_taumod(
     s: Vec2,
     v: Vec2,
@@ -197,7 +200,10 @@ def violation_interval_taumod(
     return horizontal_interval_taumod(s, v, dthr_m, tthr_s, begin, end)
 
 
-@kernel(implements="well_clear.violation_taumod_at")
+@kernel(
+    implements="well_clear.violation_taumod_at",
+    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+)
 def violation_times_taumod(
     s: Vec2,
     v: Vec2,
@@ -218,7 +224,10 @@ def violation_times_taumod(
     return Span(min(first, t_s), max(last, b_s))
 
 
-@kernel(implements="well_clear.violation_tcpa_at")
+@kernel(
+    implements="well_clear.violation_tcpa_at",
+    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+)
 def violation_interval_tcpa(
     s: Vec2,
     v: Vec2,
@@ -237,7 +246,10 @@ def violation_interval_tcpa(
     return horizontal_interval_tcpa(s, v, dthr_m, tthr_s, begin, end)
 
 
-@kernel(implements="well_clear.violation_tcpa_at")
+@kernel(
+    implements="well_clear.violation_tcpa_at",
+    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+)
 def violation_times_tcpa(
     s: Vec2,
     v: Vec2,
@@ -258,7 +270,10 @@ def violation_times_tcpa(
     return Span(min(first, t_s), max(last, b_s))
 
 
-@kernel(implements="well_clear.violation_tep_at")
+@kernel(
+    implements="well_clear.violation_tep_at",
+    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+)
 def violation_interval_tep(
     s: Vec2,
     v: Vec2,
@@ -277,7 +292,10 @@ def violation_interval_tep(
     return horizontal_interval_tep(s, v, dthr_m, tthr_s, begin, end)
 
 
-@kernel(implements="well_clear.violation_tep_at")
+@kernel(
+    implements="well_clear.violation_tep_at",
+    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+)
 def violation_times_tep(
     s: Vec2,
     v: Vec2,
@@ -298,7 +316,7 @@ def violation_times_tep(
     return Span(min(first, t_s), max(last, b_s))
 
 
-@kernel(implements="well_clear.cylinder_violation_at")
+@kernel(implements="well_clear.cylinder_violation_at", nonnegative=("radius_m", "half_height_m"))
 def cylinder_interval(
     s: Vec2,
     v: Vec2,
@@ -314,7 +332,7 @@ def cylinder_interval(
     return violation_interval_tep(s, v, sz, vz, radius_m, half_height_m, 0, 0, 0, b_s, t_s)
 
 
-@kernel(implements="well_clear.cylinder_violation_at")
+@kernel(implements="well_clear.cylinder_violation_at", nonnegative=("radius_m", "half_height_m"))
 def cylinder_times(
     s: Vec2,
     v: Vec2,

@@ -9,7 +9,7 @@ but for `cylinder_conflict`.
 from cratous.core.kernel import Vec2, kernel
 
 
-@kernel(implements="well_clear.horizontal_violation")
+@kernel(implements="well_clear.horizontal_violation", nonnegative=("dthr_m", "tthr_s"))
 def horizontal_violation(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float) -> bool:
     """True iff the horizontal well-clear volume is violated now.
 
@@ -24,7 +24,7 @@ def horizontal_violation(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float) -> bool
     return horizontal_decision(ss, vv, sv, cross, dd, tthr_s)
 
 
-@kernel(implements="well_clear.horizontal_violation_by_invariants")
+@kernel(implements="well_clear.horizontal_violation_by_invariants", nonnegative=("tthr_s",))
 def horizontal_decision(
     ss: float, vv: float, sv: float, cross: float, dd: float, tthr_s: float
 ) -> bool:
@@ -37,7 +37,7 @@ def horizontal_decision(
     return cross * cross <= dd * vv and dd - ss >= tthr_s * sv
 
 
-@kernel(implements="well_clear.vertical_violation")
+@kernel(implements="well_clear.vertical_violation", nonnegative=("zthr_m", "tcoa_s"))
 def vertical_violation(sz: float, vz: float, zthr_m: float, tcoa_s: float) -> bool:
     """True iff the vertical well-clear volume is violated now.
 
@@ -51,7 +51,7 @@ def vertical_violation(sz: float, vz: float, zthr_m: float, tcoa_s: float) -> bo
     return abs(sz) <= tcoa_s * abs(vz)
 
 
-@kernel(implements="well_clear.violation")
+@kernel(implements="well_clear.violation", nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s"))
 def violation(
     s: Vec2,
     v: Vec2,
@@ -67,7 +67,7 @@ def violation(
 
 
 # -- the other time variables ---------------------------------------------------------------
-@kernel(implements="well_clear.horizontal_violation_tcpa")
+@kernel(implements="well_clear.horizontal_violation_tcpa", nonnegative=("dthr_m", "tthr_s"))
 def horizontal_violation_tcpa(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float) -> bool:
     """True iff the horizontal volume with the time of closest approach is violated now.
 
@@ -80,7 +80,7 @@ def horizontal_violation_tcpa(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float) ->
     return tcpa_decision(ss, vv, sv, cross, dthr_m * dthr_m, tthr_s)
 
 
-@kernel(implements="well_clear.horizontal_violation_tcpa")
+@kernel(implements="well_clear.horizontal_violation_tcpa", nonnegative=("tthr_s",))
 def tcpa_decision(ss: float, vv: float, sv: float, cross: float, dd: float, tthr_s: float) -> bool:
     """The same, on invariants: |s|^2, |v|^2, s.v, s x v, DTHR^2 and TTHR."""
     if ss <= dd:
@@ -91,7 +91,7 @@ def tcpa_decision(ss: float, vv: float, sv: float, cross: float, dd: float, tthr
     return cross * cross <= dd * vv and 0 - sv <= tthr_s * vv
 
 
-@kernel(implements="well_clear.horizontal_violation_tep")
+@kernel(implements="well_clear.horizontal_violation_tep", nonnegative=("dthr_m", "tthr_s"))
 def horizontal_violation_tep(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float) -> bool:
     """True iff the horizontal volume with the time of entry is violated now.
 
@@ -104,7 +104,7 @@ def horizontal_violation_tep(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float) -> 
     return tep_decision(ss, vv, sv, cross, dthr_m * dthr_m, tthr_s)
 
 
-@kernel(implements="well_clear.horizontal_violation_tep")
+@kernel(implements="well_clear.horizontal_violation_tep", nonnegative=("tthr_s",))
 def tep_decision(ss: float, vv: float, sv: float, cross: float, dd: float, tthr_s: float) -> bool:
     """The same, on invariants: |s|^2, |v|^2, s.v, s x v, DTHR^2 and TTHR."""
     if ss <= dd:
@@ -117,7 +117,7 @@ def tep_decision(ss: float, vv: float, sv: float, cross: float, dd: float, tthr_
     return disc >= 0 and (late <= 0 or late * late <= disc)
 
 
-@kernel(implements="well_clear.horizontal_violation_tau")
+@kernel(implements="well_clear.horizontal_violation_tau", nonnegative=("dthr_m", "tthr_s"))
 def horizontal_violation_tau(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float) -> bool:
     """True iff the horizontal volume with plain tau is violated now; not convex in time.
 
@@ -135,7 +135,7 @@ def horizontal_violation_tau(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float) -> 
     return cross * cross <= dd * vv and ss <= tthr_s * (0 - sv)
 
 
-@kernel(implements="well_clear.vertical_violation_vmod")
+@kernel(implements="well_clear.vertical_violation_vmod", nonnegative=("zthr_m", "vmod_s"))
 def vertical_violation_vmod(sz: float, vz: float, zthr_m: float, vmod_s: float) -> bool:
     """True iff the vertical volume with VMOD is violated now: ZTHR grows with the closing rate.
 
@@ -147,7 +147,7 @@ def vertical_violation_vmod(sz: float, vz: float, zthr_m: float, vmod_s: float) 
     return sz * vz < 0 and abs(sz) <= zthr_m + vmod_s * abs(vz)
 
 
-@kernel(implements="well_clear.layer_violation")
+@kernel(implements="well_clear.layer_violation", nonnegative=("zthr_m", "tcoa_s", "vmod_s"))
 def layer_violation(sz: float, vz: float, zthr_m: float, tcoa_s: float, vmod_s: float) -> bool:
     """True iff the vertical volume is violated now, by TCOA or by VMOD (0 switches one off).
 
@@ -159,7 +159,10 @@ def layer_violation(sz: float, vz: float, zthr_m: float, tcoa_s: float, vmod_s: 
 
 
 # -- in space -------------------------------------------------------------------------------
-@kernel(implements="well_clear.violation_taumod_at")
+@kernel(
+    implements="well_clear.violation_taumod_at",
+    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+)
 def violation_taumod(
     s: Vec2,
     v: Vec2,
@@ -176,7 +179,10 @@ def violation_taumod(
     return vertical and horizontal_violation(s, v, dthr_m, tthr_s)
 
 
-@kernel(implements="well_clear.violation_tcpa_at")
+@kernel(
+    implements="well_clear.violation_tcpa_at",
+    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+)
 def violation_tcpa(
     s: Vec2,
     v: Vec2,
@@ -193,7 +199,10 @@ def violation_tcpa(
     return vertical and horizontal_violation_tcpa(s, v, dthr_m, tthr_s)
 
 
-@kernel(implements="well_clear.violation_tep_at")
+@kernel(
+    implements="well_clear.violation_tep_at",
+    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+)
 def violation_tep(
     s: Vec2,
     v: Vec2,
@@ -210,7 +219,7 @@ def violation_tep(
     return vertical and horizontal_violation_tep(s, v, dthr_m, tthr_s)
 
 
-@kernel(implements="well_clear.cylinder_violation")
+@kernel(implements="well_clear.cylinder_violation", nonnegative=("radius_m", "half_height_m"))
 def cylinder_violation(s: Vec2, sz: float, radius_m: float, half_height_m: float) -> bool:
     """True iff the intruder is inside the closed cylinder now.
 
@@ -219,7 +228,7 @@ def cylinder_violation(s: Vec2, sz: float, radius_m: float, half_height_m: float
     return abs(sz) <= half_height_m and s.x * s.x + s.y * s.y <= radius_m * radius_m
 
 
-@kernel(implements="well_clear.cylinder_conflict")
+@kernel(implements="well_clear.cylinder_conflict", nonnegative=("radius_m", "half_height_m"))
 def cylinder_conflict(s: Vec2, sz: float, radius_m: float, half_height_m: float) -> bool:
     """True iff the intruder is inside the open cylinder now: touching it does not count.
 

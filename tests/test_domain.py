@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import inspect
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
 from cratous.core import kernel as kernels
+from cratous.core import well_clear_during, well_clear_interval, well_clear_now
 from cratous.core.certainty import outward_margin
 from cratous.core.compiled import exact
 from cratous.core.enclosed import enclosed
@@ -62,3 +64,27 @@ def test_a_name_that_is_no_argument_is_refused():
     with pytest.raises(ValueError, match="half has no argument b_m"):
         kernels.kernel(implements="x.y", nonnegative=("b_m",))(half)
     assert before == kernels.REGISTRY
+
+
+THRESHOLDS = {"dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s", "radius_m", "half_height_m"}
+
+
+def _well_clear_kernels():
+    modules = (well_clear_now, well_clear_during, well_clear_interval)
+    for entry in list(kernels.REGISTRY.values()):
+        if entry.kind == "kernel" and any(entry.function.__module__ == m.__name__ for m in modules):
+            names = list(inspect.signature(entry.function).parameters)
+            yield from ((entry.function, names, n) for n in names if n in THRESHOLDS)
+
+
+@pytest.mark.parametrize(
+    ("kernel", "names", "threshold"),
+    [pytest.param(*row, id=f"{row[0].__name__}-{row[2]}") for row in _well_clear_kernels()],
+)
+def test_a_threshold_of_well_clear_below_0_has_no_verdict(kernel, names, threshold):
+    vectors = {name: kernels.Vec2(1.0, 2.0) for name in ("s", "v") if name in names}
+    usual = {name: vectors.get(name, 1.0) for name in names}
+    for value in (-1.0, -5e-324, -1):
+        with pytest.raises(BadInput) as caught:
+            exact(kernel, *{**usual, threshold: value}.values())
+        assert (caught.value.where, caught.value.item) == (kernel.__name__, threshold)
