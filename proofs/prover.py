@@ -10,7 +10,7 @@ obligation can be written out as SMT-LIB for solvers that stand alone.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -32,6 +32,10 @@ from cratous.spec.errors import BadInput
 RLIMIT = 60_000_000
 FACTS_RLIMIT = 3_000_000
 PATH_RLIMIT = 1_000_000
+ORDERS = (0, 4, 3, 5)
+"""Orders of variables (z3's numbers) for polynomials. z3's own strategy for them goes from one to the
+next by wall time, so its answer would depend on what else the machine does; here each has a share
+of the effort."""
 _KEY = object()
 _NO_CACHE = Cache(None)
 
@@ -123,11 +127,16 @@ def restore(data: dict[str, Any]) -> Theorem:
     )
 
 
-def _solvers(terms: list[z3.ExprRef], context: z3.Context) -> list[tuple[str, z3.Solver]]:
-    """The solvers worth asking for these terms, most promising first."""
+def _solvers(
+    terms: list[z3.ExprRef], context: z3.Context, rlimit: int
+) -> Iterator[tuple[str, z3.Solver, int]]:
+    """Logic, solver and effort of each way that is worth trying, most promising first."""
     if sorts(terms) & {"Real", "Int", "BitVec", "quantifier", "function"} == {"Real"}:
-        return [("QF_NRA", _maker("QF_NRA", context)), ("ALL", _maker("ALL", context))]
-    return [("ALL", _maker("ALL", context))]
+        for order, effort in (*((order, rlimit // 6) for order in ORDERS), (ORDERS[0], rlimit)):
+            tactic = z3.Tactic("qfnra-nlsat", context)
+            chosen = z3.With(tactic, variable_ordering_strategy=order, ctx=context)
+            yield "QF_NRA", chosen.solver(), effort
+    yield "ALL", _maker("ALL", context), rlimit
 
 
 def _maker(logic: str, context: z3.Context) -> z3.Solver:
@@ -141,8 +150,8 @@ def _ask(given: list[z3.BoolRef], rlimit: int) -> tuple[Answer, z3.ModelRef | No
     terms = [term.translate(context) for term in given]
     begun = time.process_time()
     spent, result, logic, model = 0, "unknown", "ALL", None
-    for name, solver in _solvers(terms, context):
-        solver.set("rlimit", rlimit)
+    for name, solver, effort in _solvers(terms, context, rlimit):
+        solver.set("rlimit", effort)
         solver.add(*terms)
         before = _rlimit_count(solver)
         said = solver.check()
@@ -177,7 +186,7 @@ def _decide(
             cache.put(key, rlimit, answer)
         else:
             terms = [term.translate(context) for term in asked]
-            first = _solvers(terms, context)[0][0]
+            first = next(_solvers(terms, context, rlimit))[0]
             found = telling(terms, found, lambda: _maker(first, context))
             model = Model(found, context)
             values = [(str(d.name()), str(found[d])) for d in found.decls() if d.arity() == 0]
