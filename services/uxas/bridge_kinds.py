@@ -157,7 +157,7 @@ def _serial(given: Given) -> Bridge:
         report=given.host.log,
         where=given.entry.where,
     )
-    return given.bridge(port, own_only=False, group="SerialBridge")
+    return given.bridge(port, own_only=True, group="SerialBridge")
 
 
 def _pair(given: Given, out: str, into: str, parts: int = 1) -> Port:
@@ -200,11 +200,15 @@ def _pair(given: Given, out: str, into: str, parts: int = 1) -> Port:
 
 
 def _publish_pull(given: Given) -> Bridge:
-    return given.bridge(_pair(given, "PUB", "PULL"), own_only=True, group="PublishPullBridge")
+    return given.bridge(
+        _pair(given, "PUB", "PULL"), own_only=True, group="PublishPullBridge", relay=True
+    )
 
 
 def _subscribe_push(given: Given) -> Bridge:
-    return given.bridge(_pair(given, "PUSH", "SUB"), own_only=True, group="SubscribePushBridge")
+    return given.bridge(
+        _pair(given, "PUSH", "SUB"), own_only=True, group="SubscribePushBridge", returns=True
+    )
 
 
 def _impact(given: Given) -> Bridge:

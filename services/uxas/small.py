@@ -165,7 +165,7 @@ class HelloWorld:
     def handle(self, state: int, envelope: Envelope, now_ms: int) -> Step:
         pair = envelope.body
         self._host.say(
-            f"*** RECEIVED:: Received Id[{self._id}] Sent Id[{pair.Key}] Message[{pair.Value}] ***"
+            f"*** RECEIVED:: Received Id[{self._id}] Sent Id[{pair.Key}] Message[{pair.Value}] *** "
         )
         return state + 1, ()
 
