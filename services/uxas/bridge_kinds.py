@@ -29,6 +29,7 @@ from cratous.spec.errors import BadInput
 
 ZMQ_SCHEMES = ("tcp", "ipc", "inproc", "udp")
 _DEFAULT = Limits()
+_SETTLE_S = 0.5  # more than ZeroMQ takes to try again to connect (100 to 200 ms)
 
 LIMITS: Mapping[str, Attr] = {
     "MaxMessageSize_bytes": whole(_DEFAULT.payload_bytes, 1024, 2**30),
@@ -196,6 +197,7 @@ def _pair(given: Given, out: str, into: str, parts: int = 1) -> Port:
         limits=given.limits(),
         curve=curve,
         report=given.host.log,
+        settle_s=_SETTLE_S if bind else 0.0,
     )
 
 
