@@ -197,33 +197,6 @@ def test_messages_are_sent_once_periodically_and_to_addresses(tmp_path: Path) ->
     one.close()
 
 
-def test_lines_of_message_files_that_begin_with_a_hash_are_comments(tmp_path: Path) -> None:
-    """As in UxAS: before the XML, between its lines, also inside; places keep their lines."""
-    text = b"""# the pair #1 <not XML>\r
-<KeyValuePair Series="CMASI">
-#<Key>old</Key>
- <Key>k#1</Key>
-#
- <Value>#v</Value>
-</KeyValuePair>
-# the end"""
-    (tmp_path / "pair.xml").write_bytes(text)
-    entry = """<Service Type="SendMessagesService" PathToMessageFiles=".">
-        <Message MessageFileName="pair.xml" SendTime_ms="10"/></Service>"""
-    one, _ = process(write_cfg(tmp_path, entry), virtual=True)
-    seen: list[Any] = []
-    one.bus.tap(lambda e: "KeyValue" in e.topic and seen.append(e.body))
-    one.run(1.0)
-    assert [(p.Key, p.Value) for p in seen] == [("k#1", "#v")]
-    one.close()
-    # elsewhere a hash means nothing, and what is wrong is said with its line
-    with pytest.raises(BadInput, match="XML"):
-        lmcp.xml.read_file(tmp_path / "pair.xml")
-    (tmp_path / "pair.xml").write_bytes(text.replace(b"<Value>#v", b"<Valu>#v"))
-    with pytest.raises(BadInput, match=r"pair\.xml:6"):
-        process(write_cfg(tmp_path, entry), virtual=True)
-
-
 def test_reports_go_stale_with_the_states(tmp_path: Path) -> None:
     report = '<Service Type="StatusReportService" VehicleID="7" ReportPeriod_ms="1000" StaleStateTime_ms="2500"/>'
     one, _ = process(write_cfg(tmp_path, report), virtual=True)
