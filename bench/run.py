@@ -2,7 +2,7 @@
 
 The well-clear rows are those of `exact_well_clear.py` and `interval_well_clear.py`, where the
 peer is C; those of points in polygons are those of `containment.py`, by CPU time; those of messages
-are in `lmcp_codec.py`.
+are in `lmcp_codec.py`, the one of the message logger in `day_of_traffic.py`.
 
 `python bench/run.py --write` puts the table into bench/README.md.
 """
@@ -25,12 +25,13 @@ from cratous.core.well_clear import horizontal_violation, violation_within
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import containment
+import day_of_traffic
 import exact_well_clear
 import interval_well_clear
 import lmcp_codec
 
 README = Path(__file__).resolve().parent / "README.md"
-MARK = "<!-- table -->"
+MARK, END = "<!-- table -->", "<!-- end of table -->"
 N = 1_000_000
 
 
@@ -91,7 +92,8 @@ def rows() -> list[tuple[str, float, str, float]]:
     b = best(lambda: [shape.contains(shapely.Point(p)) for p in points], 3) / 300 * 1e9
     found.append(("point in 10-gon, exact, one by one", a, "shapely contains, one by one", b))
     wells = exact_well_clear.rows() + interval_well_clear.rows()
-    return wells + containment.rows() + found + lmcp_codec.rows()
+    messages = lmcp_codec.rows() + day_of_traffic.rows()
+    return wells + containment.rows() + found + messages
 
 
 def table() -> str:
@@ -111,8 +113,9 @@ def main() -> int:
     text = table()
     print(text)
     if "--write" in sys.argv:
-        before = README.read_text(encoding="utf-8").split(MARK)[0]
-        README.write_text(f"{before}{MARK}\n{text}\n", encoding="utf-8")
+        before, rest = README.read_text(encoding="utf-8").split(MARK)
+        after = rest.split(END)[1]
+        README.write_text(f"{before}{MARK}\n{text}\n{END}{after}", encoding="utf-8")
     return 0
 
 

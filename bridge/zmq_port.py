@@ -19,7 +19,7 @@ from typing import Any
 import zmq
 from zmq.utils.monitor import recv_monitor_message
 
-from cratous.bridge.port import Address, Counts, Incoming, Limits, Report, Tally, often
+from cratous.bridge.port import Address, Counts, Incoming, Limits, Report, Tally, is_due, often
 from cratous.bridge.zmq_curve import Curve
 from cratous.spec.errors import BadInput
 
@@ -63,8 +63,14 @@ class ZmqPort:
         limits: Limits | None = None,
         curve: Curve | None = None,
         report: Report = lambda _severity, _text: None,
+        settle_s: float = 0.0,
     ) -> None:
-        """parts: how many parts a message has. BadInput if an address cannot be used."""
+        """parts: how many parts a message has. BadInput if an address cannot be used.
+
+        settle_s: for so long after the first step nothing is read, so that a client that has been
+        trying to connect is there to hear the answer to what it has queued.
+        """
+        self._settle_s = settle_s  # 0 when it is over
         self._limits = limits or Limits()
         self._parts, self._report = parts, report
         name = " and ".join(end.address.text for end in (sender, receiver) if end)
@@ -100,7 +106,7 @@ class ZmqPort:
     def handles(self) -> list[tuple[Any, int]]:
         """Both sockets and their monitors."""
         found: list[tuple[Any, int]] = [(sock, zmq.POLLIN) for sock, _ in self._monitors]
-        if self._in is not None:
+        if self._in is not None and not self._settle_s:
             found.append((self._in, zmq.POLLIN))
         if self._out is not None and self._waiting:
             found.append((self._out, zmq.POLLOUT))
@@ -113,6 +119,12 @@ class ZmqPort:
         found: list[Incoming] = []
         if self._in is None:
             return found
+        if self._settle_s:
+            if self.due_s is None:
+                self.due_s = now_s + self._settle_s
+            if not is_due(self.due_s, now_s):
+                return found
+            self._settle_s, self.due_s = 0.0, None
         assert self._receiver is not None
         peer = self._receiver.address.text
         for _ in range(_BATCH):

@@ -8,74 +8,19 @@ another version or is one too many is refused with a reason. Compatible with C Z
 
 from __future__ import annotations
 
-import errno
-import fcntl
-import socket
-import struct
 import uuid as uuids
-from dataclasses import dataclass, field
 from typing import Any
 
 import zmq
 
 from cratous.bridge import zre_wire as wire
 from cratous.bridge.port import Limits, Report, Tally, is_due
+from cratous.bridge.zre_beacon import BEACON_PORT, Beacon
+from cratous.bridge.zre_peer import IDENTITY, Event, Peer, hexadecimal
 from cratous.spec.errors import BadInput
 
-BEACON_PORT = 5670
 _EVASIVE_S, _EXPIRED_S = 5.0, 30.0
-_IDENTITY = b"\x01"  # stands before the uuid in the identity of a peer's socket
 _BATCH = 2000
-_GET_ADDRESS, _GET_BROADCAST = 0x8915, 0x8919  # ioctl of Linux
-
-
-@dataclass(frozen=True)
-class Event:
-    """Something that happened: ENTER, EXIT, JOIN, LEAVE, WHISPER or SHOUT, and whose it is."""
-
-    kind: str
-    peer: str
-    name: str
-    group: str = ""
-    headers: dict[str, str] = field(default_factory=dict)
-    content: tuple[bytes, ...] = ()
-    address: str = ""
-
-
-@dataclass
-class _Peer:
-    sock: Any
-    endpoint: str
-    name: str = ""
-    ready: bool = False  # it has said hello
-    sent: int = 0
-    wanted: int = 0
-    seen_s: float = 0.0
-    pinged: bool = False
-    groups: set[str] = field(default_factory=set)
-    headers: dict[str, str] = field(default_factory=dict)
-
-
-def interface(device: str, where: str = "") -> tuple[str, str]:
-    """(address, broadcast address) of a network device, e.g. `lo` or `eth0`; BadInput if none."""
-    found = []
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sock:
-        try:
-            for code in (_GET_ADDRESS, _GET_BROADCAST):
-                answer = fcntl.ioctl(sock, code, struct.pack("256s", device.encode()[:15]))
-                found.append(socket.inet_ntoa(answer[20:24]))
-        except OSError as error:
-            raise BadInput(
-                "no such network device",
-                where=where,
-                item="NetworkDevice",
-                expected=", ".join(name for _, name in socket.if_nameindex()),
-                got=f"{device} ({error.strerror})",
-            ) from None
-    address, broadcast = found
-    if broadcast in ("0.0.0.0", address):
-        broadcast = "127.255.255.255" if address.startswith("127.") else "255.255.255.255"
-    return address, broadcast
 
 
 class ZreNode:
@@ -101,27 +46,25 @@ class ZreNode:
         self._report = report
         self._interval_s = interval_s
         self._uuid = uuids.uuid4().bytes
-        self._peers: dict[bytes, _Peer] = {}
+        self._peers: dict[bytes, Peer] = {}
         self._groups: list[str] = []
         self._status = 0
         self._beacon_s: float | None = None
         self._now_s = 0.0
         self._events: list[Event] = []
         self._closed = False
-        self._address, broadcast = interface(device, where)
-        self._to = (broadcast, beacon_port)
         self._tally = Tally(f"zyre {name}", report)
         self.counts = self._tally.counts
-        self._udp = _beacon_socket(beacon_port, where)
+        self._beacon = Beacon(device, beacon_port, self._uuid, self._tally, where)
         self._inbox = context.socket(zmq.ROUTER)
         try:
             self._inbox.linger = 0
             self._inbox.rcvhwm = self._limits.high_water
             self._inbox.maxmsgsize = self._limits.payload_bytes + 8192
             self._inbox.router_handover = True  # a peer that comes again takes its old place
-            port = self._inbox.bind_to_random_port(f"tcp://{self._address}")
+            port = self._inbox.bind_to_random_port(f"tcp://{self._beacon.address}")
         except zmq.ZMQError as error:
-            self._udp.close()
+            self._beacon.close()
             self._inbox.close()
             raise BadInput(
                 f"cannot listen ({error})", where=where, item="NetworkDevice", got=device
@@ -136,7 +79,7 @@ class ZreNode:
     @property
     def endpoint(self) -> str:
         """Where its inbox is."""
-        return f"tcp://{self._address}:{self._port}"
+        return f"tcp://{self._beacon.address}:{self._port}"
 
     @property
     def due_s(self) -> float | None:
@@ -150,13 +93,13 @@ class ZreNode:
 
     def peers(self) -> dict[str, str]:
         """The names of the peers that have said hello, by uuid."""
-        return {_hex(u): peer.name for u, peer in self._peers.items() if peer.ready}
+        return {hexadecimal(u): peer.name for u, peer in self._peers.items() if peer.ready}
 
     def handles(self) -> list[tuple[Any, int]]:
         """The inbox and the socket of the beacons."""
         if self._closed:
             return []
-        return [(self._inbox, zmq.POLLIN), (self._udp.fileno(), zmq.POLLIN)]
+        return [(self._inbox, zmq.POLLIN), (self._beacon.fileno(), zmq.POLLIN)]
 
     def step(self, now_s: float) -> list[Event]:
         """Send what is due, read what is there; the events, in order."""
@@ -164,7 +107,7 @@ class ZreNode:
         if self._closed:
             return []
         if self._beacon_s is None or is_due(self._beacon_s, now_s):
-            self._shine(self._port)
+            self._beacon.shine(self._port)
             self._beacon_s = now_s + self._interval_s
         self._read_beacons()
         self._read_inbox()
@@ -204,34 +147,16 @@ class ZreNode:
         """Say good-bye by a beacon with port 0 and close everything."""
         if self._closed:
             return
-        self._shine(0)
+        self._beacon.shine(0)
         for peer in self._peers.values():
             peer.sock.close(linger=100)
         self._peers.clear()
-        self._udp.close()
+        self._beacon.close()
         self._inbox.close(linger=0)
         self._closed = True
 
-    def _shine(self, port: int) -> None:
-        try:
-            self._udp.sendto(wire.beacon(self._uuid, port), self._to)
-        except OSError as error:
-            self._tally.lose("beacon not taken by the network", error.strerror or str(error))
-
     def _read_beacons(self) -> None:
-        for _ in range(_BATCH):
-            try:
-                data, (host, _port) = self._udp.recvfrom(1024)
-            except (BlockingIOError, InterruptedError):
-                return
-            except OSError as error:
-                if error.errno != errno.ECONNREFUSED:
-                    self._tally.refuse("beacon", error.strerror or str(error))
-                continue
-            found = wire.read_beacon(data)
-            if found is None or found[0] == self._uuid:
-                continue
-            uuid, port = found
+        for uuid, host, port in self._beacon.read():
             if port == 0:
                 self._remove(uuid, "it has left")
             else:
@@ -239,7 +164,7 @@ class ZreNode:
                 if peer is not None:
                     self._refresh(peer)
 
-    def _require(self, uuid: bytes, endpoint: str) -> _Peer | None:
+    def _require(self, uuid: bytes, endpoint: str) -> Peer | None:
         """The peer with a uuid, connected to and greeted if it is new."""
         peer = self._peers.get(uuid)
         if peer is not None:
@@ -247,17 +172,13 @@ class ZreNode:
         if len(self._peers) >= self._limits.connections:
             self._tally.refuse("too many peers", f"{endpoint}; {len(self._peers)} are known")
             return None
-        sock = self._context.socket(zmq.DEALER)
-        sock.linger = 0
-        sock.identity = _IDENTITY + self._uuid
-        sock.sndhwm = self._limits.high_water
         try:
-            sock.connect(endpoint)
+            peer = Peer.connect(self._context, self._uuid, endpoint, self._limits.high_water)
         except zmq.ZMQError as error:
-            sock.close()
             self._tally.refuse("endpoint that cannot be used", f"{endpoint} ({error})")
             return None
-        peer = self._peers[uuid] = _Peer(sock, endpoint, seen_s=self._now_s)
+        peer.seen_s = self._now_s
+        self._peers[uuid] = peer
         self._send(
             peer,
             wire.Command(
@@ -272,17 +193,12 @@ class ZreNode:
         )
         return peer
 
-    def _send(self, peer: _Peer, command: wire.Command, content: tuple[bytes, ...] = ()) -> bool:
-        from dataclasses import replace
-
-        sequence = (peer.sent + 1) & 0xFFFF
+    def _send(self, peer: Peer, command: wire.Command, content: tuple[bytes, ...] = ()) -> bool:
         try:
-            frame = wire.pack(replace(command, sequence=sequence))
-            peer.sock.send_multipart((frame, *content), zmq.NOBLOCK)
+            peer.send(command, content)
         except zmq.Again:
             self._tally.lose("peer does not read", f"{peer.name or peer.endpoint}")
             return False
-        peer.sent = sequence
         if command.number in (wire.WHISPER, wire.SHOUT):
             self.counts.sent += 1
         return True
@@ -293,7 +209,7 @@ class ZreNode:
                 identity, *frames = self._inbox.recv_multipart(zmq.NOBLOCK)
             except zmq.Again:
                 return
-            if len(identity) != 17 or identity[:1] != _IDENTITY or not frames:
+            if len(identity) != 17 or identity[:1] != IDENTITY or not frames:
                 self._tally.refuse("not a ZRE peer", identity.hex())
                 continue
             uuid = identity[1:]
@@ -301,7 +217,7 @@ class ZreNode:
                 command = wire.unpack(frames[0])
                 self._command(uuid, command, tuple(frames[1:]))
             except BadInput as error:
-                self._tally.refuse(error.what, f"{_hex(uuid)}: {error}")
+                self._tally.refuse(error.what, f"{hexadecimal(uuid)}: {error}")
                 if error.what == "other version of ZRE":
                     self._remove(uuid, str(error))
 
@@ -317,10 +233,10 @@ class ZreNode:
                 return
             peer.ready, peer.wanted = True, command.sequence
             peer.name, peer.headers = command.name, dict(command.headers)
-            self._event("ENTER", uuid, peer)
+            self._events.append(peer.event("ENTER", uuid))
             for group in command.groups:
                 peer.groups.add(group)
-                self._event("JOIN", uuid, peer, group)
+                self._events.append(peer.event("JOIN", uuid, group))
             self._refresh(peer)
             return
         if peer is None or not peer.ready:
@@ -337,16 +253,16 @@ class ZreNode:
         number, group = command.number, command.group
         if number == wire.WHISPER:
             self.counts.received += 1
-            self._event("WHISPER", uuid, peer, content=content)
+            self._events.append(peer.event("WHISPER", uuid, content=content))
         elif number == wire.SHOUT:
             self.counts.received += 1
-            self._event("SHOUT", uuid, peer, group, content)
+            self._events.append(peer.event("SHOUT", uuid, group, content))
         elif number == wire.JOIN:
             peer.groups.add(group)
-            self._event("JOIN", uuid, peer, group)
+            self._events.append(peer.event("JOIN", uuid, group))
         elif number == wire.LEAVE:
             peer.groups.discard(group)
-            self._event("LEAVE", uuid, peer, group)
+            self._events.append(peer.event("LEAVE", uuid, group))
         elif number == wire.PING:
             self._send(peer, wire.Command(wire.PING_OK, 0))
         elif number == wire.GOODBYE:
@@ -357,7 +273,7 @@ class ZreNode:
         for peer in self._peers.values():
             self._send(peer, wire.Command(number, 0, group=group, status=self._status))
 
-    def _refresh(self, peer: _Peer) -> None:
+    def _refresh(self, peer: Peer) -> None:
         peer.seen_s, peer.pinged = self._now_s, False
 
     def _check_silence(self) -> None:
@@ -376,43 +292,5 @@ class ZreNode:
             return
         peer.sock.close(linger=0)
         if peer.ready:
-            self._event("EXIT", uuid, peer)
+            self._events.append(peer.event("EXIT", uuid))
             self._report("INFO", f"zyre {self.name}: {peer.name} is gone ({why})")
-
-    def _event(
-        self,
-        kind: str,
-        uuid: bytes,
-        peer: _Peer,
-        group: str = "",
-        content: tuple[bytes, ...] = (),
-    ) -> None:
-        headers = dict(peer.headers) if kind == "ENTER" else {}
-        self._events.append(
-            Event(kind, _hex(uuid), peer.name, group, headers, content, peer.endpoint)
-        )
-
-
-def _hex(uuid: bytes) -> str:
-    return uuid.hex().upper()
-
-
-def _beacon_socket(port: int, where: str) -> socket.socket:
-    sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    try:
-        sock.setblocking(False)
-        sock.setsockopt(socket.SOL_SOCKET, socket.SO_BROADCAST, 1)
-        # several peers of one machine hear the same beacons
-        sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)
-        sock.bind(("", port))
-    except OSError as error:
-        sock.close()
-        raise BadInput(
-            "cannot listen for beacons",
-            where=where,
-            item="BeaconPort",
-            expected="a UDP port that can be shared",
-            got=f"{port} ({error.strerror})",
-        ) from None
-    return sock

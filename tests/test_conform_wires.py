@@ -160,3 +160,16 @@ def test_every_robustness_case_says_what_it_sends() -> None:
     assert b"99999999999999999999" in data
     assert len(good) == 1
     assert frames.sent("never heard of") is None
+
+
+def test_a_folder_is_all_files_in_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    state = lmcp.new("AirVehicleState", ID=4)
+    message = envelope.enclose(state.all_names[0], lmcp.binary.pack(state)).pack()
+    (tmp_path / "b.tcp.bin").write_bytes(frame(message) * 3)
+    (tmp_path / "a.zmq.bin").write_bytes(message)
+    (tmp_path / "deeper").mkdir()
+    assert main(["conform", "frames", str(tmp_path)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [Path(line.partition(":")[0]).name for line in lines[:2]] == ["a.zmq.bin", "b.tcp.bin"]
+    assert lines[-1] == "2 passed, 0 failed"
+    assert main(["conform", "frames", str(tmp_path / "deeper")]) == 3

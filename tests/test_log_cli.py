@@ -270,3 +270,17 @@ def test_waiting_reads_what_the_peer_sends() -> None:
         out.wait(0.05)
         assert time.monotonic() - start >= 0.05
         assert out.received == 5
+
+
+def test_slips_of_the_pen_are_told_with_what_was_meant(
+    log: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for arguments, told in (
+        (("filter", str(log), "--type", "AirVehicleStat"), "expected AirVehicleState"),
+        (("filter", str(log), "--from", "noon"), "--from"),
+        (("follow", str(log.with_name("later.sqlite")), "--for", "0"), "is not there yet"),
+    ):
+        assert main(["log", *arguments]) == 2
+        assert told in capsys.readouterr().err
+    assert main(["lmcp", "decode", str(log)]) == 2
+    assert "`cratous log` reads logs" in capsys.readouterr().err

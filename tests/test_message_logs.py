@@ -222,7 +222,9 @@ def test_mcap_opens_by_the_specification(log: Path) -> None:
         summary = reader.get_summary()
         assert summary is not None
         assert summary.statistics is not None
-        assert summary.statistics.message_count == 16 + 12  # and a fix for each state
+        assert (
+            summary.statistics.message_count == 16 + 2 * 12
+        )  # and a fix and an arrow for each state
         found = list(reader.iter_messages())
     seen = set()
     for schema, channel, message in found:

@@ -150,8 +150,8 @@ def test_greetings_are_heard_by_others_only(tmp_path: Path) -> None:
     one, said = process(path, virtual=True)
     one.run(0.5)
     assert [s for s in said if "RECEIVED" in s] == [
-        "*** RECEIVED:: Received Id[52] Sent Id[51] Message[hi] ***",
-        "*** RECEIVED:: Received Id[51] Sent Id[52] Message[ho] ***",
+        "*** RECEIVED:: Received Id[52] Sent Id[51] Message[hi] *** ",
+        "*** RECEIVED:: Received Id[51] Sent Id[52] Message[ho] *** ",
     ]
     one.close()
 

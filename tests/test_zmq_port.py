@@ -305,3 +305,28 @@ def test_a_serial_line_that_is_too_slow_or_gone_loses_with_a_count() -> None:
     port.close()
     with pytest.raises(BadInput, match="cannot be opened"):
         SerialPort("/dev/no-such-line", where="cfg.xml:3")
+
+
+def test_what_was_queued_before_the_start_is_read_when_its_sender_can_hear(
+    context: zmq.Context[Any],
+) -> None:
+    """A client that queues a request before we are up is not answered before it listens."""
+    port = ZmqPort(
+        context,
+        end("PUB", "tcp://127.0.0.1:0", True),
+        end("PULL", "tcp://127.0.0.1:0", True),
+        settle_s=0.5,
+    )
+    push = context.socket(zmq.PUSH)
+    push.connect(port.bound(True))
+    push.send(b"request")
+    assert port._in.poll(5000), "it is there"
+    assert port.step(10.0) == []
+    assert port.due_s == 10.5
+    assert all(sock is not port._in for sock, _ in port.handles()), "or the loop would spin"
+    assert port.step(10.4) == []
+    assert [incoming.parts for incoming in port.step(10.5)] == [(b"request",)]
+    assert port.due_s is None
+    assert any(sock is port._in for sock, _ in port.handles())
+    push.close(linger=0)
+    port.close()

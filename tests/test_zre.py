@@ -15,7 +15,9 @@ from hypothesis import strategies as st
 
 from cratous.bridge import zre_wire as wire
 from cratous.bridge.port import Limits
-from cratous.bridge.zre import Event, ZreNode, interface
+from cratous.bridge.zre import ZreNode
+from cratous.bridge.zre_beacon import interface
+from cratous.bridge.zre_peer import Event
 from cratous.spec.errors import BadInput
 
 SHORT = st.text(max_size=50)

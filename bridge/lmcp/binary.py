@@ -19,7 +19,16 @@ from cratous.bridge.lmcp.careful import MAX_DEPTH, MAX_ELEMENTS
 from cratous.bridge.lmcp.objects import LmcpObject
 from cratous.spec.errors import BadInput
 
-__all__ = ["MAX_DEPTH", "MAX_ELEMENTS", "MAX_MESSAGE", "lazy", "pack", "split", "unpack"]
+__all__ = [
+    "MAX_DEPTH",
+    "MAX_ELEMENTS",
+    "MAX_MESSAGE",
+    "lazy",
+    "pack",
+    "received",
+    "split",
+    "unpack",
+]
 
 TAG = b"LMCP"
 MAX_MESSAGE = 64 * 1024 * 1024  # bytes of one message
@@ -116,6 +125,31 @@ def _fill(obj: Any, fill: Any, data: bytes, where: str) -> None:
 _new, _set_raw = object.__new__, object.__setattr__  # past the lazy __setattr__
 _lazy_classes: dict[bytes, Any] = {}
 model.when_removed(lambda _series: _lazy_classes.clear())
+
+
+def received(data: bytes, where: str = "message") -> tuple[Any, bytes, list[str]]:
+    """What a client sent: the object, its message as it should be, and what was not right with it.
+
+    As `unpack`, but two habits of clients that UxAS lets pass are let pass and noted: pylmcp
+    (OpenUxAS's own Python client) leaves the null flag of the object out of the length, and sends
+    a zone without a type. The checksum must stand for the very bytes. Raises BadInput.
+    """
+    notes: list[str] = []
+    if len(data) >= _LEAST and _HEAD.unpack_from(data) == (TAG, len(data) - 13):
+        (given,) = _SUM.unpack_from(data, len(data) - 4)
+        if given == byte_sum(memoryview(data)[:-4]):
+            notes.append("the length leaves out a byte")
+            data = _HEAD.pack(TAG, len(data) - 12) + data[_HEAD.size : -4]
+            data += _SUM.pack(byte_sum(data))
+    try:
+        return unpack(data, where), data, notes
+    except BadInput:
+        _checked(data, where)
+        unset: list[str] = []
+        obj = careful.read(data, _AT, len(data) - 4, where, unset)
+        if not unset:
+            raise
+        return obj, pack(obj), notes + unset
 
 
 def split(data: bytes, where: str = "messages") -> Iterator[bytes]:

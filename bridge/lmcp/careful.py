@@ -31,6 +31,8 @@ CODES = {
 OBJECT_HEAD = struct.Struct(">BqIH")
 _SMALL_COUNT, _LARGE_COUNT = struct.Struct(">H"), struct.Struct(">I")
 MAX_DEPTH = 64
+# 0 where an enum begins with 1: "not set", as clients of UxAS send it; UxAS does not look
+UNSET = {"CMASI/ZoneAvoidanceType": "Physical"}
 MAX_ELEMENTS = 1_000_000  # of arrays of anything but numbers, in one message together
 
 
@@ -44,9 +46,12 @@ def pack(obj: LmcpObject) -> bytearray:
     return out
 
 
-def read(data: bytes, at: int, end: int, where: str) -> Any:
-    """The object that takes exactly data[at:end]; BadInput with the byte and the field's path."""
-    reader = _Reader(data, at, end)
+def read(data: bytes, at: int, end: int, where: str, notes: list[str] | None = None) -> Any:
+    """The object that takes exactly data[at:end]; BadInput with the byte and the field's path.
+
+    notes: a 0 for an enum of UNSET is taken for what stands there, and noted here.
+    """
+    reader = _Reader(data, at, end, notes)
     try:
         obj = reader.object(0)
     except BadInput as err:
@@ -124,8 +129,8 @@ def _one(kind: str) -> struct.Struct:
 class _Reader:
     """A place in the bytes of one message."""
 
-    def __init__(self, data: bytes, at: int, end: int) -> None:
-        self.data, self.at, self.end = data, at, end
+    def __init__(self, data: bytes, at: int, end: int, notes: list[str] | None = None) -> None:
+        self.data, self.at, self.end, self.notes = data, at, end, notes
         self.left = MAX_ELEMENTS
         self.began = at  # of what was read last: where an error is
 
@@ -208,6 +213,9 @@ class _Reader:
         if field.kind == "enum":
             members = enums[field.type]
             if value not in members._value2member_map_:
+                if value == 0 and field.type in UNSET and self.notes is not None:
+                    self.notes.append(f"{field.name}=0 is taken for {UNSET[field.type]}")
+                    return members[UNSET[field.type]]
                 raise BadInput(
                     "wrong value", expected=" or ".join(members.__members__), got=f"{value}"
                 )

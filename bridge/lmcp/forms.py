@@ -32,6 +32,7 @@ from cratous.spec.errors import BadInput
 FORMS = ("binary", "envelope", "frames", "hex", "xml", "json")
 OUTPUTS = ("json", "xml", "binary", "envelope", "frames", "hex")
 MAX_UNPACKED = 1 << 30  # bytes that a gzipped input may become
+_LOGS = (b"SQLite format 3\0", b"\x89MCAP0")
 _HEX = re.compile(rb"[0-9a-fA-F\s]+\Z")
 _ENVELOPE = re.compile(rb"[^$\0]{1,4096}\$[^$\0]{1,4096}\$LMCP")
 
@@ -61,9 +62,12 @@ def form_of(data: bytes, where: str = "input") -> str:
         return "envelope"
     if start and _HEX.match(data):
         return "hex"
-    raise BadInput(
-        "no form of LMCP", where=where, expected=" or ".join(FORMS), got=repr(data[:24])[1:]
-    )
+    if data.startswith(_LOGS):
+        raise BadInput(
+            "a message log", where=where, expected="LMCP; `cratous log` reads logs, also into .lmcp"
+        )
+    got = repr(data[:24])[1:] if data else "nothing: it is empty"
+    raise BadInput("no form of LMCP", where=where, expected=" or ".join(FORMS), got=got)
 
 
 def read(data: bytes, where: str = "input", form: str = "auto") -> Iterator[Found]:

@@ -22,6 +22,7 @@ from cratous.spec.errors import BadInput
 
 _INTEGER = re.compile(r"[+-]?[0-9]{1,20}\Z")
 _REAL = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?\Z")
+_HASH_LINE = re.compile(rb"^#[^\r\n]*", re.MULTILINE)
 _NON_FINITE = {"NaN", "Infinity", "-Infinity", "nan", "inf", "-inf", "-nan", "Inf", "-Inf", "INF"}
 # OpenUxAS's own files write int64 elements as <uint32>; the range of the field's type counts.
 _TAGS: dict[str, set[str]] = {kind: set(model.INTEGER_RANGES) for kind in model.INTEGER_RANGES}
@@ -56,11 +57,13 @@ def read_file(
     *,
     strict: bool = False,
     finite: bool = True,
+    hash_comments: bool = False,
 ) -> list[Any]:
     """The objects of an XML file: of its root, or of the children of a root that is no struct.
 
     Notes go to `notes`, or become LmcpNote warnings. BadInput for anything that is not right;
-    also for NaN and the infinities, unless `finite` is False.
+    also for NaN and the infinities, unless `finite` is False. hash_comments: lines that begin
+    with `#` say nothing, as in the message files of UxAS's SendMessagesService.
     """
     where = str(path)
     try:
@@ -69,6 +72,8 @@ def read_file(
         raise BadInput(
             "file cannot be read", where=where, expected="a file", got=err.strerror or str(err)
         ) from None
+    if hash_comments:
+        data = _HASH_LINE.sub(b"", data)  # the line's end stays: places keep their line numbers
     return loads(data, where, notes, strict=strict, finite=finite)
 
 

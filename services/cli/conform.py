@@ -14,19 +14,27 @@ from cratous.spec.errors import BadInput
 LIST = "\n".join(f"  {name}: {text}" for name, text in suites.SUITES.items())
 
 
+def _in_folders(given: tuple[Path, ...]) -> list[Path]:
+    """The files, and of each folder those that stand in it, by name."""
+    found: list[Path] = []
+    for path in given:
+        found += sorted(p for p in path.iterdir() if p.is_file()) if path.is_dir() else [path]
+    return found
+
+
 @click.command(epilog="Vectors of your own: docs/conformance.md")
 @click.argument("suite")
-@click.argument("files", nargs=-1, type=click.Path(path_type=Path, dir_okay=False))
+@click.argument("files", nargs=-1, type=click.Path(path_type=Path))
 @click.option("--show", default=5, type=click.IntRange(0), help="Differences shown for each file.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> int:
     """Run published vectors against the kernels and the wires.
 
-    FILES are JSON lines, also gzipped (`frames` takes captured bytes). Geometry is decided by the
-    exact reading of the proved kernels, messages by the codecs that talk to others, guidance and
-    plans by what the product itself would say. A case of a kind that the suite does not cover, or
-    one on a knife edge (where another system's own tolerance explains the difference), is listed
-    apart and never counted as passed.
+    FILES are JSON lines, also gzipped (`frames` takes captured bytes); of a folder, all files in it.
+    Geometry is decided by the exact reading of the proved kernels, messages by the codecs that talk
+    to others, guidance and plans by what the product itself would say. A case of a kind that the
+    suite does not cover, or one on a knife edge (where another system's own tolerance explains the
+    difference), is listed apart and never counted as passed.
 
     Example:  cratous conform polygon vectors.jsonl.gz
 
@@ -36,7 +44,7 @@ def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> in
     if not files:
         raise BadInput("no file is given", item="FILES", expected="at least one file of vectors")
     reports = []
-    for file in files:
+    for file in _in_folders(files):
         judge = suites.suite(suite)
         report = suites.run(judge, file, show)
         report.summary = suites.summary_of(judge)

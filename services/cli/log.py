@@ -100,7 +100,10 @@ def _time_ms(source: Source, text: str | None) -> int | None:
         ms = round(number * 1000)
     except (ValueError, OverflowError):
         raise BadInput(
-            "wrong time", expected="seconds, or +seconds from the first message", got=text
+            "wrong time",
+            item="--from, --to",
+            expected="seconds, or +seconds from the first message",
+            got=text,
         ) from None
     if text.startswith("+"):
         first = next(iter(source.entries()), None)
@@ -233,12 +236,16 @@ def follow(path: Path, new: bool, seconds: float | None, as_json: bool, **choice
         try:
             limits.append(None if text is None else round(float(text) * 1000))
         except (ValueError, OverflowError):
-            raise BadInput("wrong time", expected="seconds", got=str(text)) from None
+            raise BadInput(
+                "wrong time", item="--from, --to", expected="seconds", got=str(text)
+            ) from None
     chosen = Selection(from_ms=limits[0], to_ms=limits[1], **choice)
     try:
         chosen.check_types(())
     except BadInput as error:  # the log may still get messages of that name
         click.echo(f"cratous: note: no type of ours: {error.item}", err=True)
+    if not path.exists():
+        click.echo(f"cratous: note: {path} is not there yet; waiting for it", err=True)
     deadline = None if seconds is None else time.monotonic() + seconds
     closed = False
     for entry in follow_log(path, chosen, new=new, deadline=deadline):

@@ -148,7 +148,7 @@ def _messages(cfg: Path, service: Any, notes: list[str]) -> list[Sent]:
             raise BadInput(
                 "not a time", where=place, item="SendTime_ms", expected="whole ms", got=time
             )
-        for body in xml.read_file(found, notes):
+        for body in xml.read_file(found, notes, hash_comments=True):
             sent.append(Sent(body, str(found), int(time)))
     return sent
 

@@ -1,4 +1,4 @@
-"""JSON Schemas of LMCP types, in the form that Foxglove reads, and its own LocationFix.
+"""JSON Schemas of LMCP types, in the form that Foxglove reads.
 
 Foxglove wants `"type": "object"` at the top and one plain type for each property, so nested types
 stand inline, an enum is a string, and a field that may be null is left out of the message when it
@@ -12,27 +12,6 @@ from functools import cache
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.services.logs.entry import RAW
-
-LOCATION_FIX = "foxglove.LocationFix"
-_TIME = {
-    "type": "object",
-    "title": "time",
-    "properties": {"sec": {"type": "integer"}, "nsec": {"type": "integer"}},
-}
-LOCATION_FIX_SCHEMA: dict[str, Any] = {
-    "title": LOCATION_FIX,
-    "type": "object",
-    "properties": {
-        "timestamp": _TIME,
-        "frame_id": {"type": "string"},
-        "latitude": {"type": "number", "description": "degrees"},
-        "longitude": {"type": "number", "description": "degrees"},
-        "altitude": {"type": "number", "description": "metres"},
-        "position_covariance": {"type": "array", "items": {"type": "number"}},
-        "position_covariance_type": {"type": "integer"},
-    },
-}
 
 
 @cache
@@ -75,23 +54,3 @@ def without_null(data: Any) -> Any:
     if isinstance(data, dict):
         return {key: without_null(value) for key, value in data.items() if value is not None}
     return [without_null(value) for value in data] if isinstance(data, list) else data
-
-
-def location_fix(data: Any, topic: str, time_ns: int) -> tuple[str, dict[str, Any]] | None:
-    """(Foxglove topic, LocationFix) of a state of an entity; None for any other message."""
-    if topic not in lmcp.types or "afrl.cmasi.EntityState" not in lmcp.types[topic].all_names:
-        return None
-    place = data.get("Location") if isinstance(data, dict) and RAW not in data else None
-    if not isinstance(place, dict):
-        return None
-    sec, nsec = divmod(time_ns, 1_000_000_000)
-    fix = {
-        "timestamp": {"sec": sec, "nsec": nsec},
-        "frame_id": f"vehicle_{data['ID']}",
-        "latitude": place.get("Latitude", 0.0),
-        "longitude": place.get("Longitude", 0.0),
-        "altitude": place.get("Altitude", 0.0),
-        "position_covariance": [0.0] * 9,
-        "position_covariance_type": 0,
-    }
-    return f"/vehicles/{data['ID']}/fix", fix

@@ -3,8 +3,8 @@
 A channel for each type and envelope, JSON with the type's JSON Schema; `channel.metadata` bears
 role, sender and envelope, so that nothing of an entry is lost. Roles: `message`; `bytes`, the
 LMCP message as it was logged (encoding `lmcp`, on request, and for what cannot be decoded);
-`view`, a LocationFix of every vehicle for Foxglove's map. Time 0 is that of the log's clock. Meta
-data, gaps and the number of messages stand in metadata records: a file without them is truncated.
+`view`, what Foxglove's map and 3D panels draw (`views`). Time 0 is that of the log's clock. Meta data,
+gaps and the number of messages stand in metadata records: a file without them is truncated.
 """
 
 from __future__ import annotations
@@ -12,17 +12,13 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from typing import IO, Any
 
 from cratous.services.logs.entry import Entry, any_data, to_bytes
-from cratous.services.logs.foxglove import (
-    LOCATION_FIX,
-    LOCATION_FIX_SCHEMA,
-    location_fix,
-    schema_of,
-    without_null,
-)
+from cratous.services.logs.foxglove import schema_of, without_null
+from cratous.services.logs.views import SCHEMAS, View, Views
 from cratous.services.records import canonical
 from cratous.spec.errors import BadInput
 
@@ -38,14 +34,14 @@ class McapWriter:
     """Writes entries to a binary stream; `close` makes the file whole."""
 
     def __init__(self, stream: IO[bytes], *, with_bytes: bool = False, views: bool = True) -> None:
-        """with_bytes: also a channel with the LMCP bytes; views: LocationFix of vehicles."""
+        """with_bytes: also a channel with the LMCP bytes; views: what Foxglove draws."""
         from mcap.writer import CompressionType, Writer
 
         from cratous import __version__
 
         self._out = Writer(stream, chunk_size=_CHUNK, compression=CompressionType.ZSTD)
         self._out.start(profile=PROFILE, library=f"cratous {__version__}")
-        self._with_bytes, self._views = with_bytes, views
+        self._with_bytes, self._views = with_bytes, Views() if views else None
         self._channels: dict[tuple[Any, ...], int] = {}
         self._schemas: dict[str, int] = {}
         self.count = 0
@@ -74,31 +70,21 @@ class McapWriter:
             return error
         text = json.dumps(without_null(data), ensure_ascii=False, separators=(",", ":"))
         self._add(entry, "message", "json", text.encode())
-        if self._views:
-            self._view(entry, data)
+        if self._views is not None:
+            for view in self._views.of(data, _names(entry.topic), time_ns):
+                self._view(entry, view)
         return None
 
-    def _view(self, entry: Entry, data: Any) -> None:
-        found = location_fix(data, entry.topic, entry.time_ms * _NS)
-        if found is None:
-            return
-        topic, fix = found
-        key = ("view", topic)
+    def _view(self, entry: Entry, view: View) -> None:
+        key = ("view", view.topic)
         if key not in self._channels:
-            schema = self._schema(LOCATION_FIX, LOCATION_FIX_SCHEMA)
-            self._channels[key] = self._out.register_channel(
-                topic, "json", schema, {"role": "view"}
-            )
-        self._put(self._channels[key], entry, json.dumps(fix).encode())
+            schema = self._schema(view.schema, SCHEMAS[view.schema])
+            self._register(key, view.topic, "json", schema, {"role": "view"}, entry)
+        self._put(self._channels[key], entry, json.dumps(view.data, separators=(",", ":")).encode())
 
     def _add(self, entry: Entry, role: str, encoding: str, body: bytes) -> None:
         key = (role, entry.topic, entry.source, type(entry.body), *entry[5:])
-        channel = self._channels.get(key)
-        if channel is None:
-            if len(self._channels) >= 65_000:
-                raise BadInput(
-                    "too many kinds of message for MCAP", where=entry.place, expected="< 65,000"
-                )
+        if key not in self._channels:
             schema = 0
             if role == "message":
                 schema = self._schema(entry.topic, schema_of(entry.topic))
@@ -108,9 +94,23 @@ class McapWriter:
                 if value is not None:
                     about[name] = value
             topic = entry.topic if role != "bytes" else f"lmcp/{entry.topic}"
-            channel = self._out.register_channel(topic, encoding, schema, about)
-            self._channels[key] = channel
-        self._put(channel, entry, body)
+            self._register(key, topic, encoding, schema, about, entry)
+        self._put(self._channels[key], entry, body)
+
+    def _register(
+        self,
+        key: tuple[Any, ...],
+        topic: str,
+        encoding: str,
+        schema: int,
+        about: dict[str, str],
+        entry: Entry,
+    ) -> None:
+        if len(self._channels) >= 65_000:
+            raise BadInput(
+                "too many kinds of message for MCAP", where=entry.place, expected="< 65,000"
+            )
+        self._channels[key] = self._out.register_channel(topic, encoding, schema, about)
 
     def _put(self, channel: int, entry: Entry, body: bytes) -> None:
         time_ns = entry.time_ms * _NS
@@ -129,6 +129,14 @@ class McapWriter:
             self._out.add_metadata("gap", {str(number): canonical(list(gap))})
         self._out.add_metadata("closing", {"count": str(self.count)})
         self._out.finish()
+
+
+@cache
+def _names(topic: str) -> tuple[str, ...]:
+    from cratous.bridge import lmcp
+
+    names: tuple[str, ...] = lmcp.types[topic].all_names
+    return names
 
 
 def is_mcap(head: bytes) -> bool:

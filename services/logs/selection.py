@@ -10,6 +10,7 @@ import json
 import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from typing import Any
 
@@ -102,9 +103,17 @@ class Selection:
                 raise BadInput(
                     "unknown type, and the log has none of that name",
                     item=name,
-                    expected="a type's name, or a pattern as 'afrl.cmasi.*'",
+                    expected=_nearest(name, there) or "a type's name, or a pattern: 'afrl.cmasi.*'",
                     got=", ".join(sorted(there)[:8]) or "an empty log",
                 )
+
+
+def _nearest(name: str, topics: list[str]) -> str:
+    """Types that look like a name, those of the log first."""
+    from cratous.bridge import lmcp
+
+    short = [full.rpartition(".")[2] for full in (*topics, *lmcp.types)]
+    return " or ".join(get_close_matches(name.rpartition(".")[2], dict.fromkeys(short), 3))
 
 
 def _known(name: str) -> bool:

@@ -29,6 +29,7 @@ from cratous.spec.errors import BadInput
 
 ZMQ_SCHEMES = ("tcp", "ipc", "inproc", "udp")
 _DEFAULT = Limits()
+_SETTLE_S = 0.5  # more than ZeroMQ takes to try again to connect (100 to 200 ms)
 
 LIMITS: Mapping[str, Attr] = {
     "MaxMessageSize_bytes": whole(_DEFAULT.payload_bytes, 1024, 2**30),
@@ -157,7 +158,7 @@ def _serial(given: Given) -> Bridge:
         report=given.host.log,
         where=given.entry.where,
     )
-    return given.bridge(port, own_only=False, group="SerialBridge")
+    return given.bridge(port, own_only=True, group="SerialBridge")
 
 
 def _pair(given: Given, out: str, into: str, parts: int = 1) -> Port:
@@ -196,15 +197,20 @@ def _pair(given: Given, out: str, into: str, parts: int = 1) -> Port:
         limits=given.limits(),
         curve=curve,
         report=given.host.log,
+        settle_s=_SETTLE_S if bind else 0.0,
     )
 
 
 def _publish_pull(given: Given) -> Bridge:
-    return given.bridge(_pair(given, "PUB", "PULL"), own_only=True, group="PublishPullBridge")
+    return given.bridge(
+        _pair(given, "PUB", "PULL"), own_only=True, group="PublishPullBridge", relay=True
+    )
 
 
 def _subscribe_push(given: Given) -> Bridge:
-    return given.bridge(_pair(given, "PUSH", "SUB"), own_only=True, group="SubscribePushBridge")
+    return given.bridge(
+        _pair(given, "PUSH", "SUB"), own_only=True, group="SubscribePushBridge", returns=True
+    )
 
 
 def _impact(given: Given) -> Bridge:

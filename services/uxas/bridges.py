@@ -1,21 +1,22 @@
 """Bridges: a port to the outside as a service of the bus, with UxAS's rules of what passes.
 
 Out: messages whose address begins with a subscribed prefix; where the bridge is of the kind that
-keeps foreign messages in (`own_only`), those of our own entity alone; never its own imports, never
-what is addressed to the bridge itself, never KillService. In: LMCP that decodes; its source
+keeps foreign messages in (`own_only`), those of our own entity alone; never its own imports (but see
+`relay`), never what is addressed to the bridge itself, never KillService. In: LMCP that decodes; its source
 attributes as they came, or those of the bridge where it considers messages self-generated. What
 does not pass for another reason than these rules is counted and logged.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
 from cratous.bridge import envelope as wire
 from cratous.bridge import lmcp
-from cratous.bridge.port import Incoming, Port, Tally
+from cratous.bridge.port import Incoming, Port, Tally, often
 from cratous.services.bus import Envelope, Identity, unicast
 from cratous.services.uxas.frame import Host
 from cratous.spec.errors import BadInput
@@ -32,7 +33,9 @@ class Rules:
     own_only: only our entity's messages go out. group: source group of imports that are
     considered self-generated. self_generated: whether they are. aliases: new addresses of imports.
     impact: two parts, IMPACT's address and LMCP bytes, from entity `external_id`; throttle: the
-    same AirVehicleConfiguration goes out once.
+    same AirVehicleConfiguration goes out once. relay: what clients say in the name of our entity
+    goes out again, so that all clients hear it. returns: our own messages come back from such a
+    relay, and are not taken in again.
     """
 
     prefixes: tuple[str, ...]
@@ -43,6 +46,8 @@ class Rules:
     impact: bool = False
     external_id: int = 0
     throttle: bool = False
+    relay: bool = False
+    returns: bool = False
 
 
 class Bridge:
@@ -57,6 +62,7 @@ class Bridge:
         self._tally = Tally(name, host.log)
         self._tally.counts = port.counts
         self._sent_configurations: dict[int, Any] = {}
+        self._notes: Counter[str] = Counter()
         self.on_closed: Callable[[], None] = lambda: None
 
     def start(self) -> None:
@@ -118,12 +124,12 @@ class Bridge:
 
     def _import(self, incoming: Incoming) -> Envelope:
         if self.rules.impact:
-            _, payload = incoming.parts
-            body = lmcp.binary.unpack(payload)
+            body, payload = self._received(incoming.parts[1], "message")
             who = Identity(self.rules.external_id, self._identity.service_id, "fusion")
             return self._envelope(body, payload, "", who)
         message = wire.parse(incoming.parts[0])
-        found = unpack(message)
+        check(message)
+        found, payload = self._received(message.payload, message.descriptor or message.address)
         who = Identity(number(message.entity_id), number(message.service_id), message.group)
         if self.rules.self_generated:
             who = self._identity._replace(group=self.rules.group)
@@ -133,12 +139,38 @@ class Bridge:
             raise BadInput("payload of another type", item=address, expected=address, got=topic)
         if address == unicast(self._identity.entity_id, self._identity.service_id):
             raise BadInput("addressed to the bridge itself", got=address)
-        return self._envelope(found, message.payload, "" if address == topic else address, who)
+        if self.rules.returns and self._ours(who):
+            raise BadInput("message of our own that came back", got=f"service {who.service_id}")
+        source = self.name
+        own = self._identity
+        if self.rules.relay and who.entity_id == own.entity_id and who[:2] != own[:2]:
+            # under another name it comes back to this bridge, in the order of the bus
+            source = f"eid{who.entity_id}.sid{who.service_id}"
+        return self._envelope(found, payload, "" if address == topic else address, who, source)
 
-    def _envelope(self, body: Any, raw: bytes, address: str, who: Identity) -> Envelope:
+    def _received(self, payload: bytes, where: str) -> tuple[Any, bytes]:
+        """Object and message of a payload; what a client does not quite right is said."""
+        body, payload, notes = lmcp.binary.received(payload, where)
+        for note in notes:
+            self._notes[note] += 1
+            if often(self._notes[note]):
+                count = f" ({self._notes[note]} times so far)" if self._notes[note] > 1 else ""
+                self._host.log("INFO", f"{self.name}: let pass: {where}: {note}{count}")
+        return body, payload
+
+    def _ours(self, who: Identity) -> bool:
+        if who.entity_id != self._identity.entity_id:
+            return False
+        bus = self._host.bus
+        return any(bus.identity(name)[:2] == who[:2] for name in bus.names())
+
+    def _envelope(
+        self, body: Any, raw: bytes, address: str, who: Identity, source: str = ""
+    ) -> Envelope:
         topic = body.all_names[0]
         now = self._host.bus.now_ms
-        return Envelope(0, now, self.name, topic, body, address, who.group, *who[:2], raw)
+        source = source or self.name
+        return Envelope(0, now, source, topic, body, address, who.group, *who[:2], raw)
 
 
 def pack(envelope: Envelope, payload: bytes | None = None) -> bytes:
@@ -155,14 +187,19 @@ def pack(envelope: Envelope, payload: bytes | None = None) -> bytes:
     ).pack()
 
 
-def unpack(message: wire.AddressedMessage) -> Any:
-    """The LMCP object of a message; BadInput if there is none or a name is too long."""
+def check(message: wire.AddressedMessage) -> None:
+    """BadInput for a message that is not LMCP, or whose names are too long."""
     if message.content_type != wire.LMCP:
         raise BadInput(
             "unknown content type", item="contentType", expected="lmcp", got=message.content_type
         )
     if len(message.address) > _NAME_BYTES or len(message.group) > _NAME_BYTES:
         raise BadInput("name too long", item="address or group", expected=f"{_NAME_BYTES} bytes")
+
+
+def unpack(message: wire.AddressedMessage) -> Any:
+    """The LMCP object of a message; BadInput if there is none or a name is too long."""
+    check(message)
     return lmcp.binary.unpack(message.payload, message.descriptor or message.address)
 
 

@@ -114,7 +114,7 @@ def _bodies(host: Host, bases: tuple[Path, ...], name: str, where: str) -> list[
     if path != paths[0]:
         host.log("INFO", f"{where}: {name} is read from {path}")
     notes: list[str] = []
-    bodies = lmcp.xml.read_file(path, notes)
+    bodies = lmcp.xml.read_file(path, notes, hash_comments=True)
     for note in notes:
         host.log("WARN", note)
     return bodies
@@ -165,7 +165,7 @@ class HelloWorld:
     def handle(self, state: int, envelope: Envelope, now_ms: int) -> Step:
         pair = envelope.body
         self._host.say(
-            f"*** RECEIVED:: Received Id[{self._id}] Sent Id[{pair.Key}] Message[{pair.Value}] ***"
+            f"*** RECEIVED:: Received Id[{self._id}] Sent Id[{pair.Key}] Message[{pair.Value}] *** "
         )
         return state + 1, ()
 

@@ -12,7 +12,8 @@ from typing import Any
 
 from cratous.bridge import lmcp, sentinel
 from cratous.bridge.port import Incoming
-from cratous.bridge.zre import Event, ZreNode
+from cratous.bridge.zre import ZreNode
+from cratous.bridge.zre_peer import Event
 from cratous.services.bus import Envelope
 from cratous.services.uxas.bridge_kinds import Given
 from cratous.services.uxas.bridges import Bridge, Rules, number, pack

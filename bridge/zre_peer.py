@@ -1,0 +1,74 @@
+"""What a ZRE node knows of its peers, and what it says has happened to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import zmq
+
+from cratous.bridge import zre_wire as wire
+
+IDENTITY = b"\x01"  # stands before the uuid in the identity of a peer's socket
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened: ENTER, EXIT, JOIN, LEAVE, WHISPER or SHOUT, and whose it is."""
+
+    kind: str
+    peer: str
+    name: str
+    group: str = ""
+    headers: dict[str, str] = field(default_factory=dict)
+    content: tuple[bytes, ...] = ()
+    address: str = ""
+
+
+@dataclass
+class Peer:
+    """What a node knows of another one, and the socket to it."""
+
+    sock: Any
+    endpoint: str
+    name: str = ""
+    ready: bool = False  # it has said hello
+    sent: int = 0
+    wanted: int = 0
+    seen_s: float = 0.0
+    pinged: bool = False
+    groups: set[str] = field(default_factory=set)
+    headers: dict[str, str] = field(default_factory=dict)
+
+    @staticmethod
+    def connect(context: zmq.Context[Any], uuid: bytes, endpoint: str, high_water: int) -> Peer:
+        """A peer that is not greeted yet; uuid: our own. zmq.ZMQError if there is no such address."""
+        sock = context.socket(zmq.DEALER)
+        sock.linger = 0
+        sock.identity = IDENTITY + uuid
+        sock.sndhwm = high_water
+        try:
+            sock.connect(endpoint)
+        except zmq.ZMQError:
+            sock.close()
+            raise
+        return Peer(sock, endpoint)
+
+    def send(self, command: wire.Command, content: tuple[bytes, ...] = ()) -> None:
+        """Send a command with the next sequence number; zmq.Again if the peer does not read."""
+        sequence = (self.sent + 1) & 0xFFFF
+        frame = wire.pack(replace(command, sequence=sequence))
+        self.sock.send_multipart((frame, *content), zmq.NOBLOCK)
+        self.sent = sequence
+
+    def event(
+        self, kind: str, uuid: bytes, group: str = "", content: tuple[bytes, ...] = ()
+    ) -> Event:
+        """Something that has happened to it."""
+        headers = dict(self.headers) if kind == "ENTER" else {}
+        return Event(kind, hexadecimal(uuid), self.name, group, headers, content, self.endpoint)
+
+
+def hexadecimal(uuid: bytes) -> str:
+    """A uuid as Zyre writes it."""
+    return uuid.hex().upper()
