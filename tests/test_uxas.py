@@ -55,7 +55,6 @@ from cratous.spec.errors import BadInput
             2,
             "gossip is not covered",
         ),
-        ('<Service Type="PlanBuilderService"/>', "", 2, "it shares memory with"),
         ('<Service Type="Test_SimulationTime"/>\n' * 2, "", 3, "a second one in one process"),
         (
             '<Service Type="SendMessagesService"><Message MessageFileName="no.xml"/></Service>',

@@ -10,10 +10,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cratous.services.message_logger import MessageLogger
-from cratous.services.uxas import live, small
+from cratous.services.uxas import small
 from cratous.services.uxas.frame import Host
+from cratous.services.uxas.pipeline import aggregator, assignment, builder, planner, task_manager
+from cratous.services.uxas.pipeline.contexts import Contexts
+from cratous.services.uxas.pipeline.validator import AutomationRequestValidatorService
 from cratous.services.uxas.settings import Attr, Entry, choice, flag, number, whole
-from cratous.services.uxas.world import World
 from cratous.spec.errors import BadInput
 
 Make = Callable[["Host", Entry, dict[str, Any], str, int], Any]
@@ -23,41 +25,55 @@ Make = Callable[["Host", Entry, dict[str, Any], str, int], Any]
 class Kind:
     """A service type: attributes, names of child elements, maker, whether only one may be there.
 
-    together: other types that must be in the same process, because they share memory.
+    plans: it takes part in planning, so the kernels that it stands on have to be proved.
     """
 
     attributes: Mapping[str, Attr]
     make: Make
     children: tuple[str, ...] = ()
     single: bool = False
-    together: tuple[str, ...] = ()
+    plans: bool = False
     ignored: Mapping[str, str] = field(default_factory=dict)
 
 
 VALIDATOR = "AutomationRequestValidatorService"
 
 
-def desk_of(host: Host) -> live.LiveDesk:
-    """The planning desk of a process, with the world that it plans in; made when first asked for."""
-    if "desk" not in host.shared:
-        world = World()
-        host.bus.add(world)
-        host.shared["desk"] = live.LiveDesk(world)
-    desk: live.LiveDesk = host.shared["desk"]
-    return desk
+def contexts_of(host: Host) -> Contexts:
+    """What the messages mean to the services of a process; it joins the bus when first asked for."""
+    if "contexts" not in host.shared:
+        host.shared["contexts"] = Contexts(host)
+        host.bus.add(host.shared["contexts"])
+    contexts: Contexts = host.shared["contexts"]
+    return contexts
 
 
 def _validator(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    services = host.shared.get("services", ())
-    return live.LiveValidator(host, desk_of(host), v["MaxResponseTime_ms"], services)
+    return AutomationRequestValidatorService(host, contexts_of(host), v["MaxResponseTime_ms"])
 
 
-def _pipeline(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return live.pipeline(entry.type, desk_of(host))
+def _planner(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return planner.RoutePlannerVisibilityService(contexts_of(host))
+
+
+def _aggregator(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return aggregator.RouteAggregatorService(contexts_of(host))
+
+
+def _assignment(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return assignment.AssignmentTreeBranchBoundService(contexts_of(host))
+
+
+def _builder(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    world = contexts_of(host).world
+    loiter_m = v["DefaultLoiterRadius_m"] if v["AddLoiterToEndOfMission"] else 0.0
+    options = builder.Options(v["TurnType"], loiter_m)
+    return builder.PlanBuilderService(lambda vehicle: world.get("state", vehicle), options)
 
 
 def _task_manager(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return live.TaskManagerService(name, host, desk_of(host), host.shared["new_id"])
+    world = contexts_of(host).world
+    return task_manager.TaskManagerService(name, world, host.shared["new_id"])
 
 
 def _messages(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
@@ -90,17 +106,18 @@ def _logger(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int)
 
 
 def _pipeline_kind(
-    attributes: Mapping[str, Attr], ignored: Mapping[str, str] | None = None
+    make: Make, attributes: Mapping[str, Attr], ignored: Mapping[str, str] | None = None
 ) -> Kind:
-    return Kind(attributes, _pipeline, (), True, (VALIDATOR,), ignored or {})
+    return Kind(attributes, make, (), True, True, ignored or {})
 
 
 _NOT_USED = "it is accepted and not used: routes and plans follow the mission and the vehicle"
 
 KINDS: dict[str, Kind] = {
-    VALIDATOR: Kind({"MaxResponseTime_ms": whole(5000, 1)}, _validator, single=True),
-    "TaskManagerService": Kind({}, _task_manager, single=True),
+    VALIDATOR: Kind({"MaxResponseTime_ms": whole(5000, 1)}, _validator, single=True, plans=True),
+    "TaskManagerService": Kind({}, _task_manager, single=True, plans=True),
     "RoutePlannerVisibilityService": _pipeline_kind(
+        _planner,
         {
             "TurnRadiusOffset_m": number(0.0),
             "MinimumWaypointSeparation_m": number(50.0),
@@ -118,9 +135,10 @@ KINDS: dict[str, Kind] = {
         ),
     ),
     "RouteAggregatorService": _pipeline_kind(
-        {"FastPlan": flag(False)}, ignored={"FastPlan": _NOT_USED}
+        _aggregator, {"FastPlan": flag(False)}, ignored={"FastPlan": _NOT_USED}
     ),
     "AssignmentTreeBranchBoundService": _pipeline_kind(
+        _assignment,
         {
             "NumberNodesMaximum": whole(0, -(2**31)),
             "CostFunction": choice("MINMAX", "MINMAX", "CUMULATIVE"),
@@ -130,21 +148,14 @@ KINDS: dict[str, Kind] = {
         },
     ),
     "PlanBuilderService": _pipeline_kind(
+        _builder,
         {
             "AssignmentStartPointLead_m": number(50.0),
             "AddLoiterToEndOfMission": flag(False),
             "DefaultLoiterRadius_m": number(300.0),
             "TurnType": choice("TurnShort", "TurnShort", "FlyOver"),
         },
-        ignored=dict.fromkeys(
-            (
-                "AssignmentStartPointLead_m",
-                "AddLoiterToEndOfMission",
-                "DefaultLoiterRadius_m",
-                "TurnType",
-            ),
-            _NOT_USED,
-        ),
+        ignored={"AssignmentStartPointLead_m": _NOT_USED},
     ),
     "SendMessagesService": Kind({"PathToMessageFiles": Attr()}, _messages, ("Message",)),
     "MessageLoggerDataService": Kind(
@@ -184,16 +195,11 @@ NOT_YET = (
 """Services of UxAS that we do not have; named in a configuration they are refused."""
 
 TASKS_NOT_YET = (
-    "afrl.cmasi.AreaSearchTask",
-    "afrl.impact.AngledAreaSearchTask",
     "afrl.impact.BlockadeTask",
     "afrl.impact.CommRelayTask",
     "afrl.impact.CordonTask",
     "afrl.impact.EscortTask",
-    "afrl.impact.ImpactLineSearchTask",
-    "afrl.impact.ImpactPointSearchTask",
     "afrl.impact.MultiVehicleWatchTask",
-    "afrl.impact.PatternSearchTask",
     "afrl.impact.WatchTask",
     "uxas.messages.task.AssignmentCoordinatorTask",
     "uxas.messages.task.RendezvousTask",

@@ -1,0 +1,106 @@
+"""RoutePlannerVisibilityService: RoutePlanRequest -> RoutePlanResponse, costs or waypoints.
+
+Any vehicle that is known, any places, any operating region that is known. A route that was not
+found has the cost -1 and its reason in RouteError; every request is answered. Routes are those of
+`services.planning`: each leg is held against the zones by proved kernels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import atan2
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.services.bus import Envelope
+from cratous.services.planning.routes import Routes
+from cratous.services.planning.zones import hard_zones
+from cratous.services.uxas.pipeline.contexts import Contexts, RequestDesk, reasons_of
+from cratous.spec.errors import CratousError
+from cratous.spec.mission import Mission
+from cratous.spec.plan import Pose
+
+NAME = "RoutePlannerVisibilityService"
+ROUTES = 4
+"""Surroundings whose routes are remembered."""
+
+
+class Way(NamedTuple):
+    """From where to where, as `Routes` takes it: from a way's own `end` to its own `start`."""
+
+    end: Pose
+    start: Pose
+
+
+class RoutePlannerVisibilityService:
+    """Routes for one vehicle at a time."""
+
+    name = NAME
+    subscribes: tuple[str, ...] = ("uxas.messages.route.RoutePlanRequest",)
+
+    def __init__(self, contexts: Contexts) -> None:
+        self._contexts = contexts
+
+    def start(self) -> None:
+        return None
+
+    def handle(self, state: None, envelope: Envelope, now_ms: int) -> tuple[None, Iterable[Any]]:
+        body = envelope.body
+        try:
+            plans = self._plans(body)
+        except CratousError as error:
+            plans = [_refused(c.RouteID, reasons_of(error)) for c in body.RouteRequests]
+        answer = lmcp.new(
+            "RoutePlanResponse",
+            ResponseID=body.RequestID,
+            AssociatedTaskID=body.AssociatedTaskID,
+            VehicleID=body.VehicleID,
+            OperatingRegion=body.OperatingRegion,
+            RouteResponses=plans,
+        )
+        return None, [answer]
+
+    def _plans(self, request: Any) -> list[Any]:
+        desk, mission = self._contexts.for_routes(request.OperatingRegion, request.VehicleID)
+        plans: list[Any] = []
+        ways: list[Way] = []
+        for constraint in request.RouteRequests:
+            ways.append(_way(desk, constraint))
+        routes = _routes(mission, ways)
+        vehicle = [v.id for v in mission.vehicles].index(request.VehicleID)
+        for k, constraint in enumerate(request.RouteRequests):
+            cost = routes.travel_ms(vehicle, k, k)
+            if cost is None:
+                reason = routes.route(vehicle, k, k).reason
+                plans.append(_refused(constraint.RouteID, (reason,)))
+                continue
+            plan = lmcp.new("RoutePlan", RouteID=constraint.RouteID, RouteCost=cost)
+            if not request.IsCostOnlyRequest:
+                speed = mission.vehicle(request.VehicleID).speed_m_s
+                points = routes.route(vehicle, k, k).points
+                plan.Waypoints = desk.waypoints(points, 1, speed, ())
+            plans.append(plan)
+        return plans
+
+
+def _routes(mission: Mission, ways: list[Way]) -> Routes:
+    starts = {v.id: Pose(*v.position, v.heading_rad) for v in mission.vehicles}
+    return Routes(mission, starts, ways, hard_zones(mission.zones))  # type: ignore[arg-type]
+
+
+def _way(desk: RequestDesk, constraint: Any) -> Way:
+    """Where a heading is not asked for, it is that of the straight way."""
+    where = f"route {constraint.RouteID}"
+    start = desk.pose(constraint.StartLocation, constraint.StartHeading, where, "StartLocation")
+    end = desk.pose(constraint.EndLocation, constraint.EndHeading, where, "EndLocation")
+    straight = atan2(end.east_m - start.east_m, end.north_m - start.north_m)
+    if not constraint.UseStartHeading:
+        start = start._replace(heading_rad=straight)
+    if not constraint.UseEndHeading:
+        end = end._replace(heading_rad=straight)
+    return Way(start, end)
+
+
+def _refused(route: int, reasons: Iterable[str]) -> Any:
+    why = [lmcp.new("KeyValuePair", Key="reason", Value=text) for text in reasons]
+    return lmcp.new("RoutePlan", RouteID=route, RouteCost=-1, RouteError=why)
