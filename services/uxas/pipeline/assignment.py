@@ -148,7 +148,21 @@ class AssignmentTreeBranchBoundService:
         asked = matrix.copy(CostMatrix=rows)
         body = Envelope(envelope.seq, envelope.time_ms, envelope.source, envelope.topic, asked)
         _, found = self._search.handle(self._search.start(), body, now_ms)
-        return [*out, *found]
+        reached = {row.DestinationTaskID for row in rows}
+        why = [
+            f"the costs have no way to task {task}"
+            for task in request.TaskList
+            if task not in reached
+        ]
+        return [*out, *(_explained(body, why) for body in found)]
+
+
+def _explained(body: Any, why: list[str]) -> Any:
+    """An error with what the messages show besides the search's own reasons."""
+    if type(body).__name__ != "ServiceStatus" or body.StatusType.name != "Error" or not why:
+        return body
+    more = status(0, "Error", [("reason", text) for text in why]).Info[1:]
+    return body.copy(Info=[*body.Info, *more])
 
 
 def _options(told: Any, context: Context) -> list[Option]:
