@@ -13,6 +13,7 @@ from cratous.services.bus import Envelope
 
 AGGREGATOR, PLANNER = "RouteAggregatorService", "RoutePlannerVisibilityService"
 ASSIGNMENT, BUILDER = "AssignmentTreeBranchBoundService", "PlanBuilderService"
+TASKS = "Task services"
 
 
 def unique(number: int, *tasks: int, vehicles: tuple[int, ...] = (1,), **more: Any) -> Any:
@@ -57,6 +58,12 @@ def planned(asked: Any, cost: int = 7, missing: tuple[int, ...] = ()) -> Any:
     )
 
 
+def ended(number: int) -> Any:
+    """An error that ends a request."""
+    info = [lmcp.new("KeyValuePair", Key="RequestID", Value=str(number))]
+    return lmcp.new("ServiceStatus", StatusType="Error", Info=info)
+
+
 # --- aggregator and collector -------------------------------------------------------------------
 
 
@@ -75,6 +82,8 @@ def collector(tmp_path: Path) -> Rig:
     "RoutePlanResponse",
     "AssignmentCostMatrix",
     "UniqueAutomationResponse",
+    "ServiceStatus",
+    "EntityState",
 )
 def test_a_complete_matrix_is_handed_over_once_whatever_the_order(collector: Rig) -> None:
     collector.tell(unique(3, 5, 6, vehicles=(1, 2)))
@@ -113,6 +122,9 @@ def test_a_complete_matrix_is_handed_over_once_whatever_the_order(collector: Rig
     third = collector.got("RoutePlanRequest")[2]
     assert third.RequestID not in (first.RequestID, second.RequestID)
     collector.tell(lmcp.new("UniqueAutomationResponse", ResponseID=4), planned(third))
+    collector.tell(unique(5, 5), options(5, 5, option(5, 1, 1)))
+    fourth = collector.got("RoutePlanRequest")[3]
+    collector.tell(ended(5), planned(fourth))
     assert len(collector.got("AssignmentCostMatrix")) == 1
 
 
@@ -143,7 +155,14 @@ def test_route_requests_are_split_by_vehicle_and_answered_when_complete(collecto
 
 
 @pytest.mark.shows(
-    PLANNER, "RoutePlanRequest", "RoutePlanResponse", "KeepOutZone", "OperatingRegion"
+    PLANNER,
+    "RoutePlanRequest",
+    "RoutePlanResponse",
+    "EntityConfiguration",
+    "EntityState",
+    "KeepInZone",
+    "KeepOutZone",
+    "OperatingRegion",
 )
 def test_any_route_of_a_known_vehicle_is_answered_and_keeps_out_of_zones(tmp_path: Path) -> None:
     rig = Rig(tmp_path, PLANNER)
@@ -152,6 +171,13 @@ def test_any_route_of_a_known_vehicle_is_answered_and_keeps_out_of_zones(tmp_pat
         *vehicle(1),
         lmcp.new("KeepOutZone", ZoneID=8, MaxAltitude=9000.0, Boundary=box),
         lmcp.new("OperatingRegion", ID=3, KeepOutAreas=[8]),
+        lmcp.new(
+            "KeepInZone",
+            ZoneID=9,
+            MaxAltitude=9000.0,
+            Boundary=lmcp.new("Rectangle", CenterPoint=place(0), Width=4000.0, Height=4000.0),
+        ),
+        lmcp.new("OperatingRegion", ID=4, KeepInAreas=[9]),
     )
     way = lmcp.new("RouteConstraints", RouteID=4, StartLocation=place(0), EndLocation=place(0.04))
     inside = way.copy(RouteID=5, EndLocation=place(0.02))
@@ -174,6 +200,8 @@ def test_any_route_of_a_known_vehicle_is_answered_and_keeps_out_of_zones(tmp_pat
     ):
         assert answer.RouteResponses[0].RouteCost == -1
         assert words in answer.RouteResponses[0].RouteError[0].Value
+    rig.tell(asked.copy(OperatingRegion=4))  # its end lies outside
+    assert "zone 9" in rig.got("RoutePlanResponse")[-1].RouteResponses[0].RouteError[0].Value
     # a heading that is not asked for costs no turn
     west = asked.copy(RouteRequests=[way.copy(StartHeading=270.0), way.copy(
         StartHeading=270.0, UseStartHeading=False)])  # fmt: skip
@@ -283,6 +311,7 @@ def test_ineligible_and_excluded_vehicles_get_nothing_whatever_rows_there_are(
         (options(2, 5), [], "task 5"),
     ],
 )
+@pytest.mark.shows(ASSIGNMENT, "ServiceStatus")
 def test_what_cannot_be_assigned_is_answered_with_the_reason(
     assigner: Rig, told: Any, rows: list[Any], words: str
 ) -> None:
@@ -296,6 +325,40 @@ def test_what_cannot_be_assigned_is_answered_with_the_reason(
     assert facts["RequestID"] == "2"
     assert re.search(words, " ".join(assigner.reasons())), assigner.reasons()
     assert not assigner.said.has("fails at")
+
+
+@pytest.mark.shows(ASSIGNMENT, "CostFunction")
+@pytest.mark.parametrize(
+    ("function", "made"), [("MINMAX", {5: 1, 6: 2}), ("CUMULATIVE", {5: 1, 6: 1})]
+)
+def test_the_cost_function_decides(tmp_path: Path, function: str, made: dict[int, int]) -> None:
+    rig = Rig(tmp_path, ASSIGNMENT, **{ASSIGNMENT: f'CostFunction="{function}"'})
+    rig.tell(
+        *vehicle(1),
+        *vehicle(2, 0.01),
+        must_fly(5),
+        must_fly(6),
+        unique(2, 5, 6, vehicles=(1, 2)),
+        options(2, 5, option(5, 1, 1, cost=10_000)),
+        options(2, 6, option(6, 1, 1, 2, cost=10_000)),
+        matrix(
+            2,
+            cost(1, 5, 1, 1_000),
+            cost(1, 6, 1, 1_000, (5, 1)),
+            cost(1, 6, 1, 90_000),
+            cost(2, 6, 1, 8_000),
+        ),
+    )
+    (summary,) = rig.got("TaskAssignmentSummary")
+    assert {t.TaskID: t.AssignedVehicle for t in summary.TaskList} == made
+
+
+@pytest.mark.shows(ASSIGNMENT, "UniqueAutomationResponse", "ServiceStatus")
+def test_a_request_that_has_ended_is_not_assigned_any_more(assigner: Rig) -> None:
+    for number, end in ((2, lmcp.new("UniqueAutomationResponse", ResponseID=2)), (3, ended(3))):
+        assigner.tell(unique(number, 5), options(number, 5, option(5, 1, 1)), end)
+        assigner.tell(matrix(number, cost(1, 5, 1, 4)))
+    assert not assigner.got("TaskAssignmentSummary")
 
 
 def test_a_matrix_before_the_options_is_named(assigner: Rig) -> None:
@@ -374,6 +437,7 @@ def test_tasks_are_implemented_in_assignment_order_and_answered_once(tmp_path: P
     assert rig.bus.state(BUILDER).work == {}
 
 
+@pytest.mark.shows(BUILDER, "ServiceStatus")
 def test_an_empty_assignment_or_implementation_is_answered_with_an_error(tmp_path: Path) -> None:
     rig = Rig(tmp_path, BUILDER)
     rig.tell(*vehicle(1), unique(4, 5), summary(4), unique(6, 5), summary(6, (5, 1)))
@@ -384,6 +448,8 @@ def test_an_empty_assignment_or_implementation_is_answered_with_an_error(tmp_pat
         "task 5 was implemented without waypoints or end",
     ]
     assert "TaskAssignmentSummary of a request that is not" in rig.reasons("Warning")[0]
+    rig.tell(unique(8, 5), ended(8), summary(8, (5, 1)))
+    assert len(rig.got("TaskImplementationRequest")) == 1
     assert not rig.got("UniqueAutomationResponse")
 
 
@@ -404,13 +470,21 @@ def test_the_end_is_loitered_at_and_turns_are_flown_over_if_asked(tmp_path: Path
 
 
 @pytest.mark.shows(
-    "TaskManagerService", "Task", "RemoveTasks", "CreateNewService", "KillService", "EntityState"
+    "TaskManagerService",
+    "Task",
+    "RemoveTasks",
+    "CreateNewService",
+    "KillService",
+    "EntityState",
+    "EntityConfiguration",
 )
+@pytest.mark.shows(TASKS, "TaskInitialized")
 def test_a_task_has_a_service_until_it_is_removed(tmp_path: Path) -> None:
     rig = Rig(tmp_path, "TaskManagerService")
     rig.tell(*vehicle(1), must_fly(5))
     (made,) = rig.got("CreateNewService")
     assert [s.ID for s in made.EntityStates] == [1]
+    assert [c.ID for c in made.EntityConfigurations] == [1]
     assert [b.TaskID for b in rig.got("TaskInitialized")] == [5]
     rig.tell(must_fly(5, 0.03))
     assert [b.ServiceID for b in rig.got("KillService")] == [made.ServiceID]
@@ -423,6 +497,7 @@ def flying(number: int, *tasks: int, time: int = 0) -> Any:
     return vehicle(number)[1].copy(AssociatedTasks=list(tasks), Time=time)
 
 
+@pytest.mark.shows(TASKS, "EntityState", "TaskActive", "TaskComplete")
 def test_a_task_is_active_while_a_vehicle_says_so_and_completes_after(tmp_path: Path) -> None:
     rig = Rig(tmp_path)
     rig.tell(*vehicle(1), *vehicle(2, 0.01), loiter(5), request(5))
@@ -438,6 +513,7 @@ def test_a_task_is_active_while_a_vehicle_says_so_and_completes_after(tmp_path: 
     assert rig.got("AutomationResponse")[1].MissionCommandList
 
 
+@pytest.mark.shows(TASKS, "AutomationResponse", "ServiceStatus")
 def test_a_task_whose_plan_is_withdrawn_says_that_it_ends_undone(tmp_path: Path) -> None:
     rig = Rig(tmp_path)
     rig.tell(*vehicle(1), loiter(5), loiter(6, 0.03), request(5))
@@ -459,6 +535,15 @@ def test_an_active_task_that_is_asked_again_ends_and_answers_the_new_request(
     assert rig.reasons("Warning") == ["task 5 ends undone: its plan was withdrawn or overridden"]
 
 
+@pytest.mark.shows(
+    TASKS,
+    "UniqueAutomationRequest",
+    "TaskPlanOptions",
+    "TaskImplementationRequest",
+    "RoutePlanRequest",
+    "RoutePlanResponse",
+    "TaskImplementationResponse",
+)
 def test_a_task_answers_only_its_own_request_and_options(tmp_path: Path) -> None:
     rig = Rig(tmp_path, "TaskManagerService", "AutomationRequestValidatorService")
     rig.tell(*vehicle(1), loiter(5), request(5))
@@ -476,9 +561,66 @@ def test_a_task_answers_only_its_own_request_and_options(tmp_path: Path) -> None
     )
     rig.tell(asked)
     assert not rig.got("RoutePlanRequest")
-    rig.tell(asked.copy(CorrespondingAutomationRequestID=1, OptionID=999))
+    mine = asked.copy(CorrespondingAutomationRequestID=1)
+    rig.tell(mine)
+    (route,) = rig.got("RoutePlanRequest")
+    first = next(o for o in offered.Options if o.OptionID == numbers[0])
+    assert route.RouteRequests[0].EndLocation == first.StartLocation
+    points = [lmcp.new("Waypoint", Number=n, Latitude=0.001 * n) for n in (1, 2)]
+    plan = lmcp.new("RoutePlan", RouteID=1, RouteCost=5_000, Waypoints=points)
+    answer = planned(route).copy(AssociatedTaskID=5, RouteResponses=[plan])
+    rig.tell(answer.copy(ResponseID=route.RequestID + 1))
+    assert not rig.got("TaskImplementationResponse")
+    rig.tell(answer)
+    (made,) = rig.got("TaskImplementationResponse")
+    assert (made.TaskID, made.VehicleID, made.FinalTime) == (5, 1, 5_000 + first.Cost)
+    assert made.FinalLocation == first.EndLocation
+    assert [w.Number for w in made.TaskWaypoints] == list(range(len(made.TaskWaypoints)))
+
+
+@pytest.mark.shows(TASKS, "UniqueAutomationResponse", "ServiceStatus")
+@pytest.mark.parametrize("end", ["response", "error"])
+def test_a_task_lets_a_request_go_that_has_ended(tmp_path: Path, end: str) -> None:
+    rig = Rig(tmp_path, "TaskManagerService")
+    rig.tell(*vehicle(1), loiter(5))
+    rig.tell(unique(1, 5))
+    (offered,) = rig.got("TaskPlanOptions")
+    asked = lmcp.new(
+        "TaskImplementationRequest",
+        CorrespondingAutomationRequestID=1,
+        VehicleID=1,
+        TaskID=5,
+        OptionID=offered.Options[0].OptionID,
+        StartPosition=place(0.0),
+    )
+    ending = lmcp.new("UniqueAutomationResponse", ResponseID=1) if end == "response" else ended(1)
+    rig.tell(ending, asked)
+    assert not rig.got("RoutePlanRequest")
+    rig.tell(unique(2, 5), asked.copy(CorrespondingAutomationRequestID=2, OptionID=999))
+    assert len(rig.got("TaskPlanOptions")) == 2
     assert not rig.got("RoutePlanRequest")
     assert "task 5 has no such option" in rig.reasons()[0]
+
+
+def test_a_route_that_is_not_there_is_an_error_with_its_reason(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, "TaskManagerService")
+    rig.tell(*vehicle(1), loiter(5))
+    rig.tell(unique(1, 5))
+    asked = lmcp.new(
+        "TaskImplementationRequest",
+        CorrespondingAutomationRequestID=1,
+        VehicleID=1,
+        TaskID=5,
+        OptionID=1,
+        StartPosition=place(0.0),
+    )
+    rig.tell(asked)
+    (route,) = rig.got("RoutePlanRequest")
+    why = [lmcp.new("KeyValuePair", Key="reason", Value="a wall")]
+    plan = lmcp.new("RoutePlan", RouteID=1, RouteCost=-1, RouteError=why)
+    rig.tell(planned(route).copy(AssociatedTaskID=5, RouteResponses=[plan]))
+    assert rig.reasons() == ["vehicle 1 has no way to task 5: a wall"]
+    assert not rig.got("TaskImplementationResponse")
 
 
 # --- apart ---------------------------------------------------------------------------------------

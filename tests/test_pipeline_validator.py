@@ -99,7 +99,7 @@ def test_an_error_status_ends_the_request_that_it_names_and_no_other(alone: Rig)
     assert infos(alone) == ["no way", "No_Assignment: so says another"]
 
 
-@pytest.mark.shows(NAME, "RemoveTasks", "OperatingRegion", "KeepInZone", "KeepOutZone")
+@pytest.mark.shows(NAME, "RemoveTasks", "OperatingRegion", "AbstractZone")
 @pytest.mark.parametrize(
     ("asked", "words"),
     [

@@ -460,11 +460,7 @@ PIPELINE = "".join(
         "PlanBuilderService",
     )
 )
-LEFT_OUT = (
-    "AutomationDiagramDataService",
-    "WaypointPlanManagerService",
-    "MessageLoggerDataService",
-)
+LEFT_OUT = ("AutomationDiagramDataService", "MessageLoggerDataService")
 
 
 def test_the_waterway_mission_for_a_cmasi_client(shared: Path, tmp_path: Path) -> None:
@@ -493,12 +489,14 @@ def test_the_waterway_mission_for_a_cmasi_client(shared: Path, tmp_path: Path) -
         client.send(bodies[-1])
         response = client.wait("AutomationResponse")
         summary = client.wait("TaskAssignmentSummary")
+        segment = client.wait("MissionCommand")
         client.send(lmcp.new("KillService", ServiceID=-1))
         assert running.wait(LIMIT_S) == 0
     client.close()
     (command,) = response.MissionCommandList
     assert command.VehicleID == 400, "as the original assigns it"
     assert len(command.WaypointList) > 50
+    assert len(segment.WaypointList) == 15, "as its waypoint manager is told"
     assert summary.TaskList[0].TimeTaskCompleted < 729_820, "the original's makespan"
     assert {path.name for path in (tmp_path / "log").iterdir()}
 

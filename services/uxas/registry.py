@@ -10,9 +10,16 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cratous.services.message_logger import MessageLogger
-from cratous.services.uxas import small
+from cratous.services.uxas import batch, leash, regions, sensors, small, tracker, waypoints
 from cratous.services.uxas.frame import Host
-from cratous.services.uxas.pipeline import aggregator, assignment, builder, planner, task_manager
+from cratous.services.uxas.pipeline import (
+    aggregator,
+    assignment,
+    builder,
+    planner,
+    task_manager,
+    tasks,
+)
 from cratous.services.uxas.pipeline.contexts import Contexts
 from cratous.services.uxas.pipeline.validator import AutomationRequestValidatorService
 from cratous.services.uxas.settings import Attr, Entry, choice, flag, number, whole
@@ -105,6 +112,58 @@ def _logger(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int)
     )
 
 
+def _vehicle(host: Host, v: dict[str, Any]) -> int:
+    number = v["VehicleID"]
+    return host.entity_id if number in (None, -1) else int(number)
+
+
+def _waypoints(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    if v["NumberWaypointsOverlap"] >= v["NumberWaypointsToServe"]:
+        raise BadInput(
+            "segments that do not go on",
+            where=entry.where,
+            item=f"{entry.type}.NumberWaypointsOverlap",
+            expected=f"less than NumberWaypointsToServe = {v['NumberWaypointsToServe']}",
+            got=str(v["NumberWaypointsOverlap"]),
+        )
+    serving = waypoints.Serving(
+        v["NumberWaypointsToServe"],
+        v["NumberWaypointsOverlap"],
+        v["DefaultLoiterRadius_m"],
+        v["AddLoiterToEndOfSegments"],
+        v["AddLoiterToEndOfMission"],
+        v["LoopBackToFirstTask"],
+        v["SetLastWaypointSpeedTo0"],
+        v["TurnType"],
+    )
+    return waypoints.WaypointPlanManagerService(name, _vehicle(host, v), serving)
+
+
+def _simple(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return waypoints.SimpleWaypointPlanManagerService(name, _vehicle(host, v))
+
+
+def _sensors(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    world = contexts_of(host).world
+    return sensors.SensorManagerService(lambda vehicle: world.get("configuration", vehicle))
+
+
+def _region(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return regions.OperatingRegionStateService(host.entity_id or 1)
+
+
+def _leash(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return leash.LoiterLeash(name, _vehicle(host, v), v["LeadDistance"], v["RadiusBuffer"])
+
+
+def _batch(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return batch.BatchSummaryService(contexts_of(host))
+
+
+def _tracker(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return tracker.TaskTrackerService(name, host.log)
+
+
 def _pipeline_kind(
     make: Make, attributes: Mapping[str, Attr], ignored: Mapping[str, str] | None = None
 ) -> Kind:
@@ -157,6 +216,43 @@ KINDS: dict[str, Kind] = {
         },
         ignored={"AssignmentStartPointLead_m": _NOT_USED},
     ),
+    "WaypointPlanManagerService": Kind(
+        {
+            "VehicleID": whole(-1, -1),
+            "NumberWaypointsToServe": whole(100_000, 2),
+            "NumberWaypointsOverlap": whole(3, 1),
+            "DefaultLoiterRadius_m": number(200.0),
+            "AddLoiterToEndOfSegments": flag(False),
+            "AddLoiterToEndOfMission": flag(False),
+            "LoopBackToFirstTask": flag(False),
+            "SetLastWaypointSpeedTo0": flag(False),
+            "GimbalPayloadId": whole(-1, -1),
+            "TurnType": choice("TurnShort", "TurnShort", "FlyOver"),
+            "param.turnType": Attr(),
+        },
+        _waypoints,
+        plans=True,
+        ignored={
+            "GimbalPayloadId": "it is accepted and not used: plans point the gimbal themselves",
+            "param.turnType": "it is accepted and not used, as in UxAS, which reads TurnType",
+        },
+    ),
+    "SimpleWaypointPlanManagerService": Kind({"VehicleID": whole(-1, -1)}, _simple),
+    "SensorManagerService": Kind({}, _sensors, single=True),
+    "OperatingRegionStateService": Kind(
+        {"AdditionalPadding": number(0.0)},
+        _region,
+        single=True,
+        ignored={"AdditionalPadding": "it is accepted and not used: zones bring their own padding"},
+    ),
+    "LoiterLeash": Kind(
+        {"VehicleID": whole(-1, -1), "LeadDistance": number(None), "RadiusBuffer": number(0.0)},
+        _leash,
+    ),
+    "BatchSummaryService": Kind(
+        {"FastPlan": flag(False)}, _batch, single=True, plans=True, ignored={"FastPlan": _NOT_USED}
+    ),
+    "TaskTrackerService": Kind({}, _tracker),
     "SendMessagesService": Kind({"PathToMessageFiles": Attr()}, _messages, ("Message",)),
     "MessageLoggerDataService": Kind(
         {"LogFileMessageCountLimit": whole(0), "FilesPerSubDirectory": whole(0)},
@@ -178,19 +274,63 @@ KINDS: dict[str, Kind] = {
     ),
 }
 
+SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
+    VALIDATOR: (
+        AutomationRequestValidatorService,
+        ("UniqueAutomationRequest", "AutomationResponse", "ImpactAutomationResponse",
+         "TaskAutomationResponse", "ServiceStatus"),
+    ),
+    "TaskManagerService": (
+        task_manager.TaskManagerService, ("CreateNewService", "KillService")
+    ),
+    "Task services": (
+        tasks.MessageTask,
+        ("TaskInitialized", "TaskPlanOptions", "RoutePlanRequest", "TaskImplementationResponse",
+         "TaskActive", "TaskComplete", "ServiceStatus"),
+    ),
+    "RoutePlannerVisibilityService": (
+        planner.RoutePlannerVisibilityService, ("RoutePlanResponse",)
+    ),
+    "RouteAggregatorService": (
+        aggregator.RouteAggregatorService,
+        ("RoutePlanRequest", "AssignmentCostMatrix", "RouteResponse"),
+    ),
+    "AssignmentTreeBranchBoundService": (
+        assignment.AssignmentTreeBranchBoundService, ("TaskAssignmentSummary", "ServiceStatus")
+    ),
+    "PlanBuilderService": (
+        builder.PlanBuilderService,
+        ("TaskImplementationRequest", "UniqueAutomationResponse", "ServiceStatus"),
+    ),
+    "WaypointPlanManagerService": (waypoints.WaypointPlanManagerService, ("MissionCommand",)),
+    "SimpleWaypointPlanManagerService": (
+        waypoints.SimpleWaypointPlanManagerService, ("MissionCommand",)
+    ),
+    "SensorManagerService": (
+        sensors.SensorManagerService, ("SensorFootprintResponse", "ServiceStatus")
+    ),
+    "OperatingRegionStateService": (
+        regions.OperatingRegionStateService, ("OperatingRegion",)
+    ),
+    "LoiterLeash": (leash.LoiterLeash, ("RoutePlanRequest", "VehicleActionCommand")),
+    "BatchSummaryService": (
+        batch.BatchSummaryService, ("TaskAutomationRequest", "BatchSummaryResponse")
+    ),
+    "TaskTrackerService": (tracker.TaskTrackerService, ()),
+    "SendMessagesService": (small.SendMessagesService, ()),
+    "MessageLoggerDataService": (MessageLogger, ()),
+    "Test_SimulationTime": (small.SimulationTime, ()),
+    "HelloWorld": (small.HelloWorld, ("KeyValuePair",)),
+    "StatusReportService": (small.StatusReportService, ("OnboardStatusReport",)),
+}  # fmt: skip
+"""Of each service its class, which says what it subscribes to, and the messages that it sends."""
+
 NOT_YET = (
     "AutomationDiagramDataService",
-    "BatchSummaryService",
-    "LoiterLeash",
-    "OperatingRegionStateService",
     "OsmPlannerService",
     "RoutePlannerService",
-    "SensorManagerService",
     "SerialAutomationRequestTestService",
-    "SimpleWaypointPlanManagerService",
     "SteeringService",
-    "TaskTrackerService",
-    "WaypointPlanManagerService",
 )
 """Services of UxAS that we do not have; named in a configuration they are refused."""
 

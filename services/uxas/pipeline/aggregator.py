@@ -90,6 +90,7 @@ class RouteAggregatorService:
 
     name = NAME
     subscribes: tuple[str, ...] = (UNIQUE, OPTIONS, PLANS, ROUTES, *ENDINGS)
+    knows = ("EntityConfiguration", "EntityState")
 
     def __init__(self, contexts: Contexts) -> None:
         self._contexts = contexts

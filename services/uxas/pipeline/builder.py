@@ -53,6 +53,7 @@ class PlanBuilderService:
 
     name = NAME
     subscribes: tuple[str, ...] = (UNIQUE, SUMMARY, IMPLEMENTED, *ENDINGS)
+    knows = ("EntityState",)
 
     def __init__(self, state_of: Any, options: Options = Options()) -> None:
         """state_of(vehicle): its newest EntityState, or None."""

@@ -3,15 +3,18 @@
 A service of the pipeline works from messages alone. What follows from a UniqueAutomationRequest and
 the messages before it (mission, zones, options) is a function of them; it is computed when first
 asked for and kept for the newest requests, so that services of one process do not compute it twice.
-In another process the same messages give the same. Frame: the mission's, from the loader.
+In another process the same messages give the same. A service that stands on it names in `knows` what
+it reads there. Frame: the mission's, from the loader.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from math import radians
-from typing import Any
+from typing import Any, NamedTuple
 
+from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
 from cratous.services.loading.places import Places
 from cratous.services.loading.uxas import mission_of, surroundings_of
@@ -19,6 +22,8 @@ from cratous.services.loading.uxas_cfg import Sent
 from cratous.services.loading.uxas_parts import point
 from cratous.services.planning import stages
 from cratous.services.planning.desk import Desk, Inputs
+from cratous.services.planning.routes import Routes
+from cratous.services.planning.zones import hard_zones
 from cratous.services.uxas.frame import Host
 from cratous.services.uxas.world import World
 from cratous.spec.errors import BadInput, CratousError, NoPlan
@@ -26,8 +31,16 @@ from cratous.spec.mission import Mission, Position
 from cratous.spec.plan import Pose
 
 UNIQUE = "uxas.messages.task.UniqueAutomationRequest"
+_OF_ZONES = -1  # no region that comes in a message is this one
 KEPT = 8
 """Requests whose meaning is kept."""
+
+
+class Way(NamedTuple):
+    """From where to where, as `Routes` takes it: from a way's own `end` to its own `start`."""
+
+    end: Pose
+    start: Pose
 
 
 class RequestDesk(Desk):
@@ -41,6 +54,15 @@ class RequestDesk(Desk):
         self._points: dict[tuple[float, float, float], Position] = {}
         self._places = Places(mission.frame)
         self.found: Inputs | None = None
+        self._routes: Routes | None = None
+
+    def routes_of(self, ways: list[Way]) -> Routes:
+        """Routes of the mission's vehicles: way k is that from k to k. What is found is kept."""
+        if self._routes is None:
+            starts = {v.id: Pose(*v.position, v.heading_rad) for v in self.mission.vehicles}
+            self._routes = Routes(self.mission, starts, (), hard_zones(self.mission.zones))
+        self._routes.options = ways  # type: ignore[assignment]
+        return self._routes
 
     def inputs(self, request_id: int) -> Inputs:
         """What follows from the one request of this desk."""
@@ -142,11 +164,21 @@ class Contexts:
                 and vehicle in found.inputs.vehicle_index
             ):
                 return found.desk, found.inputs.mission
-        from cratous.bridge import lmcp
+        return self._surroundings([vehicle], region, ())
 
-        body = lmcp.new("AutomationRequest", EntityList=[vehicle], OperatingRegion=region)
-        cfg = self._configuration(Sent(body, f"routes of vehicle {vehicle}", 0))
-        mission = surroundings_of(cfg, str(self._host.config))
+    def surroundings(self, vehicle: int, zones: list[int]) -> tuple[RequestDesk, Mission]:
+        """The frame and some zones, whatever region they are of. BadInput if one is unknown."""
+        extra = lmcp.new("OperatingRegion", ID=_OF_ZONES, KeepOutAreas=zones)
+        return self._surroundings([vehicle], _OF_ZONES, (Sent(extra, "zones", 0),))
+
+    def _surroundings(
+        self, vehicles: list[int], region: int, more: tuple[Sent, ...]
+    ) -> tuple[RequestDesk, Mission]:
+        body = lmcp.new("AutomationRequest", EntityList=vehicles, OperatingRegion=region)
+        cfg = self._configuration(Sent(body, f"routes of vehicle {vehicles[0]}", 0))
+        mission = surroundings_of(
+            replace(cfg, messages=(*more, *cfg.messages)), str(self._host.config)
+        )
         return RequestDesk(mission), mission
 
     def mission(self, request: Any, where: str) -> Mission:
@@ -176,7 +208,7 @@ class Contexts:
         for known in self._found.values():
             # the same request again: what was computed for it holds
             if isinstance(known, Context) and known.inputs == inputs:
-                inputs = known.inputs
+                inputs, desk = known.inputs, known.desk
                 break
         stages.check_starts(mission, poses, inputs.zones)
         if not inputs.wanted:

@@ -9,27 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from math import atan2
-from typing import Any, NamedTuple
+from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
-from cratous.services.planning.routes import Routes
-from cratous.services.planning.zones import hard_zones
-from cratous.services.uxas.pipeline.contexts import Contexts, RequestDesk, reasons_of
+from cratous.services.uxas.pipeline.contexts import Contexts, RequestDesk, Way, reasons_of
 from cratous.spec.errors import CratousError
-from cratous.spec.mission import Mission
-from cratous.spec.plan import Pose
 
 NAME = "RoutePlannerVisibilityService"
-ROUTES = 4
-"""Surroundings whose routes are remembered."""
-
-
-class Way(NamedTuple):
-    """From where to where, as `Routes` takes it: from a way's own `end` to its own `start`."""
-
-    end: Pose
-    start: Pose
 
 
 class RoutePlannerVisibilityService:
@@ -37,6 +24,7 @@ class RoutePlannerVisibilityService:
 
     name = NAME
     subscribes: tuple[str, ...] = ("uxas.messages.route.RoutePlanRequest",)
+    knows = ("EntityConfiguration", "EntityState", "KeepInZone", "KeepOutZone", "OperatingRegion")
 
     def __init__(self, contexts: Contexts) -> None:
         self._contexts = contexts
@@ -66,8 +54,11 @@ class RoutePlannerVisibilityService:
         ways: list[Way] = []
         for constraint in request.RouteRequests:
             ways.append(_way(desk, constraint))
-        routes = _routes(mission, ways)
+        routes = desk.routes_of(ways)
         vehicle = [v.id for v in mission.vehicles].index(request.VehicleID)
+        prepare = getattr(routes, "prepare", None)  # all at once, where that is faster
+        if prepare is not None and request.IsCostOnlyRequest:
+            prepare(vehicle, [(k, k) for k in range(len(ways))])
         for k, constraint in enumerate(request.RouteRequests):
             cost = routes.travel_ms(vehicle, k, k)
             if cost is None:
@@ -81,11 +72,6 @@ class RoutePlannerVisibilityService:
                 plan.Waypoints = desk.waypoints(points, 1, speed, ())
             plans.append(plan)
         return plans
-
-
-def _routes(mission: Mission, ways: list[Way]) -> Routes:
-    starts = {v.id: Pose(*v.position, v.heading_rad) for v in mission.vehicles}
-    return Routes(mission, starts, ways, hard_zones(mission.zones))  # type: ignore[arg-type]
 
 
 def _way(desk: RequestDesk, constraint: Any) -> Way:

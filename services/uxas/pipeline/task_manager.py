@@ -14,6 +14,7 @@ class TaskManagerService:
     """Task -> CreateNewService with its XML; a task of a known id, or RemoveTasks -> KillService."""
 
     subscribes: tuple[str, ...] = ("afrl.cmasi.Task", "afrl.cmasi.RemoveTasks")
+    knows = ("EntityConfiguration", "EntityState")
 
     def __init__(self, name: str, world: World, new_id: Callable[[], int]) -> None:
         """new_id(): the next service id of this process."""
