@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ from pipeline_tools import PIPELINE, Rig, loiter, must_fly, place, request, vehi
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
+from cratous.spec import algebra, algebra_meaning
 
 AGGREGATOR, PLANNER = "RouteAggregatorService", "RoutePlannerVisibilityService"
 ASSIGNMENT, BUILDER = "AssignmentTreeBranchBoundService", "PlanBuilderService"
@@ -359,6 +361,70 @@ def test_a_request_that_has_ended_is_not_assigned_any_more(assigner: Rig) -> Non
         assigner.tell(unique(number, 5), options(number, 5, option(5, 1, 1)), end)
         assigner.tell(matrix(number, cost(1, 5, 1, 4)))
     assert not assigner.got("TaskAssignmentSummary")
+
+
+def test_what_the_original_was_asked_is_answered_once_each(shared: Path, tmp_path: Path) -> None:
+    """Relations and compositions that the original crashes at, ignores or misreads."""
+    cases = json.loads((shared / "vectors/openuxas/algebra/service_cases.json").read_text())
+    rig = Rig(tmp_path, ASSIGNMENT)
+    rig.tell(*vehicle(1), *[must_fly(n, 0.02 + 0.01 * n) for n in (1, 2, 3)])
+    rows = [cost(1, n, 1, 1_000) for n in (1, 2, 3)]
+    rows += [cost(1, b, 1, 1_000, (a, 1)) for a in (1, 2, 3) for b in (1, 2, 3) if a != b]
+    assert len(cases) > 30
+    for number, case in enumerate(cases, 1):
+        rig.all.clear()
+        text, compositions = case["TaskRelationships"], case["Compositions"]
+        rig.tell(unique(number, 1, 2, 3, TaskRelationships=text))
+        for task, composition in compositions.items():
+            told = options(number, int(task), option(int(task), 1, 1), composition="x")
+            rig.tell(told.copy(Composition=composition))
+        rig.tell(matrix(number, *rows))
+        summaries, errors = rig.got("TaskAssignmentSummary"), rig.reasons()
+        assert len(summaries) + bool(errors) == 1, (text, compositions, errors)
+        if not summaries:
+            assert all(errors), case["label"]
+            continue
+        # what is assigned is what the text means
+        assigned = tuple(t.TaskID for t in summaries[0].TaskList)
+        term = algebra.parse(text, frozenset((1, 2, 3))) if text.strip() else None
+        if term is not None:
+            meant = {frozenset(algebra_meaning.tasks(b)) for b in algebra_meaning.branches(term)}
+            assert frozenset(assigned) in meant, case["label"]
+        else:
+            assert set(assigned) == {1, 2, 3}
+        assert len(set(assigned)) == len(assigned)
+    assert not rig.said.has("fails at")
+
+
+def test_large_option_ids_are_kept_apart(assigner: Rig) -> None:
+    assigner.tell(
+        unique(2, 5, 6),
+        options(2, 5, option(5, 100_006, 1), option(5, 200_001, 1)),
+        options(2, 6, option(6, 6, 1)),
+        matrix(
+            2,
+            cost(1, 5, 100_006, 9_000),
+            cost(1, 5, 200_001, 1_000),
+            cost(1, 6, 6, 90_000),
+            cost(1, 6, 6, 1_000, (5, 200_001)),
+            cost(1, 6, 6, 2_000, (5, 100_006)),
+        ),
+    )
+    (made,) = assigner.got("TaskAssignmentSummary")
+    assert [(t.TaskID, t.OptionID) for t in made.TaskList] == [(5, 200_001), (6, 6)]
+
+
+def test_requests_that_never_end_do_not_pile_up(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, AGGREGATOR, ASSIGNMENT, BUILDER)
+    rig.tell(*vehicle(1), must_fly(5))
+    way = lmcp.new("RouteConstraints", StartLocation=place(0), EndLocation=place(0.1))
+    for number in range(1, 200):
+        rig.tell(unique(number, 5), options(number, 5, option(5, 1, 1)))
+        rig.tell(lmcp.new("RouteRequest", RequestID=number, RouteRequests=[way]))
+    assert len(rig.bus.state(AGGREGATOR).collecting) <= 16
+    assert len(rig.bus.state(AGGREGATOR).routes) <= 64
+    assert len(rig.bus.state(ASSIGNMENT)) <= 16
+    assert len(rig.bus.state(BUILDER).work) <= 16
 
 
 def test_a_matrix_before_the_options_is_named(assigner: Rig) -> None:

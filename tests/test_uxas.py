@@ -199,6 +199,31 @@ def test_messages_are_sent_once_periodically_and_to_addresses(tmp_path: Path) ->
     one.close()
 
 
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        ("<int64>1<int64>", "XML"),
+        ("<int64>1000/<int64>", "XML"),
+        ("<int64>one</int64>", "int64"),
+        ("<string>1</string>", "int64"),
+    ],
+)
+def test_a_message_file_that_is_malformed_is_refused_with_its_line(
+    tmp_path: Path, body: str, words: str
+) -> None:
+    """The list of eligible entities of a task; the original takes it for an empty one."""
+    file = tmp_path / "task.xml"
+    file.write_text(
+        f'<MustFlyTask Series="CMASI">\n<EligibleEntities>\n{body}</EligibleEntities></MustFlyTask>'
+    )
+    send = f"""<Service Type="SendMessagesService" PathToMessageFiles="{tmp_path}">
+        <Message MessageFileName="task.xml"/></Service>"""
+    with pytest.raises(BadInput) as caught:
+        process(write_cfg(tmp_path, send))
+    assert f"{file}" in str(caught.value)
+    assert words in str(caught.value)
+
+
 @pytest.mark.shows("SendMessagesService", "PathToMessageFiles")
 def test_message_files_lie_where_the_attribute_says(tmp_path: Path) -> None:
     for name in ("here", "there"):
