@@ -16,7 +16,7 @@ from cratous.bridge import lmcp
 from cratous.services.bus import Bus, Envelope
 from cratous.services.loading.problems import refuse
 from cratous.services.planning.desk import status
-from cratous.services.uxas import bridge_kinds, registry
+from cratous.services.uxas import bridge_kinds, own, registry
 from cratous.services.uxas.bridges import CREATE, KILL, Bridge
 from cratous.services.uxas.frame import Host
 from cratous.services.uxas.pipeline.tasks import TASKS, MessageTask
@@ -130,7 +130,8 @@ class ServiceManager:
         if item.kind == "Bridge":
             self._make_bridge(item, number)
             return
-        kind = registry.KINDS[item.type]
+        kind = own.kind_of(item.type)
+        assert kind is not None, item.type
         problems: list[BadInput] = []
         known = {**kind.attributes, **_COMMON}
         values = values_of(known, item.attributes, item.where, item.type, problems)
@@ -221,6 +222,8 @@ def check(config: Configuration, without: frozenset[str] = frozenset()) -> list[
     """
     entries = [e for e in config.entries if e.type not in without]
     problems: list[BadInput] = []
+    own.load(config, problems)
+    refuse(problems)
     for item in entries:
         _check(item, entries, problems)
     refuse(problems)
@@ -235,7 +238,7 @@ def _check(item: Entry, entries: list[Entry], problems: list[BadInput]) -> None:
             return
         bridge_kinds.check(item, kind, problems)
         return
-    service = registry.KINDS.get(item.type)
+    service = own.kind_of(item.type)
     if service is None:
         problems.append(_unknown(item, registry.KINDS))
         return
