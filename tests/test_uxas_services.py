@@ -226,6 +226,14 @@ def test_footprints_of_camera_and_gimbal(tmp_path: Path) -> None:
     assert steep.AchievedGSD == pytest.approx(steep.WidthCenter / 1000)
 
 
+@pytest.mark.shows(SENSORS, "ElevationAngles")
+def test_elevations_in_radians_if_the_configuration_says_so(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, SENSORS, **{SENSORS: 'ElevationAngles="radian"'})
+    rig.tell(vehicle(1)[0])
+    (made,) = footprints(rig, ElevationAngles=[radians(-60.0)])
+    assert made.GimbalElevation == pytest.approx(-60.0)
+
+
 def test_the_view_is_as_wide_as_the_sample_distance_allows(tmp_path: Path) -> None:
     rig = Rig(tmp_path, SENSORS)
     rig.tell(vehicle(1)[0])

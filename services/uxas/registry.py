@@ -145,7 +145,9 @@ def _simple(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int)
 
 def _sensors(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
     world = contexts_of(host).world
-    return sensors.SensorManagerService(lambda vehicle: world.get("configuration", vehicle))
+    return sensors.SensorManagerService(
+        lambda vehicle: world.get("configuration", vehicle), v["ElevationAngles"] == "radian"
+    )
 
 
 def _region(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
@@ -238,7 +240,9 @@ KINDS: dict[str, Kind] = {
         },
     ),
     "SimpleWaypointPlanManagerService": Kind({"VehicleID": whole(-1, -1)}, _simple),
-    "SensorManagerService": Kind({}, _sensors, single=True),
+    "SensorManagerService": Kind(
+        {"ElevationAngles": choice("degree", "degree", "radian")}, _sensors, single=True
+    ),
     "OperatingRegionStateService": Kind(
         {"AdditionalPadding": number(0.0)},
         _region,

@@ -113,9 +113,13 @@ class SensorManagerService:
     subscribes: tuple[str, ...] = (REQUESTS,)
     knows = ("EntityConfiguration",)
 
-    def __init__(self, configuration_of: Callable[[int], Any]) -> None:
-        """configuration_of(vehicle): its newest configuration, or None."""
-        self._configuration_of = configuration_of
+    def __init__(self, configuration_of: Callable[[int], Any], radian: bool = False) -> None:
+        """configuration_of(vehicle): its newest configuration, or None.
+
+        radian: ElevationAngles of requests are in radians, as OpenUxAS's own tasks send them; the
+        message's definition says degrees.
+        """
+        self._configuration_of, self._radian = configuration_of, radian
 
     def start(self) -> None:
         return None
@@ -152,6 +156,8 @@ class SensorManagerService:
         altitudes = list(request.AglAltitudes) or [configuration.NominalAltitude]
         for mount in mounts:
             elevations = list(request.ElevationAngles) or [mount.steepest_deg]
+            if self._radian and request.ElevationAngles:
+                elevations = [degrees(angle) for angle in elevations]
             gsds = list(request.GroundSampleDistances) or [0.0]
             for altitude, elevation, gsd in product(altitudes, elevations, gsds):
                 fields = footprint(mount, altitude, elevation, gsd)

@@ -189,6 +189,8 @@ def _options(told: Any, context: Context) -> list[Option]:
                 expected=f"TaskID {told.TaskID} and a Cost of 0 ms or more",
                 got=f"TaskID {option.TaskID}, Cost {option.Cost}",
             )
+        if start.alt_m == 0:  # it says nothing of the altitude: that of the vehicles
+            start = start._replace(alt_m=flyers[able[0]].alt_m)
         flyer, known = flyers[able[0]], ours.get((told.TaskID, option.OptionID))
         if known is not None and _same_start(known, flyer, start, option.StartHeading):
             rooms = known.holds
@@ -207,15 +209,20 @@ def _same_start(known: Option, flyer: Flyer, start: Pose, heading_deg: float) ->
     return there == asked
 
 
+def _is_choice(term: algebra.Term) -> bool:
+    """True if a term is one of its atoms, whatever the nesting of the choices."""
+    if isinstance(term, algebra.Atom):
+        return True
+    return term.op == algebra.ALTERNATIVE and all(_is_choice(part) for part in term.operands)
+
+
 def _check_composition(told: Any, item: str) -> None:
     """A composition has to be a choice of exactly the options that are offered."""
     listed = {option.OptionID for option in told.Options}
     if not told.Composition.strip() and not listed:
         return
     term = algebra.parse(told.Composition, where=item)
-    flat = isinstance(term, algebra.Atom) or (
-        term.op == algebra.ALTERNATIVE and all(isinstance(o, algebra.Atom) for o in term.operands)
-    )
+    flat = _is_choice(term)
     named = {atom.task for atom in algebra.atoms(term)}
     if flat and named == listed:
         return

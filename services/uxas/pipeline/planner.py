@@ -1,7 +1,8 @@
 """RoutePlannerVisibilityService: RoutePlanRequest -> RoutePlanResponse, costs or waypoints.
 
 Any vehicle that is known, any places, any operating region that is known. A route that was not
-found has the cost -1 and its reason in RouteError; every request is answered. Routes are those of
+found has the cost -1 and its reason in RouteError; every request is answered, to the service that
+has asked. Routes are those of
 `services.planning`: each leg is held against the zones by proved kernels.
 """
 
@@ -12,7 +13,7 @@ from math import atan2
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.services.bus import Envelope
+from cratous.services.bus import Envelope, Send, unicast
 from cratous.services.uxas.pipeline.contexts import Contexts, RequestDesk, Way, reasons_of
 from cratous.spec.errors import CratousError
 
@@ -23,7 +24,7 @@ class RoutePlannerVisibilityService:
     """Routes for one vehicle at a time."""
 
     name = NAME
-    subscribes: tuple[str, ...] = ("uxas.messages.route.RoutePlanRequest",)
+    subscribes: tuple[str, ...] = ("uxas.messages.route.RoutePlanRequest", "AircraftPathPlanner")
     knows = ("EntityConfiguration", "EntityState", "KeepInZone", "KeepOutZone", "OperatingRegion")
 
     def __init__(self, contexts: Contexts) -> None:
@@ -46,14 +47,18 @@ class RoutePlannerVisibilityService:
             OperatingRegion=body.OperatingRegion,
             RouteResponses=plans,
         )
-        return None, [answer]
+        if not envelope.service_id:
+            return None, [answer]
+        # as the original has it: to the service that has asked
+        return None, [Send(answer, unicast(envelope.entity_id, envelope.service_id))]
 
     def _plans(self, request: Any) -> list[Any]:
         desk, mission = self._contexts.for_routes(request.OperatingRegion, request.VehicleID)
         plans: list[Any] = []
         ways: list[Way] = []
         for constraint in request.RouteRequests:
-            ways.append(_way(desk, constraint))
+            cruise_m = mission.vehicle(request.VehicleID).position.alt_m
+            ways.append(_way(desk, constraint, cruise_m))
         routes = desk.routes_of(ways)
         vehicle = [v.id for v in mission.vehicles].index(request.VehicleID)
         prepare = getattr(routes, "prepare", None)  # all at once, where that is faster
@@ -74,11 +79,18 @@ class RoutePlannerVisibilityService:
         return plans
 
 
-def _way(desk: RequestDesk, constraint: Any) -> Way:
-    """Where a heading is not asked for, it is that of the straight way."""
+def _way(desk: RequestDesk, constraint: Any, cruise_m: float) -> Way:
+    """Where a heading is not asked for, it is that of the straight way.
+
+    An altitude of 0 says nothing, as the original's tasks have it: the start's holds, or cruise_m.
+    """
     where = f"route {constraint.RouteID}"
     start = desk.pose(constraint.StartLocation, constraint.StartHeading, where, "StartLocation")
     end = desk.pose(constraint.EndLocation, constraint.EndHeading, where, "EndLocation")
+    if start.alt_m == 0:
+        start = start._replace(alt_m=cruise_m)
+    if end.alt_m == 0:
+        end = end._replace(alt_m=start.alt_m)
     straight = atan2(end.east_m - start.east_m, end.north_m - start.north_m)
     if not constraint.UseStartHeading:
         start = start._replace(heading_rad=straight)
