@@ -113,7 +113,10 @@ class AssignmentTreeBranchBoundService:
         context = self._contexts.of(mine.request.RequestID)
         matrix, out = envelope.body, []
         request = mine.request.OriginalRequest
-        missing = [task for task in request.TaskList if task not in mine.options]
+        # tasks that the relations do not name are not done, whoever has asked for them
+        tasks = [task for task in request.TaskList if task in context.inputs.wanted]
+        unnamed = set(request.TaskList) - set(tasks)
+        missing = [task for task in tasks if task not in mine.options]
         if missing:
             raise BadInput(
                 "a matrix came before all options",
@@ -122,7 +125,7 @@ class AssignmentTreeBranchBoundService:
             )
         inputs = Offered(context.inputs.mission, context.inputs.starts, (), 0)
         inputs.offered = tuple(
-            option for task in request.TaskList for option in _options(mine.options[task], context)
+            option for task in tasks for option in _options(mine.options[task], context)
         )
         if context.offered:
             inputs.not_offered = context.inputs.dropped
@@ -133,6 +136,7 @@ class AssignmentTreeBranchBoundService:
                 f"{foreign} rows are of vehicles that the request does not name: they take no part"
             )
             out.append(status(mine.request.RequestID, "Warning", [("reason", text)]))
+        rows = [r for r in rows if not {r.IntialTaskID, r.DestinationTaskID} & unnamed]
         known = {(0, 0), *((o.task_id, o.option_id) for o in inputs.offered)}
         for k, row in enumerate(rows):
             start = row.IntialTaskID, row.IntialTaskOption
@@ -149,11 +153,7 @@ class AssignmentTreeBranchBoundService:
         body = Envelope(envelope.seq, envelope.time_ms, envelope.source, envelope.topic, asked)
         _, found = self._search.handle(self._search.start(), body, now_ms)
         reached = {row.DestinationTaskID for row in rows}
-        why = [
-            f"the costs have no way to task {task}"
-            for task in request.TaskList
-            if task not in reached
-        ]
+        why = [f"the costs have no way to task {task}" for task in tasks if task not in reached]
         return [*out, *(_explained(body, why) for body in found)]
 
 
