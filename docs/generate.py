@@ -1,5 +1,5 @@
 """Writes the generated documents: `docs/proof-inventory.md` from the ledger and the re-check,
-`docs/mutation.md` from `proofs/mutation.json`.
+`docs/mutation.md` from `proofs/mutation.json`; `docs/services.md` (see `services_table.py`).
 
 The second solver's verdicts and the effort come from `proofs/recheck.json`, which
 `cratous prove --recheck` writes; a theorem that it does not know is shown as not re-checked.
@@ -11,6 +11,8 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+
+import services_table
 
 from cratous.core import ledger
 from cratous.proofs import mutation_record, recheck
@@ -80,7 +82,12 @@ def mutation() -> str:
 def main() -> int:
     """Write, or with --check compare."""
     wrong = 0
-    for name, make in {"proof-inventory.md": inventory, "mutation.md": mutation}.items():
+    pages = {
+        "proof-inventory.md": inventory,
+        "mutation.md": mutation,
+        "services.md": services_table.document,
+    }
+    for name, make in pages.items():
         file, text = FOLDER / name, make()
         if "--check" in sys.argv:
             good = file.is_file() and file.read_text(encoding="utf-8") == text

@@ -95,8 +95,17 @@ def test_a_wrong_configuration_is_refused(tmp_path: Path, text: str, line: int, 
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.shows("MessageLoggerDataService", "LogFileMessageCountLimit", "FilesPerSubDirectory")
 def test_text_files_by_count_and_folder(tmp_path: Path) -> None:
-    logger = MessageLogger(tmp_path, text_limit=4, files_per_folder=2)
+    logger = MessageLogger.from_element(
+        element(
+            '<Service Type="MessageLoggerDataService" LogFileMessageCountLimit="4" '
+            'FilesPerSubDirectory="2"><LogMessage MessageType="uxas"/>'
+            '<LogMessage MessageType="afrl"/></Service>'
+        ),
+        tmp_path,
+        "cfg.xml",
+    )
     feed(logger, 6)  # 12 messages: 3 files in 2 folders
     made = sorted(p.relative_to(tmp_path).as_posix() for p in tmp_path.rglob("*.txt"))
     assert made == [

@@ -55,7 +55,6 @@ from cratous.spec.errors import BadInput
             2,
             "gossip is not covered",
         ),
-        ('<Service Type="PlanBuilderService"/>', "", 2, "it shares memory with"),
         ('<Service Type="Test_SimulationTime"/>\n' * 2, "", 3, "a second one in one process"),
         (
             '<Service Type="SendMessagesService"><Message MessageFileName="no.xml"/></Service>',
@@ -134,6 +133,7 @@ def trace(path: Path, until_s: float) -> list[tuple[Any, ...]]:
     return seen
 
 
+@pytest.mark.shows("HelloWorld", "SendPeriod_ms", "KeyValuePair")
 def test_virtual_time_gives_the_same_messages_at_exact_times(tmp_path: Path) -> None:
     path = write_cfg(tmp_path, HELLO.format("a", 300) + HELLO.format("b", 700))
     first, second = trace(path, 3600.0), trace(path, 3600.0)
@@ -145,6 +145,7 @@ def test_virtual_time_gives_the_same_messages_at_exact_times(tmp_path: Path) -> 
     assert times == list(range(0, 3_600_001, 300))
 
 
+@pytest.mark.shows("HelloWorld", "StringToSend", "KeyValuePair")
 def test_greetings_are_heard_by_others_only(tmp_path: Path) -> None:
     path = write_cfg(tmp_path, HELLO.format("hi", 1000) + HELLO.format("ho", 1000))
     one, said = process(path, virtual=True)
@@ -168,6 +169,7 @@ def test_services_of_a_group_name_it_and_are_reached_by_it(tmp_path: Path) -> No
     one.close()
 
 
+@pytest.mark.shows("SendMessagesService", "StartupComplete")
 def test_messages_are_sent_once_periodically_and_to_addresses(tmp_path: Path) -> None:
     (tmp_path / "inputs").mkdir()
     (tmp_path / "inputs" / "pair.xml").write_text(
@@ -197,6 +199,80 @@ def test_messages_are_sent_once_periodically_and_to_addresses(tmp_path: Path) ->
     one.close()
 
 
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        ("<int64>1<int64>", "XML"),
+        ("<int64>1000/<int64>", "XML"),
+        ("<int64>one</int64>", "int64"),
+        ("<string>1</string>", "int64"),
+    ],
+)
+def test_a_message_file_that_is_malformed_is_refused_with_its_line(
+    tmp_path: Path, body: str, words: str
+) -> None:
+    """The list of eligible entities of a task; the original takes it for an empty one."""
+    file = tmp_path / "task.xml"
+    file.write_text(
+        f'<MustFlyTask Series="CMASI">\n<EligibleEntities>\n{body}</EligibleEntities></MustFlyTask>'
+    )
+    send = f"""<Service Type="SendMessagesService" PathToMessageFiles="{tmp_path}">
+        <Message MessageFileName="task.xml"/></Service>"""
+    with pytest.raises(BadInput) as caught:
+        process(write_cfg(tmp_path, send))
+    assert f"{file}" in str(caught.value)
+    assert words in str(caught.value)
+
+
+@pytest.mark.shows("SendMessagesService", "PathToMessageFiles")
+def test_message_files_lie_where_the_attribute_says(tmp_path: Path) -> None:
+    for name in ("here", "there"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "pair.xml").write_text(
+            f'<KeyValuePair Series="CMASI"><Key>{name}</Key></KeyValuePair>'
+        )
+    send = f"""<Service Type="SendMessagesService" PathToMessageFiles="{tmp_path / "there"}">
+        <Message MessageFileName="pair.xml" SendTime_ms="0"/></Service>"""
+    one, _ = process(write_cfg(tmp_path, send), virtual=True)
+    seen: list[str] = []
+    one.bus.tap(lambda e: "KeyValue" in e.topic and seen.append(e.body.Key))
+    one.run(0.0)
+    assert seen == ["there"]
+    one.close()
+
+
+@pytest.mark.shows(
+    "StatusReportService", "AutopilotKeepAlive", "KeepAliveExpiration_ms", "EntityExit"
+)
+def test_authority_expires_with_the_autopilots_sign_of_life(tmp_path: Path) -> None:
+    report = (
+        '<Service Type="StatusReportService" ReportPeriod_ms="1000" KeepAliveExpiration_ms="1500"/>'
+    )
+    one, _ = process(write_cfg(tmp_path, report), virtual=True)
+    seen: list[Any] = []
+    one.bus.tap(lambda e: "Onboard" in e.topic and seen.append(e.body))
+    one.bus.publish(lmcp.new("EntityJoin", EntityID=9), "x")
+    one.bus.publish(lmcp.new("EntityExit", EntityID=9), "x")
+    one.bus.publish(
+        lmcp.new("AutopilotKeepAlive", AutopilotEnabled=True, SpeedAuthorized=True), "x"
+    )
+    one.run(2.0)
+    assert [r.ValidAuthorization for r in seen] == [True, False]
+    assert [r.SpeedAuthorization for r in seen] == [True, False]
+    assert seen[0].ConnectedEntities == []
+    assert seen[0].VehicleID == 100
+    one.close()
+
+
+@pytest.mark.shows(
+    "StatusReportService",
+    "EntityState",
+    "EntityJoin",
+    "OnboardStatusReport",
+    "VehicleID",
+    "ReportPeriod_ms",
+    "StaleStateTime_ms",
+)
 def test_reports_go_stale_with_the_states(tmp_path: Path) -> None:
     report = '<Service Type="StatusReportService" VehicleID="7" ReportPeriod_ms="1000" StaleStateTime_ms="2500"/>'
     one, _ = process(write_cfg(tmp_path, report), virtual=True)
@@ -215,6 +291,7 @@ def test_reports_go_stale_with_the_states(tmp_path: Path) -> None:
     one.close()
 
 
+@pytest.mark.shows("Test_SimulationTime", "EntityState")
 def test_simulated_time_stands_until_a_state_tells(tmp_path: Path) -> None:
     body = '<Service Type="Test_SimulationTime"/>\n' + HELLO.format("x", 1000)
     one, said = process(write_cfg(tmp_path, body))

@@ -98,9 +98,9 @@ def _stop(process: Any) -> None:
 
 def _require_proofs(config: Any, log: Any, allow_unproved: bool) -> None:
     """Where the pipeline plans, its kernels are proved or the user has said otherwise."""
-    from cratous.services.uxas.registry import KINDS, VALIDATOR
+    from cratous.services.uxas.registry import KINDS
 
-    if any(VALIDATOR in KINDS[e.type].together for e in config.entries if e.type in KINDS):
+    if any(KINDS[e.type].plans for e in config.entries if e.type in KINDS):
         from cratous.core import ledger
 
         standing = ledger.require(allow_unproved=allow_unproved)

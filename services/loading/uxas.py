@@ -83,6 +83,27 @@ def mission_of(cfg: Configuration, source: str) -> Mission:
     return finish(mission, where)
 
 
+def surroundings_of(cfg: Configuration, source: str) -> Mission:
+    """A mission without tasks: frame, the request's vehicles, and its operating region's zones."""
+    cast = _Cast(cfg)
+    request = cast.request()
+    notes: list[str] = []
+    frame = _frame(cast)
+    places = Places(frame)
+    return Mission(
+        name="surroundings",
+        source=source,
+        frame=frame,
+        vehicles=_vehicles(cast, request, places, {}, notes),
+        tasks=(),
+        daa=Daa(DEFAULT_WELL_CLEAR),
+        zones=tuple(
+            parts.zone(sent, places, frame.terrain_m, notes)
+            for sent in _zones(cast, request, notes)
+        ),
+    )
+
+
 class _Cast:
     """The messages sorted by what they are; later ones replace earlier ones of the same id."""
 

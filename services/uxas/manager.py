@@ -16,9 +16,10 @@ from cratous.bridge import lmcp
 from cratous.services.bus import Bus, Envelope
 from cratous.services.loading.problems import refuse
 from cratous.services.planning.desk import status
-from cratous.services.uxas import bridge_kinds, live, registry
+from cratous.services.uxas import bridge_kinds, own, registry
 from cratous.services.uxas.bridges import CREATE, KILL, Bridge
 from cratous.services.uxas.frame import Host
+from cratous.services.uxas.pipeline.tasks import TASKS, MessageTask
 from cratous.services.uxas.settings import Attr, Configuration, Entry, entry, nearest, values_of
 from cratous.spec.errors import BadInput, CratousError
 
@@ -129,7 +130,8 @@ class ServiceManager:
         if item.kind == "Bridge":
             self._make_bridge(item, number)
             return
-        kind = registry.KINDS[item.type]
+        kind = own.kind_of(item.type)
+        assert kind is not None, item.type
         problems: list[BadInput] = []
         known = {**kind.attributes, **_COMMON}
         values = values_of(known, item.attributes, item.where, item.type, problems)
@@ -190,23 +192,25 @@ class ServiceManager:
             raise BadInput(
                 "the id is taken", where=where, item="ServiceID", got=self._names[number]
             )
-        if item.type in live.TASKS:
-            desk = registry.desk_of(self._host)
+        if item.type in TASKS:
+            contexts = registry.contexts_of(self._host)
+            world = contexts.world
             if task is None:
                 raise BadInput(
                     "no task", where=where, item="<TaskRequest>", expected=f"a {item.type}"
                 )
-            known = desk.world.task(task.TaskID)
+            known = world.task(task.TaskID)
             if known is None or known.body != task:
-                desk.world.add(task, where)
+                world.add(task, where)
             for field in ("EntityConfigurations", "EntityStates", "KeepInZones", "KeepOutZones"):
                 for part in getattr(body, field):
-                    if not desk.world.knows(part):
-                        desk.world.add(part, where)
-            self._add(live.LiveTask(desk, task, live.TASKS[item.type]), number)
+                    if not world.knows(part):
+                        world.add(part, where)
+            self._add(MessageTask(contexts, task, TASKS[item.type]), number)
             return
         problems: list[BadInput] = []
-        _check(item, [*self._config.entries, item], problems)
+        running = set(self._names.values())
+        _check(item, [*(e for e in self._config.entries if e.type in running), item], problems)
         refuse(problems)
         self._make(item, number)
 
@@ -218,6 +222,8 @@ def check(config: Configuration, without: frozenset[str] = frozenset()) -> list[
     """
     entries = [e for e in config.entries if e.type not in without]
     problems: list[BadInput] = []
+    own.load(config, problems)
+    refuse(problems)
     for item in entries:
         _check(item, entries, problems)
     refuse(problems)
@@ -232,7 +238,7 @@ def _check(item: Entry, entries: list[Entry], problems: list[BadInput]) -> None:
             return
         bridge_kinds.check(item, kind, problems)
         return
-    service = registry.KINDS.get(item.type)
+    service = own.kind_of(item.type)
     if service is None:
         problems.append(_unknown(item, registry.KINDS))
         return
@@ -259,16 +265,6 @@ def _check(item: Entry, entries: list[Entry], problems: list[BadInput]) -> None:
                 expected=f"one; the first stands at {same[0].where}",
             )
         )
-    for other in service.together:
-        if not any(e.type == other for e in entries):
-            problems.append(
-                BadInput(
-                    f"it shares memory with {other}",
-                    where=item.where,
-                    item=item.type,
-                    expected=f"both in one process: add {other}",
-                )
-            )
 
 
 def _parsed(text: str, where: str) -> tuple[Entry, Any]:
@@ -309,7 +305,7 @@ def _unknown(item: Entry, known: Any) -> BadInput:
             f"tasks of type {item.type} are not covered yet",
             where=item.where,
             item=f"{item.kind}.Type",
-            expected=", ".join(live.TASKS),
+            expected=", ".join(TASKS),
             got=item.type,
         )
     if item.type in registry.NOT_YET:  # and not in KINDS

@@ -33,7 +33,6 @@ from cratous.spec.errors import BadInput, CratousError, NoPlan
 _LONGEST_POLL_MS = 200  # so that a signal or a discrete clock is seen
 _FILES = 65536
 _NEVER_MS = 2**62
-_REQUEST = ("CorrespondingAutomationRequestID", "RequestID", "ResponseID")
 
 
 class Process:
@@ -217,23 +216,25 @@ class Process:
             import traceback
 
             self.log("DEBUG", "".join(traceback.format_exception(error)))
-        desk = self.host.shared.get("desk")
-        if desk is None or not _plans(name):
-            return
+        number = _request_of(envelope.body) if envelope else 0
+        if not number or not _plans(name):
+            return  # what nobody answers, the validator answers when its time is over
         reasons = error.reasons if isinstance(error, NoPlan) else (f"{name}: {kind}{error}",)
-        body = envelope.body if envelope else None
-        named = {getattr(body, field, 0) for field in _REQUEST}
-        # a stray message of another request must not end the one in work
-        for number in named.intersection(desk.in_work):
-            facts = [("reason", text) for text in reasons]
-            self.bus.publish(status(number, "Error", facts), name)
+        self.bus.publish(status(number, "Error", [("reason", text) for text in reasons]), name)
+
+
+def _request_of(body: Any) -> int:
+    """The automation request that a message of the pipeline belongs to, 0 if it does not say."""
+    if type(body).__name__ == "UniqueAutomationRequest":
+        return int(body.RequestID)
+    return int(getattr(body, "CorrespondingAutomationRequestID", 0))
 
 
 def _plans(name: str) -> bool:
-    from cratous.services.uxas.registry import KINDS, VALIDATOR
+    from cratous.services.uxas.registry import KINDS
 
     kind = KINDS.get(name)
-    return (kind is not None and VALIDATOR in kind.together) or "[" in name
+    return (kind is not None and kind.plans) or "[" in name
 
 
 def _addresses(config: Configuration, names: tuple[str, str]) -> tuple[str, str] | None:

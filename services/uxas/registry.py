@@ -10,10 +10,19 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cratous.services.message_logger import MessageLogger
-from cratous.services.uxas import live, small
+from cratous.services.uxas import batch, leash, regions, sensors, small, tracker, waypoints
 from cratous.services.uxas.frame import Host
+from cratous.services.uxas.pipeline import (
+    aggregator,
+    assignment,
+    builder,
+    planner,
+    task_manager,
+    tasks,
+)
+from cratous.services.uxas.pipeline.contexts import Contexts
+from cratous.services.uxas.pipeline.validator import AutomationRequestValidatorService
 from cratous.services.uxas.settings import Attr, Entry, choice, flag, number, whole
-from cratous.services.uxas.world import World
 from cratous.spec.errors import BadInput
 
 Make = Callable[["Host", Entry, dict[str, Any], str, int], Any]
@@ -23,41 +32,55 @@ Make = Callable[["Host", Entry, dict[str, Any], str, int], Any]
 class Kind:
     """A service type: attributes, names of child elements, maker, whether only one may be there.
 
-    together: other types that must be in the same process, because they share memory.
+    plans: it takes part in planning, so the kernels that it stands on have to be proved.
     """
 
     attributes: Mapping[str, Attr]
     make: Make
     children: tuple[str, ...] = ()
     single: bool = False
-    together: tuple[str, ...] = ()
+    plans: bool = False
     ignored: Mapping[str, str] = field(default_factory=dict)
 
 
 VALIDATOR = "AutomationRequestValidatorService"
 
 
-def desk_of(host: Host) -> live.LiveDesk:
-    """The planning desk of a process, with the world that it plans in; made when first asked for."""
-    if "desk" not in host.shared:
-        world = World()
-        host.bus.add(world)
-        host.shared["desk"] = live.LiveDesk(world)
-    desk: live.LiveDesk = host.shared["desk"]
-    return desk
+def contexts_of(host: Host) -> Contexts:
+    """What the messages mean to the services of a process; it joins the bus when first asked for."""
+    if "contexts" not in host.shared:
+        host.shared["contexts"] = Contexts(host)
+        host.bus.add(host.shared["contexts"])
+    contexts: Contexts = host.shared["contexts"]
+    return contexts
 
 
 def _validator(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    services = host.shared.get("services", ())
-    return live.LiveValidator(host, desk_of(host), v["MaxResponseTime_ms"], services)
+    return AutomationRequestValidatorService(host, contexts_of(host), v["MaxResponseTime_ms"])
 
 
-def _pipeline(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return live.pipeline(entry.type, desk_of(host))
+def _planner(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return planner.RoutePlannerVisibilityService(contexts_of(host))
+
+
+def _aggregator(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return aggregator.RouteAggregatorService(contexts_of(host))
+
+
+def _assignment(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return assignment.AssignmentTreeBranchBoundService(contexts_of(host))
+
+
+def _builder(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    world = contexts_of(host).world
+    loiter_m = v["DefaultLoiterRadius_m"] if v["AddLoiterToEndOfMission"] else 0.0
+    options = builder.Options(v["TurnType"], loiter_m)
+    return builder.PlanBuilderService(lambda vehicle: world.get("state", vehicle), options)
 
 
 def _task_manager(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return live.TaskManagerService(name, host, desk_of(host), host.shared["new_id"])
+    world = contexts_of(host).world
+    return task_manager.TaskManagerService(name, world, host.shared["new_id"])
 
 
 def _messages(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
@@ -89,18 +112,73 @@ def _logger(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int)
     )
 
 
+def _vehicle(host: Host, v: dict[str, Any]) -> int:
+    number = v["VehicleID"]
+    return host.entity_id if number in (None, -1) else int(number)
+
+
+def _waypoints(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    if v["NumberWaypointsOverlap"] >= v["NumberWaypointsToServe"]:
+        raise BadInput(
+            "segments that do not go on",
+            where=entry.where,
+            item=f"{entry.type}.NumberWaypointsOverlap",
+            expected=f"less than NumberWaypointsToServe = {v['NumberWaypointsToServe']}",
+            got=str(v["NumberWaypointsOverlap"]),
+        )
+    serving = waypoints.Serving(
+        v["NumberWaypointsToServe"],
+        v["NumberWaypointsOverlap"],
+        v["DefaultLoiterRadius_m"],
+        v["AddLoiterToEndOfSegments"],
+        v["AddLoiterToEndOfMission"],
+        v["LoopBackToFirstTask"],
+        v["SetLastWaypointSpeedTo0"],
+        v["TurnType"],
+    )
+    return waypoints.WaypointPlanManagerService(name, _vehicle(host, v), serving)
+
+
+def _simple(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return waypoints.SimpleWaypointPlanManagerService(name, _vehicle(host, v))
+
+
+def _sensors(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    world = contexts_of(host).world
+    return sensors.SensorManagerService(
+        lambda vehicle: world.get("configuration", vehicle), v["ElevationAngles"] == "radian"
+    )
+
+
+def _region(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return regions.OperatingRegionStateService(host.entity_id or 1)
+
+
+def _leash(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return leash.LoiterLeash(name, _vehicle(host, v), v["LeadDistance"], v["RadiusBuffer"])
+
+
+def _batch(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return batch.BatchSummaryService(contexts_of(host))
+
+
+def _tracker(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return tracker.TaskTrackerService(name, host.log)
+
+
 def _pipeline_kind(
-    attributes: Mapping[str, Attr], ignored: Mapping[str, str] | None = None
+    make: Make, attributes: Mapping[str, Attr], ignored: Mapping[str, str] | None = None
 ) -> Kind:
-    return Kind(attributes, _pipeline, (), True, (VALIDATOR,), ignored or {})
+    return Kind(attributes, make, (), True, True, ignored or {})
 
 
 _NOT_USED = "it is accepted and not used: routes and plans follow the mission and the vehicle"
 
 KINDS: dict[str, Kind] = {
-    VALIDATOR: Kind({"MaxResponseTime_ms": whole(5000, 1)}, _validator, single=True),
-    "TaskManagerService": Kind({}, _task_manager, single=True),
+    VALIDATOR: Kind({"MaxResponseTime_ms": whole(5000, 1)}, _validator, single=True, plans=True),
+    "TaskManagerService": Kind({}, _task_manager, single=True, plans=True),
     "RoutePlannerVisibilityService": _pipeline_kind(
+        _planner,
         {
             "TurnRadiusOffset_m": number(0.0),
             "MinimumWaypointSeparation_m": number(50.0),
@@ -118,9 +196,10 @@ KINDS: dict[str, Kind] = {
         ),
     ),
     "RouteAggregatorService": _pipeline_kind(
-        {"FastPlan": flag(False)}, ignored={"FastPlan": _NOT_USED}
+        _aggregator, {"FastPlan": flag(False)}, ignored={"FastPlan": _NOT_USED}
     ),
     "AssignmentTreeBranchBoundService": _pipeline_kind(
+        _assignment,
         {
             "NumberNodesMaximum": whole(0, -(2**31)),
             "CostFunction": choice("MINMAX", "MINMAX", "CUMULATIVE"),
@@ -130,22 +209,54 @@ KINDS: dict[str, Kind] = {
         },
     ),
     "PlanBuilderService": _pipeline_kind(
+        _builder,
         {
             "AssignmentStartPointLead_m": number(50.0),
             "AddLoiterToEndOfMission": flag(False),
             "DefaultLoiterRadius_m": number(300.0),
             "TurnType": choice("TurnShort", "TurnShort", "FlyOver"),
         },
-        ignored=dict.fromkeys(
-            (
-                "AssignmentStartPointLead_m",
-                "AddLoiterToEndOfMission",
-                "DefaultLoiterRadius_m",
-                "TurnType",
-            ),
-            _NOT_USED,
-        ),
+        ignored={"AssignmentStartPointLead_m": _NOT_USED},
     ),
+    "WaypointPlanManagerService": Kind(
+        {
+            "VehicleID": whole(-1, -1),
+            "NumberWaypointsToServe": whole(100_000, 2),
+            "NumberWaypointsOverlap": whole(3, 1),
+            "DefaultLoiterRadius_m": number(200.0),
+            "AddLoiterToEndOfSegments": flag(False),
+            "AddLoiterToEndOfMission": flag(False),
+            "LoopBackToFirstTask": flag(False),
+            "SetLastWaypointSpeedTo0": flag(False),
+            "GimbalPayloadId": whole(-1, -1),
+            "TurnType": choice("TurnShort", "TurnShort", "FlyOver"),
+            "param.turnType": Attr(),
+        },
+        _waypoints,
+        plans=True,
+        ignored={
+            "GimbalPayloadId": "it is accepted and not used: plans point the gimbal themselves",
+            "param.turnType": "it is accepted and not used, as in UxAS, which reads TurnType",
+        },
+    ),
+    "SimpleWaypointPlanManagerService": Kind({"VehicleID": whole(-1, -1)}, _simple),
+    "SensorManagerService": Kind(
+        {"ElevationAngles": choice("degree", "degree", "radian")}, _sensors, single=True
+    ),
+    "OperatingRegionStateService": Kind(
+        {"AdditionalPadding": number(0.0)},
+        _region,
+        single=True,
+        ignored={"AdditionalPadding": "it is accepted and not used: zones bring their own padding"},
+    ),
+    "LoiterLeash": Kind(
+        {"VehicleID": whole(-1, -1), "LeadDistance": number(None), "RadiusBuffer": number(0.0)},
+        _leash,
+    ),
+    "BatchSummaryService": Kind(
+        {"FastPlan": flag(False)}, _batch, single=True, plans=True, ignored={"FastPlan": _NOT_USED}
+    ),
+    "TaskTrackerService": Kind({}, _tracker),
     "SendMessagesService": Kind({"PathToMessageFiles": Attr()}, _messages, ("Message",)),
     "MessageLoggerDataService": Kind(
         {"LogFileMessageCountLimit": whole(0), "FilesPerSubDirectory": whole(0)},
@@ -167,33 +278,72 @@ KINDS: dict[str, Kind] = {
     ),
 }
 
+SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
+    VALIDATOR: (
+        AutomationRequestValidatorService,
+        ("UniqueAutomationRequest", "AutomationResponse", "ImpactAutomationResponse",
+         "TaskAutomationResponse", "ServiceStatus"),
+    ),
+    "TaskManagerService": (
+        task_manager.TaskManagerService, ("CreateNewService", "KillService")
+    ),
+    "Task services": (
+        tasks.MessageTask,
+        ("TaskInitialized", "TaskPlanOptions", "RoutePlanRequest", "TaskImplementationResponse",
+         "TaskActive", "TaskComplete", "ServiceStatus"),
+    ),
+    "RoutePlannerVisibilityService": (
+        planner.RoutePlannerVisibilityService, ("RoutePlanResponse",)
+    ),
+    "RouteAggregatorService": (
+        aggregator.RouteAggregatorService,
+        ("RoutePlanRequest", "AssignmentCostMatrix", "RouteResponse"),
+    ),
+    "AssignmentTreeBranchBoundService": (
+        assignment.AssignmentTreeBranchBoundService, ("TaskAssignmentSummary", "ServiceStatus")
+    ),
+    "PlanBuilderService": (
+        builder.PlanBuilderService,
+        ("TaskImplementationRequest", "UniqueAutomationResponse", "ServiceStatus"),
+    ),
+    "WaypointPlanManagerService": (waypoints.WaypointPlanManagerService, ("MissionCommand",)),
+    "SimpleWaypointPlanManagerService": (
+        waypoints.SimpleWaypointPlanManagerService, ("MissionCommand",)
+    ),
+    "SensorManagerService": (
+        sensors.SensorManagerService, ("SensorFootprintResponse", "ServiceStatus")
+    ),
+    "OperatingRegionStateService": (
+        regions.OperatingRegionStateService, ("OperatingRegion",)
+    ),
+    "LoiterLeash": (leash.LoiterLeash, ("RoutePlanRequest", "VehicleActionCommand")),
+    "BatchSummaryService": (
+        batch.BatchSummaryService, ("TaskAutomationRequest", "BatchSummaryResponse")
+    ),
+    "TaskTrackerService": (tracker.TaskTrackerService, ()),
+    "SendMessagesService": (small.SendMessagesService, ()),
+    "MessageLoggerDataService": (MessageLogger, ()),
+    "Test_SimulationTime": (small.SimulationTime, ()),
+    "HelloWorld": (small.HelloWorld, ("KeyValuePair",)),
+    "StatusReportService": (small.StatusReportService, ("OnboardStatusReport",)),
+}  # fmt: skip
+"""Of each service its class, which says what it subscribes to, and the messages that it sends."""
+
 NOT_YET = (
     "AutomationDiagramDataService",
-    "BatchSummaryService",
-    "LoiterLeash",
-    "OperatingRegionStateService",
     "OsmPlannerService",
     "RoutePlannerService",
-    "SensorManagerService",
     "SerialAutomationRequestTestService",
-    "SimpleWaypointPlanManagerService",
     "SteeringService",
-    "TaskTrackerService",
-    "WaypointPlanManagerService",
 )
 """Services of UxAS that we do not have; named in a configuration they are refused."""
 
 TASKS_NOT_YET = (
-    "afrl.cmasi.AreaSearchTask",
-    "afrl.impact.AngledAreaSearchTask",
     "afrl.impact.BlockadeTask",
     "afrl.impact.CommRelayTask",
     "afrl.impact.CordonTask",
     "afrl.impact.EscortTask",
-    "afrl.impact.ImpactLineSearchTask",
-    "afrl.impact.ImpactPointSearchTask",
     "afrl.impact.MultiVehicleWatchTask",
-    "afrl.impact.PatternSearchTask",
     "afrl.impact.WatchTask",
     "uxas.messages.task.AssignmentCoordinatorTask",
     "uxas.messages.task.RendezvousTask",

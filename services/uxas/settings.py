@@ -44,7 +44,7 @@ def whole(default: int | None, low: int = 0, high: int | None = None) -> Attr:
     return Attr("int", default, low, high)
 
 
-def number(default: float, low: float | None = 0.0, high: float | None = None) -> Attr:
+def number(default: float | None, low: float | None = 0.0, high: float | None = None) -> Attr:
     """A number."""
     return Attr("number", default, low, high)
 

@@ -24,6 +24,9 @@ class World:
         "afrl.cmasi.Task",
         "afrl.cmasi.AbstractZone",
         "afrl.cmasi.OperatingRegion",
+        "afrl.impact.PointOfInterest",
+        "afrl.impact.LineOfInterest",
+        "afrl.impact.AreaOfInterest",
         "afrl.cmasi.RemoveTasks",
         "afrl.cmasi.RemoveZones",
         "afrl.cmasi.RemoveEntities",
@@ -58,6 +61,15 @@ class World:
         """The newest task with an id."""
         return self._kept.get("task", {}).get(number)
 
+    def has(self, sort: str, number: int) -> bool:
+        """True if there is an object of a sort with this id."""
+        return number in self._kept.get(sort, {})
+
+    def get(self, sort: str, number: int) -> Any:
+        """The newest object of a sort with an id, or None."""
+        found = self._kept.get(sort, {}).get(number)
+        return None if found is None else found.body
+
     def forget(self, sort: str, number: int) -> None:
         """There is no such object any more."""
         self._kept.get(sort, {}).pop(number, None)
@@ -68,7 +80,7 @@ class World:
         return number in self._kept.get(sort, {})
 
     def of(self, sort: str) -> list[Any]:
-        """All objects of a sort: configuration, state, task, zone, region."""
+        """All objects of a sort: configuration, state, task, zone, region, point, line, area."""
         return [sent.body for sent in self._kept.get(sort, {}).values()]
 
     def configuration(
@@ -94,6 +106,9 @@ def _key(body: Any) -> tuple[str, int]:
         return "task", body.TaskID
     if hasattr(body, "ZoneID"):
         return "zone", body.ZoneID
+    for sort in ("Point", "Line", "Area"):
+        if hasattr(body, f"{sort}ID"):
+            return sort.lower(), getattr(body, f"{sort}ID")
     names = body.all_names
     if "afrl.cmasi.EntityState" in names:
         return "state", body.ID

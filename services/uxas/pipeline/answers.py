@@ -1,0 +1,77 @@
+"""The three kinds of automation requests, and their responses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.services.planning.desk import status
+
+_INFO = 8  # entries of AutomationResponse.Info
+
+
+class Asked(NamedTuple):
+    """A request as it came: its message, the AutomationRequest inside, whether it is only a trial,
+    the states that it brings, its number on the bus, and what is wrong with it at first sight."""
+
+    body: Any
+    request: Any
+    sandbox: bool
+    states: list[Any]
+    seq: int
+    problem: str = ""
+
+
+def asked_of(topic: str, body: Any, seq: int) -> Asked:
+    """A request of any kind."""
+    if topic.endswith(".ImpactAutomationRequest"):
+        problem = ""
+        if body.OverridePlanningConditions:
+            problem = "OverridePlanningConditions are not covered: set speeds in configurations"
+        return Asked(body, body.TrialRequest, body.Sandbox, [], seq, problem)
+    if topic.endswith(".TaskAutomationRequest"):
+        return Asked(
+            body, body.OriginalRequest, body.SandBoxRequest, list(body.PlanningStates), seq
+        )
+    return Asked(body, body, False, [], seq)
+
+
+def _wrapped(asked: Asked, response: Any, finals: Sequence[Any]) -> Any:
+    kind, body = type(asked.body).__name__, asked.body
+    if kind == "ImpactAutomationRequest":
+        return lmcp.new(
+            "ImpactAutomationResponse",
+            ResponseID=body.RequestID,
+            TrialResponse=response,
+            PlayID=body.PlayID,
+            SolutionID=body.SolutionID,
+            Sandbox=body.Sandbox,
+        )
+    if kind == "TaskAutomationRequest":
+        return lmcp.new(
+            "TaskAutomationResponse",
+            ResponseID=body.RequestID,
+            OriginalResponse=response,
+            FinalStates=list(finals),
+        )
+    return response
+
+
+def answer(asked: Asked, unique: Any, notes: Sequence[str]) -> Any:
+    """The response to a request from the pipeline's UniqueAutomationResponse; notes become Info."""
+    response = unique.OriginalResponse
+    if response is None:
+        response = lmcp.new("AutomationResponse")
+    if notes:
+        told = [lmcp.new("KeyValuePair", Key="warning", Value=text) for text in notes]
+        response = response.copy(Info=[*response.Info, *told][:_INFO])
+    return _wrapped(asked, response, unique.FinalStates)
+
+
+def refusal(asked: Asked, number: int, reasons: Sequence[str]) -> list[Any]:
+    """A ServiceStatus of type Error, and a response without commands that says why."""
+    pairs = [lmcp.new("KeyValuePair", Key="reason", Value=text) for text in reasons]
+    empty = lmcp.new("AutomationResponse", Info=pairs[:_INFO])
+    told = status(number, "Error", [("reason", text) for text in reasons])
+    return [told, _wrapped(asked, empty, ())]

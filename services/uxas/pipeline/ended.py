@@ -1,0 +1,28 @@
+"""When a request is over for the services of the pipeline, and how many they keep."""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+RESPONSE = "uxas.messages.task.UniqueAutomationResponse"
+STATUS = "afrl.cmasi.ServiceStatus"
+ENDINGS = (RESPONSE, STATUS)
+AT_ONCE = 16
+"""Requests kept at the same time; one is in the pipeline, others have been given up by then."""
+
+V = TypeVar("V")
+
+
+def request_ended(topic: str, body: Any) -> int:
+    """The RequestID that a response or an error ends, 0 for none."""
+    if topic == RESPONSE:
+        return int(body.ResponseID)
+    if topic != STATUS or body.StatusType.name != "Error":
+        return 0
+    number = next((pair.Value for pair in body.Info if pair.Key == "RequestID"), "")
+    return int(number) if number.isdecimal() else 0
+
+
+def newest(kept: dict[int, V]) -> dict[int, V]:
+    """The newest entries; a dictionary's order is that of their coming."""
+    return dict(list(kept.items())[-AT_ONCE:])

@@ -1,0 +1,104 @@
+"""RoutePlannerVisibilityService: RoutePlanRequest -> RoutePlanResponse, costs or waypoints.
+
+Any vehicle that is known, any places, any operating region that is known. A route that was not
+found has the cost -1 and its reason in RouteError; every request is answered, to the service that
+has asked. Routes are those of
+`services.planning`: each leg is held against the zones by proved kernels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import atan2
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.services.bus import Envelope, Send, unicast
+from cratous.services.uxas.pipeline.contexts import Contexts, RequestDesk, Way, reasons_of
+from cratous.spec.errors import CratousError
+
+NAME = "RoutePlannerVisibilityService"
+
+
+class RoutePlannerVisibilityService:
+    """Routes for one vehicle at a time."""
+
+    name = NAME
+    subscribes: tuple[str, ...] = ("uxas.messages.route.RoutePlanRequest", "AircraftPathPlanner")
+    knows = ("EntityConfiguration", "EntityState", "KeepInZone", "KeepOutZone", "OperatingRegion")
+
+    def __init__(self, contexts: Contexts) -> None:
+        self._contexts = contexts
+
+    def start(self) -> None:
+        return None
+
+    def handle(self, state: None, envelope: Envelope, now_ms: int) -> tuple[None, Iterable[Any]]:
+        body = envelope.body
+        try:
+            plans = self._plans(body)
+        except CratousError as error:
+            plans = [_refused(c.RouteID, reasons_of(error)) for c in body.RouteRequests]
+        answer = lmcp.new(
+            "RoutePlanResponse",
+            ResponseID=body.RequestID,
+            AssociatedTaskID=body.AssociatedTaskID,
+            VehicleID=body.VehicleID,
+            OperatingRegion=body.OperatingRegion,
+            RouteResponses=plans,
+        )
+        if not envelope.service_id:
+            return None, [answer]
+        # as the original has it: to the service that has asked
+        return None, [Send(answer, unicast(envelope.entity_id, envelope.service_id))]
+
+    def _plans(self, request: Any) -> list[Any]:
+        desk, mission = self._contexts.for_routes(request.OperatingRegion, request.VehicleID)
+        plans: list[Any] = []
+        ways: list[Way] = []
+        for constraint in request.RouteRequests:
+            cruise_m = mission.vehicle(request.VehicleID).position.alt_m
+            ways.append(_way(desk, constraint, cruise_m))
+        routes = desk.routes_of(ways)
+        vehicle = [v.id for v in mission.vehicles].index(request.VehicleID)
+        prepare = getattr(routes, "prepare", None)  # all at once, where that is faster
+        if prepare is not None and request.IsCostOnlyRequest:
+            prepare(vehicle, [(k, k) for k in range(len(ways))])
+        for k, constraint in enumerate(request.RouteRequests):
+            cost = routes.travel_ms(vehicle, k, k)
+            if cost is None:
+                reason = routes.route(vehicle, k, k).reason
+                plans.append(_refused(constraint.RouteID, (reason,)))
+                continue
+            plan = lmcp.new("RoutePlan", RouteID=constraint.RouteID, RouteCost=cost)
+            if not request.IsCostOnlyRequest:
+                speed = mission.vehicle(request.VehicleID).speed_m_s
+                points = routes.route(vehicle, k, k).points
+                plan.Waypoints = desk.waypoints(points, 1, speed, ())
+            plans.append(plan)
+        return plans
+
+
+def _way(desk: RequestDesk, constraint: Any, cruise_m: float) -> Way:
+    """Where a heading is not asked for, it is that of the straight way.
+
+    An altitude of 0 says nothing, as the original's tasks have it: the start's holds, or cruise_m.
+    """
+    where = f"route {constraint.RouteID}"
+    start = desk.pose(constraint.StartLocation, constraint.StartHeading, where, "StartLocation")
+    end = desk.pose(constraint.EndLocation, constraint.EndHeading, where, "EndLocation")
+    if start.alt_m == 0:
+        start = start._replace(alt_m=cruise_m)
+    if end.alt_m == 0:
+        end = end._replace(alt_m=start.alt_m)
+    straight = atan2(end.east_m - start.east_m, end.north_m - start.north_m)
+    if not constraint.UseStartHeading:
+        start = start._replace(heading_rad=straight)
+    if not constraint.UseEndHeading:
+        end = end._replace(heading_rad=straight)
+    return Way(start, end)
+
+
+def _refused(route: int, reasons: Iterable[str]) -> Any:
+    why = [lmcp.new("KeyValuePair", Key="reason", Value=text) for text in reasons]
+    return lmcp.new("RoutePlan", RouteID=route, RouteCost=-1, RouteError=why)

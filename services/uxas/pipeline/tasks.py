@@ -1,0 +1,266 @@
+"""A task's service: the nine states of `core.contracts.tasks`, driven by messages.
+
+UniqueAutomationRequest -> TaskPlanOptions; TaskImplementationRequest -> RoutePlanRequest ->
+RoutePlanResponse -> TaskImplementationResponse; vehicles' states -> TaskActive, TaskComplete.
+Footprints and ways on the task are computed here from the configurations, so the states that wait
+for them are passed at once. Options and waypoints are those of `services.planning`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.core.contracts.tasks import Task as Kernel
+from cratous.core.contracts.tasks import task_step
+from cratous.services.bus import Envelope
+from cratous.services.planning.desk import Inputs, status
+from cratous.services.planning.stages import hold_of
+from cratous.services.planning.task_service import NAMES, TaskService
+from cratous.services.uxas.pipeline.contexts import UNIQUE, Contexts, RequestDesk, reasons_of
+from cratous.spec.errors import BadInput, CratousError, NoPlan
+from cratous.spec.mission import Task, TaskKind
+
+TASKS = {
+    "afrl.cmasi.LineSearchTask": TaskKind.LINE_SEARCH,
+    "afrl.cmasi.PointSearchTask": TaskKind.POINT_SEARCH,
+    "afrl.cmasi.AreaSearchTask": TaskKind.AREA_SEARCH,
+    "afrl.cmasi.MustFlyTask": TaskKind.MUST_FLY,
+    "afrl.cmasi.LoiterTask": TaskKind.LOITER,
+    "afrl.impact.ImpactLineSearchTask": TaskKind.LINE_SEARCH,
+    "afrl.impact.ImpactPointSearchTask": TaskKind.POINT_SEARCH,
+    "afrl.impact.AngledAreaSearchTask": TaskKind.AREA_SEARCH,
+    "afrl.impact.PatternSearchTask": TaskKind.PATTERN_SEARCH,
+}
+ROUTES_FROM = 2**60
+"""Ids of a task's own route requests: beyond the blocks that the aggregator gives out."""
+
+INITIALISED, REQUESTED, SENSORS_KNOWN, ROUTES_KNOWN, CHOSEN, FINAL_KNOWN = 1, 2, 3, 4, 5, 6
+LISTED, UNLISTED, ENDED, WITHDRAWN, PROCEED = 7, 8, 9, 10, 11
+ANNOUNCE, ASK_SENSORS, ASK_ROUTES, PUBLISH_OPTIONS = 1, 2, 3, 4
+ASK_FINAL, PUBLISH_PLAN, STEER, COMPLETE, STALE = 5, 6, 7, 8, 9
+ACTIVE = 7
+_EVENTS = {
+    "uxas.messages.task.TaskImplementationRequest": CHOSEN,
+    "uxas.messages.route.RoutePlanResponse": FINAL_KNOWN,
+}
+
+
+class State(NamedTuple):
+    """The kernel's state; the implementation request in work; the vehicle that the task is for."""
+
+    task: Kernel = Kernel(0, 0, 0)
+    chosen: Any = None
+    vehicle: int = 0
+
+
+class MessageTask(TaskService):
+    """One task; it lives until it is killed."""
+
+    subscribes: tuple[str, ...] = (
+        UNIQUE,
+        "uxas.messages.task.TaskImplementationRequest",
+        "uxas.messages.route.RoutePlanResponse",
+        "uxas.messages.task.UniqueAutomationResponse",
+        "afrl.cmasi.AutomationResponse",
+        "afrl.cmasi.ServiceStatus",
+        "afrl.cmasi.EntityState",
+    )
+
+    def __init__(self, contexts: Contexts, task: Any, kind: TaskKind) -> None:
+        """task: the LMCP task that it serves."""
+        self._contexts, self._body = contexts, task
+        self._task_id = task.TaskID
+        self._request = 0
+        self.name = f"{NAMES[kind]}[{task.TaskID}]"
+
+    # what the computing of `services.planning` asks for: the desk, and the task in its mission
+
+    @property
+    def _desk(self) -> RequestDesk:  # type: ignore[override]
+        return self._contexts.of(self._request).desk
+
+    @property
+    def _inputs(self) -> Inputs:
+        return self._contexts.of(self._request).inputs
+
+    @property
+    def _task(self) -> Task:  # type: ignore[override]
+        for task in self._inputs.mission.tasks:
+            if task.id == self._task_id:
+                return task
+        raise BadInput(
+            "the request does not have this task done",
+            item="TaskID",
+            expected=", ".join(map(str, self._inputs.wanted)),
+            got=str(self._task_id),
+        )
+
+    def start(self) -> State:  # type: ignore[override]
+        return State()
+
+    def begin(self, state: State) -> tuple[State, Iterable[Any]]:
+        """The task needs nothing to initialise itself: it is there."""
+        return self._advance(state, INITIALISED, 0, None)
+
+    def handle(  # type: ignore[override]
+        self, state: State, envelope: Envelope, now_ms: int
+    ) -> tuple[State, Iterable[Any]]:
+        body, topic = envelope.body, envelope.topic
+        if topic == UNIQUE:
+            if self._task_id not in body.OriginalRequest.TaskList:
+                return state, ()
+            return self._advance(state, REQUESTED, body.RequestID, body)
+        if topic in _EVENTS:
+            return self._reply(state, _EVENTS[topic], body)
+        if topic == "uxas.messages.task.UniqueAutomationResponse":
+            return self._advance(state, ENDED, body.ResponseID, body)
+        if topic == "afrl.cmasi.ServiceStatus":
+            facts = {pair.Key: pair.Value for pair in body.Info}
+            number = facts.get("RequestID", "")
+            if body.StatusType.name != "Error" or not number.isdecimal():
+                return state, ()
+            return self._advance(state, ENDED, int(number), body)
+        if topic == "afrl.cmasi.AutomationResponse":
+            if self._withdrawn(state, body):
+                return self._advance(state, WITHDRAWN, 0, body)
+            return state, ()
+        if not hasattr(body, "AssociatedTasks"):
+            return state, ()
+        return self._flown(state, body)
+
+    def _flown(self, state: State, body: Any) -> tuple[State, Iterable[Any]]:
+        """A vehicle says which tasks it flies."""
+        if state.vehicle != body.ID:
+            return state, ()
+        event = LISTED if self._task_id in body.AssociatedTasks else UNLISTED
+        return self._advance(state, event, 0, body)
+
+    def _withdrawn(self, state: State, response: Any) -> bool:
+        """A new plan for the vehicle that does not have this task."""
+        for command in response.MissionCommandList:
+            if command.VehicleID == state.vehicle:
+                flown = {t for w in command.WaypointList for t in w.AssociatedTasks}
+                return self._task_id not in flown
+        return False
+
+    def _reply(self, state: State, event: int, body: Any) -> tuple[State, Iterable[Any]]:
+        """The choice of an option, or final routes, for this task."""
+        if event == CHOSEN:
+            if body.TaskID != self._task_id:
+                return state, ()
+            return self._advance(state, event, body.CorrespondingAutomationRequestID, body)
+        chosen = state.chosen
+        if chosen is None or body.AssociatedTaskID != self._task_id:
+            return state, ()
+        if (body.VehicleID, body.ResponseID) != (chosen.VehicleID, _route_id(chosen)):
+            return state, ()
+        return self._advance(state, event, chosen.CorrespondingAutomationRequestID, body)
+
+    def _advance(
+        self, state: State, event: int, request: int, body: Any
+    ) -> tuple[State, Iterable[Any]]:
+        """Tell the kernel what happened and do what it answers, until it waits for something."""
+        out: list[Any] = []
+        while event:
+            task, act = task_step(state.task, event, request)
+            state = state._replace(task=task)
+            self._request = task.request
+            try:
+                state, event = self._do(state, act, body, out)
+            except CratousError as error:
+                facts = [("reason", text) for text in reasons_of(error)]
+                out.append(status(task.request, "Error", facts))
+                event = WITHDRAWN if act == PUBLISH_PLAN else ENDED
+            request = state.task.request
+        return state, out
+
+    def _do(self, state: State, act: int, body: Any, out: list[Any]) -> tuple[State, int]:
+        """One act of the kernel's; what happens at once because of it, 0 for nothing."""
+        if act == ANNOUNCE:
+            out.append(lmcp.new("TaskInitialized", TaskID=self._task_id))
+            return state, PROCEED
+        if act == ASK_SENSORS:
+            return state._replace(chosen=None, vehicle=0), SENSORS_KNOWN
+        if act == ASK_ROUTES:
+            return state, ROUTES_KNOWN
+        if act == PUBLISH_OPTIONS:
+            out.append(self._offer(self._request))
+            self._contexts.of(self._request).offered.add(self._task_id)
+        elif act == ASK_FINAL:
+            region = self._contexts.of(self._request).region
+            asked = self._ask_route(self._known(body))
+            out.append(asked.copy(RequestID=_route_id(body), OperatingRegion=region))
+            return state._replace(chosen=body, vehicle=body.VehicleID), 0
+        elif act == PUBLISH_PLAN:
+            out.append(self._plan(state.chosen, body))
+        elif act == STEER:
+            out.append(
+                lmcp.new(
+                    "TaskActive",
+                    TaskID=self._task_id,
+                    EntityID=body.ID,
+                    TimeTaskActivated=body.Time,
+                )
+            )
+        elif act == COMPLETE:
+            out.append(self._ended(state, body))
+            return state._replace(chosen=None, vehicle=0), PROCEED
+        return state, 0
+
+    def _known(self, request: Any) -> Any:
+        """The request, if it names an option that this task has."""
+        inputs = self._inputs
+        if (request.TaskID, request.OptionID) not in inputs.index:
+            known = [option.option_id for option in inputs.options_of(self._task_id)]
+            raise BadInput(
+                f"task {self._task_id} has no such option",
+                item="TaskImplementationRequest.OptionID",
+                expected=", ".join(map(str, known)) or "none",
+                got=str(request.OptionID),
+            )
+        return request
+
+    def _plan(self, request: Any, response: Any) -> Any:
+        plan = response.RouteResponses[0] if response.RouteResponses else None
+        if plan is None or plan.RouteCost < 0 or not plan.Waypoints:
+            why = [pair.Value for pair in plan.RouteError] if plan else ["no route came"]
+            raise NoPlan(
+                tuple(
+                    f"vehicle {request.VehicleID} has no way to task {self._task_id}: {text}"
+                    for text in why or ["the planner does not say why"]
+                )
+            )
+        option = self._inputs.options[self._inputs.index[request.TaskID, request.OptionID]]
+        wait = max(0, request.TimeThreshold - request.StartTime - plan.RouteCost)
+        if wait > 0 and hold_of(option, wait, self._inputs.zones) is None:
+            raise NoPlan(
+                (
+                    f"vehicle {request.VehicleID} has to wait {wait / 1000:.3f} s before task "
+                    f"{self._task_id}, and no hold circle there obeys the zones",
+                )
+            )
+        return self._implement(request, response)
+
+    def _ended(self, state: State, body: Any) -> Any:
+        """The task is over: complete if a vehicle flew it and went on, else it ends undone."""
+        if hasattr(body, "AssociatedTasks"):
+            return lmcp.new(
+                "TaskComplete",
+                TaskID=self._task_id,
+                EntitiesInvolved=[state.vehicle],
+                TimeTaskCompleted=body.Time,
+            )
+        text = f"task {self._task_id} ends undone: its plan was withdrawn or overridden"
+        return status(0, "Warning", [("TaskID", str(self._task_id)), ("reason", text)])
+
+    def stop(self, state: State) -> None:
+        """The task is no more, unless another has taken its place already."""
+        known = self._contexts.world.task(self._task_id)
+        if known is not None and known.body == self._body:
+            self._contexts.world.forget("task", self._task_id)
+
+
+def _route_id(implementation: Any) -> int:
+    return ROUTES_FROM + int(implementation.RequestID)

@@ -1,0 +1,225 @@
+"""AutomationRequestValidatorService: the line of requests, driven by the proved `line_step`.
+
+Every request gets a ticket when it comes. When its turn comes it is held against what is known
+(`validity`): a valid one is published as UniqueAutomationRequest, one that waits only for its tasks
+to initialise themselves waits, any other is answered with the reasons. One is in the pipeline at a
+time; each is answered once, in order, by its response, by an error, or because its time ran out.
+RequestIDs are tickets plus an offset, so that no id comes twice in a process.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.core.contracts import requests
+from cratous.core.contracts.requests import Line, line_step
+from cratous.services.bus import Envelope, Wake
+from cratous.services.frames import compass
+from cratous.services.planning.desk import status
+from cratous.services.uxas.frame import Host
+from cratous.services.uxas.pipeline.answers import Asked, answer, asked_of, refusal
+from cratous.services.uxas.pipeline.contexts import Context, Contexts, reasons_of
+from cratous.services.uxas.pipeline.validity import things_of, verdict
+
+NAME = "AutomationRequestValidatorService"
+RESPONSE = "uxas.messages.task.UniqueAutomationResponse"
+STATUS = "afrl.cmasi.ServiceStatus"
+INITIALISED = "uxas.messages.task.TaskInitialized"
+CMASI_TASK, REMOVE = "afrl.cmasi.Task", "afrl.cmasi.RemoveTasks"
+REQUESTS = (
+    "afrl.cmasi.AutomationRequest",
+    "afrl.impact.ImpactAutomationRequest",
+    "uxas.messages.task.TaskAutomationRequest",
+)
+
+
+class Desk(NamedTuple):
+    """line: the kernel's; asked: requests by ticket; published: the one whose turn it is is out;
+    initialised: tasks that have said so; offset: RequestID of ticket 0; notes: for its answer."""
+
+    line: Line
+    asked: dict[int, Asked]
+    published: bool
+    initialised: frozenset[int]
+    offset: int
+    notes: tuple[str, ...] = ()
+
+    @property
+    def work(self) -> int:
+        """RequestID of the request in the pipeline, 0 for none."""
+        return self.offset + self.line.answered if self.line.busy and self.published else 0
+
+
+Step = tuple[Desk, Iterable[Any]]
+
+
+class AutomationRequestValidatorService:
+    """Automation requests of three kinds -> UniqueAutomationRequest -> their responses."""
+
+    name = NAME
+    subscribes: tuple[str, ...] = (
+        *REQUESTS,
+        RESPONSE,
+        STATUS,
+        INITIALISED,
+        CMASI_TASK,
+        REMOVE,
+        "afrl.cmasi.EntityState",
+        "afrl.cmasi.EntityConfiguration",
+        "afrl.cmasi.AbstractZone",
+        "afrl.cmasi.OperatingRegion",
+    )
+
+    def __init__(self, host: Host, contexts: Contexts, limit_ms: int) -> None:
+        self._host, self._contexts, self._limit_ms = host, contexts, limit_ms
+
+    def start(self) -> Desk:
+        offset = self._host.shared.get("requests", 0) + 1
+        return Desk(Line(0, 0, False, 0), {}, False, frozenset(), offset)
+
+    def handle(self, state: Desk, envelope: Envelope, now_ms: int) -> Step:
+        body, topic = envelope.body, envelope.topic
+        out: list[Any] = []
+        if topic in REQUESTS:
+            state = self._arrive(state, asked_of(topic, body, envelope.seq), out, now_ms)
+        elif topic == RESPONSE:
+            state = self._respond(state, body, out, now_ms)
+        elif topic == STATUS:
+            state = self._fail(state, body, out, now_ms)
+        elif topic == INITIALISED:
+            state = state._replace(initialised=state.initialised | {body.TaskID})
+        elif topic == REMOVE:
+            state = state._replace(initialised=state.initialised - set(body.TaskList))
+        elif hasattr(body, "TaskID"):  # another task of this id, which has to initialise itself
+            state = state._replace(initialised=state.initialised - {body.TaskID})
+        return self._pump(state, out, now_ms), out
+
+    def wake(self, state: Desk, key: int, now_ms: int) -> Step:
+        """A request's time may be over; whether it is, the kernel says."""
+        out: list[Any] = []
+        return self._pump(state, out, now_ms), out
+
+    def _step(self, state: Desk, event: int, ticket: int, now_ms: int) -> tuple[Desk, int, int]:
+        line, act, about = line_step(state.line, event, ticket, now_ms, self._limit_ms)
+        return state._replace(line=line), act, about
+
+    def _arrive(self, state: Desk, asked: Asked, out: list[Any], now_ms: int) -> Desk:
+        state, act, ticket = self._step(state, requests.ARRIVAL, 0, now_ms)
+        if act != requests.TAKE:
+            out += refusal(asked, 0, ["no more requests are taken"])
+            return state
+        self._host.shared["requests"] = state.offset + ticket
+        return state._replace(asked={**state.asked, ticket: asked})
+
+    def _respond(self, state: Desk, body: Any, out: list[Any], now_ms: int) -> Desk:
+        # before the request is out, no response can be its own
+        ticket = body.ResponseID - state.offset if state.published else -1
+        state, act, ticket = self._step(state, requests.ANSWER, ticket, now_ms)
+        if act != requests.PASS_ON:
+            text = "a response that nobody waits for (late, or of another request)"
+            out.append(status(body.ResponseID, "Warning", [("reason", text)]))
+            return state
+        out.append(answer(state.asked[ticket], body, state.notes))
+        return _done(state, ticket)
+
+    def _fail(self, state: Desk, body: Any, out: list[Any], now_ms: int) -> Desk:
+        """An error ends the request that it names; without a name, the one in the pipeline."""
+        if body.StatusType.name != "Error" or not state.work:
+            return state
+        facts = {pair.Key: pair.Value for pair in body.Info}
+        if facts.get("RequestID", str(state.work)) != str(state.work):
+            return state
+        why = [p.Value for p in body.Info if p.Key == "reason"]
+        why = why or [f"{p.Key}: {p.Value}" for p in body.Info] or ["a service reports an error"]
+        return self._refuse(state, why, out, now_ms, said=True)
+
+    def _refuse(
+        self, state: Desk, why: Iterable[str], out: list[Any], now_ms: int, said: bool = False
+    ) -> Desk:
+        """Answer the request whose turn it is with an error; said: the status is out already."""
+        number = state.offset + state.line.answered
+        state, act, ticket = self._step(state, requests.ANSWER, state.line.answered, now_ms)
+        if act == requests.PASS_ON:
+            out += refusal(state.asked[ticket], number, list(why))[1 if said else 0 :]
+        return _done(state, ticket)
+
+    def _pump(self, state: Desk, out: list[Any], now_ms: int) -> Desk:
+        """Do what is due until nothing is."""
+        while True:
+            if state.line.busy and not state.published:
+                ticket = state.line.answered
+                state = self._begin(state, out, now_ms)
+                if ticket != state.line.answered:
+                    continue  # it was refused
+            state, act, ticket = self._step(state, requests.PUMP, 0, now_ms)
+            if act == requests.GIVE_UP:
+                why = [f"no response within MaxResponseTime_ms = {self._limit_ms}"]
+                if not state.published:
+                    why = [*self._verdict(state, state.asked[ticket]).reasons, *why]
+                out += refusal(state.asked[ticket], state.offset + ticket, why)
+                state = _done(state, ticket)
+            elif act == requests.PUBLISH:
+                out.append(Wake(self._limit_ms, ticket))
+            else:
+                return state
+
+    def _verdict(self, state: Desk, asked: Asked) -> Any:
+        given = {planning.EntityID for planning in asked.states}
+        things = things_of(asked.request, given, self._contexts.world, state.initialised)
+        return verdict(things)
+
+    def _begin(self, state: Desk, out: list[Any], now_ms: int) -> Desk:
+        """Publish the request whose turn it is, if it is valid; refuse it if it never will be."""
+        ticket = state.line.answered
+        asked, number = state.asked[ticket], state.offset + ticket
+        if asked.problem:
+            return self._refuse(state, [asked.problem], out, now_ms)
+        found = self._verdict(state, asked)
+        if found.waits:
+            return state
+        if not found.valid:
+            return self._refuse(state, found.reasons, out, now_ms)
+        unique = lmcp.new(
+            "UniqueAutomationRequest",
+            RequestID=number,
+            OriginalRequest=asked.request,
+            SandBoxRequest=asked.sandbox,
+            PlanningStates=asked.states,
+        )
+        where = f"{type(asked.body).__name__} (message {asked.seq})"
+        context = self._contexts.open(unique, where)
+        if not isinstance(context, Context):
+            return self._refuse(state, reasons_of(context), out, now_ms)
+        out.append(self._complete(unique, context))
+        left = set(asked.request.TaskList) - set(context.inputs.wanted)
+        notes: tuple[str, ...] = ()
+        if left:
+            names = ", ".join(map(str, sorted(left)))
+            notes = (f"tasks not named in TaskRelationships, so not done: {names}",)
+            out.append(status(number, "Warning", [("reason", notes[0])]))
+        return state._replace(published=True, notes=notes)
+
+    def _complete(self, unique: Any, context: Context) -> Any:
+        """The request with its vehicles, the tasks to be done, and where each vehicle plans from."""
+        inputs = context.inputs
+        vehicles = [vehicle.id for vehicle in inputs.mission.vehicles]
+        request = unique.OriginalRequest.copy(EntityList=vehicles, TaskList=list(inputs.wanted))
+        states = [
+            lmcp.new(
+                "PlanningState",
+                EntityID=vehicle,
+                PlanningPosition=context.desk.location(inputs.starts[vehicle]),
+                PlanningHeading=compass(inputs.starts[vehicle].heading_rad),
+            )
+            for vehicle in vehicles
+        ]
+        made = unique.copy(OriginalRequest=request, PlanningStates=states)
+        self._contexts.put(made, inputs, context.desk)
+        return made
+
+
+def _done(state: Desk, ticket: int) -> Desk:
+    left = {k: v for k, v in state.asked.items() if k != ticket}
+    return state._replace(asked=left, published=False, notes=())

@@ -1,0 +1,87 @@
+"""What an automation request names, held against what is known: the kernels of `core.contracts.validity`.
+
+The service only looks up; whether a thing is as it must be, and whether the whole request can be
+planned, the proved kernels say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any, NamedTuple
+
+from cratous.core.contracts.validity import NOT_READY, item_fault, request_valid
+from cratous.services.uxas.world import World
+
+VEHICLE, TASK, REGION, ZONE = 1, 2, 3, 4
+_NAMES = {VEHICLE: "vehicle", TASK: "task", REGION: "operating region", ZONE: "zone"}
+
+
+class Thing(NamedTuple):
+    """One thing that a request names, as the kernels take it, and its id."""
+
+    kind: int
+    known: bool
+    ready: bool
+    given: bool
+    number: int
+
+    @property
+    def fault(self) -> int:
+        """What is wrong with it: 0 nothing, 1 unknown, 2 not ready."""
+        return item_fault(self.kind, self.known, self.ready, self.given)
+
+    def __str__(self) -> str:
+        name = f"{_NAMES[self.kind]} {self.number}"
+        if self.fault != NOT_READY:
+            return f"{name} does not exist"
+        if self.kind == VEHICLE:
+            return f"the state of {name} is not known"
+        return f"{name} has not initialised itself"
+
+
+class Verdict(NamedTuple):
+    """valid: it can be planned; waits: only tasks that have not initialised themselves are wrong."""
+
+    valid: bool
+    waits: bool
+    reasons: tuple[str, ...]
+
+
+def things_of(
+    request: Any, given: Collection[int], world: World, initialised: Collection[int]
+) -> list[Thing]:
+    """Everything that an AutomationRequest names; no EntityList means all vehicles.
+
+    given: vehicles whose state comes with the request; initialised: tasks that have said so.
+    """
+    vehicles = list(request.EntityList) or [body.ID for body in world.of("configuration")]
+    made = [
+        Thing(VEHICLE, world.has("configuration", v), world.has("state", v), v in given, v)
+        for v in vehicles
+    ]
+    made += [
+        Thing(TASK, world.has("task", t), t in initialised, False, t) for t in request.TaskList
+    ]
+    number = request.OperatingRegion
+    if number:
+        region = world.get("region", number)
+        made.append(Thing(REGION, region is not None, True, False, number))
+        if region is not None:
+            zones = [*region.KeepInAreas, *region.KeepOutAreas]
+            made += [Thing(ZONE, world.has("zone", z), True, False, z) for z in zones]
+    return made
+
+
+def verdict(things: list[Thing]) -> Verdict:
+    """Whether the request can be planned, and why not."""
+    if request_valid([thing[:4] for thing in things]):
+        return Verdict(True, False, ())
+    wrong = [thing for thing in things if thing.fault]
+    reasons = [str(thing) for thing in wrong]
+    kinds = {thing.kind for thing in things}
+    if VEHICLE not in kinds:
+        reasons.append("there is no vehicle")
+    if TASK not in kinds:
+        reasons.append("the request names no task")
+    waits = {VEHICLE, TASK} <= kinds and all(t.kind == TASK and t.fault == NOT_READY for t in wrong)
+    return Verdict(False, waits, tuple(reasons))

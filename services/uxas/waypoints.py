@@ -1,0 +1,229 @@
+"""WaypointPlanManagerService and SimpleWaypointPlanManagerService: plans for one vehicle.
+
+The manager serves a long path in segments; which positions of the path come next, the proved kernels
+of `core.contracts.segments` say. A path that leads back into itself goes on for ever.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.core.contracts.segments import Span, first_span, span_after, waypoint_after
+from cratous.services.bus import Envelope
+
+RESPONSE, COMMAND = "afrl.cmasi.AutomationResponse", "afrl.cmasi.MissionCommand"
+INCREMENT, STATE = "uxas.messages.uxnative.IncrementWaypoint", "afrl.cmasi.AirVehicleState"
+FAR = 2**60
+"""The last position of a path without end."""
+
+
+class Serving(NamedTuple):
+    """How a path is served; to_serve, overlap: waypoints in a segment, and in common with the next.
+
+    radius_m: of loiters at the end of the mission, or of each segment; turn_type: of all waypoints.
+    """
+
+    to_serve: int = 100_000
+    overlap: int = 3
+    radius_m: float = 200.0
+    loiter_segments: bool = False
+    loiter_mission: bool = False
+    back_to_first_task: bool = False
+    stop_at_end: bool = False
+    turn_type: str = "TurnShort"
+
+
+class Path(NamedTuple):
+    """Waypoints in the order of flight; where the last one leads (its own index: it ends there)."""
+
+    command: Any
+    waypoints: tuple[Any, ...]
+    back_to: int
+
+    @property
+    def end(self) -> int:
+        """The last position."""
+        return FAR if self.cyclic else len(self.waypoints) - 1
+
+    @property
+    def cyclic(self) -> bool:
+        """True if it leads back into itself."""
+        return self.back_to != len(self.waypoints) - 1
+
+    def indices(self, span: Span) -> list[int]:
+        """The waypoints at the positions of a span."""
+        found, index = [], 0
+        for _ in range(self._same(span.first)):
+            index = waypoint_after(index, len(self.waypoints), self.back_to)
+        for _ in range(span.first, span.last + 1):
+            found.append(index)
+            index = waypoint_after(index, len(self.waypoints), self.back_to)
+        return found
+
+    def _same(self, position: int) -> int:
+        """A position in the first round that has the same waypoint."""
+        count = len(self.waypoints)
+        if not self.cyclic or position < count:
+            return position
+        return self.back_to + (position - self.back_to) % (count - self.back_to)
+
+
+def path_of(command: Any, serving: Serving) -> Path:
+    """The path of a MissionCommand: from its first waypoint, each to the next that it names."""
+    known = {w.Number: w for w in command.WaypointList}
+    order: dict[int, int] = {}
+    number = command.FirstWaypoint if command.FirstWaypoint in known else next(iter(known))
+    while number in known and number not in order:
+        order[number] = len(order)
+        number = known[number].NextWaypoint
+    points = [known[n].copy(TurnType=serving.turn_type) for n in order]
+    back_to = order.get(number, len(points) - 1)
+    if serving.back_to_first_task and back_to == len(points) - 1:
+        tasked = (k for k, w in enumerate(points) if w.AssociatedTasks)
+        back_to = next(tasked, back_to)
+        points[-1] = points[-1].copy(NextWaypoint=points[back_to].Number)
+    if back_to == len(points) - 1:
+        last = points[-1].copy(NextWaypoint=points[-1].Number)
+        if serving.stop_at_end:
+            last = last.copy(Speed=0.0)
+        if serving.loiter_mission:
+            last = _loitering(last, serving.radius_m)
+        points[-1] = last
+    return Path(command, tuple(points), back_to)
+
+
+def _loitering(waypoint: Any, radius_m: float) -> Any:
+    place = {k: getattr(waypoint, k) for k in ("Latitude", "Longitude", "Altitude", "AltitudeType")}
+    action = lmcp.new(
+        "LoiterAction",
+        LoiterType="Circular",
+        Radius=radius_m,
+        Duration=-1,
+        Airspeed=waypoint.Speed,
+        Location=lmcp.new("Location3D", **place),
+    )
+    return waypoint.copy(VehicleActionList=[*waypoint.VehicleActionList, action])
+
+
+class Served(NamedTuple):
+    """The path in work, the segment that the vehicle has, its waypoint, and the last command id."""
+
+    path: Path | None = None
+    span: Span = Span(0, 0)
+    waypoint: int = 0
+    commands: int = 0
+
+
+Step = tuple[Served, Iterable[Any]]
+
+
+class WaypointPlanManagerService:
+    """AutomationResponse or MissionCommand -> MissionCommands of a few waypoints, one by one."""
+
+    subscribes: tuple[str, ...] = (RESPONSE, COMMAND, INCREMENT, STATE)
+
+    def __init__(self, name: str, vehicle: int, serving: Serving) -> None:
+        self.name, self._vehicle, self._serving = name, vehicle, serving
+
+    def start(self) -> Served:
+        return Served()
+
+    def handle(self, state: Served, envelope: Envelope, now_ms: int) -> Step:
+        body, topic = envelope.body, envelope.topic
+        if topic == RESPONSE:
+            for command in body.MissionCommandList:
+                if command.VehicleID == self._vehicle:
+                    return self._begin(state, command)
+            return state, ()
+        if topic == STATE:
+            return self._flown(state, body) if self._vehicle == body.ID else (state, ())
+        if body.VehicleID != self._vehicle:
+            return state, ()
+        if topic == COMMAND:
+            return self._begin(state, body)
+        return self._increment(state)
+
+    def _begin(self, state: Served, command: Any) -> Step:
+        if not command.WaypointList:
+            return state, ()
+        path = path_of(command, self._serving)
+        end = len(path.waypoints) - 1 if self._all(path) else path.end
+        span = first_span(end, self._length(path))
+        return self._serve(Served(path, span, 0, state.commands), path.waypoints[0].Number)
+
+    def _length(self, path: Path) -> int:
+        """Positions in a segment: of a round no more than there are waypoints in it."""
+        if not path.cyclic or self._all(path):
+            return self._serving.to_serve
+        return min(self._serving.to_serve, len(path.waypoints) - path.back_to)
+
+    def _next(self, state: Served, path: Path) -> Span:
+        length = self._length(path)
+        return span_after(state.span, path.end, length, min(self._serving.overlap, length - 1))
+
+    def _serve(self, state: Served, first: int) -> Step:
+        """The present segment as a command that begins with waypoint number `first`."""
+        path = state.path
+        assert path is not None
+        points = [path.waypoints[k] for k in path.indices(state.span)]
+        if state.span.last != path.end and not self._all(path):
+            last = points[-1].copy(NextWaypoint=points[-1].Number)
+            if self._serving.loiter_segments:
+                last = _loitering(last, self._serving.radius_m)
+            points[-1] = last
+        command = path.command.copy(
+            CommandID=state.commands + 1, WaypointList=points, FirstWaypoint=first
+        )
+        return state._replace(commands=state.commands + 1, waypoint=first), [command]
+
+    def _all(self, path: Path) -> bool:
+        """True if one segment holds a whole round, which then leads back by itself."""
+        return path.cyclic and self._serving.to_serve >= len(path.waypoints)
+
+    def _flown(self, state: Served, body: Any) -> Step:
+        """The next segment is due when the vehicle has come to what the two have in common."""
+        path, number = state.path, body.CurrentWaypoint
+        if path is None or number == state.waypoint:
+            return state, ()
+        here = [path.waypoints[k].Number for k in path.indices(state.span)]
+        if number not in here:
+            return state, ()
+        state = state._replace(waypoint=number)
+        if self._all(path):
+            return state, ()
+        following = self._next(state, path)
+        if following == state.span or state.span.first + here.index(number) < following.first:
+            return state, ()
+        return self._serve(state._replace(span=following), number)
+
+    def _increment(self, state: Served) -> Step:
+        """Send the vehicle to the waypoint after the one that it makes for."""
+        path = state.path
+        if path is None:
+            return state, ()
+        numbers = [w.Number for w in path.waypoints]
+        index = waypoint_after(numbers.index(state.waypoint), len(numbers), path.back_to)
+        here = [numbers[k] for k in path.indices(state.span)]
+        if numbers[index] not in here:
+            state = state._replace(span=self._next(state, path))
+        return self._serve(state, numbers[index])
+
+
+class SimpleWaypointPlanManagerService:
+    """AutomationResponse -> the MissionCommand of one vehicle, whole."""
+
+    subscribes: tuple[str, ...] = (RESPONSE,)
+
+    def __init__(self, name: str, vehicle: int) -> None:
+        self.name, self._vehicle = name, vehicle
+
+    def start(self) -> int:
+        return 0
+
+    def handle(self, state: int, envelope: Envelope, now_ms: int) -> tuple[int, Iterable[Any]]:
+        """state: commands so far."""
+        mine = [c for c in envelope.body.MissionCommandList if c.VehicleID == self._vehicle]
+        out = [command.copy(CommandID=state + k + 1) for k, command in enumerate(mine)]
+        return state + len(out), out

@@ -1,0 +1,393 @@
+"""Waypoint managers, sensors, regions, leash, batches, task tracking: each alone on a bus."""
+
+from __future__ import annotations
+
+from math import atan, degrees, radians, sin, tan
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from pipeline_tools import PIPELINE, Rig, loiter, place, vehicle
+from uxas_tools import process, write_cfg
+
+from cratous.bridge import lmcp
+from cratous.services.uxas.waypoints import Serving, WaypointPlanManagerService, path_of
+from cratous.spec.errors import BadInput
+
+MANAGER, SIMPLE = "WaypointPlanManagerService", "SimpleWaypointPlanManagerService"
+SENSORS, REGION = "SensorManagerService", "OperatingRegionStateService"
+
+
+def mission(count: int, back_to: int = 0, first: int = 1, vehicle_id: int = 1) -> Any:
+    """Waypoints 1 to count in a row, the last one leads to `back_to` (0: to itself)."""
+    points = [
+        lmcp.new(
+            "Waypoint",
+            Number=n,
+            NextWaypoint=n + 1 if n < count else back_to or n,
+            Speed=20.0,
+            Latitude=0.01 * n,
+            AssociatedTasks=[9] if n > 2 else [],
+        )
+        for n in range(1, count + 1)
+    ]
+    return lmcp.new(
+        "MissionCommand", VehicleID=vehicle_id, WaypointList=points, FirstWaypoint=first
+    )
+
+
+def response(*commands: Any) -> Any:
+    return lmcp.new("AutomationResponse", MissionCommandList=list(commands))
+
+
+def at(number: int, vehicle_id: int = 1) -> Any:
+    return lmcp.new("AirVehicleState", ID=vehicle_id, CurrentWaypoint=number)
+
+
+def numbers(command: Any) -> list[int]:
+    return [w.Number for w in command.WaypointList]
+
+
+def manager(tmp_path: Path, attributes: str = "") -> Rig:
+    return Rig(tmp_path, MANAGER, **{MANAGER: f'VehicleID="1" {attributes}'})
+
+
+@pytest.mark.shows(
+    MANAGER,
+    "AutomationResponse",
+    "MissionCommand",
+    "AirVehicleState",
+    "VehicleID",
+    "NumberWaypointsToServe",
+    "NumberWaypointsOverlap",
+)
+def test_a_long_path_is_served_in_segments_that_overlap(tmp_path: Path) -> None:
+    rig = manager(tmp_path, 'NumberWaypointsToServe="5" NumberWaypointsOverlap="2"')
+    rig.tell(response(mission(3, vehicle_id=2), mission(9)))
+    (first,) = rig.got("MissionCommand")
+    assert (numbers(first), first.FirstWaypoint, first.CommandID) == ([1, 2, 3, 4, 5], 1, 1)
+    assert first.WaypointList[-1].NextWaypoint == 5
+    rig.tell(at(2), at(3), at(4, 2))
+    assert len(rig.got("MissionCommand")) == 1
+    rig.tell(at(4), at(4))
+    second = rig.got("MissionCommand")[1]
+    assert (numbers(second), second.FirstWaypoint) == ([4, 5, 6, 7, 8], 4)
+    rig.tell(at(7), at(8), at(9))
+    third = rig.got("MissionCommand")[2]
+    assert (numbers(third), third.FirstWaypoint) == ([7, 8, 9], 7)
+    assert len(rig.got("MissionCommand")) == 3
+    rig.tell(mission(2))  # a command of another service's is a plan too
+    assert numbers(rig.got("MissionCommand")[4]) == [1, 2]
+
+
+def test_by_default_a_path_is_served_whole(tmp_path: Path) -> None:
+    rig = manager(tmp_path)
+    rig.tell(response(mission(40, first=3)))
+    (command,) = rig.got("MissionCommand")
+    assert (len(command.WaypointList), command.FirstWaypoint) == (38, 3)
+
+
+def test_a_cycle_goes_on_for_ever(tmp_path: Path) -> None:
+    rig = manager(tmp_path, 'NumberWaypointsToServe="3" NumberWaypointsOverlap="1"')
+    rig.tell(response(mission(6, back_to=3)))
+    flown = numbers(rig.got("MissionCommand")[0])
+    for _ in range(6):
+        rig.tell(at(flown[-1]))
+        command = rig.got("MissionCommand")[-1]
+        assert numbers(command)[0] == flown[-1] == command.FirstWaypoint
+        flown += numbers(command)[1:]
+    assert flown == [1, 2, 3, 4, 5, 6, 3, 4, 5, 6, 3, 4, 5, 6, 3]
+    whole = manager(tmp_path)
+    whole.tell(response(mission(6, back_to=3)))
+    (command,) = whole.got("MissionCommand")
+    assert command.WaypointList[-1].NextWaypoint == 3
+    whole.tell(at(6), at(3))
+    assert len(whole.got("MissionCommand")) == 1
+
+
+@pytest.mark.shows(MANAGER, "IncrementWaypoint")
+def test_the_next_waypoint_can_be_asked_for(tmp_path: Path) -> None:
+    rig = manager(tmp_path, 'NumberWaypointsToServe="3" NumberWaypointsOverlap="1"')
+    rig.tell(response(mission(5)), lmcp.new("IncrementWaypoint", VehicleID=7))
+    assert len(rig.got("MissionCommand")) == 1
+    for number in (2, 3, 4, 5, 5):
+        rig.tell(lmcp.new("IncrementWaypoint", VehicleID=1))
+        command = rig.got("MissionCommand")[-1]
+        assert command.FirstWaypoint == number
+        assert number in numbers(command)
+
+
+@pytest.mark.shows(
+    MANAGER,
+    "AddLoiterToEndOfSegments",
+    "AddLoiterToEndOfMission",
+    "DefaultLoiterRadius_m",
+    "SetLastWaypointSpeedTo0",
+    "TurnType",
+)
+def test_ends_of_segments_and_of_the_mission(tmp_path: Path) -> None:
+    rig = manager(
+        tmp_path,
+        'NumberWaypointsToServe="3" NumberWaypointsOverlap="1" AddLoiterToEndOfSegments="TRUE" '
+        'AddLoiterToEndOfMission="TRUE" DefaultLoiterRadius_m="150" TurnType="FlyOver" '
+        'SetLastWaypointSpeedTo0="TRUE"',
+    )
+    rig.tell(response(mission(5)))
+    rig.tell(at(3))
+    first, last = rig.got("MissionCommand")
+    assert {w.TurnType.name for w in first.WaypointList} == {"FlyOver"}
+    for command in (first, last):
+        assert [len(w.VehicleActionList) for w in command.WaypointList] == [0, 0, 1]
+        assert command.WaypointList[-1].VehicleActionList[0].Radius == 150.0
+    assert (first.WaypointList[-1].Speed, last.WaypointList[-1].Speed) == (20.0, 0.0)
+
+
+@pytest.mark.shows(MANAGER, "LoopBackToFirstTask")
+def test_a_mission_may_loop_back_to_its_first_task(tmp_path: Path) -> None:
+    rig = manager(tmp_path, 'LoopBackToFirstTask="TRUE"')
+    rig.tell(response(mission(5)))
+    assert rig.got("MissionCommand")[0].WaypointList[-1].NextWaypoint == 3
+
+
+def test_segments_that_do_not_go_on_are_refused(tmp_path: Path) -> None:
+    text = f'<Service Type="{MANAGER}" NumberWaypointsToServe="4" NumberWaypointsOverlap="4"/>'
+    with pytest.raises(BadInput, match="less than NumberWaypointsToServe = 4"):
+        process(write_cfg(tmp_path, text))
+
+
+@given(st.integers(1, 30), st.integers(0, 30), st.integers(2, 12), st.data())
+def test_segments_follow_the_path_without_a_gap(
+    count: int, back: int, serve: int, data: Any
+) -> None:
+    """Whatever a vehicle tells: positions are served in order, none is left out."""
+    overlap = data.draw(st.integers(1, serve - 1))
+    serving = Serving(to_serve=serve, overlap=overlap)
+    service = WaypointPlanManagerService("m", 1, serving)
+    command = mission(count, back_to=back if back <= count else 0)
+    path = path_of(command, serving)
+    from cratous.services.bus import Envelope
+
+    state, out = service._begin(service.start(), command)
+    for _ in range(data.draw(st.integers(0, 12))):
+        here = [path.waypoints[k].Number for k in path.indices(state.span)]
+        number = data.draw(st.sampled_from([*here, 999]))
+        before = state
+        state, out = service.handle(
+            state, Envelope(0, 0, "v", "afrl.cmasi.AirVehicleState", at(number)), 0
+        )
+        for made in out:
+            assert made.FirstWaypoint == number
+            assert number in numbers(made)
+            assert len(set(numbers(made))) == len(numbers(made))
+            assert before.span.first < state.span.first <= before.span.last < state.span.last
+
+
+@pytest.mark.shows(SIMPLE, "AutomationResponse", "MissionCommand", "VehicleID")
+def test_the_simple_manager_passes_a_vehicles_plan_on(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, SIMPLE, **{SIMPLE: 'VehicleID="2"'})
+    rig.tell(response(mission(3), mission(4, vehicle_id=2)))
+    (command,) = rig.got("MissionCommand")
+    assert (command.VehicleID, numbers(command), command.CommandID) == (2, [1, 2, 3, 4], 1)
+
+
+# --- sensors -------------------------------------------------------------------------------------
+
+
+def footprints(rig: Rig, **fields: Any) -> list[Any]:
+    asked = lmcp.new("FootprintRequest", FootprintRequestID=8, **{"VehicleID": 1, **fields})
+    rig.tell(lmcp.new("SensorFootprintRequests", RequestID=70, Footprints=[asked]))
+    answer = rig.got("SensorFootprintResponse")[-1]
+    assert answer.ResponseID == 70
+    return list(answer.Footprints)
+
+
+@pytest.mark.shows(
+    SENSORS, "SensorFootprintRequests", "SensorFootprintResponse", "EntityConfiguration"
+)
+def test_footprints_of_camera_and_gimbal(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, SENSORS)
+    rig.tell(vehicle(1)[0])
+    (down,) = footprints(rig)
+    half = tan(radians(25.0))
+    assert (down.FootprintResponseID, down.CameraID, down.GimbalID) == (8, 2, 1)
+    assert (down.GimbalElevation, down.AglAltitude, down.HorizontalFOV) == (-90.0, 300.0, 50.0)
+    assert down.WidthCenter == pytest.approx(600 * half)
+    assert down.HorizontalToCenter == pytest.approx(0.0, abs=1e-9)
+    # the image is twice as wide as high
+    assert down.HorizontalToLeadingEdge == pytest.approx(300 * half / 2)
+    assert down.HorizontalToTrailingEdge == pytest.approx(-300 * half / 2)
+    (steep,) = footprints(rig, AglAltitudes=[200.0], ElevationAngles=[-45.0])
+    assert steep.SlantRangeToCenter == pytest.approx(200 / sin(radians(45)))
+    tilt = degrees(atan(half / 2))
+    assert steep.HorizontalToLeadingEdge == pytest.approx(200 / tan(radians(45 - tilt)))
+    assert steep.HorizontalToTrailingEdge == pytest.approx(200 / tan(radians(45 + tilt)))
+    assert steep.AchievedGSD == pytest.approx(steep.WidthCenter / 1000)
+
+
+@pytest.mark.shows(SENSORS, "ElevationAngles")
+def test_elevations_in_radians_if_the_configuration_says_so(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, SENSORS, **{SENSORS: 'ElevationAngles="radian"'})
+    rig.tell(vehicle(1)[0])
+    (made,) = footprints(rig, ElevationAngles=[radians(-60.0)])
+    assert made.GimbalElevation == pytest.approx(-60.0)
+
+
+def test_the_view_is_as_wide_as_the_sample_distance_allows(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, SENSORS)
+    rig.tell(vehicle(1)[0])
+    fine, coarse, finest = footprints(rig, GroundSampleDistances=[0.1, 5.0, 0.001])
+    assert fine.AchievedGSD == pytest.approx(0.1, rel=1e-6)
+    assert coarse.HorizontalFOV == 50.0
+    assert finest.HorizontalFOV == 10.0  # as narrow as it goes; what is achieved says so
+    assert finest.AchievedGSD > 0.05
+    assert len(footprints(rig, AglAltitudes=[100.0, 200.0], ElevationAngles=[-90.0, -60.0])) == 4
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"VehicleID": 9}, "vehicle 9 has no configuration"),
+        ({"EligibleWavelengths": ["LWIR"]}, "no camera for LWIR"),
+        ({"ElevationAngles": [-10.0]}, "no ground in view"),
+        ({"ElevationAngles": [10.0]}, "no ground in view"),
+        ({"AglAltitudes": [-5.0]}, "no ground in view"),
+    ],
+)
+@pytest.mark.shows(SENSORS, "ServiceStatus")
+def test_what_sees_nothing_is_answered_and_named(
+    tmp_path: Path, fields: dict[str, Any], words: str
+) -> None:
+    rig = Rig(tmp_path, SENSORS)
+    rig.tell(vehicle(1)[0])
+    assert footprints(rig, **fields) == []
+    assert words in rig.reasons("Warning")[0]
+
+
+# --- regions, leash, batches, tracking -----------------------------------------------------------
+
+
+@pytest.mark.shows(REGION, "KeepInZone", "KeepOutZone", "RemoveZones", "OperatingRegion")
+def test_the_region_is_that_of_all_zones(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, REGION)
+    rig.tell(
+        lmcp.new("KeepInZone", ZoneID=3),
+        lmcp.new("KeepOutZone", ZoneID=5),
+        lmcp.new("KeepOutZone", ZoneID=4),
+        lmcp.new("KeepOutZone", ZoneID=4),
+        lmcp.new("RemoveZones", ZoneList=[5, 77]),
+    )
+    found = [(r.ID, r.KeepInAreas, r.KeepOutAreas) for r in rig.got("OperatingRegion")]
+    assert found == [(100, [3], []), (100, [3], [5]), (100, [3], [4, 5]), (100, [3], [4])]
+
+
+@pytest.mark.shows(
+    "LoiterLeash",
+    "SafeHeadingAction",
+    "RoutePlanRequest",
+    "RoutePlanResponse",
+    "VehicleActionCommand",
+    "EntityState",
+    "EntityConfiguration",
+    "VehicleID",
+    "LeadDistance",
+    "RadiusBuffer",
+)
+def test_a_vehicle_on_the_leash_loiters_at_the_end_of_a_safe_route(tmp_path: Path) -> None:
+    attributes = 'VehicleID="1" LeadDistance="2000" RadiusBuffer="50"'
+    planner = "RoutePlannerVisibilityService"
+    rig = Rig(tmp_path, "LoiterLeash", planner, LoiterLeash=attributes)
+    action = lmcp.new("SafeHeadingAction", VehicleID=1, DesiredHeading=0.0)
+    rig.tell(action)
+    assert not rig.got("RoutePlanRequest")  # where it is is not known
+    rig.tell(*vehicle(1), *vehicle(2), action, action.copy(VehicleID=2))
+    (asked,) = rig.got("RoutePlanRequest")
+    north = asked.RouteRequests[0].EndLocation.Latitude
+    assert north * 110_574 == pytest.approx(2000, rel=1e-3)
+    (command,) = rig.got("VehicleActionCommand")
+    (made,) = command.VehicleActionList
+    assert command.VehicleID == 1
+    assert made.Location.Latitude == pytest.approx(north, abs=1e-7)
+    assert made.Radius == pytest.approx(400 / (9.80665 * tan(radians(30))) + 50)
+    # the point ahead is forbidden: it loiters where it is
+    box = lmcp.new("Rectangle", CenterPoint=place(north), Width=500.0, Height=500.0)
+    rig.tell(
+        lmcp.new("KeepOutZone", ZoneID=8, MaxAltitude=9000.0, Boundary=box),
+        lmcp.new("OperatingRegion", ID=3, KeepOutAreas=[8]),
+        action.copy(OperatingRegion=3, UseSpeed=True, Speed=17.0, LoiterRadius=300.0),
+    )
+    (made,) = rig.got("VehicleActionCommand")[1].VehicleActionList
+    assert (made.Location.Latitude, made.Airspeed, made.Radius) == (0.0, 17.0, 300.0)
+
+
+@pytest.mark.shows(
+    "BatchSummaryService",
+    "BatchSummaryRequest",
+    "TaskAutomationRequest",
+    "TaskAutomationResponse",
+    "BatchSummaryResponse",
+    "KeepOutZone",
+    "EntityState",
+    "EntityConfiguration",
+)
+def test_each_vehicle_is_tried_for_each_task_and_summed_up(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, *PIPELINE, "BatchSummaryService")
+    box = lmcp.new("Rectangle", CenterPoint=place(0.01), Width=300.0, Height=300.0)
+    rig.tell(
+        *vehicle(1),
+        *vehicle(2, 0.05),
+        loiter(5),
+        loiter(6, 0.03, EligibleEntities=[2]),
+        lmcp.new("KeepOutZone", ZoneID=8, MaxAltitude=9000.0, Boundary=box),
+    )
+    rig.tell(lmcp.new("BatchSummaryRequest", RequestID=7, Vehicles=[1, 2], TaskList=[5, 6]))
+    assert len(rig.got("TaskAutomationRequest")) == 4
+    assert all(u.SandBoxRequest for u in rig.got("UniqueAutomationRequest"))
+    (summary,) = rig.got("BatchSummaryResponse")
+    assert summary.ResponseID == 7
+    five, six = summary.Summaries
+    assert [(v.VehicleID, v.DestinationTaskID) for v in five.PerformingVehicles] == [(1, 5), (2, 5)]
+    one, two = five.PerformingVehicles
+    assert (one.ROZIDs, one.ConflictsWithROZ) == ([8], True)  # it does not bind, but is met
+    assert (two.ROZIDs, two.ConflictsWithROZ) == ([], False)
+    assert one.TimeOnTask == pytest.approx(60_000, abs=300)
+    assert one.TimeToArrive > 50_000
+    unable, able = six.PerformingVehicles
+    assert (unable.TimeToArrive, unable.TimeOnTask, unable.WaypointList) == (-1, -1, [])
+    assert able.TimeOnTask == pytest.approx(60_000, abs=300)
+    assert not rig.got("AutomationResponse")
+    assert not rig.said.has("fails at")
+    rig.tell(lmcp.new("BatchSummaryRequest", RequestID=9))
+    assert rig.got("BatchSummaryResponse")[1].Summaries == []
+    rig.tell(lmcp.new("BatchSummaryRequest", RequestID=10, TaskList=[5]))  # all vehicles
+    (every,) = rig.got("BatchSummaryResponse")[2].Summaries
+    assert [v.VehicleID for v in every.PerformingVehicles] == [1, 2]
+
+
+@pytest.mark.shows(
+    "TaskTrackerService",
+    "Task",
+    "AutomationResponse",
+    "MissionCommand",
+    "EntityState",
+    "RemoveTasks",
+)
+def test_the_tracker_tells_what_becomes_of_tasks(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, "TaskTrackerService")
+
+    def told() -> list[str]:
+        return [line.partition("task ")[2] for line in rig.said if "TaskTracker" in line][1:]
+
+    flies = lmcp.new("AirVehicleState", ID=1, AssociatedTasks=[9])
+    rig.tell(loiter(9), response(mission(5)), flies, mission(5), flies)
+    rig.tell(lmcp.new("AirVehicleState", ID=1), flies.copy(ID=3))
+    assert told() == [
+        "9 is known",
+        "9 is assigned (vehicle 1)",
+        "9 is active (vehicle 1)",
+        "9 is done (vehicle 1)",
+        "9 is active (vehicle 3)",
+    ]
+    rig.tell(lmcp.new("RemoveTasks", TaskList=[9]))
+    assert rig.bus.state("TaskTrackerService") == {}
