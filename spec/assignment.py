@@ -50,7 +50,10 @@ class AssignmentProblem:
 
     travel_ms: per vehicle `Rows` over `choices`, None where there is no way; distance_mm,
     energy_mj: the same shape or empty; ready_ms: per vehicle; release_ms, due_ms: (task id, time);
-    relations: empty means all tasks in any order.
+    relations: empty means all tasks in any order; done: tasks that have been flown, as (task id,
+    start, end), in the order of their starts: they have no choices, and no vehicle sets off before
+    they have started; unable: further tasks of the relations that nobody has a choice for, so that
+    only branches without them count.
     """
 
     name: str
@@ -65,6 +68,8 @@ class AssignmentProblem:
     semantics: str = TIME
     distance_mm: tuple[Rows, ...] = ()
     energy_mj: tuple[Rows, ...] = ()
+    done: tuple[tuple[int, int, int], ...] = ()
+    unable: frozenset[int] = frozenset()
 
     @property
     def tasks(self) -> tuple[int, ...]:
