@@ -25,6 +25,7 @@ from cratous.core.assignment_instance import (
 )
 from cratous.core.assignment_refute import look_ahead
 from cratous.core.assignment_settle import Settler
+from cratous.core.timing import runs_forward
 from cratous.spec import algebra, algebra_meaning
 from cratous.spec.assignment import ORDER, TIME, AssignmentProblem, Rows
 from cratous.spec.errors import BadInput
@@ -112,9 +113,10 @@ def _done(p: AssignmentProblem) -> None:
         _refuse(task in p.tasks, "a task is flown and to be flown", "done", "one of both", task)
         _whole(start, f"done, task {task}")
         _whole(end, f"done, task {task}")
-        _refuse(end < start, "a task ends before it begins", "done", f"{start} or later", end)
+        wrong = not runs_forward(start, end)
+        _refuse(wrong, "a task ends before it begins", "done", f"{start} or later", end)
         _refuse(
-            start > min(p.ready_ms), "a flown task begins after a vehicle sets off", "done",
+            not runs_forward(start, min(p.ready_ms)), "a flown task begins after a vehicle sets off", "done",
             f"task {task} by {min(p.ready_ms)}", start,
         )  # fmt: skip
 

@@ -86,6 +86,13 @@ def make_plan(
     return plan
 
 
+def cost_of(plan: Plan) -> int:
+    """The cost of a plan's own items [ms]: the latest end, or the sum of the vehicles' last ends."""
+    last = {item.vehicle_id: item.end_ms for item in plan.items}
+    ends = last.values()
+    return sum(ends) if plan.cost == "CUMULATIVE" else max(ends, default=0)
+
+
 def certificate_of(bus: Bus) -> dict[str, Any] | None:
     """The certificate of the last assignment that was made on a bus; None if there is none."""
     try:
