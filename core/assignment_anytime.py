@@ -16,6 +16,7 @@ from cratous.core.assignment_compiled import machine_for
 from cratous.core.assignment_improve import anneal, leaf
 from cratous.core.assignment_instance import FAR, TASKS_MAX, Instance
 from cratous.core.assignment_order import by_sets, is_sets
+from cratous.core.assignment_rebuild import rebuild
 from cratous.core.assignment_refute import Ahead, Outcome, first_state, look_ahead, refute
 from cratous.core.assignment_search import bound
 from cratous.core.assignment_steps import earliest_start, raised, weighted
@@ -64,6 +65,31 @@ def improve(
     for v, o in moves:
         who[i.task[o]], how[i.task[o]] = v, o
     cost = int(machine_for(i, anneal)(order, who, how, steps, seed, hot, *_parts(i)))
+    found = tuple((int(who[j]), int(how[j])) for j in order)
+    late = cost >= NONE or any(end > i.due[i.task[o]] for _, o, _, _, end in timed(i, found))
+    return NONE if late else cost, found
+
+
+def rebuilt(
+    instance: Instance, moves: Moves, rounds: int, seed: int, hot: float = 0.01
+) -> tuple[int, Moves]:
+    """(cost, moves) of the best that so many rounds of taking out and putting in again find.
+
+    The cost is NONE if even that misses a latest end, or nothing could be put in again.
+    """
+    i, n = instance, instance.tasks
+    order = np.array([i.task[o] for _, o in moves], np.int64)
+    who, how = np.zeros(n, np.int64), np.zeros(n, np.int64)
+    for v, o in moves:
+        who[i.task[o]], how[i.task[o]] = v, o
+    apart = np.full((n, n), FAR, np.int64)
+    ways = i.travel.min(axis=0)
+    for a in range(i.duration.size):
+        for b in range(i.duration.size):
+            j, k = i.task[a], i.task[b]
+            apart[j, k] = min(apart[j, k], ways[a, b]) if j != k else -1
+    near = np.argsort(apart, axis=1, kind="stable")
+    cost = int(machine_for(i, rebuild)(order, who, how, rounds, seed, hot, near, *_parts(i)))
     found = tuple((int(who[j]), int(how[j])) for j in order)
     late = cost >= NONE or any(end > i.due[i.task[o]] for _, o, _, _, end in timed(i, found))
     return NONE if late else cost, found

@@ -142,6 +142,24 @@ def keeps_step(ok: bool, free: int, latest: int) -> bool:
     return ok and not (free > latest)
 
 
+def work_is_done(work: int, room: int, until: int, free: int) -> bool:
+    """Vehicles so far have room for `room` ms of work, and one more is free at `free`: together they
+    can do the work until `until`. What the others cannot do, this one begins when it is free."""
+    rest = work - room
+    return rest <= 0 or free + rest <= until
+
+
+def cannot_all_be_done(room: int, work: int) -> bool:
+    """There is more work than room for it."""
+    return work > room
+
+
+def task_may_end(end: int, soonest: int, head: int, least: int) -> bool:
+    """A task may end at `end`: no vehicle that could do it is through with it sooner than `soonest`,
+    and it starts at `head` or later and takes at least `least`. FOR ALL ends."""
+    return end >= soonest and end - least >= head
+
+
 def is_covered(mine: int, other: int) -> bool:
     """FOR ALL times of two states: the one is not later than the other."""
     return not (mine > other)

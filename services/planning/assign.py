@@ -22,6 +22,7 @@ from cratous.core.assignment_anytime import (
     estimate,
     greedy,
     improve,
+    rebuilt,
     settle_bound,
     timed,
 )
@@ -44,7 +45,9 @@ from cratous.spec.assignment import ORDER, TIME, AssignmentProblem, Choice, Solu
 WORK = 16_000_000
 """Tasks that are decoded in one annealing: steps times tasks."""
 ROUNDS, ROUNDS_MAX = 12, 10_000
-"""Annealings of a problem of many tasks without and with a limit."""
+"""Improvements of a problem of many tasks without and with a limit."""
+REBUILDS, REBUILD_NODES, HEATS = 150_000, 40, (0.0, 0.01, 0.003, 0.03)
+"""Rounds times tasks of one improvement, what a round counts as, and first temperatures."""
 FIRST_NODES = 200_000
 """Nodes spent on finding a first solution where the limit is lower."""
 CHAIN_NODES = 5_000_000
@@ -206,6 +209,7 @@ def warm() -> None:
         _, moves = greedy(i)
         assert moves is not None
         improve(i, moves, 1, 1)
+        rebuilt(i, moves, 1, 1)
         refute(i, 7, 1)
         if semantics == ORDER:
             by_sets(i)
@@ -232,7 +236,8 @@ def _anneal(run: _Run, made: list[Instance], firsts: list[Moves | None]) -> None
 
 
 def _go_on(run: _Run, made: list[Instance]) -> None:
-    """Many tasks: improve the best again and again, cooler and warmer, until a limit is reached.
+    """Many tasks: take strings of tasks out of the best and put them in again, now and then anneal,
+    cooler and warmer, until a limit is reached.
 
     Refuting takes over below that, so there only the share of time is spent that it leaves over.
     """
@@ -246,9 +251,20 @@ def _go_on(run: _Run, made: list[Instance]) -> None:
         if unlimited and rounds >= ROUNDS:
             return
         rounds += 1
-        hot = (0.5, 0.2, 1.0)[rounds % 3] / made[k].tasks
-        steps = (WORK << min(rounds // 3, 2)) // made[k].tasks
-        _try(run, made[k], k, moves, steps, 3 + rounds, hot)
+        if rounds % 4:
+            _rebuild(run, made[k], k, moves, rounds)
+        else:
+            _try(run, made[k], k, moves, WORK // made[k].tasks, 3 + rounds, 0.5 / made[k].tasks)
+
+
+def _rebuild(run: _Run, instance: Instance, k: int, moves: Moves, again: int) -> None:
+    """Some rounds of taking out and putting in again, within what is left of the node limit."""
+    rounds = REBUILDS // instance.tasks
+    if run.limits.nodes is not None:
+        rounds = min(rounds, max(0, run.limits.nodes - run.nodes) // REBUILD_NODES)
+    cost, better = rebuilt(instance, moves, rounds, run.limits.seed + again, HEATS[again % 4])
+    run.nodes += max(1, rounds) * REBUILD_NODES
+    run.better(cost, k, better)
 
 
 def _try(
