@@ -190,10 +190,10 @@ def rebuild(
             out[a], out[b] = out[b], out[a]
         if (x >> 40) & 1:
             for a in range(1, count):
-                b = a
-                while b > 0 and duration[how[out[b - 1]]] < duration[how[out[b]]]:
-                    out[b - 1], out[b] = out[b], out[b - 1]
-                    b -= 1
+                q = a
+                while q > 0 and duration[how[out[q - 1]]] < duration[how[out[q]]]:
+                    out[q - 1], out[q] = out[q], out[q - 1]
+                    q -= 1
         cost = time_chains(
             chain, length, how, there, starts, ends, made, next_of, free, travel, added, duration,
             ready, release, due, ref_kind, member_first, member, row_first, row_ref, row_lo,
@@ -215,6 +215,17 @@ def rebuild(
                         for m in range(member_first[r], member_first[r + 1]):
                             if there[member[m]]:
                                 ref = max(ref, ends[member[m]] + row_lo[place])
+            # the first start of what has to follow: a later end puts that off
+            follows = 1 << 60
+            for i in range(n):
+                if there[i] == 0 or waits == 0:
+                    continue
+                for place in range(row_first[i], row_first[i + 1]):
+                    r = row_ref[place]
+                    if ref_kind[r] == 1:
+                        for m in range(member_first[r], member_first[r + 1]):
+                            if member[m] == j:
+                                follows = min(follows, starts[i] - row_lo[place])
             for t in range(3):
                 top_key[t] = 1 << 60
             for o in range(options):
@@ -252,6 +263,8 @@ def rebuild(
                         key = (weight[0] * max(last, done) + more) * share + push * (
                             weight[1] * share + 1 + weight[0]
                         )
+                        if end > follows:
+                            key += (end - follows) * (weight[0] + weight[1]) * share
                         if end > due[j]:
                             key += (end - due[j]) * 1000
                         t = 3
@@ -294,7 +307,7 @@ def rebuild(
                 length[v] -= 1
                 for q in range(p, length[v]):
                     chain[v, q] = chain[v, q + 1]
-            cost = got if pick >= 0 else 1 << 60
+            cost = int(got) if pick >= 0 else 1 << 60
         left = 1.0 - step / rounds
         slack = now * hot * left * left * (((x >> 20) & 0xFFF) / 4096.0)
         kept = False

@@ -241,7 +241,7 @@ def _go_on(run: _Run, made: list[Instance]) -> None:
 
     Refuting takes over below that, so there only the share of time is spent that it leaves over.
     """
-    rounds = 0
+    rounds, gains = 0, [1, 1]
     while run.best is not None and made[run.best[0]].tasks > DEALS_TASKS and rounds < ROUNDS_MAX:
         k, moves = run.best
         spent = 1.0 if made[k].tasks > TASKS_MAX else 0.6
@@ -251,10 +251,15 @@ def _go_on(run: _Run, made: list[Instance]) -> None:
         if unlimited and rounds >= ROUNDS:
             return
         rounds += 1
-        if rounds % 4:
-            _rebuild(run, made[k], k, moves, rounds)
+        # what gained more the last time it was tried; the other one every third time
+        anneals, before = (gains[1] > gains[0]) != (rounds % 3 == 0), run.cost
+        if anneals:
+            hot = (0.5, 0.2, 1.0)[rounds % 3] / made[k].tasks
+            steps = (WORK << min(rounds // 3, 2)) // made[k].tasks
+            _try(run, made[k], k, moves, steps, 3 + rounds, hot)
         else:
-            _try(run, made[k], k, moves, WORK // made[k].tasks, 3 + rounds, 0.5 / made[k].tasks)
+            _rebuild(run, made[k], k, moves, rounds)
+        gains[anneals] = before - run.cost
 
 
 def _rebuild(run: _Run, instance: Instance, k: int, moves: Moves, again: int) -> None:
