@@ -324,20 +324,23 @@ def earliest(
     cost: Cost | None = None,
     limit: int = 1 << 62,
     effort: int = CHOICES_MAX,
-    partial: bool = False,
 ) -> Times:
     """The best schedule of the chains under the rows; `violated` set if there is none.
 
     Visits must stand in the order of flight within a chain. cost: of the starts, never falling with
     them (the latest end if None); limit: only schedules that cost less count; effort: choices that
-    are tried; partial: rows about unknown tasks say nothing (else they cannot be met).
+    are tried. A row about an unknown task cannot be met.
     """
-    system = _System(visits, rows, partial)
+    system = _System(visits, rows, False)
     best = _Best(system, cost or latest_end(visits), limit, effort)
     if system.broken is None:
         best.search(list(system.first), range(len(visits)))
-    start = best.best
-    violated = None
+    start, violated = best.best, None
+    if start is not None:
+        starts = {visit.task_id: s for s, visit in zip(start, visits, strict=True)}
+        ends = {visit.task_id: starts[visit.task_id] + visit.duration_ms for visit in visits}
+        if not rows_hold(rows, starts, ends):
+            start = None
     if start is None:
         violated = system.broken or best.violated or _none_below(limit)
         start = list(system.first)
