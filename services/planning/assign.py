@@ -199,18 +199,20 @@ def _list_chains(run: _Run, proofs: list[Proof]) -> None:
 @functools.cache
 def warm() -> None:
     """Have everything compiled, so that no limit of time is spent on that."""
-    far, near = (None, 1, 1), (1, None, 1)
+    # four tasks: fewer would be run by CPython
+    rows = tuple(tuple(None if a == b else 1 for b in range(4)) for a in range(5))
     for semantics in (TIME, ORDER):
         p = AssignmentProblem(
-            "", (1,), (0,), tuple(Choice(t, 1, 1, (1,)) for t in (1, 2, 3)),
-            ((far, near, (1, 1, None), (1, 1, 1)),), ".(p1 p2 p3)", semantics=semantics,
+            "", (1,), (0,), tuple(Choice(t, 1, 1, (1,)) for t in (1, 2, 3, 4)), (rows,),
+            ".(p1 p2 p3 p4)", semantics=semantics,
         )  # fmt: skip
         i = arrays(p, parts(p)[0][0])
         _, moves = greedy(i)
         assert moves is not None
         improve(i, moves, 1, 1)
         rebuilt(i, moves, 1, 1)
-        refute(i, 7, 1)
+        refute(i, 9, 1)
+        chains_below(i, 9, lambda moves, limit: (limit, len(moves)), 1_000)
         if semantics == ORDER:
             by_sets(i)
         estimate(i, look_ahead(i))
