@@ -12,10 +12,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from cratous.core.assignment_compiled import machine
+from cratous.core.assignment_compiled import machine_for
 from cratous.core.assignment_improve import anneal, leaf
 from cratous.core.assignment_instance import FAR, TASKS_MAX, Instance
 from cratous.core.assignment_order import by_sets, is_sets
+from cratous.core.assignment_rebuild import rebuild
 from cratous.core.assignment_refute import Ahead, Outcome, first_state, look_ahead, refute
 from cratous.core.assignment_search import bound
 from cratous.core.assignment_steps import earliest_start, raised, weighted
@@ -31,6 +32,7 @@ class Proof:
     """What shows that no solution of an instance costs less than `bound`.
 
     kind: `tables` (the tables over sets give it), `layers` (a refutation of `limit` by `origins`),
+    `chains` (all chains below it were listed, in `limit` nodes),
     or `estimate` (the first state's bound).
     """
 
@@ -44,7 +46,7 @@ def greedy(instance: Instance) -> tuple[int, Moves | None]:
     """(nodes, the first leaf's moves, or None if it ends in a dead end)."""
     i, n = instance, instance.tasks
     order, who, how = np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64)
-    nodes = int(machine(leaf)(order, who, how, 0, *_parts(i)))
+    nodes = int(machine_for(i, leaf)(order, who, how, 0, *_parts(i)))
     if nodes < 0:
         return n, None
     return nodes, tuple((int(who[j]), int(how[j])) for j in order)
@@ -62,7 +64,32 @@ def improve(
     who, how = np.zeros(n, np.int64), np.zeros(n, np.int64)
     for v, o in moves:
         who[i.task[o]], how[i.task[o]] = v, o
-    cost = int(machine(anneal)(order, who, how, steps, seed, hot, *_parts(i)))
+    cost = int(machine_for(i, anneal)(order, who, how, steps, seed, hot, *_parts(i)))
+    found = tuple((int(who[j]), int(how[j])) for j in order)
+    late = cost >= NONE or any(end > i.due[i.task[o]] for _, o, _, _, end in timed(i, found))
+    return NONE if late else cost, found
+
+
+def rebuilt(
+    instance: Instance, moves: Moves, rounds: int, seed: int, hot: float = 0.01
+) -> tuple[int, Moves]:
+    """(cost, moves) of the best that so many rounds of taking out and putting in again find.
+
+    The cost is NONE if even that misses a latest end, or nothing could be put in again.
+    """
+    i, n = instance, instance.tasks
+    order = np.array([i.task[o] for _, o in moves], np.int64)
+    who, how = np.zeros(n, np.int64), np.zeros(n, np.int64)
+    for v, o in moves:
+        who[i.task[o]], how[i.task[o]] = v, o
+    apart = np.full((n, n), FAR, np.int64)
+    ways = i.travel.min(axis=0)
+    for a in range(i.duration.size):
+        for b in range(i.duration.size):
+            j, k = i.task[a], i.task[b]
+            apart[j, k] = min(apart[j, k], ways[a, b]) if j != k else -1
+    near = np.argsort(apart, axis=1, kind="stable")
+    cost = int(machine_for(i, rebuild)(order, who, how, rounds, seed, hot, near, *_parts(i)))
     found = tuple((int(who[j]), int(how[j])) for j in order)
     late = cost >= NONE or any(end > i.due[i.task[o]] for _, o, _, _, end in timed(i, found))
     return NONE if late else cost, found
@@ -109,7 +136,7 @@ def estimate(instance: Instance, ahead: Ahead | None = None) -> int:
     ahead = look_ahead(i) if ahead is None else ahead
     scratch = [np.zeros(n, np.int64) for _ in range(3)]
     return int(
-        machine(bound)(
+        machine_for(i, bound)(
             first_state(i), n, i.vehicles, i.duration.size, ahead.reach, ahead.nearest,
             ahead.cheapest, i.duration, i.task, i.may, ahead.least, ahead.head, ahead.tail, i.due,
             i.weight, *scratch,
@@ -120,8 +147,8 @@ def estimate(instance: Instance, ahead: Ahead | None = None) -> int:
 def rough_bound(instance: Instance) -> int:
     """The longest path through the rows, and the least work of all tasks shared by all vehicles."""
     i = instance
-    reach = machine(shortest_ways)(i.travel, i.duration, i.may)
-    head, least, tail = machine(heads)(
+    reach = machine_for(i, shortest_ways)(i.travel, i.duration, i.may)
+    head, least, tail = machine_for(i, heads)(
         i.travel, i.duration, i.task, i.may, i.ready, i.release, i.ref_kind, i.member_first,
         i.member, i.row_first, i.row_ref, i.row_lo, i.waits, reach,
     )  # fmt: skip

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cratous.core.assignment_compiled import machine
+from cratous.core.assignment_compiled import machine_for
 from cratous.core.assignment_instance import Instance
 from cratous.core.assignment_refute import EFFORT, first_state, look_ahead, tables
 from cratous.core.assignment_search import closed, cost_now
@@ -32,7 +32,7 @@ def least_cost(instance: Instance, limit: int, origins: Sequence[np.ndarray]) ->
         origin = np.ascontiguousarray(origins[depth], np.int64).reshape(-1, 3)
         into = np.empty((len(origin), layer.shape[1]), np.int64)
         table = np.empty(1 << max(4, (2 * len(origin)).bit_length()), np.int64)
-        found = machine(closed)(
+        found = machine_for(i, closed)(
             layer, origin, into, table, np.empty(len(origin), np.int64), limit, i.waits,
             looked.used if depth + 1 < i.tasks else 0, EFFORT, ahead.able, ahead.kind_of,
             looked.latest, looked.start, ahead.reach, ahead.nearest, ahead.cheapest, ahead.least,

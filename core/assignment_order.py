@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cratous.core.assignment_compiled import machine
+from cratous.core.assignment_compiled import machine_for
 from cratous.core.assignment_instance import TABLE_MAX_MS, Instance, horizon
 from cratous.core.assignment_refute import Ahead, look_ahead
 from cratous.core.assignment_tables import CELLS_MAX, latest_tables
@@ -72,7 +72,7 @@ def by_sets(
     latest = np.empty((kinds, i.duration.size, 1 << n), np.int32)
     start = np.empty((i.vehicles, 1 << n), np.int32)
     before = all_before(i)
-    machine(latest_tables)(
+    machine_for(i, latest_tables)(
         i.travel, i.duration, i.task, i.may, before, i.release * 0,
         np.full(n, HORIZON, np.int64), ahead.kind_of, kinds, ahead.leader, latest, start,
     )  # fmt: skip
@@ -81,7 +81,7 @@ def by_sets(
     for v in range(i.vehicles):
         start[v, (sets & ~int(ahead.able[v])) != 0] = -HORIZON
     value = np.empty((i.vehicles + 1, 1 << n), np.int64)
-    machine(best_deals)(start, i.ready, int(i.weight[1]), value)
+    machine_for(i, best_deals)(start, i.ready, int(i.weight[1]), value)
     cost = int(value[0, -1])
     if cost >= HORIZON:
         return 1 << 60, None

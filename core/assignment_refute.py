@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cratous.core.assignment_compiled import machine
+from cratous.core.assignment_compiled import machine_for
 from cratous.core.assignment_instance import FAR, TABLE_MAX_MS, Instance, horizon
 from cratous.core.assignment_search import cost_now, expand, place, rehash
 from cratous.core.assignment_tables import CELLS_MAX, heads, latest_tables, shortest_ways
@@ -75,8 +75,8 @@ class Outcome:
 def look_ahead(instance: Instance) -> Ahead:
     """Shortest ways, heads and tails, and which vehicles share a table."""
     i = instance
-    reach = machine(shortest_ways)(i.travel, i.duration, i.may)
-    head, least, tail = machine(heads)(
+    reach = machine_for(i, shortest_ways)(i.travel, i.duration, i.may)
+    head, least, tail = machine_for(i, heads)(
         i.travel, i.duration, i.task, i.may, i.ready, i.release, i.ref_kind, i.member_first,
         i.member, i.row_first, i.row_ref, i.row_lo, i.waits, reach,
     )  # fmt: skip
@@ -117,8 +117,8 @@ def tables(instance: Instance, ahead: Ahead, limit: int) -> Tables:
         return Tables(0, full, np.zeros((1, 1, 1), np.int32), np.zeros((1, 1), np.int32))
     latest = np.empty((kinds, i.duration.size, 1 << n), np.int32)
     start = np.empty((i.vehicles, 1 << n), np.int32)
-    anywhere = machine(shortest_ways)(i.travel, i.duration, np.ones_like(i.may))
-    machine(latest_tables)(
+    anywhere = machine_for(i, shortest_ways)(i.travel, i.duration, np.ones_like(i.may))
+    machine_for(i, latest_tables)(
         anywhere, i.duration, i.task, i.may, i.need if i.waits else i.need * 0, ahead.head, due,
         ahead.kind_of, kinds, ahead.leader, latest, start,
     )  # fmt: skip
@@ -147,7 +147,7 @@ def refute(
     i = instance
     ahead = look_ahead(i) if ahead is None else ahead
     looked = tables(i, ahead, limit)
-    run, again = machine(expand), machine(rehash)
+    run, again = machine_for(i, expand), machine_for(i, rehash)
     layer, ranks = first_state(i)[None, :], np.zeros(1, np.int64)
     counts, known = np.zeros(4, np.int64), limit
     origins: list[np.ndarray] = []

@@ -17,8 +17,11 @@ import numpy as np
 from cratous.core.assignment_steps import (
     covers_step,
     earliest_start,
+    lacks_room,
     opened,
     raised,
+    room_step,
+    soonest_end,
     weighted,
 )
 from cratous.core.assignment_tables import deals
@@ -135,7 +138,7 @@ def bound(
     for j in range(n):
         if (done >> j) & 1:
             continue
-        end = max(soonest[j], head[j] + least[j])
+        end = soonest_end(soonest[j], head[j], least[j])
         if end > due[j] or brief[j] >= 1 << 40:
             return 1 << 60
         last = max(last, end + tail[j])
@@ -151,7 +154,12 @@ def bound(
                     total += state[1 + vehicles + w]
                     count += 1
             room = min(room, (total + count - 1) // count)
-        last = max(last, room)
+        # one instant sooner the work does not fit: only then it is a bound
+        free_time = 0
+        for v in range(vehicles):
+            free_time = room_step(free_time, room - 1, state[1 + vehicles + v])
+        if lacks_room(free_time, work):
+            last = max(last, room)
     return weighted(last, team + work, legs, weight[0], weight[1])
 
 

@@ -35,6 +35,31 @@ def latest_departure(due: int, after: int, release: int, duration: int, travel: 
     return end - duration - travel
 
 
+@kernel(implements="assignment.work_is_done")
+def room_step(room: int, until: int, free: int) -> int:
+    """Add one vehicle to the room for work until an instant: what is left of its time, if any.
+
+    room: of the vehicles so far [ms]; until: the instant; free: when the vehicle is free [ms].
+    """
+    return room + max(0, until - free)
+
+
+@kernel(implements="assignment.cannot_all_be_done")
+def lacks_room(room: int, work: int) -> bool:
+    """True iff the work [ms] does not fit into the room [ms]."""
+    return room < work
+
+
+@kernel(implements="assignment.task_may_end")
+def soonest_end(soonest: int, head: int, least: int) -> int:
+    """The earliest end of a task [ms].
+
+    soonest: when any vehicle can be through with it; head: its earliest start by the rows; least:
+    its shortest duration. All in ms.
+    """
+    return max(soonest, head + least)
+
+
 @kernel(implements="assignment.keeps_step")
 def keeps_step(ok: bool, free: int, latest: int) -> bool:
     """Add one vehicle to whether all leave in time: it is free at `free`, must leave by `latest`."""

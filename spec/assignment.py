@@ -50,7 +50,10 @@ class AssignmentProblem:
 
     travel_ms: per vehicle `Rows` over `choices`, None where there is no way; distance_mm,
     energy_mj: the same shape or empty; ready_ms: per vehicle; release_ms, due_ms: (task id, time);
-    relations: empty means all tasks in any order.
+    relations: empty means all tasks in any order; done: tasks that have been flown, as (task id,
+    start, end), in the order of their starts: they have no choices, and no vehicle sets off before
+    they have started; unable: further tasks of the relations that nobody has a choice for, so that
+    only branches without them count.
     """
 
     name: str
@@ -65,6 +68,8 @@ class AssignmentProblem:
     semantics: str = TIME
     distance_mm: tuple[Rows, ...] = ()
     energy_mj: tuple[Rows, ...] = ()
+    done: tuple[tuple[int, int, int], ...] = ()
+    unable: frozenset[int] = frozenset()
 
     @property
     def tasks(self) -> tuple[int, ...]:
@@ -135,6 +140,24 @@ def leaves_in_time(
 def keeps_step(ok: bool, free: int, latest: int) -> bool:
     """All vehicles so far leave in time, and so does one that is free at `free`."""
     return ok and not (free > latest)
+
+
+def work_is_done(work: int, room: int, until: int, free: int) -> bool:
+    """Vehicles so far have room for `room` ms of work, and one more is free at `free`: together they
+    can do the work until `until`. What the others cannot do, this one begins when it is free."""
+    rest = work - room
+    return rest <= 0 or free + rest <= until
+
+
+def cannot_all_be_done(room: int, work: int) -> bool:
+    """There is more work than room for it."""
+    return work > room
+
+
+def task_may_end(end: int, soonest: int, head: int, least: int) -> bool:
+    """A task may end at `end`: no vehicle that could do it is through with it sooner than `soonest`,
+    and it starts at `head` or later and takes at least `least`. FOR ALL ends."""
+    return end >= soonest and end - least >= head
 
 
 def is_covered(mine: int, other: int) -> bool:

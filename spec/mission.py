@@ -234,7 +234,8 @@ class Mission:
     instances: ids of the vehicles with an ICAROUS instance (all protected ones unless avoidance
     is switched off). cost: "MINMAX" (makespan) or "CUMULATIVE". order: "time" (precedence holds
     in time, design decision 1) or "order" (as UxAS: order of assignment only). node_limit: nodes of
-    the assignment search (0: its first leaf); None: as many as usual.
+    the assignment search (0: its first leaf); None: as many as usual; gap: the search may stop once
+    (cost - bound) / cost is at most this.
     """
 
     name: str
@@ -253,6 +254,7 @@ class Mission:
     seed: int = 0
     notes: tuple[str, ...] = ()
     node_limit: int | None = None
+    gap: float = 0.0
 
     def vehicle(self, vehicle_id: int) -> Vehicle:
         """The vehicle with this id; KeyError if there is none."""

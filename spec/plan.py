@@ -80,7 +80,11 @@ class Row(NamedTuple):
 
 @dataclass(frozen=True)
 class Plan:
-    """A complete assignment: chains by vehicle, the constraints it was made for, and its cost."""
+    """A complete assignment: chains by vehicle, the constraints it was made for, and its cost.
+
+    status: `optimal` only with a certificate, else `feasible`; bound: nothing costs less, as far as
+    was proved; certificate: its digest; exhausted: whether it is optimal by its certificate.
+    """
 
     mission: str
     items: tuple[PlanItem, ...]
@@ -90,6 +94,9 @@ class Plan:
     cost: str
     nodes: int
     exhausted: bool
+    status: str = "feasible"
+    bound: int = 0
+    certificate: str = ""
 
     def chain(self, vehicle_id: int) -> tuple[PlanItem, ...]:
         """The items of one vehicle, in the order of flight."""

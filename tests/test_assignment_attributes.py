@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import pytest
 
-from cratous.core.assignment import START, Branch, Candidate, Problem, assign
 from cratous.services.loading.assignment_attributes import (
     NO_LIMIT,
     NODES_PER_MS,
     Settings,
     settings_of,
 )
+from cratous.services.planning.assign import Limits, solve
+from cratous.spec.assignment import AssignmentProblem, Choice
 from cratous.spec.errors import BadInput
 
 
@@ -41,12 +42,10 @@ def test_a_wrong_attribute_is_named(wrong: dict[str, str]) -> None:
 
 def test_no_nodes_means_the_first_leaf() -> None:
     # the near task first is greedy and leaves the far one for the same vehicle
-    ways = {(0, START, 0): 1, (0, START, 1): 4, (0, 0, 1): 20, (0, 1, 0): 2}
-    both = Branch((1, 2), (), lambda done: {1, 2} - set(done))
-    options = (Candidate(1, 1, 1, 1, 1), Candidate(2, 1, 1, 1, 1))
-    problem = Problem((0,), options, lambda v, a, b: ways.get((v, a, b)), {1: 1, 2: 1}, (both,))
-    best = assign(problem)
-    first = assign(Problem(**{**vars(problem), "node_limit": 0}))
-    assert best.cost == 8
+    choices = (Choice(1, 1, 1, (1,)), Choice(2, 1, 1, (1,)))
+    problem = AssignmentProblem("", (1,), (0,), choices, (((None, 20), (2, None), (1, 4)),))
+    best = solve(problem)
+    first = solve(problem, Limits(nodes=0))
+    assert best.cost == best.bound == 8
     assert first.cost == 23
-    assert not first.exhausted
+    assert first.bound < 23

@@ -45,10 +45,11 @@ def suffix(rng: random.Random, timed: bool) -> str:
 
 
 def problem(
-    seed: int, timed: bool = True, semantics: str = TIME, most: int = 4
+    seed: int, timed: bool = True, semantics: str = TIME, most: int = 4, laps: bool = False
 ) -> AssignmentProblem:
     """A problem of 1 to `most` tasks and 1 to 3 vehicles, with small numbers."""
     rng = random.Random(seed)
+    turns = random.Random(seed + 1)
     tasks = list(range(1, rng.randrange(1, most + 1) + 1))
     rng.shuffle(tasks)
     vehicles = tuple(range(7, 7 + rng.choice([1, 2, 2, 3])))
@@ -56,7 +57,9 @@ def problem(
     for task in tasks:
         for option in range(1, 2 + (rng.random() < 0.25)):
             able = tuple(v for v in vehicles if rng.random() < 0.75) or (rng.choice(vehicles),)
-            choices.append(Choice(task, option, rng.randrange(0, 4), able))
+            lap = turns.randrange(1, 4) if laps else 0
+            longest = turns.choice([0, lap, lap + 1, 2 * lap]) if laps else None
+            choices.append(Choice(task, option, rng.randrange(0, 4), able, lap, longest))
     size = len(choices)
 
     def low(row: int) -> int:
@@ -163,6 +166,8 @@ def _times(
         first = max(free + way, release.get(t, 0))
         last = bound - p.choices[k].duration_ms
         for start in (first,) if p.semantics == ORDER else range(first, last + 1):
+            if not can_wait(p.choices[k], start - free - way):
+                continue
             end = start + p.choices[k].duration_ms
             if end > due.get(t, end):
                 break
@@ -172,6 +177,14 @@ def _times(
 
     go(0)
     return best[0]
+
+
+def can_wait(choice: Choice, wait: int) -> bool:
+    """Whether some number of equal laps, or none, takes so long."""
+    if wait == 0 or choice.lap_max_ms is None:
+        return True
+    most = choice.lap_max_ms
+    return any(n * choice.lap_ms <= wait <= n * most for n in range(1, wait + 1))
 
 
 def differs(p: AssignmentProblem) -> str:
@@ -199,6 +212,12 @@ def test_terms_with_timing_are_solved_to_the_optimum(seed: int) -> None:
     assert differs(problem(seed, most=3)) == ""
 
 
+@settings(max_examples=60)
+@given(st.integers(0, 2**32))
+def test_waits_of_whole_laps_are_solved_to_the_optimum(seed: int) -> None:
+    assert differs(problem(seed, most=3, laps=True)) == ""
+
+
 @settings(max_examples=100)
 @given(st.integers(0, 2**32))
 def test_order_only_is_solved_to_the_optimum(seed: int) -> None:
@@ -212,6 +231,6 @@ def test_thousands_of_terms(part: int) -> None:
     for k in range(500):
         seed = 1_000_000 + 500 * part + k
         timed = k % 4 != 0
-        case = problem(seed, timed, ORDER if k % 8 == 0 else "time", 3 if timed else 4)
+        case = problem(seed, timed, ORDER if k % 8 == 0 else TIME, 3 if timed else 4, k % 3 == 1)
         wrong.append(differs(case))
     assert [w for w in wrong if w] == []

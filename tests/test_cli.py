@@ -205,7 +205,7 @@ def test_the_ledger_is_a_gate(run: Run, tmp_path: Path, monkeypatch: pytest.Monk
 def test_a_run_leaves_one_whole_folder(flown: Path) -> None:
     assert [entry.name for entry in flown.parent.iterdir()] == ["crossing"]
     names = sorted(entry.name for entry in flown.iterdir())
-    assert names == ["log.sqlite", "report.html", "report.json"]
+    assert names == ["certificate.json", "log.sqlite", "report.html", "report.json"]
 
 
 def test_crossing_is_avoided(flown: Path) -> None:

@@ -1,6 +1,7 @@
-"""Raising a start to what a row demands never passes a schedule that satisfies the row, and where
-nothing rises any more the row holds: so times that are raised until nothing rises are the
-earliest in every component, and if they break an upper bound then no schedule satisfies all."""
+"""Raising a start to what a row demands, or to a time before or after another start, never passes a
+schedule that satisfies it, and where nothing rises any more it holds: so times that are raised
+until nothing rises are the earliest in every component, and if they break an upper bound then no
+schedule satisfies all."""
 
 from cratous.core.assignment_steps import raised
 from cratous.core.timing import row_holds
@@ -12,8 +13,10 @@ def claim(c: Claim) -> None:
     x, x_ref = c.integer("x"), c.integer("x_ref")
     start, ref, lo = c.integer("start"), c.integer("ref"), c.integer("lo")
     end, hi, kind = c.integer("end"), c.integer("hi"), c.integer("kind")
-    for time in (x, x_ref, start, ref, lo, end, hi):
+    for time in (x, x_ref, start, ref, end, hi):
         c.premise(c.all_of(time >= 0, time <= 2**59))
+    # a start may have to be so long after another one, or no longer than that before it
+    c.premise(c.all_of(lo >= -(2**59), lo <= 2**59))
     higher = c.use(raised, start, ref, lo)
     demand = c.define(assignment.row_is_raised, x, start, ref, lo)
     c.show(c.same(demand, x >= higher), "it is the least that keeps to both")

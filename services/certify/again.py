@@ -7,6 +7,7 @@ from typing import Any
 
 from cratous.services.certify.proofs import inventory
 from cratous.services.certify.report import (
+    CERTIFICATE_NAME,
     LOG_NAME,
     build_report,
     differences,
@@ -83,9 +84,30 @@ def certify_again(folder: Path) -> tuple[dict[str, Any], list[str]]:
     found = differences(
         {**written, "proofs": _stable(written["proofs"])}, {**again, "proofs": _stable(proofs)}
     )
+    found += _certificate(plan, folder)
     if not found:
         write_report(written, folder)
     return written, found
+
+
+def _certificate(plan: Plan, folder: Path) -> list[str]:
+    """What is wrong with the certificate that the plan names."""
+    from cratous.services.planning.assign_certificate import read, verify
+
+    if not plan.certificate:
+        return []
+    try:
+        body = read(folder / CERTIFICATE_NAME)
+    except BadInput as error:
+        return [f"{CERTIFICATE_NAME}: {error}"]
+    if body.get("sha256") != plan.certificate:
+        return [f"{CERTIFICATE_NAME}: it is not the one that the plan names"]
+    verdict = verify(body)
+    if verdict.wrong:
+        return [f"{CERTIFICATE_NAME}: {verdict.wrong}"]
+    if (verdict.status, verdict.bound) != (plan.status, plan.bound):
+        return [f"{CERTIFICATE_NAME}: the plan claims something else than it"]
+    return []
 
 
 def _stable(proofs: dict[str, Any]) -> dict[str, Any]:

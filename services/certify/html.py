@@ -6,7 +6,9 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
+from cratous.services.certify.gantt import gantt, plan_bars, plan_rows, tree
 from cratous.services.certify.picture import map_view, separation_view, time_view
+from cratous.spec.algebra import parse
 
 
 @cache
@@ -43,6 +45,19 @@ def margin(row: dict[str, Any]) -> str:
 def render(report: dict[str, Any]) -> str:
     """The page; every text from the report is escaped."""
     text: str = _template().render(
-        r=report, map=map_view(report), time=time_view(report), near=separation_view(report)
-    )
+        r=report, map=map_view(report), time=time_view(report), near=separation_view(report),
+        gantt=_gantt(report), tree=_tree(report),
+    )  # fmt: skip
     return text
+
+
+def _gantt(report: dict[str, Any]) -> str:
+    plan = report["plan"]
+    vehicles = [vehicle["id"] for vehicle in report["mission"]["vehicles"]]
+    return gantt(plan_bars(plan), vehicles, plan_rows(plan))
+
+
+def _tree(report: dict[str, Any]) -> str:
+    """The tree of the relations; nothing where there are none."""
+    text = report["mission"]["relations"].strip()
+    return tree(parse(text)) if text else ""

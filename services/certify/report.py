@@ -25,6 +25,7 @@ from cratous.spec.plan import Plan
 
 FORMAT = "cratous-report/1"
 LOG_NAME = "log.sqlite"
+CERTIFICATE_NAME = "certificate.json"
 LIMITS = (
     "Python and z3 are not qualified tools, so this is evidence, not certification credit.",
     "Proofs hold for the kernels in real arithmetic; the compiled kernels compute in doubles.",

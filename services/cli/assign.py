@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from cratous.spec.assignment import CUMULATIVE, MINMAX, Cost
+from cratous.spec.assignment import CUMULATIVE, MINMAX, AssignmentProblem, Cost, Solution
 from cratous.spec.errors import BadInput
 
 
@@ -20,11 +20,17 @@ from cratous.spec.errors import BadInput
 @click.option("--gap", type=float, default=0.0, help="Stop at this gap, e.g. 0.05.")
 @click.option("--seed", type=int, default=1)
 @click.option("--certificate", type=click.Path(path_type=Path), default=None)
+@click.option(
+    "--svg",
+    type=click.Path(path_type=Path),
+    default=None,
+    help="Draw the schedule and the tree of the relations.",
+)
 @click.option("--progress", is_flag=True, help="Print incumbent and gap as they change.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def assign(
     file: Path, semantics: str, cost: str, seconds: float | None, nodes: int | None, gap: float,
-    seed: int, certificate: Path | None, progress: bool, as_json: bool,
+    seed: int, certificate: Path | None, svg: Path | None, progress: bool, as_json: bool,
 ) -> int:  # fmt: skip
     """Solve an assignment problem.
 
@@ -57,6 +63,8 @@ def assign(
         raise RuntimeError(f"the certificate does not hold: {verdict.wrong}")
     if certificate is not None:
         write(certificate, body)
+    if svg is not None:
+        svg.write_text(_picture(problem, solution), encoding="utf-8")
     reasons, sure = why_infeasible(problem) if solution.status == "infeasible" else ((), True)
     code = _code(solution.status, solution.gap, gap, nodes, seconds)
     if as_json:
@@ -81,6 +89,17 @@ def assign(
         for reason in reasons:
             click.echo(f"  {reason}")
     return code
+
+
+def _picture(problem: AssignmentProblem, solution: Solution) -> str:
+    from cratous.services.certify.gantt import bars_of, both, gantt, tree
+    from cratous.services.planning.assign_problem import binding, parts, term_of
+    from cratous.services.planning.assign_replay import branch_of
+
+    some = parts(problem)[0]
+    part = branch_of(problem, solution.steps) if solution.steps else some[0]
+    chart = gantt(bars_of(problem, solution.steps), problem.vehicles, binding(problem, part))
+    return both(chart, tree(term_of(problem)))
 
 
 def _code(

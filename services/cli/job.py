@@ -53,6 +53,17 @@ def plan_and_check(mission: Mission, bus: Any) -> tuple[Plan, list[Verdict]]:
     return plan, check_plan(mission, plan)
 
 
+def write_certificate(bus: Any, file: Path) -> None:
+    """Write the certificate of the plan that was made on a bus; NoPlan if it has none."""
+    from cratous.services.planning.assign_certificate import write
+    from cratous.services.planning.plan import certificate_of
+
+    certificate = certificate_of(bus)
+    if certificate is None:
+        raise NoPlan(("nothing was assigned, so there is no certificate",))
+    write(file, certificate)
+
+
 def folder_name(mission: Mission) -> str:
     """Name of the output folder: the mission's, with the number of the variant."""
     return f"{mission.name}-seed{mission.seed}" if mission.seed else mission.name
@@ -105,7 +116,13 @@ def run_mission(
     from cratous import __version__
     from cratous.core import ledger
     from cratous.services.certify.proofs import inventory
-    from cratous.services.certify.report import LOG_NAME, build_report, mission_hash, write_report
+    from cratous.services.certify.report import (
+        CERTIFICATE_NAME,
+        LOG_NAME,
+        build_report,
+        mission_hash,
+        write_report,
+    )
     from cratous.services.certify.verdicts import constraint_rows
     from cratous.services.flight.loop import fly
     from cratous.services.log import LogWriter
@@ -130,6 +147,8 @@ def run_mission(
         plan, checks = plan_and_check(mission, bus)
         tell(plan_line(plan, checks))
         refuse_bad_plan(checks)
+        if plan.certificate:
+            write_certificate(bus, folder / CERTIFICATE_NAME)
         writer.note("plan", to_data(plan))
         writer.note("proofs", {"seal": proofs["seal"], "problems": proofs["problems"]})
         monitor = Monitor(mission, plan, on_violation=lambda v: tell(f"VIOLATION {sentence(v)}"))
@@ -175,9 +194,21 @@ def plan_line(plan: Plan, checks: list[Verdict]) -> str:
     outcome = worst([check.outcome for check in checks])
     good = sum(check.outcome is Outcome.HOLDS for check in checks)
     return (
-        f"plan: {'; '.join(chains)}; {plan.makespan_ms / 1000:.1f} s; "
+        f"plan: {'; '.join(chains)}; {plan.makespan_ms / 1000:.1f} s, {standing(plan)}; "
         f"{good} of {len(checks)} constraints hold ({outcome})"
     )
+
+
+def standing(plan: Plan) -> str:
+    """How good a plan is, as far as its certificate shows."""
+    from cratous.services.planning.plan import cost_of
+
+    if plan.status == "optimal":
+        return "optimal"
+    if plan.bound <= 0:
+        return "no bound known"
+    cost = cost_of(plan)
+    return f"gap {100 * (cost - plan.bound) / cost:.1f} %"
 
 
 def sentence(verdict: Verdict) -> str:

@@ -14,8 +14,16 @@ from cratous.spec.guarantees import exit_code
 @click.argument("mission", type=click.Path(path_type=Path))
 @click.option("--seed", type=click.IntRange(0), default=0, help="Variant; 0 is as written.")
 @click.option("--json", "as_json", is_flag=True, help="Print plan and checks as JSON.")
+@click.option(
+    "--certificate",
+    type=click.Path(path_type=Path),
+    default=None,
+    help="Write what proves the assignment, for `cratous certify-plan`.",
+)
 @click.option("--allow-unproved", is_flag=True, help="Plan with kernels that have no proof.")
-def plan(mission: Path, seed: int, as_json: bool, allow_unproved: bool) -> int:
+def plan(
+    mission: Path, seed: int, as_json: bool, certificate: Path | None, allow_unproved: bool
+) -> int:
     """Plan a MISSION and check the plan with the proved kernels; nothing flies.
 
     Example:  cratous plan examples/relations/mission.yaml
@@ -25,14 +33,17 @@ def plan(mission: Path, seed: int, as_json: bool, allow_unproved: bool) -> int:
     """
     from cratous.core import ledger
     from cratous.services.certify.verdicts import constraint_rows
-    from cratous.services.cli.job import new_bus, plan_and_check, plan_line
+    from cratous.services.cli.job import new_bus, plan_and_check, plan_line, write_certificate
     from cratous.services.cli.show import margin_text, table
     from cratous.services.loading import load
     from cratous.services.records import to_data
 
     standing = ledger.require(allow_unproved=allow_unproved)
     loaded = load(mission, seed)
-    made, checks = plan_and_check(loaded, new_bus())
+    bus = new_bus()
+    made, checks = plan_and_check(loaded, bus)
+    if certificate is not None:
+        write_certificate(bus, certificate)
     code = exit_code([check.outcome for check in checks])
     if standing.problems and code == 0:
         code = 3  # no verdict of an unproved kernel is better than unknown

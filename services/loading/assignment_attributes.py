@@ -18,9 +18,9 @@ from dataclasses import dataclass
 
 from cratous.spec.errors import BadInput
 
-NODES_PER_MS = 5
+NODES_PER_MS = 100
 """Nodes that the search of missions makes in a millisecond, on a slow core."""
-NO_LIMIT = 10_000_000
+NO_LIMIT = 100_000_000
 KNOWN = ("CostFunction", "NumberNodesMaximum", "Deadline_ms", "Semantics")
 
 

@@ -12,6 +12,7 @@ from math import radians
 from pathlib import Path
 from typing import Any
 
+from cratous.services.loading.assignment_attributes import NODES_PER_MS
 from cratous.services.loading.checks import mission_problems, start_problems, too_many_instances
 from cratous.services.loading.document import Document, item_key, read_document
 from cratous.services.loading.places import Places
@@ -107,7 +108,18 @@ def _mission(document: Document, seed: int) -> Mission:
         instances=_instances(document, vehicles),
         simulation=_simulation(data.get("simulation", {})),
         seed=seed,
+        node_limit=_nodes(data.get("search", {})),
+        gap=float(data.get("search", {}).get("gap", 0.0)),
     )
+
+
+def _nodes(search: dict[str, Any]) -> int | None:
+    """The nodes of the assignment search; a deadline is a number of them."""
+    nodes = search.get("nodes")
+    if "deadline_ms" in search:
+        patience = int(search["deadline_ms"]) * NODES_PER_MS
+        return patience if nodes is None else min(patience, int(nodes))
+    return None if nodes is None else int(nodes)
 
 
 def _instances(document: Document, vehicles: tuple[Vehicle, ...]) -> tuple[int, ...]:

@@ -1,16 +1,18 @@
 """Solving an assignment problem: anytime, with a bound, and with what proves it.
 
-Plain branches go to the compiled search; any other (time limits between tasks, laps) to the search
-of `core.assignment`, whose leaves settle all times. A solution is returned only if the proved
-checker accepts its schedule (`replayed`). `optimal` is said only of what `assign_certificate` can
-show; that is done by `certified` there, so here a status is `feasible` until then.
+The arrays of a branch go to the compiled search. Where they do not say all of it (upper limits
+between tasks, laps), each solution gets its times from a `Settler`, bounds of the arrays hold all
+the same, and what is left between is listed chain by chain (`core.assignment_chains`). A solution
+is returned only if the proved checker accepts its schedule (`replayed`). `optimal` is said only of
+what `assign_certificate` can show; that is done by `certified` there, so here a status is
+`feasible` until then.
 """
 
 from __future__ import annotations
 
 import functools
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from cratous.core.assignment_anytime import (
@@ -20,21 +22,36 @@ from cratous.core.assignment_anytime import (
     estimate,
     greedy,
     improve,
+    rebuilt,
     settle_bound,
     timed,
 )
+from cratous.core.assignment_chains import chains_below
 from cratous.core.assignment_instance import TASKS_MAX, Instance
 from cratous.core.assignment_order import by_sets
 from cratous.core.assignment_refute import DEALS_TASKS, look_ahead, refute
-from cratous.services.planning import assign_general
-from cratous.services.planning.assign_problem import Part, arrays, check, is_compiled, parts
+from cratous.core.assignment_settle import Settler
+from cratous.services.planning.assign_problem import (
+    Part,
+    arrays,
+    check,
+    is_exact,
+    parts,
+    settler,
+)
 from cratous.services.planning.assign_replay import replayed
 from cratous.spec.assignment import ORDER, TIME, AssignmentProblem, Choice, Solution, Step
 
 WORK = 16_000_000
 """Tasks that are decoded in one annealing: steps times tasks."""
 ROUNDS, ROUNDS_MAX = 12, 10_000
-"""Annealings of a problem of many tasks without and with a limit."""
+"""Improvements of a problem of many tasks without and with a limit."""
+REBUILDS, REBUILD_NODES, HEATS = 150_000, 40, (0.0, 0.01, 0.003, 0.03)
+"""Rounds times tasks of one improvement, what a round counts as, and first temperatures."""
+FIRST_NODES = 200_000
+"""Nodes spent on finding a first solution where the limit is lower."""
+CHAIN_NODES = 5_000_000
+"""Nodes spent on listing chains where no limit is given."""
 DEALS_SURE = 16
 """Instances of so many tasks are refuted at once; larger ones from 90 % of the cost upwards."""
 
@@ -59,6 +76,9 @@ class _Run:
     problem: AssignmentProblem
     limits: Limits
     progress: Progress | None
+    branches: tuple[Part, ...]
+    made: list[Instance]
+    settlers: list[Settler | None]
     began: float = field(default_factory=time.monotonic)
     nodes: int = 0
     states: int = 0
@@ -75,11 +95,21 @@ class _Run:
         return late or (limits.nodes is not None and nodes > share * limits.nodes)
 
     def better(self, cost: int, branch: int, moves: Moves) -> None:
-        """Take a solution if it is the best so far."""
-        if cost < self.cost:
-            self.cost, self.best = cost, (branch, moves)
-            self.trace.append((self.nodes, cost))
-            self.tell()
+        """Take a solution if it is the best so far; cost: as far as the arrays know."""
+        if cost >= self.cost:
+            return
+        rules = self.settlers[branch]
+        if rules is not None:
+            cost, times = rules.settle(moves, self.cost)
+            if times is None:
+                return
+        self.cost, self.best = cost, (branch, moves)
+        self.trace.append((self.nodes, cost))
+        self.tell()
+
+    def late(self, nodes: int) -> bool:
+        """Whether the time is up."""
+        return time.monotonic() - self.began > (self.limits.seconds or 0.0)
 
     def tell(self) -> None:
         if self.progress is not None:
@@ -99,12 +129,29 @@ def solve(
     if that was proved, else `unknown`.
     """
     check(problem)
-    warm()
-    run = _Run(problem, limits or Limits(), progress)
-    branches, all_of_them = parts(problem)
-    if any(not is_compiled(problem, part) and not _large(part) for part in branches):
-        return assign_general.solve(problem, branches, all_of_them, run.limits.nodes)
+    run, proofs = _searched(problem, limits or Limits(), *parts(problem), progress)
+    return _solution(run, proofs, True)
+
+
+def search(
+    problem: AssignmentProblem, limits: Limits, branches: Sequence[Part], complete: bool
+) -> Solution:
+    """`solve` for these branches instead of the problem's own; the schedule is not replayed."""
+    return _solution(*_searched(problem, limits, tuple(branches), complete, None), False)
+
+
+def _searched(
+    problem: AssignmentProblem, limits: Limits, branches: tuple[Part, ...], complete: bool,
+    progress: Progress | None,
+) -> tuple[_Run, list[Proof]]:  # fmt: skip
+    if limits.seconds is not None:
+        warm()
     made = [arrays(problem, part) for part in branches]
+    rules = [
+        None if is_exact(problem, part) else settler(problem, part, instance)
+        for part, instance in zip(branches, made, strict=True)
+    ]
+    run = _Run(problem, limits, progress, branches, made, rules)
     firsts: list[Moves | None] = []
     for k, instance in enumerate(made):
         nodes, moves = greedy(instance)
@@ -112,34 +159,63 @@ def solve(
         firsts.append(moves)
         if moves is not None:
             run.better(improve(instance, moves, 0, run.limits.seed)[0], k, moves)
-    if run.limits.nodes != 0:
+    if run.limits.nodes != 0 and not run.near():
         _anneal(run, made, firsts)
-    proofs = _prove(run, made) if run.limits.nodes != 0 else [Proof("estimate", 0) for _ in made]
-    run.bound = min((p.bound for p in proofs), default=0) if all_of_them else 0
-    return _solution(run, branches, made, proofs)
+        proofs = _prove(run, made)
+    else:
+        proofs = [Proof("estimate", estimate(instance)) for instance in made]
+    _list_chains(run, proofs)
+    run.bound = min((p.bound for p in proofs), default=NONE) if complete else 0
+    return run, proofs
+
+
+def _list_chains(run: _Run, proofs: list[Proof]) -> None:
+    """What lies between the bound and the cost where the arrays do not say all of a branch.
+
+    If there is no solution yet, one is sought beyond the limit of nodes, though not for ever.
+    """
+    open_ones = [
+        k for k, rules in enumerate(run.settlers)
+        if rules is not None and rules.ahead is not None and proofs[k].bound < run.cost
+    ]  # fmt: skip
+    for k in sorted(open_ones, key=lambda k: proofs[k].bound):
+        rules, most = run.settlers[k], run.limits.nodes
+        left = CHAIN_NODES if most is None else max(0, most - run.nodes)
+        if run.best is None:
+            left = max(left, FIRST_NODES)
+        elif run.near() or run.over():
+            return
+        assert rules is not None
+        doubts = rules.unsure
+        late = None if run.limits.seconds is None else run.late
+        found = chains_below(run.made[k], run.cost, rules.judge, left, late, rules.ahead)
+        run.nodes += found.nodes
+        if found.moves is not None:
+            run.better(found.cost, k, found.moves)
+        if found.complete and rules.unsure == doubts:
+            proofs[k] = Proof("chains", max(found.cost, proofs[k].bound), found.nodes)
 
 
 @functools.cache
 def warm() -> None:
     """Have everything compiled, so that no limit of time is spent on that."""
-    far, near = (None, 1, 1), (1, None, 1)
+    # four tasks: fewer would be run by CPython
+    rows = tuple(tuple(None if a == b else 1 for b in range(4)) for a in range(5))
     for semantics in (TIME, ORDER):
         p = AssignmentProblem(
-            "", (1,), (0,), tuple(Choice(t, 1, 1, (1,)) for t in (1, 2, 3)),
-            ((far, near, (1, 1, None), (1, 1, 1)),), ".(p1 p2 p3)", semantics=semantics,
+            "", (1,), (0,), tuple(Choice(t, 1, 1, (1,)) for t in (1, 2, 3, 4)), (rows,),
+            ".(p1 p2 p3 p4)", semantics=semantics,
         )  # fmt: skip
         i = arrays(p, parts(p)[0][0])
         _, moves = greedy(i)
         assert moves is not None
         improve(i, moves, 1, 1)
-        refute(i, 7, 1)
+        rebuilt(i, moves, 1, 1)
+        refute(i, 9, 1)
+        chains_below(i, 9, lambda moves, limit: (limit, len(moves)), 1_000)
         if semantics == ORDER:
             by_sets(i)
         estimate(i, look_ahead(i))
-
-
-def _large(part: Part) -> bool:
-    return part.plain
 
 
 def _anneal(run: _Run, made: list[Instance], firsts: list[Moves | None]) -> None:
@@ -162,11 +238,12 @@ def _anneal(run: _Run, made: list[Instance], firsts: list[Moves | None]) -> None
 
 
 def _go_on(run: _Run, made: list[Instance]) -> None:
-    """Many tasks: improve the best again and again, cooler and warmer, until a limit is reached.
+    """Many tasks: take strings of tasks out of the best and put them in again, now and then anneal,
+    cooler and warmer, until a limit is reached.
 
     Refuting takes over below that, so there only the share of time is spent that it leaves over.
     """
-    rounds = 0
+    rounds, gains = 0, [1, 1]
     while run.best is not None and made[run.best[0]].tasks > DEALS_TASKS and rounds < ROUNDS_MAX:
         k, moves = run.best
         spent = 1.0 if made[k].tasks > TASKS_MAX else 0.6
@@ -176,9 +253,25 @@ def _go_on(run: _Run, made: list[Instance]) -> None:
         if unlimited and rounds >= ROUNDS:
             return
         rounds += 1
-        hot = (0.5, 0.2, 1.0)[rounds % 3] / made[k].tasks
-        steps = (WORK << min(rounds // 3, 2)) // made[k].tasks
-        _try(run, made[k], k, moves, steps, 3 + rounds, hot)
+        # what gained more the last time it was tried; the other one every third time
+        anneals, before = (gains[1] > gains[0]) != (rounds % 3 == 0), run.cost
+        if anneals:
+            hot = (0.5, 0.2, 1.0)[rounds % 3] / made[k].tasks
+            steps = (WORK << min(rounds // 3, 2)) // made[k].tasks
+            _try(run, made[k], k, moves, steps, 3 + rounds, hot)
+        else:
+            _rebuild(run, made[k], k, moves, rounds)
+        gains[anneals] = before - run.cost
+
+
+def _rebuild(run: _Run, instance: Instance, k: int, moves: Moves, again: int) -> None:
+    """Some rounds of taking out and putting in again, within what is left of the node limit."""
+    rounds = REBUILDS // instance.tasks
+    if run.limits.nodes is not None:
+        rounds = min(rounds, max(0, run.limits.nodes - run.nodes) // REBUILD_NODES)
+    cost, better = rebuilt(instance, moves, rounds, run.limits.seed + again, HEATS[again % 4])
+    run.nodes += max(1, rounds) * REBUILD_NODES
+    run.better(cost, k, better)
 
 
 def _try(
@@ -186,7 +279,9 @@ def _try(
 ) -> tuple[int, Moves]:
     """Anneal from a solution, within what is left of the node limit; steps count as nodes."""
     if run.limits.nodes is not None:
-        steps = min(steps, max(0, run.limits.nodes - run.nodes))
+        # up to that many tasks refuting is worth the larger share
+        share = 0.3 if instance.tasks <= DEALS_TASKS else 1.0
+        steps = min(steps, max(0, int(share * run.limits.nodes) - run.nodes))
     if run.over():
         steps = 0
     hot = min(hot, 2.0 / instance.tasks)
@@ -222,26 +317,23 @@ def _prove(run: _Run, made: list[Instance]) -> list[Proof]:
     return proofs
 
 
-def _solution(
-    run: _Run, branches: tuple[Part, ...], made: list[Instance], proofs: list[Proof]
-) -> Solution:
+def _solution(run: _Run, proofs: list[Proof], replay: bool) -> Solution:
     nodes, states, trace = run.nodes, run.states, tuple(run.trace)
     if run.best is None:
         status = "infeasible" if run.bound >= NONE else "unknown"
         return Solution(status, (), None, run.bound, nodes, states, trace, proof=proofs)
-    k, moves = run.best
-    steps = _steps(run.problem, branches[k], made[k], moves)
-    cost = replayed(run.problem, steps)
+    steps = _steps(run, *run.best)
+    cost = replayed(run.problem, steps) if replay else run.cost
     known = min(run.bound, cost)
     return Solution("feasible", steps, cost, known, nodes, states, trace, proof=proofs)
 
 
-def _steps(
-    problem: AssignmentProblem, part: Part, instance: Instance, moves: Moves
-) -> tuple[Step, ...]:
-    """The steps with their earliest times; by start, or as assigned where order binds no times."""
+def _steps(run: _Run, k: int, moves: Moves) -> tuple[Step, ...]:
+    """The steps with their best times; by start, or as assigned where order binds no times."""
+    problem, part, instance, rules = run.problem, run.branches[k], run.made[k], run.settlers[k]
+    times = timed(instance, moves) if rules is None else rules.settle(moves, NONE)[1]
     found = []
-    for v, o, arrive, start, end in timed(instance, moves):
+    for v, o, arrive, start, end in times or ():
         choice = problem.choices[part.choices[o]]
         found.append(
             Step(problem.vehicles[v], choice.task_id, choice.option_id, arrive, start, end)

@@ -3,7 +3,8 @@
 The file holds the problem, the steps, the claim, and per branch a proof: `layers` (the origins of
 all states from which less could still have been reached; the checker makes the states anew and
 asks for every child that is not listed), `tables` (the checker makes the tables over sets anew),
-`estimate` (the bound of the first state), or `solvers` (z3 and cvc5 find nothing below the cost).
+`estimate` (the bound of the first state), `chains` (the checker lists all chains below it anew), or
+`solvers` (z3 and cvc5 find nothing below the cost).
 A solution is called optimal only if the proved bound is its cost.
 """
 
@@ -21,9 +22,10 @@ from typing import Any
 import numpy as np
 
 from cratous.core.assignment_anytime import NONE, Proof, estimate
+from cratous.core.assignment_chains import chains_below
 from cratous.core.assignment_check import least_cost
 from cratous.core.assignment_order import by_sets, is_sets
-from cratous.services.planning.assign_problem import arrays, check, is_compiled, parts
+from cratous.services.planning.assign_problem import Part, arrays, check, parts, settler
 from cratous.services.planning.assign_replay import replayed
 from cratous.services.planning.assign_solvers import none_below, schedule_holds
 from cratous.spec.assignment import AssignmentProblem, Choice, Cost, Solution, Step
@@ -31,6 +33,8 @@ from cratous.spec.errors import BadInput
 
 FORMAT = "cratous-assignment-certificate/1"
 BYTES_MAX = 50_000_000
+CHAINS_MAX = 20_000_000
+"""Nodes of the longest listing of chains that is done anew."""
 SOLVER_TASKS = 8
 """Problems of at most so many tasks are put to z3 and cvc5 where nothing else proves them."""
 
@@ -45,13 +49,22 @@ class Verdict:
     wrong: str = ""
 
 
-def certified(problem: AssignmentProblem, found: Solution) -> tuple[Solution, dict[str, Any]]:
-    """The solution with the status that its certificate supports, and the certificate."""
+def certified(
+    problem: AssignmentProblem, found: Solution, solvers: bool = True
+) -> tuple[Solution, dict[str, Any]]:
+    """The solution with the status that its certificate supports, and the certificate.
+
+    solvers: whether z3 and cvc5 may be asked where nothing else proves the optimum.
+    """
     proofs = list(found.proof) if isinstance(found.proof, list) else []
     written = [_proof(proof) for proof in proofs]
+    for proof in written:
+        if proof["kind"] == "chains" and found.cost is not None:
+            # nothing more has to be shown than the cost
+            proof["bound"] = min(proof["bound"], found.cost)
     low = min((w["bound"] for w in written), default=0)
     # where the search says that nothing is cheaper, but nothing that can be checked does
-    if found.cost is not None and low < found.cost <= found.bound:
+    if solvers and found.cost is not None and low < found.cost <= found.bound:
         few = len(problem.tasks) <= SOLVER_TASKS
         ends_only = not (problem.cost.distance or problem.cost.energy)
         if few and ends_only and none_below(problem, found.cost)[0]:
@@ -63,7 +76,7 @@ def certified(problem: AssignmentProblem, found: Solution) -> tuple[Solution, di
         status = "optimal" if found.cost <= low else "feasible"
     body: dict[str, Any] = {
         "format": FORMAT,
-        "problem": asdict(problem),
+        "problem": {**asdict(problem), "unable": sorted(problem.unable)},
         "claim": {"status": status, "cost": found.cost, "bound": low},
         "steps": [asdict(step) for step in found.steps],
         "proofs": written,
@@ -82,6 +95,8 @@ def certified(problem: AssignmentProblem, found: Solution) -> tuple[Solution, di
 
 def _proof(proof: Proof) -> dict[str, Any]:
     found: dict[str, Any] = {"kind": proof.kind, "bound": proof.bound}
+    if proof.kind == "chains":
+        found["nodes"] = proof.limit
     if proof.kind == "layers":
         small = [np.ascontiguousarray(o, np.int32).tobytes() for o in proof.origins]
         found["limit"] = proof.limit
@@ -169,34 +184,44 @@ def _bounds(
     if len(proofs) != len(branches) or not all_of_them:
         return 0, "there is not one proof for each branch"
     low: int = NONE
-    shown: int
     for number, (branch, proof) in enumerate(zip(branches, proofs, strict=True)):
-        relaxed = branch if branch.plain else _plain(branch)
-        if problem.semantics != "time" and not is_compiled(problem, relaxed):
-            low = 0
-            continue
-        instance = arrays(problem, relaxed)
-        if proof["kind"] == "layers":
-            shown, wrong = least_cost(instance, int(proof["limit"]), _origins(proof))
-        elif proof["kind"] == "tables":
-            shown, wrong = (
-                (by_sets(instance)[0], "") if is_sets(instance) else (0, "no tables here")
-            )
-        elif proof["kind"] == "estimate":
-            shown, wrong = estimate(instance), ""
-        else:
-            shown, wrong = 0, ""
+        shown, wrong = _shown(problem, branch, proof)
         if wrong:
             return 0, f"branch {number + 1}: {wrong}"
         low = min(low, shown)
     return low, ""
 
 
-def _plain(branch: Any) -> Any:
-    from cratous.core.assignment_instance import is_plain
+def _shown(problem: AssignmentProblem, branch: Part, proof: dict[str, Any]) -> tuple[int, str]:
+    """(what the proof of one branch shows, what is wrong with it)."""
+    instance = arrays(problem, branch)
+    if proof["kind"] == "layers":
+        return least_cost(instance, int(proof["limit"]), _origins(proof))
+    if proof["kind"] == "tables":
+        return (by_sets(instance)[0], "") if is_sets(instance) else (0, "no tables here")
+    if proof["kind"] == "estimate":
+        return estimate(instance), ""
+    if proof["kind"] == "chains":
+        return _no_chain_below(problem, branch, int(proof["bound"]), int(proof["nodes"]))
+    return 0, "no such kind of proof"
 
-    rows = tuple(row for row in branch.rows if is_plain((row,)))
-    return replace(branch, rows=rows, plain=True)
+
+def _no_chain_below(
+    problem: AssignmentProblem, branch: Part, bound: int, nodes: int
+) -> tuple[int, str]:
+    """All chains listed anew: none of them costs less than the bound."""
+    instance = arrays(problem, branch)
+    rules = settler(problem, branch, instance)
+    if rules.ahead is None:
+        return 0, "too many tasks for listing chains"
+    # from the bound on less is listed than by the search; twice as much is another problem
+    most = 2 * min(nodes, CHAINS_MAX) + 1_000
+    found = chains_below(instance, bound, rules.judge, most, ahead=rules.ahead)
+    if found.moves is not None:
+        return 0, f"chains of cost {found.cost} were found"
+    if not found.complete or rules.unsure:
+        return 0, "not all chains could be looked at"
+    return bound, ""
 
 
 def _origins(proof: dict[str, Any]) -> list[np.ndarray]:
@@ -217,6 +242,8 @@ def _problem(data: dict[str, Any]) -> AssignmentProblem:
         Choice(**{**c, "vehicles": tuple(c["vehicles"])}) for c in data["choices"]
     )
     fields["cost"] = Cost(**data["cost"])
+    fields["done"] = tuple(tuple(one) for one in data.get("done", ()))
+    fields["unable"] = frozenset(data.get("unable", ()))
     for name in ("vehicles", "ready_ms"):
         fields[name] = tuple(data[name])
     for name in ("release_ms", "due_ms"):

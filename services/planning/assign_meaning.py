@@ -44,14 +44,33 @@ def place(task: int) -> Any:
     return z3.Int(f"o{task}")
 
 
-def meaning(term: algebra.Term, semantics: str = TIME) -> list[tuple[str, Any]]:
-    """What a term without `+` says, as (words, formula), each timing for its tasks alone."""
-    found: list[tuple[str, Any]] = []
+Said = list[tuple[str, Any, int]]
+"""(words, formula, the task that it is about)."""
+
+
+def meaning(
+    term: algebra.Term, semantics: str = TIME, done: Iterable[int] = ()
+) -> list[tuple[str, Any]]:
+    """What a term without `+` says, as (words, formula), each timing for its tasks alone.
+
+    done: tasks that are flown; what was said of them is past.
+    """
+    found: Said = []
     _say(term, semantics == TIME, found)
-    return found
+    gone = frozenset(done)
+    return [(text, formula) for text, formula, task in found if task not in gone]
 
 
-def _say(term: algebra.Term, timed: bool, found: list[tuple[str, Any]]) -> tuple[int, ...]:
+def past(problem: AssignmentProblem) -> list[Any]:
+    """The times and places of the tasks that are flown."""
+    said: list[Any] = []
+    for number, (task, begun, ended) in enumerate(problem.done):
+        said += [start(task) == begun, end(task) == ended]
+        said.append(place(task) == number - len(problem.done))
+    return said
+
+
+def _say(term: algebra.Term, timed: bool, found: Said) -> tuple[int, ...]:
     """Add what a term says; the tasks that no timing inside it bounds."""
     if isinstance(term, algebra.Atom):
         free: tuple[int, ...] = (term.task,)
@@ -68,23 +87,25 @@ def _say(term: algebra.Term, timed: bool, found: list[tuple[str, Any]]) -> tuple
                 group = tasks(before)
                 for task in inner[k + 1]:
                     after_it, within = _since(term.op, group, task)
-                    found.append(
-                        (f"{quote(term)}: p{task} starts {t1} ms after it may", after_it(t1))
-                    )
-                    found.append((f"{quote(term)}: p{task} ends within {t2} ms", within(t2)))
+                    early = f"{quote(term)}: p{task} starts {t1} ms after it may"
+                    found.append((early, after_it(t1), task))
+                    late = f"{quote(term)}: p{task} ends within {t2} ms"
+                    found.append((late, within(t2), task))
             return inner[0]
     if term.suffix is None:
         return free
     for task in free:
         t1, t2 = term.suffix.t1_ms, term.suffix.t2_ms
-        found.append((f"{quote(term)}: p{task} starts at {t1} ms or later", start(task) >= t1))
-        found.append((f"{quote(term)}: p{task} ends at {t2} ms or earlier", end(task) <= t2))
+        early = f"{quote(term)}: p{task} starts at {t1} ms or later"
+        found.append((early, start(task) >= t1, task))
+        late = f"{quote(term)}: p{task} ends at {t2} ms or earlier"
+        found.append((late, end(task) <= t2, task))
     return ()
 
 
 def _in_order(
     term: algebra.Op, before: algebra.Term, after: algebra.Term, timed: bool,
-    found: list[tuple[str, Any]],
+    found: Said,
 ) -> None:  # fmt: skip
     group, all_of = tasks(before), term.op == algebra.SEQUENTIAL
     join = z3.And if all_of else z3.Or
@@ -94,7 +115,7 @@ def _in_order(
         else:
             said = join([place(task) > place(a) for a in group])
         event = "ends" if all_of else "begins"
-        found.append((f"{quote(term)}: p{task} not before {quote(before)} {event}", said))
+        found.append((f"{quote(term)}: p{task} not before {quote(before)} {event}", said, task))
 
 
 def _since(
@@ -117,7 +138,7 @@ def constraints(problem: AssignmentProblem) -> tuple[list[Named], list[Part]]:
     branches = list(parts(problem)[0])
     said: dict[str, list[tuple[int, Any]]] = {}
     for k, branch in enumerate(branches):
-        for text, formula in meaning(branch.term, problem.semantics):
+        for text, formula in meaning(branch.term, problem.semantics, _gone(problem)):
             said.setdefault(text, []).append((k, formula))
         for task, at in problem.release_ms:
             if task in branch.tasks:
@@ -130,6 +151,10 @@ def constraints(problem: AssignmentProblem) -> tuple[list[Named], list[Part]]:
     return [Named(text, tuple(formulas)) for text, formulas in said.items()], branches
 
 
+def _gone(problem: AssignmentProblem) -> list[int]:
+    return [task for task, _, _ in problem.done]
+
+
 def choice(k: int, v: int) -> Any:
     """Choice number k is flown by vehicle number v."""
     return z3.Bool(f"c{k}_{v}")
@@ -137,7 +162,7 @@ def choice(k: int, v: int) -> Any:
 
 def flights(problem: AssignmentProblem, branch: Part) -> list[Any]:
     """What vehicles can fly in a branch: every task once, in chains, with travel and waiting."""
-    p, said = problem, []
+    p, said = problem, past(problem)
     last = len(p.choices)
     able = [
         (k, v) for k in branch.choices for v, u in enumerate(p.vehicles) if u in p.choices[k].vehicles

@@ -2,13 +2,15 @@
 
 Every mistake is named (BadInput with the item); nothing is repaired. A branch (one choice of every
 `+`) is *plain* if its rows bound starts from below and single ends from above and waits are free;
-only those go to the compiled search (`core.assignment_instance`).
+then its arrays (`core.assignment_instance`) say all of it. Of any other they say less: what costs
+less than a bound of the arrays costs less in the branch.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import functools
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import islice
 
 import numpy as np
@@ -21,23 +23,38 @@ from cratous.core.assignment_instance import (
     instance,
     is_plain,
 )
+from cratous.core.assignment_refute import look_ahead
+from cratous.core.assignment_settle import Settler
+from cratous.core.timing import runs_forward
 from cratous.spec import algebra, algebra_meaning
 from cratous.spec.assignment import ORDER, TIME, AssignmentProblem, Rows
 from cratous.spec.errors import BadInput
-from cratous.spec.plan import AFTER_END, AFTER_START, NOT_AFTER, NOT_BEFORE, Row
+from cratous.spec.plan import (
+    AFTER_END,
+    AFTER_START,
+    NOT_AFTER,
+    NOT_BEFORE,
+    WITHIN_END,
+    WITHIN_START,
+    Row,
+)
 
 BRANCHES_MAX = 4096
 
 
 @dataclass(frozen=True)
 class Part:
-    """One branch. term: without `+`; choices: indices of the problem's choices of its tasks."""
+    """One branch. term: without `+`; tasks: those still to do; rows: about them; orders: so many of
+    the rows, the first, are order alone; choices: indices of the problem's choices of its tasks;
+    done: (task, start, end) of what is flown."""
 
     term: algebra.Term
     tasks: tuple[int, ...]
     rows: tuple[Row, ...]
+    orders: int
     choices: tuple[int, ...]
     plain: bool
+    done: tuple[tuple[int, int, int], ...] = ()
 
 
 def check(problem: AssignmentProblem) -> None:
@@ -66,11 +83,7 @@ def check(problem: AssignmentProblem) -> None:
             _refuse(
                 v_id not in p.vehicles, "no such vehicle", f"{item}.vehicles", str(p.vehicles), v_id
             )
-    for task in p.tasks:
-        able = [c for c in p.choices if c.task_id == task and c.vehicles]
-        _refuse(
-            not able, f"no vehicle is eligible for task {task}", "choices", "one or more", "none"
-        )
+    _done(p)
     for name, value in vars(p.cost).items():
         _whole(value, f"cost.{name}")
     for name in ("release_ms", "due_ms"):
@@ -91,6 +104,21 @@ def check(problem: AssignmentProblem) -> None:
     )  # fmt: skip
     _timeless(p)
     _range(p)
+
+
+def _done(p: AssignmentProblem) -> None:
+    """Refuse flown tasks that are to be flown, run backwards, or begin after vehicles set off."""
+    _twice([task for task, _, _ in p.done], "done")
+    for task, start, end in p.done:
+        _refuse(task in p.tasks, "a task is flown and to be flown", "done", "one of both", task)
+        _whole(start, f"done, task {task}")
+        _whole(end, f"done, task {task}")
+        wrong = not runs_forward(start, end)
+        _refuse(wrong, "a task ends before it begins", "done", f"{start} or later", end)
+        _refuse(
+            not runs_forward(start, min(p.ready_ms)), "a flown task begins after a vehicle sets off", "done",
+            f"task {task} by {min(p.ready_ms)}", start,
+        )  # fmt: skip
 
 
 def _timeless(p: AssignmentProblem) -> None:
@@ -122,10 +150,12 @@ def _range(p: AssignmentProblem) -> None:
 
 def term_of(problem: AssignmentProblem) -> algebra.Term:
     """The relations as a term; AlgebraError for a text that is none, BadInput if a task is lost."""
+    known = (*(task for task, _, _ in problem.done), *problem.tasks)
     if not problem.relations.strip():
-        return algebra.parallel_of(problem.tasks)
-    term = algebra.parse(problem.relations, frozenset(problem.tasks), where=problem.name)
-    lost = sorted(set(problem.tasks) - set(algebra_meaning.tasks(term)))
+        return algebra.parallel_of(known)
+    named = problem.unable | frozenset(known)
+    term = algebra.parse(problem.relations, named, where=problem.name)
+    lost = sorted(named - set(algebra_meaning.tasks(term)))
     _refuse(
         bool(lost), "tasks are left out of the relations", "relations", "every task in the text",
         " ".join(f"p{task}" for task in lost) + " missing",
@@ -133,17 +163,79 @@ def term_of(problem: AssignmentProblem) -> algebra.Term:
     return term
 
 
+@functools.lru_cache(maxsize=8)
 def parts(problem: AssignmentProblem) -> tuple[tuple[Part, ...], bool]:
-    """The branches, and whether these are all of them."""
-    term = term_of(problem)
-    made = []
+    """The branches that some vehicles can do, and whether these are all of them.
+
+    BadInput if a task that no vehicle can do stands in every branch; none are left if what is flown
+    stands in no branch.
+    """
+    term, made = term_of(problem), []
+    able = {c.task_id for c in problem.choices if c.vehicles}
+    flown = {task for task, _, _ in problem.done}
     free = all(c.lap_ms == 0 and c.lap_max_ms is None for c in problem.choices)
+    unable: set[int] | None = None
     for resolved in islice(algebra_meaning.branches(term), BRANCHES_MAX):
-        tasks = algebra_meaning.tasks(resolved)
-        rows = (*algebra_meaning.rows(resolved), *_windows(problem, tasks))
+        inside = algebra_meaning.tasks(resolved)
+        if not flown <= set(inside):
+            continue
+        tasks = tuple(task for task in inside if task not in flown)
+        cannot = set(tasks) - able
+        unable = cannot if unable is None else unable & cannot
+        if cannot:
+            continue
+        rows, orders = _rows(problem, resolved, flown)
         choices = tuple(k for k, c in enumerate(problem.choices) if c.task_id in tasks)
-        made.append(Part(resolved, tasks, rows, choices, free and is_plain(rows)))
+        plain = free and is_plain(rows)
+        made.append(Part(resolved, tasks, rows, orders, choices, plain, problem.done))
+    for task in sorted(unable or ()):
+        _refuse(
+            not made, f"no vehicle is eligible for task {task}", "choices", "one or more", "none"
+        )
     return tuple(made), algebra_meaning.count_branches(term) <= BRANCHES_MAX
+
+
+def _rows(
+    problem: AssignmentProblem, term: algebra.Term, flown: set[int]
+) -> tuple[tuple[Row, ...], int]:
+    """The rows about tasks still to do, those of order first, and how many these are."""
+    times = {task: (start, end) for task, start, end in problem.done}
+    order = algebra_meaning.rows(untimed(term))
+    timing = algebra_meaning.rows(term)[len(order) :]
+    binds = problem.semantics == TIME
+    first = [r for row in order if row.i not in flown for r in _without(row, times, binds)]
+    rest = [r for row in timing if row.i not in flown for r in _without(row, times, True)]
+    tasks = [task for task in algebra_meaning.tasks(term) if task not in flown]
+    return (*first, *rest, *_windows(problem, tasks)), len(first)
+
+
+def untimed(term: algebra.Term) -> algebra.Term:
+    """The term without its timings."""
+    if isinstance(term, algebra.Atom):
+        return replace(term, suffix=None)
+    return replace(term, suffix=None, operands=tuple(untimed(part) for part in term.operands))
+
+
+def _without(row: Row, times: Mapping[int, tuple[int, int]], binds: bool) -> tuple[Row, ...]:
+    """What a row says once some of its group are flown; no task to come starts before those did.
+
+    binds: a row of order binds times too; else it is met by what is flown.
+    """
+    gone = [times[task] for task in row.group if task in times]
+    left = tuple(task for task in row.group if task not in times)
+    if not gone:
+        return (row,)
+    if row.kind == AFTER_END:
+        known = row._replace(kind=NOT_BEFORE, group=(), lo=max(e for _, e in gone) + row.lo)
+        return (*((known,) if binds else ()), *((row._replace(group=left),) if left else ()))
+    if row.kind == AFTER_START:
+        known = row._replace(kind=NOT_BEFORE, group=(), lo=min(s for s, _ in gone) + row.lo)
+        return (known,) if binds else ()
+    if row.kind == WITHIN_START:
+        return (row._replace(kind=NOT_AFTER, group=(), hi=min(s for s, _ in gone) + row.hi),)
+    if row.kind == WITHIN_END and not left:
+        return (row._replace(kind=NOT_AFTER, group=(), hi=max(e for _, e in gone) + row.hi),)
+    return (row,)
 
 
 def _windows(problem: AssignmentProblem, tasks: Sequence[int]) -> tuple[Row, ...]:
@@ -158,13 +250,13 @@ def _windows(problem: AssignmentProblem, tasks: Sequence[int]) -> tuple[Row, ...
     return tuple(found)
 
 
-def has_lags(part: Part) -> bool:
-    """Whether a row asks for a time between tasks, beyond their order."""
-    return any(row.kind in (AFTER_END, AFTER_START) and row.lo > 0 for row in part.rows)
+def binding(problem: AssignmentProblem, part: Part) -> tuple[Row, ...]:
+    """The rows that bind times: in semantics `order` those of order alone do not."""
+    return part.rows[part.orders :] if problem.semantics == ORDER else part.rows
 
 
 def arrays(problem: AssignmentProblem, part: Part) -> Instance:
-    """The arrays of a plain branch. In semantics `order` with lags between tasks they keep both."""
+    """The arrays of a branch: all of it if `is_exact`, else what is left without some rules."""
     p, picked = problem, part.choices
     index = [*picked, len(p.choices)]
     shape = (len(p.vehicles), len(index), len(picked))
@@ -185,15 +277,28 @@ def arrays(problem: AssignmentProblem, part: Part) -> Instance:
     may = [[int(v in p.choices[k].vehicles) for k in picked] for v in p.vehicles]
     options = [(p.choices[k].task_id, p.choices[k].duration_ms) for k in picked]
     weight = (p.cost.makespan, p.cost.team)
+    plain = [
+        row
+        for k, row in enumerate(part.rows)
+        if is_plain((row,))
+        and (k < part.orders or p.semantics == TIME or row.kind in (NOT_BEFORE, NOT_AFTER))
+    ]
     return instance(
-        part.tasks, part.rows, options, may, travel, added, p.ready_ms, weight, p.semantics == TIME
+        part.tasks, plain, options, may, travel, added, p.ready_ms, weight, p.semantics == TIME
     )
 
 
-def is_compiled(problem: AssignmentProblem, part: Part) -> bool:
-    """Whether the compiled exact search covers the branch."""
-    lagged = problem.semantics == ORDER and has_lags(part)
-    return part.plain and not lagged and len(part.tasks) <= TASKS_MAX
+def is_exact(problem: AssignmentProblem, part: Part) -> bool:
+    """Whether the arrays say all of the branch."""
+    lagged = any(row.kind in (AFTER_END, AFTER_START) for row in part.rows[part.orders :])
+    return part.plain and not (problem.semantics == ORDER and lagged)
+
+
+def settler(problem: AssignmentProblem, part: Part, made: Instance) -> Settler:
+    """What settles the times of moves in a branch whose arrays do not say all of it."""
+    laps = tuple((problem.choices[k].lap_ms, problem.choices[k].lap_max_ms) for k in part.choices)
+    ahead = look_ahead(made) if len(part.tasks) <= TASKS_MAX else None
+    return Settler(made, ahead, part.tasks, binding(problem, part), laps, part.done)
 
 
 def _table(p: AssignmentProblem, rows: Sequence[Rows], name: str) -> None:

@@ -7,11 +7,10 @@ from collections.abc import Sequence
 from cratous.core.assignment_steps import chain_holds, wait_holds, weighted
 from cratous.core.earliest import rows_hold
 from cratous.core.timing import eligible, later
-from cratous.services.planning.assign_problem import Part, parts
+from cratous.services.planning.assign_problem import Part, binding, parts
 from cratous.spec import algebra_runs
 from cratous.spec.assignment import ORDER, AssignmentProblem, Choice, Step
 from cratous.spec.errors import BadInput
-from cratous.spec.plan import AFTER_END, AFTER_START, Row
 
 
 def replayed(problem: AssignmentProblem, steps: Sequence[Step]) -> int:
@@ -31,22 +30,24 @@ def replayed(problem: AssignmentProblem, steps: Sequence[Step]) -> int:
         added += sum(leg[4] for leg in legs)
         if chain:
             last, team = later(last, chain[-1].end_ms), team + chain[-1].end_ms
-    starts = {step.task_id: step.start_ms for step in steps}
-    ends = {step.task_id: step.end_ms for step in steps}
-    if not rows_hold(rows_in(problem, branch), starts, ends):
+    if not rows_hold(binding(problem, branch), *_times(problem, steps)):
         raise _wrong("an order or timing constraint does not hold")
     if problem.semantics == ORDER:
-        order = tuple(step.task_id for step in steps)
+        order = tuple([task for task, _, _ in problem.done] + [step.task_id for step in steps])
         if not algebra_runs.complete(branch.term, order):
             raise _wrong("the tasks cannot be assigned in this order")
     return weighted(last, team, added, problem.cost.makespan, problem.cost.team)
 
 
-def rows_in(problem: AssignmentProblem, branch: Part) -> tuple[Row, ...]:
-    """The rows that bind times: in semantics `order` plain precedence does not."""
-    if problem.semantics != ORDER:
-        return branch.rows
-    return tuple(r for r in branch.rows if not (r.kind in (AFTER_END, AFTER_START) and r.lo == 0))
+def _times(
+    problem: AssignmentProblem, steps: Sequence[Step]
+) -> tuple[dict[int, int], dict[int, int]]:
+    """Starts and ends per task, of those that are flown as well."""
+    starts = {task: start for task, start, _ in problem.done}
+    ends = {task: end for task, _, end in problem.done}
+    starts.update((step.task_id, step.start_ms) for step in steps)
+    ends.update((step.task_id, step.end_ms) for step in steps)
+    return starts, ends
 
 
 def branch_of(problem: AssignmentProblem, steps: Sequence[Step]) -> Part:
@@ -54,11 +55,10 @@ def branch_of(problem: AssignmentProblem, steps: Sequence[Step]) -> Part:
     done = {step.task_id for step in steps}
     if len(done) < len(steps):
         raise _wrong("a task is done twice")
-    starts = {step.task_id: step.start_ms for step in steps}
-    ends = {step.task_id: step.end_ms for step in steps}
+    times = _times(problem, steps)
     same = [part for part in parts(problem)[0] if set(part.tasks) == done]
     for part in same:
-        if rows_hold(rows_in(problem, part), starts, ends):
+        if rows_hold(binding(problem, part), *times):
             return part
     if not same:
         raise _wrong("the tasks are those of no branch of the relations")
@@ -106,4 +106,4 @@ def _wrong(why: str) -> BadInput:
     return BadInput("this is no solution", item="steps", expected="a schedule that holds", got=why)
 
 
-__all__ = ["branch_of", "replayed", "rows_in"]
+__all__ = ["branch_of", "replayed"]

@@ -6,6 +6,7 @@ z3's effort is counted (`rlimit`), not timed, so an answer does not depend on th
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import z3
@@ -18,6 +19,7 @@ from cratous.services.planning.assign_meaning import (
     end,
     flights,
     meaning,
+    past,
     place,
     start,
 )
@@ -44,16 +46,25 @@ def schedule_holds(problem: AssignmentProblem, steps: Sequence[Step]) -> tuple[b
             one = problem.choices[k]
             if (one.task_id, one.option_id) == (step.task_id, step.option_id):
                 times.append(choice(k, v))
-    said = [(text, formula) for text, formula in meaning(branch.term, problem.semantics)]
+    gone = [task for task, _, _ in problem.done]
+    times += past(problem)
+    said = list(meaning(branch.term, problem.semantics, gone))
     said += [
         (n.text, f) for n in _windows(problem) for b, f in n.formulas if _same(problem, b, branch)
     ]
     for text, formula in said:
         if _ask([*times, z3.Not(formula)]) != z3.unsat:
             return False, text
-    if _ask([*times, *flights(problem, branch)]) != z3.sat:
+    # the choices that are not taken are flown by nobody, so they need not be spoken of
+    taken = {(step.task_id, step.option_id) for step in steps}
+    few = [k for k in branch.choices if _name(problem, k) in taken]
+    if _ask([*times, *flights(problem, replace(branch, choices=tuple(few)))]) != z3.sat:
         return False, "what the vehicles can fly"
     return True, ""
+
+
+def _name(problem: AssignmentProblem, k: int) -> tuple[int, int]:
+    return problem.choices[k].task_id, problem.choices[k].option_id
 
 
 def _windows(problem: AssignmentProblem) -> list[Named]:
@@ -74,10 +85,10 @@ def _ask(formulas: Sequence[Any], effort: int = EFFORT) -> Any:
 
 def none_below(problem: AssignmentProblem, limit: int) -> tuple[bool, str]:
     """Whether z3 and cvc5 both show that nothing costs less than the limit, and what they said."""
-    said = []
+    said, gone = [], [task for task, _, _ in problem.done]
     for number, branch in enumerate(parts(problem)[0]):
         formulas = [
-            *[f for _, f in meaning(branch.term, problem.semantics)],
+            *[f for _, f in meaning(branch.term, problem.semantics, gone)],
             *[f for n in _windows(problem) for b, f in n.formulas if b == number],
             *flights(problem, branch),
             *costs_less(problem, branch, limit),

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
-from cratous.core.assignment import START, Assignment, assign
+from cratous.core.assignment import START, Assignment
 from cratous.services.bus import Envelope
-from cratous.services.planning import reasons
-from cratous.services.planning.desk import Desk, status
+from cratous.services.planning import mission_assign, reasons
+from cratous.services.planning.desk import Desk, Inputs, status
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Mission
 
 
 class Assigned(NamedTuple):
@@ -53,22 +57,17 @@ class AssignmentTreeBranchBoundService:
         def travel_ms(vehicle: int, before: int, to: int) -> int | None:
             return times.get((vehicle, before, to))
 
-        problem = inputs.problem(travel_ms)
-        result = assign(problem)
-        if result.placed is None:
-            why = reasons.why_none(
-                inputs.mission,
-                inputs.wanted,
-                inputs.options,
-                inputs.dropped,
-                inputs.routes,
-                problem,
-                result.exhausted and inputs.all_branches,
-            )
-            failed = {**state.failed, key: why}
+        why = reasons.why_none(
+            inputs.mission, inputs.wanted, inputs.options, inputs.dropped, inputs.routes
+        )
+        found = self._found(inputs, travel_ms, why)
+        if found.assignment is None:
+            failed = {**state.failed, key: found.reasons}
             return state._replace(failed=failed), [
-                status(key, "Error", [("reason", text) for text in why])
+                status(key, "Error", [("reason", text) for text in found.reasons])
             ]
+        result = inputs.assigned = found.assignment
+        inputs.certificate = found.certificate
         listed = [
             lmcp.new(
                 "TaskAssignment",
@@ -86,11 +85,47 @@ class AssignmentTreeBranchBoundService:
             OperatingRegion=matrix.OperatingRegion,
             TaskList=listed,
         )
-        proof = "yes" if result.exhausted and inputs.all_branches else "no"
-        facts = [
-            ("cost_ms", str(result.cost)),
-            ("nodes", str(result.nodes)),
-            ("exhausted", proof),
-        ]
-        found = {**state.found, key: result}
-        return state._replace(found=found), [status(key, "Information", facts), summary]
+        known = {**state.found, key: result}
+        return state._replace(found=known), [status(key, "Information", facts(result)), summary]
+
+    def _found(
+        self, inputs: Inputs, travel_ms: mission_assign.Travel, why: tuple[str, ...]
+    ) -> mission_assign.Found:
+        """The assignment; else what no vehicle can do or reach, or which constraints clash."""
+        try:
+            problem = inputs.problem(travel_ms)
+            found = mission_assign.assign(
+                problem, mission_assign.limits_of(inputs.mission), places_in(inputs.mission)
+            )
+        except BadInput as error:
+            # only what is said of tasks better elsewhere is no mistake of ours
+            if not why:
+                raise
+            return mission_assign.Found(None, None, why or (str(error),))
+        return found if found.assignment is not None or not why else replace(found, reasons=why)
+
+
+def facts(result: Assignment) -> list[tuple[str, str]]:
+    """What is known of an assignment, for a status: `optimal` only with a certificate."""
+    return [
+        ("cost_ms", str(result.cost)),
+        ("status", result.status),
+        ("bound", str(result.bound) if result.bound > 0 else "unknown"),
+        ("gap", f"{result.gap:.6f}" if result.bound > 0 else "unknown"),
+        ("nodes", str(result.nodes)),
+        ("certificate", result.digest),
+    ]
+
+
+def places_in(mission: Mission) -> reasons.Places:
+    """Where a text of the relations stands in the mission's file, if it is still there."""
+
+    def where(text: str) -> str:
+        try:
+            lines = Path(mission.source).read_text(encoding="utf-8").splitlines()
+        except (OSError, UnicodeDecodeError):
+            return ""
+        found = [k for k, line in enumerate(lines, 1) if text in line]
+        return f"{mission.source}:{found[0]}" if found else ""
+
+    return where

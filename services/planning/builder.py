@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
-from cratous.core.assignment import START, Assignment, Placed
+from cratous.core.assignment import START, Placed
 from cratous.services.bus import Envelope
 from cratous.services.frames import compass
 from cratous.services.planning import stages
@@ -129,7 +130,8 @@ def _points(action: Any) -> bool:
 
 
 def _plan(inputs: Inputs, summary: Any) -> Plan:
-    """The plan in the mission frame: times from the summary, ways from the desk."""
+    """The plan in the mission frame: times from the summary, ways and constraints from the desk."""
+    assert inputs.assigned is not None
     free = {vehicle.id: inputs.now_ms for vehicle in inputs.mission.vehicles}
     at: dict[int, int] = {}
     placed = []
@@ -143,15 +145,11 @@ def _plan(inputs: Inputs, summary: Any) -> Plan:
             Placed(v, k, free[vehicle], free[vehicle] + travel, start, task.TimeTaskCompleted)
         )
         free[vehicle], at[vehicle] = task.TimeTaskCompleted, k
-    chosen = {task.TaskID for task in summary.TaskList} | {f.task_id for f in inputs.fixed}
-    branch = next(k for k, b in enumerate(inputs.branches) if set(b.tasks) == chosen)
-    result = Assignment(branch, tuple(placed), 0, 0, False)
     return stages.build(
         inputs.mission,
         inputs.options,
         inputs.routes,
-        inputs.branches,
-        result,
+        replace(inputs.assigned, placed=tuple(placed)),
         inputs.zones,
         inputs.fixed,
     )

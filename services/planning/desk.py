@@ -12,13 +12,17 @@ from functools import cached_property
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.core.assignment import Branch, Fixed, Problem
+from cratous.core.assignment import Assignment, Branch, Fixed
 from cratous.services.bus import Envelope
 from cratous.services.frames import Projection
 from cratous.services.planning import stages
+from cratous.services.planning.mission_assign import problem_of
 from cratous.services.planning.options import Dropped, Option, expand
 from cratous.services.planning.routes import Routes
 from cratous.services.planning.zones import hard_zones
+from cratous.spec.algebra import Term
+from cratous.spec.algebra_meaning import tasks
+from cratous.spec.assignment import AssignmentProblem
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.plan import Pose
 from cratous.spec.schedule import AFTER_END
@@ -26,12 +30,17 @@ from cratous.spec.schedule import AFTER_END
 
 @dataclass
 class Inputs:
-    """One planning request in the mission frame, and what follows from it (computed once)."""
+    """One planning request in the mission frame, and what follows from it (computed once).
+
+    assigned, certificate: what the assignment service has found for it.
+    """
 
     mission: Mission
     starts: dict[int, Pose]
     fixed: tuple[Fixed, ...]
     now_ms: int
+    assigned: Assignment | None = None
+    certificate: dict[str, Any] | None = None
 
     @cached_property
     def zones(self) -> tuple[Zone, ...]:
@@ -47,13 +56,20 @@ class Inputs:
 
     @property
     def all_branches(self) -> bool:
-        """False if there were more ways to resolve `+` than are searched."""
+        """False if there were more ways to resolve `+` than were looked at here."""
         return self._branches[1]
+
+    @cached_property
+    def term(self) -> Term:
+        """The mission's relations."""
+        return stages.term_of(self.mission)
 
     @cached_property
     def wanted(self) -> tuple[int, ...]:
         """The tasks of any branch that are not yet flown, by id."""
         done = {f.task_id for f in self.fixed}
+        if not self.all_branches:
+            return tuple(sorted(set(tasks(self.term)) - done))
         return tuple(sorted({t for branch in self.branches for t in branch.tasks} - done))
 
     @cached_property
@@ -85,6 +101,8 @@ class Inputs:
     def may_follow(self) -> frozenset[tuple[int, int]]:
         """(before, after): tasks that some branch lets one vehicle fly in this order."""
         found: set[tuple[int, int]] = set()
+        if not self.all_branches:
+            return frozenset((a, b) for a in self.wanted for b in self.wanted if a != b)
         for branch in self.branches:
             earlier: dict[int, set[int]] = {task: set() for task in branch.tasks}
             for row in branch.rows:
@@ -108,12 +126,9 @@ class Inputs:
     def routes(self) -> Routes:
         return Routes(self.mission, self.starts, self.options, self.zones)
 
-    def problem(self, travel_ms: Callable[[int, int, int], int | None]) -> Problem:
+    def problem(self, travel_ms: Callable[[int, int, int], int | None]) -> AssignmentProblem:
         """The assignment problem with travel times from elsewhere (the cost matrix)."""
-        return stages.problem_of(
-            self.mission, self.options, travel_ms, self.branches, self.fixed, self.now_ms,
-            self.mission.node_limit,
-        )  # fmt: skip
+        return problem_of(self.mission, self.term, self.options, travel_ms, self.fixed, self.now_ms)
 
 
 class Desk:

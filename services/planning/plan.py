@@ -9,7 +9,6 @@ AutomationRequest -> validator -> UniqueAutomationRequest -> tasks -> TaskPlanOp
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from typing import Any
 
 from cratous.bridge import lmcp
@@ -83,6 +82,21 @@ def make_plan(
     assigned = bus.state(AssignmentTreeBranchBoundService.name)
     if key not in assigned.found:
         raise NoPlan(assigned.failed[key])
-    result = assigned.found[key]
     plan: Plan = bus.state(PlanBuilderService.name).plans[key]
-    return replace(plan, nodes=result.nodes, exhausted=result.exhausted and inputs.all_branches)
+    return plan
+
+
+def cost_of(plan: Plan) -> int:
+    """The cost of a plan's own items [ms]: the latest end, or the sum of the vehicles' last ends."""
+    last = {item.vehicle_id: item.end_ms for item in plan.items}
+    ends = last.values()
+    return sum(ends) if plan.cost == "CUMULATIVE" else max(ends, default=0)
+
+
+def certificate_of(bus: Bus) -> dict[str, Any] | None:
+    """The certificate of the last assignment that was made on a bus; None if there is none."""
+    try:
+        desk: Desk = bus.state(Desk.name)
+    except KeyError:
+        return None
+    return desk.requests[-1].certificate if desk.requests else None

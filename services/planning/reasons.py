@@ -1,25 +1,36 @@
 """Why no plan exists, in the user's terms: missing options, missing routes, rows that clash.
 
-Timing conflicts are found by relaxing: without its upper bounds the mission has a plan; the
-smallest set of bounds that still forbids one (deletion filter) is what is reported, with the
-earliest end that the task in question can reach.
+Of the rows a smallest set is sought that contradict each other (deletion filter: without any one
+of them there is a plan). A latest end is reported with the earliest end that the task can reach.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 
-from cratous.core.assignment import Assignment, Branch, Problem, assign
+from cratous.core.assignment_anytime import NONE
+from cratous.services.planning.assign import Limits, search
+from cratous.services.planning.assign_problem import Part, parts
 from cratous.services.planning.options import Dropped, Option
 from cratous.services.planning.routes import Routes
+from cratous.spec.assignment import MINMAX, AssignmentProblem, Solution
 from cratous.spec.mission import Mission
 from cratous.spec.plan import Row
-from cratous.spec.schedule import NOT_AFTER, WITHIN_END, WITHIN_START
+from cratous.spec.schedule import NOT_AFTER, NOT_BEFORE, WITHIN_END, WITHIN_START
 
-PROBES = 4_000
+PROBES = 20_000
 """Nodes per question asked of the search while looking for reasons."""
+ROWS_MAX = 60
+"""So many rows are tried one by one; of more only the upper bounds are."""
 UPPER = (WITHIN_END, WITHIN_START, NOT_AFTER)
+Places = Callable[[str], str]
+"""Where a text of the relations stands, as `file:line`, or nothing."""
+
+
+def nowhere(_text: str) -> str:
+    """Nothing is known of files."""
+    return ""
 
 
 def why_none(
@@ -28,18 +39,10 @@ def why_none(
     options: Sequence[Option],
     dropped: Sequence[Dropped],
     routes: Routes,
-    problem: Problem,
-    searched_all: bool,
 ) -> tuple[str, ...]:
-    """The reasons why the search found nothing; says so if it did not search everything."""
+    """What no vehicle can do or reach."""
     why = without_options(mission, wanted, options, dropped)
-    why = why or without_routes(mission, wanted, options, routes)
-    if why:
-        return why
-    why, certain = timing_reasons(problem)
-    if not (certain and searched_all):
-        why = (*why, f"no schedule was found in {problem.node_limit} search nodes")
-    return why or ("no order of the tasks satisfies the relations",)
+    return why or without_routes(mission, wanted, options, routes)
 
 
 def without_options(
@@ -89,51 +92,116 @@ def without_routes(
     return tuple(reasons)
 
 
-def _with_rows(problem: Problem, keep: set[Row], all_upper: set[Row]) -> Problem:
-    branches = tuple(
-        Branch(
-            branch.tasks,
-            tuple(row for row in branch.rows if row not in all_upper or row in keep),
-            branch.allowed,
-        )
-        for branch in problem.branches
-    )
-    return replace(problem, branches=branches, node_limit=PROBES)
+Question = tuple[bool | None, int | None]
+"""(whether there is a schedule, None if that is not decided; the latest end of what was found)."""
 
 
-def timing_reasons(problem: Problem) -> tuple[tuple[str, ...], bool]:
-    """Which upper bounds clash, and whether that is certain (every search was exhausted)."""
-    upper = {row: None for branch in problem.branches for row in branch.rows if row.kind in UPPER}
-    everything = set(upper)
-    relaxed = assign(_with_rows(problem, set(), everything))
-    if relaxed.placed is None:
-        return (), relaxed.exhausted
-    certain, keep = True, list(upper)
-    for row in list(upper):
+class _Rows:
+    """Questions about a problem with some of its rows only; rows are known by number."""
+
+    def __init__(self, problem: AssignmentProblem) -> None:
+        self.problem = replace(problem, cost=MINMAX)
+        self.branches, self.complete = parts(problem)
+        self.rows: dict[Row, None] = {}
+        for part in self.branches:
+            bound = part.rows if problem.semantics == "time" else part.rows[part.orders :]
+            self.rows.update(dict.fromkeys(row for row in bound if _says(row)))
+
+    def ask(self, keep: Iterable[Row], end: Row | None = None) -> tuple[bool | None, Solution]:
+        """Whether there is a schedule under these rows, and with that latest end."""
+        kept = set(keep)
+        branches = [self._with(part, kept, end) for part in self.branches]
+        found = search(self.problem, Limits(nodes=PROBES, gap=1.0), branches, self.complete)
+        if found.cost is not None:
+            return True, found
+        return (False if found.bound >= NONE else None), found
+
+    def _with(self, part: Part, keep: set[Row], end: Row | None) -> Part:
+        order = self.problem.semantics != "time"
+        said = [
+            (k < part.orders, row)
+            for k, row in enumerate(part.rows)
+            if row in keep or (order and k < part.orders)
+        ]
+        rows = [row for _, row in said]
+        if end is not None and end.i in part.tasks:
+            rows.append(end)
+        return replace(part, rows=tuple(rows), orders=sum(first for first, _ in said))
+
+    def earliest_end(self, task: int, keep: Sequence[Row]) -> tuple[int | None, bool]:
+        """The earliest end of one task under these rows, by halving; and whether that is sure."""
+        yes, found = self.ask(keep)
+        if not yes:
+            return None, False
+        best, low, sure = _end(found, task), 0, True
+        while best is not None and best > low:
+            middle = (low + best) // 2
+            yes, found = self.ask(keep, Row(NOT_AFTER, task, (), 0, middle, ""))
+            got = _end(found, task) if yes else None
+            if got is not None:
+                best = got
+            else:
+                low, sure = middle + 1, sure and yes is False
+        return best, sure
+
+
+def _says(row: Row) -> bool:
+    return not (row.kind == NOT_BEFORE and row.lo <= 0)
+
+
+def _end(found: Solution, task: int) -> int | None:
+    return next((step.end_ms for step in found.steps if step.task_id == task), None)
+
+
+def timing_reasons(
+    problem: AssignmentProblem, found: Solution, where: Places = nowhere
+) -> tuple[str, ...]:
+    """Which rows clash, and what is left open if that is not certain."""
+    questions = _Rows(problem)
+    certain = found.status == "infeasible"
+    open_end = () if certain else (f"no schedule was found in {found.nodes} search nodes",)
+    keep = [row for row in questions.rows if row.kind in UPPER]
+    lower = [row for row in questions.rows if row.kind not in UPPER]
+    few = len(questions.rows) <= ROWS_MAX
+    yes, _ = questions.ask(lower)
+    if not yes:
+        keep = [] if yes is None else list(questions.rows)
+        if questions.ask([])[0] is False:
+            return ("no order of the tasks satisfies the relations", *open_end)
+    for row in list(keep):
         trial = [other for other in keep if other is not row]
-        found = assign(_with_rows(problem, set(trial), everything))
-        if found.placed is None:
-            certain, keep = certain and found.exhausted, trial
-    reasons = []
-    for row in keep:
-        # everything but this one row: when does its task end at the earliest?
-        others = set(keep) - {row}
-        best, proved = _earliest_end(_with_rows(problem, others, everything), row.i)
-        got = "no schedule was found"
-        if best is not None:
-            where = "" if proved else " that was found"
-            got = f"the earliest end on any eligible vehicle{where} is {best / 1000:.1f} s"
-        if row.kind == NOT_AFTER:
-            bound = f"task {row.i} must end by {row.hi / 1000:.3f} s"
-        else:
-            what = "end" if row.kind == WITHIN_END else "start"
-            names = ", ".join(f"task {task}" for task in row.group)
-            bound = f"task {row.i} must end within {row.hi / 1000:.3f} s of the {what} of {names}"
-        reasons.append(f"{bound} ({row.text}), but {got}")
-    return tuple(reasons), certain
+        yes, _ = questions.ask([*lower, *trial])
+        certain = certain and yes is not None
+        keep = trial if yes is False else keep
+    for row in list(lower) if few else ():
+        trial = [other for other in lower if other is not row]
+        yes, _ = questions.ask([*trial, *keep])
+        certain = certain and yes is not None
+        lower = trial if yes is False else lower
+    said = [_sentence(questions, row, [*lower, *keep], where) for row in keep if row.kind in UPPER]
+    if few:
+        said += [f"{_placed(row, where)}and {row.text}" for row in lower]
+    said += [] if certain or open_end else ["that these are the fewest is not certain"]
+    return tuple(said) + open_end
 
 
-def _earliest_end(problem: Problem, task_id: int) -> tuple[int | None, bool]:
-    """The earliest end of one task whatever the others do, and whether that is certain."""
-    found: Assignment = assign(replace(problem, cost=f"END:{task_id}"))
-    return (None if found.placed is None else found.cost), found.exhausted
+def _sentence(questions: _Rows, row: Row, keep: Sequence[Row], where: Places) -> str:
+    """What a latest end demands, and the earliest that its task can reach without it."""
+    best, sure = questions.earliest_end(row.i, [other for other in keep if other is not row])
+    got = "no schedule was found"
+    if best is not None:
+        found = "" if sure else " that was found"
+        got = f"the earliest end on any eligible vehicle{found} is {best / 1000:.1f} s"
+    if row.kind == NOT_AFTER:
+        bound = f"task {row.i} must end by {row.hi / 1000:.3f} s"
+    else:
+        what = "end" if row.kind == WITHIN_END else "start"
+        names = ", ".join(f"task {task}" for task in row.group)
+        bound = f"task {row.i} must end within {row.hi / 1000:.3f} s of the {what} of {names}"
+    return f"{_placed(row, where)}{bound} ({row.text}), but {got}"
+
+
+def _placed(row: Row, where: Places) -> str:
+    quoted = row.text.split("`")
+    place = where(quoted[1]) if len(quoted) > 2 else ""
+    return f"{place}: " if place else ""

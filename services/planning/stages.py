@@ -6,30 +6,22 @@ The bus services of this package call these; each stage's result is plain data.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
 from typing import Any
 
-from cratous.core.assignment import (
-    START,
-    Assignment,
-    Branch,
-    Candidate,
-    Fixed,
-    Problem,
-    without_order,
-)
+from cratous.core.assignment import START, Assignment, Branch, Fixed, without_order
 from cratous.core.legs import first_bad_leg
 from cratous.core.visibility import circle, name_of, start_point
 from cratous.services.planning.options import Option
 from cratous.services.planning.routes import Routes
-from cratous.spec import algebra, algebra_meaning, algebra_runs
+from cratous.spec import algebra, algebra_meaning
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission import Mission, Zone
 from cratous.spec.plan import Hold, Plan, PlanItem, Pose
 
 BRANCH_LIMIT = 64
-"""How many ways to resolve `+` are searched."""
+"""So many ways to resolve `+` are looked at for which ways between tasks are needed at all."""
 
 
 def start_poses(mission: Mission, given: Mapping[int, Pose] | None = None) -> dict[int, Pose]:
@@ -89,51 +81,8 @@ def branches_of(mission: Mission, fixed: Sequence[Fixed]) -> tuple[tuple[Branch,
         rows = tuple(row for row in algebra_meaning.rows(resolved) if row.i not in done)
         if mission.order == "order":
             rows = without_order(rows)
-
-        def allowed(before: tuple[int, ...], term: algebra.Term = resolved) -> Iterable[int]:
-            return algebra_runs.next_actions(term, before)
-
-        made.append(Branch(tasks, rows, allowed))
+        made.append(Branch(tasks, rows))
     return tuple(made), algebra_meaning.count_branches(term) <= BRANCH_LIMIT
-
-
-def problem_of(
-    mission: Mission,
-    options: Sequence[Option],
-    travel_ms: Callable[[int, int, int], int | None],
-    branches: tuple[Branch, ...],
-    fixed: tuple[Fixed, ...] = (),
-    now_ms: int = 0,
-    node_limit: int | None = None,
-) -> Problem:
-    """The assignment problem over the options; vehicle k is `mission.vehicles[k]`."""
-    bit = {vehicle.id: 1 << k for k, vehicle in enumerate(mission.vehicles)}
-    everyone = sum(bit.values())
-    candidates = tuple(
-        Candidate(
-            option.task_id,
-            sum(bit[v] for v in option.vehicles),
-            option.duration_ms,
-            option.lap_ms,
-            option.lap_max_ms,
-        )
-        for option in options
-    )
-    masks = {
-        task.id: sum(bit.get(v, 0) for v in task.eligible) if task.eligible else everyone
-        for task in mission.tasks
-    }
-    extra = {} if node_limit is None else {"node_limit": node_limit}
-    return Problem(
-        ready_ms=(now_ms,) * len(mission.vehicles),
-        candidates=candidates,
-        travel_ms=travel_ms,
-        eligible=masks,
-        branches=branches,
-        cost=mission.cost,
-        fixed=fixed,
-        **extra,
-    )
 
 
 def hold_of(option: Option, wait_ms: int, zones: Sequence[Zone]) -> Hold | None:
@@ -161,14 +110,12 @@ def build(
     mission: Mission,
     options: Sequence[Option],
     routes: Routes,
-    branches: Sequence[Branch],
     result: Assignment,
     zones: Sequence[Zone],
     fixed: Sequence[Fixed] = (),
 ) -> Plan:
     """The plan of an assignment: transits, holds, paths and times. NoPlan if a hold has no room."""
-    assert result.placed is not None
-    branch = branches[result.branch]
+    branch = result.branch
     at: dict[int, int] = {}
     items = []
     for placed in result.placed:
@@ -212,7 +159,10 @@ def build(
         makespan_ms=max([item.end_ms for item in items] + [f.end_ms for f in fixed], default=0),
         cost=mission.cost,
         nodes=result.nodes,
-        exhausted=result.exhausted,
+        exhausted=result.status == "optimal",
+        status=result.status,
+        bound=result.bound,
+        certificate=result.digest,
     )
 
 
@@ -221,4 +171,4 @@ def nothing_left(mission: Mission, branches: Sequence[Branch], fixed: Sequence[F
     if not branches:
         raise NoPlan(("what has been flown fits no branch of the relations",))
     first, last = branches[0], max((f.end_ms for f in fixed), default=0)
-    return Plan(mission.name, (), first.rows, first.tasks, last, mission.cost, 0, True)
+    return Plan(mission.name, (), first.rows, first.tasks, last, mission.cost, 0, True, "optimal")

@@ -1,0 +1,121 @@
+"""A mission's assignment: its problem, solved and certified, and checked once more by z3.
+
+The problem is in the mission's own ids; the result in indices of its vehicles and options. What is
+returned has passed the proved checker (`replayed`) and z3 on the mission's constraints, and its
+certificate has been checked; a plan is called optimal only by that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from cratous.core.assignment import START, Assignment, Branch, Fixed, Placed
+from cratous.services.planning import reasons
+from cratous.services.planning.assign import Limits, solve
+from cratous.services.planning.assign_certificate import certified, verify
+from cratous.services.planning.assign_problem import binding
+from cratous.services.planning.assign_replay import branch_of
+from cratous.services.planning.options import Option
+from cratous.spec.algebra import Term
+from cratous.spec.algebra_meaning import tasks as tasks_of
+from cratous.spec.assignment import CUMULATIVE, MINMAX, AssignmentProblem, Choice, Solution
+from cratous.spec.mission import Mission
+
+NODES = 400_000
+"""Nodes of a mission's search where it gives no limit, some seconds at most."""
+WIDTH = 50_000
+"""States kept of a layer."""
+COSTS = {"MINMAX": MINMAX, "CUMULATIVE": CUMULATIVE}
+Travel = Callable[[int, int, int], int | None]
+"""(vehicle, option before or START, option) -> time on the way [ms], None if there is none."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """The assignment with its certificate; or none, with the reasons."""
+
+    assignment: Assignment | None
+    certificate: dict[str, Any] | None
+    reasons: tuple[str, ...] = ()
+
+
+def problem_of(
+    mission: Mission,
+    term: Term,
+    options: Sequence[Option],
+    travel_ms: Travel,
+    fixed: Sequence[Fixed] = (),
+    now_ms: int = 0,
+) -> AssignmentProblem:
+    """The assignment problem of what a mission still has to do."""
+    masks = {task.id: task.eligible for task in mission.tasks}
+    ids = tuple(vehicle.id for vehicle in mission.vehicles)
+    choices = tuple(
+        Choice(
+            o.task_id, o.option_id, o.duration_ms,
+            tuple(v for v in ids if v in o.vehicles and (v in masks[o.task_id] or not masks[o.task_id])),
+            o.lap_ms, o.lap_max_ms,
+        )
+        for o in options
+    )  # fmt: skip
+    count = len(options)
+    travel = tuple(
+        tuple(
+            tuple(
+                None if v_id not in choices[k].vehicles else travel_ms(v, a, k)
+                for k in range(count)
+            )
+            for a in (*range(count), START)
+        )
+        for v, v_id in enumerate(ids)
+    )
+    known = {c.task_id for c in choices} | {f.task_id for f in fixed}
+    done = sorted(fixed, key=lambda f: (f.start_ms, f.end_ms, f.task_id))
+    return AssignmentProblem(
+        mission.name, ids, (now_ms,) * len(ids), choices, travel, mission.relations,
+        cost=COSTS[mission.cost], semantics=mission.order,
+        done=tuple((f.task_id, f.start_ms, f.end_ms) for f in done),
+        unable=frozenset(tasks_of(term)) - known,
+    )  # fmt: skip
+
+
+def limits_of(mission: Mission) -> Limits:
+    """How far to search. Nodes, not seconds: a plan may not depend on how fast a machine is."""
+    nodes = NODES if mission.node_limit is None else mission.node_limit
+    return Limits(nodes=nodes, gap=mission.gap, width=WIDTH)
+
+
+def assign(problem: AssignmentProblem, limits: Limits, where: reasons.Places) -> Found:
+    """The best assignment within the limits. BadInput for a problem that means nothing.
+
+    where: says of a text of the relations in which file and line it stands.
+    """
+    found = solve(problem, limits)
+    if found.cost is None:
+        return Found(None, None, reasons.timing_reasons(problem, found, where))
+    solution, certificate = certified(problem, found, solvers=False)
+    verdict = verify(certificate)
+    if verdict.wrong:
+        raise RuntimeError(f"the plan does not pass its own check: {verdict.wrong}")
+    return Found(indexed(problem, solution, certificate["sha256"]), certificate)
+
+
+def indexed(problem: AssignmentProblem, solution: Solution, digest: str) -> Assignment:
+    """A solution in indices, each vehicle's tasks in the order of flight."""
+    part = branch_of(problem, solution.steps)
+    number = {(c.task_id, c.option_id): k for k, c in enumerate(problem.choices)}
+    free = list(problem.ready_ms)
+    placed = []
+    for step in solution.steps:
+        v = problem.vehicles.index(step.vehicle_id)
+        k = number[step.task_id, step.option_id]
+        placed.append(Placed(v, k, free[v], step.arrive_ms, step.start_ms, step.end_ms))
+        free[v] = step.end_ms
+    tasks = (*(task for task, _, _ in part.done), *part.tasks)
+    assert solution.cost is not None
+    return Assignment(
+        Branch(tasks, binding(problem, part)), tuple(placed), solution.cost, solution.bound,
+        solution.status, solution.nodes, digest,
+    )  # fmt: skip
