@@ -89,6 +89,7 @@ def build_report(
             "takeovers": flight.takeovers,
             "authority": flight.authority,
             "events": flight.events,
+            "changes": flight.changes,
             "served": [flight.served[task] for task in sorted(flight.served)],
             "unserved": [task for task in plan.chosen if task not in flight.served],
         },
@@ -120,7 +121,8 @@ def _scale(mission: Mission) -> str:
 
     places = [vehicle.position[:2] for vehicle in mission.vehicles]
     places += [point[:2] for task in mission.tasks for point in task.points]
-    places += [vertex for zone in mission.zones for vertex in zone.vertices]
+    zones = [*mission.zones, *(c.zone for c in mission.changes if c.zone is not None)]
+    places += [vertex for zone in zones for vertex in zone.vertices]
     reach = max(hypot(*place) for place in places)
     return (
         f"Within {reach / 1000:.1f} km of the frame's origin, where everything of this mission "

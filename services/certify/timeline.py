@@ -27,6 +27,7 @@ class Flight:
     phases: list[dict[str, Any]] = field(default_factory=list)
     takeovers: list[dict[str, Any]] = field(default_factory=list)
     events: list[dict[str, Any]] = field(default_factory=list)
+    changes: list[dict[str, Any]] = field(default_factory=list)
     served: dict[int, dict[str, Any]] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
     end_ms: int = 0
@@ -160,6 +161,11 @@ def _event(flight: Flight, short: str, body: dict[str, Any]) -> None:
     elif short == "PlanAccepted":
         flight.plan_hash = str(body["PlanHash"])
         _note(flight, time_ms, None, f"plan accepted, {body['Makespan'] / 1000:.1f} s long")
+    elif short == "MissionChange":
+        _note(flight, time_ms, None, f"{body['What']}: {body['Consequence']}")
+        flight.changes.append(
+            {"time_ms": time_ms, "what": body["What"], "consequence": body["Consequence"]}
+        )
     elif short == "BridgeStatus":
         state = "alive" if body["Alive"] else "silent"
         _note(flight, time_ms, int(body["VehicleID"]), f"bridge {state} {body['Note']}".strip())

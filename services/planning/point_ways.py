@@ -80,14 +80,18 @@ def point_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float
     """Passes from which the point is seen for the whole dwell; circles if none lasts so long."""
     target, dwell = task.points[0], max(task.duration_ms, MOMENT_MS)
     if task.loiter is not None:
-        for way in _rounds(task.loiter, dwell, flyer):
+        for way in _rounds(_apart(task.loiter, task), dwell, flyer):
             yield _checked(way, task, task.view, camera, terrain_m)
         return
     found, farthest = [], 0.0
     for view, look, heading, label in _aims(task):
         away = view_distance_m(view, flyer.alt_m - terrain_m)
-        if view is None and task.standoff_m > 0:
+        if task.standoff_m > 0 and away < task.standoff_m + STANDOFF_MARGIN_M:
+            # the standoff goes before the tilt of a view: farther away, in the view's direction
             away = task.standoff_m + STANDOFF_MARGIN_M
+            if view is not None:
+                view = replace(view, elevation_rad=-math.atan2(flyer.alt_m - terrain_m, away))
+                label += ", at the standoff"
         farthest = max(farthest, away)
         pose = Pose(
             target.north_m - away * math.cos(look),
@@ -105,6 +109,15 @@ def point_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float
         for way in _rounds(around, dwell, flyer):
             yield _checked(way, task, task.view, camera, terrain_m)
     yield from _left_out(len(views_of(task)))
+
+
+def _apart(loiter: Loiter, task: Task) -> Loiter:
+    """A loiter around the point itself, no nearer than the standoff with its margin."""
+    least = task.standoff_m + STANDOFF_MARGIN_M
+    if task.standoff_m <= 0 or loiter.shape != "circular" or loiter.radius_m >= least:
+        return loiter
+    gap = math.dist(loiter.centre[:2], task.points[0][:2])
+    return replace(loiter, radius_m=least + gap)
 
 
 def _aims(task: Task) -> Iterator[tuple[View | None, float, float, str]]:
