@@ -2,7 +2,7 @@
 
 The well-clear rows are those of `exact_well_clear.py` and `interval_well_clear.py`, where the
 peer is C; those of points in polygons are those of `containment.py`, by CPU time; those of messages
-are in `lmcp_codec.py`.
+are in `lmcp_codec.py`, those of routes and plans in `planning.py`.
 
 `python bench/run.py --write` puts the table into bench/README.md.
 """
@@ -28,6 +28,7 @@ import containment
 import exact_well_clear
 import interval_well_clear
 import lmcp_codec
+import planning
 
 README = Path(__file__).resolve().parent / "README.md"
 MARK = "<!-- table -->"
@@ -91,7 +92,7 @@ def rows() -> list[tuple[str, float, str, float]]:
     b = best(lambda: [shape.contains(shapely.Point(p)) for p in points], 3) / 300 * 1e9
     found.append(("point in 10-gon, exact, one by one", a, "shapely contains, one by one", b))
     wells = exact_well_clear.rows() + interval_well_clear.rows()
-    return wells + containment.rows() + found + lmcp_codec.rows()
+    return wells + containment.rows() + found + lmcp_codec.rows() + planning.rows()
 
 
 def table() -> str:
