@@ -142,14 +142,19 @@ def _search(reading: _Reading, kind: TaskKind) -> dict[str, Any]:
 
 def _views(reading: _Reading, inertial: bool) -> dict[str, Any]:
     """The wedges, any of which will do, by their centrelines; none means any direction."""
+    wedges = reading.body.ViewAngleList
+    if any(wedge.VerticalCenterline == 0 for wedge in wedges):
+        reading.notes.append(
+            f"{reading.name} has a view without a tilt (VerticalCenterline 0): straight down is taken"
+        )
     found = [
         View(
             radians(wedge.AzimuthCenterline),
-            radians(wedge.VerticalCenterline),
+            radians(wedge.VerticalCenterline or -90),
             bool(inertial),
             radians(wedge.AzimuthExtent),
         )
-        for wedge in reading.body.ViewAngleList
+        for wedge in wedges
     ]
     return {"view": found[0] if found else None, "views": tuple(found[1:])}
 
