@@ -82,6 +82,15 @@ def map_view(report: dict[str, Any]) -> dict[str, Any]:
             for zone, from_s in zones
         ],
         "tasks": [_task(task, scale) for task in mission["tasks"]],
+        "footprints": [
+            {
+                "color": ours.index(f["vehicle"]) % 6,
+                "task": f["task"],
+                "time_s": f["time_ms"] / 1000,
+                "points": scale.line(f["corners"]),
+            }
+            for f in flight.get("footprints", ())
+        ],
         "planned": [
             {"color": ours.index(number) % 6, "points": scale.line(route)}
             for number, route in sorted(planned.items())

@@ -22,8 +22,10 @@ from cratous.services.loading.uxas_tasks import Interests
 from cratous.services.loading.uxas_tasks import task as read_task
 from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR, finish
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Daa, Frame, Mission, Task, Vehicle, Zone, ZoneKind
+from cratous.spec.mission import Daa, Frame, Mission, Simulation, Task, Vehicle, Zone, ZoneKind
 
+LIMIT_MS = 86_400_000
+"""UxAS knows no end of the simulation: a day."""
 WRAPPED = {
     "CoordinatedAutomationRequest": "OriginalRequest",
     "TaskAutomationRequest": "OriginalRequest",
@@ -72,6 +74,7 @@ def mission_of(cfg: Configuration, source: str) -> Mission:
         cost=settings.cost or "MINMAX",
         order=settings.semantics or order,
         node_limit=settings.nodes,
+        simulation=Simulation(limit_ms=LIMIT_MS),
         instances=instances,
         notes=tuple(dict.fromkeys([*notes, *guard_notes])),
     )

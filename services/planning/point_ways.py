@@ -80,7 +80,8 @@ def point_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float
     """Passes from which the point is seen for the whole dwell; circles if none lasts so long."""
     target, dwell = task.points[0], max(task.duration_ms, MOMENT_MS)
     if task.loiter is not None:
-        for way in _rounds(_apart(task.loiter, task), dwell, flyer):
+        wide = replace(task.loiter, radius_m=max(task.loiter.radius_m, flyer.radius_m))
+        for way in _rounds(_apart(wide, task), dwell, flyer):
             yield _checked(way, task, task.view, camera, terrain_m)
         return
     found, farthest = [], 0.0
