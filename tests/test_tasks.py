@@ -107,6 +107,19 @@ def test_a_standoff_goes_before_the_tilt_of_a_view() -> None:
         assert option.view_elevation_rad == pytest.approx(-math.atan2(height_m, away_m))
 
 
+def test_a_camera_that_cannot_look_down_sees_a_line_from_its_side() -> None:
+    line = Task(1, TaskKind.LINE_SEARCH, "", (Position(0.0, 0.0, 0.0), Position(3000.0, 0.0, 0.0)))
+    found, _ = options(line, vehicle((Camera(min_elevation_rad=math.radians(-45)),)))
+    assert not [o for o in options(line)[0] if "view" in o.label]
+    beside = [option for option in found if "view" in option.label]
+    assert beside
+    away_m = 400.0 / math.tan(0.95 * math.radians(45))
+    for option in beside:
+        assert option.coverage is not None
+        assert option.coverage >= 0.99
+        assert {round(abs(p.east_m)) for p in option.path} == {round(away_m)}
+
+
 def test_a_camera_zooms_in_as_far_as_asked_and_no_further() -> None:
     wide = Camera(pixels=640, zoom_rad=(0.1, 0.3), zooms=True)
     task = area(gsd_m=0.3)
