@@ -2,7 +2,8 @@
 
 The well-clear rows are those of `exact_well_clear.py` and `interval_well_clear.py`, where the
 peer is C; those of points in polygons are those of `containment.py`, by CPU time; those of messages
-are in `lmcp_codec.py`, the one of the message logger in `day_of_traffic.py`.
+are in `lmcp_codec.py`, the one of the message logger in `day_of_traffic.py`, those of routes and
+plans in `planning.py`.
 
 `python bench/run.py --write` puts the table into bench/README.md.
 """
@@ -29,6 +30,7 @@ import day_of_traffic
 import exact_well_clear
 import interval_well_clear
 import lmcp_codec
+import planning
 
 README = Path(__file__).resolve().parent / "README.md"
 MARK, END = "<!-- table -->", "<!-- end of table -->"
@@ -93,7 +95,7 @@ def rows() -> list[tuple[str, float, str, float]]:
     found.append(("point in 10-gon, exact, one by one", a, "shapely contains, one by one", b))
     wells = exact_well_clear.rows() + interval_well_clear.rows()
     messages = lmcp_codec.rows() + day_of_traffic.rows()
-    return wells + containment.rows() + found + messages
+    return wells + containment.rows() + found + messages + planning.rows()
 
 
 def table() -> str:

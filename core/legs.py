@@ -11,9 +11,12 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from cratous.core.kernel import Vec2, driver
+from cratous.core.leg_arrays import as_points, first_bad, table
 from cratous.core.polygon import edges_of, keep_in_leg_ok, keep_out_leg_ok, locate, meets_boundary
+from cratous.core.swift import swift
 from cratous.spec.mission import Position, Zone, ZoneKind
 
+LONG = 8
 Edge = tuple[Vec2, Vec2]
 Box = tuple[float, float, float, float]
 
@@ -66,8 +69,12 @@ def leg_ok(p: Position, q: Position, zone: Zone) -> bool:
 def first_bad_leg(path: Sequence[Position], zones: Sequence[Zone]) -> tuple[int, Zone] | None:
     """Index of the first leg (path[i], path[i + 1]) that breaks a zone, and the zone; else None.
 
-    A path of one point is a leg from that point to itself.
+    A path of one point is a leg from that point to itself. A long path of plain numbers is put to the
+    same kernels in one go (`core.leg_arrays`).
     """
+    if len(path) > LONG and all(type(v) is float for p in path for v in p):
+        k, z = swift(first_bad, len(path) // LONG)(as_points(path), table(tuple(zones)))
+        return None if z < 0 else (int(k), zones[z])
     legs = [(path[0], path[0])] if len(path) == 1 else list(itertools.pairwise(path))
     for index, (p, q) in enumerate(legs):
         for zone in zones:

@@ -9,10 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cratous.core.kernel import Vec2
 from cratous.core.polygon import edges_of, locate
+from cratous.core.sight import nearest_on_line, points_in_quads
+from cratous.core.swift import swift
 from cratous.spec.mission import Camera, Position, Task, View
 
 if TYPE_CHECKING:
@@ -119,15 +122,9 @@ def covered(
     quads = quads[~np.isnan(quads[:, 0, 0])]
     if len(quads) == 0:
         return seen
-    edges = np.roll(quads, -1, axis=1) - quads
-    side = np.ones((len(line), len(quads)), bool)
-    for j in range(4):
-        normal = np.stack([-edges[:, j, 1], edges[:, j, 0]])
-        side &= line @ normal >= (quads[:, j] * normal.T).sum(axis=1)
-    best = side.argmax(axis=1)
-    for i in np.nonzero(side.any(axis=1))[0]:
-        quad = tuple((float(n), float(e)) for n, e in quads[best[i]])
-        seen[i] = sees(quad, (float(line[i, 0]), float(line[i, 1])))
+    swift(points_in_quads, len(line) * len(quads) // 100)(
+        np.ascontiguousarray(line), np.ascontiguousarray(quads), seen
+    )
     return seen
 
 
@@ -148,9 +145,11 @@ def looks_of(
         away = view_distance_m(view, height_m)
         bearing = view.azimuth_rad + (0.0 if view.inertial else 1.0) * heading
         wanted = places + away * np.column_stack([np.cos(bearing), np.sin(bearing)])
-    points = line[::2]
-    gaps = (points**2).sum(axis=1) - 2 * wanted @ points.T
-    return np.column_stack([places, heading, points[gaps.argmin(axis=1)]])
+    points = np.ascontiguousarray(line[::2])
+    apart = float(np.hypot(*np.diff(points, axis=0).T).max()) if len(points) > 1 else 0.0
+    at = np.empty(len(wanted), np.int64)
+    swift(nearest_on_line, len(wanted))(np.ascontiguousarray(wanted), points, apart, at)
+    return np.column_stack([places, heading, points[at]])
 
 
 def looks_over(places: np.ndarray, view: View | None, height_m: float) -> np.ndarray:
@@ -187,6 +186,24 @@ def sample_distance_m(camera: Camera, view: View | None, height_m: float) -> flo
     """Ground sample distance across the middle of the image [m a pixel]; pixels must be known."""
     slant = height_m / math.sin(-elevation_rad(camera, view))
     return 2 * slant * math.tan(camera.hfov_rad / 2) / camera.pixels
+
+
+def zoomed(camera: Camera, task: Task, height_m: float) -> Camera:
+    """The camera zoomed in as little as the task's ground sample distance asks for.
+
+    As it is where that is fine enough, cannot be reached or is not known.
+    """
+    if task.gsd_m <= 0 or camera.pixels == 0 or not camera.zoom_rad or height_m <= 0:
+        return camera
+    slants = [
+        height_m / max(math.sin(-elevation_rad(camera, view)), 1e-6)
+        for view in (task.view, *task.views)
+    ]
+    widest = 2 * math.atan(task.gsd_m * (1 - 1e-9) * camera.pixels / (2 * max(slants)))
+    fits = [field for field in (camera.hfov_rad, *camera.zoom_rad) if field <= widest]
+    if camera.zooms and min(camera.zoom_rad) <= widest <= camera.hfov_rad:
+        fits.append(widest)
+    return replace(camera, hfov_rad=max(fits)) if fits else camera
 
 
 def view_distance_m(view: View | None, height_m: float) -> float:

@@ -52,6 +52,11 @@ class Camera:
     wavelength: str = "AllAny"
     pixels: int = 0
     """How many pixels an image is wide; 0: not known."""
+    zoom_rad: tuple[float, ...] = ()
+    """Narrower fields of view that it has [rad]; with `zooms`, also all between the narrowest and hfov."""
+    zooms: bool = False
+    camera_id: int = 0
+    """The payload id of the camera itself; `payload_id` is its gimbal's."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +74,12 @@ class Vehicle:
     max_climb_m_s: float
     protected: bool
     cameras: tuple[Camera, ...] = ()
+    cruise_m: float | None = None
+
+    @property
+    def cruise_alt_m(self) -> float:
+        """The altitude at which it flies its tasks [m MSL]: that of its start unless said otherwise."""
+        return self.position.alt_m if self.cruise_m is None else self.cruise_m
 
 
 class TaskKind(StrEnum):
@@ -228,6 +239,17 @@ class Simulation:
 
 
 @dataclass(frozen=True)
+class Change:
+    """Something that becomes known in flight; `kind` is one of those of `spec.changes`."""
+
+    at_ms: int
+    kind: str
+    zone: Zone | None = None
+    vehicle: int = 0
+    task: int = 0
+
+
+@dataclass(frozen=True)
 class Mission:
     """A whole mission. `relations` is the process-algebra text; empty means all tasks, any order.
 
@@ -255,6 +277,7 @@ class Mission:
     notes: tuple[str, ...] = ()
     node_limit: int | None = None
     gap: float = 0.0
+    changes: tuple[Change, ...] = ()
 
     def vehicle(self, vehicle_id: int) -> Vehicle:
         """The vehicle with this id; KeyError if there is none."""

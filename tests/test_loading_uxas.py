@@ -168,3 +168,85 @@ def test_a_folder_without_a_configuration(tmp_path: Path) -> None:
 def test_no_variants_of_a_configuration() -> None:
     with pytest.raises(BadInput, match="no variants"):
         load(SHARED / "waterway", seed=2)
+
+
+# ---- what the examples of OpenUxAS ask for beyond a single cfg.xml ----------------------------
+
+
+def test_vehicles_fly_at_their_nominal_altitude(tmp_path: Path) -> None:
+    mission = load(small_assign(tmp_path))
+    assert {(v.position.alt_m, v.cruise_alt_m) for v in mission.vehicles} == {(100.0, 500.0)}
+    assert any("to its nominal 500 m" in note for note in mission.notes)
+    assert mission.vehicles[0].cameras[0].zoom_rad
+
+
+def test_a_configuration_of_another_name_and_one_of_two_processes(tmp_path: Path) -> None:
+    folder = small_assign(tmp_path)
+    (folder / "cfg_run.xml").rename(folder / "AssignTasks_cfg.xml")
+    (folder / "Stub.xml").write_text("<Service Type='SendMessagesService'/>", encoding="utf-8")
+    one = load(folder)
+    text = (folder / "AssignTasks_cfg.xml").read_text(encoding="utf-8")
+    (folder / "Second_cfg.xml").write_text(text, encoding="utf-8")
+    both = load(folder)
+    assert both.tasks == one.tasks
+    assert both.vehicles == one.vehicles
+    assert any("processes of one system" in note for note in both.notes)
+    edit(folder / "Second_cfg.xml", 'CostFunction="MINMAX"', 'CostFunction="CUMULATIVE"')
+    with pytest.raises(BadInput, match="no single UxAS configuration"):
+        load(folder)
+
+
+def test_states_may_stand_in_the_scenario_of_the_simulator(tmp_path: Path) -> None:
+    folder = small_assign(tmp_path)
+    state = (folder / "inputs" / "AirVehicleState_V2.xml").read_text(encoding="utf-8")
+    state = re.sub(r"<\?xml[^>]*\?>", "", state)
+    line = '<Message MessageFileName="AirVehicleState_V2.xml" SendTime_ms="180"/>'
+    expected = load(folder)
+    edit(folder / "cfg_run.xml", line, "")
+    with pytest.raises(BadInput, match="vehicle 2 has no AirVehicleState"):
+        load(folder)
+    scenario = f"<AMASE><ScenarioEventList>{state}</ScenarioEventList></AMASE>"
+    (folder / "Scenario.xml").write_text(scenario, encoding="utf-8")
+    mission = load(folder)
+    assert mission.vehicles == expected.vehicles
+    assert any("is read from" in note and "Scenario.xml" in note for note in mission.notes)
+
+
+def test_message_files_are_read_as_uxas_reads_them(tmp_path: Path) -> None:
+    folder = small_assign(tmp_path)
+    expected = load(folder)
+    request = folder / "inputs" / "AutomationRequest_All.xml"
+    edit(request, "<RedoAllTasks>false</RedoAllTasks>", "<RedoAllTasks/>")
+    task = folder / "inputs" / "PointSearchTask_1.xml"
+    text = task.read_text(encoding="utf-8")
+    task.write_text(text + "\n" + text.replace("<TaskID>1<", "<TaskID>91<"), encoding="utf-8")
+    mission = load(folder)
+    assert mission.tasks == expected.tasks
+    notes = "\n".join(mission.notes)
+    assert "RedoAllTasks is empty: its default is taken" in notes
+    assert "2 objects one after the other" in notes
+    edit(request, "<int64>1</int64>", "<int64>1<int64>")
+    with pytest.raises(BadInput, match="well-formed"):
+        load(folder)
+
+
+def test_keep_in_zones_of_a_region_make_one_region(tmp_path: Path) -> None:
+    folder = small_assign(tmp_path)
+    inputs = folder / "inputs"
+    zone = (inputs / "KeepInZone_3.xml").read_text(encoding="utf-8")
+    edit(inputs / "OperatingRegion_10.xml", "<int64>3<", "<int64>3</int64><int64>4<")
+    line = '<Message MessageFileName="KeepInZone_3.xml" SendTime_ms="220"/>'
+    edit(folder / "cfg_run.xml", line, line + line.replace("_3", "_4"))
+
+    def other(longitude: str) -> Mission:
+        shifted = zone.replace("<ZoneID>3<", "<ZoneID>4<").replace("-80.68928178150387", longitude)
+        (inputs / "KeepInZone_4.xml").write_text(shifted, encoding="utf-8")
+        return load(folder)
+
+    mission = other("-80.5")
+    (whole,) = [z for z in mission.zones if z.kind is ZoneKind.KEEP_IN]
+    easts = [east for _, east in whole.vertices]
+    assert max(easts) - min(easts) == pytest.approx(54229.61 + 19_000, rel=0.01)
+    assert any("make one region" in note for note in mission.notes)
+    with pytest.raises(BadInput, match="do not make one region"):
+        other("-79.9")

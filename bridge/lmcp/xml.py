@@ -43,6 +43,7 @@ class _Source:
     notes: list[str]
     strict: bool
     finite: bool
+    lenient: bool = False
 
     def place(self, element: Any) -> str:
         return f"{self.where}:{element.sourceline or 1}"
@@ -57,13 +58,11 @@ def read_file(
     *,
     strict: bool = False,
     finite: bool = True,
-    hash_comments: bool = False,
 ) -> list[Any]:
     """The objects of an XML file: of its root, or of the children of a root that is no struct.
 
     Notes go to `notes`, or become LmcpNote warnings. BadInput for anything that is not right;
-    also for NaN and the infinities, unless `finite` is False. hash_comments: lines that begin
-    with `#` say nothing, as in the message files of UxAS's SendMessagesService.
+    also for NaN and the infinities, unless `finite` is False.
     """
     where = str(path)
     try:
@@ -72,9 +71,33 @@ def read_file(
         raise BadInput(
             "file cannot be read", where=where, expected="a file", got=err.strerror or str(err)
         ) from None
-    if hash_comments:
-        data = _HASH_LINE.sub(b"", data)  # the line's end stays: places keep their line numbers
     return loads(data, where, notes, strict=strict, finite=finite)
+
+
+def read_messages(path: str | Path, notes: list[str]) -> list[Any]:
+    """The objects of a message file of UxAS, whose reader takes what `read_file` refuses.
+
+    A value that is left empty is the field's default, `<F><KIND>v</KIND></F>` is the value v of an
+    enumeration, and a file may hold one object after the other; each case is noted. Lines that
+    begin with `#` say nothing. All else is refused as in `read_file`.
+    """
+    try:
+        data = Path(path).read_bytes()
+    except OSError:
+        return read_file(path, notes)
+    data = _HASH_LINE.sub(b"", data)  # the line's end stays: places keep their line numbers
+    head = re.match(rb"\s*(?:<\?xml[^>]*\?>)?", data)
+    body = data[head.end() :] if head else data
+    try:
+        parse(data, str(path))
+    except BadInput as problem:
+        try:
+            parts = len(parse(b"<Messages>" + body + b"</Messages>", str(path)))
+        except BadInput:
+            raise problem from None
+        notes.append(f"{path}: {parts} objects one after the other, without a common root")
+        data = b"<Messages>" + body + b"</Messages>"
+    return loads(data, str(path), notes, lenient=True)
 
 
 def loads(
@@ -84,9 +107,10 @@ def loads(
     *,
     strict: bool = False,
     finite: bool = True,
+    lenient: bool = False,
 ) -> list[Any]:
-    """The objects of an XML text; see `read_file`."""
-    source = _Source(where, [], strict, finite)
+    """The objects of an XML text; see `read_file`, and `read_messages` for lenient."""
+    source = _Source(where, [], strict, finite, lenient)
     root = parse(text, where)
     if root.get("Series") is not None or len(model.series_with(root.tag)) > 0:
         objects = [_object(root, source)]
@@ -168,6 +192,10 @@ def _object(element: Any, source: _Source) -> Any:
                 child,
                 f"{cls.__name__}.{field.name} is given twice; the last one counts",
             )
+        if source.lenient and _left_empty(field, child):
+            source.note(child, f"{cls.__name__}.{field.name} is empty: its default is taken")
+            values.pop(field.name, None)
+            continue
         values[field.name] = _field_value(field, child, source)
     try:
         return cls(**values)
@@ -258,6 +286,11 @@ def _field_value(field: model.Field, element: Any, source: _Source) -> Any:
     return _primitive(field, element, source)
 
 
+def _left_empty(field: model.Field, element: Any) -> bool:
+    scalar = field.array is None and field.kind not in ("string", "char", "struct", "any")
+    return scalar and not len(element) and not (element.text or "").strip()
+
+
 def _struct_or_null(element: Any, source: _Source) -> Any:
     if element.tag == "null":
         return None
@@ -275,6 +308,11 @@ def _primitive(field: model.Field, element: Any, source: _Source) -> Any:
         )
 
     text = element.text or ""
+    if source.lenient and field.kind == "enum" and len(element) == 1:
+        kind = field.type.partition("/")[2]
+        if element[0].tag == kind and not len(element[0]):
+            source.note(element, f"{field.name}: its value is read from <{kind}>")
+            element, text = element[0], element[0].text or ""
     if len(element):
         text = f"<{element[0].tag}>"
         raise wrong(f"one value ({field.kind})")

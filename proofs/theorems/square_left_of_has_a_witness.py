@@ -1,7 +1,7 @@
 """If the kernel says that a square does not lie left of a line, a corner of the square lies to the
 right of it: no square that does is missed."""
 
-from cratous.core.coverage import square_left_of
+from cratous.core.coverage_steps import square_left_of
 from cratous.proofs.claim import Claim
 from cratous.spec import geofence
 

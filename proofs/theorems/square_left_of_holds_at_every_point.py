@@ -1,6 +1,6 @@
 """If the kernel says that a square lies left of a line, every single point of the square does."""
 
-from cratous.core.coverage import square_left_of
+from cratous.core.coverage_steps import square_left_of
 from cratous.proofs.claim import Claim
 from cratous.spec import geofence
 

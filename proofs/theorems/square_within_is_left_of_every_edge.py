@@ -3,7 +3,7 @@ when the square is left of each of the edges."""
 
 from typing import Any
 
-from cratous.core.coverage import square_left_of, square_within
+from cratous.core.coverage_steps import square_left_of, square_within
 from cratous.proofs.claim import Claim
 from cratous.spec.geofence import every_result, every_step
 

@@ -17,6 +17,7 @@ from cratous.services.certify.report import (
 from cratous.services.certify.verdicts import constraint_rows
 from cratous.services.log import read_envelopes, read_meta
 from cratous.services.records import from_data
+from cratous.spec.changes import known_at
 from cratous.spec.errors import BadInput
 from cratous.spec.guarantees import Verdict
 from cratous.spec.mission import Mission
@@ -65,7 +66,7 @@ def certify_again(folder: Path) -> tuple[dict[str, Any], list[str]]:
     written = read_report(folder)
     log = folder / LOG_NAME
     mission, plan = subject(log)
-    rows = constraint_rows(check_plan(mission, plan), "plan")
+    rows = constraint_rows(check_plan(known_at(mission, 0), plan), "plan")
     rows += constraint_rows(watch(log), "flight")
     standing = ledger.require(allow_unproved=bool(written["proofs"]["problems"]))
     proofs, flown = inventory(standing), read_meta(log).get("proofs", {})

@@ -62,7 +62,9 @@ def map_view(report: dict[str, Any]) -> dict[str, Any]:
         (point["north_m"], point["east_m"]) for task in mission["tasks"] for point in task["points"]
     ]
     shown += [(v["position"]["north_m"], v["position"]["east_m"]) for v in mission["vehicles"]]
-    for zone in mission["zones"]:
+    zones = [(zone, None) for zone in mission["zones"]]
+    zones += [(c["zone"], c["at_ms"] / 1000) for c in mission.get("changes", []) if c["zone"]]
+    for zone, _ in zones:
         if zone["kind"] == "keep_out":
             shown += [(corner[0], corner[1]) for corner in zone["vertices"]]
     scale = Scale(shown)
@@ -70,10 +72,25 @@ def map_view(report: dict[str, Any]) -> dict[str, Any]:
         "width": MAP_WIDTH,
         "height": MAP_HEIGHT,
         "zones": [
-            {"kind": zone["kind"], "id": zone["id"], "points": scale.line(zone["vertices"])}
-            for zone in mission["zones"]
+            {
+                "kind": zone["kind"],
+                "id": zone["id"],
+                "points": scale.line(zone["vertices"]),
+                "from_s": from_s,
+                "at": scale.xy(*zone["vertices"][0]),
+            }
+            for zone, from_s in zones
         ],
         "tasks": [_task(task, scale) for task in mission["tasks"]],
+        "footprints": [
+            {
+                "color": ours.index(f["vehicle"]) % 6,
+                "task": f["task"],
+                "time_s": f["time_ms"] / 1000,
+                "points": scale.line(f["corners"]),
+            }
+            for f in flight.get("footprints", ())
+        ],
         "planned": [
             {"color": ours.index(number) % 6, "points": scale.line(route)}
             for number, route in sorted(planned.items())

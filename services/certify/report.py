@@ -90,6 +90,8 @@ def build_report(
             "takeovers": flight.takeovers,
             "authority": flight.authority,
             "events": flight.events,
+            "changes": flight.changes,
+            "footprints": _seen(flight.footprints, mission),
             "served": [flight.served[task] for task in sorted(flight.served)],
             "unserved": [task for task in plan.chosen if task not in flight.served],
         },
@@ -103,6 +105,23 @@ def build_report(
         "limits": [*LIMITS, _scale(mission)],
         "environment": environment(),
     }
+
+
+def _seen(footprints: dict[int, list[dict[str, Any]]], mission: Mission) -> list[dict[str, Any]]:
+    """Some of the footprints of each search that was flown, in the mission frame [m]."""
+    from cratous.services.frames import Projection
+
+    local = Projection(mission.frame).to_local
+    return [
+        {
+            "task": task,
+            "vehicle": one["vehicle"],
+            "time_ms": one["time_ms"],
+            "corners": [[round(x, 1) for x in local(*corner)] for corner in one["corners"]],
+        }
+        for task, found in sorted(footprints.items())
+        for one in found
+    ]
 
 
 def _counts(rows: list[dict[str, Any]]) -> dict[str, int]:
@@ -121,7 +140,8 @@ def _scale(mission: Mission) -> str:
 
     places = [vehicle.position[:2] for vehicle in mission.vehicles]
     places += [point[:2] for task in mission.tasks for point in task.points]
-    places += [vertex for zone in mission.zones for vertex in zone.vertices]
+    zones = [*mission.zones, *(c.zone for c in mission.changes if c.zone is not None)]
+    places += [vertex for zone in zones for vertex in zone.vertices]
     reach = max(hypot(*place) for place in places)
     return (
         f"Within {reach / 1000:.1f} km of the frame's origin, where everything of this mission "

@@ -14,6 +14,8 @@ from typing import Any
 from cratous.services.log import Row
 
 TRACK_PERIOD_MS = 1000
+FOOTPRINT_PERIOD_MS = 2000
+FEW = 80
 PHASES = ("Planned", "Transit", "Waiting", "Active", "Suspended", "Complete", "Failed")
 OWNERS = ("UxAS", "ICAROUS")
 
@@ -27,11 +29,25 @@ class Flight:
     phases: list[dict[str, Any]] = field(default_factory=list)
     takeovers: list[dict[str, Any]] = field(default_factory=list)
     events: list[dict[str, Any]] = field(default_factory=list)
+    changes: list[dict[str, Any]] = field(default_factory=list)
+    footprints: dict[int, list[dict[str, Any]]] = field(default_factory=dict)
+    """By task: time, vehicle and corners (latitude, longitude) of some footprints, FEW at most."""
     served: dict[int, dict[str, Any]] = field(default_factory=dict)
     counts: dict[str, int] = field(default_factory=dict)
     end_ms: int = 0
     outcome: str = "the log has no end of mission"
     plan_hash: str = ""
+
+
+def _footprints(flight: Flight, time_ms: int, body: dict[str, Any]) -> None:
+    """Keep what was seen of the tasks in work; of many footprints every second, fourth ... one."""
+    for payload in body["PayloadStateList"]:
+        corners = [(c["Latitude"], c["Longitude"]) for c in payload.get("Footprint") or ()]
+        for task in body["AssociatedTasks"] if len(corners) >= 3 else ():
+            kept = flight.footprints.setdefault(int(task), [])
+            kept.append({"time_ms": time_ms, "vehicle": int(body["ID"]), "corners": corners})
+            if len(kept) > 2 * FEW:
+                del kept[1::2]
 
 
 def _name(value: Any, names: tuple[str, ...]) -> str:
@@ -48,6 +64,8 @@ def read_flight(rows: Iterable[Row], vehicles: Iterable[int]) -> Flight:
         short = row.topic.rpartition(".")[2]
         flight.counts[row.topic] = flight.counts.get(row.topic, 0) + 1
         flight.end_ms = max(flight.end_ms, row.time_ms)
+        if short == "AirVehicleState" and row.time_ms % FOOTPRINT_PERIOD_MS == 0:
+            _footprints(flight, row.time_ms, json.loads(row.body))
         if not row.topic.startswith("cratous."):
             continue
         body = json.loads(row.body)
@@ -160,6 +178,11 @@ def _event(flight: Flight, short: str, body: dict[str, Any]) -> None:
     elif short == "PlanAccepted":
         flight.plan_hash = str(body["PlanHash"])
         _note(flight, time_ms, None, f"plan accepted, {body['Makespan'] / 1000:.1f} s long")
+    elif short == "MissionChange":
+        _note(flight, time_ms, None, f"{body['What']}: {body['Consequence']}")
+        flight.changes.append(
+            {"time_ms": time_ms, "what": body["What"], "consequence": body["Consequence"]}
+        )
     elif short == "BridgeStatus":
         state = "alive" if body["Alive"] else "silent"
         _note(flight, time_ms, int(body["VehicleID"]), f"bridge {state} {body['Note']}".strip())

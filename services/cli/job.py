@@ -15,6 +15,7 @@ from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
 
+from cratous.spec.changes import known_at
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.guarantees import Outcome, Verdict, worst
 from cratous.spec.mission import Mission
@@ -49,6 +50,7 @@ def plan_and_check(mission: Mission, bus: Any) -> tuple[Plan, list[Verdict]]:
     from cratous.services.plan_check import check_plan
     from cratous.services.planning import make_plan
 
+    mission = known_at(mission, 0)
     plan = make_plan(mission, bus)
     return plan, check_plan(mission, plan)
 

@@ -83,6 +83,16 @@ class Communication:
             out.append(self._status(vid, now_ms, "connected"))
         return out
 
+    def know(self, zones: tuple[Zone, ...]) -> None:
+        """Zones that have become known since go down to every instance; ways are told anew."""
+        fresh = list(enumerate(zones, 1))[len(self.zones) :]
+        self.zones = zones
+        for vid, peer in self.peers.items():
+            for number, zone in fresh:
+                for message in fence(zone, number, self.projection):
+                    self.bridge.to_icarous(vid, message)
+            peer.told_version = -1
+
     def heartbeat(self, states: dict[int, AirState], now_ms: int) -> list[Any]:
         """WPRCH, POSTN, ATTUD and OBJCT to every instance; what to publish of it."""
         out = []

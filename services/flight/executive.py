@@ -11,13 +11,15 @@ failure of the task.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from cratous.core.following import Track
 from cratous.core.gate import UXAS
+from cratous.core.legs import first_bad_leg
 from cratous.core.timeliness import too_early
+from cratous.core.visibility import name_of
 from cratous.services.flight import chain as chains
 from cratous.services.flight.ahead import join_in_transit, last_lap, leaving_m, points_ahead
 from cratous.services.flight.chain import Chain, Phase
@@ -28,7 +30,8 @@ from cratous.services.flight.pace import FASTEST, broken_rows, trimmed_speed_m_s
 from cratous.services.flight.rejoining import Router
 from cratous.services.flight.timing import closed_by, opens_ms
 from cratous.services.frames import Projection
-from cratous.spec.mission import Mission, Position, Zone
+from cratous.spec.changes import TASK_ADDED, TASK_REMOVED, VEHICLE_JOINS, VEHICLE_LOST
+from cratous.spec.mission import Change, Mission, Position, Zone
 from cratous.spec.plan import Plan, Pose, Row
 
 EARLY_MS = 500
@@ -314,7 +317,7 @@ class Executive:
             if not under_way and self.replan is not None:
                 if any(c.suspended or c.phase is Phase.TASK for c in self.chains.values()):
                     continue  # plan anew when no task is under way: none is torn apart
-                if self._plan_anew(states, now_ms, row.text, out):
+                if self.plan_anew(states, now_ms, row.text, out):
                     return
             self._fail(task_id, now_ms, f"{row.text}: cannot be met any more", states, out)
 
@@ -323,9 +326,7 @@ class Executive:
         settled = self.ends.keys() | self.failed.keys()
         return broken_rows(self.plan.rows, *self.expected(factor, now_ms), settled)
 
-    def _plan_anew(
-        self, states: dict[int, AirState], now_ms: int, why: str, out: list[Any]
-    ) -> bool:
+    def plan_anew(self, states: dict[int, AirState], now_ms: int, why: str, out: list[Any]) -> bool:
         """A new plan for what is left, from where all are; False if there is none."""
         if self.replan is None:
             return False
@@ -340,6 +341,51 @@ class Executive:
                 out.append(self._progress(chain, now_ms, "Planned", 0.0, note))
         out.extend(self.begin(states, now_ms))
         return True
+
+    def know(self, zones: tuple[Zone, ...]) -> None:
+        """These zones bind from now on."""
+        self.zones, self.router = zones, Router(zones)
+
+    def touched_by(
+        self, due: Sequence[Change], zones: Sequence[Zone], states: dict[int, AirState]
+    ) -> str:
+        """Why what has become known asks for another plan; empty if it does not.
+
+        A new zone does if a leg that is still to be flown breaks it (kernels by `first_bad_leg`).
+        """
+        left = {
+            c.vehicle.id: [i.task_id for i in c.items[max(c.k, 0) :]] for c in self.chains.values()
+        }
+        for change in due:
+            if change.kind == VEHICLE_LOST and left.get(change.vehicle):
+                return f"tasks {', '.join(map(str, left[change.vehicle]))} go to other vehicles"
+            if change.kind == TASK_REMOVED and change.task not in self.ends:
+                return f"task {change.task} is left out"
+            if change.kind in (TASK_ADDED, VEHICLE_JOINS):
+                return "what is left is shared out again"
+        for vid, chain in sorted(self.chains.items()):
+            ways = [(states[vid].position, *chain.track.rest(chain.s_m))]
+            for item in chain.items[max(chain.k, 0) + 1 :]:
+                ways += [item.transit, item.path]
+            if chain.item is not None and chain.phase is not Phase.TASK:
+                ways.append(chain.item.path)
+            for way in ways:
+                bad = first_bad_leg(way, zones) if way else None
+                if bad is not None:
+                    return f"the way of vehicle {vid} breaks {name_of(bad[1])}"
+        return ""
+
+    def commands_now(self, epochs: dict[int, int]) -> list[Any]:
+        """The present tracks, for all that UxAS commands."""
+        free = [vid for vid, chain in self.chains.items() if not chain.suspended]
+        return [self.command(vid, epochs[vid]) for vid in free]
+
+    def give_up(self, now_ms: int, why: str, states: dict[int, AirState], out: list[Any]) -> None:
+        """Nothing that is left can be done: every task of it fails by name."""
+        for chain in list(self.chains.values()):
+            for item in chain.items[max(chain.k, 0) :]:
+                if item.task_id not in self.failed and item.task_id not in self.ends:
+                    self._fail(item.task_id, now_ms, why, states, out)
 
     def _fail(
         self, task_id: int, now_ms: int, why: str, states: dict[int, AirState], out: list[Any]

@@ -28,8 +28,9 @@ from cratous.services.frames import Projection
 from cratous.services.icarous import instance
 from cratous.services.planning.zones import hard_zones
 from cratous.services.records import fingerprint, to_data
+from cratous.spec.changes import TASK_ADDED, VEHICLE_JOINS, known_at, split, words
 from cratous.spec.errors import NoPlan
-from cratous.spec.mission import Mission
+from cratous.spec.mission import Change, Mission
 from cratous.spec.plan import Plan
 
 Segmenter = Callable[[bytes], Iterable[bytes]]
@@ -71,6 +72,10 @@ def fly(
         return _Flight(mission, plan, bus, bridge, instances).run(progress)
 
 
+BRINGS_WORK = (TASK_ADDED, VEHICLE_JOINS)
+"""The end of the mission waits for changes of these kinds."""
+
+
 class _Flight:
     """The state of one flight."""
 
@@ -102,6 +107,10 @@ class _Flight:
         self.takeovers = 0
         self.commands = 0
         self.now_ms = 0
+        self.known = known_at(mission, 0)
+        self.no_plan = ""
+        self._accepted: tuple[Plan, frozenset[int]] | None = None
+        self.to_come = split(mission.changes, 0)[1]
 
     # publishing ---------------------------------------------------------------------------
 
@@ -206,12 +215,16 @@ class _Flight:
 
     def _outcome(self, limit_ms: int) -> str:
         back = all(node.gate.owner == UXAS for node in self.nodes.values())
-        if self.executive.done() and back:
+        expected = any(c.kind in BRINGS_WORK for c in self.to_come)
+        if self.executive.done() and back and not expected:
             return "failed" if self.executive.failed else "complete"
         return "limit" if self.now_ms >= limit_ms else ""
 
     def _own_states(self) -> dict[int, AirState]:
         return {vid: node.state for vid, node in self.nodes.items()}
+
+    def _epochs(self) -> dict[int, int]:
+        return {vid: node.gate.epoch for vid, node in self.nodes.items()}
 
     def _everyone(self) -> dict[int, AirState]:
         return {**self._own_states(), **self.traffic}
@@ -221,8 +234,14 @@ class _Flight:
         self.traffic = {
             t.id: s for t in self.mission.traffic if (s := traffic_state(t, now)) is not None
         }
-        epochs = {vid: node.gate.epoch for vid, node in self.nodes.items()}
-        self._say(self.executive.step(self._own_states(), epochs, now), "uxas/executive")
+        due, self.to_come = split(self.to_come, now)
+        if due:
+            self._change(due)
+        commands = self.executive.step(self._own_states(), self._epochs(), now)
+        if self._accepted is not None:
+            self._accept(*self._accepted)
+            self._accepted = None
+        self._say(commands, "uxas/executive")
         if now % self.mission.simulation.heartbeat_ms == 0:
             self._heartbeat()
         for node in self.nodes.values():
@@ -240,7 +259,7 @@ class _Flight:
             terrain_m = self.mission.frame.terrain_m
             target = None if chain.suspended else target_of(chain, task, node.state, terrain_m)
             payloads = camera_states(
-                node.vehicle, node.state, target, self.projection, self.mission.frame
+                node.vehicle, node.state, target, self.projection, self.mission.frame, task
             )
             tasks = [task.id] if task is not None and target is not None else []
             state = node.air_vehicle_state(now, payloads, tasks)
@@ -319,6 +338,34 @@ class _Flight:
         for message in out.messages:
             self.bridge.to_uxas(vid, message)
 
+    def _change(self, due: list[Change]) -> None:
+        """What has become known since the last step: told, watched for, and planned for at once."""
+        now, states = self.now_ms, self._own_states()
+        self.known = known_at(self.mission, now, self.executive.ends)
+        zones = hard_zones(tuple(c.zone for c in due if c.zone is not None))
+        self.zones = (*self.zones, *zones)
+        what = "; ".join(words(change) for change in due)
+        self.executive.know(self.zones)
+        self.ics.know(self.zones)
+        why = self.executive.touched_by(due, zones, states)
+        out: list[Any] = []
+        if not why:
+            answer = "the plan holds as it is"
+        elif self.executive.plan_anew(states, now, what, out):
+            answer = f"planned anew: {why}"
+            out += self.executive.commands_now(self._epochs())
+        else:
+            answer = f"no plan for what is left ({self.no_plan}): {why}"
+            self.executive.give_up(now, f"{what}: {self.no_plan}", states, out)
+            out += self.executive.commands_now(self._epochs())
+        change = lmcp.new("MissionChange", Time=now, What=what, Consequence=answer)
+        # the change is known before anything is done about it
+        self._say([change], "uxas")
+        if self._accepted is not None:
+            self._accept(*self._accepted)
+            self._accepted = None
+        self._say(out, "uxas/executive")
+
     def _replan(
         self, states: dict[int, AirState], done: frozenset[int], now_ms: int
     ) -> Plan | None:
@@ -328,9 +375,12 @@ class _Flight:
         flown = [
             (task, self.executive.starts[task], self.executive.ends[task]) for task in sorted(done)
         ]
+        here = {v.id for v in self.known.vehicles}
+        poses = {vid: pose for vid, pose in poses.items() if vid in here}
         try:
-            plan = make_plan(self.mission, starts=poses, done=flown, now_ms=now_ms)
-        except NoPlan:
+            plan = make_plan(self.known, starts=poses, done=flown, now_ms=now_ms)
+        except NoPlan as error:
+            self.no_plan = str(error)
             return None
-        self._accept(plan, done)
+        self._accepted = (plan, done)
         return plan

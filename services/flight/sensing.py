@@ -11,7 +11,7 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import location
 from cratous.services.flight.dynamics import AirState, clamp, wrap
 from cratous.services.frames import Projection
-from cratous.services.sensor import aim, footprint
+from cratous.services.sensor import aim, footprint, zoomed
 from cratous.spec.mission import AREAS, Frame, Position, Task, TaskKind, Vehicle, View
 
 
@@ -73,10 +73,17 @@ def camera_states(
     target: Position | None,
     projection: Projection,
     frame: Frame,
+    task: Task | None = None,
 ) -> list[Any]:
-    """One `CameraState` per camera, angles in degrees, with its footprint if it looks at one."""
+    """One `CameraState` per camera, angles in degrees, with its footprint if it looks at one.
+
+    task: what it looks at the target for; a camera that can zooms in as the task asks.
+    """
     states = []
-    for camera in vehicle.cameras:
+    for wide in vehicle.cameras:
+        camera = wide
+        if task is not None and target is not None:
+            camera = zoomed(wide, task, vehicle.cruise_alt_m - frame.terrain_m)
         azimuth, elevation = 0.0, camera.min_elevation_rad
         corners: list[Any] = []
         if target is not None:

@@ -35,9 +35,10 @@ class Settings:
 
 def settings_of(attributes: Mapping[str, str], where: str = "") -> Settings:
     """The settings; BadInput for a value that is none. Other attributes are left to the caller."""
-    cost = attributes.get("CostFunction")
+    written = attributes.get("CostFunction")
+    cost = None if written is None else written.upper()
     if cost not in (None, "MINMAX", "CUMULATIVE"):
-        raise _bad("CostFunction", "MINMAX or CUMULATIVE", cost, where)
+        raise _bad("CostFunction", "MINMAX or CUMULATIVE", written, where)
     semantics = attributes.get("Semantics")
     if semantics not in (None, "time", "order"):
         raise _bad("Semantics", "time or order", semantics, where)

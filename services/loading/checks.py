@@ -15,6 +15,7 @@ from math import hypot, isfinite
 from cratous.core.kernel import Vec2
 from cratous.core.polygon import edges_of, keep_in_leg_ok, keep_out_leg_ok, locate
 from cratous.services.loading.polygons import polygon_problem
+from cratous.spec import changes
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission, Pattern, Position, TaskKind, Zone, ZoneKind
 
@@ -277,6 +278,32 @@ def relation_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
                 item="relations",
                 expected=f"p{task.id} somewhere in the text",
                 got=mission.relations.strip(),
+            )
+
+
+def change_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
+    """Changes in flight of vehicles or tasks that do not exist, and a mission that begins empty."""
+    vehicles, tasks = {v.id for v in mission.vehicles}, {t.id for t in mission.tasks}
+    for k, change in enumerate(mission.changes):
+        known = vehicles if change.vehicle else tasks
+        number = change.vehicle or change.task
+        if number and number not in known:
+            yield BadInput(
+                f"{'vehicle' if change.vehicle else 'task'} {number} does not exist",
+                where=where(f"changes[{k}].{change.kind}"),
+                item=f"changes[{k}].{change.kind}",
+                expected="one of " + ", ".join(map(str, sorted(known))),
+                got=str(number),
+            )
+    later = [c for c in mission.changes if c.kind in (changes.TASK_ADDED, changes.VEHICLE_JOINS)]
+    for all_of, name in ((vehicles, "vehicle"), (tasks, "task")):
+        if all_of and all_of <= {getattr(c, name) for c in later}:
+            yield BadInput(
+                f"the mission begins without a {name}",
+                where=where("changes"),
+                item="changes",
+                expected=f"a {name} that takes part from the start",
+                got="all of them come later",
             )
 
 

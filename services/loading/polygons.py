@@ -64,6 +64,31 @@ def padded(zone: Zone, where: str, item: str) -> Zone:
     return replace(zone, vertices=corners, padding_m=0.0)
 
 
+def one_region(zones: Sequence[Zone], where: str, item: str) -> Zone:
+    """Overlapping keep-in zones as the one region that they make: inside of any of them is inside.
+
+    Their paddings are applied. BadInput if they do not join, leave a hole, or differ in altitude.
+    """
+    from shapely import Polygon, union_all
+
+    first = zones[0]
+    hard = [padded(zone, where, item) for zone in zones]
+    layers = {(zone.floor_m, zone.ceiling_m) for zone in zones}
+    whole = union_all([Polygon(zone.vertices) for zone in hard])
+    names = ", ".join(str(zone.id) for zone in zones)
+    simple = isinstance(whole, Polygon) and not whole.interiors
+    corners = tuple((float(x), float(y)) for x, y in whole.exterior.coords[:-1]) if simple else ()
+    if not simple or len(layers) > 1 or polygon_problem(corners):
+        raise BadInput(
+            f"the keep-in zones {names} do not make one region",
+            where=where,
+            item=item,
+            expected="keep-in zones of one floor and ceiling that overlap and leave no hole",
+            got="different altitudes" if len(layers) > 1 else "separate pieces or a hole",
+        )
+    return replace(first, vertices=corners, padding_m=0.0, label=f"zones {names}")
+
+
 def rectangle(centre: Corner, width_m: float, height_m: float, rotation_rad: float) -> list[Corner]:
     """Corners (north, east); width is east-west before the rotation from north towards east."""
     turn_cos, turn_sin = cos(rotation_rad), sin(rotation_rad)

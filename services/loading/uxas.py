@@ -16,12 +16,21 @@ from cratous.services.loading.assignment_attributes import Settings, settings_of
 from cratous.services.loading.checks import too_many_instances
 from cratous.services.loading.document import item_key
 from cratous.services.loading.places import Places
-from cratous.services.loading.uxas_cfg import Configuration, Sent, read_cfg
+from cratous.services.loading.polygons import one_region
+from cratous.services.loading.uxas_cfg import Configuration, Sent, read_all, scenario_states
 from cratous.services.loading.uxas_tasks import Interests
 from cratous.services.loading.uxas_tasks import task as read_task
 from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR, finish
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Daa, Frame, Mission, Task, Vehicle
+from cratous.spec.mission import Daa, Frame, Mission, Simulation, Task, Vehicle, Zone, ZoneKind
+
+LIMIT_MS = 86_400_000
+"""UxAS knows no end of the simulation: a day."""
+WRAPPED = {
+    "CoordinatedAutomationRequest": "OriginalRequest",
+    "TaskAutomationRequest": "OriginalRequest",
+    "ImpactAutomationRequest": "TrialRequest",
+}
 
 
 def load_uxas(path: Path) -> Mission:
@@ -29,7 +38,7 @@ def load_uxas(path: Path) -> Mission:
 
     Raises BadInput for what is wrong, missing, or not covered yet (named).
     """
-    return mission_of(read_cfg(Path(path)), str(path))
+    return mission_of(read_all(Path(path)), str(path))
 
 
 def mission_of(cfg: Configuration, source: str) -> Mission:
@@ -43,10 +52,7 @@ def mission_of(cfg: Configuration, source: str) -> Mission:
     sources: dict[str, str] = {"relations": request.where}
     vehicles = _vehicles(cast, request, places, sources, notes)
     tasks = _tasks(cast, request, places, vehicles, sources, notes)
-    zones = []
-    for k, sent in enumerate(_zones(cast, request, notes)):
-        zones.append(parts.zone(sent, places, frame.terrain_m, notes))
-        sources[f"zones[{k}]"] = sent.where
+    zones = _bound(cast, request, places, frame, sources, notes)
     instances, guard_notes = _instances(cfg, vehicles)
     volume = DEFAULT_WELL_CLEAR
     notes.append(
@@ -68,6 +74,7 @@ def mission_of(cfg: Configuration, source: str) -> Mission:
         cost=settings.cost or "MINMAX",
         order=settings.semantics or order,
         node_limit=settings.nodes,
+        simulation=Simulation(limit_ms=LIMIT_MS),
         instances=instances,
         notes=tuple(dict.fromkeys([*notes, *guard_notes])),
     )
@@ -130,14 +137,32 @@ class _Cast:
                 continue
             elif kind == "OperatingRegion":
                 self.regions[body.ID] = sent
-            elif kind == "AutomationRequest":
-                self.requests.append(sent)
+            elif kind == "AutomationRequest" or kind in WRAPPED:
+                self._add_request(sent, kind)
             elif hasattr(body, "TaskID") and hasattr(body, "EligibleEntities"):
                 self.tasks[body.TaskID] = sent
             else:
                 other.append(kind)
+        if any(number not in self.states for number in self.configurations):
+            self._ask_scenario()
         if other:
             self.notes.append(f"messages not used: {', '.join(sorted(set(other)))}")
+
+    def _add_request(self, sent: Sent, kind: str) -> None:
+        """A request; one in a wrapper is planned as it is: all vehicles are planned in one place."""
+        if kind in WRAPPED:
+            self.notes.append(f"{kind} is planned like an AutomationRequest")
+            sent = replace(sent, body=getattr(sent.body, WRAPPED[kind]))
+        self.requests.append(sent)
+
+    def _ask_scenario(self) -> None:
+        found, notes = scenario_states(self.cfg)
+        for sent in found:
+            number = sent.body.ID
+            if number in self.configurations and number not in self.states:
+                self.states[number] = sent
+                self.notes.append(f"the state of vehicle {number} is read from {sent.where}")
+                self.notes.extend(note for note in notes if note not in self.notes)
 
     def request(self) -> Sent:
         """The automation request that is flown: the first one."""
@@ -164,7 +189,8 @@ def _frame(cast: _Cast) -> Frame:
     ]
     if not found:
         raise BadInput("no message has a place", where=str(cast.cfg.path), expected="vehicles")
-    latitudes, longitudes = zip(*found, strict=True)
+    # places that nobody has filled in lie at 0, 0; where the frame lies changes no meaning
+    latitudes, longitudes = zip(*([p for p in found if p != (0.0, 0.0)] or found), strict=True)
     return Frame(
         round((min(latitudes) + max(latitudes)) / 2, 6),
         round((min(longitudes) + max(longitudes)) / 2, 6),
@@ -221,16 +247,21 @@ def _tasks(
             )
         sources[f"tasks[{k}]"] = cast.tasks[number].where
         task = read_task(cast.tasks[number], places, vehicles, notes, cast.interests)
-        found.append(_eligible(task, cast, vehicles, f"tasks[{k}].eligible", sources))
+        found.append(_eligible(task, cast, vehicles, f"tasks[{k}].eligible", notes))
     return tuple(_named_only(found, request, notes))
 
 
 def _eligible(
-    task: Task, cast: _Cast, vehicles: tuple[Vehicle, ...], item: str, sources: dict[str, str]
+    task: Task, cast: _Cast, vehicles: tuple[Vehicle, ...], item: str, notes: list[str]
 ) -> Task:
-    """Eligible vehicles that exist but are not in the request do not take part."""
+    """Eligible vehicles that are not in the request do not take part; at least one has to."""
     ids = [vehicle.id for vehicle in vehicles]
     kept = tuple(n for n in task.eligible if n in ids or n not in cast.configurations)
+    strangers = [n for n in kept if n not in ids]
+    if len(strangers) < len(kept):
+        for number in strangers:
+            notes.append(f"task {task.id}: eligible vehicle {number} does not exist, left out")
+        kept = tuple(n for n in kept if n in ids)
     if task.eligible and not kept:
         raise BadInput(
             f"no vehicle of the request may do task {task.id}",
@@ -285,6 +316,33 @@ def _zones(cast: _Cast, request: Sent, notes: list[str]) -> list[Sent]:
     if idle:
         notes.append(f"zones outside the operating region, so not binding: {', '.join(idle)}")
     return [cast.zones[zone] for zone in dict.fromkeys(named)]
+
+
+def _bound(
+    cast: _Cast,
+    request: Sent,
+    places: Places,
+    frame: Frame,
+    sources: dict[str, str],
+    notes: list[str],
+) -> list[Zone]:
+    """The zones that bind; several keep-in zones of the region are one region together."""
+    found = [
+        (parts.zone(sent, places, frame.terrain_m, notes), sent.where)
+        for sent in _zones(cast, request, notes)
+    ]
+    inside = [(zone, where) for zone, where in found if zone.kind == ZoneKind.KEEP_IN]
+    if len(inside) > 1:
+        zones = [zone for zone, _ in inside]
+        whole = one_region(zones, cast.regions[request.body.OperatingRegion].where, "KeepInAreas")
+        notes.append(
+            f"keep-in zones {', '.join(str(z.id) for z in zones)} make one region, zone {whole.id}: "
+            "inside of any of them is inside"
+        )
+        found = [(whole, inside[0][1]), *(f for f in found if f not in inside)]
+    for k, (_, where) in enumerate(found):
+        sources[f"zones[{k}]"] = where
+    return [zone for zone, _ in found]
 
 
 def _instances(

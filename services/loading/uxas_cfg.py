@@ -58,26 +58,87 @@ class Configuration:
         return None
 
 
-def find_cfg(path: Path) -> Path:
-    """The configuration file of a folder: its only cfg*.xml."""
+def find_cfgs(path: Path) -> tuple[Path, ...]:
+    """The configurations of a folder: its files cfg*.xml, or else its XML files of a <UxAS>."""
     if not path.is_dir():
-        return path
+        return (path,)
     found = sorted(path.glob("cfg*.xml"))
-    if len(found) != 1:
+    if not found:
+        found = [entry for entry in sorted(path.glob("*.xml")) if _is_uxas(entry)]
+    if not found:
         raise BadInput(
             "no single UxAS configuration in this folder",
             where=str(path),
-            expected="one file cfg*.xml (or name the file itself)",
-            got=", ".join(entry.name for entry in found) or "none",
+            expected="a file cfg*.xml (or name the file itself)",
+            got="none",
         )
-    return found[0]
+    return tuple(found)
+
+
+def read_all(path: Path) -> Configuration:
+    """The configuration of a file or folder; several of a folder are processes of one system.
+
+    They are read as one where what they say of a service and what they request agrees; otherwise
+    BadInput asks which of them is meant.
+    """
+    paths = find_cfgs(path)
+    found = [read_cfg(one) for one in paths]
+    first = found[0]
+    if len(found) == 1:
+        return first
+    # what each asks for, once: the same request from two processes is one request
+    requests = {
+        sent.where
+        for one in found
+        for sent in one.messages
+        if type(sent.body).__name__.endswith("AutomationRequest")
+    }
+    planning = {
+        (kind, tuple(sorted(attributes.items())))
+        for one in found
+        for kind, attributes, _ in one.services
+        if kind in ("AssignmentTreeBranchBoundService", "IcarousCommunicationService")
+    }
+    if len(requests) > 1 or len({kind for kind, _ in planning}) < len(planning):
+        raise BadInput(
+            "no single UxAS configuration in this folder",
+            where=str(path),
+            expected="processes of one system, with one request (or name the file itself)",
+            got=", ".join(one.name for one in paths),
+        )
+    messages: dict[tuple[str, int, str], Sent] = {}
+    for one in found:
+        for k, sent in enumerate(one.messages):
+            messages.setdefault((sent.where, sent.time_ms, _nth(one.messages, k)), sent)
+    names = ", ".join(one.name for one in paths)
+    notes = [f"{names} are read as processes of one system", *(n for c in found for n in c.notes)]
+    return Configuration(
+        first.path,
+        first.root,
+        tuple(service for one in found for service in one.services),
+        tuple(sorted(messages.values(), key=lambda sent: sent.time_ms)),
+        tuple(dict.fromkeys(notes)),
+    )
+
+
+def _nth(messages: tuple[Sent, ...], k: int) -> str:
+    """Which object of its file a message is, so that files with several count each of them once."""
+    return str([m.where for m in messages[: k + 1]].count(messages[k].where))
+
+
+def _is_uxas(path: Path) -> bool:
+    from cratous.bridge.lmcp import xml
+
+    try:
+        return bool(xml.parse(path.read_bytes(), str(path)).tag == "UxAS")
+    except (OSError, BadInput):
+        return False
 
 
 def read_cfg(path: Path) -> Configuration:
     """Read a configuration and all messages that it sends, in the order of sending."""
     from cratous.bridge.lmcp import xml
 
-    path = find_cfg(path)
     try:
         text = path.read_bytes()
     except OSError as error:
@@ -148,9 +209,31 @@ def _messages(cfg: Path, service: Any, notes: list[str]) -> list[Sent]:
             raise BadInput(
                 "not a time", where=place, item="SendTime_ms", expected="whole ms", got=time
             )
-        for body in xml.read_file(found, notes, hash_comments=True):
+        for body in xml.read_messages(found, notes):
             sent.append(Sent(body, str(found), int(time)))
     return sent
+
+
+def scenario_states(cfg: Configuration) -> tuple[list[Sent], list[str]]:
+    """The AirVehicleStates of the AMASE scenarios beside a configuration, and notes.
+
+    Some examples of OpenUxAS leave it to the simulator to say where the vehicles are.
+    """
+    from cratous.bridge.lmcp import xml
+
+    found: list[Sent] = []
+    notes: list[str] = []
+    for path in sorted(cfg.path.parent.glob("*.xml")):
+        try:
+            root = xml.parse(path.read_bytes(), str(path))
+        except (OSError, BadInput):
+            continue
+        if root.tag != "AMASE":
+            continue
+        for element in root.iter("AirVehicleState"):
+            body = xml.read_element(element, str(path), notes)
+            found.append(Sent(body, f"{path}:{element.sourceline}", 0))
+    return found, [_short(note) for note in notes]
 
 
 def _join(base: Path, name: str) -> Path:

@@ -89,8 +89,8 @@ def vehicle(configuration: Sent, state: Sent, places: Places, notes: list[str]) 
     )
     if abs(position.alt_m - nominal) > 1:
         notes.append(
-            f"vehicle {body.ID} flies at the altitude of its state, {position.alt_m:g} m MSL, "
-            f"not at its nominal {nominal:g} m"
+            f"vehicle {body.ID} changes from the altitude of its state, {position.alt_m:g} m MSL, "
+            f"to its nominal {nominal:g} m on the way to its first task"
         )
     return Vehicle(
         id=body.ID,
@@ -104,6 +104,7 @@ def vehicle(configuration: Sent, state: Sent, places: Places, notes: list[str]) 
         max_climb_m_s=float(climb),
         protected=True,
         cameras=_cameras(body, state.body),
+        cruise_m=float(nominal),
     )
 
 
@@ -124,6 +125,8 @@ def _cameras(configuration: Any, state: Any) -> tuple[Camera, ...]:
             width = camera.VideoStreamHorizontalResolution
             height = camera.VideoStreamVerticalResolution
             view = views.get(camera.PayloadID, 0) or camera.MaxHorizontalFieldOfView
+            fields = {camera.MinHorizontalFieldOfView, *camera.DiscreteHorizontalFieldOfViewList}
+            narrower = tuple(sorted(radians(field) for field in fields if 0 < field < view))
             found.append(
                 Camera(
                     payload_id=gimbal.PayloadID,
@@ -135,6 +138,9 @@ def _cameras(configuration: Any, state: Any) -> tuple[Camera, ...]:
                     max_azimuth_rad=radians(gimbal.MaxAzimuth),
                     wavelength=camera.SupportedWavelengthBand.name,
                     pixels=int(width),
+                    zoom_rad=narrower,
+                    zooms=camera.FieldOfViewMode.name == "Continuous",
+                    camera_id=camera.PayloadID,
                 )
             )
     return tuple(found)

@@ -34,6 +34,7 @@ class Interests:
     points: dict[int, Sent] = field(default_factory=dict)
     lines: dict[int, Sent] = field(default_factory=dict)
     areas: dict[int, Sent] = field(default_factory=dict)
+    entities: dict[int, Sent] = field(default_factory=dict)
 
     def add(self, sent: Sent) -> bool:
         """Keep the message if it is one of them."""
@@ -44,6 +45,8 @@ class Interests:
             self.lines[sent.body.LineID] = sent
         elif kind == "AreaOfInterest":
             self.areas[sent.body.AreaID] = sent
+        elif kind in ("EntityState", "GroundVehicleState", "SurfaceVehicleState"):
+            self.entities[sent.body.ID] = sent
         else:
             return False
         return True
@@ -104,7 +107,7 @@ def task(
         )
     reading = _Reading(sent, places, vehicles, interests, notes)
     found: dict[str, Any] = READERS[kind](reading)
-    if kind.endswith("SearchTask"):
+    if kind.endswith("SearchTask") or kind == "WatchTask":
         found = {**_search(reading, found["kind"]), **found}
     return Task(
         id=body.TaskID,
@@ -139,14 +142,19 @@ def _search(reading: _Reading, kind: TaskKind) -> dict[str, Any]:
 
 def _views(reading: _Reading, inertial: bool) -> dict[str, Any]:
     """The wedges, any of which will do, by their centrelines; none means any direction."""
+    wedges = reading.body.ViewAngleList
+    if any(wedge.VerticalCenterline == 0 for wedge in wedges):
+        reading.notes.append(
+            f"{reading.name} has a view without a tilt (VerticalCenterline 0): straight down is taken"
+        )
     found = [
         View(
             radians(wedge.AzimuthCenterline),
-            radians(wedge.VerticalCenterline),
+            radians(wedge.VerticalCenterline or -90),
             bool(inertial),
             radians(wedge.AzimuthExtent),
         )
-        for wedge in reading.body.ViewAngleList
+        for wedge in wedges
     ]
     return {"view": found[0] if found else None, "views": tuple(found[1:])}
 
@@ -191,7 +199,11 @@ def _point(reading: _Reading) -> dict[str, Any]:
         "standoff_m": standoff,
         **_views(reading, True),
     }
-    if impact and body.DesiredAction is not None:
+    if impact and body.DesiredAction is not None and body.DesiredAction.Duration <= 0:
+        reading.notes.append(
+            f"{reading.name}: its DesiredAction has no duration, the point is passed for its dwell"
+        )
+    elif impact and body.DesiredAction is not None:
         loiter, duration_ms = _action(reading)
         dwell = max(duration_ms, int(body.DwellTime))
         found.update(loiter=loiter, duration_ms=dwell)
@@ -246,7 +258,7 @@ def _must_fly(reading: _Reading) -> dict[str, Any]:
             for v in reading.vehicles
             if not body.EligibleEntities or v.id in body.EligibleEntities
         ]
-        height = (able or list(reading.vehicles))[0].position.alt_m
+        height = (able or list(reading.vehicles))[0].cruise_alt_m
         place = place._replace(alt_m=height)
         reading.notes.append(f"{reading.name} uses no altitude: {height:g} m MSL is taken")
     return {"kind": TaskKind.MUST_FLY, "points": (place,)}
@@ -285,6 +297,9 @@ def _angled(reading: _Reading) -> dict[str, Any]:
 def _pattern(reading: _Reading) -> dict[str, Any]:
     body = reading.body
     extent = float(body.Extent)
+    if extent == 0:
+        reading.notes.append(f"{reading.name} has no extent: its pattern is a pass over its point")
+        return {"kind": TaskKind.POINT_SEARCH, "points": (_place(reading),)}
     if not (isfinite(extent) and extent > 0):
         raise reading.refused(
             f"{reading.name} has no extent", "Extent", "more than 0 m", f"{extent:g} m"
@@ -297,6 +312,25 @@ def _pattern(reading: _Reading) -> dict[str, Any]:
     }
 
 
+def _watch(reading: _Reading) -> dict[str, Any]:
+    """An entity that stands still is watched where it stands; one that moves is not covered."""
+    number = reading.body.WatchedEntityID
+    state = reading.named(reading.interests.entities, number, "WatchedEntityID", "entity")
+    speed = max(abs(state.Groundspeed), abs(state.u), abs(state.v), abs(state.w))
+    if not speed == 0:
+        raise reading.refused(
+            f"{reading.name} watches entity {number}, which moves; that is not covered",
+            "WatchedEntityID",
+            "an entity whose state says that it stands still",
+            f"{speed:g} m/s",
+        )
+    reading.notes.append(
+        f"{reading.name} watches entity {number} where its state says that it stands, "
+        "for its dwell time, once"
+    )
+    return {"kind": TaskKind.POINT_SEARCH, "points": (reading.point(state.Location, "Location"),)}
+
+
 READERS: dict[str, Callable[[_Reading], dict[str, Any]]] = {
     "LineSearchTask": _line,
     "PointSearchTask": _point,
@@ -307,4 +341,5 @@ READERS: dict[str, Callable[[_Reading], dict[str, Any]]] = {
     "ImpactPointSearchTask": _point,
     "AngledAreaSearchTask": _angled,
     "PatternSearchTask": _pattern,
+    "WatchTask": _watch,
 }

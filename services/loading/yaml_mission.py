@@ -13,16 +13,23 @@ from pathlib import Path
 from typing import Any
 
 from cratous.services.loading.assignment_attributes import NODES_PER_MS
-from cratous.services.loading.checks import mission_problems, start_problems, too_many_instances
+from cratous.services.loading.checks import (
+    change_problems,
+    mission_problems,
+    start_problems,
+    too_many_instances,
+)
 from cratous.services.loading.document import Document, item_key, read_document
 from cratous.services.loading.places import Places
 from cratous.services.loading.polygons import padded
 from cratous.services.loading.problems import refuse
 from cratous.services.loading.schema import schema_problems
 from cratous.services.loading.yaml_task import yaml_task
+from cratous.spec import changes
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import (
     Camera,
+    Change,
     Daa,
     Frame,
     Mission,
@@ -59,19 +66,30 @@ def load(path: Path, seed: int = 0) -> Mission:
 
 def finish(mission: Mission, where: Any) -> Mission:
     """Check a mission, pad its zones and hold the starts against them."""
-    refuse(mission_problems(mission, where))
-    zones, notes, problems = [], [], []
-    for k, zone in enumerate(mission.zones):
-        item = f"zones[{k}].padding_m"
+    later = tuple(c.zone for c in mission.changes if c.zone is not None)
+    refuse(mission_problems(replace(mission, zones=(*mission.zones, *later)), where))
+    refuse(list(change_problems(mission, where)))
+    notes: list[str] = []
+    problems: list[BadInput] = []
+
+    def hard(zone: Zone, item: str) -> Zone:
         try:
-            zones.append(padded(zone, where(item), item))
+            found = padded(zone, where(item), item)
         except BadInput as problem:
             problems.append(problem)
+            return zone
         if zone.padding_m:
             change = "widened" if zone.kind == ZoneKind.KEEP_OUT else "narrowed"
             notes.append(f"zone {zone.id} is {change} by its padding of {zone.padding_m:g} m")
+        return found
+
+    zones = tuple(hard(z, f"zones[{k}].padding_m") for k, z in enumerate(mission.zones))
+    known = tuple(
+        c if c.zone is None else replace(c, zone=hard(c.zone, f"changes[{k}].zone.padding_m"))
+        for k, c in enumerate(mission.changes)
+    )
     refuse(problems)
-    mission = replace(mission, zones=tuple(zones), notes=(*mission.notes, *notes))
+    mission = replace(mission, zones=zones, changes=known, notes=(*mission.notes, *notes))
     refuse(list(start_problems(mission, where)))
     return mission
 
@@ -107,6 +125,7 @@ def _mission(document: Document, seed: int) -> Mission:
         order=data.get("order", "time"),
         instances=_instances(document, vehicles),
         simulation=_simulation(data.get("simulation", {})),
+        changes=tuple(_change(entry, places) for entry in data.get("changes", [])),
         seed=seed,
         node_limit=_nodes(data.get("search", {})),
         gap=float(data.get("search", {}).get("gap", 0.0)),
@@ -145,6 +164,7 @@ def _vehicle(data: dict[str, Any], places: Places) -> Vehicle:
         max_climb_m_s=float(data.get("max_climb_m_s", 5.0)),
         protected=data.get("protected", True),
         cameras=tuple(_camera(entry) for entry in data.get("cameras", [])),
+        cruise_m=float(data["cruise_m"]) if "cruise_m" in data else None,
     )
 
 
@@ -170,6 +190,16 @@ def _zone(data: dict[str, Any], places: Places) -> Zone:
         padding_m=float(data.get("padding_m", 0.0)),
         label=data.get("label", ""),
     )
+
+
+def _change(data: dict[str, Any], places: Places) -> Change:
+    kind = next(name for name in data if name != "at_s")
+    at_ms, value = round(float(data["at_s"]) * 1000), data[kind]
+    if kind == changes.ZONE:
+        return Change(at_ms, kind, zone=_zone(value, places))
+    if kind.startswith("vehicle"):
+        return Change(at_ms, kind, vehicle=int(value))
+    return Change(at_ms, kind, task=int(value))
 
 
 def _traffic(data: dict[str, Any], places: Places) -> Traffic:

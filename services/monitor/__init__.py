@@ -17,6 +17,7 @@ from cratous.services.monitor.completion import CompletionWatch
 from cratous.services.monitor.constraints import ConstraintWatch
 from cratous.services.monitor.samples import Sample, Sampler
 from cratous.services.monitor.separation import SeparationWatch
+from cratous.spec.changes import known_at
 from cratous.spec.guarantees import REQUIREMENTS, Kind, Verdict, worst
 from cratous.spec.mission import Mission
 from cratous.spec.plan import Plan
@@ -36,7 +37,7 @@ class Monitor:
         self.mission = mission
         self.not_covered = tuple(v.id for v in mission.vehicles if not v.protected)
         self._sampler = Sampler(frozenset(v.id for v in mission.vehicles))
-        self.constraints = ConstraintWatch(mission, plan)
+        self.constraints = ConstraintWatch(known_at(mission, 0), plan)
         self.separation = SeparationWatch(mission)
         self.completion = CompletionWatch(mission, plan)
         self.authority = AuthorityWatch(mission)
@@ -53,6 +54,9 @@ class Monitor:
                 self._step(*step)
         elif short == "AirVehicleState":
             self.completion.state(body)
+        elif short == "MissionChange":
+            known = known_at(self.mission, body.Time, self.constraints.done())
+            self.constraints.change(known)
         elif short == "PlanAccepted" and body.Tasks:
             self.constraints.accept(frozenset(body.Tasks))
             self.completion.accept(frozenset(body.Tasks))

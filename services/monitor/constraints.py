@@ -44,6 +44,14 @@ class ConstraintWatch:
         """Another plan is flown from now on: these are its tasks and those already done."""
         self._chosen = chosen
 
+    def change(self, known: Mission) -> None:
+        """The mission is known to be this from now on."""
+        self._mission = known
+
+    def done(self) -> frozenset[int]:
+        """The tasks that were flown to their end."""
+        return frozenset(self._ends)
+
     def progress(self, body: Any) -> None:
         """A task began or ended."""
         if body.Phase.name == ACTIVE:

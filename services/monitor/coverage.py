@@ -14,11 +14,11 @@ from typing import Any
 
 from cratous.core.coverage import (
     area_m2,
+    look,
     outline,
-    seen_squares,
     share_covered,
+    square_array,
     square_side_m,
-    squares,
 )
 from cratous.core.kernel import Vec2
 from cratous.core.polygon import edges_of, locate
@@ -51,19 +51,16 @@ class _Area:
 
         vertices = outline(task)
         self._area_m2, self._side_m = area_m2(vertices), square_side_m(vertices)
-        self._left = np.array(squares(vertices, self._side_m))
+        self._centres = square_array(vertices, self._side_m)
+        self._seen = np.zeros(len(self._centres), np.bool_)
 
     def look(self, corners: list[tuple[float, float]]) -> None:
         """A footprint (north, east) takes away the squares within it."""
-        import numpy as np
-
-        if len(self._left):
-            seen = seen_squares(self._left, self._side_m, corners)
-            self._left = np.delete(self._left, seen, axis=0)
+        look(self._centres, self._side_m, [corners], self._seen)
 
     def fraction(self) -> float:
         """At least this much has been seen."""
-        return share_covered(len(self._left), self._side_m, self._area_m2)
+        return share_covered(int((~self._seen).sum()), self._side_m, self._area_m2)
 
 
 class CoverageWatch:

@@ -14,11 +14,11 @@ from typing import Any, NamedTuple
 from cratous.core.coverage import (
     area_m2,
     disc,
+    look,
     outline,
-    perhaps_seen,
     share_covered,
+    square_array,
     square_side_m,
-    squares,
 )
 from cratous.core.legs import first_bad_leg
 from cratous.core.sweep import (
@@ -157,7 +157,7 @@ def _broken_lane(candidate: Candidate, zones: Sequence[Zone]) -> str:
     return ""
 
 
-_squares = lru_cache(maxsize=8)(squares)
+_squares = lru_cache(maxsize=8)(square_array)
 
 
 def _share(
@@ -175,12 +175,11 @@ def _share(
     if len(places) > MEASURED_MOST:
         return None
     looks = looks_over(places, view, site.height_m)
-    left = np.array(_squares(site.vertices, site.side_m))
-    for corners in footprints(looks, site.height_m, site.camera, (1 + MARGIN) / 2):
-        if not np.isnan(corners[0, 0]) and len(left):
-            seen = perhaps_seen(left, site.side_m, _corners(corners))
-            left = np.delete(left, seen, axis=0)
-    return share_covered(len(left), site.side_m, area_m2(site.vertices))
+    centres = _squares(site.vertices, site.side_m)
+    seen = np.zeros(len(centres), np.bool_)
+    quads = footprints(looks, site.height_m, site.camera, (1 + MARGIN) / 2)
+    look(centres, site.side_m, quads, seen)
+    return share_covered(int((~seen).sum()), site.side_m, area_m2(site.vertices))
 
 
 def _corners(array: Any) -> list[tuple[float, float]]:

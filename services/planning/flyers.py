@@ -53,9 +53,9 @@ def no_way(label: str, reason: str) -> Way:
 
 
 def flyer_of(vehicle: Vehicle) -> Flyer:
-    """The class of a vehicle; it cruises at the altitude of its start in the mission."""
+    """The class of a vehicle; it cruises at `cruise_alt_m`."""
     radius = BANK_RESERVE * turn_radius_m(vehicle.speed_m_s, vehicle.max_bank_rad)
-    alt = vehicle.position.alt_m
+    alt = vehicle.cruise_alt_m
     return Flyer(vehicle.speed_m_s, radius, alt, vehicle.max_climb_m_s, vehicle.cameras)
 
 

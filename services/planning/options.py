@@ -26,7 +26,7 @@ from cratous.services.planning.point_ways import (
     point_ways,
 )
 from cratous.services.planning.smoothing import ENOUGH
-from cratous.services.sensor import sample_distance_m
+from cratous.services.sensor import sample_distance_m, zoomed
 from cratous.spec.mission import (
     AREAS,
     SEARCHES,
@@ -130,6 +130,8 @@ def _options(
     task: Task, flyer: Flyer, able: tuple[int, ...], zones: Sequence[Zone], terrain_m: float
 ) -> Iterator[Option | Dropped]:
     camera = camera_for(task, flyer.cameras)
+    if camera is not None:
+        camera = zoomed(camera, task, flyer.alt_m - terrain_m)
     reason = _unfit(task, flyer, camera, terrain_m)
     if reason:
         yield Dropped(task.id, able, "", reason)

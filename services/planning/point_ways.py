@@ -24,6 +24,10 @@ from cratous.spec.mission import Camera, Loiter, Position, Task, View
 from cratous.spec.plan import Pose
 
 LOITER_ENTRIES = 8
+TILT = 0.95
+"""Looks to the side are tilted by this share of the gimbal's reach."""
+STRAIGHT_DOWN_RAD = math.radians(-85)
+"""A camera that can be tilted to here sees what is below it."""
 VIEWS_MOST = 16
 """More directions of view than these are not offered, so that options stay few."""
 STANDOFF_MARGIN_M = 25.0
@@ -38,7 +42,7 @@ def views_of(task: Task) -> tuple[View | None, ...]:
 
 def line_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float) -> Iterator[Way]:
     """Both directions of a line for each wanted view, offset to where that view looks at it."""
-    views = views_of(task)
+    views = (*views_of(task), *_sideways(task, camera))
     for number, view in enumerate(views[:VIEWS_MOST], 1):
         for label, points in (("forward", task.points), ("backward", task.points[::-1])):
             line = replace(task, points=points, view=view)
@@ -49,6 +53,14 @@ def line_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float)
             way = Way(named, made.start, made.end, made.points, duration, seen)
             yield _looking(way, camera, view)
     yield from _left_out(len(views))
+
+
+def _sideways(task: Task, camera: Camera | None) -> tuple[View, ...]:
+    """Looks to both sides, for a camera that cannot look straight down where no view is asked for."""
+    if camera is None or views_of(task) != (None,) or camera.min_elevation_rad <= STRAIGHT_DOWN_RAD:
+        return ()
+    tilt = TILT * camera.min_elevation_rad
+    return tuple(View(side * math.pi / 2, tilt, False) for side in (1, -1))
 
 
 def _left_out(count: int) -> Iterator[Way]:
@@ -80,14 +92,19 @@ def point_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float
     """Passes from which the point is seen for the whole dwell; circles if none lasts so long."""
     target, dwell = task.points[0], max(task.duration_ms, MOMENT_MS)
     if task.loiter is not None:
-        for way in _rounds(task.loiter, dwell, flyer):
+        wide = replace(task.loiter, radius_m=max(task.loiter.radius_m, flyer.radius_m))
+        for way in _rounds(_apart(wide, task), dwell, flyer):
             yield _checked(way, task, task.view, camera, terrain_m)
         return
     found, farthest = [], 0.0
     for view, look, heading, label in _aims(task):
         away = view_distance_m(view, flyer.alt_m - terrain_m)
-        if view is None and task.standoff_m > 0:
+        if task.standoff_m > 0 and away < task.standoff_m + STANDOFF_MARGIN_M:
+            # the standoff goes before the tilt of a view: farther away, in the view's direction
             away = task.standoff_m + STANDOFF_MARGIN_M
+            if view is not None:
+                view = replace(view, elevation_rad=-math.atan2(flyer.alt_m - terrain_m, away))
+                label += ", at the standoff"
         farthest = max(farthest, away)
         pose = Pose(
             target.north_m - away * math.cos(look),
@@ -105,6 +122,15 @@ def point_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float
         for way in _rounds(around, dwell, flyer):
             yield _checked(way, task, task.view, camera, terrain_m)
     yield from _left_out(len(views_of(task)))
+
+
+def _apart(loiter: Loiter, task: Task) -> Loiter:
+    """A loiter around the point itself, no nearer than the standoff with its margin."""
+    least = task.standoff_m + STANDOFF_MARGIN_M
+    if task.standoff_m <= 0 or loiter.shape != "circular" or loiter.radius_m >= least:
+        return loiter
+    gap = math.dist(loiter.centre[:2], task.points[0][:2])
+    return replace(loiter, radius_m=least + gap)
 
 
 def _aims(task: Task) -> Iterator[tuple[View | None, float, float, str]]:

@@ -207,8 +207,9 @@ class RoutePlannerVisibilityService:
     def _costs(self, request: Any) -> list[Any]:
         inputs = self._desk.inputs(request.RequestID)
         vehicle = inputs.vehicle_index[request.VehicleID]
-        plans = []
-        for number, (before, to) in enumerate(pairs(inputs, request.VehicleID)):
+        plans, asked = [], pairs(inputs, request.VehicleID)
+        inputs.routes.prepare(vehicle, asked)
+        for number, (before, to) in enumerate(asked):
             cost = inputs.routes.travel_ms(vehicle, before, to)
             if cost is not None:
                 plans.append(lmcp.new("RoutePlan", RouteID=number, RouteCost=cost))

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+
+import numpy as np
 
 from cratous.core.assignment import START
-from cratous.core.dubins import cut_length_m, dubins
-from cratous.core.visibility import Roadmap, Route, route
+from cratous.core.routing import FOUND
+from cratous.core.visibility import Roadmap, Route, route, routes
 from cratous.services.planning.options import Flyer, Option, flight_ms, flyer_of
 from cratous.services.planning.zones import roadmaps
 from cratous.spec.mission import Mission, Zone
 from cratous.spec.plan import Pose
+
+Ends = tuple[Pose, Flyer, Pose]
+"""What a route depends on: where it begins, the class of the vehicle, where it ends."""
 
 
 class Routes:
@@ -33,10 +38,10 @@ class Routes:
         self.flyers = [flyer_of(vehicle) for vehicle in mission.vehicles]
         self.zones = tuple(zones)
         self._maps: dict[float, tuple[Roadmap, ...]] = {}
-        self._found: dict[tuple[Pose, Flyer, Pose], Route] = {}
-        self._times: dict[tuple[Pose, Flyer, Pose], int | None] = {}
+        self._found: dict[Ends, Route] = {}
+        self._times: dict[Ends, int | None] = {}
 
-    def _ends(self, vehicle: int, before: int, to: int) -> tuple[Pose, Flyer, Pose]:
+    def _ends(self, vehicle: int, before: int, to: int) -> Ends:
         start = self.poses[vehicle] if before == START else self.options[before].end
         return start, self.flyers[vehicle], self.options[to].start
 
@@ -47,29 +52,52 @@ class Routes:
             self._found[key] = self._search(*key)
         return self._found[key]
 
+    def _roadmaps(self, radius_m: float) -> tuple[Roadmap, ...]:
+        if radius_m not in self._maps:
+            self._maps[radius_m] = roadmaps(self.zones, radius_m)
+        return self._maps[radius_m]
+
     def _search(self, start: Pose, flyer: Flyer, end: Pose) -> Route:
-        slope = flyer.max_climb_m_s / flyer.speed_m_s if start.alt_m != end.alt_m else math.inf
-        if slope <= 0:
+        if flyer.max_climb_m_s <= 0 and start.alt_m != end.alt_m:
             return Route((), 0.0, "it cannot change its altitude")
-        radius = flyer.radius_m
-        if radius not in self._maps:
-            self._maps[radius] = roadmaps(self.zones, radius)
         found = Route((), 0.0, "")
-        for roadmap in self._maps[radius]:
-            found = route(start, end, radius, roadmap, slope)
+        for roadmap in self._roadmaps(flyer.radius_m):
+            found = route(start, end, flyer.radius_m, roadmap, _slope(flyer))
             if found.points:
                 break
         return found
+
+    def prepare(self, vehicle: int, pairs: Iterable[tuple[int, int]]) -> None:
+        """Find the times of many (before, to) at once, each pair of poses of a class once."""
+        wanted = dict.fromkeys(self._ends(vehicle, *pair) for pair in pairs)
+        left = [key for key in wanted if key not in self._times]
+        flyer = self.flyers[vehicle]
+        if flyer.max_climb_m_s <= 0:
+            flat = [key for key in left if key[0].alt_m == key[2].alt_m]
+            self._times.update((key, None) for key in left if key not in set(flat))
+            left = flat
+        for roadmap in self._roadmaps(flyer.radius_m):
+            if not left:
+                return
+            starts, ends = (np.array([key[k] for key in left], float) for k in (0, 2))
+            found = routes(starts, ends, flyer.radius_m, roadmap, _slope(flyer))
+            rest = []
+            for key, code, metres in zip(left, found.codes, found.metres.tolist(), strict=True):
+                if code == FOUND:
+                    self._times[key] = flight_ms(metres, flyer.speed_m_s)
+                else:
+                    rest.append(key)
+            left = rest
+        self._times.update((key, None) for key in left)
 
     def travel_ms(self, vehicle: int, before: int, to: int) -> int | None:
         """Travel time [ms], or None if no route was found."""
         key = self._ends(vehicle, before, to)
         if key not in self._times:
-            start, flyer, end = key
-            if not self.zones and start.alt_m == end.alt_m:
-                length: float | None = cut_length_m(dubins(start, end, flyer.radius_m))
-            else:
-                found = self.route(vehicle, before, to)
-                length = found.length_m if found.points else None
-            self._times[key] = None if length is None else flight_ms(length, flyer.speed_m_s)
+            self.prepare(vehicle, [(before, to)])
         return self._times[key]
+
+
+def _slope(flyer: Flyer) -> float:
+    """Metres of climb per metre flown; any, where a vehicle only flies level."""
+    return flyer.max_climb_m_s / flyer.speed_m_s if flyer.max_climb_m_s > 0 else math.inf

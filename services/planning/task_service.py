@@ -13,7 +13,8 @@ from cratous.services.planning.desk import Desk
 from cratous.services.planning.flyers import camera_for
 from cratous.services.planning.options import Option
 from cratous.services.planning.stages import hold_of
-from cratous.spec.mission import Task, TaskKind
+from cratous.services.sensor import zoomed
+from cratous.spec.mission import Camera, Task, TaskKind
 from cratous.spec.plan import Hold
 
 NAMES = {
@@ -139,6 +140,7 @@ class TaskService:
                     Elevation=math.degrees(option.view_elevation_rad),
                 )
             )
+            actions += self._zoom(camera, option, inputs.mission.frame.terrain_m)
         hold = hold_of(option, wait, inputs.zones) if wait > 0 else None
         if hold is not None:
             actions.append(self._loiter(hold, wait, speed))
@@ -155,6 +157,22 @@ class TaskService:
             FinalHeading=compass(option.end.heading_rad),
             FinalTime=arrive + wait + option.duration_ms,
         )
+
+    def _zoom(self, camera: Camera | None, option: Option, terrain_m: float) -> list[Any]:
+        """The camera's field of view, if the task asks for another than the present one."""
+        if camera is None:
+            return []
+        narrow = zoomed(camera, self._task, option.flyer.alt_m - terrain_m)
+        if narrow == camera:
+            return []
+        return [
+            lmcp.new(
+                "CameraAction",
+                AssociatedTaskList=[self._task.id],
+                PayloadID=camera.camera_id,
+                HorizontalFieldOfView=math.degrees(narrow.hfov_rad),
+            )
+        ]
 
     def _loiter(self, hold: Hold, wait_ms: int, speed_m_s: float) -> Any:
         centre = self._desk.projection.to_geodetic(hold.north_m, hold.east_m)

@@ -114,7 +114,7 @@ def _bodies(host: Host, bases: tuple[Path, ...], name: str, where: str) -> list[
     if path != paths[0]:
         host.log("INFO", f"{where}: {name} is read from {path}")
     notes: list[str] = []
-    bodies = lmcp.xml.read_file(path, notes, hash_comments=True)
+    bodies = lmcp.xml.read_messages(path, notes)
     for note in notes:
         host.log("WARN", note)
     return bodies

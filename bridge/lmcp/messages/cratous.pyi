@@ -312,3 +312,20 @@ class GateState(LmcpObject):
         Epoch: int = ...,
         Offered: bool = ...,
     ) -> None: ...
+
+class MissionChange(LmcpObject):
+    """cratous.MissionChange: CRATOUS type 13."""
+
+    Time: int
+    """int64 [milliseconds], default 0."""
+    What: str
+    """string, default ''."""
+    Consequence: str
+    """string, default ''."""
+    def __init__(
+        self,
+        *,
+        Time: int = ...,
+        What: str = ...,
+        Consequence: str = ...,
+    ) -> None: ...
