@@ -7,6 +7,7 @@ Definitions: `spec.daa_meaning`. This is bookkeeping on arrays around the driver
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -107,9 +108,8 @@ def grid(p: Parameters, own: Aircraft, dimension: int) -> Grid:
     """The trajectories of one dimension, or its target altitudes."""
     x0 = own_value(own, dimension)
     low, high = value_range(p, dimension, x0)
-    now = np.array(
-        [[own.east_m, own.north_m, own.alt_m, own.ve_m_s, own.vn_m_s, own.vu_m_s]], dtype=np.float64
-    )
+    # the last two: how the ownship moves before the manoeuvre, also where that is slower than a turn
+    now = np.array([[*own[1:7], own.ve_m_s, own.vn_m_s]], dtype=np.float64)
     if dimension == ALT:
         step = p.step_alt_m
         count = math.floor((high - low) / step + SLACK) + 1
@@ -377,6 +377,18 @@ def last_times(
         )  # fmt: skip
         found.append(None if time_s < 0 else float(time_s))
     return tuple(found)
+
+
+def last_free(free: Callable[[float], bool], entry_s: float) -> float | None:
+    """The last time in (0, entry_s) at which free(t) holds, by halving to 0.5 s; None: none."""
+    green_s, red_s, t_s = 0.0, entry_s, 0.0
+    while red_s - green_s > 0.5:
+        if free(t_s):
+            green_s = t_s
+        else:
+            red_s = t_s
+        t_s = (green_s + red_s) / 2
+    return green_s if green_s > 0 else None
 
 
 def out_of_range(p: Parameters, own: Aircraft, dimension: int) -> str:

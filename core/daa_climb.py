@@ -9,8 +9,10 @@ import math
 from math import sqrt
 from typing import NamedTuple
 
+import numpy as np
+
 from cratous.core.daa_steps import until
-from cratous.core.daa_volume import in_conflict
+from cratous.core.daa_uncertain import lost
 from cratous.core.kernel import Vec2, driver, kernel
 
 
@@ -26,12 +28,20 @@ class Climb(NamedTuple):
 
 @kernel(implements="daa_meaning.climb_is_flown")
 def climb(z_m: float, vz_m_s: float, target_m: float, rate_m_s: float, accel_m_s2: float) -> Climb:
-    """The phases from altitude z_m and vertical speed vz_m_s to target_m; rate, accel > 0."""
+    """The phases from altitude z_m and vertical speed vz_m_s to target_m; rate, accel > 0.
+
+    A target too near to level off at is flown through and come back to.
+    """
     way = target_m - z_m
     up = vz_m_s
-    if target_m < z_m:
+    down = target_m < z_m
+    if down:
         way = 0 - way
         up = 0 - up
+    if up > 0 and up * up > 2 * accel_m_s2 * way:
+        way = 0 - way
+        up = 0 - up
+        down = not down
     most = max(rate_m_s, up)
     # twice accel times the way flown while reaching the rate and while levelling off
     if 2 * most * most - up * up <= 2 * accel_m_s2 * way:
@@ -40,11 +50,10 @@ def climb(z_m: float, vz_m_s: float, target_m: float, rate_m_s: float, accel_m_s
         peak = most
     else:
         peak = sqrt(accel_m_s2 * way + up * up / 2)
-        # below zero where it is already too late to level off there
         t1 = (peak - up) / accel_m_s2
         t2 = t1
     t3 = t2 + peak / accel_m_s2
-    if target_m < z_m:
+    if down:
         return Climb(t1, t2, t3, 0 - peak)
     return Climb(t1, t2, t3, peak)
 
@@ -82,7 +91,7 @@ def height(
 
 @driver(checked_by=("in_conflict", "climb", "height", "until"))
 def altitude_conflict(
-    own, other, kind, d, z, tthr, tcoa, vmod, target_m, rate_m_s, accel_m_s2, sample_s,
+    own, other, kind, w, target_m, rate_m_s, accel_m_s2, sample_s,
     from_s, horizon_s, lookahead_s, counted, whole, project_s,
 ):  # fmt: skip
     """Whether the change to target_m conflicts with one intruder at from_s or later.
@@ -97,9 +106,9 @@ def altitude_conflict(
     h0 = other[2] + other[5] * project_s
     v = Vec2(own[3] - other[3], own[4] - other[4])
     if rate_m_s == 0 or accel_m_s2 == 0:
-        return in_conflict(
-            kind, Vec2(x0, y0), v, target_m - h0, 0.0 - other[5], d, z, tthr, tcoa, vmod,
-            from_s, min(lookahead_s, horizon_s),
+        return lost(
+            kind, Vec2(x0, y0), v, target_m - h0, 0.0 - other[5], w, 0.0, from_s,
+            min(lookahead_s, horizon_s),
         )  # fmt: skip
     t1, t2, t3, rate = climb(z0, own[5], target_m, rate_m_s, accel_m_s2)
     level_s = t3 + sample_s
@@ -109,17 +118,17 @@ def altitude_conflict(
         cruise_s = until(lookahead_s, horizon_s, t1, counted)
         final_s = until(lookahead_s, horizon_s, level_s, counted)
     # straight on at the new altitude
-    if max(from_s, level_s) <= final_s and in_conflict(
+    if max(from_s, level_s) <= final_s and lost(
         kind, Vec2(x0 + v.x * level_s, y0 + v.y * level_s), v,
-        target_m - h0 - other[5] * level_s, 0.0 - other[5], d, z, tthr, tcoa, vmod,
+        target_m - h0 - other[5] * level_s, 0.0 - other[5], w, level_s,
         max(from_s - level_s, 0.0), final_s - level_s,
     ):  # fmt: skip
         return True
     if t2 > t1 and max(from_s, t1) <= min(cruise_s, t2):
         z1, _ = height(z0, own[5], target_m, accel_m_s2, t1, t2, t3, rate, t1)
-        if in_conflict(
+        if lost(
             kind, Vec2(x0 + v.x * t1, y0 + v.y * t1), v, z1 - h0 - other[5] * t1,
-            rate - other[5], d, z, tthr, tcoa, vmod,
+            rate - other[5], w, t1,
             max(from_s - t1, 0.0), min(cruise_s, t2) - t1,
         ):  # fmt: skip
             return True
@@ -130,9 +139,9 @@ def altitude_conflict(
         t = max(begin, math.ceil(from_s / sample_s) * sample_s)
         while t <= end and t <= final_s:
             zt, vt = height(z0, own[5], target_m, accel_m_s2, t1, t2, t3, rate, t)
-            if in_conflict(
+            if lost(
                 kind, Vec2(x0 + v.x * t, y0 + v.y * t), v, zt - h0 - other[5] * t,
-                vt - other[5], d, z, tthr, tcoa, vmod, 0.0, 0.0,
+                vt - other[5], w, t, 0.0, 0.0,
             ):  # fmt: skip
                 return True
             t += sample_s
@@ -152,6 +161,8 @@ def safe_altitudes(
     """
     found = False
     lead = 0
+    cylinder = np.zeros(11)
+    cylinder[0], cylinder[1] = radius_m, half_m
     for k in range(targets.size):
         red = False
         for c in range(chosen.size):
@@ -163,15 +174,14 @@ def safe_altitudes(
             i = chosen[q]
             if begin_s <= horizons[i]:
                 red = altitude_conflict(
-                    own, others[i], kinds[i], volumes[i, 0], volumes[i, 1], volumes[i, 2],
-                    volumes[i, 3], volumes[i, 4], targets[k], rate_m_s, accel_m_s2, sample_s,
+                    own, others[i], kinds[i], volumes[i], targets[k], rate_m_s, accel_m_s2, sample_s,
                     begin_s, horizons[i], lookahead_s, counted, False, project_s,
                 )  # fmt: skip
             if recovering and not red:
                 red = altitude_conflict(
-                    own, others[i], 3, radius_m, half_m, 0.0, 0.0, 0.0, targets[k], rate_m_s,
-                    accel_m_s2, sample_s, 0.0, min(begin_s, horizons[i]), lookahead_s, counted, False,
-                    project_s,
+                    own, others[i], 3, cylinder, targets[k], rate_m_s,
+                    accel_m_s2, sample_s, 0.0, min(begin_s, horizons[i]), lookahead_s, counted,
+                    begin_s <= horizons[i], project_s,
                 )  # fmt: skip
             if red:
                 lead = q

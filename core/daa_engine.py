@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +23,6 @@ from cratous.spec.daa import (
     FAR,
     NEAR,
     TAUMOD,
-    TAUMOD_SUM,
     TCAS,
     Alerter,
     Level,
@@ -30,7 +30,6 @@ from cratous.spec.daa import (
     Volume,
     sensitivity,
 )
-from cratous.spec.errors import BadInput
 
 
 class Tables(NamedTuple):
@@ -100,20 +99,30 @@ def region_level(alerter: Alerter, region: int) -> tuple[int, Level] | None:
     return next(((k, x) for k, x in enumerate(alerter.levels) if x.region == region), None)
 
 
-def refuse_uncertainty(p: Parameters, own: Aircraft, others: Sequence[Aircraft]) -> None:
-    """Raise BadInput where sensor uncertainty would matter: its volumes are not decided here.
+def _root(east: float, north: float, both: float) -> float:
+    """Standard deviation along the worst direction; both: root of the covariance, with its sign."""
+    a, b, c = east * east, north * north, math.copysign(both * both, both)
+    half = (a - b) / 2
+    return math.sqrt((a + b) / 2 + math.sqrt(half * half + c * c))
 
-    Without standard deviations, WCV_TAUMOD_SUM is WCV_TAUMOD.
-    """
-    if not any(x.volume.kind == TAUMOD_SUM for a in p.alerters for x in a.levels):
-        return
-    for a in (own, *others):
-        if any(a.sigma):
-            raise BadInput(
-                "sensor uncertainty mitigation is not supported yet", item=a.id,
-                expected="standard deviations of 0, or a configuration with WCV_TAUMOD",
-                got=f"WCV_TAUMOD_SUM with {a.sigma}",
-            )  # fmt: skip
+
+def errors_of(p: Parameters, own: Aircraft, other: Aircraft) -> np.ndarray:
+    """The uncertainties of a pair as `core.daa_uncertain.lost` takes them: z-scores times the
+    standard deviations of both."""
+    pos = vel = 0.0
+    for x in (own.sigma, other.sigma):
+        pos += _root(x.s_ew_m, x.s_ns_m, x.s_en_m)
+        vel += _root(x.v_ew_m_s, x.v_ns_m_s, x.v_en_m_s)
+    return np.array(
+        [
+            p.h_pos_z_score * pos,
+            p.v_pos_z_score * (own.sigma.sz_m + other.sigma.sz_m),
+            p.v_vel_z_score * (own.sigma.vz_m_s + other.sigma.vz_m_s),
+            p.h_vel_z_score_max * vel,
+            p.h_vel_z_score_min * vel,
+            p.h_vel_z_distance_m,
+        ]
+    )
 
 
 class Seen(NamedTuple):
@@ -128,10 +137,17 @@ class Seen(NamedTuple):
 
 
 def look(
-    p: Parameters, own: Aircraft, others: Sequence[Aircraft], alerters: Sequence[int] | None = None
+    p: Parameters,
+    own: Aircraft,
+    others: Sequence[Aircraft],
+    alerters: Sequence[int] | None = None,
+    held: Mapping[tuple[str, int], int] = MappingProxyType({}),
 ) -> Seen:
-    """Raw alert levels and conflicts; alerters: indices that override those of the parameters."""
-    refuse_uncertainty(p, own, others)
+    """Raw alert levels and conflicts.
+
+    alerters: indices that override those of the parameters; held: levels that are shown already, by
+    id and alerter index: in conflict with such a level is who violates it within its early time.
+    """
     t = tables_at(p, own.alt_m)
     index = tuple(alerters if alerters is not None else (alerter_index(p, own, o) for o in others))
     n = len(others)
@@ -139,20 +155,27 @@ def look(
     relative = states([own]) - there
     judged = np.array(index, dtype=np.int64).reshape(n)
     levels = np.zeros(n, dtype=np.int64)
+    errors = np.array([errors_of(p, own, o) for o in others]).reshape(n, 6)
     width = t.kinds.shape[1] if len(t.counts) else 0
     first, last = np.full((n, width), math.nan), np.full((n, width), math.nan)
     if n and width:
         machine(raw_levels)(
-            relative, judged, t.counts, t.kinds, t.volumes, t.alerting_s, p.lookahead_time_s, levels
-        )
+            relative, errors, judged, t.counts, t.kinds, t.volumes, t.alerting_s,
+            p.lookahead_time_s, levels,
+        )  # fmt: skip
         machine(level_times)(
-            relative, judged, t.counts, t.kinds, t.volumes, p.lookahead_time_s, first, last
+            relative, errors, judged, t.counts, t.kinds, t.volumes, p.lookahead_time_s, first, last
         )
     for i, a in enumerate(index):
         for k in range(len(p.alerters[a].levels) if a >= 0 else 0, int(levels[i]), -1):
             level = p.alerters[a].levels[k - 1]
             if any(level.spread) and spread_conflict(
-                p, own, there[i], int(t.kinds[a, k - 1]), t.volumes[a, k - 1], level
+                p,
+                own,
+                there[i],
+                int(t.kinds[a, k - 1]),
+                np.concatenate([t.volumes[a, k - 1], errors[i]]),
+                level,
             ):
                 levels[i] = k
                 break
@@ -171,7 +194,7 @@ def look(
         there,
         np.zeros((4, n), dtype=np.bool_),
         np.zeros((4, n), dtype=np.int64),
-        np.zeros((4, n, 5)),
+        np.zeros((4, n, 11)),
         np.zeros((4, n)),
         np.zeros((4, n), dtype=np.bool_),
         np.zeros((4, n), dtype=np.bool_),
@@ -186,12 +209,14 @@ def look(
             k = found[0]
             traffic.mapped[region, i] = True
             traffic.kinds[region, i] = t.kinds[a, k]
-            traffic.volumes[region, i] = t.volumes[a, k]
+            traffic.volumes[region, i] = [*t.volumes[a, k], *errors[i]]
             traffic.alerting_s[region, i] = t.alerting_s[a, k]
             entry = times[i][k].first_s
+            shown = held.get((others[i].id, a)) == k + 1
+            limit_s = (t.early_s if shown else t.alerting_s)[a, k]
             traffic.violated[region, i] = entry == 0
             traffic.conflict[region, i] = entry is not None and entry < max(
-                min(t.alerting_s[a, k], p.lookahead_time_s), 1e-300
+                min(limit_s, p.lookahead_time_s), 1e-300
             )
     return Seen(own, tuple(others), index, tuple(int(x) for x in levels), times, traffic)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from cratous.core.daa_state import Band
@@ -88,29 +89,65 @@ class Shown:
 
 SLIVER = 1e-4
 """Bands narrower than this (rad, m/s, m) come from rounding of the own value; they are dropped."""
+EDGE = 1e-7
+"""A value this near to an edge lies on it."""
+
+
+def laid_over(bands: Sequence[Band], over: Sequence[Band]) -> tuple[Band, ...]:
+    """The bands with others laid over those that are milder; RECOVERY counts as the most severe."""
+    edges = sorted({x for b in (*bands, *over) for x in (b.low, b.high)})
+    found: list[Band] = []
+    for low, high in itertools.pairwise(edges):
+        middle = (low + high) / 2
+        region = next((b.region for b in bands if b.low <= middle < b.high), NONE)
+        region = max([region, *(b.region for b in over if b.low <= middle < b.high)])
+        if found and found[-1].region == region:
+            found[-1] = found[-1]._replace(high=high)
+        elif high - low > SLIVER:
+            found.append(Band(low, high, region))
+    return tuple(found)
+
+
+def resolved(bands: Sequence[Band], recovering: bool) -> tuple[Band, ...]:
+    """Values without conflict are RECOVERY while recovery is needed, and NONE otherwise."""
+    found: list[Band] = []
+    for band in bands:
+        region = band.region
+        if region in (NONE, RECOVERY):
+            region = RECOVERY if recovering else NONE
+        if found and found[-1].region == region:
+            found[-1] = found[-1]._replace(high=band.high)
+        else:
+            found.append(band._replace(region=region))
+    return tuple(found)
 
 
 @dataclass
 class BandMemory:
-    """The last bands of one dimension; a value's region is shown by M of N of its regions."""
+    """The last bands of one dimension; a value's region is shown by M of N of its regions.
+
+    turn: the size of the circle for directions, else 0. held: the conflict band, or its two parts
+    around 0, in which the own value was shown; held_s: since when it is.
+    """
 
     m: int
     n: int
     persistence_s: float = 0.0
+    turn: float = 0.0
     last: deque[tuple[Band, ...]] = field(default_factory=deque)
-    held: Band | None = None
+    held: tuple[Band, ...] = ()
     held_s: float = float("-inf")
 
-    def filtered(self, bands: tuple[Band, ...], recovering: bool) -> tuple[Band, ...]:
-        """The bands to show. RECOVERY counts as the most severe region, and is shown only while
-        recovery is needed; then no value is shown as NONE."""
+    def filtered(self, bands: tuple[Band, ...]) -> tuple[Band, ...]:
+        """The bands by M of N; RECOVERY counts as the most severe region. The history begins with M
+        copies of the first."""
         if self.m <= 0 or self.n < self.m:
             return bands
+        if not self.last:
+            self.last.extend([()] * (self.n - self.m))
+            self.last.extendleft([bands] * self.m)
         self.last.append(bands)
-        while len(self.last) > self.n:
-            self.last.popleft()
-        if len(self.last) < self.m:
-            return bands
+        self.last.popleft()
         edges = sorted({x for old in self.last for band in old for x in (band.low, band.high)})
         found: list[Band] = []
         low = edges[0]
@@ -124,10 +161,6 @@ class BandMemory:
                 band.region for old in self.last for band in old if band.low <= middle < band.high
             )
             region = m_of_n(regions, self.m)
-            if region == NONE and recovering:
-                region = RECOVERY
-            elif region == RECOVERY and not recovering:
-                region = NONE
             if found and found[-1].region == region:
                 found[-1] = found[-1]._replace(high=high)
             else:
@@ -135,38 +168,39 @@ class BandMemory:
             low = high
         return tuple(found)
 
-    def persistent(self, bands: tuple[Band, ...], own: float, now_s: float) -> tuple[Band, ...]:
-        """The bands with the conflict band of the own value held for the persistence time.
+    def at(self, bands: Sequence[Band], own: float) -> Band | None:
+        """The band of the own value; on an edge the one without conflict, or the milder one."""
+        near = [
+            b
+            for b in bands
+            if b.low - EDGE <= own <= b.high + EDGE
+            or (self.turn and min(abs(own - x) for x in (b.low, b.high)) >= self.turn - EDGE)
+        ]
+        return min(near, key=lambda b: b.region % RECOVERY, default=None)
 
-        Where the own value would become free (NONE) sooner than this after it came into
-        conflict, the last band that it was in is laid over milder ones.
-        """
+    def shown(
+        self, bands: tuple[Band, ...], recovering: bool, own: float, now_s: float
+    ) -> tuple[Band, ...]:
+        """The bands to show: by M of N, and the conflict band of the own value held for the
+        persistence time since it was entered, where it would turn milder sooner."""
+        bands = self.filtered(bands)
         if self.persistence_s <= 0:
-            return bands
-        now = next((b for b in bands if b.low <= own < b.high), None)
-        if now is not None and NONE < now.region < RECOVERY:
-            if self.held is None:
+            return resolved(bands, recovering)
+        now = self.at(bands, own)
+        if not self.held:
+            self.held_s = now_s
+        elif now is not None:
+            region = self.held[0].region
+            if now.region < region and not may_drop(now_s, self.held_s, self.persistence_s):
+                bands = laid_over(bands, self.held)
+            elif region < now.region < RECOVERY:
                 self.held_s = now_s
-            self.held = now
-            return bands
-        held = self.held
-        if (
-            now is None
-            or now.region == RECOVERY
-            or held is None
-            or may_drop(now_s, self.held_s, self.persistence_s)
-        ):
-            self.held = None
-            return bands
-        edges = sorted({x for b in (*bands, held) for x in (b.low, b.high)})
-        found: list[Band] = []
-        for low, high in itertools.pairwise(edges):
-            middle = (low + high) / 2
-            region = next((b.region for b in bands if b.low <= middle < b.high), NONE)
-            if held.low <= middle < held.high and (region == RECOVERY or region < held.region):
-                region = held.region
-            if found and found[-1].region == region:
-                found[-1] = found[-1]._replace(high=high)
-            elif high - low > SLIVER:
-                found.append(Band(low, high, region))
-        return tuple(found)
+        bands = resolved(bands, recovering)
+        now = self.at(bands, own)
+        self.held = ()
+        if now is not None and NONE < now.region < RECOVERY:
+            self.held = (now,)
+            ends = (bands[0], bands[-1])
+            if self.turn and now in ends and ends[0].region == ends[1].region:
+                self.held = tuple(dict.fromkeys(ends))
+        return bands

@@ -15,7 +15,7 @@ from cratous.core.daa_climb import altitude_conflict
 from cratous.core.daa_engine import Seen
 from cratous.core.daa_machine import machine
 from cratous.core.daa_steps import piece_counts, straight_from, until
-from cratous.core.daa_volume import conflict_span, in_conflict
+from cratous.core.daa_uncertain import lost, lost_span
 from cratous.core.kernel import Vec2, driver
 from cratous.spec.daa import NEAR, Parameters
 
@@ -63,29 +63,40 @@ def step_reasons(p: Parameters, seen: Seen, raw: Raw, side: int, k: int) -> list
             if not traffic.conflict[region, i]:
                 horizon_s = min(horizon_s, float(traffic.alerting_s[region, i]))
             kind = int(traffic.kinds[region, i])
-            volume = traffic.volumes[region, i].tolist()
+            volume = traffic.volumes[region, i]
             for j in range(k + 1):
                 at_s = j * g.step_s
-                relative = path[j] - traffic.states[i]
+                relative = path[j, :6] - traffic.states[i]
                 relative[:3] -= at_s * traffic.states[i, 3:]
                 state: Any = (
                     kind, Vec2(relative[0], relative[1]), Vec2(relative[3], relative[4]),
-                    relative[2], relative[5], *volume,
+                    relative[2], relative[5], volume, at_s,
                 )  # fmt: skip
-                lost: Any = in_conflict
-                times_of: Any = conflict_span
+                violated: Any = lost
+                times_of: Any = lost_span
                 counted = p.bands_add_time_to_maneuver
                 last_s = horizon_s if counted else p.lookahead_time_s
-                way = g.step_s > 0 and piece_counts(at_s, 0, last_s) and lost(*state, 0, g.step_s)
+                way = (
+                    g.step_s > 0 and piece_counts(at_s, 0, last_s) and violated(*state, 0, g.step_s)
+                )
                 end_s = until(p.lookahead_time_s, horizon_s, at_s, counted)
-                after = j == k and lost(*state, straight_from(at_s, 0), end_s - at_s)
+                after = j == k and violated(*state, straight_from(at_s, 0), end_s - at_s)
                 if not way and not after:
                     continue
-                span = times_of(*state, 0, g.step_s if way else end_s - at_s)
-                miss, above = _least(relative, span.first_s, span.last_s)
-                times = (at_s + span.first_s, at_s + span.last_s)
+                first_s, final_s = times_of(*state, 0, g.step_s if way else end_s - at_s)
+                miss, above = _least(relative, first_s, final_s)
+                times = (at_s + first_s, at_s + final_s)
                 found.append(
-                    Reason(name, region, bool(way), *times, miss, above, volume[0], volume[1])
+                    Reason(
+                        name,
+                        region,
+                        bool(way),
+                        *times,
+                        miss,
+                        above,
+                        float(volume[0]),
+                        float(volume[1]),
+                    )
                 )
                 break
     return found
@@ -105,14 +116,24 @@ def altitude_reasons(p: Parameters, seen: Seen, raw: Raw, k: int) -> list[Reason
             horizon_s = p.lookahead_time_s
             if not traffic.conflict[region, i]:
                 horizon_s = min(horizon_s, float(traffic.alerting_s[region, i]))
-            volume = traffic.volumes[region, i].tolist()
+            volume = traffic.volumes[region, i]
             if machine(altitude_conflict)(
-                g.right[0], traffic.states[i], traffic.kinds[region, i], *volume, g.targets[k],
+                g.right[0], traffic.states[i], traffic.kinds[region, i], volume, g.targets[k],
                 g.rate_m_s, g.accel_m_s2, SAMPLE_S, 0.0, horizon_s, p.lookahead_time_s,
                 p.bands_add_time_to_maneuver, False, 0.0,
             ):  # fmt: skip
                 found.append(
-                    Reason(name, region, False, None, None, None, None, volume[0], volume[1])
+                    Reason(
+                        name,
+                        region,
+                        False,
+                        None,
+                        None,
+                        None,
+                        None,
+                        float(volume[0]),
+                        float(volume[1]),
+                    )
                 )
     return found
 

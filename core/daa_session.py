@@ -105,7 +105,10 @@ class Session:
         self.shown: dict[tuple[str, int], Shown] = {}
         self.area: dict[str, Shown] = {}
         hold = p.persistence_time_s if p.bands_persistence else 0.0
-        self.bands = [BandMemory(p.alerting_m, p.alerting_n, hold) for _ in DIMENSIONS]
+        self.bands = [
+            BandMemory(p.alerting_m, p.alerting_n, hold, 2 * math.pi * (d == HDIR))
+            for d in range(len(DIMENSIONS))
+        ]
 
     def _terminal(
         self, own: Aircraft, others: Sequence[Aircraft], inside: Sequence[bool]
@@ -161,9 +164,9 @@ class Session:
             return unknown(p, seen.own, dimension, out_of_range(p, seen.own, dimension))
         bands = on_circle(raw.bands) if circle else tuple(raw.bands)
         if remembers:
-            memory = self.bands[dimension]
-            bands = memory.filtered(bands, raw.recovery.computed)
-            bands = memory.persistent(bands, raw.grid.own, self.time_s)
+            bands = self.bands[dimension].shown(
+                bands, raw.recovery.computed, raw.grid.own, self.time_s
+            )
         own = raw.grid.own
         region = region_of(bands, own, circle)
         needed = severity(region) >= p.corrective_region
@@ -196,7 +199,8 @@ class Session:
         remembers = p.hysteresis_time_s > 0
         self.time_s = time_s
         there = self._terminal(own, others, inside) if any(inside) or self.area else ()
-        seen = look(p, own, others, self._alerters(own, others, there))
+        held = {key: memory.level for key, memory in self.shown.items() if remembers}
+        seen = look(p, own, others, self._alerters(own, others, there), held)
         alerts = tuple(self._alert(seen, i, time_s, remembers) for i in range(len(others)))
         area = any(there) and any(
             seen.traffic.conflict[r].any() for r in range(p.corrective_region + 1, NEAR + 1)

@@ -44,7 +44,7 @@ def spread_conflict(
         machine(evaluate)(
             g.right, g.left, g.step_s, g.step_s, g.targets, g.rate_m_s, g.accel_m_s2, SAMPLE_S,
             other.reshape(1, 6), np.zeros(1, dtype=np.int64),
-            np.array([kind], dtype=np.int64), volume.reshape(1, 5),
+            np.array([kind], dtype=np.int64), volume.reshape(1, 11),
             np.array([min(p.lookahead_time_s, level.alerting_time_s)]), 0.0, 0.0, 0.0, False,
             p.lookahead_time_s, p.bands_add_time_to_maneuver, 0.0, False, False, safe_r, safe_l,
         )  # fmt: skip

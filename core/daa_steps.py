@@ -7,6 +7,7 @@ the straight flight from step k on within the horizon. Recovery asks for another
 cylinder) before the instant begin_s, and for the volume itself only from then on.
 """
 
+from cratous.core.daa_uncertain import lost
 from cratous.core.daa_volume import in_conflict
 from cratous.core.kernel import Vec2, driver, fold, kernel
 
@@ -61,9 +62,10 @@ def safe_steps(
 ):  # fmt: skip
     """Which steps of one side are free of conflict with all chosen intruders, into `safe`.
 
-    own: (K + 1, 6) positions [m] and velocities [m/s] at the steps; piece_s:
-    how long a piece is looked at, step_s, or 0 to sample the way at the steps; others: (n, 6) states now;
-    chosen: indices; kinds: (n), volumes: (n, 5), horizons: (n) [s] of each; recovering: the
+    own: (K + 1, 8) positions [m] and velocities [m/s] at the steps, in row 0 also the velocity east
+    and north before the manoeuvre; piece_s: how long a piece is looked at, step_s, or 0 to sample
+    the way at the steps; others: (n, 6) states now;
+    chosen: indices; kinds: (n), volumes: (n, 11) as in `lost`, horizons: (n) [s] of each; recovering: the
     cylinder (radius_m, half_m) is to be avoided before begin_s; project_s: the manoeuvre begins
     after so much straight flight; early: stop as soon as two neighbours are safe.
     Returns whether two neighbouring steps are safe.
@@ -75,8 +77,8 @@ def safe_steps(
         safe[k] = True
     for k in range(last + 1):
         at_s = k * step_s
-        sx0 = own[k, 0] + own[0, 3] * project_s
-        sy0 = own[k, 1] + own[0, 4] * project_s
+        sx0 = own[k, 0] + own[0, 6] * project_s
+        sy0 = own[k, 1] + own[0, 7] * project_s
         sz0 = own[k, 2] + own[0, 5] * project_s
         blocked = False
         red = False
@@ -94,15 +96,12 @@ def safe_steps(
             v = Vec2(own[k, 3] - others[i, 3], own[k, 4] - others[i, 4])
             sz = sz0 - others[i, 2] - others[i, 5] * t
             vz = own[k, 5] - others[i, 5]
-            d, z, tthr, tcoa, vmod = (
-                volumes[i, 0], volumes[i, 1], volumes[i, 2], volumes[i, 3], volumes[i, 4],
-            )  # fmt: skip
             clear = True
             end_s = until(lookahead_s, horizons[i], at_s, counted)
             if begin_s <= horizons[i] and (not red or step_s > 0):
-                clear = not in_conflict(
-                    kinds[i], s, v, sz, vz, d, z, tthr, tcoa, vmod,
-                    straight_from(at_s, begin_s), end_s - at_s,
+                clear = not lost(
+                    kinds[i], s, v, sz, vz, volumes[i], at_s, straight_from(at_s, begin_s),
+                    end_s - at_s,
                 )  # fmt: skip
             # a piece within a clear straight flight is clear
             covered = clear and begin_s <= min(at_s, horizons[i]) and at_s + step_s <= end_s
@@ -110,22 +109,24 @@ def safe_steps(
                 final_s = lookahead_s
                 if counted:
                     final_s = horizons[i]
-                lost = piece_counts(at_s, begin_s, final_s) and in_conflict(
-                    kinds[i], s, v, sz, vz, d, z, tthr, tcoa, vmod, 0.0, piece_s,
-                )  # fmt: skip
-                blocked = lost_before(blocked, lost)
+                on_piece = piece_counts(at_s, begin_s, final_s) and lost(
+                    kinds[i], s, v, sz, vz, volumes[i], at_s, 0.0, piece_s
+                )
+                blocked = lost_before(blocked, on_piece)
             if recovering and not blocked:
-                held_s = min(begin_s, horizons[i])
-                end_s = until(lookahead_s, held_s, at_s, counted)
+                # kept clear until begin_s, or to the horizon as any volume where that is sooner
+                held_s, final_s = begin_s, begin_s
+                if begin_s > horizons[i]:
+                    held_s = until(lookahead_s, horizons[i], at_s, counted)
+                    final_s = lookahead_s
+                    if counted:
+                        final_s = horizons[i]
                 if in_conflict(
                     3, s, v, sz, vz, radius_m, half_m, 0.0, 0.0, 0.0,
-                    straight_from(at_s, 0.0), end_s - at_s,
+                    straight_from(at_s, 0.0), held_s - at_s,
                 ):  # fmt: skip
                     clear = False
                 if step_s > 0:
-                    final_s = lookahead_s
-                    if counted:
-                        final_s = held_s
                     blocked = piece_counts(at_s, 0.0, final_s) and in_conflict(
                         3, s, v, sz, vz, radius_m, half_m, 0.0, 0.0, 0.0, 0.0, piece_s,
                     )  # fmt: skip

@@ -12,9 +12,11 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from cratous.core.daa_engine import Seen, region_level, tables_at
+import numpy as np
+
+from cratous.core.daa_engine import Seen, errors_of, region_level, tables_at
 from cratous.core.daa_state import Aircraft
-from cratous.core.daa_volume import conflict_span, in_conflict
+from cratous.core.daa_uncertain import lost, lost_span
 from cratous.core.kernel import Vec2, driver
 from cratous.spec.daa import CYLINDER, TCPA, TEP, Parameters, Volume
 
@@ -80,7 +82,8 @@ def contours(p: Parameters, seen: Seen, i: int) -> list[Polygon]:
     if found is None:
         return []
     t = tables_at(p, own.alt_m)
-    kind, limits = int(t.kinds[a, found[0]]), t.volumes[a, found[0]].tolist()
+    kind = int(t.kinds[a, found[0]])
+    limits = np.concatenate([t.volumes[a, found[0]], errors_of(p, own, other)])
     s = Vec2(own.east_m - other.east_m, own.north_m - other.north_m)
     sz, vz = own.alt_m - other.alt_m, own.vu_m_s - other.vu_m_s
     speed, track = math.hypot(own.ve_m_s, own.vn_m_s), math.atan2(own.ve_m_s, own.vn_m_s)
@@ -89,9 +92,9 @@ def contours(p: Parameters, seen: Seen, i: int) -> list[Polygon]:
     for k in range(-count, count + 1):
         angle = track + math.radians(k)
         e, n = speed * math.sin(angle), speed * math.cos(angle)
-        state: Any = (kind, s, Vec2(e - other.ve_m_s, n - other.vn_m_s), sz, vz, *limits)
-        within: Any = in_conflict
-        times: Any = conflict_span
+        state: Any = (kind, s, Vec2(e - other.ve_m_s, n - other.vn_m_s), sz, vz, limits, 0.0)
+        within: Any = lost
+        times: Any = lost_span
         if not within(*state, 0.0, p.lookahead_time_s):
             runs.append([])
             continue

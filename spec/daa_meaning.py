@@ -8,9 +8,12 @@ instant of the straight flight from it within a horizon. The definitions name th
 
 from cratous.spec.well_clear import (
     Plane,
+    in_span,
+    layer_violation_at,
     violation_taumod_at,
     violation_tcpa_at,
     violation_tep_at,
+    within_at,
 )
 from cratous.spec.well_clear import within as well_within
 
@@ -121,3 +124,56 @@ def turned(v: Plane, c: float, s: float) -> Plane:
 def in_area(east: float, north: float, alt: float, radius: float, height: float) -> bool:
     """In a cylinder that stands on the ground: not farther from its axis than radius, not above it."""
     return well_within(Plane(east, north), radius) and not alt > height
+
+
+def may_be_violated_at(
+    s: Plane, v: Plane, sz: float, vz: float, ds: Plane, dv: Plane, dz: float, dw: float, es: float,
+    ez: float, ev: float, ew: float, dthr: float, zthr: float, tthr: float, tcoa: float, vmod: float,
+    t: float,
+) -> bool:  # fmt: skip
+    """The true state may be off by (ds, dz) and (dv, dw), and then the volume is violated at t."""
+    if not well_within(ds, es) or not well_within(dv, ev):
+        return False
+    if not layer_may_be_violated_at(sz, vz, dz, dw, ez, ew, zthr, tcoa, vmod, t):
+        return False
+    p, q = Plane(s.x + ds.x, s.y + ds.y), Plane(v.x + dv.x, v.y + dv.y)
+    return violation_taumod_at(p, q, sz + dz, vz + dw, dthr, zthr, tthr, tcoa, vmod, t)
+
+
+def layer_may_be_violated_at(
+    sz: float, vz: float, dz: float, dw: float, ez: float, ew: float, zthr: float, tcoa: float,
+    vmod: float, t: float,
+) -> bool:  # fmt: skip
+    """Altitude and climb rate may be off by dz and dw, and then the layer is violated at t."""
+    if dz < -ez or dz > ez or dw < -ew or dw > ew:
+        return False
+    return layer_violation_at(sz + dz, vz + dw, zthr, tcoa, vmod, t)
+
+
+def may_be_within_at(s: Plane, v: Plane, es: float, ev: float, radius: float, t: float) -> bool:
+    """After t seconds the disc in which the position is known comes within the radius."""
+    return within_at(s, v, radius + es + ev * t, t)
+
+
+def in_either(first: float, last: float, other_first: float, other_last: float, t: float) -> bool:
+    """In one span or in another."""
+    return in_span(first, last, t) or in_span(other_first, other_last, t)
+
+
+def speed_error(range_: float, near: float, far: float, distance: float, error: float) -> bool:
+    """The error is the far one from the distance on, the near one at 0, and on a line between."""
+    if range_ >= distance:
+        return error == far
+    if range_ <= 0:
+        return error == near
+    return (error - near) * distance == (far - near) * range_
+
+
+def not_positive(a: float, half: float, c: float, t: float) -> bool:
+    """The quadratic a t^2 + 2 half t + c is not above 0."""
+    return a * t * t + 2 * half * t + c <= 0
+
+
+def last_root(a: float, half: float, c: float, t: float, last: float) -> bool:
+    """If the quadratic is not above 0 at t, then t is not after the last such time."""
+    return not not_positive(a, half, c, t) or t <= last

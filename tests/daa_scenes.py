@@ -13,7 +13,7 @@ from collections.abc import Iterator
 
 from cratous.core.daa_frame import project
 from cratous.core.daa_session import Instant, Session
-from cratous.core.daa_state import UNKNOWN, Aircraft
+from cratous.core.daa_state import UNKNOWN, Aircraft, Sigma
 from cratous.spec.daa_presets import names, preset
 from cratous.spec.errors import BadInput
 
@@ -33,7 +33,11 @@ def aircraft(rng: random.Random, name: str, scale: float, speed: float) -> Aircr
     u = pick(rng.gauss(0, speed), 0.0, 1e-12, 1e4)
     v = pick(rng.gauss(0, speed), 0.0, -1e-12, -1e4)
     w = pick(rng.gauss(0, 5), 0.0, 30.48, -200.0)
-    return Aircraft(name, x, y, z, u, v, w, rng.choice((0, 1, 1, 1, 2, 3, 7)))
+    sigma = Sigma()
+    if rng.random() < 0.5:
+        sizes = (50.0, 50.0, 30.0, 30.0, 3.0, 3.0, 2.0, 1.0)
+        sigma = Sigma(*(abs(pick(rng.gauss(0, size), 0.0, 1e4)) for size in sizes))
+    return Aircraft(name, x, y, z, u, v, w, rng.choice((0, 1, 1, 1, 2, 3, 7)), sigma)
 
 
 def scene(rng: random.Random) -> tuple[Aircraft, list[Aircraft]]:
@@ -84,7 +88,7 @@ def check(instant: Instant) -> None:
 def run(count: int, seed: int, seconds: float = math.inf) -> tuple[int, int]:
     """So many instants of sessions under all presets; returns (answered, refused)."""
     rng = random.Random(seed)
-    sessions = [Session(preset(name).parameters) for name in names() if not name.endswith("sum")]
+    sessions = [Session(preset(name).parameters) for name in names()]
     answered = refused = 0
     now, end = 0.0, time.monotonic() + seconds
     for _ in range(count):

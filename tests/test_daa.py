@@ -14,16 +14,19 @@ from cratous.core.daa_bands import directive, grid, on_circle, region_of
 from cratous.core.daa_climb import climb, height
 from cratous.core.daa_engine import look, thresholds
 from cratous.core.daa_frame import project
-from cratous.core.daa_memory import BandMemory, Shown, m_of_n
+from cratous.core.daa_memory import BandMemory, Shown, m_of_n, resolved
 from cratous.core.daa_reason import reasons_at
 from cratous.core.daa_session import Session
 from cratous.core.daa_state import ALT, HDIR, HS, UNKNOWN, VS, Aircraft, Band, Sigma
 from cratous.core.daa_steps import piece_counts, straight_from, until, way_conflicts
 from cratous.core.daa_turn import turn_offset, turned
+from cratous.core.daa_uncertain import uncertain_span
 from cratous.core.daa_volume import in_conflict
 from cratous.core.daa_zones import contours, hazard_zone
 from cratous.core.kernel import Vec2
+from cratous.core.well_clear_interval import violation_interval_taumod
 from cratous.services import conform
+from cratous.services.conform.detect_and_avoid import LABELS
 from cratous.spec import daa_meaning
 from cratous.spec.daa import (
     CYLINDER,
@@ -70,26 +73,30 @@ def head_on(distance_m: float = 15000.0) -> tuple[Aircraft, Aircraft]:
 
 
 # -- against published vectors -----------------------------------------------------------
-LIMITS = {
-    "open-encounters": {"bands": 0.005, "recovery": 0.01, "last time to manoeuvre": 0.01},
-    "open-scenarios": {"bands": 0.005, "recovery": 0.01, "last time to manoeuvre": 0.01},
-    "open-sequences": {"bands": 0.01, "recovery": 0.01},
-}
+KINDS = (
+    "alert level", "violation times", "time to corrective volume", "resolution", "bands",
+    "recovery", "last time to manoeuvre",
+)  # fmt: skip
 
 
-@pytest.mark.parametrize("name", sorted(LIMITS))
+@pytest.mark.parametrize(
+    "name", ["open-encounters", "open-encounters-SUM", "open-scenarios", "open-sequences"]
+)
 def test_published_vectors(name: str, vectors: Path):
     judge = conform.suite("detect-and-avoid")
-    conform.run(judge, vectors / "daidalus" / f"{name}.jsonl.gz", 0)
+    result = conform.run(judge, vectors / "daidalus" / f"{name}.jsonl.gz", 0)
     tally = judge.__self__.tally
-    for kind in ("alert level", "violation times", "time to corrective volume", "resolution"):
-        assert tally[f"{kind}/compared"] > 500
-        assert tally[f"{kind}/ours"] == 0, kind
-    for kind, share in LIMITS[name].items():
-        assert tally[f"{kind}/compared"] > 500
-        assert tally[f"{kind}/ours"] <= share * tally[f"{kind}/compared"], kind
-    excused = sum(tally[f"{k}/{e}"] for k in LIMITS[name] for e in ("sliver", "knife edge"))
-    assert excused <= 0.005 * sum(tally[f"{k}/compared"] for k in LIMITS[name])
+    for kind in KINDS:
+        compared = tally[f"{kind}/compared"]
+        if kind == "last time to manoeuvre" and name == "open-sequences":
+            assert compared == 0
+            continue
+        assert compared > 400
+        allowed = 3 if (name, kind) == ("open-encounters-SUM", "bands") else 0
+        assert tally[f"{kind}/ours"] <= allowed, kind
+        others = sum(tally[f"{kind}/{label}"] for label in LABELS[1:-1])
+        assert others <= 0.005 * compared, kind
+    assert result.failed <= (3 if name.endswith("SUM") else 0)
 
 
 def test_a_changed_vector_fails(vectors: Path):
@@ -184,13 +191,10 @@ def test_turn_steps_are_the_trajectory(p: Parameters):
 
 
 @pytest.mark.parametrize("vz", [0.0, 4.0, -4.0])
-@pytest.mark.parametrize("target", [1000.0, 1005.0, 1500.0, 300.0])
+@pytest.mark.parametrize("target", [1000.0, 1001.0, 1005.0, 1500.0, 300.0])
 def test_a_climb_is_flown(vz: float, target: float):
     phases = climb(1000.0, vz, target, 2.5, 2.0)
-    too_near = abs(target - 1000) < 5 and (target - 1000) * vz >= 0 and vz
-    if too_near:
-        return
-    assert phases.t1_s <= phases.t2_s <= phases.t3_s
+    assert 0 <= phases.t1_s <= phases.t2_s <= phases.t3_s
     z, dt = 1000.0, 0.001
     for k in range(int(phases.t3_s / dt)):
         z += height(1000.0, vz, target, 2.0, *phases, (k + 0.5) * dt).vz_m_s * dt
@@ -289,14 +293,47 @@ def test_a_spread_raises_the_level(p: Parameters):
     assert look(wide, own, [aside._replace(alt_m=5000.0)]).levels == (0,)
 
 
-def test_uncertainty_is_refused_and_not_ignored():
+def test_uncertainty_adds_alerts_and_removes_none():
     p = preset("do_365b_sum").parameters
-    own, other = head_on()
-    assert look(p, own, [other]).levels[0] > 0
-    vague = other._replace(sigma=Sigma(s_ew_m=30.0))
-    with pytest.raises(BadInput, match="uncertainty") as error:
-        look(p, own, [vague])
-    assert error.value.item == "i"
+    rng = np.random.default_rng(8)
+    more = 0
+    for _ in range(200):
+        own = Aircraft("own", 0, 0, 2000, *(rng.normal(size=3) * (80, 80, 4)))
+        other = Aircraft("i", *(rng.normal(size=3) * 5000), *(rng.normal(size=3) * (80, 80, 4)))
+        other = other._replace(alt_m=2000 + rng.normal() * 150)
+        plain = look(p, own, [other])
+        vague = other._replace(
+            sigma=Sigma(*(np.abs(rng.normal(size=8)) * (80, 80, 0, 30, 4, 4, 0, 2)))
+        )
+        seen = look(p, own, [vague])
+        assert seen.levels[0] >= plain.levels[0]
+        for known, sure in zip(seen.times[0], plain.times[0], strict=True):
+            if sure.first_s is not None:
+                assert known.first_s <= sure.first_s + 1e-9
+                assert known.last_s >= sure.last_s - 1e-9
+        more += seen.levels[0] > plain.levels[0]
+    assert more > 5
+
+
+def test_uncertainty_covers_sampled_true_states():
+    rng = np.random.default_rng(9)
+    lost = missed = 0
+    limits = (1222.0, 137.0, 35.0, 0.0, 0.0)
+    for _ in range(300):
+        s, v = Vec2(*rng.normal(size=2) * 5000), Vec2(*rng.normal(size=2) * 80)
+        sz, vz, es, ez, ev, ew = *(rng.normal(size=2) * (300, 5)), 80.0, 40.0, 5.0, 2.0
+        span = uncertain_span(s, v, sz, vz, es, ez, ev, ew, *limits, 0.0, 60.0)
+        for _ in range(10):
+            d, e = rng.normal(size=2), rng.normal(size=2)
+            d, e = d / np.hypot(*d) * es * rng.random(), e / np.hypot(*e) * ev * rng.random()
+            dz, dw = rng.uniform(-ez, ez), rng.uniform(-ew, ew)
+            true = (Vec2(s.x + d[0], s.y + d[1]), Vec2(v.x + e[0], v.y + e[1]), sz + dz, vz + dw)
+            first, last = violation_interval_taumod(*true, *limits, 0.0, 60.0)
+            if first <= last:
+                lost += 1
+                missed += not (span.first_s <= first + 1e-6 and last <= span.last_s + 1e-6)
+    assert lost > 200
+    assert missed == 0
 
 
 @pytest.mark.parametrize("kind", [TAUMOD, TCPA, TEP, CYLINDER])
@@ -359,11 +396,42 @@ def test_history_ends_with_a_gap(p: Parameters):
 def test_bands_need_two_of_four():
     memory = BandMemory(2, 4)
     free, red = (Band(0, 10, NONE),), (Band(0, 5, NEAR), Band(5, 10, NONE))
-    assert memory.filtered(free, False) == free
-    assert memory.filtered(red, False) == free
-    assert memory.filtered(red, False) == red
-    recovering = memory.filtered((Band(0, 10, RECOVERY),), True)
-    assert recovering == (Band(0, 5, NEAR), Band(5, 10, RECOVERY))
+    assert memory.filtered(free) == free
+    assert memory.filtered(red) == free
+    assert memory.filtered(red) == red
+    recovering = memory.filtered((Band(0, 10, RECOVERY),))
+    assert recovering == (Band(0, 5, NEAR), Band(5, 10, NONE))
+    assert resolved(recovering, True) == (Band(0, 5, NEAR), Band(5, 10, RECOVERY))
+
+
+def test_a_band_history_begins_with_m_copies():
+    memory = BandMemory(3, 4)
+    free, red = (Band(0, 10, NONE),), (Band(0, 10, NEAR),)
+    assert [memory.filtered(b)[0].region for b in (free, red, red, red)] == [NONE, NONE, NONE, NEAR]
+
+
+def test_a_conflict_band_is_held():
+    memory = BandMemory(0, 0, persistence_s=4.0)
+    free, red = (Band(0, 10, NONE),), (Band(0, 5, NEAR), Band(5, 10, NONE))
+    mild = (Band(0, 6, MID), Band(6, 10, NONE))
+    assert memory.shown(red, False, 2.0, 0.0) == red
+    assert memory.shown(free, False, 2.0, 1.0) == red
+    assert memory.shown(mild, False, 2.0, 2.0) == (
+        Band(0, 5, NEAR), Band(5, 6, MID), Band(6, 10, NONE)
+    )  # fmt: skip
+    assert memory.shown(free, True, 2.0, 3.0) == (Band(0, 5, NEAR), Band(5, 10, RECOVERY))
+    assert memory.shown(free, False, 2.0, 4.0) == free
+    around = BandMemory(0, 0, persistence_s=4.0, turn=2 * math.pi)
+    ahead = (Band(0, 1, NEAR), Band(1, 6, NONE), Band(6, 2 * math.pi, NEAR))
+    assert around.shown(ahead, False, 0.5, 0.0) == ahead
+    assert around.shown((Band(0, 2 * math.pi, NONE),), False, 0.5, 1.0) == ahead
+
+
+def test_before_a_slow_turn_the_true_speed_is_flown(p: Parameters):
+    own = Aircraft("own", 0, 0, 2000, 0, 1.0, 0)
+    g = grid(p, own, HDIR)
+    assert g.right[0, 3:5] == pytest.approx([0.0, p.min_airspeed_m_s])
+    assert g.right[0, 6:8] == pytest.approx([0.0, 1.0])
 
 
 def test_projection():

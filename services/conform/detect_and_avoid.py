@@ -7,7 +7,9 @@ times to manoeuvre; per dimension: bands, recovery, resolutions. A difference is
 is evidence for another class:
 - `sliver`: the anchor drops bands narrower than 2^40 units in the last place (2.4e-4 relative),
   and a cell of the grid, cut off at the end of its range, is narrower than that here;
-- `knife edge`: a change of all thresholds and times by 1e-9 of them changes our result.
+- `knife edge`: a change of all thresholds and times by 1e-9 of them changes our result;
+- `last time 0`, `great circle`: ways of the anchor, shown by computing again
+  (`conform.daa_evidence`).
 """
 
 from __future__ import annotations
@@ -21,16 +23,20 @@ from typing import Any
 from cratous.core.daa_bands import out_of_range
 from cratous.core.daa_engine import look
 from cratous.core.daa_session import Instant, Session
-from cratous.core.daa_state import DIMENSIONS, HDIR, Aircraft, Guidance
+from cratous.core.daa_state import DIMENSIONS, HDIR, Aircraft, Guidance, Sigma
 from cratous.services.conform import Result, edge, failed, not_covered, passed
+from cratous.services.conform.daa_evidence import explained
 from cratous.services.conform.values import finite, identity, numbers
 from cratous.spec.daa import REGIONS, Parameters
 from cratous.spec.daa_presets import preset
 from cratous.spec.errors import BadInput
 
 PRESETS = {
-    "DO_365B_no_SUM": "do_365b", "CD3D": "cd3d", "nom_a": "nom_a", "nom_b": "nom_b",
+    "DO_365B_no_SUM": "do_365b", "DO_365B_SUM": "do_365b_sum", "CD3D": "cd3d", "nom_a": "nom_a", "nom_b": "nom_b",
 }  # fmt: skip
+LABELS = (
+    "ours", "sliver", "knife edge", "last time 0", "great circle", "own value out of range",
+)  # fmt: skip
 EDGE_SHARE = 2.4e-4
 EDGE_LEAST = 1e-5
 TIME_LEAST = 1e-4
@@ -55,9 +61,13 @@ def _time(value: Any) -> float | None:
     return finite(value, "time")
 
 
-def _aircraft(state: dict[str, Any], alerter: int) -> Aircraft:
+SIGMA = "std_sEW_sNS_sEN_sz_vEW_vNS_vEN_vz"
+
+
+def _aircraft(state: dict[str, Any], alerter: int, sigma: Any = None) -> Aircraft:
     s, v = numbers(state["s"], "s", 3), numbers(state["v"], "v", 3)
-    return Aircraft(str(state["id"]), s[0], s[1], s[2], v[0], v[1], v[2], alerter)
+    known = Sigma() if sigma is None else Sigma(*numbers(sigma, SIGMA, 8))
+    return Aircraft(str(state["id"]), s[0], s[1], s[2], v[0], v[1], v[2], alerter, known)
 
 
 class Suite:
@@ -87,8 +97,14 @@ class Suite:
         out = case.get("out")
         if not isinstance(out, dict) or "own" not in out or "traffic" not in out:
             raise BadInput("no output of the anchor", item="out", expected="own, traffic, hdir ...")
-        own = _aircraft(out["own"], 1)
-        others = [_aircraft(t["state"], int(t["alerter"])) for t in out["traffic"]]
+        sigma = case.get(SIGMA) or [None] * (len(out["traffic"]) + 1)
+        if len(sigma) != len(out["traffic"]) + 1:
+            raise BadInput("not one row for each aircraft", item=SIGMA)
+        own = _aircraft(out["own"], 1, sigma[0])
+        others = [
+            _aircraft(t["state"], int(t["alerter"]), known)
+            for t, known in zip(out["traffic"], sigma[1:], strict=True)
+        ]
         of = case.get("seq", case.get("scenario"))
         if of is None or of != self.of or self.session is None:
             self.session, self.of = Session(p), of
@@ -112,7 +128,7 @@ class Suite:
             total = self.tally[f"{kind}/compared"]
             parts = [
                 f"{self.tally[f'{kind}/{label}']} {label}"
-                for label in ("ours", "sliver", "knife edge", "own value out of range")
+                for label in LABELS
                 if self.tally[f"{kind}/{label}"]
             ]
             lines.append(f"  {kind}: {total} compared, " + (", ".join(parts) or "no difference"))
@@ -129,13 +145,15 @@ class Differences:
         self.tally: Counter[str] = Counter()
         self.checks = 0
 
-    def note(self, kind: str, good: bool, text: str, dimension: int | None = None) -> None:
-        """Count one comparison and, if it differs, its class."""
+    def note(
+        self, kind: str, good: bool, text: str, dimension: int | None = None, why: str = ""
+    ) -> None:
+        """Count one comparison and, if it differs, its class; why: a class that has been shown."""
         self.checks += 1
         self.tally[f"{kind}/compared"] += 1
         if good:
             return
-        label = self.evidence(dimension)
+        label = why or self.evidence(dimension)
         self.tally[f"{kind}/{label}"] += 1
         (self.ours if label == "ours" else self.excused).append((f"{kind}: {label}", text))
 
@@ -229,8 +247,15 @@ class Differences:
             else:
                 good = same_time(_time(value), ours[d])
             got = "no conflict" if ours is None else ours[d]
+            why = ""
+            if not good and ours is not None and value != "inf":
+                seen = self.instant.seen
+                why = explained(
+                    self.p, self.out, seen.own, seen.traffic, i, d, ours[d], _time(value),
+                    alert.to_corrective_s,
+                )  # fmt: skip
             self.note("last time to manoeuvre", good,
-                      f"{alert.id} {DIMENSIONS[d]}: last time expected {value}, got {got}", d)  # fmt: skip
+                      f"{alert.id} {DIMENSIONS[d]}: last time expected {value}, got {got}", d, why)  # fmt: skip
 
     def dimension(self, dimension: int) -> None:
         """The bands of one dimension and what follows from them."""

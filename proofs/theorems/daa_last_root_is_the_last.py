@@ -1,0 +1,17 @@
+"""A quadratic that opens upwards is above 0 at every time after its last root, and is 0 there if it has
+one."""
+
+from cratous.core.daa_uncertain import leaves_at
+from cratous.proofs.claim import Claim
+from cratous.spec import daa_meaning
+
+
+def claim(c: Claim) -> None:
+    a, half, rest, t = c.reals("a half rest t")
+    c.premise(a > 0)
+    last = c.use(leaves_at, a, half, rest)
+    c.show(c.define(daa_meaning.last_root, a, half, rest, t, last))
+    c.show(
+        c.implies(half * half >= a * rest, c.define(daa_meaning.not_positive, a, half, rest, last)),
+        "attained",
+    )

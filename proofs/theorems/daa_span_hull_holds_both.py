@@ -1,0 +1,23 @@
+"""The hull of two spans holds every instant of either of them."""
+
+from cratous.core.daa_uncertain import span_hull
+from cratous.core.well_clear_interval import Span
+from cratous.proofs.claim import Claim
+from cratous.spec import daa_meaning, well_clear
+
+
+def claim(c: Claim) -> None:
+    first, last, begin, end, t = c.reals("first last begin end t")
+    hull = c.use(span_hull, Span(first, last), Span(begin, end))
+    either = c.define(daa_meaning.in_either, first, last, begin, end, t)
+    c.show(c.implies(either, c.define(well_clear.in_span, *hull, t)), "holds both")
+    c.show(
+        c.implies(
+            c.all_of(first <= last, begin <= end),
+            c.all_of(
+                c.any_of(hull.first_s == first, hull.first_s == begin),
+                c.any_of(hull.last_s == last, hull.last_s == end),
+            ),
+        ),
+        "no more than needed",
+    )

@@ -1,0 +1,137 @@
+"""Evidence on last times to manoeuvre: why another system's differs, computed again here.
+
+Two ways in which DAIDALUS differs are known, and each is claimed only where it is shown:
+- a last time of 0 is reported as none: shown by a grid value that is free of conflict now, decided
+  by the exact readings of the kernels;
+- positions on the globe are moved along great circles and projected anew at every time that is
+  tried: shown by doing that, which then gives its very number.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+
+from cratous.core.compiled import exact
+from cratous.core.daa_bands import SAMPLE_S, Traffic, grid, last_free
+from cratous.core.daa_climb import altitude_conflict, safe_altitudes
+from cratous.core.daa_frame import RADIUS_M, project
+from cratous.core.daa_guide import evaluate
+from cratous.core.daa_machine import machine
+from cratous.core.daa_state import Aircraft
+from cratous.core.daa_steps import safe_steps
+from cratous.core.daa_uncertain import lost
+from cratous.core.daa_volume import in_conflict
+from cratous.core.kernel import Vec2
+from cratous.services.conform.values import finite, numbers
+from cratous.spec.daa import Parameters
+
+
+def _with(driver: Any, **kernels: Any) -> Any:
+    """The driver with other functions for names that it uses."""
+    return FunctionType(driver.__code__, {**driver.__globals__, **kernels}, driver.__name__)
+
+
+def _exact_conflict(kind: int, s: Vec2, v: Vec2, *rest: float) -> bool:
+    """`in_conflict` on the rationals that the doubles are."""
+    numbers_of = (Vec2(*map(float, s)), Vec2(*map(float, v)))
+    arguments: tuple[Any, ...] = (int(kind), *numbers_of, *map(float, rest))
+    return bool(exact(in_conflict, *arguments))
+
+
+def exact_evaluate() -> Callable[..., bool]:
+    """`daa_guide.evaluate` over the exact readings of its kernels."""
+    exactly_lost = _with(lost, in_conflict=_exact_conflict)
+    steps = _with(safe_steps, lost=exactly_lost)
+    climbing = _with(altitude_conflict, lost=exactly_lost)
+    heights = _with(safe_altitudes, altitude_conflict=climbing)
+    made: Callable[..., bool] = _with(evaluate, safe_steps=steps, safe_altitudes=heights)
+    return made
+
+
+def has_way(
+    p: Parameters,
+    own: Aircraft,
+    traffic: Traffic,
+    i: int,
+    dimension: int,
+    judge: Callable[..., bool],
+) -> bool:
+    """Whether some grid value of the dimension is free of conflict with intruder i now."""
+    g, region = grid(p, own, dimension), p.corrective_region
+    horizons = np.full(len(traffic.ids), p.lookahead_time_s)
+    safe_r = np.ones(len(g.targets) or len(g.right), dtype=np.bool_)
+    safe_l = np.ones(len(g.left), dtype=np.bool_)
+    found = judge(
+        g.right, g.left, g.step_s, 0.0, g.targets, g.rate_m_s, g.accel_m_s2, SAMPLE_S,
+        traffic.states, np.array([i]), traffic.kinds[region], traffic.volumes[region], horizons,
+        0.0, 0.0, 0.0, False, p.lookahead_time_s, p.bands_add_time_to_maneuver, 0.0, True, True,
+        safe_r, safe_l,
+    )  # fmt: skip
+    return bool(found)
+
+
+def _moved(state: dict[str, Any], lat0: float, lon0: float, t_s: float) -> tuple[float, ...]:
+    """Position and velocity after t_s along a great circle, in the plane at (lat0, lon0)."""
+    lat, lon = finite(state["lat_rad"], "lat_rad"), finite(state["lon_rad"], "lon_rad")
+    ve, vn, vu = numbers(state["gv"], "gv", 3)
+    angle, track = math.hypot(ve, vn) * t_s / RADIUS_M, math.atan2(ve, vn)
+    there = math.asin(
+        math.sin(lat) * math.cos(angle) + math.cos(lat) * math.sin(angle) * math.cos(track)
+    )
+    across = math.atan2(
+        math.sin(track) * math.sin(angle) * math.cos(lat),
+        math.cos(angle) - math.sin(lat) * math.sin(there),
+    )
+    local = project(lat0, lon0, there, lon + across, ve, vn)
+    alt = finite(state["alt"], "alt") + vu * t_s
+    return (local.east_m, local.north_m, alt, local.ve_m_s, local.vn_m_s, vu)
+
+
+def along_great_circles(
+    p: Parameters,
+    out: dict[str, Any],
+    own: Aircraft,
+    traffic: Traffic,
+    i: int,
+    dimension: int,
+    entry_s: float,
+) -> float | None:
+    """The last time to manoeuvre if both move along great circles until then [s]; None: none."""
+    state, other = out["own"], out["traffic"][i]["state"]
+    lat0, lon0 = finite(state["lat_rad"], "lat_rad"), finite(state["lon_rad"], "lon_rad")
+
+    def free(t_s: float) -> bool:
+        there = traffic.states.copy()
+        there[i] = _moved(other, lat0, lon0, t_s)
+        e, n, alt, ve, vn, vu = _moved(state, lat0, lon0, t_s)
+        moved = Aircraft(own.id, e, n, alt, ve, vn, vu, own.alerter)
+        return has_way(p, moved, traffic._replace(states=there), i, dimension, machine(evaluate))
+
+    return last_free(free, entry_s)
+
+
+def explained(
+    p: Parameters,
+    out: dict[str, Any],
+    own: Aircraft,
+    traffic: Traffic,
+    i: int,
+    dimension: int,
+    ours: float | None,
+    theirs: float | None,
+    entry_s: float | None,
+) -> str:
+    """Which known way of the other system explains the difference; "" if none is shown to."""
+    if ours == 0 and theirs is None and has_way(p, own, traffic, i, dimension, exact_evaluate()):
+        return "last time 0"
+    if "lat_rad" in out["own"] and entry_s is not None:
+        again = along_great_circles(p, out, own, traffic, i, dimension, entry_s)
+        if again is None or theirs is None:
+            return "great circle" if again is theirs else ""
+        return "great circle" if abs(again - theirs) <= 1e-4 else ""
+    return ""
