@@ -32,7 +32,7 @@ from cratous.spec.errors import BadInput
 RLIMIT = 60_000_000
 FACTS_RLIMIT = 3_000_000
 PATH_RLIMIT = 1_000_000
-ORDERS = (0, 4, 3, 5)
+ORDERS = (3, 0, 4)
 """Orders of variables (z3's numbers) for polynomials. z3's own strategy for them goes from one to the
 next by wall time, so its answer would depend on what else the machine does; here each has a share
 of the effort."""
@@ -132,7 +132,8 @@ def _solvers(
 ) -> Iterator[tuple[str, z3.Solver, int]]:
     """Logic, solver and effort of each way that is worth trying, most promising first."""
     if sorts(terms) & {"Real", "Int", "BitVec", "quantifier", "function"} == {"Real"}:
-        for order, effort in (*((order, rlimit // 6) for order in ORDERS), (ORDERS[0], rlimit)):
+        ladder = [(order, rlimit // part) for part in (30, 6) for order in ORDERS]
+        for order, effort in (*ladder, (ORDERS[0], rlimit)):
             tactic = z3.Tactic("qfnra-nlsat", context)
             chosen = z3.With(tactic, variable_ordering_strategy=order, ctx=context)
             yield "QF_NRA", chosen.solver(), effort

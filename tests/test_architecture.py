@@ -109,7 +109,7 @@ def test_no_circular_imports(root: Path) -> None:
 def test_folders_refuse_another_name(root: Path) -> None:
     code = "import sys; sys.path.insert(0, '.'); import core"
     done = subprocess.run(
-        [sys.executable, "-c", code], cwd=root, capture_output=True, text=True, timeout=60
+        [sys.executable, "-c", code], cwd=root, capture_output=True, text=True, timeout=900
     )
     assert done.returncode != 0
     assert "cratous.core" in done.stderr
@@ -122,14 +122,14 @@ def test_wheel_holds_what_git_tracks(root: Path, tmp_path: Path) -> None:
         ["git", "clone", "--quiet", str(root), str(copy)],
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=900,
     )
     if clone.returncode != 0:
         pytest.skip(f"no git checkout to build from: {clone.stderr.strip()}")
     subprocess.run(
         [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation",
          "--wheel-dir", str(tmp_path), str(copy)],
-        check=True, capture_output=True, timeout=300,
+        check=True, capture_output=True, timeout=900,
     )  # fmt: skip
     wheel = next(tmp_path.glob("cratous-*.whl"))
     inside = {n for n in zipfile.ZipFile(wheel).namelist() if n.startswith("cratous/")}

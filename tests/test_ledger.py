@@ -62,7 +62,7 @@ def _check(home: Path, first: str = "") -> subprocess.CompletedProcess[str]:
         env=environment,
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=900,
     )
 
 
@@ -217,7 +217,7 @@ def test_machine_code_of_another_text_is_not_used(product: Path, tmp_path: Path)
     def run() -> tuple[Path, str]:
         done = subprocess.run(
             [sys.executable, "-c", PLANT],
-            cwd=product, env=environment, capture_output=True, text=True, timeout=300,
+            cwd=product, env=environment, capture_output=True, text=True, timeout=900,
         )  # fmt: skip
         assert done.returncode == 0, done.stderr
         folder, right = done.stdout.strip().split(" ", 1)

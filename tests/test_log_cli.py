@@ -197,7 +197,7 @@ def test_replay_to_a_client(log: Path) -> None:
     try:
         assert replayer.stderr is not None
         address = replayer.stderr.readline().split()[-1]
-        with socket.create_connection(replay.parse_address(address), timeout=60) as client:
+        with socket.create_connection(replay.parse_address(address), timeout=900) as client:
             assert len(receive(client, COUNT)) == COUNT
         assert replayer.wait(60) == 0
     finally:
@@ -210,7 +210,7 @@ def test_replay_to_standard_output(log: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-m", "cratous", "log", "replay", str(log), "--rate", "0",
          "--form", "frames"],
-        capture_output=True, timeout=120,
+        capture_output=True, timeout=900,
     )  # fmt: skip
     assert done.returncode == 0
     assert len(FrameStream().feed(done.stdout)) == COUNT

@@ -19,7 +19,7 @@ def kill_writers(folder: Path, rounds: int, seed: str) -> list[dict[str, object]
         [sys.executable, str(child), str(folder), str(rounds), seed],
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=900,
         env=os.environ,
     )
     assert done.returncode == 0, done.stderr[-2000:]

@@ -40,7 +40,7 @@ def _run(
         env={**os.environ, "PYTHONPATH": search},
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=900,
     )
 
 

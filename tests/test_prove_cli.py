@@ -168,7 +168,7 @@ def test_the_start_is_quick(arguments: list[str], limit_s: float):
     spent = []
     for _ in range(3):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        subprocess.run([sys.executable, *arguments], check=True, capture_output=True, timeout=60)
+        subprocess.run([sys.executable, *arguments], check=True, capture_output=True, timeout=900)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         spent.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
     assert min(spent) < limit_s, spent

@@ -18,7 +18,7 @@ from cratous.services.uxas.process import Process
 from cratous.services.uxas.settings import read
 
 HEAD = '<UxAS FormatVersion="1.0" EntityID="100" EntityType="Aircraft" {}>\n'
-LIMIT_S = 30.0
+LIMIT_S = 120.0
 
 
 def free_port() -> int:
