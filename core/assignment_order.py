@@ -133,8 +133,8 @@ def _chains(
                     chain.append(o)
                     table, at, part = latest[ahead.kind_of[v], o], o, rest
                     break
-            else:  # pragma: no cover - the tables were made by the same step
-                raise AssertionError("the tables do not lead to a chain")
+            else:
+                raise RuntimeError("the tables lead to no chain: they were not made by this step")
         chains.append(chain)
     return chains
 

@@ -45,7 +45,8 @@ def layer_above(
 ) -> Span:  # fmt: skip
     """When the layer may be violated, within [0, t_s]: relative altitude in [low_m, high_m], from 0
     up, climb rate in [slow_m_s, fast_m_s]."""
-    away, near = Span(1, 0), Span(1, 0)
+    away = Span(1, 0)
+    near = Span(1, 0)
     if fast_m_s > 0 or slow_m_s >= 0:
         away = vertical_interval(low_m, max(slow_m_s, 0), zthr_m, tcoa_s, vmod_s, 0, t_s)
     if slow_m_s < 0:
@@ -66,8 +67,12 @@ def layer_span(
 ) -> Span:  # fmt: skip
     """When the layer may be violated, within [0, t_s]: altitude sz and climb rate vz are known
     within ez_m and ew_m_s, >= 0."""
-    low, high, slow, fast = sz - ez_m, sz + ez_m, vz - ew_m_s, vz + ew_m_s
-    above, below = Span(1, 0), Span(1, 0)
+    low = sz - ez_m
+    high = sz + ez_m
+    slow = vz - ew_m_s
+    fast = vz + ew_m_s
+    above = Span(1, 0)
+    below = Span(1, 0)
     if high > 0 or low >= 0:
         above = layer_above(max(low, 0), high, slow, fast, zthr_m, tcoa_s, vmod_s, t_s)
     if low < 0:
@@ -95,7 +100,8 @@ def circle_first(
     course = Vec2(0 - s.x * v.x - s.y * v.y, abs(s.x * v.y - s.y * v.x))
     once = turned(course, sqrt(max(ss - es_m * es_m, 0)), es_m)
     twice = turned(once, sqrt(max(vv - ev_m_s * ev_m_s, 0)), ev_m_s)
-    far, fast = sqrt(ss) - es_m, sqrt(vv) + ev_m_s
+    far = sqrt(ss) - es_m
+    fast = sqrt(vv) + ev_m_s
     if twice.y <= 0 or ss * vv <= 0:
         return horizontal_interval_taumod(Vec2(0 - far, 0), Vec2(fast, 0), dthr_m, tthr_s, 0, t_s)
     share = fast / (ss * vv)
@@ -111,7 +117,8 @@ def circle_straight(
 ) -> Span:  # fmt: skip
     """When the circle is violated, within [0, t_s], by who comes straight on: squares of distance
     and speed, known within es_m and ev_m_s."""
-    far, fast = sqrt(max(ss_m2, 0)) - es_m, sqrt(max(vv_m2_s2, 0)) + ev_m_s
+    far = sqrt(max(ss_m2, 0)) - es_m
+    fast = sqrt(max(vv_m2_s2, 0)) + ev_m_s
     return horizontal_interval_taumod(Vec2(far, 0), Vec2(0 - fast, 0), dthr_m, tthr_s, 0, t_s)
 
 

@@ -4,6 +4,7 @@ says that they mean nothing (`kernel(nonnegative=...)`).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -30,7 +31,8 @@ def refuse_negative(where: str, names: tuple[str, ...], columns: Iterable[tuple[
         if label not in names:
             continue
         array = np.asarray(value)
-        wrong = np.flatnonzero(array < 0)
+        # what is infinite is refused as such
+        wrong = np.flatnonzero((array < 0) & (array > -math.inf))
         if wrong.size:
             item = f"{label}[{wrong[0]}]" if array.ndim else label
             got = str(array.reshape(-1)[wrong[0]])

@@ -39,7 +39,14 @@ def on_cpython(kernel: Any, columns: list[np.ndarray]) -> list[Any]:
 
     hints = [k for n, k in get_type_hints(kernel).items() if n != "return"]
     rows = map(list, zip(*[column.tolist() for column in columns], strict=True))
-    return [kernel(*[built(k, row) for k in hints]) for row in rows]
+
+    def run(row: list[Any]) -> Any:
+        try:
+            return kernel(*[built(k, row) for k in hints])
+        except ZeroDivisionError:
+            return None
+
+    return [run(row) for row in rows]
 
 
 def columns_of(kernel: Any, odd: bool) -> list[np.ndarray]:
@@ -62,7 +69,11 @@ def columns_of(kernel: Any, odd: bool) -> list[np.ndarray]:
 def test_every_element_is_cpythons(name: str, odd: bool) -> None:
     kernel = REGISTRY[name].function
     columns = columns_of(kernel, odd)
-    got, wanted = compiled(kernel)(*columns).tolist(), on_cpython(kernel, columns)
+    wanted = on_cpython(kernel, columns)
+    defined = np.array([value is not None for value in wanted])
+    assert defined.sum() > 200
+    got = compiled(kernel)(*[column[defined] for column in columns]).tolist()
+    wanted = [value for value in wanted if value is not None]
     # as text, so that signed zeros count and NaN equals NaN
     pairs = zip(got, wanted, strict=True)
     wrong = [(g, w) for g, w in pairs if repr(float(g)) != repr(float(w))]

@@ -61,9 +61,8 @@ class RoutePlannerVisibilityService:
             ways.append(_way(desk, constraint, cruise_m))
         routes = desk.routes_of(ways)
         vehicle = [v.id for v in mission.vehicles].index(request.VehicleID)
-        prepare = getattr(routes, "prepare", None)  # all at once, where that is faster
-        if prepare is not None and request.IsCostOnlyRequest:
-            prepare(vehicle, [(k, k) for k in range(len(ways))])
+        if request.IsCostOnlyRequest:  # all at once, which is faster
+            routes.prepare(vehicle, [(k, k) for k in range(len(ways))])
         for k, constraint in enumerate(request.RouteRequests):
             cost = routes.travel_ms(vehicle, k, k)
             if cost is None:
