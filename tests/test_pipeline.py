@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import random
 from pathlib import Path
 from typing import Any
 
@@ -353,6 +354,55 @@ def test_the_cost_function_decides(tmp_path: Path, function: str, made: dict[int
     )
     (summary,) = rig.got("TaskAssignmentSummary")
     assert {t.TaskID: t.AssignedVehicle for t in summary.TaskList} == made
+
+
+@pytest.mark.shows(ASSIGNMENT, "Semantics")
+@pytest.mark.parametrize(("semantics", "waits"), [("time", True), ("order", False)])
+def test_the_semantics_decide_whether_a_dot_is_about_time(
+    tmp_path: Path, semantics: str, waits: bool
+) -> None:
+    rig = Rig(tmp_path, ASSIGNMENT, **{ASSIGNMENT: f'Semantics="{semantics}"'})
+    rig.tell(
+        *vehicle(1),
+        *vehicle(2, 0.01),
+        must_fly(5),
+        must_fly(6),
+        unique(2, 5, 6, vehicles=(1, 2), TaskRelationships=".(p5 p6)"),
+        options(2, 5, option(5, 1, 1)),
+        options(2, 6, option(6, 1, 2)),
+        matrix(2, cost(1, 5, 1, 500_000), cost(2, 6, 1, 1_000)),
+    )
+    (summary,) = rig.got("TaskAssignmentSummary")
+    ended = {t.TaskID: t.TimeTaskCompleted for t in summary.TaskList}
+    assert (ended[6] > ended[5]) is waits
+
+
+FIRST_PLAN_NODES = 80
+
+
+@pytest.mark.shows(ASSIGNMENT, "NumberNodesMaximum", "Deadline_ms")
+@pytest.mark.parametrize(
+    ("limit", "most"),
+    [('NumberNodesMaximum="3"', 3), ('Deadline_ms="1"', 100), ('NumberNodesMaximum="-1"', None)],
+)
+def test_the_search_keeps_its_limit(tmp_path: Path, limit: str, most: int | None) -> None:
+    """Beyond the first plan, which is made in any case, and one round that improves it."""
+    rig = Rig(tmp_path, ASSIGNMENT, **{ASSIGNMENT: limit})
+    rng, tasks = random.Random(4), range(5, 13)
+    rows = [
+        cost(v, task, 1, rng.randrange(1_000, 90_000), start)
+        for v in (1, 2)
+        for task in tasks
+        for start in [(0, 0), *((other, 1) for other in tasks if other != task)]
+    ]
+    rig.tell(*vehicle(1), *vehicle(2, 0.01), *map(must_fly, tasks))
+    rig.tell(unique(2, *tasks, vehicles=(1, 2)))
+    rig.tell(*(options(2, task, option(task, 1, 1, 2)) for task in tasks), matrix(2, *rows))
+    assert len(rig.got("TaskAssignmentSummary")) == 1
+    told = [{p.Key: p.Value for p in body.Info} for body in rig.got("ServiceStatus")]
+    (facts,) = [found for found in told if "nodes" in found]
+    assert facts["status"] == ("optimal" if most is None else "feasible")
+    assert most is None or int(facts["nodes"]) <= most + FIRST_PLAN_NODES
 
 
 @pytest.mark.shows(ASSIGNMENT, "UniqueAutomationResponse", "ServiceStatus")

@@ -201,11 +201,10 @@ KINDS: dict[str, Kind] = {
     "AssignmentTreeBranchBoundService": _pipeline_kind(
         _assignment,
         {
-            "NumberNodesMaximum": whole(0, -(2**31)),
+            "NumberNodesMaximum": whole(None, -(2**31)),
+            "Deadline_ms": whole(None, 1),
             "CostFunction": choice("MINMAX", "MINMAX", "CUMULATIVE"),
-        },
-        ignored={
-            "NumberNodesMaximum": "the search goes on beyond the first plan, to its own limit"
+            "Semantics": choice("time", "time", "order"),
         },
     ),
     "PlanBuilderService": _pipeline_kind(
