@@ -37,7 +37,6 @@ def _hash(file: Path) -> str:
     return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
-@functools.cache
 def _named(file: Path) -> str:
     return f"{place(file)}={_hash(file)}"
 

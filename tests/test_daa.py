@@ -299,7 +299,7 @@ def test_uncertainty_adds_alerts_and_removes_none():
     more = 0
     for _ in range(200):
         own = Aircraft("own", 0, 0, 2000, *(rng.normal(size=3) * (80, 80, 4)))
-        other = Aircraft("i", *(rng.normal(size=3) * 5000), *(rng.normal(size=3) * (80, 80, 4)))
+        other = Aircraft("i", *(rng.normal(size=3) * 3500), *(rng.normal(size=3) * (80, 80, 4)))
         other = other._replace(alt_m=2000 + rng.normal() * 150)
         plain = look(p, own, [other])
         vague = other._replace(
@@ -320,8 +320,8 @@ def test_uncertainty_covers_sampled_true_states():
     lost = missed = 0
     limits = (1222.0, 137.0, 35.0, 0.0, 0.0)
     for _ in range(300):
-        s, v = Vec2(*rng.normal(size=2) * 5000), Vec2(*rng.normal(size=2) * 80)
-        sz, vz, es, ez, ev, ew = *(rng.normal(size=2) * (300, 5)), 80.0, 40.0, 5.0, 2.0
+        s, v = Vec2(*rng.normal(size=2) * 3000), Vec2(*rng.normal(size=2) * 80)
+        sz, vz, es, ez, ev, ew = *(rng.normal(size=2) * (150, 5)), 80.0, 40.0, 5.0, 2.0
         span = uncertain_span(s, v, sz, vz, es, ez, ev, ew, *limits, 0.0, 60.0)
         for _ in range(10):
             d, e = rng.normal(size=2), rng.normal(size=2)

@@ -122,7 +122,9 @@ ATTACKS = {
         "core/prediction.py", '@driver(checked_by=("violation_within",))',
         '@driver(checked_by=())', "first_violation_s: changed since the proof: its source"),
     "a kernel's mark removed": (
-        "core/well_clear_now.py", '@kernel(implements="well_clear.violation")\n', "",
+        "core/well_clear_now.py",
+        '@kernel(implements="well_clear.violation", '
+        'nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s"))\n', "",
         "violation: it was proved but is no longer registered"),
     "the ledger file": ("core/ledger.json", '"status": "proved"', '"status": "Proved"',
                         "was edited"),
