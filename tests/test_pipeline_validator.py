@@ -236,7 +236,9 @@ def test_two_hundred_requests_at_once_are_answered_in_order_and_leave_nothing(
             if len(seen) in (50, 200):
                 rig.said.clear()
                 gc.collect()
-                alive[len(seen)] = len(gc.get_objects())
+                # what the compiler of kernels keeps is no part of it
+                ours = (str(type(o).__module__).startswith("cratous.") for o in gc.get_objects())
+                alive[len(seen)] = sum(ours)
 
     rig.bus._taps[:] = [watch]  # a listener that keeps nothing
     for task in order:
@@ -244,7 +246,7 @@ def test_two_hundred_requests_at_once_are_answered_in_order_and_leave_nothing(
     rig.bus.run()
     assert before == 1
     assert seen == order, "each once, in the order in which they came"
-    assert alive[200] < alive[50] + 500, "memory is flat"
+    assert alive[200] < alive[50] + 50, "memory is flat"
     assert rig.bus.state(NAME).asked == {}
     assert rig.bus.state("RouteAggregatorService").collecting == {}
     assert rig.bus.state("PlanBuilderService").work == {}
