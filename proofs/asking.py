@@ -7,14 +7,18 @@ rlimit, never by wall time.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from fractions import Fraction
 from typing import Any
 
 import z3
 
+from cratous.proofs.ladder import check, solvers
+
 _CONTEXTS: list[z3.Context] = []
-_DISCRETE: dict[int, tuple[z3.ExprRef, bool]] = {}
+_REALS: dict[int, tuple[z3.ExprRef, bool]] = {}
+SHARES = (10,)
+"""Most of these questions are small: one round over the orders of variables."""
 
 
 def renew() -> z3.Context:
@@ -27,7 +31,7 @@ def ask(question: Iterable[z3.BoolRef], rlimit: int) -> str:
     """`sat`, `unsat` or `unknown`: can all these conditions hold at once?
 
     Reals alone are given to the solver for polynomials first, then to the general one; each may
-    spend `rlimit`.
+    spend `rlimit` (`ladder`).
     """
     return values(question, rlimit, [])[0]
 
@@ -42,14 +46,10 @@ def values(
     terms = list(question)
     context = _CONTEXTS[-1] if _CONTEXTS else renew()
     own = [term.translate(context) for term in terms]
-    makers: list[Callable[[], z3.Solver]] = [lambda: z3.Solver(ctx=context)]
-    if not any(_discrete(term) for term in terms):
-        makers.insert(0, lambda: z3.SolverFor("QF_NRA", ctx=context))
-    for make in makers:
-        solver = make()
-        solver.set("rlimit", rlimit)
+    polynomials = all(_reals(term) for term in terms)
+    for _, solver, effort in solvers(context, rlimit, polynomials=polynomials, shares=SHARES):
         solver.add(*own)
-        answer = str(solver.check())
+        answer = check(solver, context, effort)
         if answer == "sat":
             model = solver.model()
             found = [_python(model.eval(t.translate(context), True)) for t in wanted]
@@ -69,11 +69,16 @@ def _python(term: z3.ExprRef) -> Any:
     return None
 
 
-def _discrete(term: z3.ExprRef) -> bool:
-    """True iff integers or masks occur in the term."""
+def _reals(term: z3.ExprRef) -> bool:
+    """True iff no integers, masks, functions or quantifiers occur in the term."""
     key = term.get_id()
-    if key not in _DISCRETE:
-        own = z3.is_int(term) or z3.is_bv(term)
+    if key not in _REALS:
+        own = z3.is_int(term) or z3.is_bv(term) or z3.is_quantifier(term)
+        own = own or (z3.is_app(term) and term.num_args() > 0 and _function(term))
         # the term is kept, so that its id stays its own
-        _DISCRETE[key] = (term, own or any(_discrete(child) for child in term.children()))
-    return _DISCRETE[key][1]
+        _REALS[key] = (term, not own and all(_reals(child) for child in term.children()))
+    return _REALS[key][1]
+
+
+def _function(term: z3.ExprRef) -> bool:
+    return bool(term.decl().kind() == z3.Z3_OP_UNINTERPRETED)

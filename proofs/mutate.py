@@ -91,7 +91,7 @@ def run(
     keys = Keys(home, None if theorems is None else list(theorems))
     work = chosen(names, keys, about)
     met = sorted({name for users in work.values() for name in users})
-    effort = _effort(met, home)
+    effort = _effort(met, home, jobs)
     # the longest first, so that no process waits for one that began late
     order = sorted(work, key=lambda key: -sum(effort[name] for name in work[key]))
     calls: list[tuple[str, Callable[[], list[Any]]]] = []
@@ -111,14 +111,12 @@ def run(
     )
 
 
-def _effort(names: list[str], home: Home) -> dict[str, int]:
+def _effort(names: list[str], home: Home, jobs: int) -> dict[str, int]:
     """What each theorem took to prove; all must hold as they stand."""
     kept = cache.standard()
-    proved = {
-        name: forked.call(partial(prover.prove_file, name, folder=home.theorems, cache=kept))
-        for name in names
-    }
-    broken = [name for name, theorem in proved.items() if not theorem.proved]
+    calls = [partial(prover.prove_file, n, folder=home.theorems, cache=kept) for n in names]
+    proved = {names[number]: theorem for number, theorem in forked.each(calls, jobs)}
+    broken = [name for name in names if not proved[name].proved]
     if broken:
         raise ValueError(f"not proved as they stand, so no mutant can be judged: {broken}")
     return {name: theorem.rlimit for name, theorem in proved.items()}

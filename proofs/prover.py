@@ -23,6 +23,7 @@ from cratous.core.sources import altered, ours, place
 from cratous.proofs.cache import Answer, Cache
 from cratous.proofs.claim import Claim, Obligation
 from cratous.proofs.counterexample import Model, Watched, story, telling
+from cratous.proofs.ladder import check, solvers
 from cratous.proofs.lift import LiftError
 from cratous.proofs.merkle import Hasher
 from cratous.proofs.smtlib import logic_of, question, smt2, sorts
@@ -32,10 +33,6 @@ from cratous.spec.errors import BadInput
 RLIMIT = 60_000_000
 FACTS_RLIMIT = 3_000_000
 PATH_RLIMIT = 1_000_000
-ORDERS = (3, 0, 4)
-"""Orders of variables (z3's numbers) for polynomials. z3's own strategy for them goes from one to the
-next by wall time, so its answer would depend on what else the machine does; here each has a share
-of the effort."""
 _KEY = object()
 _NO_CACHE = Cache(None)
 
@@ -130,14 +127,8 @@ def restore(data: dict[str, Any]) -> Theorem:
 def _solvers(
     terms: list[z3.ExprRef], context: z3.Context, rlimit: int
 ) -> Iterator[tuple[str, z3.Solver, int]]:
-    """Logic, solver and effort of each way that is worth trying, most promising first."""
-    if sorts(terms) & {"Real", "Int", "BitVec", "quantifier", "function"} == {"Real"}:
-        ladder = [(order, rlimit // part) for part in (30, 6) for order in ORDERS]
-        for order, effort in (*ladder, (ORDERS[0], rlimit)):
-            tactic = z3.Tactic("qfnra-nlsat", context)
-            chosen = z3.With(tactic, variable_ordering_strategy=order, ctx=context)
-            yield "QF_NRA", chosen.solver(), effort
-    yield "ALL", _maker("ALL", context), rlimit
+    kinds = sorts(terms) & {"Real", "Int", "BitVec", "quantifier", "function"}
+    return solvers(context, rlimit, polynomials=kinds == {"Real"})
 
 
 def _maker(logic: str, context: z3.Context) -> z3.Solver:
@@ -152,12 +143,10 @@ def _ask(given: list[z3.BoolRef], rlimit: int) -> tuple[Answer, z3.ModelRef | No
     begun = time.process_time()
     spent, result, logic, model = 0, "unknown", "ALL", None
     for name, solver, effort in _solvers(terms, context, rlimit):
-        solver.set("rlimit", effort)
         solver.add(*terms)
         before = _rlimit_count(solver)
-        said = solver.check()
+        result, logic = check(solver, context, effort), name
         spent += max(0, _rlimit_count(solver) - before)
-        result, logic = str(said), name
         if result != "unknown":
             model = solver.model() if result == "sat" else None
             break
