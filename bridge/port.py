@@ -141,7 +141,7 @@ class Tally:
 def address(
     text: str, schemes: tuple[str, ...], *, where: str = "", item: str = "", free: bool = False
 ) -> Address:
-    """A socket's address, e.g. `tcp://127.0.0.1:5555`, `ipc:///tmp/x`, `inproc://hub`, else BadInput.
+    """A socket's address, e.g. `tcp://127.0.0.1:5555`, `ipc:///run/user/x`, `inproc://hub`, else BadInput.
 
     free: port 0 (chosen by the system) is allowed.
     """

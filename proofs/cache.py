@@ -34,7 +34,7 @@ class Cache:
     def __init__(self, folder: Path | None) -> None:
         self.folder = folder
         self.hits = 0
-        strategy = sorted(file for file in engine() if file.stem in ("prover", "smtlib"))
+        strategy = sorted(file for file in engine() if file.stem in ("prover", "ladder", "smtlib"))
         self._salt = (solver_version(), files_digest(strategy))
 
     def name(self, key: str, rlimit: int) -> str:

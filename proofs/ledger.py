@@ -24,6 +24,7 @@ from cratous.core.sources import altered, position, reached
 from cratous.proofs import prover
 from cratous.proofs.cache import Cache
 from cratous.proofs.recall import Recall
+from cratous.proofs.remembered import Remembered
 from cratous.proofs.subset import Finding, lint_all
 
 
@@ -285,14 +286,20 @@ def changed_theorems(home: Home = PRODUCT) -> list[str]:
     return found
 
 
-def text(inventory: Inventory, home: Home = PRODUCT) -> str:
-    """The ledger as it is written."""
-    return json.dumps(records(inventory, home), indent=1, sort_keys=True) + "\n"
+def text(inventory: Inventory, home: Home = PRODUCT, remembered: Remembered | None = None) -> str:
+    """The ledger as it is written; remembered: where it is kept from run to run."""
+
+    def make() -> str:
+        return json.dumps(records(inventory, home), indent=1, sort_keys=True) + "\n"
+
+    if remembered is None:
+        return make()
+    said = {t.name: _theorem_record(t) for t in inventory.theorems}
+    return remembered.text("ledger", json.dumps(said, sort_keys=True), make)
 
 
-def write(inventory: Inventory, path: Path = gate.LEDGER, home: Home = PRODUCT) -> bool:
-    """Write the ledger; True iff it differs from what was there."""
-    new = text(inventory, home)
+def write(new: str, path: Path = gate.LEDGER) -> bool:
+    """Write the ledger's text; True iff it differs from what was there."""
     old = path.read_text(encoding="utf-8") if path.is_file() else ""
     if new == old:
         return False

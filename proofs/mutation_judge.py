@@ -8,6 +8,7 @@ Inputs on which the two differ fix the question's variables first: such a questi
 from __future__ import annotations
 
 import dataclasses
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import Any
@@ -64,6 +65,10 @@ class Target:
             self.rows = inputs(original, self.equality.masks(), SAMPLES)
             self.results = [run_once(original, row) for row in self.rows]
 
+    def learn(self, killers: Counter[str]) -> None:
+        """Theorems that killed most of the mutants so far come first from now on."""
+        self.users = sorted(self.users, key=lambda name: (-killers[name], *self._promise(name)))
+
     def _promise(self, name: str) -> tuple[bool, bool, int, str]:
         """Theorems that name the kernel first, those with free arguments, then the cheap ones."""
         calls = [v.args for v in self.visits[name]]
@@ -83,20 +88,21 @@ class Target:
             return verdict("stillborn", note=seen.stillborn)
         try:
             rows = self.allowed(seen.inputs)
-            by = self.refuted(mutant.function, rows)
+            if rows:
+                by = self.refuted(mutant.function, rows)
+                note = f"differs at {row_text(rows[0])}"
+                return verdict("killed", by) if by else verdict("survived", note=note)
+            # nothing tells the two apart: most such mutants are equivalent, and that is the cheaper
+            # question
+            what, note, row = self.equality.equivalent(mutant.function)
+            if what == "equivalent":
+                return verdict(what, note=note)
+            # where the solver found an input that the grids have not, it starts from there
+            by = self.refuted(mutant.function, [row] if row else [])
             if by:
                 return verdict("killed", by)
-            if rows:
-                return verdict("survived", note=f"differs at {row_text(rows[0])}")
-            what, note, row = self.equality.equivalent(mutant.function)
             if what == "survived" and row:
-                # the solver found an input that the grids have not: it starts from there
-                by = self.refuted(mutant.function, [row])
-                return (
-                    verdict("killed", by)
-                    if by
-                    else verdict(what, note=f"differs at {row_text(row)}")
-                )
+                return verdict(what, note=f"differs at {row_text(row)}")
             if what == "undecided" and all(self._holds(n, mutant.function) for n in self.users):
                 note = "every theorem holds with it; equality is not decided"
             return verdict(what, note=note)
@@ -219,7 +225,9 @@ def judge_target(
         return judge(mutant)
 
     found = []
+    killers: Counter[str] = Counter()
     for mutant in faults(original):
+        target.learn(killers)
         name = keys.mutant(base, mutant.text)
         kept = store.get(name)
         if kept is None:
@@ -229,4 +237,6 @@ def judge_target(
             place = f"{target.place}:{mutant.line}" if mutant.line else target.place
             result = Result(key, target.kind, mutant.operator, place, mutant.diff, **kept)
         found.append(result)
+        if result.by:
+            killers[result.by] += 1
     return found

@@ -11,7 +11,7 @@ import z3
 from cratous.proofs.symbolic import SymMask, _raw
 from cratous.proofs.terms import free_names, known
 
-NEAR = 300_000
+NEAR = 120_000
 """Effort for a question whose inputs are fixed."""
 FAR = 3_000_000
 """Effort for an open question; a theorem that was dearer to prove gets twice its own, up to MOST."""

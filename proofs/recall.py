@@ -37,7 +37,7 @@ def _hash(file: Path) -> str:
     return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
-def _named(file: Path) -> str:
+def named(file: Path) -> str:
     return f"{place(file)}={_hash(file)}"
 
 
@@ -72,8 +72,8 @@ def files(name: str, home: Home = PRODUCT) -> tuple[Path, ...]:
 
 def key(name: str, home: Home = PRODUCT) -> str:
     """The hash under which the theorem is kept, as the files stand now."""
-    hashed = [_named(file) for file in files(name, home)]
-    prover = [_named(file) for file in sorted(gate.engine())]
+    hashed = [named(file) for file in files(name, home)]
+    prover = [named(file) for file in sorted(gate.engine())]
     versions = [gate.solver_version(), platform.python_version(), str(RLIMIT)]
     return digest([home.name, name, *hashed, "the prover", *prover, *versions])
 

@@ -8,9 +8,10 @@ import pytest
 
 from cratous.core import ledger as gate
 from cratous.core.sources import ROOT
-from cratous.proofs import ledger, prover, recall
+from cratous.proofs import ledger, prover, recall, remembered
 from cratous.proofs.claim import Claim
 from cratous.proofs.recall import Recall, files, key
+from cratous.proofs.remembered import Remembered
 from cratous.spec.errors import BadInput
 
 NAME = "daa_height_follows_the_climb"
@@ -126,3 +127,33 @@ def test_a_definition_whose_running_code_is_not_its_file_s_is_no_ground_for_a_pr
     )
     with pytest.raises(BadInput, match=r"not its file's: cratous\.spec\.authority"):
         prover.state("gate_has_exactly_one_commander")
+
+
+# -- texts that follow from the files alone ---------------------------------------------------
+def test_a_remembered_text_is_made_again_when_its_inputs_change(tmp_path):
+    made = []
+
+    def make() -> str:
+        made.append(len(made))
+        return f"made {len(made)}"
+
+    memory = Remembered(tmp_path / "remembered", gate.PRODUCT)
+    assert [memory.text("a", "1", make), memory.text("a", "1", make)] == ["made 1", "made 1"]
+    assert memory.text("a", "2", make) == "made 2"
+    assert memory.text("b", "2", make) == "made 3"
+    (tmp_path / "remembered" / "b").write_text('{"key": "another"', encoding="utf-8")
+    assert memory.text("b", "2", make) == "made 4"
+    assert Remembered(None, gate.PRODUCT).text("b", "2", make) == "made 5"
+
+
+def test_what_is_remembered_depends_on_every_file_of_the_product(monkeypatch):
+    hashed = set()
+    monkeypatch.setattr(remembered, "named", lambda file: hashed.add(file) or str(file))
+    remembered.product.__wrapped__(gate.PRODUCT)
+    assert {file.name for file in hashed} >= {
+        "polygon.py",
+        "decisions.json",
+        "prove.py",
+        "tcp_port.py",
+    }
+    assert not any(file.name == "ledger.json" for file in hashed)

@@ -266,6 +266,7 @@ def prove(
     from cratous.core.private import private_cache
     from cratous.proofs import cache, decisions, formats, ledger, prover
     from cratous.proofs.recall import Recall
+    from cratous.proofs.remembered import Remembered
 
     # thousands of syntax trees live to the end: looking for garbage in them is a third of a warm run
     gc.set_threshold(200_000, 20, 100)
@@ -296,6 +297,7 @@ def prove(
     workers = jobs or ledger.jobs_default()
     store = cache.standard()
     memory = Recall(private_cache() / "theorems", home)
+    remembered = Remembered(private_cache() / "remembered", home)
     bar = _Bar("proving", len(names), not as_json and sys.stderr.isatty())
     with bar:
         inventory = ledger.prove_all(
@@ -322,7 +324,8 @@ def prove(
         ]
     problems = [*structural, *(str(finding) for finding in inventory.findings)]
     if whole and home.product:
-        problems += [str(finding) for finding in decisions.unexplained()]
+        lint = remembered.text("decisions", "", lambda: json.dumps(decisions.unexplained()))
+        problems += json.loads(lint)
     data: dict[str, Any] = {}
     if recheck:
         keep = home.product and not check
@@ -339,12 +342,12 @@ def prove(
     if whole and not structural:
         if check:
             old = home.ledger.read_text(encoding="utf-8") if home.ledger.is_file() else ""
-            if ledger.text(inventory, home) != old:
+            if ledger.text(inventory, home, remembered) != old:
                 problems.append(
                     f"{home.ledger.name} differs from these proofs: run `cratous prove`"
                 )
         else:
-            ledger.write(inventory, home.ledger, home)
+            ledger.write(ledger.text(inventory, home, remembered), home.ledger)
     for path, make in outputs:
         if path is not None:
             formats.write(path, make(problems))
