@@ -181,14 +181,15 @@ def _ask(job: _Job) -> tuple[str, str, float]:
 
 
 def _stored(job: _Job, store: Store, solver: str) -> tuple[str, str, float]:
-    """The answer that the store has, or cvc5's, which is stored if it is one."""
+    """What the store has, or cvc5's answer; that there was none in this time is stored too."""
     key = digest(["cvc5", solver, job.key])
-    kept = store.get(key)
+    none = digest(["cvc5", solver, job.key, f"none in {CPU_SECONDS} s", *map(str, job.ways)])
+    kept = store.get(key) or store.get(none)
     if kept is not None:
         return kept["verdict"], kept["logic"], 0.0
     verdict, logic, seconds = _ask(job)
-    if verdict != NO_ANSWER:
-        store.put(key, {"verdict": verdict, "logic": logic})
+    found = {"verdict": verdict, "logic": logic}
+    store.put(none if verdict == NO_ANSWER else key, found)
     return verdict, logic, seconds
 
 
@@ -223,8 +224,11 @@ def recheck(
     import cvc5  # noqa: F401  (once here, so that the forked solvers have it already)
 
     wanted: list[_Job] = []
-    for theorem in theorems:
-        wanted += forked.call(partial(_jobs, theorem, folder))
+    stated: dict[int, list[_Job]] = dict(
+        forked.each([partial(_jobs, theorem, folder) for theorem in theorems], jobs)
+    )
+    for number in sorted(stated):
+        wanted += stated[number]
     # theorems may share an obligation: it is asked once
     todo = list({job.key: job for job in wanted if job.key not in known}.values())
     fork = multiprocessing.get_context("fork")
