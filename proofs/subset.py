@@ -108,6 +108,8 @@ def _check(part: ast.AST, function: Any, local: set[str], report: Any) -> None:
         report(part, f"the literal {part.value!r}: only integers and booleans are exact")
     if isinstance(part, ast.Attribute) and isinstance(part.ctx, ast.Store):
         report(part, "records are not changed: make a new one")
+    if isinstance(part, ast.Tuple) and isinstance(part.ctx, ast.Load):
+        report(part, "no bare tuples: make a record, or assign one name at a time")
     if isinstance(part, ast.Call) and not isinstance(part.func, ast.Name):
         report(part, "call kernels by their name")
     if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Load) and part.id not in local:

@@ -276,16 +276,24 @@ LIMIT = 3
 
 
 def outside(a: float, b) -> float:
-    """Not in the subset, in five ways."""
-    total = 0.5 * a
+    """Not in the subset, in six ways."""
+    total, limit = 0.5 * a, 1
     for k in range(3):
         total += k
-    return total // LIMIT
+    return total // LIMIT * limit
 
 
 def test_the_lint_names_what_is_outside_of_the_subset():
     text = "\n".join(str(f) for f in lint(outside))
-    for part in ("'b' has no type", "0.5", "fold", "x = x + y", "//", "'LIMIT' is neither"):
+    for part in (
+        "'b' has no type",
+        "0.5",
+        "fold",
+        "x = x + y",
+        "//",
+        "'LIMIT' is neither",
+        "no bare tuples",
+    ):
         assert part in text, part
 
 
