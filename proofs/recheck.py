@@ -148,7 +148,7 @@ def _jobs(theorem: prover.Theorem, folder: Path) -> list[_Job]:
             continue
         logic = prover.logic_of(obligation)
         ways: list[tuple[str, dict[str, str]]] = [(logic, {})]
-        if logic == "QF_NRA":
+        if logic in ("QF_NRA", "QF_NIRA", "QF_NIA", "QF_UFNRA", "QF_UFNIRA"):
             ways.append((logic, {"nl-ext": "none"}))
         if logic != "ALL":
             ways.append(("ALL", {}))
