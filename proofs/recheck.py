@@ -149,7 +149,7 @@ def _jobs(theorem: prover.Theorem, folder: Path) -> list[_Job]:
         logic = prover.logic_of(obligation)
         ways: list[tuple[str, dict[str, str]]] = [(logic, {})]
         if logic in ("QF_NRA", "QF_NIRA", "QF_NIA", "QF_UFNRA", "QF_UFNIRA"):
-            ways.append((logic, {"nl-ext": "none"}))
+            ways.append((logic, {"nl-ext": "none", "nl-cov": "true"}))
         if logic != "ALL":
             ways.append(("ALL", {}))
         text = f"{obligation.kind}: {obligation.text}"
