@@ -59,7 +59,7 @@ def from_state(p: Parameters, own: Aircraft, aircraft: Sequence[Aircraft]) -> Ju
         kind = volume.kind
         if kind == TAUMOD_SUM:
             kind = TAUMOD
-            if errors_of(p, own, other).any():
+            if errors_of(p, own, other)[:5].any():
                 unsure.append(other.id)
         pieces = straight(tuple(state), p.lookahead_time_s)
         found.append(Other(other.id, pieces, kind, volume[1:]))

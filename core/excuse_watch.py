@@ -18,8 +18,7 @@ Pair = tuple[int, int]
 
 
 class Pending(NamedTuple):
-    """A loss that is not judged yet: whose, when, when the pair's loss before it ended, who was in
-    the air before the record."""
+    """A loss that is not judged yet: whose, when, and when the pair's loss before it ended."""
 
     pair: Pair
     lost_ms: int
