@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib.util
 import json
 import math
 import random
@@ -36,14 +37,17 @@ from cratous.core.excuse_state import (
     straight,
 )
 from cratous.core.kernel import Vec2
+from cratous.services.certify.again import certify_again
 from cratous.services.certify.html import losses
 from cratous.services.certify.verdicts import constraint_rows, requirement_rows
+from cratous.services.cli import main as run_command
 from cratous.services.cli.daa import daa
 from cratous.services.flight.dynamics import MAX_ACCELERATION_M_S2
 from cratous.services.monitor import Monitor
 from cratous.spec import daa_meaning, excuse
 from cratous.spec.daa import Parameters
 from cratous.spec.daa_presets import preset
+from cratous.spec.errors import BadInput
 from cratous.spec.guarantees import Outcome, exit_code
 from cratous.spec.mission import Daa, Frame, Mission, Position, Task, TaskKind, Vehicle, WellClear
 from cratous.spec.plan import Plan
@@ -402,3 +406,65 @@ def test_the_command_names_who_refuses_and_a_free_value() -> None:
     (said,) = json.loads(run.output)
     assert (said["answer"], said["by_bands"], said["by_check"]) == ("no way out",) * 3
     assert {row["answer"] for row in said["bands"] + said["check"]} == {REFUSED}
+
+
+SURPRISE = """
+name: surprise
+frame: {latitude_deg: 37.1, longitude_deg: -76.4, terrain_m: 0}
+vehicles:
+  - {id: 1, position: {north_m: 0, east_m: 0, alt_m: 300}, heading_deg: 0, speed_m_s: 22,
+     min_speed_m_s: 15, max_speed_m_s: 33, max_bank_deg: 30, max_climb_m_s: 5}
+tasks:
+  - {id: 1, kind: must_fly, points: [{north_m: 1800, east_m: 0, alt_m: 300}]}
+traffic:
+  - {id: 9, position: {north_m: 2400, east_m: 10, alt_m: 300}, velocity: {north_m_s: -120, east_m_s: 0},
+     appears_s: APPEARS}
+relations: "p1"
+daa: {well_clear: {dthr_m: 400, zthr_m: 60, tthr_s: 10, tcoa_s: 0}, lookahead_s: 20}
+"""
+
+
+def test_a_flight_is_excused_and_certified_again_from_its_log(tmp_path: Path) -> None:
+    file = tmp_path / "mission.yaml"
+    file.write_text(SURPRISE.replace("APPEARS", "5"))
+    code = run_command(["run", str(file), "--out", str(tmp_path), "--allow-unproved", "--quiet"])
+    assert code == 3
+    report = json.loads((tmp_path / "surprise" / "report.json").read_text())
+    (row,) = [r for r in report["constraints"] if r["requirement"] == "G2"]
+    assert row["verdict"] == "excused"
+    assert row["evidence"]["losses"][0]["answer"] == "no way out"
+    assert "Losses of well clear" in (tmp_path / "surprise" / "report.html").read_text()
+    _, differences = certify_again(tmp_path / "surprise")
+    assert differences == []
+
+
+# -- degenerate states --------------------------------------------------------------------
+def load_scenes() -> Any:
+    file = Path(__file__).with_name("daa_scenes.py")
+    spec = importlib.util.spec_from_file_location("daa_scenes", file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_degenerate_states_are_answered_or_refused(p: Parameters) -> None:
+    rng, scenes = random.Random(11), load_scenes()
+    short = dataclasses.replace(p, lookahead_time_s=20.0, step_hdir_rad=math.radians(10),
+                                step_alt_m=500.0, step_vs_m_s=5.0, step_hs_m_s=30.0)  # fmt: skip
+    for _ in range(60):
+        own, others = scenes.scene(rng)
+        try:
+            said = from_state(short, own, others)
+        except BadInput:
+            assert any(o.id == own.id for o in others)
+            continue
+        assert said.answer in (WAY_OUT, UNDECIDED, NO_WAY)
+        assert bool(said.why) == (said.answer == UNDECIDED)
+        for one in said.bands + said.check:
+            facts = [x for x in (one.at_s, one.apart_m, one.above_m) if x is not None]
+            assert all(math.isfinite(x) for x in (one.value, *facts))
+            assert (len(facts) == 3) == (one.answer == REFUSED)
+    with pytest.raises(BadInput):
+        from_state(short, own._replace(east_m=math.nan), [])
