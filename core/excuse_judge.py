@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 
 from cratous.core import excuse_bands, excuse_check
 from cratous.core.daa_engine import alerter_index, errors_of, region_level, states, thresholds
+from cratous.core.daa_session import checked
 from cratous.core.daa_state import Aircraft
 from cratous.core.excuse import both_say
 from cratous.core.excuse_state import ANSWERS, OPEN, Judgement, Other, Tried, straight
@@ -48,7 +49,9 @@ def from_state(p: Parameters, own: Aircraft, aircraft: Sequence[Aircraft]) -> Ju
 
     Who has no alerter, or none with the corrective region, is in nobody's way, as in the bands. A
     state that is only known within bounds cannot be judged: with uncertainties it is undecided.
+    Raises BadInput for states that cannot be used.
     """
+    checked(own, aircraft)
     found, unsure = [], []
     for other, state in zip(aircraft, states(aircraft).tolist(), strict=True):
         index = alerter_index(p, own, other)
