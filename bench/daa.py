@@ -1,7 +1,8 @@
 """Detect and avoid: full four-dimension bands and batch alerting, CPU time on one core, warm.
 
-The peer figures are those measured for DAIDALUS v2 (C++, -O) with the same configuration on the
-same kind of encounters: fresh state, no history. `python bench/daa.py` prints a table.
+The peer figures are recorded ones, not run here: those measured once for DAIDALUS v2 (C++, -O) on
+another machine, with the same configuration on the same kind of encounters: fresh state, no history.
+`python bench/daa.py` prints a table.
 """
 
 from __future__ import annotations
@@ -73,6 +74,20 @@ def alerts_per_s(encounters: int = 200_000, intruders: int = 3) -> float:
         run(relative, errors, alerter, *arguments, levels)
         best = min(best, time.process_time() - begin)
     return encounters / best
+
+
+def rows() -> list[tuple[str, float, str, float]]:
+    """(what, ns each, peer, ns each of the peer) for the table of `run.py`; the peer is recorded."""
+    recorded = "recorded: DAIDALUS v2, C++ -O"
+    found = [
+        (f"bands in four dimensions, {n} intruders", bands_ms(n)[0] * 1e6, recorded, peer * 1e6)
+        for n, peer in PEER_MS.items()
+    ]
+    bar = f"recorded bar: {PEER_ENCOUNTERS_S:,} a second"
+    found.append(
+        ("alert levels of an encounter of 3", 1e9 / alerts_per_s(), bar, 1e9 / PEER_ENCOUNTERS_S)
+    )
+    return found
 
 
 def main() -> int:

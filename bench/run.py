@@ -3,7 +3,7 @@
 The well-clear rows are those of `exact_well_clear.py` and `interval_well_clear.py`, where the
 peer is C; those of points in polygons are those of `containment.py`, by CPU time; those of messages
 are in `lmcp_codec.py`, the one of the message logger in `day_of_traffic.py`, those of routes and
-plans in `planning.py`.
+plans in `planning.py`, those of bands and alerts, against recorded figures, in `daa.py`.
 
 `python bench/run.py --write` puts the table into bench/README.md.
 """
@@ -26,6 +26,7 @@ from cratous.core.well_clear import horizontal_violation, violation_within
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 import containment
+import daa
 import day_of_traffic
 import exact_well_clear
 import interval_well_clear
@@ -95,7 +96,7 @@ def rows() -> list[tuple[str, float, str, float]]:
     found.append(("point in 10-gon, exact, one by one", a, "shapely contains, one by one", b))
     wells = exact_well_clear.rows() + interval_well_clear.rows()
     messages = lmcp_codec.rows() + day_of_traffic.rows()
-    return wells + containment.rows() + found + messages + planning.rows()
+    return wells + containment.rows() + found + messages + planning.rows() + daa.rows()
 
 
 def table() -> str:

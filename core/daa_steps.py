@@ -109,9 +109,11 @@ def safe_steps(
                 final_s = lookahead_s
                 if counted:
                     final_s = horizons[i]
-                on_piece = piece_counts(at_s, begin_s, final_s) and lost(
+                # recovery later than the horizon: until there only the cylinder counts
+                looked = begin_s <= horizons[i] and piece_counts(at_s, begin_s, final_s)
+                on_piece = looked and lost(
                     kinds[i], s, v, sz, vz, volumes[i], at_s, 0.0, piece_s
-                )
+                )  # fmt: skip
                 blocked = lost_before(blocked, on_piece)
             if recovering and not blocked:
                 # kept clear until begin_s, or to the horizon as any volume where that is sooner

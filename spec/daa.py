@@ -230,7 +230,7 @@ OLD_NAMES = {
 
 
 class SensitivityLevel(NamedTuple):
-    """TCAS II resolution-advisory thresholds up to an altitude [m]."""
+    """TCAS II resolution-advisory thresholds up to an altitude [m], it included."""
 
     below_m: float
     tau_s: float
@@ -253,4 +253,4 @@ TCAS_LEVELS = (
 
 def sensitivity(alt_m: float) -> SensitivityLevel:
     """The TCAS II sensitivity level at an altitude [m]."""
-    return next(level for level in TCAS_LEVELS if alt_m < level.below_m)
+    return next(level for level in TCAS_LEVELS if alt_m <= level.below_m)

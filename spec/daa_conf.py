@@ -21,6 +21,7 @@ from cratous.spec.daa import (
     OLD_NAMES,
     REGIONS,
     TCAS,
+    TCAS_LEVELS,
     UNITS,
     Alerter,
     Key,
@@ -37,6 +38,13 @@ THRESHOLDS = {
     "WCV_TTHR": ("tthr_s", "s", "s"), "WCV_TCOA": ("tcoa_s", "s", "s"),
     "D": ("dthr_m", "m", "nmi"), "H": ("zthr_m", "m", "ft"), "VMOD_T": ("vmod_s", "s", "s"),
 }  # fmt: skip
+
+
+TCAS_COLUMNS = {
+    "TAU": ("tau_s", "s"), "TCOA": ("tau_s", "s"), "DMOD": ("dmod_m", "m"), "ZTHR": ("zthr_m", "m"),
+    "HMD": ("hmd_m", "m"),
+}  # fmt: skip
+"""Columns of a TCAS table in files: their field of `spec.daa.TCAS_LEVELS`, and what they measure."""
 
 
 @dataclass
@@ -135,6 +143,7 @@ class _Reader:
 
     def __init__(self, found: dict[str, Entry], units: dict[str, str]) -> None:
         self.left, self.units = dict(found), units
+        self.tables: set[str] = set()
 
     def take(self, key: str) -> Entry | None:
         return self.left.pop(key, None)
@@ -198,7 +207,35 @@ class _Reader:
             if full in self.left:
                 value, unit = _number(self.left[full], dimension, 0.0, math.inf)
                 values[into], self.units[full] = value, unit
+        if kind == TCAS:
+            self.resolution_table(f"{name}_{detector.value}_TCAS_")
         return Volume(kind, **values)
+
+    def resolution_table(self, head: str) -> None:
+        """Refuse a TCAS table that is not the one of resolution advisories, which is all that is
+        modelled; a file may leave it out, or write it out."""
+        known: dict[str, tuple[float, str]] = {
+            f"{head}level_{k}": (TCAS_LEVELS[k - 2].below_m if k > 1 else 0.0, "m")
+            for k in range(1, 8)
+        }
+        for column, (into, dimension) in TCAS_COLUMNS.items():
+            for k in range(1, 9):
+                wanted = getattr(TCAS_LEVELS[k - 2], into) if k > 1 else 0.0
+                known[f"{head}{column}_{k}"] = (wanted, dimension)
+        self.tables |= {*known, f"{head}HMDFilter"}
+        for full, (wanted, dimension) in known.items():
+            if full in self.left:
+                value, _ = _number(self.left[full], dimension, 0.0, math.inf)
+                if not math.isclose(value, wanted, rel_tol=1e-9):
+                    self._other_table(full, f"{wanted:g} {dimension.replace('_', '/')}")
+        full = f"{head}HMDFilter"
+        if full in self.left and not _word(self.left[full], {"true": True, "false": False}):
+            self._other_table(full, "true")
+
+    def _other_table(self, full: str, expected: str) -> None:
+        entry = self.left[full]
+        raise BadInput("another TCAS table than that of resolution advisories, which is not modelled",
+                       where=entry.where, item=full, expected=expected, got=entry.value)  # fmt: skip
 
     def finish(self, names: list[str]) -> None:
         """Drop the lines of detectors, which levels share; refuse what is unknown."""
@@ -210,7 +247,7 @@ class _Reader:
             if (
                 rest.startswith("load_core_detection_")
                 or any(rest.endswith(f"_{t}") for t in THRESHOLDS)
-                or "_TCAS_" in key
+                or key in self.tables
             ):
                 del self.left[key]
         for entry in self.left.values():

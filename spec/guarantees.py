@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ class Verdict:
     requirement: G1 to G5; item: which constraint (empty for the whole requirement); time_ms:
     first violation, or where the margin was smallest; margin: in `unit`, negative when violated,
     None where there is no measure; checks: how many single checks stand behind it; method: by
-    what (kernel names).
+    what (kernel names); evidence: what an excuse, or its refusal, rests on, as plain data.
     """
 
     requirement: str
@@ -90,6 +91,7 @@ class Verdict:
     unit: str = ""
     checks: int = 0
     method: str = ""
+    evidence: dict[str, Any] | None = None
 
 
 def worst(outcomes: list[Outcome]) -> Outcome:

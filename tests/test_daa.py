@@ -270,6 +270,23 @@ def test_tcas_thresholds_follow_the_altitude():
     volume = Volume(TCAS, 0.0, 0.0)
     assert thresholds(volume, 2000.0) == Volume(TAUMOD, 0.55 * 1852, 600 * 0.3048, 25.0, 25.0)
     assert [x.tau_s for x in TCAS_LEVELS] == sorted(x.tau_s for x in TCAS_LEVELS)
+    # a level ends with its altitude, which belongs to it
+    assert thresholds(volume, 1000 * 0.3048).tthr_s == 0.0
+    assert thresholds(volume, math.nextafter(1000 * 0.3048, 1e9)).tthr_s == 15.0
+    assert thresholds(volume, 2350 * 0.3048).tthr_s == 15.0
+
+
+def test_below_min_airspeed_directions_are_flown_at_it_unless_they_are_at_once(p: Parameters):
+    slow = Aircraft("own", 0, 0, 2000, 0, 2.0, 0)
+    grids = {
+        way: grid(dataclasses.replace(p, hdir_bands_below_min_as=way), slow, HDIR)
+        for way in (-1, 0, 1)
+    }
+    speeds = {way: np.hypot(g.right[:, 3], g.right[:, 4]) for way, g in grids.items()}
+    for found in speeds.values():
+        assert found == pytest.approx(p.min_airspeed_m_s)
+    assert grids[-1].step_s == grids[0].step_s > grids[1].step_s == 0.0
+    assert np.array_equal(grids[-1].right, grids[0].right)
 
 
 def test_every_region_needs_a_level(p: Parameters):

@@ -14,7 +14,7 @@ from cratous.services import cli
 from cratous.services.cli.daa import daa
 from cratous.services.daa import run
 from cratous.spec import daa_conf, daa_file
-from cratous.spec.daa import FOOT, KEYS, KNOT, MID, NMI, Parameters
+from cratous.spec.daa import FOOT, KEYS, KNOT, MID, NMI, TCAS, Parameters
 from cratous.spec.daa_presets import named_or_file, names, preset
 from cratous.spec.errors import BadInput
 
@@ -200,3 +200,45 @@ def test_bad_input_ends_with_2(encounter: str, tmp_path: Path, capsys):
     assert cli.main(["daa", "explain", encounter, "--time", "7000"]) == 2
     assert cli.main(["daa", "presets"]) == 0
     assert "small_uas" in capsys.readouterr().out
+
+
+TCAS_CONF = """
+alerters = A
+A_alert_1_region = NEAR
+A_alert_1_alerting_time = 0 [s]
+A_alert_1_early_alerting_time = 0 [s]
+A_alert_1_detector = det_1
+A_load_core_detection_det_1 = gov.nasa.larcfm.ACCoRD.TCAS3D
+A_det_1_TCAS_HMDFilter = true
+A_det_1_TCAS_level_3 = 2350.0 [ft]
+A_det_1_TCAS_TAU_3 = 15.0 [s]
+A_det_1_TCAS_TCOA_8 = 35.0 [s]
+A_det_1_TCAS_DMOD_5 = 0.55 [nmi]
+A_det_1_TCAS_ZTHR_7 = 700.0 [ft]
+A_det_1_TCAS_HMD_4 = 2126.0 [ft]
+A_det_1_TCAS_TAU_1 = 0.0 [s]
+"""
+
+
+def test_the_table_of_resolution_advisories_may_be_written_out() -> None:
+    (alerter,) = daa_conf.parse(TCAS_CONF).parameters.alerters
+    assert alerter.levels[0].volume.kind == TCAS
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("A_det_1_TCAS_TAU_4 = 30.0 [s]", "20 s"),
+        ("A_det_1_TCAS_ZTHR_2 = 850.0 [ft]", "0 m"),
+        ("A_det_1_TCAS_level_7 = 40000.0 [ft]", "12801.6 m"),
+        ("A_det_1_TCAS_HMDFilter = false", "true"),
+        ("A_det_1_TCAS_TAU_9 = 30.0 [s]", "a key of the configuration"),
+    ],
+)
+def test_another_tcas_table_is_refused_and_never_read_as_this_one(line: str, expected: str) -> None:
+    key = line.split(" = ")[0]
+    text = "\n".join(x for x in TCAS_CONF.splitlines() if not x.startswith(f"{key} ")) + f"\n{line}"
+    with pytest.raises(BadInput) as error:
+        daa_conf.parse(text, "some.conf")
+    assert (error.value.item, error.value.expected) == (key, expected)
+    assert "some.conf" in error.value.where

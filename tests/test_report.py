@@ -116,6 +116,12 @@ def report() -> dict[str, Any]:
         for k in (1, 2)
     ]
     rows = [row(r.id, Outcome.HOLDS, 1.0) for r in REQUIREMENTS]
+    manoeuvre = ["hs", 20.0, "m/s", "<9>", 1.5, 140.0, 3.0, 1.5]
+    loss = {
+        "own": 1, "other": 9, "lost_ms": 2000, "answer": "no way out", "why": "",
+        "instants": [[1000, 1, 1, 1, 1]], "manoeuvres": [manoeuvre],
+    }  # fmt: skip
+    rows[1]["evidence"] = {"losses": [loss]}
     return {
         "verdict": "holds", "exit_code": 0, "product": {"version": "0"},
         "counts": {"holds": 5, "violated": 0, "unknown": 0, "excused": 0},
@@ -160,7 +166,8 @@ def test_the_page_is_whole_and_escaped() -> None:
     assert "&lt;script&gt;" in page
     assert "a&lt;b&gt;" in page
     for words in ("Flown with --allow-unproved", "Avoidance was switched off", "never ended",
-                  "Not covered", "It holds.", "ICAROUS in command", "2" * 64):  # fmt: skip
+                  "Not covered", "It holds.", "ICAROUS in command", "2" * 64,
+                  "Losses of well clear", "no way out", "&lt;9&gt;"):  # fmt: skip
         assert words in page
 
 

@@ -46,9 +46,39 @@ def render(report: dict[str, Any]) -> str:
     """The page; every text from the report is escaped."""
     text: str = _template().render(
         r=report, map=map_view(report), time=time_view(report), near=separation_view(report),
-        gantt=_gantt(report), tree=_tree(report),
+        gantt=_gantt(report), tree=_tree(report), losses=losses(report),
     )  # fmt: skip
     return text
+
+
+def losses(report: dict[str, Any]) -> list[dict[str, Any]]:
+    """The judged losses, with their manoeuvres put together by dimension."""
+    found = []
+    for row in report["constraints"]:
+        for loss in (row.get("evidence") or {}).get("losses", []):
+            groups: dict[str, list[list[Any]]] = {}
+            for one in loss.get("manoeuvres", []):
+                groups.setdefault(one[0], []).append(one)
+            found.append(
+                {
+                    "way_out": None,
+                    **loss,
+                    "tried": [sum(i[k] for i in loss["instants"]) for k in range(1, 5)],
+                    "groups": [_group(name, rows) for name, rows in groups.items()],
+                }
+            )
+    return found
+
+
+def _group(name: str, rows: list[list[Any]]) -> dict[str, Any]:
+    """Columns as in `services.monitor.excuses.COLUMNS`."""
+    values, times = [r[1] for r in rows], [r[4] for r in rows]
+    return {
+        "dimension": name, "count": len(rows), "unit": rows[0][2],
+        "low": f"{min(values):.1f}", "high": f"{max(values):.1f}",
+        "by": sorted({r[3] for r in rows}), "first_s": f"{min(times):.1f}",
+        "last_s": f"{max(times):.1f}", "apart_m": f"{min(r[5] for r in rows):.0f}",
+    }  # fmt: skip
 
 
 def _gantt(report: dict[str, Any]) -> str:

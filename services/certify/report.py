@@ -32,7 +32,9 @@ LIMITS = (
     "The flight is a simulation with point-mass aircraft, without wind and sensor error.",
     "Distances are taken in one local tangent frame; its scale error is stated below.",
     "Terrain is flat at the stated height.",
-    "No loss is excused: whether a way out existed is not decided by an independent check.",
+    "A loss is excused only if every manoeuvre of its set fails from every instant of the look-ahead "
+    "before it, others flying as recorded. The set is one change at a time: direction, speed, climb "
+    "rate or altitude, on a grid; zones and the ground below flight are no reason to refuse one.",
 )
 
 

@@ -27,6 +27,7 @@ def constraint_rows(verdicts: Iterable[Verdict], source: str) -> list[dict[str, 
             "note": verdict.note,
             "method": verdict.method,
             "checks": verdict.checks,
+            **({"evidence": verdict.evidence} if verdict.evidence is not None else {}),
         }
         for verdict in verdicts
         if verdict.item

@@ -89,6 +89,50 @@ def plot(file: Path, config: str, ownship: str, out: Path | None) -> int:
     return 0
 
 
+def _at(steps: list[Any], time_s: float, file: Path) -> Any:
+    """The step at a time."""
+    found = next((s for s in steps if math.isclose(s.instant.time_s, time_s, abs_tol=1e-6)), None)
+    if found is None:
+        times = [s.instant.time_s for s in steps]
+        raise BadInput(
+            "there is no step at this time",
+            where=str(file),
+            item="--time",
+            expected=f"{times[0]:g} to {times[-1]:g} s" if times else "none",
+            got=f"{time_s:g} s",
+        )
+    return found
+
+
+@daa.command()
+@FILE
+@CONFIG
+@OWN
+@OUT
+@JSON
+@click.option("--time", "time_s", type=float, help="Only the step at this time [s].")
+def excuse(
+    file: Path, config: str, ownship: str, out: Path | None, as_json: bool, time_s: float | None
+) -> int:
+    """Whether a way out existed at each step: every manoeuvre, and who refuses it.
+
+    Two judges try every turn, speed, climb rate and altitude against the corrective volumes within
+    the look-ahead: the manoeuvres of the bands, and a check that integrates its own. Only what both
+    say is said; anything else is undecided.
+    """
+    from cratous.services.daa.excuse import as_data, excuse_text, judge_step
+
+    steps = list(_steps(file, config, ownship, ()))
+    if time_s is not None:
+        steps = [_at(steps, time_s, file)]
+    judged = [(s.instant.time_s, judge_step(s)) for s in steps]
+    if as_json:
+        _put(json.dumps([as_data(*one) for one in judged], allow_nan=False), out)
+    else:
+        _put("\n".join(line for one in judged for line in excuse_text(*one)), out)
+    return 0
+
+
 @daa.command()
 @FILE
 @CONFIG
@@ -110,22 +154,7 @@ def explain(
 
     steps = list(_steps(file, config, ownship, (0, 1, 2, 3)))
     if time_s is not None:
-        chosen = next(
-            (s for s in steps if math.isclose(s.instant.time_s, time_s, abs_tol=1e-6)), None
-        )
-        if chosen is None:
-            span = (
-                f"{steps[0].instant.time_s:g} to {steps[-1].instant.time_s:g} s"
-                if steps
-                else "none"
-            )
-            raise BadInput(
-                "there is no step at this time",
-                where=str(file),
-                item="--time",
-                expected=span,
-                got=f"{time_s:g} s",
-            )
+        chosen = _at(steps, time_s, file)
     else:
         chosen = next((s for s in steps if any(a.level for a in s.instant.alerts)), steps[0])
     lines = words(chosen.parameters, chosen.instant)

@@ -7,7 +7,8 @@ times to manoeuvre; per dimension: bands, recovery, resolutions. A difference is
 is evidence for another class:
 - `sliver`: the anchor drops bands narrower than 2^40 units in the last place (2.4e-4 relative),
   and a cell of the grid, cut off at the end of its range, is narrower than that here;
-- `knife edge`: a change of all thresholds and times by 1e-9 of them changes our result;
+- `knife edge`: a change of all thresholds and times, the look-ahead among them, by 1e-9 of them
+  changes our result;
 - `last time 0`, `great circle`: ways of the anchor, shown by computing again
   (`conform.daa_evidence`).
 """
@@ -175,7 +176,7 @@ class Differences:
         return "ours"
 
     def changed(self, factor: float, dimension: int | None) -> bool:
-        """Whether thresholds and times scaled by a factor change what is said here."""
+        """Whether thresholds, times and look-ahead scaled by a factor change what is said here."""
         alerters = tuple(
             a._replace(
                 levels=tuple(
@@ -195,6 +196,7 @@ class Differences:
         other = dataclasses.replace(
             self.p,
             alerters=alerters,
+            lookahead_time_s=self.p.lookahead_time_s * factor,
             min_horizontal_recovery_m=self.p.min_horizontal_recovery_m * factor,
             min_vertical_recovery_m=self.p.min_vertical_recovery_m * factor,
         )

@@ -21,13 +21,15 @@ from cratous.core.daa_frame import Local, project
 from cratous.core.daa_session import Instant, Session
 from cratous.core.daa_state import Aircraft, Sigma
 from cratous.core.daa_terminal import in_terminal_area
+from cratous.core.excuse_judge import from_state as judge_way_out
 from cratous.spec.daa import Parameters
 from cratous.spec.daa_file import Row, read
 from cratous.spec.daa_presets import named_or_file, names, preset
 from cratous.spec.errors import BadInput
 
 __all__ = [
-    "Aircraft", "Instant", "Session", "Sigma", "Step", "named_or_file", "names", "preset", "run",
+    "Aircraft", "Instant", "Session", "Sigma", "Step", "judge_way_out", "named_or_file", "names",
+    "preset", "run",
 ]  # fmt: skip
 
 

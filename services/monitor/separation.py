@@ -1,5 +1,8 @@
 """G2: well clear between every protected vehicle and every other aircraft, at every instant.
 
+A loss is a violation unless `core.excuse_watch` says that there was no way out; then it is excused,
+with the manoeuvres that were refused as evidence.
+
 Each pair and step is one question to the kernel `violation_within`: is well clear lost at any
 instant of the step, if both fly straight during it? Positions are taken as the rationals that
 the doubles are, so the answer is exact, between the samples too.
@@ -12,8 +15,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from cratous.core.excuse_record import Scene
+from cratous.core.excuse_watch import LossWatch, pair_excused
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import violation_within
+from cratous.services.monitor.excuses import evidence, sentence
 from cratous.services.monitor.samples import Sample
 from cratous.spec.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission import Mission
@@ -56,9 +62,14 @@ class SeparationWatch:
         )
         self.pairs: dict[tuple[int, int], Pair] = {}
         self.violations: list[Verdict] = []
+        protected = {v.id: v for v in mission.vehicles if v.protected}
+        self._losses = LossWatch(
+            protected, volume, mission.daa.lookahead_s, mission.frame.terrain_m
+        )
 
     def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
         """Check every pair that was in the air at both ends of the step."""
+        lost = set()
         for own in self._protected:
             for other in sorted(after):
                 mutual = other in self._protected and other < own
@@ -68,11 +79,13 @@ class SeparationWatch:
                     or not all(i in before and i in after for i in (own, other))
                 ):
                     continue
-                self._check(own, other, before, after)
+                if self._check(own, other, before, after):
+                    lost.add((own, other))
+        self._losses.step(_scene(before), _scene(after), frozenset(lost))
 
     def _check(
         self, own: int, other: int, before: dict[int, Sample], after: dict[int, Sample]
-    ) -> None:
+    ) -> bool:
         pair = self.pairs.setdefault((own, other), Pair())
         s0, s1 = _relative(before[own], before[other]), _relative(after[own], after[other])
         h = Fraction(after[own].time_ms - before[own].time_ms, 1000)
@@ -88,7 +101,8 @@ class SeparationWatch:
             pair.lost_steps += 1
             if pair.lost_ms is None:
                 pair.lost_ms = before[own].time_ms
-                self.violations.append(self._verdict(own, other, pair))
+                self.violations.append(self._verdict(own, other, pair, judge=False))
+        return bool(lost)
 
     def _measure(self, pair: Pair, own: Sample, other: Sample) -> None:
         """Least horizontal distance while within ZTHR; for display only."""
@@ -98,8 +112,10 @@ class SeparationWatch:
             if distance < pair.nearest_m:
                 pair.nearest_m, pair.nearest_ms = distance, own.time_ms
 
-    def _verdict(self, own: int, other: int, pair: Pair) -> Verdict:
+    def _verdict(self, own: int, other: int, pair: Pair, judge: bool = True) -> Verdict:
         lost = pair.lost_ms is not None
+        losses = self._losses.losses((own, other)) if lost and judge else []
+        excused = pair_excused(losses)
         margin = None
         note = f"never within ZTHR {self._volume.zthr_m:g} m of altitude"
         if pair.nearest_m < math.inf:
@@ -108,12 +124,12 @@ class SeparationWatch:
         if lost:
             note = (
                 f"lost at {(pair.lost_ms or 0) / 1000:.2f} s, in {pair.lost_steps} steps; {note}; "
-                "no evidence that no way out existed"
+                f"{sentence(losses)}"
             )
         return Verdict(
             "G2",
             f"well clear of {own} and {other}",
-            Outcome.VIOLATED if lost else Outcome.HOLDS,
+            (Outcome.EXCUSED if excused else Outcome.VIOLATED) if lost else Outcome.HOLDS,
             Kind.EXACT,
             note,
             time_ms=pair.lost_ms if lost else pair.nearest_ms,
@@ -121,7 +137,8 @@ class SeparationWatch:
             margin=margin,
             unit="m" if margin is not None else "",
             checks=pair.checks,
-            method="violation_within",
+            method="violation_within, way_out" if losses else "violation_within",
+            evidence=evidence(losses) if losses else None,
         )
 
     def verdicts(self) -> list[Verdict]:
@@ -142,6 +159,15 @@ class SeparationWatch:
                     )
                 )
         return found
+
+
+def _scene(samples: dict[int, Sample]) -> Scene:
+    """Where everybody was, east, north, up."""
+    time_ms = next(iter(samples.values())).time_ms
+    return Scene(
+        time_ms,
+        {i: (s.position.east_m, s.position.north_m, s.position.alt_m) for i, s in samples.items()},
+    )
 
 
 def _any(value: Fraction) -> Any:
