@@ -15,6 +15,7 @@ from typing import NamedTuple
 from cratous.core.assignment_instance import TIME_MAX_MS
 from cratous.core.assignment_settle import Settler
 from cratous.core.earliest import earliest
+from cratous.core.timing import runs_forward
 from cratous.services.planning.assign_problem import Part, arrays, binding, parts
 from cratous.services.planning.assign_replay import replayed
 from cratous.services.planning.options import Option
@@ -63,7 +64,7 @@ def schedule(problem: AssignmentProblem, given: Sequence[Given]) -> tuple[Step, 
                 expected="a vehicle and an option of the request",
                 got=f"vehicle {item.vehicle_id}, task {item.task_id}, option {item.option_id}",
             )
-        if not 0 <= item.not_before_ms < TIME_MAX_MS:
+        if not runs_forward(item.not_before_ms, TIME_MAX_MS - 1):
             raise BadInput(
                 "no such start",
                 item=f"TaskList[{k}].TimeThreshold",
@@ -116,7 +117,6 @@ def _timed(
     floors = tuple(
         Row(NOT_BEFORE, i.task_id, (), i.not_before_ms, 0, f"task {i.task_id} was assigned a start")
         for i in given
-        if i.not_before_ms > 0
     )
     rows = (*binding(problem, part), *floors)
     rules = Settler(instance, None, part.tasks, rows, laps, part.done)
@@ -141,7 +141,7 @@ def loiters_of(
     made = []
     for step in steps:
         wait = step.start_ms - step.arrive_ms
-        if wait == 0:
+        if not wait:
             continue
         option = by_id[step.task_id, step.option_id]
         hold = hold_of(option, wait, zones)

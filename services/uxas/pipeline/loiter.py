@@ -18,6 +18,7 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
+from cratous.core.assignment_steps import chain_holds
 from cratous.services.bus import Envelope, Wake
 from cratous.services.planning.assignment_service import travel_of
 from cratous.services.planning.desk import status
@@ -134,7 +135,9 @@ class LoiterAssignmentService:
                 if loiter.task_id in point.AssociatedTasks
             ]  # fmt: skip
             held = sum(_held(point, loiter.task_id) for point in points)
-            if points and held == loiter.wait_ms:
+            # as a task of its own: begun at the arrival, it ends at the start of the task
+            as_leg = (loiter.arrive_ms, loiter.arrive_ms, loiter.start_ms, held)
+            if points and chain_holds([as_leg]):
                 continue
             if not points or held:
                 why = f"the plan waits {held / 1000:.3f} s" if points else "the plan lacks the task"
