@@ -15,13 +15,21 @@ import numpy as np
 from cratous.core.assignment_compiled import machine_for
 from cratous.core.assignment_improve import anneal, leaf
 from cratous.core.assignment_instance import FAR, TASKS_MAX, Instance
+from cratous.core.assignment_least import heads, least_until, least_work
 from cratous.core.assignment_order import by_sets, is_sets
 from cratous.core.assignment_rebuild import rebuild
-from cratous.core.assignment_refute import Ahead, Outcome, first_state, look_ahead, refute
+from cratous.core.assignment_refute import (
+    Ahead,
+    Outcome,
+    first_state,
+    look_ahead,
+    refute,
+    shortest,
+)
 from cratous.core.assignment_search import bound
-from cratous.core.assignment_steps import earliest_start, raised, weighted
-from cratous.core.assignment_tables import heads, shortest_ways
+from cratous.core.assignment_steps import earliest_start, raised, soonest_end, weighted
 from cratous.core.kernel import driver
+from cratous.core.timing import later
 
 Moves = tuple[tuple[int, int], ...]
 NONE = 1 << 60
@@ -147,26 +155,24 @@ def estimate(instance: Instance, ahead: Ahead | None = None) -> int:
 def rough_bound(instance: Instance) -> int:
     """The longest path through the rows, and the least work of all tasks shared by all vehicles."""
     i = instance
-    reach = machine_for(i, shortest_ways)(i.travel, i.duration, i.may)
     head, least, tail = machine_for(i, heads)(
         i.travel, i.duration, i.task, i.may, i.ready, i.release, i.ref_kind, i.member_first,
-        i.member, i.row_first, i.row_ref, i.row_lo, i.waits, reach,
+        i.member, i.row_first, i.row_ref, i.row_lo, i.waits, shortest(i, i.may),
     )  # fmt: skip
-    brief, cheap = np.full(i.tasks, FAR), np.full(i.tasks, FAR)
-    for o in range(i.duration.size):
-        j, others = i.task[o], np.append(i.task != i.task[o], True)
-        for v in range(i.vehicles):
-            if i.may[v, o]:
-                brief[j] = min(brief[j], i.travel[v, others, o].min() + i.duration[o])
-                cheap[j] = min(cheap[j], i.added[v, others, o].min())
-    work = int(brief.sum())
-    ready = sorted(int(r) for r in i.ready)
-    shared = min(-(-(work + sum(ready[:k])) // k) for k in range(1, len(ready) + 1))
-    last = max(shared, int((head + least + tail).max()))
-    return weighted(last, work, int(cheap.sum()), int(i.weight[0]), int(i.weight[1]))
+    work, legs = machine_for(i, least_work)(i.travel, i.added, i.duration, i.task, i.may, i.tasks)
+    last = int(machine_for(i, least_until)(int(work), i.ready))
+    for j in range(i.tasks):
+        last = later(last, soonest_end(int(head[j]), int(head[j]), int(least[j])) + int(tail[j]))
+    return weighted(last, int(work), int(legs), int(i.weight[0]), int(i.weight[1]))
 
 
-@driver(checked_by=("earliest_start", "latest_departure", "covers_step", "keeps_step", "weighted"))
+@driver(
+    checked_by=(
+        "earliest_start", "latest_departure", "covers_step", "keeps_step", "weighted", "opened",
+        "raised", "least_of", "add_least", "no_shortcut", "tail_step", "soonest_end", "room_step",
+        "lacks_room", "later",
+    )
+)  # fmt: skip
 def settle_bound(
     instance: Instance,
     limit: int,

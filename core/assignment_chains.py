@@ -143,7 +143,13 @@ class Listed:
     leaves: int
 
 
-@driver(checked_by=("earliest_start", "latest_departure", "keeps_step", "weighted", "opened"))
+@driver(
+    checked_by=(
+        "earliest_start", "latest_departure", "keeps_step", "weighted", "opened",
+        "raised", "least_of", "add_least", "no_shortcut", "tail_step", "soonest_end", "room_step",
+        "lacks_room", "later",
+    )
+)  # fmt: skip
 def chains_below(
     instance: Instance,
     limit: int,

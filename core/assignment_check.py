@@ -18,7 +18,13 @@ from cratous.core.assignment_search import closed, cost_now
 from cratous.core.kernel import driver
 
 
-@driver(checked_by=("earliest_start", "latest_departure", "covers_step", "keeps_step", "weighted"))
+@driver(
+    checked_by=(
+        "earliest_start", "latest_departure", "covers_step", "keeps_step", "weighted", "opened",
+        "raised", "least_of", "add_least", "no_shortcut", "tail_step", "soonest_end", "room_step",
+        "lacks_room", "later",
+    )
+)  # fmt: skip
 def least_cost(instance: Instance, limit: int, origins: Sequence[np.ndarray]) -> tuple[int, str]:
     """(no completion costs less than this, what is wrong): the first counts if the second is ""."""
     i, ahead = instance, look_ahead(instance)

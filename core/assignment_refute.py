@@ -15,8 +15,9 @@ import numpy as np
 
 from cratous.core.assignment_compiled import machine_for
 from cratous.core.assignment_instance import FAR, TABLE_MAX_MS, Instance, horizon
+from cratous.core.assignment_least import heads, nearest_ways, shortest_ways, ways_hold
 from cratous.core.assignment_search import cost_now, expand, place, rehash
-from cratous.core.assignment_tables import CELLS_MAX, heads, latest_tables, shortest_ways
+from cratous.core.assignment_tables import CELLS_MAX, latest_tables
 from cratous.core.kernel import driver
 
 EFFORT = 2_000_000
@@ -75,7 +76,7 @@ class Outcome:
 def look_ahead(instance: Instance) -> Ahead:
     """Shortest ways, heads and tails, and which vehicles share a table."""
     i = instance
-    reach = machine_for(i, shortest_ways)(i.travel, i.duration, i.may)
+    reach = shortest(i, i.may)
     head, least, tail = machine_for(i, heads)(
         i.travel, i.duration, i.task, i.may, i.ready, i.release, i.ref_kind, i.member_first,
         i.member, i.row_first, i.row_ref, i.row_lo, i.waits, reach,
@@ -94,12 +95,20 @@ def look_ahead(instance: Instance) -> Ahead:
             kinds[key] = len(kinds)
             leader.append(v)
         kind_of[v] = kinds[key]
-    blocked = np.where(i.may[:, None, :] == 1, reach, FAR)
-    legs = np.where(i.may[:, None, :] == 1, i.added, FAR)
+    least_over = machine_for(i, nearest_ways)
     return Ahead(
-        reach, blocked.min(axis=0), legs.min(axis=0), least, head, tail, able, kind_of,
-        np.array(leader, np.int64),
+        reach, least_over(reach, i.may), least_over(i.added, i.may), least, head, tail, able,
+        kind_of, np.array(leader, np.int64),
     )  # fmt: skip
+
+
+def shortest(instance: Instance, may: np.ndarray) -> np.ndarray:
+    """The shortest ways with any stops at options that `may` allows, asked of every stop."""
+    i = instance
+    reach: np.ndarray = machine_for(i, shortest_ways)(i.travel, i.duration, may)
+    if not machine_for(i, ways_hold)(reach, i.travel, i.duration, may):
+        raise RuntimeError("a way with stops is shorter than the shortest way that was found")
+    return reach
 
 
 def tables(instance: Instance, ahead: Ahead, limit: int) -> Tables:
@@ -117,7 +126,7 @@ def tables(instance: Instance, ahead: Ahead, limit: int) -> Tables:
         return Tables(0, full, np.zeros((1, 1, 1), np.int32), np.zeros((1, 1), np.int32))
     latest = np.empty((kinds, i.duration.size, 1 << n), np.int32)
     start = np.empty((i.vehicles, 1 << n), np.int32)
-    anywhere = machine_for(i, shortest_ways)(i.travel, i.duration, np.ones_like(i.may))
+    anywhere = shortest(i, np.ones_like(i.may))
     machine_for(i, latest_tables)(
         anywhere, i.duration, i.task, i.may, i.need if i.waits else i.need * 0, ahead.head, due,
         ahead.kind_of, kinds, ahead.leader, latest, start,
@@ -132,7 +141,13 @@ def first_state(instance: Instance) -> np.ndarray:
     return np.array([0, *[options] * v, *instance.ready, 0, 0, *refs], np.int64)
 
 
-@driver(checked_by=("earliest_start", "latest_departure", "covers_step", "keeps_step", "weighted"))
+@driver(
+    checked_by=(
+        "earliest_start", "latest_departure", "covers_step", "keeps_step", "weighted", "opened",
+        "raised", "least_of", "add_least", "no_shortcut", "tail_step", "soonest_end", "room_step",
+        "lacks_room", "later",
+    )
+)  # fmt: skip
 def refute(
     instance: Instance,
     limit: int,

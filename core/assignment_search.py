@@ -14,17 +14,17 @@ from typing import Any
 
 import numpy as np
 
+from cratous.core.assignment_least import add_least, least_of, least_until
 from cratous.core.assignment_steps import (
     covers_step,
     earliest_start,
-    lacks_room,
     opened,
     raised,
-    room_step,
     soonest_end,
     weighted,
 )
 from cratous.core.assignment_tables import deals
+from cratous.core.timing import later
 
 
 def place(
@@ -107,7 +107,7 @@ def bound(
     team = 0
     for v in range(vehicles):
         if state[1 + v] != options:
-            last = max(last, state[1 + vehicles + v])
+            last = later(last, state[1 + vehicles + v])
             team += state[1 + vehicles + v]
     for j in range(n):
         soonest[j] = 1 << 40
@@ -120,19 +120,18 @@ def bound(
         short = 1 << 40
         cheap = 1 << 40
         for v in range(vehicles):
-            if may[v, o]:
-                at = state[1 + v]
-                soonest[j] = min(
-                    soonest[j], state[1 + vehicles + v] + reach[v, at, o] + duration[o]
-                )
-                short = min(short, reach[v, at, o])
-                cheap = min(cheap, cheapest[at, o])
+            counts = may[v, o] != 0
+            at = state[1 + v]
+            way = reach[v, at, o]
+            soonest[j] = least_of(soonest[j], counts, state[1 + vehicles + v] + way + duration[o])
+            short = least_of(short, counts, way)
+            cheap = least_of(cheap, counts, cheapest[at, o])
         for k in range(options):
-            if (done >> task[k]) & 1 == 0 and task[k] != j:
-                short = min(short, nearest[k, o])
-                cheap = min(cheap, cheapest[k, o])
-        brief[j] = min(brief[j], short + duration[o])
-        extra[j] = min(extra[j], cheap)
+            counts = (done >> task[k]) & 1 == 0 and task[k] != j
+            short = least_of(short, counts, nearest[k, o])
+            cheap = least_of(cheap, counts, cheapest[k, o])
+        brief[j] = least_of(brief[j], True, short + duration[o])
+        extra[j] = least_of(extra[j], True, cheap)
     work = 0
     legs = state[2 + 2 * vehicles]
     for j in range(n):
@@ -141,25 +140,11 @@ def bound(
         end = soonest_end(soonest[j], head[j], least[j])
         if end > due[j] or brief[j] >= 1 << 40:
             return 1 << 60
-        last = max(last, end + tail[j])
-        work += brief[j]
-        legs += extra[j]
+        last = later(last, end + tail[j])
+        work = add_least(work, True, brief[j])
+        legs = add_least(legs, True, extra[j])
     if work > 0:
-        # the least T up to which the vehicles together have room for the work
-        room = 1 << 40
-        for v in range(vehicles):
-            total, count = work, 0
-            for w in range(vehicles):
-                if state[1 + vehicles + w] <= state[1 + vehicles + v]:
-                    total += state[1 + vehicles + w]
-                    count += 1
-            room = min(room, (total + count - 1) // count)
-        # one instant sooner the work does not fit: only then it is a bound
-        free_time = 0
-        for v in range(vehicles):
-            free_time = room_step(free_time, room - 1, state[1 + vehicles + v])
-        if lacks_room(free_time, work):
-            last = max(last, room)
+        last = later(last, least_until(work, state[1 + vehicles : 1 + 2 * vehicles]))
     return weighted(last, team + work, legs, weight[0], weight[1])
 
 

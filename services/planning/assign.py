@@ -30,6 +30,7 @@ from cratous.core.assignment_chains import chains_below
 from cratous.core.assignment_instance import TASKS_MAX, Instance
 from cratous.core.assignment_order import by_sets
 from cratous.core.assignment_refute import DEALS_TASKS, look_ahead, refute
+from cratous.core.assignment_repair import repaired
 from cratous.core.assignment_settle import Settler
 from cratous.services.planning.assign_problem import (
     Part,
@@ -48,6 +49,8 @@ ROUNDS, ROUNDS_MAX = 12, 10_000
 """Improvements of a problem of many tasks without and with a limit."""
 REBUILDS, REBUILD_NODES, HEATS = 150_000, 40, (0.0, 0.01, 0.003, 0.03)
 """Rounds times tasks of one improvement, what a round counts as, and first temperatures."""
+REPAIRS = 60
+"""Neighbourhoods of an incumbent that the exact search deals out anew."""
 FIRST_NODES = 200_000
 """Nodes spent on finding a first solution where the limit is lower."""
 CHAIN_NODES = 5_000_000
@@ -211,6 +214,7 @@ def warm() -> None:
         assert moves is not None
         improve(i, moves, 1, 1)
         rebuilt(i, moves, 1, 1)
+        repaired(i, moves, 1, 1)
         refute(i, 9, 1)
         chains_below(i, 9, lambda moves, limit: (limit, len(moves)), 1_000)
         if semantics == ORDER:
@@ -262,6 +266,17 @@ def _go_on(run: _Run, made: list[Instance]) -> None:
         else:
             _rebuild(run, made[k], k, moves, rounds)
         gains[anneals] = before - run.cost
+        if gains[anneals] > 0 or rounds == 1:
+            _repair(run, made[run.best[0]], rounds)
+
+
+def _repair(run: _Run, instance: Instance, again: int) -> None:
+    """Have windows of a new incumbent's chains dealt out anew by the exact search."""
+    assert run.best is not None
+    k, moves = run.best
+    cost, better, nodes = repaired(instance, moves, REPAIRS, run.limits.seed + again, run.over)
+    run.nodes += nodes
+    run.better(cost, k, better)
 
 
 def _rebuild(run: _Run, instance: Instance, k: int, moves: Moves, again: int) -> None:

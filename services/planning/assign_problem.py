@@ -131,7 +131,9 @@ def _timeless(p: AssignmentProblem) -> None:
                 other = p.choices[k].task_id != choice.task_id
                 _refuse(
                     other and way == 0, "a task without duration has a way without length after it",
-                    f"travel_ms[{v}][{a}][{k}]", "a duration or a way above 0", "both 0",
+                    f"travel_ms[{v}][{a}][{k}]",
+                    "a duration or a way above 0 (the search goes by starts, and would not see every "
+                    "order of tasks at one instant)", "both 0",
                 )  # fmt: skip
 
 

@@ -45,18 +45,7 @@ class AssignmentTreeBranchBoundService:
         matrix = envelope.body
         key = matrix.CorrespondingAutomationRequestID
         inputs = self._desk.inputs(key)
-        times: dict[tuple[int, int, int], int] = {}
-        for row in matrix.CostMatrix:
-            before = (row.IntialTaskID, row.IntialTaskOption)
-            times[
-                inputs.vehicle_index[row.VehicleID],
-                START if before == (0, 0) else inputs.index[before],
-                inputs.index[row.DestinationTaskID, row.DestinationTaskOption],
-            ] = row.TimeToGo
-
-        def travel_ms(vehicle: int, before: int, to: int) -> int | None:
-            return times.get((vehicle, before, to))
-
+        travel_ms = travel_of(inputs, matrix.CostMatrix)
         why = reasons.why_none(
             inputs.mission, inputs.wanted, inputs.options, inputs.dropped, inputs.routes
         )
@@ -103,6 +92,23 @@ class AssignmentTreeBranchBoundService:
                 raise
             return mission_assign.Found(None, None, why or (str(error),))
         return found if found.assignment is not None or not why else replace(found, reasons=why)
+
+
+def travel_of(inputs: Inputs, rows: Iterable[Any]) -> mission_assign.Travel:
+    """The ways of an AssignmentCostMatrix in indices of vehicles and options."""
+    times: dict[tuple[int, int, int], int] = {}
+    for row in rows:
+        before = (row.IntialTaskID, row.IntialTaskOption)
+        times[
+            inputs.vehicle_index[row.VehicleID],
+            START if before == (0, 0) else inputs.index[before],
+            inputs.index[row.DestinationTaskID, row.DestinationTaskOption],
+        ] = row.TimeToGo
+
+    def travel_ms(vehicle: int, before: int, to: int) -> int | None:
+        return times.get((vehicle, before, to))
+
+    return travel_ms
 
 
 def facts(result: Assignment) -> list[tuple[str, str]]:

@@ -16,6 +16,7 @@ from cratous.services.uxas.pipeline import (
     aggregator,
     assignment,
     builder,
+    loiter,
     planner,
     task_manager,
     tasks,
@@ -69,6 +70,10 @@ def _aggregator(host: Host, entry: Entry, v: dict[str, Any], name: str, number: 
 
 def _assignment(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
     return assignment.AssignmentTreeBranchBoundService(contexts_of(host))
+
+
+def _loiter(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return loiter.LoiterAssignmentService(contexts_of(host))
 
 
 def _builder(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
@@ -207,6 +212,7 @@ KINDS: dict[str, Kind] = {
             "Semantics": choice("time", "time", "order"),
         },
     ),
+    "LoiterAssignmentService": _pipeline_kind(_loiter, {}),
     "PlanBuilderService": _pipeline_kind(
         _builder,
         {
@@ -300,6 +306,9 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
     ),
     "AssignmentTreeBranchBoundService": (
         assignment.AssignmentTreeBranchBoundService, ("TaskAssignmentSummary", "ServiceStatus")
+    ),
+    "LoiterAssignmentService": (
+        loiter.LoiterAssignmentService, ("VehicleActionCommand", "ServiceStatus")
     ),
     "PlanBuilderService": (
         builder.PlanBuilderService,

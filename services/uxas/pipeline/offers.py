@@ -1,0 +1,160 @@
+"""What the messages of a request offer: options from TaskPlanOptions, ways from the AssignmentCostMatrix.
+
+Read by the services that assign tasks and that assign loiters, so that both mean the same by them.
+Whatever is missing, or stands in the costs without having been offered, is a named error.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any, NamedTuple
+
+from cratous.services.frames import compass
+from cratous.services.planning.desk import Inputs
+from cratous.services.planning.flyers import Flyer, flyer_of
+from cratous.services.planning.options import Dropped, Option, hold_rooms
+from cratous.services.uxas.pipeline.contexts import Context
+from cratous.spec import algebra
+from cratous.spec.errors import BadInput
+from cratous.spec.plan import Pose
+
+OPTIONS = "uxas.messages.task.TaskPlanOptions"
+
+
+class Told(NamedTuple):
+    """Of one request: the request, and options by task."""
+
+    request: Any
+    options: dict[int, Any]
+
+
+class Offered(Inputs):
+    """Inputs whose options are those that the tasks have offered in messages."""
+
+    offered: tuple[Option, ...] = ()
+    not_offered: tuple[Dropped, ...] = ()
+
+    @cached_property
+    def options(self) -> tuple[Option, ...]:
+        return self.offered
+
+    @cached_property
+    def dropped(self) -> tuple[Dropped, ...]:
+        return self.not_offered
+
+    def options_of(self, task_id: int) -> tuple[Option, ...]:
+        """The options of one task."""
+        return tuple(option for option in self.offered if option.task_id == task_id)
+
+
+class Read(NamedTuple):
+    """The inputs with what was offered, the ways that count, tasks, and rows that take no part."""
+
+    inputs: Offered
+    rows: list[Any]
+    tasks: tuple[int, ...]
+    foreign: int
+
+
+def read(told: Told, matrix: Any, context: Context) -> Read:
+    """The options and ways of a request; BadInput for what is missing, or means nothing."""
+    request = told.request.OriginalRequest
+    # tasks that the relations do not name are not done, whoever has asked for them
+    tasks = tuple(task for task in request.TaskList if task in context.inputs.wanted)
+    unnamed = set(request.TaskList) - set(tasks)
+    missing = [task for task in tasks if task not in told.options]
+    if missing:
+        raise BadInput(
+            "a matrix came before all options",
+            item="AssignmentCostMatrix",
+            expected="TaskPlanOptions of task " + ", ".join(map(str, missing)),
+        )
+    inputs = Offered(context.inputs.mission, context.inputs.starts, (), 0)
+    inputs.offered = tuple(
+        option for task in tasks for option in _options(told.options[task], context)
+    )
+    if context.offered:
+        inputs.not_offered = context.inputs.dropped
+    rows = [row for row in matrix.CostMatrix if row.VehicleID in request.EntityList]
+    foreign = len(matrix.CostMatrix) - len(rows)
+    rows = [r for r in rows if not {r.IntialTaskID, r.DestinationTaskID} & unnamed]
+    known = {(0, 0), *((o.task_id, o.option_id) for o in inputs.offered)}
+    for k, row in enumerate(rows):
+        start = row.IntialTaskID, row.IntialTaskOption
+        to = row.DestinationTaskID, row.DestinationTaskOption
+        if start not in known or to not in known or to == (0, 0) or row.TimeToGo < 0:
+            raise BadInput(
+                "no such way between options",
+                item=f"AssignmentCostMatrix.CostMatrix[{k}]",
+                expected="options that the tasks have offered, and no time below 0",
+                got=f"vehicle {row.VehicleID}, {start} to {to} in {row.TimeToGo} ms",
+            )
+    return Read(inputs, rows, tasks, foreign)
+
+
+def _options(told: Any, context: Context) -> list[Option]:
+    """TaskPlanOptions as options; BadInput for a composition that names what is not offered."""
+    item = f"TaskPlanOptions of task {told.TaskID}"
+    _check_composition(told, item)
+    mission, made = context.inputs.mission, []
+    flyers = {vehicle.id: flyer_of(vehicle) for vehicle in mission.vehicles}
+    ours = {
+        (o.task_id, o.option_id): o
+        for o in (context.inputs.options_of(told.TaskID) if told.TaskID in context.offered else ())
+    }
+    for k, option in enumerate(told.Options):
+        where = f"{item}.Options[{k}]"
+        able = [v for v in option.EligibleEntities or flyers if v in flyers]
+        if not able:
+            continue
+        start = context.desk.pose(option.StartLocation, option.StartHeading, where, "StartLocation")
+        end = context.desk.pose(option.EndLocation, option.EndHeading, where, "EndLocation")
+        if option.TaskID != told.TaskID or option.Cost < 0:
+            raise BadInput(
+                "an option that is none",
+                where=where,
+                expected=f"TaskID {told.TaskID} and a Cost of 0 ms or more",
+                got=f"TaskID {option.TaskID}, Cost {option.Cost}",
+            )
+        if start.alt_m == 0:  # it says nothing of the altitude: that of the vehicles
+            start = start._replace(alt_m=flyers[able[0]].alt_m)
+        flyer, known = flyers[able[0]], ours.get((told.TaskID, option.OptionID))
+        if known is not None and _same_start(known, flyer, start, option.StartHeading):
+            rooms = known.holds
+        else:
+            rooms = hold_rooms(start, flyer.radius_m, context.inputs.zones)
+        label = f"option {option.OptionID}"
+        ids = told.TaskID, option.OptionID, tuple(able)
+        made.append(Option(*ids, flyer, start, end, (), option.Cost, rooms, label))
+    return made
+
+
+def _same_start(known: Option, flyer: Flyer, start: Pose, heading_deg: float) -> bool:
+    """True if an option computed here starts there, so that its room to hold is known."""
+    there = (*known.start[:3], compass(known.start.heading_rad), known.flyer)
+    asked = (*start[:3], heading_deg, flyer)
+    return there == asked
+
+
+def _is_choice(term: algebra.Term) -> bool:
+    """True if a term is one of its atoms, whatever the nesting of the choices."""
+    if isinstance(term, algebra.Atom):
+        return True
+    return term.op == algebra.ALTERNATIVE and all(_is_choice(part) for part in term.operands)
+
+
+def _check_composition(told: Any, item: str) -> None:
+    """A composition has to be a choice of exactly the options that are offered."""
+    listed = {option.OptionID for option in told.Options}
+    if not told.Composition.strip() and not listed:
+        return
+    term = algebra.parse(told.Composition, where=item)
+    flat = _is_choice(term)
+    named = {atom.task for atom in algebra.atoms(term)}
+    if flat and named == listed:
+        return
+    what = "compositions other than a choice of one option are not covered"
+    if flat:
+        what = "this is no choice of the options that are offered"
+    expected = "+(" + " ".join(f"p{n}" for n in sorted(listed)) + ")"
+    raise BadInput(what, where=item, item="Composition", expected=expected, got=told.Composition)
