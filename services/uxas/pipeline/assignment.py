@@ -129,7 +129,7 @@ class AssignmentTreeBranchBoundService:
         )
         if context.offered:
             inputs.not_offered = context.inputs.dropped
-        rows = [row for row in matrix.CostMatrix if row.VehicleID in request.EntityList]
+        rows = [row for row in matrix.CostMatrix if row.VehicleID in context.vehicles]
         foreign = len(matrix.CostMatrix) - len(rows)
         if foreign:
             text = (
