@@ -8,16 +8,20 @@ from cratous.spec import wind
 
 def claim(c: Claim) -> None:
     ground, wn, we, least, most = c.reals("ground wn we least most")
-    north, east, across = c.reals("north east across")
+    north, east = c.reals("north east")
     c.premise(c.all_of(ground >= 0, least >= 0, most >= 0))
     c.premise(north * north + east * east == 1)
+    along, strength = wn * north + we * east, wn * wn + we * we
+    across = wn * east - we * north
+    c.step(along * along + across * across == strength, "the parts of the wind make up the wind")
+    c.step(along * along <= strength, "neither is larger")
+    flown = c.define(wind.airspeed_squared, north, east, ground, wn, we)
+    parts = ground * ground - 2 * ground * along + strength
+    c.step(flown == parts, "the airspeed is that of its parts")
     admitted = c.use(holds_in_wind, ground, wn, we, least, most)
-    # along: the wind's part in the direction; its square and that of the part across are the wind's
-    along = wn * north + we * east
-    c.premise(across == wn * east - we * north)
-    squared = along * along + across * across
-    c.show(squared == wn * wn + we * we, "the parts of the wind make up the wind")
-    within = c.all_of(along <= ground - least, along <= most - ground, -along <= most - ground)
-    c.show(c.implies(admitted, within), "no part is larger than the wind")
+    c.lemma(
+        "wind_airspeed_lies_between",
+        ground=ground, along=along, wn=wn, we=we, least=least, most=most,
+    )  # fmt: skip
     met = c.define(wind.holds, north, east, ground, wn, we, least, most)
     c.show(c.implies(admitted, met))
