@@ -42,7 +42,7 @@ def views_of(task: Task) -> tuple[View | None, ...]:
 
 def line_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float) -> Iterator[Way]:
     """Both directions of a line for each wanted view, offset to where that view looks at it."""
-    views = _tilted(task, camera) or views_of(task)
+    views = tilted(task, camera) or views_of(task)
     for number, view in enumerate(views[:VIEWS_MOST], 1):
         for label, points in (("forward", task.points), ("backward", task.points[::-1])):
             line = replace(task, points=points, view=view)
@@ -55,7 +55,7 @@ def line_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float)
     yield from _left_out(len(views))
 
 
-def _tilted(task: Task, camera: Camera | None) -> tuple[View, ...]:
+def tilted(task: Task, camera: Camera | None) -> tuple[View, ...]:
     """Looks to both sides, ahead and back, for a camera that cannot look straight down.
 
     Only where no view is asked for; such a camera needs one, since a look at what is below it turns with
