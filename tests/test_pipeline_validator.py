@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from pipeline_tools import Rig, loiter, must_fly, request, vehicle
+from pipeline_tools import Rig, loiter, must_fly, place, request, vehicle
 
 from cratous.bridge import lmcp
 
@@ -325,3 +325,14 @@ def test_requests_are_planned_whatever_their_ids(tmp_path: Path) -> None:
     assert [a.ResponseID for a in answers] == [90, 40, -3, 90]
     assert all(a.OriginalResponse.MissionCommandList for a in answers)
     assert [u.RequestID for u in rig.got("UniqueAutomationRequest")] == [90, 40, -3, 1]
+
+
+def test_a_watch_of_what_stands_still_is_planned_and_of_what_moves_refused(tmp_path: Path) -> None:
+    rig = Rig(tmp_path)
+    watch = lmcp.new("WatchTask", TaskID=5, WatchedEntityID=2)
+    still = lmcp.new("GroundVehicleState", ID=2, Location=place(0.02).copy(Altitude=0.0))
+    rig.tell(*vehicle(1), still, watch, request(5))
+    (command,) = rig.got("AutomationResponse")[0].MissionCommandList
+    assert {t for w in command.WaypointList for t in w.AssociatedTasks} == {5}
+    rig.tell(still.copy(Groundspeed=20.0), request(5))
+    assert "moves" in rig.got("AutomationResponse")[1].Info[0].Value

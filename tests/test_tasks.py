@@ -107,11 +107,14 @@ def test_a_standoff_goes_before_the_tilt_of_a_view() -> None:
         assert option.view_elevation_rad == pytest.approx(-math.atan2(height_m, away_m))
 
 
-def test_a_camera_that_cannot_look_down_sees_a_line_from_its_side() -> None:
+def test_a_camera_that_cannot_look_down_sees_a_line_from_its_sides_ahead_and_back() -> None:
     line = Task(1, TaskKind.LINE_SEARCH, "", (Position(0.0, 0.0, 0.0), Position(3000.0, 0.0, 0.0)))
     found, _ = options(line, vehicle((Camera(min_elevation_rad=math.radians(-45)),)))
     assert not [o for o in options(line)[0] if "view" in o.label]
-    beside = [o for o in found if o.label.endswith(("view 2", "view 3"))]
+    along = [o for o in found if o.label.endswith(("view 3", "view 4"))]
+    assert len(along) == 4
+    assert {round(p.east_m) for o in along for p in o.path} == {0}
+    beside = [o for o in found if o.label.endswith(("view 1", "view 2"))]
     assert len(beside) == 4
     away_m = 400.0 / math.tan(0.95 * math.radians(45))
     for option in beside:

@@ -345,7 +345,6 @@ TASKS_NOT_YET = (
     "afrl.impact.CordonTask",
     "afrl.impact.EscortTask",
     "afrl.impact.MultiVehicleWatchTask",
-    "afrl.impact.WatchTask",
     "uxas.messages.task.AssignmentCoordinatorTask",
     "uxas.messages.task.RendezvousTask",
 )

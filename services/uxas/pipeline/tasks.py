@@ -33,6 +33,7 @@ TASKS = {
     "afrl.impact.ImpactPointSearchTask": TaskKind.POINT_SEARCH,
     "afrl.impact.AngledAreaSearchTask": TaskKind.AREA_SEARCH,
     "afrl.impact.PatternSearchTask": TaskKind.PATTERN_SEARCH,
+    "afrl.impact.WatchTask": TaskKind.POINT_SEARCH,  # of what stands still, as the loader has it
 }
 ROUTES_FROM = 2**60
 """Ids of a task's own route requests: beyond the blocks that the aggregator gives out."""
