@@ -107,10 +107,9 @@ def _read_tuple(hints: tuple[Any, ...], data: Any, item: str) -> tuple[Any, ...]
 def _read_record(cls: Any, data: Any, item: str) -> Any:
     if not isinstance(data, dict):
         raise _misfit(item, f"an object ({cls.__name__})", data)
-    hints = _hints(cls)
-    names = (
-        list(cls._fields) if hasattr(cls, "_fields") else [f.name for f in dataclasses.fields(cls)]
-    )
+    # a record of a subclass is known by its fields
+    cls = next((c for c in cls.__subclasses__() if set(data) == set(_names(c))), cls)
+    hints, names = _hints(cls), _names(cls)
     for name in data:
         if name not in names:
             raise BadInput("unknown field", item=f"{item}.{name}", expected=", ".join(names))
@@ -122,6 +121,12 @@ def _read_record(cls: Any, data: Any, item: str) -> Any:
     except TypeError:
         missing = ", ".join(name for name in names if name not in found)
         raise _misfit(item, f"the fields {', '.join(names)}", f"none for {missing}") from None
+
+
+def _names(cls: Any) -> list[str]:
+    if hasattr(cls, "_fields"):
+        return list(cls._fields)
+    return [f.name for f in dataclasses.fields(cls)] if dataclasses.is_dataclass(cls) else []
 
 
 def _misfit(item: str, expected: str, got: Any) -> BadInput:

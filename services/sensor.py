@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cratous.core.kernel import Vec2
@@ -150,6 +151,27 @@ def looks_of(
     at = np.empty(len(wanted), np.int64)
     swift(nearest_on_line, len(wanted))(np.ascontiguousarray(wanted), points, apart, at)
     return np.column_stack([places, heading, points[at]])
+
+
+def look_on_line(
+    here: tuple[float, float],
+    heading_rad: float,
+    points: tuple[Position, ...],
+    view: View | None,
+    height_m: float,
+) -> tuple[float, float]:
+    """Where the gimbal aims from one place (north, east): as `looks_of` for a whole flight."""
+    import numpy as np
+
+    wanted = aim(*here, heading_rad, view, max(height_m, 0.0))
+    line = _sampled(points)[::2]
+    n, e = line[int(np.argmin(((line - np.array(wanted)) ** 2).sum(axis=1)))]
+    return float(n), float(e)
+
+
+@lru_cache(maxsize=64)
+def _sampled(points: tuple[Position, ...]) -> Any:
+    return sample_line(points)
 
 
 def looks_over(places: np.ndarray, view: View | None, height_m: float) -> np.ndarray:

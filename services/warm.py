@@ -9,6 +9,7 @@ from cratous.core.compiled import compiled
 from cratous.core.polygon import orient
 from cratous.core.well_clear import horizontal_violation, violation, violation_within
 from cratous.services.planning import assign
+from cratous.services.standing import require
 
 
 def warm() -> int:
@@ -20,6 +21,7 @@ def warm() -> int:
     compiled(violation_within)(*state, zero, zero, 50.0, 30.0, 10.0, zero, 60.0)
     compiled(orient)(*state, zero, zero)
     assign.warm()
+    require(allow_unproved=True)  # what is clean is remembered
     return 5
 
 

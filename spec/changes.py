@@ -8,6 +8,7 @@ from dataclasses import replace
 from cratous.spec import algebra
 from cratous.spec.algebra import Atom, Term
 from cratous.spec.mission import Change, Mission
+from cratous.spec.wind import WindChange
 
 VEHICLE_LOST, VEHICLE_JOINS = "vehicle_lost", "vehicle_joins"
 TASK_ADDED, TASK_REMOVED = "task_added", "task_removed"
@@ -20,6 +21,8 @@ def words(change: Change) -> str:
         kind = change.zone.kind.value.replace("_", "-")
         label = f" ({change.zone.label})" if change.zone.label else ""
         return f"{kind} zone {change.zone.id}{label} appears"
+    if isinstance(change, WindChange):
+        return f"wind to {change.north_m_s:g} m/s north, {change.east_m_s:g} m/s east"
     return {
         VEHICLE_LOST: f"vehicle {change.vehicle} is lost",
         VEHICLE_JOINS: f"vehicle {change.vehicle} joins",

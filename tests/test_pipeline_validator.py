@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from pipeline_tools import Rig, loiter, must_fly, request, vehicle
+from pipeline_tools import Rig, loiter, must_fly, place, request, vehicle
 
 from cratous.bridge import lmcp
 
@@ -109,16 +109,23 @@ def test_an_error_status_ends_the_request_that_it_names_and_no_other(alone: Rig)
         (request(), "the request names no task"),
         (request(5, OperatingRegion=4), "operating region 4 does not exist"),
         (request(5, OperatingRegion=3), "zone 31 does not exist"),
-        (request(5, TaskRelationships="|(p5 p6)"), "p6"),
-        (request(5, TaskRelationships="|(p5"), "expected"),
+        (request(51), "task 51 names line 7, which does not exist"),
+        (request(52), "task 52 names area 7, which does not exist"),
+        (request(53), "task 53 names point 7, which does not exist"),
     ],
 )
-def test_a_request_that_cannot_be_planned_is_answered_with_the_reason(
+def test_a_request_that_is_not_valid_is_answered_with_the_reason(
     alone: Rig, asked: Any, words: str
 ) -> None:
     region = lmcp.new("OperatingRegion", ID=3, KeepInAreas=[30], KeepOutAreas=[31])
     circle = lmcp.new("Circle", CenterPoint=lmcp.new("Location3D"), Radius=9000.0)
     inside = lmcp.new("KeepInZone", ZoneID=30, Boundary=circle)
+    searches = [
+        lmcp.new("ImpactLineSearchTask", TaskID=51, LineID=7),
+        lmcp.new("AngledAreaSearchTask", TaskID=52, SearchAreaID=7),
+        lmcp.new("ImpactPointSearchTask", TaskID=53, SearchLocationID=7),
+    ]
+    alone.tell(*searches, *(lmcp.new("TaskInitialized", TaskID=t.TaskID) for t in searches))
     alone.tell(region, inside, vehicle(2)[0], asked)
     (said,) = infos(alone)
     assert words in said
@@ -132,6 +139,35 @@ def test_a_request_that_cannot_be_planned_is_answered_with_the_reason(
     respond(alone, alone.got("UniqueAutomationRequest")[0].RequestID)
     alone.tell(lmcp.new("RemoveTasks", TaskList=[5]), request(5))
     assert "task 5 does not exist" in infos(alone)[-1]
+
+
+ODD = vehicle(3)[0].copy(NominalFlightProfile=lmcp.new("FlightProfile", MaxBankAngle=0.5))
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        (request(5, TaskRelationships="|(p5 p6)"), "p6"),
+        (request(5, TaskRelationships="|(p5"), "expected"),
+        (request(5, vehicles=(3,)), "vehicle 3 cannot turn like that"),
+    ],
+)
+def test_a_valid_request_passes_as_it_is_and_what_cannot_be_planned_the_planners_answer(
+    alone: Rig, tmp_path: Path, asked: Any, words: str
+) -> None:
+    alone.tell(ODD, vehicle(3)[1], asked)
+    assert [u.OriginalRequest for u in alone.got("UniqueAutomationRequest")] == [asked]
+    assert not alone.got("AutomationResponse")
+    respond(alone, 1)  # whoever plans it, by whatever means
+    assert alone.got("AutomationResponse")[0].MissionCommandList[0].CommandID == 1
+    (tmp_path / "whole").mkdir()
+    whole = Rig(tmp_path / "whole")
+    whole.tell(*vehicle(1), ODD, vehicle(3)[1], must_fly(5), asked, request(5))
+    first, second = whole.got("AutomationResponse")
+    assert words in first.Info[0].Value
+    assert not first.MissionCommandList
+    assert len(whole.reasons()) == 1, "said once, though several services plan"
+    assert second.MissionCommandList, "the next one is planned"
 
 
 def test_a_request_waits_for_its_tasks_to_initialise_themselves_in_its_place_in_the_line(
@@ -162,9 +198,24 @@ def test_a_trial_is_a_sandbox_request_and_gets_its_own_kind_of_response(alone: R
     assert answers[0].TrialResponse.MissionCommandList[0].VehicleID == 1
     assert answers[1].TrialResponse.Info[0].Value == "task 9 does not exist"
     assert not alone.got("AutomationResponse")
+
+
+def test_conditions_of_a_trial_that_would_not_be_kept_are_answered_by_the_planners(
+    tmp_path: Path,
+) -> None:
+    rig = Rig(tmp_path)
     pair = lmcp.new("SpeedAltPair", VehicleID=1, Speed=10.0)
-    alone.tell(trial.copy(OverridePlanningConditions=[pair]))
-    assert "not covered" in alone.got("ImpactAutomationResponse")[2].TrialResponse.Info[0].Value
+    trial = lmcp.new(
+        "ImpactAutomationRequest",
+        RequestID=70,
+        TrialRequest=request(5),
+        OverridePlanningConditions=[pair],
+    )
+    rig.tell(*vehicle(1), must_fly(5), trial)
+    (response,) = rig.got("ImpactAutomationResponse")
+    assert "OverridePlanningConditions are not covered" in response.TrialResponse.Info[0].Value
+    rig.tell(request(5))  # the same without them
+    assert rig.got("AutomationResponse")[0].MissionCommandList
 
 
 @pytest.mark.shows(NAME, "TaskAutomationRequest", "TaskAutomationResponse")
@@ -185,14 +236,23 @@ def test_a_task_asks_from_states_of_its_own(alone: Rig) -> None:
     final = lmcp.new("UniqueAutomationResponse", ResponseID=unique.RequestID, FinalStates=[state])
     alone.tell(final)
     (response,) = alone.got("TaskAutomationResponse")
-    assert response.ResponseID == 7
+    assert response.ResponseID == unique.RequestID == 7
     assert response.FinalStates == [state]
+    # its id again, and others': each request has one of its own
+    alone.tell(body, request(5), request(5), body.copy(RequestID=2), body.copy(RequestID=-(2**63)))
+    for number in (1, 2, 3, 4):
+        assert alone.got("UniqueAutomationRequest")[-1].RequestID == number
+        respond(alone, number)
+    assert alone.got("UniqueAutomationRequest")[-1].RequestID == -(2**63)
+    respond(alone, -(2**63))
+    assert [a.ResponseID for a in alone.got("TaskAutomationResponse")] == [7, 7, 2, -(2**63)]
 
 
 def test_no_entity_list_means_all_vehicles(alone: Rig) -> None:
     alone.tell(*vehicle(2), request(5, vehicles=()))
     (unique,) = alone.got("UniqueAutomationRequest")
-    assert unique.OriginalRequest.EntityList == [1, 2]
+    assert unique.OriginalRequest.EntityList == []
+    assert [state.EntityID for state in unique.PlanningStates] == [1, 2]
 
 
 def test_tasks_that_the_relations_do_not_name_are_not_done_and_the_response_says_so(
@@ -251,3 +311,28 @@ def test_two_hundred_requests_at_once_are_answered_in_order_and_leave_nothing(
     assert rig.bus.state("RouteAggregatorService").collecting == {}
     assert rig.bus.state("PlanBuilderService").work == {}
     assert rig.bus.state("AssignmentTreeBranchBoundService") == {}
+
+
+def test_requests_are_planned_whatever_their_ids(tmp_path: Path) -> None:
+    rig = Rig(tmp_path)
+    rig.tell(*vehicle(1), must_fly(5))
+    asked = [
+        lmcp.new("TaskAutomationRequest", RequestID=number, OriginalRequest=request(5))
+        for number in (90, 40, -3, 90)
+    ]
+    rig.tell(*asked)
+    answers = rig.got("TaskAutomationResponse")
+    assert [a.ResponseID for a in answers] == [90, 40, -3, 90]
+    assert all(a.OriginalResponse.MissionCommandList for a in answers)
+    assert [u.RequestID for u in rig.got("UniqueAutomationRequest")] == [90, 40, -3, 1]
+
+
+def test_a_watch_of_what_stands_still_is_planned_and_of_what_moves_refused(tmp_path: Path) -> None:
+    rig = Rig(tmp_path)
+    watch = lmcp.new("WatchTask", TaskID=5, WatchedEntityID=2)
+    still = lmcp.new("GroundVehicleState", ID=2, Location=place(0.02).copy(Altitude=0.0))
+    rig.tell(*vehicle(1), still, watch, request(5))
+    (command,) = rig.got("AutomationResponse")[0].MissionCommandList
+    assert {t for w in command.WaypointList for t in w.AssociatedTasks} == {5}
+    rig.tell(still.copy(Groundspeed=20.0), request(5))
+    assert "moves" in rig.got("AutomationResponse")[1].Info[0].Value

@@ -27,8 +27,8 @@ from cratous.core.following import Track
 from cratous.core.legs import first_bad_leg
 from cratous.core.sweep import Strip, edge_headings, sector, square_spiral, strips, swath
 from cratous.services.bus import Bus
+from cratous.services.cli.job import plan_and_check
 from cratous.services.flight.loop import fly
-from cratous.services.flight.sensing import _as_flown
 from cratous.services.loading import load
 from cratous.services.loading.places import Places
 from cratous.services.loading.uxas_cfg import Sent
@@ -37,7 +37,7 @@ from cratous.services.loading.uxas_tasks import task as read_task
 from cratous.services.monitor import Monitor
 from cratous.services.planning import make_plan
 from cratous.services.planning.options import expand
-from cratous.services.sensor import sample_distance_m, zoomed
+from cratous.services.sensor import look_on_line, sample_distance_m, zoomed
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.guarantees import Outcome
 from cratous.spec.mission import (
@@ -107,11 +107,14 @@ def test_a_standoff_goes_before_the_tilt_of_a_view() -> None:
         assert option.view_elevation_rad == pytest.approx(-math.atan2(height_m, away_m))
 
 
-def test_a_camera_that_cannot_look_down_sees_a_line_from_its_side() -> None:
+def test_a_camera_that_cannot_look_down_sees_a_line_from_its_sides_ahead_and_back() -> None:
     line = Task(1, TaskKind.LINE_SEARCH, "", (Position(0.0, 0.0, 0.0), Position(3000.0, 0.0, 0.0)))
     found, _ = options(line, vehicle((Camera(min_elevation_rad=math.radians(-45)),)))
     assert not [o for o in options(line)[0] if "view" in o.label]
-    beside = [o for o in found if o.label.endswith(("view 2", "view 3"))]
+    along = [o for o in found if o.label.endswith(("view 3", "view 4"))]
+    assert len(along) == 4
+    assert {round(p.east_m) for o in along for p in o.path} == {0}
+    beside = [o for o in found if o.label.endswith(("view 1", "view 2"))]
     assert len(beside) == 4
     away_m = 400.0 / math.tan(0.95 * math.radians(45))
     for option in beside:
@@ -359,15 +362,40 @@ def test_each_view_of_a_line_is_a_pair_of_offset_routes() -> None:
     assert len(found) == 4
 
 
-def test_a_line_flown_backward_is_looked_at_backward() -> None:
-    class Flown:
-        def __init__(self, path: Any) -> None:
-            self.item = type("Item", (), {"path": path})
+def test_a_camera_looks_at_the_line_where_its_view_does_whichever_way_it_is_flown() -> None:
+    line = (Position(0.0, 0.0, 0.0), Position(2000.0, 0.0, 0.0))
+    ahead = View(0.0, math.radians(-45), False)
+    at = (1000.0, 30.0)
+    assert look_on_line(at, 0.0, line, ahead, 300.0) == pytest.approx((1300, 0), abs=11)
+    assert look_on_line(at, math.pi, line, ahead, 300.0) == pytest.approx((700, 0), abs=11)
+    assert look_on_line(at, 0.0, line, None, 300.0) == pytest.approx((1000, 0), abs=11)
+    assert look_on_line((1900.0, 0.0), 0.0, line, ahead, 300.0) == pytest.approx((2000, 0), abs=11)
 
-    line = tuple(Position(n, 50.0 * math.sin(n / 300), 0.0) for n in range(0, 2000, 100))
-    path = tuple(p._replace(east_m=p.east_m + 300, alt_m=400.0) for p in line)
-    assert _as_flown(Flown(path), line) == line  # type: ignore[arg-type]
-    assert _as_flown(Flown(path[::-1]), line) == line[::-1]  # type: ignore[arg-type]
+
+def test_a_line_with_bends_is_covered_by_a_gimbal_that_cannot_look_down(tmp_path: Path) -> None:
+    file = tmp_path / "mission.yaml"
+    file.write_text(
+        """
+name: bends
+frame: {latitude_deg: 45.3, longitude_deg: -121.0, terrain_m: 0}
+vehicles:
+  - {id: 1, position: {north_m: -1500, east_m: 0, alt_m: 300}, heading_deg: 0, speed_m_s: 24,
+     min_speed_m_s: 15, max_speed_m_s: 30, max_bank_deg: 20, max_climb_m_s: 5, cameras: [
+       {payload_id: 1, hfov_deg: 22, min_elevation_deg: -45, max_elevation_deg: -45}]}
+tasks:
+  - {id: 1, kind: line_search, points: [{north_m: 0, east_m: 0}, {north_m: 300, east_m: 1400},
+     {north_m: 1400, east_m: 1700}, {north_m: 1460, east_m: 1710}, {north_m: 2900, east_m: 1450}]}
+""",
+        encoding="utf-8",
+    )
+    mission, bus = replace(load(file), instances=()), Bus(lmcp.full_names)
+    plan, _ = plan_and_check(mission, bus)
+    monitor = Monitor(mission, plan)
+    bus.tap(monitor.tap)
+    fly(mission, plan, bus, daa=False)
+    (served,) = [v for v in monitor.details() if v.item == "task 1 served"]
+    assert served.outcome is Outcome.HOLDS
+    assert "footprint covered" in served.note
 
 
 @pytest.mark.parametrize("shape", ["circular", "racetrack", "figure_eight"])

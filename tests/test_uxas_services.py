@@ -293,6 +293,7 @@ def test_the_region_is_that_of_all_zones(tmp_path: Path) -> None:
     "VehicleID",
     "LeadDistance",
     "RadiusBuffer",
+    "ServiceStatus",
 )
 def test_a_vehicle_on_the_leash_loiters_at_the_end_of_a_safe_route(tmp_path: Path) -> None:
     attributes = 'VehicleID="1" LeadDistance="2000" RadiusBuffer="50"'
@@ -319,6 +320,35 @@ def test_a_vehicle_on_the_leash_loiters_at_the_end_of_a_safe_route(tmp_path: Pat
     )
     (made,) = rig.got("VehicleActionCommand")[1].VehicleActionList
     assert (made.Location.Latitude, made.Airspeed, made.Radius) == (0.0, 17.0, 300.0)
+    assert len(rig.reasons("Warning")) == 1
+
+
+def test_all_of_the_leash_s_circle_keeps_out_of_the_zones(tmp_path: Path) -> None:
+    attributes = 'VehicleID="1" LeadDistance="2000"'
+    rig = Rig(tmp_path, "LoiterLeash", "RoutePlannerVisibilityService", LoiterLeash=attributes)
+    action = lmcp.new(
+        "SafeHeadingAction", VehicleID=1, DesiredHeading=0.0, OperatingRegion=3, LoiterRadius=300.0
+    )
+    north = 2000 / 110_574
+    beside = lmcp.new("Rectangle", CenterPoint=place(north, 0.0035), Width=300.0, Height=900.0)
+    zone = lmcp.new("KeepOutZone", ZoneID=8, MaxAltitude=9000.0, Boundary=beside)
+    region = lmcp.new("OperatingRegion", ID=3, KeepOutAreas=[8])
+    rig.tell(*vehicle(1), zone, region, action)
+    # the point ahead is 240 m from the zone: free, but 300 m around it are not
+    (made,) = rig.got("VehicleActionCommand")[0].VehicleActionList
+    assert made.Location.Latitude < north - 0.0005
+    assert rig.got("RoutePlanResponse")[0].RouteResponses[0].RouteCost > 0
+    # a smaller circle fits there; and one below the zone
+    rig.tell(action.copy(LoiterRadius=200.0))
+    (made,) = rig.got("VehicleActionCommand")[1].VehicleActionList
+    assert made.Location.Latitude == pytest.approx(north, abs=1e-6)
+    rig.tell(zone.copy(MinAltitude=1000.0), action)
+    (made,) = rig.got("VehicleActionCommand")[2].VehicleActionList
+    assert made.Location.Latitude == pytest.approx(north, abs=1e-6)
+    # around the vehicle itself there is no room either: it says so
+    rig.tell(zone, action.copy(LoiterRadius=5000.0))
+    assert rig.got("VehicleActionCommand")[3].VehicleActionList[0].Location.Latitude == 0.0
+    assert "breaks keep-out zone 8" in rig.reasons("Warning")[-1]
 
 
 @pytest.mark.shows(

@@ -17,7 +17,7 @@ from cratous.services.certify.report import (
 from cratous.services.certify.verdicts import constraint_rows
 from cratous.services.log import read_envelopes, read_meta
 from cratous.services.records import from_data
-from cratous.spec.changes import known_at
+from cratous.services.wind import known_at
 from cratous.spec.errors import BadInput
 from cratous.spec.guarantees import Verdict
 from cratous.spec.mission import Mission

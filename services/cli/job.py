@@ -15,7 +15,7 @@ from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
 
-from cratous.spec.changes import known_at
+from cratous.services.wind import known_at
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.guarantees import Outcome, Verdict, worst
 from cratous.spec.mission import Mission

@@ -40,6 +40,8 @@ from cratous.spec.mission import Mission, Position, Zone, ZoneKind
 
 LINK_LOST_MS = 2000
 """A vehicle's ICAROUS counts as silent when nothing came up for this long [ms]."""
+FAR_M = 1e6
+"""Altitudes beyond this are sent as this [m]: no aircraft is there."""
 AHEAD_S = 30
 """Waypoints are told at least this much farther than the look-ahead [s]."""
 
@@ -264,10 +266,15 @@ def fence(zone: Zone, number: int, projection: Projection) -> list[Message]:
                 vertex=k,
                 lat_deg=lat,
                 long_deg=lon,
-                floor_m=zone.floor_m,
-                ceiling_m=zone.ceiling_m,
+                floor_m=_reachable_m(zone.floor_m),
+                ceiling_m=_reachable_m(zone.ceiling_m),
                 zone=number,
             )
         )
     messages.append(FenceDone(zone=number))
     return messages
+
+
+def _reachable_m(alt_m: float) -> float:
+    """An altitude as the text protocol can send it: beyond FAR_M nobody flies, so it says the same."""
+    return max(-FAR_M, min(FAR_M, alt_m))

@@ -20,7 +20,7 @@ from cratous.core.gate import ICAROUS, UXAS, Gate
 from cratous.services.bus import Bus
 from cratous.services.flight.commands import SENDERS, gated, velocity_command
 from cratous.services.flight.communication import Communication
-from cratous.services.flight.dynamics import AirState, traffic_state
+from cratous.services.flight.dynamics import AirState, limits_of, traffic_state
 from cratous.services.flight.executive import Executive
 from cratous.services.flight.sensing import camera_states, target_of
 from cratous.services.flight.vehicle import VehicleNode, traffic_picture, truth
@@ -28,7 +28,8 @@ from cratous.services.frames import Projection
 from cratous.services.icarous import instance
 from cratous.services.planning.zones import hard_zones
 from cratous.services.records import fingerprint, to_data
-from cratous.spec.changes import TASK_ADDED, VEHICLE_JOINS, known_at, split, words
+from cratous.services.wind import CALM, all_in_wind, in_wind, known_at, told, wind_at
+from cratous.spec.changes import TASK_ADDED, VEHICLE_JOINS, split, words
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Change, Mission
 from cratous.spec.plan import Plan
@@ -108,6 +109,8 @@ class _Flight:
         self.commands = 0
         self.now_ms = 0
         self.known = known_at(mission, 0)
+        self.wind = CALM
+        self._blow(0)
         self.no_plan = ""
         self._accepted: tuple[Plan, frozenset[int]] | None = None
         self.to_come = split(mission.changes, 0)[1]
@@ -342,12 +345,14 @@ class _Flight:
         """What has become known since the last step: told, watched for, and planned for at once."""
         now, states = self.now_ms, self._own_states()
         self.known = known_at(self.mission, now, self.executive.ends)
+        blown = self._blow(now)
         zones = hard_zones(tuple(c.zone for c in due if c.zone is not None))
         self.zones = (*self.zones, *zones)
         what = "; ".join(words(change) for change in due)
         self.executive.know(self.zones)
         self.ics.know(self.zones)
-        why = self.executive.touched_by(due, zones, states)
+        touched = self.executive.touched_by(due, zones, states)
+        why = "; ".join(text for text in (blown, touched) if text)
         out: list[Any] = []
         if not why:
             answer = "the plan holds as it is"
@@ -365,6 +370,16 @@ class _Flight:
             self._accept(*self._accepted)
             self._accepted = None
         self._say(out, "uxas/executive")
+
+    def _blow(self, now_ms: int) -> str:
+        """Let the wind of this instant bind all vehicles; what it changes, empty if nothing."""
+        before, self.wind = self.wind, wind_at(self.mission, now_ms)
+        if self.wind == before:
+            return ""
+        self.executive.mission = all_in_wind(self.mission, self.wind)
+        for vehicle in self.mission.vehicles:
+            self.nodes[vehicle.id].limits = limits_of(in_wind(vehicle, self.wind) or vehicle)
+        return told(self.mission, before, self.wind)
 
     def _replan(
         self, states: dict[int, AirState], done: frozenset[int], now_ms: int

@@ -3,28 +3,33 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.core.following import Track
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import location
 from cratous.services.flight.dynamics import AirState, clamp, wrap
 from cratous.services.frames import Projection
-from cratous.services.sensor import aim, footprint, zoomed
+from cratous.services.planning.flyers import camera_for
+from cratous.services.planning.point_ways import tilted
+from cratous.services.sensor import aim, footprint, look_on_line, zoomed
 from cratous.spec.mission import AREAS, Frame, Position, Task, TaskKind, Vehicle, View
+from cratous.spec.plan import PlanItem
 
 
 def target_of(
     chain: Chain, task: Task | None, state: AirState, terrain_m: float
 ) -> Position | None:
-    """The ground point to look at: on the line, as far along it as the path is flown; the point;
-    or, over an area, below the aircraft or where the task's view looks."""
+    """The ground point to look at: of a line the one nearest to where the flown option's view looks,
+    as planning has it; the point; or, over an area, below the aircraft or where the view looks."""
     if task is None or chain.phase is not Phase.TASK or not task.points:
         return None
     if task.kind is TaskKind.LINE_SEARCH:
-        line = Track(_as_flown(chain, task.points))
-        return line.at(line.length_m * chain.served())
+        height, view = state.position.alt_m - terrain_m, flown_view(chain, task)
+        here = (state.position.north_m, state.position.east_m)
+        n, e = look_on_line(here, state.heading_rad, task.points, view, height)
+        return Position(n, e, terrain_m)
     if task.kind is TaskKind.POINT_SEARCH:
         return task.points[0]
     if task.kind in AREAS:
@@ -40,31 +45,27 @@ def chosen_view(chain: Chain, task: Task) -> View | None:
     item = chain.item
     if item is None or item.view_elevation_rad is None or not task.views:
         return task.view
-    wanted = (item.view_elevation_rad, item.view_azimuth_rad)
-    views = [view for view in (task.view, *task.views) if view is not None]
+    return _nearest(item, (task.view, *task.views))
+
+
+def flown_view(chain: Chain, task: Task) -> View | None:
+    """As `chosen_view`; where the task asks for none, the one that the option has brought itself."""
+    asked, item = chosen_view(chain, task), chain.item
+    brought = tilted(task, camera_for(task, chain.vehicle.cameras))
+    if asked is not None or item is None or item.view_elevation_rad is None or not brought:
+        return asked
+    return _nearest(item, brought)
+
+
+def _nearest(item: PlanItem, views: Iterable[View | None]) -> View:
+    wanted = (item.view_elevation_rad or 0.0, item.view_azimuth_rad)
     return min(
-        views,
+        (view for view in views if view is not None),
         key=lambda v: (
             abs(v.elevation_rad - wanted[0])
             + abs(math.remainder(v.azimuth_rad - wanted[1], 2 * math.pi))
         ),
     )
-
-
-def _as_flown(chain: Chain, points: tuple[Position, ...]) -> tuple[Position, ...]:
-    """A line in the direction in which the chosen path follows it."""
-    assert chain.item is not None
-    line, path = Track(points), Track(chain.item.path)
-
-    def apart_m(backward: bool) -> float:
-        total = 0.0
-        for share in (0.0, 0.2, 0.4, 0.6, 0.8, 1.0):
-            a = line.at(line.length_m * (1 - share if backward else share))
-            b = path.at(path.length_m * share)
-            total += math.hypot(a.north_m - b.north_m, a.east_m - b.east_m)
-        return total
-
-    return points[::-1] if min((False, True), key=apart_m) else points
 
 
 def camera_states(

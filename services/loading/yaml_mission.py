@@ -41,6 +41,7 @@ from cratous.spec.mission import (
     Zone,
     ZoneKind,
 )
+from cratous.spec.wind import WIND, WindChange
 
 DEFAULT_WELL_CLEAR = WellClear(dthr_m=150.0, zthr_m=30.0, tthr_s=15.0, tcoa_s=0.0)
 
@@ -197,6 +198,10 @@ def _change(data: dict[str, Any], places: Places) -> Change:
     at_ms, value = round(float(data["at_s"]) * 1000), data[kind]
     if kind == changes.ZONE:
         return Change(at_ms, kind, zone=_zone(value, places))
+    if kind == WIND:
+        return WindChange(
+            at_ms, kind, north_m_s=float(value["north_m_s"]), east_m_s=float(value["east_m_s"])
+        )
     if kind.startswith("vehicle"):
         return Change(at_ms, kind, vehicle=int(value))
     return Change(at_ms, kind, task=int(value))

@@ -17,7 +17,7 @@ from cratous.services.monitor.completion import CompletionWatch
 from cratous.services.monitor.constraints import ConstraintWatch
 from cratous.services.monitor.samples import Sample, Sampler
 from cratous.services.monitor.separation import SeparationWatch
-from cratous.spec.changes import known_at
+from cratous.services.wind import known_at
 from cratous.spec.guarantees import REQUIREMENTS, Kind, Verdict, worst
 from cratous.spec.mission import Mission
 from cratous.spec.plan import Plan

@@ -25,7 +25,7 @@ from cratous.spec.plan import Pose
 
 LOITER_ENTRIES = 8
 TILT = 0.95
-"""Looks to the side are tilted by this share of the gimbal's reach."""
+"""Looks that are not straight down are tilted by this share of the gimbal's reach."""
 STRAIGHT_DOWN_RAD = math.radians(-85)
 """A camera that can be tilted to here sees what is below it."""
 VIEWS_MOST = 16
@@ -42,7 +42,7 @@ def views_of(task: Task) -> tuple[View | None, ...]:
 
 def line_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float) -> Iterator[Way]:
     """Both directions of a line for each wanted view, offset to where that view looks at it."""
-    views = (*views_of(task), *_sideways(task, camera))
+    views = tilted(task, camera) or views_of(task)
     for number, view in enumerate(views[:VIEWS_MOST], 1):
         for label, points in (("forward", task.points), ("backward", task.points[::-1])):
             line = replace(task, points=points, view=view)
@@ -55,12 +55,17 @@ def line_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float)
     yield from _left_out(len(views))
 
 
-def _sideways(task: Task, camera: Camera | None) -> tuple[View, ...]:
-    """Looks to both sides, for a camera that cannot look straight down where no view is asked for."""
+def tilted(task: Task, camera: Camera | None) -> tuple[View, ...]:
+    """Looks to both sides, ahead and back, for a camera that cannot look straight down.
+
+    Only where no view is asked for; such a camera needs one, since a look at what is below it turns with
+    every wobble. A look ahead or back follows the line itself, so it loses nothing in bends that are
+    narrower than a side look is far.
+    """
     if camera is None or views_of(task) != (None,) or camera.min_elevation_rad <= STRAIGHT_DOWN_RAD:
         return ()
     tilt = TILT * camera.min_elevation_rad
-    return tuple(View(side * math.pi / 2, tilt, False) for side in (1, -1))
+    return tuple(View(quarter * math.pi / 2, tilt, False) for quarter in (1, -1, 0, 2))
 
 
 def _left_out(count: int) -> Iterator[Way]:

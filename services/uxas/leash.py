@@ -1,7 +1,9 @@
 """LoiterLeash: a vehicle asked to go in a direction loiters on the safe way there, a leash ahead.
 
 SafeHeadingAction -> RoutePlanRequest to the point that far ahead -> RoutePlanResponse ->
-VehicleActionCommand with a loiter at the end of the route. Without a route it loiters where it is.
+VehicleActionCommand with a loiter on the route: around the farthest of its points where all of the
+disc, not only its centre, obeys the zones of the action's region (the proved kernels say so). Without a
+route, or where there is no such point, it loiters where it is, and a ServiceStatus says why.
 """
 
 from __future__ import annotations
@@ -11,7 +13,14 @@ from math import radians, tan
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
+from cratous.core.circling import broken_by
+from cratous.core.visibility import name_of
 from cratous.services.bus import Envelope
+from cratous.services.planning.desk import status
+from cratous.services.planning.zones import hard_zones
+from cratous.services.uxas.pipeline.contexts import Contexts, reasons_of
+from cratous.spec.errors import CratousError
+from cratous.spec.mission import Position
 
 ACTION = "uxas.messages.uxnative.SafeHeadingAction"
 ROUTES_FROM = 2**61
@@ -41,9 +50,11 @@ class LoiterLeash:
         ACTION,
     )
 
-    def __init__(self, name: str, vehicle: int, lead_m: float | None, buffer_m: float) -> None:
+    def __init__(
+        self, name: str, contexts: Contexts, vehicle: int, lead_m: float | None, buffer_m: float
+    ) -> None:
         """lead_m: how far ahead, None: as the action says; buffer_m: added to the turn radius."""
-        self.name, self._vehicle = name, vehicle
+        self.name, self._contexts, self._vehicle = name, contexts, vehicle
         self._lead_m, self._buffer_m = lead_m, buffer_m
 
     def start(self) -> Leash:
@@ -97,16 +108,28 @@ class LoiterLeash:
         if state.action is None or body.ResponseID != ROUTES_FROM + state.asked:
             return state, ()
         action, plan = state.action, next(iter(body.RouteResponses), None)
-        place = state.state.Location
-        if plan is not None and plan.RouteCost >= 0 and plan.Waypoints:
-            end = plan.Waypoints[-1]
-            place = place.copy(Latitude=end.Latitude, Longitude=end.Longitude)
-        if action.UseAltitude:
-            place = place.copy(Altitude=action.Altitude, AltitudeType=action.AltitudeType)
+        radius = action.LoiterRadius or self._radius(state.configuration)
+        here, points = state.state.Location, []
+        if plan is not None and plan.RouteCost >= 0:
+            points = [here.copy(Latitude=w.Latitude, Longitude=w.Longitude) for w in plan.Waypoints]
+        places = [
+            point.copy(Altitude=action.Altitude, AltitudeType=action.AltitudeType)
+            if action.UseAltitude
+            else point
+            for point in (*reversed(points), here)
+        ]
+        place, why = self._room(action.OperatingRegion, places, radius)
+        out: list[Any] = []
+        if not points:
+            why = [p.Value for p in plan.RouteError] if plan is not None else []
+            why = why or ["there is no route in that direction"]
+        if why:
+            told = [("VehicleID", str(self._vehicle)), *(("reason", text) for text in why)]
+            out.append(status(0, "Warning", told))
         loiter = lmcp.new(
             "LoiterAction",
             LoiterType="Circular",
-            Radius=action.LoiterRadius or self._radius(state.configuration),
+            Radius=radius,
             Duration=-1,
             Airspeed=action.Speed if action.UseSpeed else self._speed(state.configuration),
             Location=place,
@@ -118,7 +141,24 @@ class LoiterLeash:
             VehicleID=self._vehicle,
             VehicleActionList=[loiter],
         )
-        return state._replace(action=None), [command]
+        return state._replace(action=None), [*out, command]
+
+    def _room(self, region: int, places: list[Any], radius_m: float) -> tuple[Any, list[str]]:
+        """The first place around which there is room to loiter; the last one and why, if none has it."""
+        try:
+            desk, mission = self._contexts.for_routes(region, self._vehicle)
+            zones = hard_zones(mission.zones)
+            bad = None
+            for k, place in enumerate(places):
+                centre = Position(*desk.pose(place, 0.0, "loiter", f"place {k}")[:3])
+                bad = broken_by(centre, radius_m, zones)
+                if bad is None:
+                    return place, []
+        except CratousError as error:
+            return places[-1], list(reasons_of(error))
+        assert bad is not None
+        text = f"nowhere on the way is room for a loiter of {radius_m:.0f} m"
+        return places[-1], [f"{text}: where it is, it breaks {name_of(bad)}"]
 
     def _speed(self, configuration: Any) -> float:
         return 0.0 if configuration is None else float(configuration.NominalSpeed)

@@ -160,7 +160,8 @@ def _region(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int)
 
 
 def _leash(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return leash.LoiterLeash(name, _vehicle(host, v), v["LeadDistance"], v["RadiusBuffer"])
+    vehicle = _vehicle(host, v)
+    return leash.LoiterLeash(name, contexts_of(host), vehicle, v["LeadDistance"], v["RadiusBuffer"])
 
 
 def _batch(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
@@ -257,6 +258,7 @@ KINDS: dict[str, Kind] = {
     "LoiterLeash": Kind(
         {"VehicleID": whole(-1, -1), "LeadDistance": number(None), "RadiusBuffer": number(0.0)},
         _leash,
+        plans=True,
     ),
     "BatchSummaryService": Kind(
         {"FastPlan": flag(False)}, _batch, single=True, plans=True, ignored={"FastPlan": _NOT_USED}
@@ -324,7 +326,7 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
     "OperatingRegionStateService": (
         regions.OperatingRegionStateService, ("OperatingRegion",)
     ),
-    "LoiterLeash": (leash.LoiterLeash, ("RoutePlanRequest", "VehicleActionCommand")),
+    "LoiterLeash": (leash.LoiterLeash, ("RoutePlanRequest", "VehicleActionCommand", "ServiceStatus")),
     "BatchSummaryService": (
         batch.BatchSummaryService, ("TaskAutomationRequest", "BatchSummaryResponse")
     ),
@@ -352,7 +354,6 @@ TASKS_NOT_YET = (
     "afrl.impact.CordonTask",
     "afrl.impact.EscortTask",
     "afrl.impact.MultiVehicleWatchTask",
-    "afrl.impact.WatchTask",
     "uxas.messages.task.AssignmentCoordinatorTask",
     "uxas.messages.task.RendezvousTask",
 )

@@ -101,6 +101,10 @@ class RouteAggregatorService:
     def handle(self, state: Open, envelope: Envelope, now_ms: int) -> Step:
         body, topic = envelope.body, envelope.topic
         if topic == UNIQUE:
+            if self._contexts.refused(body.RequestID):
+                reasons = self._contexts.reasons(body.RequestID)
+                facts = [("reason", text) for text in reasons]
+                return state, [status(body.RequestID, "Error", facts)] if reasons else []
             return self._collect(state, Collecting(AWAITS_OPTIONS, body, {}))
         if topic == OPTIONS:
             mine = state.collecting.get(body.CorrespondingAutomationRequestID)
@@ -167,7 +171,7 @@ class RouteAggregatorService:
         asked: list[Any] = []
         ends: list[tuple[tuple[End, End], ...]] = []
         vehicles: list[int] = []
-        for vehicle in request.EntityList:
+        for vehicle in context.vehicles:
             able = [o for o in options if not o.EligibleEntities or vehicle in o.EligibleEntities]
             if not able:
                 continue

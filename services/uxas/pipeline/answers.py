@@ -13,27 +13,23 @@ _INFO = 8  # entries of AutomationResponse.Info
 
 class Asked(NamedTuple):
     """A request as it came: its message, the AutomationRequest inside, whether it is only a trial,
-    the states that it brings, its number on the bus, and what is wrong with it at first sight."""
+    the states that it brings, its number on the bus, and the RequestID that it asks for, 0 for any."""
 
     body: Any
     request: Any
     sandbox: bool
     states: list[Any]
     seq: int
-    problem: str = ""
+    number: int = 0
 
 
 def asked_of(topic: str, body: Any, seq: int) -> Asked:
     """A request of any kind."""
     if topic.endswith(".ImpactAutomationRequest"):
-        problem = ""
-        if body.OverridePlanningConditions:
-            problem = "OverridePlanningConditions are not covered: set speeds in configurations"
-        return Asked(body, body.TrialRequest, body.Sandbox, [], seq, problem)
+        return Asked(body, body.TrialRequest, body.Sandbox, [], seq)
     if topic.endswith(".TaskAutomationRequest"):
-        return Asked(
-            body, body.OriginalRequest, body.SandBoxRequest, list(body.PlanningStates), seq
-        )
+        states = list(body.PlanningStates)
+        return Asked(body, body.OriginalRequest, body.SandBoxRequest, states, seq, body.RequestID)
     return Asked(body, body, False, [], seq)
 
 

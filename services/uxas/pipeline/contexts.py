@@ -31,9 +31,12 @@ from cratous.spec.mission import Mission, Position
 from cratous.spec.plan import Pose
 
 UNIQUE = "uxas.messages.task.UniqueAutomationRequest"
+IMPACT = "afrl.impact.ImpactAutomationRequest"
+IMPACT_ANSWER = "afrl.impact.ImpactAutomationResponse"
 _OF_ZONES = -1  # no region that comes in a message is this one
 KEPT = 8
 """Requests whose meaning is kept."""
+MOST_OVERRIDDEN = 1000
 
 
 class Way(NamedTuple):
@@ -94,6 +97,11 @@ class Context:
         self.offered: set[int] = set()  # tasks whose options were computed here
 
     @property
+    def vehicles(self) -> list[int]:
+        """The vehicles that it is for; no EntityList means all that are known."""
+        return [vehicle.id for vehicle in self.inputs.mission.vehicles]
+
+    @property
     def region(self) -> int:
         """The operating region, 0 for none."""
         return int(self.request.OriginalRequest.OperatingRegion)
@@ -103,12 +111,14 @@ class Contexts:
     """A service without a part of its own: hears the world, and each request as it is published."""
 
     name = "WorldState"
-    subscribes: tuple[str, ...] = (*World.subscribes, UNIQUE)
+    subscribes: tuple[str, ...] = (*World.subscribes, UNIQUE, IMPACT, IMPACT_ANSWER)
 
     def __init__(self, host: Host) -> None:
         self.world = World()
         self._host = host
         self._found: dict[int, Context | CratousError] = {}
+        self._told: list[int] = []
+        self._overridden: dict[int, Any] = {}  # requests with conditions of their own, unanswered
 
     def start(self) -> Any:
         return self.world.start()
@@ -116,6 +126,14 @@ class Contexts:
     def handle(self, state: Any, envelope: Envelope, now_ms: int) -> tuple[Any, Iterable[Any]]:
         if envelope.topic == UNIQUE:
             self.open(envelope.body, f"message {envelope.seq}")
+            return state, ()
+        if envelope.topic == IMPACT:
+            if envelope.body.OverridePlanningConditions:
+                kept = {**self._overridden, envelope.body.RequestID: envelope.body.TrialRequest}
+                self._overridden = dict(list(kept.items())[-MOST_OVERRIDDEN:])
+            return state, ()
+        if envelope.topic == IMPACT_ANSWER:
+            self._overridden.pop(envelope.body.ResponseID, None)
             return state, ()
         return self.world.handle(state, envelope, now_ms)
 
@@ -129,6 +147,7 @@ class Contexts:
         except CratousError as error:
             made = error
         self._found.pop(request.RequestID, None)
+        self._told = [number for number in self._told if number != request.RequestID]
         self._found[request.RequestID] = made
         while len(self._found) > KEPT:
             self._found.pop(next(iter(self._found)))
@@ -151,6 +170,18 @@ class Contexts:
         if isinstance(found, CratousError):
             raise found
         return found
+
+    def refused(self, request_id: int) -> bool:
+        """True if a request means nothing that could be planned."""
+        return isinstance(self._found.get(request_id), CratousError)
+
+    def reasons(self, request_id: int) -> tuple[str, ...]:
+        """Why a refused request cannot be planned; the first time only, so that it is said once."""
+        found = self._found.get(request_id)
+        if not isinstance(found, CratousError) or request_id in self._told:
+            return ()
+        self._told = [*self._told, request_id][-KEPT:]
+        return reasons_of(found)
 
     def for_routes(self, region: int, vehicle: int) -> tuple[RequestDesk, Mission]:
         """The frame, zones and vehicles for routes of a vehicle in a region.
@@ -192,6 +223,14 @@ class Contexts:
         return self.world.configuration(self._host.config, root, services, sent)
 
     def _context(self, request: Any, where: str) -> Context:
+        # which of two equal requests it is cannot be told: neither is planned as the other
+        if any(body == request.OriginalRequest for body in self._overridden.values()):
+            raise BadInput(
+                "OverridePlanningConditions are not covered",
+                where=where,
+                item="ImpactAutomationRequest",
+                expected="speeds and altitudes in the configurations",
+            )
         mission = self.mission(request.OriginalRequest, where)
         for note in mission.notes:
             self._host.log("INFO", f"request {request.RequestID}: {note}")

@@ -20,7 +20,7 @@ def request_ended(topic: str, body: Any) -> int:
     if topic != STATUS or body.StatusType.name != "Error":
         return 0
     number = next((pair.Value for pair in body.Info if pair.Key == "RequestID"), "")
-    return int(number) if number.isdecimal() else 0
+    return int(number) if number.removeprefix("-").isdecimal() else 0
 
 
 def newest(kept: dict[int, V]) -> dict[int, V]:

@@ -75,7 +75,7 @@ def read(told: Told, matrix: Any, context: Context) -> Read:
     )
     if context.offered:
         inputs.not_offered = context.inputs.dropped
-    rows = [row for row in matrix.CostMatrix if row.VehicleID in request.EntityList]
+    rows = [row for row in matrix.CostMatrix if row.VehicleID in context.vehicles]
     foreign = len(matrix.CostMatrix) - len(rows)
     rows = [r for r in rows if not {r.IntialTaskID, r.DestinationTaskID} & unnamed]
     known = {(0, 0), *((o.task_id, o.option_id) for o in inputs.offered)}

@@ -19,6 +19,7 @@ from cratous.services.planning.desk import Inputs, status
 from cratous.services.planning.stages import hold_of
 from cratous.services.planning.task_service import NAMES, TaskService
 from cratous.services.uxas.pipeline.contexts import UNIQUE, Contexts, RequestDesk, reasons_of
+from cratous.services.uxas.pipeline.ended import request_ended
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 from cratous.spec.mission import Task, TaskKind
 
@@ -32,6 +33,7 @@ TASKS = {
     "afrl.impact.ImpactPointSearchTask": TaskKind.POINT_SEARCH,
     "afrl.impact.AngledAreaSearchTask": TaskKind.AREA_SEARCH,
     "afrl.impact.PatternSearchTask": TaskKind.PATTERN_SEARCH,
+    "afrl.impact.WatchTask": TaskKind.POINT_SEARCH,  # of what stands still, as the loader has it
 }
 ROUTES_FROM = 2**60
 """Ids of a task's own route requests: beyond the blocks that the aggregator gives out."""
@@ -48,11 +50,35 @@ _EVENTS = {
 
 
 class State(NamedTuple):
-    """The kernel's state; the implementation request in work; the vehicle that the task is for."""
+    """The kernel's state; the implementation request in work; the vehicle that the task is for.
+
+    The kernel's requests are tickets that count up, as RequestIDs need not; tickets: the newest with
+    their RequestIDs.
+    """
 
     task: Kernel = Kernel(0, 0, 0)
     chosen: Any = None
     vehicle: int = 0
+    tickets: tuple[tuple[int, int], ...] = ((0, 0),)
+
+    def number(self, ticket: int) -> int:
+        """The RequestID of a ticket."""
+        return dict(self.tickets)[ticket]
+
+    def ticket(self, number: int) -> int:
+        """The ticket of the request in work, or the one after it, if this is its RequestID, else -1."""
+        mine = (self.task.request, self.task.kept)
+        return next((t for t, n in self.tickets if n == number and t in mine), -1)
+
+    def arrived(self, number: int) -> tuple[State, int]:
+        """With a ticket for a request."""
+        ticket = self.ticket(number)
+        if ticket >= 0:
+            return self, ticket
+        ticket = self.tickets[-1][0] + 1
+        mine = (self.task.request, self.task.kept)
+        kept = tuple(pair for pair in self.tickets if pair[0] in mine)
+        return self._replace(tickets=(*kept, (ticket, number))), ticket
 
 
 class MessageTask(TaskService):
@@ -109,19 +135,14 @@ class MessageTask(TaskService):
     ) -> tuple[State, Iterable[Any]]:
         body, topic = envelope.body, envelope.topic
         if topic == UNIQUE:
-            if self._task_id not in body.OriginalRequest.TaskList:
-                return state, ()
-            return self._advance(state, REQUESTED, body.RequestID, body)
+            return self._requested(state, body)
         if topic in _EVENTS:
             return self._reply(state, _EVENTS[topic], body)
         if topic == "uxas.messages.task.UniqueAutomationResponse":
-            return self._advance(state, ENDED, body.ResponseID, body)
+            return self._advance(state, ENDED, state.ticket(body.ResponseID), body)
         if topic == "afrl.cmasi.ServiceStatus":
-            facts = {pair.Key: pair.Value for pair in body.Info}
-            number = facts.get("RequestID", "")
-            if body.StatusType.name != "Error" or not number.isdecimal():
-                return state, ()
-            return self._advance(state, ENDED, int(number), body)
+            ended = request_ended(topic, body)
+            return self._advance(state, ENDED, state.ticket(ended), body) if ended else (state, ())
         if topic == "afrl.cmasi.AutomationResponse":
             if self._withdrawn(state, body):
                 return self._advance(state, WITHDRAWN, 0, body)
@@ -129,6 +150,17 @@ class MessageTask(TaskService):
         if not hasattr(body, "AssociatedTasks"):
             return state, ()
         return self._flown(state, body)
+
+    def _requested(self, state: State, body: Any) -> tuple[State, Iterable[Any]]:
+        """A request that means nothing is answered, once a process; it disturbs no task."""
+        number = body.RequestID
+        if self._contexts.refused(number):
+            facts = [("reason", text) for text in self._contexts.reasons(number)]
+            return state, [status(number, "Error", facts)] if facts else []
+        if self._task_id not in body.OriginalRequest.TaskList:
+            return state, ()
+        state, ticket = state.arrived(number)
+        return self._advance(state, REQUESTED, ticket, body)
 
     def _flown(self, state: State, body: Any) -> tuple[State, Iterable[Any]]:
         """A vehicle says which tasks it flies."""
@@ -150,30 +182,32 @@ class MessageTask(TaskService):
         if event == CHOSEN:
             if body.TaskID != self._task_id:
                 return state, ()
-            return self._advance(state, event, body.CorrespondingAutomationRequestID, body)
+            ticket = state.ticket(body.CorrespondingAutomationRequestID)
+            return self._advance(state, event, ticket, body)
         chosen = state.chosen
         if chosen is None or body.AssociatedTaskID != self._task_id:
             return state, ()
         if (body.VehicleID, body.ResponseID) != (chosen.VehicleID, _route_id(chosen)):
             return state, ()
-        return self._advance(state, event, chosen.CorrespondingAutomationRequestID, body)
+        ticket = state.ticket(chosen.CorrespondingAutomationRequestID)
+        return self._advance(state, event, ticket, body)
 
     def _advance(
-        self, state: State, event: int, request: int, body: Any
+        self, state: State, event: int, ticket: int, body: Any
     ) -> tuple[State, Iterable[Any]]:
         """Tell the kernel what happened and do what it answers, until it waits for something."""
         out: list[Any] = []
         while event:
-            task, act = task_step(state.task, event, request)
+            task, act = task_step(state.task, event, ticket)
             state = state._replace(task=task)
-            self._request = task.request
+            self._request = state.number(task.request)
             try:
                 state, event = self._do(state, act, body, out)
             except CratousError as error:
                 facts = [("reason", text) for text in reasons_of(error)]
-                out.append(status(task.request, "Error", facts))
+                out.append(status(self._request, "Error", facts))
                 event = WITHDRAWN if act == PUBLISH_PLAN else ENDED
-            request = state.task.request
+            ticket = state.task.request
         return state, out
 
     def _do(self, state: State, act: int, body: Any, out: list[Any]) -> tuple[State, int]:

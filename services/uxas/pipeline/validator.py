@@ -4,7 +4,12 @@ Every request gets a ticket when it comes. When its turn comes it is held agains
 (`validity`): a valid one is published as UniqueAutomationRequest, one that waits only for its tasks
 to initialise themselves waits, any other is answered with the reasons. One is in the pipeline at a
 time; each is answered once, in order, by its response, by an error, or because its time ran out.
-RequestIDs are tickets plus an offset, so that no id comes twice in a process.
+A TaskAutomationRequest keeps its RequestID; the others, and one whose id has just been another's, are
+numbered in the order in which they come.
+
+A request is published as it came. What its tasks, vehicles and relations mean is the planning
+services' to say, so that a client's request reaches planners of any kind; where it means something
+here, the tasks that the relations leave out are taken out, and it says where each vehicle plans from.
 """
 
 from __future__ import annotations
@@ -20,7 +25,7 @@ from cratous.services.frames import compass
 from cratous.services.planning.desk import status
 from cratous.services.uxas.frame import Host
 from cratous.services.uxas.pipeline.answers import Asked, answer, asked_of, refusal
-from cratous.services.uxas.pipeline.contexts import Context, Contexts, reasons_of
+from cratous.services.uxas.pipeline.contexts import Context, Contexts
 from cratous.services.uxas.pipeline.validity import things_of, verdict
 
 NAME = "AutomationRequestValidatorService"
@@ -28,6 +33,8 @@ RESPONSE = "uxas.messages.task.UniqueAutomationResponse"
 STATUS = "afrl.cmasi.ServiceStatus"
 INITIALISED = "uxas.messages.task.TaskInitialized"
 CMASI_TASK, REMOVE = "afrl.cmasi.Task", "afrl.cmasi.RemoveTasks"
+REMEMBERED = 4096
+"""RequestIDs that are not given again."""
 REQUESTS = (
     "afrl.cmasi.AutomationRequest",
     "afrl.impact.ImpactAutomationRequest",
@@ -36,20 +43,21 @@ REQUESTS = (
 
 
 class Desk(NamedTuple):
-    """line: the kernel's; asked: requests by ticket; published: the one whose turn it is is out;
-    initialised: tasks that have said so; offset: RequestID of ticket 0; notes: for its answer."""
+    """line: the kernel's; asked: requests by ticket, each with its RequestID; published: the one
+    whose turn it is is out; initialised: tasks that have said so; notes: for its answer."""
 
     line: Line
     asked: dict[int, Asked]
     published: bool
     initialised: frozenset[int]
-    offset: int
     notes: tuple[str, ...] = ()
 
     @property
     def work(self) -> int:
         """RequestID of the request in the pipeline, 0 for none."""
-        return self.offset + self.line.answered if self.line.busy and self.published else 0
+        if not (self.line.busy and self.published):
+            return 0
+        return self.asked[self.line.answered].number
 
 
 Step = tuple[Desk, Iterable[Any]]
@@ -76,8 +84,7 @@ class AutomationRequestValidatorService:
         self._host, self._contexts, self._limit_ms = host, contexts, limit_ms
 
     def start(self) -> Desk:
-        offset = self._host.shared.get("requests", 0) + 1
-        return Desk(Line(0, 0, False, 0), {}, False, frozenset(), offset)
+        return Desk(Line(0, 0, False, 0), {}, False, frozenset())
 
     def handle(self, state: Desk, envelope: Envelope, now_ms: int) -> Step:
         body, topic = envelope.body, envelope.topic
@@ -110,12 +117,27 @@ class AutomationRequestValidatorService:
         if act != requests.TAKE:
             out += refusal(asked, 0, ["no more requests are taken"])
             return state
-        self._host.shared["requests"] = state.offset + ticket
+        asked = asked._replace(number=self._number(asked.number))
         return state._replace(asked={**state.asked, ticket: asked})
+
+    def _number(self, wanted: int) -> int:
+        """The RequestID that is asked for, if no newer request has had it, else the next free one."""
+        shared = self._host.shared
+        used: dict[int, None] = shared.setdefault("RequestIDs", {})
+        number = wanted
+        if not wanted or wanted in used:
+            number = shared.get("requests", 0) + 1
+            while number in used:
+                number += 1
+            shared["requests"] = number
+        used[number] = None
+        if len(used) > REMEMBERED:
+            used.pop(next(iter(used)))
+        return number
 
     def _respond(self, state: Desk, body: Any, out: list[Any], now_ms: int) -> Desk:
         # before the request is out, no response can be its own
-        ticket = body.ResponseID - state.offset if state.published else -1
+        ticket = state.line.answered if state.work and body.ResponseID == state.work else -1
         state, act, ticket = self._step(state, requests.ANSWER, ticket, now_ms)
         if act != requests.PASS_ON:
             text = "a response that nobody waits for (late, or of another request)"
@@ -139,10 +161,10 @@ class AutomationRequestValidatorService:
         self, state: Desk, why: Iterable[str], out: list[Any], now_ms: int, said: bool = False
     ) -> Desk:
         """Answer the request whose turn it is with an error; said: the status is out already."""
-        number = state.offset + state.line.answered
         state, act, ticket = self._step(state, requests.ANSWER, state.line.answered, now_ms)
         if act == requests.PASS_ON:
-            out += refusal(state.asked[ticket], number, list(why))[1 if said else 0 :]
+            asked = state.asked[ticket]
+            out += refusal(asked, asked.number, list(why))[1 if said else 0 :]
         return _done(state, ticket)
 
     def _pump(self, state: Desk, out: list[Any], now_ms: int) -> Desk:
@@ -158,7 +180,7 @@ class AutomationRequestValidatorService:
                 why = [f"no response within MaxResponseTime_ms = {self._limit_ms}"]
                 if not state.published:
                     why = [*self._verdict(state, state.asked[ticket]).reasons, *why]
-                out += refusal(state.asked[ticket], state.offset + ticket, why)
+                out += refusal(state.asked[ticket], state.asked[ticket].number, why)
                 state = _done(state, ticket)
             elif act == requests.PUBLISH:
                 out.append(Wake(self._limit_ms, ticket))
@@ -172,10 +194,8 @@ class AutomationRequestValidatorService:
 
     def _begin(self, state: Desk, out: list[Any], now_ms: int) -> Desk:
         """Publish the request whose turn it is, if it is valid; refuse it if it never will be."""
-        ticket = state.line.answered
-        asked, number = state.asked[ticket], state.offset + ticket
-        if asked.problem:
-            return self._refuse(state, [asked.problem], out, now_ms)
+        asked = state.asked[state.line.answered]
+        number = asked.number
         found = self._verdict(state, asked)
         if found.waits:
             return state
@@ -191,7 +211,9 @@ class AutomationRequestValidatorService:
         where = f"{type(asked.body).__name__} (message {asked.seq})"
         context = self._contexts.open(unique, where)
         if not isinstance(context, Context):
-            return self._refuse(state, reasons_of(context), out, now_ms)
+            # valid, but planning will fail: those who plan say why
+            out.append(unique)
+            return state._replace(published=True, notes=())
         out.append(self._complete(unique, context))
         left = set(asked.request.TaskList) - set(context.inputs.wanted)
         notes: tuple[str, ...] = ()
@@ -202,10 +224,11 @@ class AutomationRequestValidatorService:
         return state._replace(published=True, notes=notes)
 
     def _complete(self, unique: Any, context: Context) -> Any:
-        """The request with its vehicles, the tasks to be done, and where each vehicle plans from."""
-        inputs = context.inputs
-        vehicles = [vehicle.id for vehicle in inputs.mission.vehicles]
-        request = unique.OriginalRequest.copy(EntityList=vehicles, TaskList=list(inputs.wanted))
+        """The request without the tasks that are not to be done, and where each vehicle plans from."""
+        inputs, request = context.inputs, unique.OriginalRequest
+        tasks = [task for task in request.TaskList if task in inputs.wanted]
+        if tasks != request.TaskList:
+            request = request.copy(TaskList=tasks)
         states = [
             lmcp.new(
                 "PlanningState",
@@ -213,7 +236,7 @@ class AutomationRequestValidatorService:
                 PlanningPosition=context.desk.location(inputs.starts[vehicle]),
                 PlanningHeading=compass(inputs.starts[vehicle].heading_rad),
             )
-            for vehicle in vehicles
+            for vehicle in context.vehicles
         ]
         made = unique.copy(OriginalRequest=request, PlanningStates=states)
         self._contexts.put(made, inputs, context.desk)

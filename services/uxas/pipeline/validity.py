@@ -1,7 +1,9 @@
 """What an automation request names, held against what is known: the kernels of `core.contracts.validity`.
 
-The service only looks up; whether a thing is as it must be, and whether the whole request can be
-planned, the proved kernels say.
+The service only looks up; whether a thing is as it must be, and whether the whole request is one to
+be planned, the proved kernels say. A task is defined if it and the place that it names are known.
+Whether there is a plan is not asked here: a vehicle that cannot fly as it is configured, or relations
+that mean nothing, the planning services answer.
 """
 
 from __future__ import annotations
@@ -14,16 +16,19 @@ from cratous.services.uxas.world import World
 
 VEHICLE, TASK, REGION, ZONE = 1, 2, 3, 4
 _NAMES = {VEHICLE: "vehicle", TASK: "task", REGION: "operating region", ZONE: "zone"}
+_PLACES = {"LineID": "line", "SearchAreaID": "area", "SearchLocationID": "point"}
+"""By which field a task names a place of interest, and of which sort; 0 names none."""
 
 
 class Thing(NamedTuple):
-    """One thing that a request names, as the kernels take it, and its id."""
+    """One thing that a request names, as the kernels take it, its id, and why it is not known."""
 
     kind: int
     known: bool
     ready: bool
     given: bool
     number: int
+    lacks: str = ""
 
     @property
     def fault(self) -> int:
@@ -32,6 +37,8 @@ class Thing(NamedTuple):
 
     def __str__(self) -> str:
         name = f"{_NAMES[self.kind]} {self.number}"
+        if self.lacks:
+            return f"{name} names {self.lacks}, which does not exist"
         if self.fault != NOT_READY:
             return f"{name} does not exist"
         if self.kind == VEHICLE:
@@ -59,9 +66,10 @@ def things_of(
         Thing(VEHICLE, world.has("configuration", v), world.has("state", v), v in given, v)
         for v in vehicles
     ]
-    made += [
-        Thing(TASK, world.has("task", t), t in initialised, False, t) for t in request.TaskList
-    ]
+    for number in request.TaskList:
+        lacks = _lacking(world, number)
+        known = world.has("task", number) and not lacks
+        made.append(Thing(TASK, known, number in initialised, False, number, lacks))
     number = request.OperatingRegion
     if number:
         region = world.get("region", number)
@@ -70,6 +78,16 @@ def things_of(
             zones = [*region.KeepInAreas, *region.KeepOutAreas]
             made += [Thing(ZONE, world.has("zone", z), True, False, z) for z in zones]
     return made
+
+
+def _lacking(world: World, task: int) -> str:
+    """The place of interest that a task names and that nobody has told, empty if there is none."""
+    body = world.get("task", task)
+    for field, sort in _PLACES.items():
+        number = getattr(body, field, 0)
+        if number and not world.has(sort, number):
+            return f"{sort} {number}"
+    return ""
 
 
 def verdict(things: list[Thing]) -> Verdict:
