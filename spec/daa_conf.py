@@ -10,8 +10,11 @@ from __future__ import annotations
 import dataclasses
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from cratous.spec.daa import (
@@ -85,7 +88,7 @@ def entries(text: str, file: str) -> dict[str, Entry]:
         key = OLD_NAMES.get(key, key)
         if key in found:
             raise BadInput("a key is given twice", where=where, item=key,
-                           got=f"first in {found[key].where}")  # fmt: skip
+                           expected="one line", got=f"another in {found[key].where}")  # fmt: skip
         found[key] = Entry(where, key, match["value"].strip(), "")
     return found
 
@@ -109,7 +112,14 @@ def _number(entry: Entry, dimension: str, low: float, high: float) -> tuple[floa
                            expected=" or ".join(known) or "no unit", got=unit)  # fmt: skip
         value *= UNITS[unit][1]
     if not low <= value <= high:
-        text = f"{low:g} to {high:g} in SI" if math.isfinite(high) else f"at least {low:g}"
+        size = UNITS[unit][1] if unit else 1.0
+        shown = f" {unit}" if unit else " in SI" if dimension else ""
+        text = (
+            f"{low / size:g} to {high / size:g}"
+            if math.isfinite(high)
+            else f"at least {low / size:g}"
+        )
+        text += shown
         raise BadInput("a value out of range", where=entry.where, item=entry.key,
                        expected=text, got=entry.value)  # fmt: skip
     return value, unit
@@ -251,9 +261,9 @@ class _Reader:
             ):
                 del self.left[key]
         for entry in self.left.values():
-            close = [k for k in KEYS if k.split("_")[-1] == entry.key.split("_")[-1]]
+            close = get_close_matches(entry.key, [*KEYS, *OLD_NAMES, "alerters"], 3)
             raise BadInput("an unknown key", where=entry.where, item=entry.key,
-                           expected="a key of the configuration" + (f", such as {', '.join(close[:3])}" if close else ""),
+                           expected="a key of the configuration" + (f", such as {', '.join(close)}" if close else ""),
                            got=entry.key)  # fmt: skip
 
 
@@ -280,16 +290,23 @@ def parse(text: str, file: str = "configuration", base: Parameters | None = None
         changes["alerters"] = tuple(reader.alerter(n, listed.where) for n in names)
     reader.finish(names)
     made = dataclasses.replace(base or Parameters(), **changes)
-    check(made, file)
+    lines = {key.field: found[name].where for name, key in KEYS.items() if name in found}
+    check(made, file, lines)
     return Configuration(made, units)
 
 
-def check(p: Parameters, where: str) -> None:
-    """Raise BadInput for values that do not fit together."""
+def check(p: Parameters, where: str, lines: Mapping[str, str] = MappingProxyType({})) -> None:
+    """Raise BadInput for values that do not fit together. lines: where single fields stand."""
+    names = {key.field: key for key in KEYS.values()}
 
     def wrong(item: str, expected: str, got: str) -> None:
+        field = item if item in names else next((f for f in names if names[f].name == item), item)
         raise BadInput(
-            "values do not fit together", where=where, item=item, expected=expected, got=got
+            "values do not fit together",
+            where=lines.get(field, where),
+            item=item,
+            expected=expected,
+            got=got,
         )
 
     for low, high in (
@@ -311,6 +328,15 @@ def check(p: Parameters, where: str) -> None:
         wrong("alerting_m", "at most alerting_n", f"{p.alerting_m} of {p.alerting_n}")
     if p.dta_alerter > len(p.alerters):
         wrong("dta_alerter", f"0 to {len(p.alerters)}", str(p.dta_alerter))
+    for item, on in (("conflict_crit", p.conflict_crit), ("recovery_crit", p.recovery_crit)):
+        if on:
+            raise BadInput(
+                "implicit coordination is not supported: bands would not change with it",
+                where=lines.get(item, where),
+                item=item,
+                expected="false",
+                got="true",
+            )
     if p.ca_bands and not 0 < p.ca_factor < 1:
         wrong("ca_factor", "above 0 and below 1 with ca_bands", f"{p.ca_factor:g}")
 

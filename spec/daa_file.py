@@ -13,6 +13,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -93,8 +94,10 @@ class _Table:
             key = OLD_NAMES.get(low, low)
             column = NAMES.get(low, key if key in KEYS else "")
             if not column:
+                close = get_close_matches(low, [*NAMES, *KEYS], 3)
+                near = f", such as {', '.join(close)}" if close else ""
                 raise BadInput("an unknown column", where=f"{file}:{line}", item=name,
-                               expected="a column of encounter files or a key of the configuration",
+                               expected=f"a column of encounter files or a key of the configuration{near}",
                                got=name)  # fmt: skip
             if column in self.columns:
                 raise BadInput("a column is given twice", where=f"{file}:{line}", item=name)
@@ -119,6 +122,13 @@ class _Table:
         """Whether the line is one of units; they are kept."""
         words = [part.strip("[]") for part in parts]
         known = set(UNITS) | {"unitless", "-", "", "none"}
+        wrong = next((k for k, word in enumerate(words) if word not in known), None)
+        if wrong is not None and any(
+            p.startswith("[") and w in known for p, w in zip(parts, words, strict=True)
+        ):
+            raise BadInput("an unknown unit", where=f"{self.file}:{line}",
+                           item=self.columns[wrong] if wrong < len(self.columns) else "",
+                           expected=" or ".join(UNITS), got=words[wrong])  # fmt: skip
         if len(words) != len(self.columns) or not all(word in known for word in words):
             return False
         for k, (column, word) in enumerate(zip(self.columns, words, strict=True)):

@@ -24,4 +24,12 @@ def preset(name: str) -> Configuration:
 
 def named_or_file(name: str) -> Configuration:
     """A preset by its name, or else the configuration in the file of that name."""
-    return preset(name) if name in names() else read(Path(name))
+    if name in names():
+        return preset(name)
+    if not Path(name).exists():
+        raise BadInput(
+            "there is no such file or preset",
+            item=name,
+            expected=f"a .conf file, or {' or '.join(names())}",
+        )
+    return read(Path(name))

@@ -64,7 +64,7 @@ def test_units_old_names_and_defaults():
         ("max_hs = fast\n", 1, "max_hs", "a finite number"),
         ("ca_bands = yes\n", 1, "ca_bands", "true or false"),
         ("step_hs = 0 [knot]\n", 1, "step_hs", "at least"),
-        ("left_hdir = 200 [deg]\n", 1, "left_hdir", "0 to 3.14"),
+        ("left_hdir = 200 [deg]\n", 1, "left_hdir", "0 to 180 deg"),
         ("step_hs\n", 1, "", "key = value"),
         ("step_hs = 1\ngs_step = 2\n", 2, "step_hs", ""),
         ("alerting_m = 1.5\n", 1, "alerting_m", ""),
@@ -242,3 +242,53 @@ def test_another_tcas_table_is_refused_and_never_read_as_this_one(line: str, exp
         daa_conf.parse(text, "some.conf")
     assert (error.value.item, error.value.expected) == (key, expected)
     assert "some.conf" in error.value.where
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "item", "says"),
+    [
+        ("lookahead_tme = 60 [s]", 1, "lookahead_tme", "such as lookahead_time"),
+        ("\nleft_hdir = 200 [deg]", 2, "left_hdir", "expected 0 to 180 deg; got 200 [deg]"),
+        ("min_hs = 60 [ft]", 1, "min_hs", "expected m/s or mps"),
+        ("turn_rate = 3 [deg/s]\n\nbank_angle = 20 [deg]", 3, "bank_angle", "not both"),
+        ("\nconflict_crit = true", 2, "conflict_crit", "implicit coordination is not supported"),
+        ("recovery_crit = true", 1, "recovery_crit", "implicit coordination is not supported"),
+        ("turn_rate = 3\nturn_rate = 4", 2, "turn_rate", "expected one line; got another in c:1"),
+    ],
+)
+def test_a_configuration_error_names_line_key_expected_and_got(
+    text: str, line: int, item: str, says: str
+):
+    with pytest.raises(BadInput) as caught:
+        daa_conf.parse(text, "c")
+    assert caught.value.where == f"c:{line}"
+    assert caught.value.item == item
+    assert says in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("[ft]", "[fathom]", "e.daa:3: alt: an unknown unit; expected s or ms"),
+        ("vs time", "vs tyme", "e.daa:2: tyme: an unknown column"),
+        ("vs time", "vs time conflict_crit", "implicit coordination is not supported"),
+    ],
+)
+def test_an_encounter_error_says_what_is_wrong(
+    tmp_path: Path, root: Path, old: str, new: str, says: str
+):
+    from cratous.services.daa import named_or_file, run
+
+    text = (root / "examples/encounters/two_intruders.daa").read_text()
+    lines = text.replace(old, new).splitlines()
+    if "conflict_crit" in new:
+        lines = [
+            *lines[:2],
+            lines[2] + " unitless",
+            *(line + " true" if line.strip() else line for line in lines[3:]),
+        ]
+    file = tmp_path / "e.daa"
+    file.write_text("\n".join(lines) + "\n")
+    with pytest.raises(BadInput) as caught:
+        list(run(file, named_or_file("do_365b").parameters))
+    assert says in str(caught.value)

@@ -23,6 +23,7 @@ from cratous.core.daa_state import Aircraft, Sigma
 from cratous.core.daa_terminal import in_terminal_area
 from cratous.core.excuse_judge import from_state as judge_way_out
 from cratous.spec.daa import Parameters
+from cratous.spec.daa_conf import check
 from cratous.spec.daa_file import Row, read
 from cratous.spec.daa_presets import named_or_file, names, preset
 from cratous.spec.errors import BadInput
@@ -97,6 +98,8 @@ def run(
     session: Session | None = None
     for time_s, rows in encounters.steps:
         wanted = dataclasses.replace(parameters, **{**encounters.settings, **rows[0].settings})
+        if rows[0].settings:
+            check(wanted, str(file))
         if session is None or session.parameters != wanted:
             session = Session(wanted)  # any change of a parameter ends the history
         states, wind = aircraft(rows)

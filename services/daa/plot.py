@@ -62,6 +62,9 @@ def draw(steps: Sequence[Step], file: Path) -> None:
         axis.plot([t for t, _ in own], [v for _, v in own], "k.", markersize=2)
         axis.set_xlim(times[0], times[-1] + width)
         axis.autoscale_view(scalex=False)
+        if name == "alt":
+            axis.set_ylim(*_near(steps, axis.get_ylim()))
+            label += ", near the aircraft"
         axis.set_ylabel(label)
         axis.set_xlabel("time [s]")
     ids = list(dict.fromkeys(a.id for s in steps for a in s.instant.alerts))
@@ -87,6 +90,17 @@ def draw(steps: Sequence[Step], file: Path) -> None:
         raise BadInput(f"the picture cannot be written: {error}", where=str(file)) from error
 
 
+NEAR_M = 1000.0
+"""Altitudes farther than this from all aircraft are not drawn: bands go up to 50,000 ft."""
+
+
+def _near(steps: Sequence[Step], whole: tuple[float, float]) -> tuple[float, float]:
+    """The altitudes to draw: those of all aircraft, with room, within the whole range."""
+    seen = [a.alt_m for s in steps for a in (s.instant.own, *s.instant.seen.others)]
+    low, high = min(seen) - NEAR_M, max(seen) + NEAR_M
+    return max(whole[0], low), min(whole[1], high)
+
+
 def _plan(axis: object, steps: Sequence[Step]) -> None:
     """The tracks from above, in the plane at the ownship's first position."""
     from cratous.core.daa_frame import project
@@ -106,6 +120,8 @@ def _plan(axis: object, steps: Sequence[Step]) -> None:
         xs, ys = [x / 1000 for x, _ in points], [y / 1000 for _, y in points]
         axis.plot(xs, ys, "-" if k else "k-", label=name, linewidth=1.5)  # type: ignore[attr-defined]
         axis.plot(xs[:1], ys[:1], "o", color="k" if not k else "0.5", markersize=4)  # type: ignore[attr-defined]
+        axis.plot(xs[-1:], ys[-1:], "^", color="k" if not k else "0.5", markersize=5)  # type: ignore[attr-defined]
+    axis.set_title("from above; a dot where each begins, a triangle where it ends", fontsize=9)  # type: ignore[attr-defined]
     axis.set_aspect("equal", adjustable="datalim")  # type: ignore[attr-defined]
     axis.set_xlabel("east [km]")  # type: ignore[attr-defined]
     axis.set_ylabel("north [km]")  # type: ignore[attr-defined]

@@ -11,6 +11,8 @@ from typing import Any
 
 from cratous.services.message_logger import MessageLogger
 from cratous.services.uxas import batch, leash, regions, sensors, small, tracker, waypoints
+from cratous.services.uxas.daidalus import detection, response
+from cratous.services.uxas.daidalus import parameters as daidalus
 from cratous.services.uxas.frame import Host
 from cratous.services.uxas.pipeline import (
     aggregator,
@@ -164,6 +166,15 @@ def _leash(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) 
     return leash.LoiterLeash(name, contexts_of(host), vehicle, v["LeadDistance"], v["RadiusBuffer"])
 
 
+def _detection(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return detection.DaidalusDetection(name, _vehicle(host, v), daidalus.parameters_of(entry, v))
+
+
+def _response(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    limit = v["RightOfWayLimit"]
+    return response.DaidalusResponse(name, _vehicle(host, v), v["ManeuverType"], limit)
+
+
 def _batch(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
     return batch.BatchSummaryService(contexts_of(host))
 
@@ -264,6 +275,18 @@ KINDS: dict[str, Kind] = {
         {"FastPlan": flag(False)}, _batch, single=True, plans=True, ignored={"FastPlan": _NOT_USED}
     ),
     "TaskTrackerService": Kind({}, _tracker),
+    "DAIDALUS_WCV_Detection": Kind(daidalus.ATTRIBUTES, _detection, plans=True),
+    "DAIDALUS_WCV_Response": Kind(
+        {
+            "VehicleID": whole(-1, -1),
+            "ManeuverType": choice(
+                "Heading", "Heading", "GroundSpeed", "VerticalSpeed", "Altitude"
+            ),
+            "RightOfWayLimit": number(None),
+        },
+        _response,
+        plans=True,
+    ),
     "SendMessagesService": Kind({"PathToMessageFiles": Attr()}, _messages, ("Message",)),
     "MessageLoggerDataService": Kind(
         {"LogFileMessageCountLimit": whole(0), "FilesPerSubDirectory": whole(0)},
@@ -331,6 +354,13 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
         batch.BatchSummaryService, ("TaskAutomationRequest", "BatchSummaryResponse")
     ),
     "TaskTrackerService": (tracker.TaskTrackerService, ()),
+    "DAIDALUS_WCV_Detection": (
+        detection.DaidalusDetection,
+        ("DAIDALUSConfiguration", "WellClearViolationIntervals", "ServiceStatus"),
+    ),
+    "DAIDALUS_WCV_Response": (
+        response.DaidalusResponse, ("VehicleActionCommand", "MissionCommand", "ServiceStatus")
+    ),
     "SendMessagesService": (small.SendMessagesService, ()),
     "MessageLoggerDataService": (MessageLogger, ()),
     "Test_SimulationTime": (small.SimulationTime, ()),

@@ -1,0 +1,37 @@
+"""Every conflict is answered: by the manoeuvre that is flown if it is still free of conflict and of
+zones, else by one that is, and by a refusal only if there is none; one that is not ours by leaving it.
+Off the mission without a conflict the vehicle keeps to the same, unless it is sent back."""
+
+from cratous.core.contracts.responses import Response, manoeuvre_act, response_step
+from cratous.proofs.claim import Claim
+from cratous.spec.contracts import responses
+
+
+def claim(c: Claim) -> None:
+    before = Response(c.integer("state"), c.boolean("off"))
+    names = ("conflict", "ours", "good", "found", "free", "lasted", "taken")
+    conflict, ours, good, found, free, lasted, taken = (c.boolean(name) for name in names)
+    c.premise(c.define(responses.consistent, before.state, before.off))
+    step = c.use(response_step, before, conflict, ours, good, found, free, lasted, taken)
+    act = step.act
+    answer = c.define(responses.answered, ours, before.off, good, found, act)
+    c.show(c.implies(conflict, answer), "every conflict is answered")
+    on_hold = c.same(step.response.state, responses.HOLD)
+    c.show(c.implies(on_hold, c.define(responses.held, good, found, act)), "and so is a hold")
+    c.show(
+        c.same(c.use(manoeuvre_act, good, found), c.when(good, 2, c.when(found, 1, 3))),
+        "what is flown comes before what is found, and a refusal last",
+    )
+    diverts = c.same(act, responses.DIVERT)
+    c.show(c.implies(diverts, found), "only a manoeuvre that was found is commanded")
+    c.show(
+        c.implies(
+            c.same(act, responses.REFUSE), c.negation(c.any_of(found, c.all_of(good, before.off)))
+        ),
+        "refused is only what cannot be done",
+    )
+    on_mission = c.all_of(c.negation(conflict), c.negation(before.off))
+    c.show(
+        c.implies(on_mission, c.same(act, responses.NOTHING)),
+        "a vehicle on its mission, without a conflict, is left alone",
+    )

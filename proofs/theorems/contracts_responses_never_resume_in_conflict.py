@@ -1,0 +1,28 @@
+"""The mission is commanded only without a conflict, on a way that is free and has been for long enough;
+and once the way is not free any more, a vehicle that was sent back is held again at once."""
+
+from cratous.core.contracts.responses import Response, response_step
+from cratous.proofs.claim import Claim
+from cratous.spec.contracts import responses
+
+
+def claim(c: Claim) -> None:
+    before = Response(c.integer("state"), c.boolean("off"))
+    names = ("conflict", "ours", "good", "found", "free", "lasted", "taken")
+    conflict, ours, good, found, free, lasted, taken = (c.boolean(name) for name in names)
+    c.premise(c.define(responses.consistent, before.state, before.off))
+    step = c.use(response_step, before, conflict, ours, good, found, free, lasted, taken)
+    sent = c.same(step.act, responses.SEND_BACK)
+    may = c.define(responses.may_be_sent_back, conflict, free, lasted)
+    c.show(
+        c.implies(sent, c.all_of(may, before.off)), "only when it may be, and is off its mission"
+    )
+    resumes = c.same(step.response.state, responses.RESUME)
+    c.show(c.implies(resumes, c.all_of(free, c.negation(conflict))), "only on a free way")
+    was = c.same(before.state, responses.RESUME)
+    lost = c.all_of(was, c.negation(c.any_of(conflict, free, taken)))
+    c.show(
+        c.implies(lost, c.same(step.response.state, responses.HOLD)),
+        "an offer that is not free any more is withdrawn",
+    )
+    c.show(c.implies(resumes, c.any_of(sent, was)), "resume is only ever begun by the command")

@@ -1,0 +1,1 @@
+"""Detect and avoid on the bus: the DAIDALUS message series, detection, and the answer to a conflict."""

@@ -1,0 +1,176 @@
+"""DAIDALUS_WCV_Detection: who will take well clear from a vehicle, when, and which manoeuvres keep it.
+
+AirVehicleState of the ownship and of others -> WellClearViolationIntervals at each state of the
+ownship, from the proved engine (`core.daa_session`); DAIDALUSConfiguration once, before the first.
+Intervals are of headings (true) and of airspeeds, as DAIDALUS has them with wind; without wind these
+are courses and ground speeds. A dimension of which nothing can be said (the own value is out of its
+range) is one NEAR interval over the whole range, and a ServiceStatus says why.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.core.daa_session import Instant, Session
+from cratous.core.daa_state import UNKNOWN, Guidance
+from cratous.core.timeliness import in_time
+from cratous.services.bus import Envelope
+from cratous.services.uxas.daidalus.parameters import configuration_message
+from cratous.services.uxas.daidalus.states import Wind, air_vector, aircraft, comparable, wind_of
+from cratous.spec.daa import FAR, NEAR, RECOVERY, REGIONS, Parameters
+from cratous.spec.errors import BadInput
+
+STATE, STARTED = "afrl.cmasi.AirVehicleState", "uxas.messages.uxnative.StartupComplete"
+REMOVED = "afrl.cmasi.RemoveEntities"
+DEGREES = 180 / math.pi
+
+SERIES = {
+    "hdir": ("GroundHeadingInterval", "GroundHeadings", "WCVGroundHeadingIntervals",
+             "WCVGroundHeadingRegions", "GroundHeadingRecoveryInterval", "RecoveryGroundHeadings",
+             "RecoveryGroundHeadingIntervals", DEGREES),
+    "hs": ("GroundSpeedInterval", "GroundSpeeds", "WCVGroundSpeedIntervals",
+           "WCVGroundSpeedRegions", "GroundSpeedRecoveryInterval", "RecoveryGroundSpeeds",
+           "RecoveryGroundSpeedIntervals", 1.0),
+    "vs": ("VerticalSpeedInterval", "VerticalSpeeds", "WCVVerticalSpeedIntervals",
+           "WCVVerticalSpeedRegions", "VerticalSpeedRecoveryInterval", "RecoveryVerticalSpeed",
+           "RecoveryVerticalSpeedIntervals", 1.0),
+    "alt": ("AltitudeInterval", "Altitude", "WCVAlitudeIntervals", "WCVAltitudeRegions",
+            "AltitudeRecoveryInterval", "RecoveryAltitude", "RecoveryAltitudeIntervals", 1.0),
+}  # fmt: skip
+"""Per dimension: interval, its field, the lists in the message; the same for recovery; and the unit.
+Alitude is how the message spells it."""
+
+
+class Known(NamedTuple):
+    """The newest state of each vehicle, the history, whether the parameters were told, and what was
+    warned of."""
+
+    session: Session
+    states: dict[int, Any]
+    told: bool = False
+    warned: frozenset[str] = frozenset()
+
+
+Step = tuple[Known, Iterable[Any]]
+
+
+def interval_fields(g: Guidance) -> dict[str, list[Any]]:
+    """The lists of one dimension in WellClearViolationIntervals."""
+    interval, field, intervals, regions, recovery, recovery_field, recoveries, size = SERIES[
+        g.dimension
+    ]
+    made: dict[str, list[Any]] = {intervals: [], regions: [], recoveries: []}
+    for band in g.bands:
+        ends = [max(0.0, band.low * size) if g.dimension == "hdir" else band.low, band.high]
+        ends[1] = min(360.0, band.high * size) if g.dimension == "hdir" else band.high
+        if band.region == RECOVERY:
+            made[recoveries].append(lmcp.new(recovery, **{recovery_field: ends}))
+        elif band.region == UNKNOWN or FAR <= band.region <= NEAR:
+            made[intervals].append(lmcp.new(interval, **{field: ends}))
+            made[regions].append("NEAR" if band.region == UNKNOWN else REGIONS[band.region])
+    return made
+
+
+def intervals_message(own: Any, wind: Wind, instant: Instant) -> Any:
+    """WellClearViolationIntervals: intruders by time to violation, then the bands."""
+    found = []
+    for alert in instant.alerts:
+        first = alert.to_corrective_s
+        if first is None and alert.level:
+            first = alert.times[alert.level - 1].first_s
+        if first is not None:
+            found.append((first, int(alert.id), float(alert.level)))
+    found.sort()
+    heading, speed = air_vector(own, wind)
+    fields: dict[str, Any] = {}
+    for g in instant.guidance:
+        fields |= interval_fields(g)
+    return lmcp.new(
+        "WellClearViolationIntervals",
+        EntityList=[number for _, number, _ in found],
+        TimeToViolationList=[first for first, _, _ in found],
+        AlertLevelList=[level for _, _, level in found],
+        EntityId=own.ID,
+        CurrentHeading=heading,
+        CurrentGoundSpeed=speed,
+        CurrentVerticalSpeed=own.VerticalSpeed,
+        CurrentAltitude=own.Location.Altitude,
+        CurrentLatitude=own.Location.Latitude,
+        CurrentLongitude=own.Location.Longitude,
+        CurrentTime=own.Time / 1000,
+        **fields,
+    )
+
+
+class DaidalusDetection:
+    """For one vehicle."""
+
+    subscribes: tuple[str, ...] = (STATE, STARTED, REMOVED)
+
+    def __init__(self, name: str, vehicle: int, parameters: Parameters) -> None:
+        self.name, self._vehicle, self._parameters = name, vehicle, parameters
+        self._stale_ms = int(1000 * parameters.lookahead_time_s)
+
+    def start(self) -> Known:
+        return Known(Session(self._parameters), {})
+
+    def handle(self, state: Known, envelope: Envelope, now_ms: int) -> Step:
+        body, topic = envelope.body, envelope.topic
+        if topic == REMOVED:
+            left = {n: s for n, s in state.states.items() if n not in body.EntityList}
+            return state._replace(states=left), ()
+        out: list[Any] = []
+        if not state.told:
+            out.append(configuration_message(self._vehicle, self._parameters))
+            state = state._replace(told=True)
+        if topic == STARTED:
+            return state, out
+        state = state._replace(states={**state.states, body.ID: body})
+        if self._vehicle != body.ID:
+            return state, out
+        return self._look(state, body, out)
+
+    def _look(self, state: Known, own: Any, out: list[Any]) -> Step:
+        wind = wind_of(own)
+        others, why = [], []
+        for number, other in sorted(state.states.items()):
+            if number == own.ID:
+                continue
+            # a state may be ahead of the ownship's as well as behind it
+            early, late = sorted((own.Time, other.Time))
+            if not in_time(early, late, self._stale_ms):
+                why.append(f"vehicle {number}: its state is too old, it is left out")
+                continue
+            if not comparable(own, other):
+                why.append(
+                    f"vehicle {number}: an altitude of another type, taken to be the own one"
+                )
+            seen = aircraft(own, other, wind)
+            if not math.isfinite(sum(seen[1:7])):
+                why.append(f"vehicle {number}: its state is not finite, it is left out")
+                continue
+            others.append(seen)
+        try:
+            me = aircraft(own, own, wind)
+            instant = state.session.step(own.Time / 1000, me, others)
+        except BadInput as error:
+            why.append(f"nothing can be said: {error}")
+            return self._warn(state, why, out)
+        why += [f"{g.dimension}: {g.why}" for g in instant.guidance if g.why]
+        out.append(intervals_message(own, wind, instant))
+        return self._warn(state, why, out)
+
+    def _warn(self, state: Known, why: list[str], out: list[Any]) -> Step:
+        """Each reason is told when it comes up, whatever its numbers, and again after it was gone."""
+        kinds = {
+            text: "".join(c for c in text if not c.isdigit() and c not in ".-e") for text in why
+        }
+        for text, kind in kinds.items():
+            if kind not in state.warned:
+                pairs = (("VehicleID", str(self._vehicle)), ("reason", text))
+                info = [lmcp.new("KeyValuePair", Key=k, Value=v) for k, v in pairs]
+                out.append(lmcp.new("ServiceStatus", StatusType="Warning", Info=info))
+        return state._replace(warned=frozenset(kinds.values())), out
