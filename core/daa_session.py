@@ -29,14 +29,25 @@ from cratous.core.daa_engine import (
     region_level,
 )
 from cratous.core.daa_memory import BandMemory, Shown, goes_on
-from cratous.core.daa_state import DIMENSIONS, HDIR, Aircraft, Alert, Guidance, LevelTimes, Metrics
+from cratous.core.daa_persistence import EDGE, Held, Span, Ways
+from cratous.core.daa_state import (
+    DIMENSIONS,
+    HDIR,
+    UNKNOWN,
+    Aircraft,
+    Alert,
+    Guidance,
+    LevelTimes,
+    Metrics,
+)
 from cratous.spec.daa import FAR, NEAR, NONE, Parameters
 from cratous.spec.errors import BadInput
 
 
 class Instant(NamedTuple):
     """What is said at one time: alerts and metrics per intruder, guidance per dimension, who is in
-    conflict per region, and whether the corrective region is in conflict."""
+    conflict per region, and whether the corrective region is in conflict. held: per guidance the
+    resolutions that are shown, which may be earlier ones than the nearest (persistence)."""
 
     time_s: float
     own: Aircraft
@@ -47,6 +58,7 @@ class Instant(NamedTuple):
     corrective: bool
     seen: Seen
     raw: tuple[Raw | None, ...]
+    held: tuple[Held, ...] = ()
 
     def last_times(self, p: Parameters, i: int) -> tuple[float | None, ...] | None:
         """Last times to manoeuvre out of conflict with intruder i; None if there is no conflict."""
@@ -107,6 +119,17 @@ class Session:
         hold = p.persistence_time_s if p.bands_persistence else 0.0
         self.bands = [
             BandMemory(p.alerting_m, p.alerting_n, hold, 2 * math.pi * (d == HDIR))
+            for d in range(len(DIMENSIONS))
+        ]
+        # a change of just so much, but for rounding, is worth it
+        least = (
+            p.persistence_preferred_hdir_rad,
+            p.persistence_preferred_hs_m_s,
+            p.persistence_preferred_vs_m_s,
+            p.persistence_preferred_alt_m,
+        )
+        self.ways = [
+            Ways(p.persistence_time_s, least[d] - EDGE, 2 * math.pi * (d == HDIR))
             for d in range(len(DIMENSIONS))
         ]
 
@@ -177,6 +200,20 @@ class Session:
             needed and ways.prefer_up, raw.recovery, raw.peripheral,
         )  # fmt: skip
 
+    def _held(self, dimension: int, g: Guidance, remembers: bool) -> Held:
+        """The resolutions of a dimension that are shown."""
+        new = Held(g.up, g.down, g.prefer_up)
+        if not remembers or g.why:
+            self.ways[dimension].forget()
+            return new
+        corrective = self.parameters.corrective_region
+        spans = [
+            Span(b.low, b.high, 0 <= severity(b.region) < corrective and b.region != UNKNOWN)
+            for b in g.bands
+        ]
+        shrunk = g.recovery.shrunk if g.recovery.computed else -1
+        return self.ways[dimension].shown(spans, g.own, new, shrunk, self.time_s)
+
     def step(
         self,
         time_s: float,
@@ -220,7 +257,10 @@ class Session:
             for o, f in zip(others, found, strict=True)
         )
         corrective = any(conflict[r] for r in range(p.corrective_region, NEAR + 1))
-        return Instant(time_s, own, alerts, guidance, metrics, conflict, corrective, seen, raw)
+        ways = tuple(self._held(d, g, remembers) for d, g in zip(dimensions, guidance, strict=True))
+        return Instant(
+            time_s, own, alerts, guidance, metrics, conflict, corrective, seen, raw, ways
+        )
 
 
 __all__ = ["Instant", "LevelTimes", "Session", "metrics_of"]

@@ -294,6 +294,15 @@ class Differences:
         )
         self.note("resolution", fine,
                   f"{name}: resolutions expected {theirs['raw_up']}, {theirs['raw_low']}, got {ours.up}, {ours.down}", dimension)  # fmt: skip
+        if not fine:
+            return  # what is held was a nearest resolution once
+        held = self.instant.held[dimension]
+        up, down = _value(theirs["res_up"]), _value(theirs["res_low"])
+        good = _same_value(up, held.up, dimension) and _same_value(down, held.down, dimension)
+        self.note(
+            "resolution shown", good and held.prefer_up == theirs["pref_up"],
+            f"{name}: shown expected {theirs['res_up']}, {theirs['res_low']}, {theirs['pref_up']}, got {held}",
+        )  # fmt: skip
 
 
 def _value(value: Any) -> float | None:

@@ -155,7 +155,7 @@ def explain(p: Parameters, instant: Instant) -> list[str]:
     """Everything about one instant, in words."""
     lines = [f"time {instant.time_s:g} s, ownship {instant.own.id}"]
     lines += [f"alert {alert_text(p, instant, a)}" for a in instant.alerts]
-    for g in instant.guidance:
+    for g, held in zip(instant.guidance, instant.held, strict=True):
         raw = instant.raw[DIMENSIONS.index(g.dimension)]
         if raw is None:
             lines.append(f"{g.dimension}: {g.why}; no guidance")
@@ -171,4 +171,11 @@ def explain(p: Parameters, instant: Instant) -> list[str]:
                     "    the cylinder that recovery keeps clear is met, or history (M of N)"
                 )
         lines += resolution(p, instant, g, raw)
+        if g.needed and held != (g.up, g.down, g.prefer_up):
+            value = held.up if held.prefer_up else held.down
+            if value is not None:
+                lines.append(
+                    f"{g.dimension}: shown is {value_text(g.dimension, value)}, as before: a change "
+                    "would be early or small, or keep a smaller distance"
+                )
     return lines

@@ -47,18 +47,18 @@ def alert_rows(instant: Instant) -> list[dict[str, Any]]:
 def band_rows(instant: Instant) -> list[dict[str, Any]]:
     """One row a band."""
     rows = []
-    for g in instant.guidance:
+    for g, held in zip(instant.guidance, instant.held, strict=True):
         r = g.recovery
         recovery = "saturated" if r.saturated else (f"{r.time_s:g}" if r.time_s is not None else "")
         way = (
             ""
-            if not g.needed or (g.up is None and g.down is None)
-            else ("up" if g.prefer_up else "down")
+            if not g.needed or (held.up is None and held.down is None)
+            else ("up" if held.prefer_up else "down")
         )
         for b in g.bands:
             values = (
-                instant.time_s, g.dimension, g.own, b.low, b.high, region_text(b.region), g.up,
-                g.down, way, recovery,
+                instant.time_s, g.dimension, g.own, b.low, b.high, region_text(b.region), held.up,
+                held.down, way, recovery,
             )  # fmt: skip
             rows.append(dict(zip(BANDS, values, strict=True)))
     return rows
@@ -123,8 +123,9 @@ def as_data(instant: Instant) -> dict[str, Any]:
                 "region": region_text(g.region),
                 "recovery": g.recovery._asdict(),
                 "peripheral": {region_text(k): list(v) for k, v in g.peripheral.items()},
+                "shown": held._asdict(),
             }
-            for g in instant.guidance
+            for g, held in zip(instant.guidance, instant.held, strict=True)
         ],
         "metrics": [m._asdict() for m in instant.metrics],
         "conflict": {region_text(k): list(v) for k, v in instant.conflict.items()},
