@@ -45,7 +45,9 @@ def assign(
     from cratous.services.planning.assign_certificate import certified, verify, write
     from cratous.services.planning.assign_solvers import why_infeasible
     from cratous.services.planning.assign_vectors import read
+    from cratous.services.standing import require
 
+    require()
     try:
         data = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:

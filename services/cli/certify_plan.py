@@ -23,7 +23,9 @@ def certify_plan(file: Path, as_json: bool) -> int:
     Exit codes: 0 the claim holds, 1 it does not (with the reason), 2 bad input.
     """
     from cratous.services.planning.assign_certificate import read, verify
+    from cratous.services.standing import require
 
+    require()
     verdict = verify(read(file))
     code = 1 if verdict.wrong else 0
     if as_json:

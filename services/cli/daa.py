@@ -36,7 +36,9 @@ def daa() -> None:
 
 def _steps(file: Path, config: str, ownship: str, dimensions: tuple[int, ...]) -> Iterator[Any]:
     from cratous.services.daa import named_or_file, run
+    from cratous.services.standing import require
 
+    require()
     return run(file, named_or_file(config).parameters, ownship, dimensions)
 
 
