@@ -12,7 +12,7 @@ import z3
 from cratous.core import ledger as gate
 from cratous.core import well_clear
 from cratous.core.kernel import REGISTRY, Fold, Vec2
-from cratous.proofs import prover
+from cratous.proofs import prover, recheck
 from cratous.proofs.claim import Claim
 from cratous.proofs.ledger import Inventory, records
 from cratous.proofs.lift import lift
@@ -298,8 +298,13 @@ def test_the_lint_names_what_is_outside_of_the_subset():
 
 
 # -- the theorems themselves ------------------------------------------------------------------
-# all theorems are proved by `cratous prove`; these few show that one can be proved alone
-QUICK = [n for n in prover.theorem_files() if n.startswith(("gate_", "timing_", "contracts_"))]
+# all theorems are proved by `cratous prove`; those that take little effort are proved here too, alone
+EFFORT = recheck.read()["theorems"]
+QUICK = [
+    name
+    for name in prover.theorem_files()
+    if not name.startswith("filter_") and EFFORT.get(name, {}).get("z3_effort", 0) < 10_000
+]
 
 
 @pytest.mark.parametrize("name", QUICK)
