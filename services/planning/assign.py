@@ -47,6 +47,8 @@ WORK = 16_000_000
 """Tasks that are decoded in one annealing: steps times tasks."""
 ROUNDS, ROUNDS_MAX = 12, 10_000
 """Improvements of a problem of many tasks without and with a limit."""
+STEPS_A_NODE = 8
+"""Steps of annealing that take about as long as a node of the exact search."""
 REBUILDS, REBUILD_NODES, HEATS = 150_000, 40, (0.0, 0.01, 0.003, 0.03)
 """Rounds times tasks of one improvement, what a round counts as, and first temperatures."""
 REPAIRS = 60
@@ -292,16 +294,17 @@ def _rebuild(run: _Run, instance: Instance, k: int, moves: Moves, again: int) ->
 def _try(
     run: _Run, instance: Instance, k: int, moves: Moves, steps: int, again: int, hot: float = 0.15
 ) -> tuple[int, Moves]:
-    """Anneal from a solution, within what is left of the node limit; steps count as nodes."""
+    """Anneal from a solution, within what is left of the node limit."""
     if run.limits.nodes is not None:
         # up to that many tasks refuting is worth the larger share
         share = 0.3 if instance.tasks <= DEALS_TASKS else 1.0
-        steps = min(steps, max(0, int(share * run.limits.nodes) - run.nodes))
+        left = max(0, int(share * run.limits.nodes) - run.nodes)
+        steps = min(steps, STEPS_A_NODE * left)
     if run.over():
         steps = 0
     hot = min(hot, 2.0 / instance.tasks)
     cost, better = improve(instance, moves, steps, run.limits.seed + again, hot)
-    run.nodes += steps
+    run.nodes += -(-steps // STEPS_A_NODE)
     run.better(cost, k, better)
     return cost, better
 
