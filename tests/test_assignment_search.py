@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from cratous.core.assignment_refute import first_state, look_ahead, refute, shor
 from cratous.core.assignment_search import bound, place
 from cratous.services.cli import main
 from cratous.services.planning import assign_certificate as certificates
-from cratous.services.planning.assign import Limits, solve
+from cratous.services.planning.assign import Limits, solve, warm
 from cratous.services.planning.assign_problem import arrays, parts
 from cratous.services.planning.assign_replay import replayed
 from cratous.services.planning.assign_solvers import none_below, schedule_holds, why_infeasible
@@ -378,3 +379,22 @@ def least_sum(i: Instance, state: np.ndarray) -> int:
             for a in [int(state[1 + v]), *[b for b in range(k) if is_open[b] and i.task[b] != j]]
         )
     return total
+
+
+@pytest.mark.slow
+def test_hundreds_of_options_do_not_slow_the_bound_down() -> None:
+    """As many as example 06 of OpenUxAS has; asked pair by pair the bounds took minutes."""
+    rng = np.random.default_rng(3)
+    tasks, each, vehicles = 20, 25, 4
+    count = tasks * each
+    choices = tuple(
+        Choice(1 + k // each, k, int(rng.integers(100, 300)), (1, 2, 3, 4)) for k in range(count)
+    )
+    rows = tuple(tuple(row) for row in rng.integers(50, 900, (count + 1, count)).tolist())
+    p = AssignmentProblem("", (1, 2, 3, 4), (0,) * vehicles, choices, (rows,) * vehicles, "")
+    warm()
+    begun = time.process_time()
+    found = solve(p, Limits(nodes=400_000, width=50_000))
+    assert found.cost is not None
+    assert found.nodes >= 400_000
+    assert time.process_time() - begun < 20
