@@ -164,11 +164,12 @@ def _searched(
         firsts.append(moves)
         if moves is not None:
             run.better(improve(instance, moves, 0, run.limits.seed)[0], k, moves)
+    proofs = [Proof("estimate", estimate(instance)) for instance in made]
+    run.bound = min((p.bound for p in proofs), default=0)
+    # a first leaf that costs no more than the bound is not to be improved
     if run.limits.nodes != 0 and not run.near():
         _anneal(run, made, firsts)
-        proofs = _prove(run, made)
-    else:
-        proofs = [Proof("estimate", estimate(instance)) for instance in made]
+        _prove(run, made, proofs)
     _list_chains(run, proofs)
     run.bound = min((p.bound for p in proofs), default=NONE) if complete else 0
     return run, proofs
@@ -309,9 +310,8 @@ def _try(
     return cost, better
 
 
-def _prove(run: _Run, made: list[Instance]) -> list[Proof]:
-    """A proof of a bound for each branch; better solutions are taken on the way."""
-    proofs = [Proof("estimate", estimate(instance)) for instance in made]
+def _prove(run: _Run, made: list[Instance], proofs: list[Proof]) -> None:
+    """Better proofs of a bound for each branch; better solutions are taken on the way."""
     most = max((i.tasks for i in made), default=0)
     for share in (0, 1000) if most <= DEALS_SURE else (900, 950, 980, 1000):
         for k, instance in enumerate(made):
@@ -332,7 +332,6 @@ def _prove(run: _Run, made: list[Instance]) -> list[Proof]:
         run.tell()
         if run.near() or run.over():
             break
-    return proofs
 
 
 def _solution(run: _Run, proofs: list[Proof], replay: bool) -> Solution:
