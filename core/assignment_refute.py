@@ -105,7 +105,7 @@ def look_ahead(instance: Instance) -> Ahead:
         kind_of[v] = kinds[key]
     least_over = machine_for(i, nearest_ways)
     nearest, cheapest = least_over(reach, i.may), least_over(i.added, i.may)
-    return Ahead(
+    return Ahead(  # type: ignore[call-arg]  # numba's results have no types
         *machine_for(i, ways_to_tasks)(reach, cheapest, i.duration, i.task, i.may, i.tasks),
         *machine_for(i, ways_between_tasks)(nearest, cheapest, i.duration, i.task, i.tasks),
         least, head, tail, able, kind_of, np.array(leader, np.int64),
