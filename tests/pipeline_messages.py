@@ -75,3 +75,25 @@ def matrix(number: int, *rows: Any) -> Any:
     return lmcp.new(
         "AssignmentCostMatrix", CorrespondingAutomationRequestID=number, CostMatrix=list(rows)
     )
+
+
+def mission(count: int, back_to: int = 0, first: int = 1, vehicle_id: int = 1) -> Any:
+    """Waypoints 1 to count in a row, the last one leads to `back_to` (0: to itself)."""
+    points = [
+        lmcp.new(
+            "Waypoint",
+            Number=n,
+            NextWaypoint=n + 1 if n < count else back_to or n,
+            Speed=20.0,
+            Latitude=0.01 * n,
+            AssociatedTasks=[9] if n > 2 else [],
+        )
+        for n in range(1, count + 1)
+    ]
+    return lmcp.new(
+        "MissionCommand", VehicleID=vehicle_id, WaypointList=points, FirstWaypoint=first
+    )
+
+
+def response(*commands: Any) -> Any:
+    return lmcp.new("AutomationResponse", MissionCommandList=list(commands))
