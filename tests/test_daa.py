@@ -6,6 +6,7 @@ import dataclasses
 import math
 from pathlib import Path
 
+import daa_scenes
 import numpy as np
 import pytest
 from daa_scenes import head_on
@@ -31,16 +32,6 @@ from cratous.spec.daa import (
 )
 from cratous.spec.daa_presets import preset
 from cratous.spec.errors import BadInput
-
-
-def load_scenes():
-    import importlib.util
-
-    file = Path(__file__).with_name("daa_scenes.py")
-    spec = importlib.util.spec_from_file_location("daa_scenes", file)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +86,7 @@ def test_a_changed_vector_fails(vectors: Path):
 
 # -- degenerate encounters ---------------------------------------------------------------
 def test_random_and_degenerate_encounters():
-    answered, refused = load_scenes().run(400, seed=3)
+    answered, refused = daa_scenes.run(400, seed=3)
     assert answered + refused == 400
     assert answered > 300
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-import importlib.util
 import json
 import math
 import random
 from pathlib import Path
-from typing import Any
 
+import daa_scenes
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -210,22 +209,12 @@ def test_nobody_in_the_way_leaves_every_manoeuvre_free(p: Parameters) -> None:
     assert from_state(p_all, own, [blind]).answer == WAY_OUT
 
 
-def load_scenes() -> Any:
-    file = Path(__file__).with_name("daa_scenes.py")
-    spec = importlib.util.spec_from_file_location("daa_scenes", file)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 def test_degenerate_states_are_answered_or_refused(p: Parameters) -> None:
-    rng, scenes = random.Random(11), load_scenes()
+    rng = random.Random(11)
     short = dataclasses.replace(p, lookahead_time_s=20.0, step_hdir_rad=math.radians(10),
                                 step_alt_m=500.0, step_vs_m_s=5.0, step_hs_m_s=30.0)  # fmt: skip
     for _ in range(60):
-        own, others = scenes.scene(rng)
+        own, others = daa_scenes.scene(rng)
         try:
             said = from_state(short, own, others)
         except BadInput:

@@ -29,6 +29,15 @@ PIPELINE = "".join(
 LEFT_OUT = ("AutomationDiagramDataService", "MessageLoggerDataService")
 
 
+def send_one_vehicle_and_its_task(client: Client, shared: Path) -> None:
+    """Vehicle 400 and task 1000 of the waterway example."""
+    folder = shared / "examples/openuxas/waterway/inputs"
+    for name in ("AirVehicleConfiguration_V400", "AirVehicleState_V400"):
+        client.send(lmcp.xml.read_file(folder / f"{name}.xml", [])[0])
+    (task,) = lmcp.xml.read_file(next((folder / "tasks").glob("1000*")), [])
+    client.send(task)
+
+
 def test_the_waterway_mission_for_a_cmasi_client(shared: Path, tmp_path: Path) -> None:
     """The example's own configuration; the client sends all messages and gets its plan by TCP."""
     folder = shared / "examples/openuxas/waterway"
@@ -74,11 +83,7 @@ def test_each_request_gets_one_response_in_order_with_reasons(
     opened.append(one)
     client = Client(port)
     opened.append(client)
-    folder = shared / "examples/openuxas/waterway/inputs"
-    for name in ("AirVehicleConfiguration_V400", "AirVehicleState_V400"):
-        client.send(lmcp.xml.read_file(folder / f"{name}.xml", [])[0])
-    (task,) = lmcp.xml.read_file(next((folder / "tasks").glob("1000*")), [])
-    client.send(task)
+    send_one_vehicle_and_its_task(client, shared)
     request = lmcp.new("AutomationRequest", EntityList=[400], TaskList=[1000])
     for body in (
         request,
@@ -145,11 +150,7 @@ def test_a_request_without_a_response_is_answered_in_time_and_strays_do_not_end_
     opened.append(one)
     client = Client(port)
     opened.append(client)
-    folder = shared / "examples/openuxas/waterway/inputs"
-    for name in ("AirVehicleConfiguration_V400", "AirVehicleState_V400"):
-        client.send(lmcp.xml.read_file(folder / f"{name}.xml", [])[0])
-    (task,) = lmcp.xml.read_file(next((folder / "tasks").glob("1000*")), [])
-    client.send(task)
+    send_one_vehicle_and_its_task(client, shared)
     until(lambda: "TaskInitialized" in client.kinds(), one)
     number = next(n for n, name in one.manager.services.items() if name == "PlanBuilderService")
     client.send(lmcp.new("KillService", ServiceID=number))
