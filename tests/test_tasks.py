@@ -66,6 +66,19 @@ def test_turns_go_around_zones_beside_the_area() -> None:
     assert min(o.duration_ms for o in found) >= min(o.duration_ms for o in free)
 
 
+def test_a_turn_that_would_lead_through_a_zone_is_routed_around_it() -> None:
+    lanes, zone = area(sweep_rad=0.0), keep_out(1150.0, 200.0, 1250.0, 300.0)
+    free, _ = options(lanes)
+    through = {o.label: o for o in free if first_bad_leg(o.path, (zone,)) is not None}
+    assert 0 < len(through) < len(free)
+    found = {o.label: o for o in options(lanes, zones=(zone,))[0]}
+    assert through.keys() <= found.keys(), "routed, not dropped"
+    for label, option in found.items():
+        assert first_bad_leg(option.path, (zone,)) is None
+        if label in through:
+            assert option.duration_ms > through[label].duration_ms
+
+
 @pytest.mark.parametrize(
     ("task", "who", "words"),
     [
