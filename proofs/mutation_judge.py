@@ -39,6 +39,7 @@ from cratous.proofs.mutation_statements import (
 )
 from cratous.proofs.mutation_terms import (
     FAR,
+    GLANCE,
     NEAR,
     budget,
     equal,
@@ -149,12 +150,20 @@ class Target:
         return all(ask(question, most) == "unsat" for question in self._questions(name, mutant))
 
     def allowed(self, rows: tuple[tuple, ...]) -> list[tuple]:
-        """Up to three of these inputs for which some theorem speaks about the function."""
-        found: list[tuple] = []
+        """Up to three of these inputs for which some theorem speaks about the function.
+
+        Most that are allowed are easily seen to be; a few get more effort where none is.
+        """
         visits = [(name, visit) for name in self.users for visit in self.visits[name][:4]]
+        return self._allowed(rows, visits, GLANCE) or self._allowed(rows[:2], visits, NEAR)
+
+    def _allowed(
+        self, rows: tuple[tuple, ...], visits: list[tuple[str, Visit]], effort: int
+    ) -> list[tuple]:
+        found: list[tuple] = []
         for row in rows:
             for number, (name, visit) in enumerate(visits):
-                if self._allows(name, visit, row):
+                if self._allows(name, visit, row, effort):
                     found.append(row)
                     # what allowed one input is likely to allow the next
                     visits.insert(0, visits.pop(number))
@@ -163,14 +172,14 @@ class Target:
                 break
         return found
 
-    def _allows(self, name: str, visit: Visit, row: tuple) -> bool:
+    def _allows(self, name: str, visit: Visit, row: tuple, effort: int) -> bool:
         """Do the theorem's premises leave this input to the visit?"""
         conditions = [*claim_of(name).premises, *visit.context]
         # on a path of a caller, or in a theorem with other values, it may be a question
         plain = with_values(conditions, visit.args, row)
         if plain is False or (plain and not visit.context):
             return plain
-        return ask([*equal(visit.args, row), *conditions], NEAR) == "sat"
+        return ask([*equal(visit.args, row), *conditions], effort) == "sat"
 
     def judge_start(self, mutant: Mutant) -> Result:
         """The verdict on another start of a fold."""
