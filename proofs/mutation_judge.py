@@ -175,9 +175,11 @@ class Target:
         Most that are allowed are easily seen to be; a few get more effort where none is.
         """
         visits = [(name, visit) for name in self.users for visit in self.visits[name][:4]]
-        # where points are known and none of them tells the two apart, these hardly will
-        glanced = rows[:6] if self.points else rows
-        return self._allowed(glanced, visits, GLANCE) or self._allowed(rows[:2], visits, NEAR)
+        if self.points:
+            # none of the known points tells the two apart, so these hardly will: a glance is enough,
+            # and the comparison that follows finds an input that does
+            return self._allowed(rows[:6], visits, GLANCE)
+        return self._allowed(rows, visits, GLANCE) or self._allowed(rows[:2], visits, NEAR)
 
     def _allowed(
         self, rows: tuple[tuple, ...], visits: list[tuple[str, Visit]], effort: int
