@@ -8,13 +8,13 @@ machine does not count.
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
 import shapely
+from table import alone
 
 from cratous.core import geofence
 from cratous.core.kernel import Vec2
@@ -88,14 +88,5 @@ def rows() -> list[tuple[str, float, str, float]]:
     return found
 
 
-def main() -> int:
-    """Print the table of this file alone."""
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
-    for what, ours, peer, theirs in rows():
-        print(f"| {what} | {ours:,.1f} | {peer} | {theirs:,.1f} | {theirs / ours:.2f} |")
-    return 0
-
-
 if __name__ == "__main__":
-    raise SystemExit(main())
+    raise SystemExit(alone(rows))

@@ -7,10 +7,10 @@ another machine, with the same configuration on the same kind of encounters: fre
 
 from __future__ import annotations
 
-import os
 import time
 
 import numpy as np
+from table import on_one_core
 
 from cratous.core.daa_alerting import raw_levels
 from cratous.core.daa_engine import tables_at
@@ -92,8 +92,7 @@ def rows() -> list[tuple[str, float, str, float]]:
 
 def main() -> int:
     """Measure and print."""
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+    on_one_core()
     print("| bands in four dimensions, DO-365B | ms | greatest | DAIDALUS -O, ms | times faster |")
     print("|---|---|---|---|---|")
     for n, peer in PEER_MS.items():

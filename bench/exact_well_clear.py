@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import ctypes
 import functools
-import os
 import shutil
 import subprocess
 import tempfile
@@ -20,6 +19,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
+from table import alone
 
 from cratous.core.compiled import compiled
 from cratous.core.exactly import exactly
@@ -169,14 +169,5 @@ def rows() -> list[tuple[str, float, str, float]]:
     return found
 
 
-def main() -> int:
-    """Print the table of this file alone."""
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
-    for what, ours, peer, theirs in rows():
-        print(f"| {what} | {ours:,.2f} | {peer} | {theirs:,.2f} | {theirs / ours:.2f} |")
-    return 0
-
-
 if __name__ == "__main__":
-    raise SystemExit(main())
+    raise SystemExit(alone(rows))

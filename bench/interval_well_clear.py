@@ -9,7 +9,6 @@ in which the contenders take turns.
 from __future__ import annotations
 
 import ctypes
-import os
 import shutil
 import subprocess
 import sys
@@ -25,6 +24,7 @@ from cratous.core.well_clear import violation_during_taumod, violation_interval_
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from exact_well_clear import least
+from table import alone
 
 N = 1_000_000
 ROUNDS = 25
@@ -121,14 +121,5 @@ def rows() -> list[tuple[str, float, str, float]]:
     ]
 
 
-def main() -> int:
-    """Print the table of this file alone."""
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
-    for what, ours, peer, theirs in rows():
-        print(f"| {what} | {ours:,.2f} | {peer} | {theirs:,.2f} | {theirs / ours:.2f} |")
-    return 0
-
-
 if __name__ == "__main__":
-    raise SystemExit(main())
+    raise SystemExit(alone(rows))

@@ -14,6 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from table import alone
 
 from cratous.core import routing
 from cratous.core.daa_machine import machine
@@ -84,5 +85,4 @@ def request_ns(folder: Path) -> float:
 
 
 if __name__ == "__main__":
-    for what, ours, peer, theirs in rows():
-        print(f"{what}: {1e9 / ours:,.1f}/s; {peer}: {1e9 / theirs:,.1f}/s; {theirs / ours:.2f}")
+    raise SystemExit(alone(rows))

@@ -10,7 +10,6 @@ plans in `planning.py`, those of bands and alerts, against recorded figures, in 
 
 from __future__ import annotations
 
-import os
 import sys
 import time
 from collections.abc import Callable
@@ -32,6 +31,7 @@ import exact_well_clear
 import interval_well_clear
 import lmcp_codec
 import planning
+from table import markdown, on_one_core
 
 README = Path(__file__).resolve().parent / "README.md"
 MARK, END = "<!-- table -->", "<!-- end of table -->"
@@ -101,18 +101,13 @@ def rows() -> list[tuple[str, float, str, float]]:
 
 def table() -> str:
     """The table as Markdown."""
-    lines = ["| what | ns each | peer | ns each | peer / ours |", "|---|---|---|---|---|"]
-    for what, ours, peer, theirs in rows():
-        digits = 2 if ours < 10 else 0
-        ns = [f"{value:,.{digits}f}" for value in (ours, theirs)]
-        lines.append(f"| {what} | {ns[0]} | {peer} | {ns[1]} | {theirs / ours:.2f} |")
-    return "\n".join(lines)
+    head = ["| what | ns each | peer | ns each | peer / ours |", "|---|---|---|---|---|"]
+    return "\n".join([*head, *markdown(rows())])
 
 
 def main() -> int:
     """Measure, print, and with --write keep."""
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+    on_one_core()
     text = table()
     print(text)
     if "--write" in sys.argv:

@@ -52,14 +52,15 @@ def values(
         answer = check(solver, context, effort)
         if answer == "sat":
             model = solver.model()
-            found = [_python(model.eval(t.translate(context), True)) for t in wanted]
+            found = [number(model.eval(t.translate(context), True)) for t in wanted]
             return answer, None if None in found else found
         if answer != "unknown":
             return answer, None
     return "unknown", None
 
 
-def _python(term: z3.ExprRef) -> Any:
+def number(term: z3.ExprRef) -> Any:
+    """A constant as Python has it; None for anything else."""
     if z3.is_true(term) or z3.is_false(term):
         return z3.is_true(term)
     if z3.is_int_value(term) or z3.is_bv_value(term):

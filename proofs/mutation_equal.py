@@ -54,7 +54,8 @@ class Equality:
                 given = [*claim.premises, *claim.facts, *visit.context]
                 if leaves and _lies_in(domain, leaves, visit.args, given):
                     continue
-                answer, row = self._differs(mutant, visit.args, given, SAME)
+                # where one call is not decided, the others can only show a difference
+                answer, row = self._differs(mutant, visit.args, given, NEAR if undecided else SAME)
                 if answer == "sat":
                     return "survived", "differs for values that a theorem allows", row
                 undecided = undecided or answer != "unsat"

@@ -26,6 +26,7 @@ from cratous.proofs.mutation_inputs import SAMPLES, compare, inputs
 from cratous.proofs.mutation_inputs import run as run_once
 from cratous.proofs.mutation_keys import Keys, Store
 from cratous.proofs.mutation_operators import Mutant, mutants
+from cratous.proofs.mutation_points import Point, points
 from cratous.proofs.mutation_results import Result
 from cratous.proofs.mutation_statements import (
     Stillborn,
@@ -39,6 +40,7 @@ from cratous.proofs.mutation_statements import (
 )
 from cratous.proofs.mutation_terms import (
     FAR,
+    GLANCE,
     NEAR,
     budget,
     equal,
@@ -47,6 +49,9 @@ from cratous.proofs.mutation_terms import (
     row_text,
     with_values,
 )
+
+LOOKED_AT, MANY = 8, 100
+"""Theorems that are looked at for inputs they allow, and inputs after which that ends."""
 
 
 class Target:
@@ -61,9 +66,22 @@ class Target:
         self.users = sorted(users, key=self._promise)
         self.equality = Equality(original, {name: self.visits[name] for name in self.users})
         self.place = position(original).rpartition(":")[0]
+        self.points: list[Point] = []
         if not isinstance(original, Fold):
             self.rows = inputs(original, self.equality.masks(), SAMPLES)
             self.results = [run_once(original, row) for row in self.rows]
+            self.points = self._points()
+            self.results_there = [run_once(original, point.row) for point in self.points]
+
+    def _points(self) -> list[Point]:
+        """Inputs that theorems allow: of those that are most likely to notice."""
+        found = []
+        for name in self.users[:LOOKED_AT]:
+            for visit in self.visits[name][:2]:
+                found += points(self.original, name, claim_of(name).premises, visit)
+            if len(found) > MANY:
+                break
+        return found
 
     def learn(self, killers: Counter[str]) -> None:
         """Theorems that killed most of the mutants so far come first from now on."""
@@ -87,7 +105,9 @@ class Target:
         if seen.stillborn:
             return verdict("stillborn", note=seen.stillborn)
         try:
-            rows = self.allowed(seen.inputs)
+            there = compare(mutant.function, [p.row for p in self.points], self.results_there)
+            # an input that a theorem is known to allow spares the question whether one does
+            rows = list(there.inputs[:3]) or self.allowed(seen.inputs)
             if rows:
                 by = self.refuted(mutant.function, rows)
                 note = f"differs at {row_text(rows[0])}"
@@ -129,7 +149,8 @@ class Target:
     def _refutes(
         self, name: str, questions: list[list[z3.BoolRef]], rows: list[tuple], near: int, far: int
     ) -> bool:
-        starts = [equal(v.args, row) for row in rows for v in self.visits[name][:2]]
+        starts = [[*p.values] for p in self.points if p.theorem == name and p.row in rows][:3]
+        starts += [equal(v.args, row) for row in rows for v in self.visits[name][:2]]
         return any(
             ask([*start, *question], near if start else far) == "sat"
             for start in [*starts, []]
@@ -149,12 +170,24 @@ class Target:
         return all(ask(question, most) == "unsat" for question in self._questions(name, mutant))
 
     def allowed(self, rows: tuple[tuple, ...]) -> list[tuple]:
-        """Up to three of these inputs for which some theorem speaks about the function."""
-        found: list[tuple] = []
+        """Up to three of these inputs for which some theorem speaks about the function.
+
+        Most that are allowed are easily seen to be; a few get more effort where none is.
+        """
         visits = [(name, visit) for name in self.users for visit in self.visits[name][:4]]
+        if self.points:
+            # none of the known points tells the two apart, so these hardly will: a glance is enough,
+            # and the comparison that follows finds an input that does
+            return self._allowed(rows[:6], visits, GLANCE)
+        return self._allowed(rows, visits, GLANCE) or self._allowed(rows[:2], visits, NEAR)
+
+    def _allowed(
+        self, rows: tuple[tuple, ...], visits: list[tuple[str, Visit]], effort: int
+    ) -> list[tuple]:
+        found: list[tuple] = []
         for row in rows:
             for number, (name, visit) in enumerate(visits):
-                if self._allows(name, visit, row):
+                if self._allows(name, visit, row, effort):
                     found.append(row)
                     # what allowed one input is likely to allow the next
                     visits.insert(0, visits.pop(number))
@@ -163,14 +196,14 @@ class Target:
                 break
         return found
 
-    def _allows(self, name: str, visit: Visit, row: tuple) -> bool:
+    def _allows(self, name: str, visit: Visit, row: tuple, effort: int) -> bool:
         """Do the theorem's premises leave this input to the visit?"""
         conditions = [*claim_of(name).premises, *visit.context]
         # on a path of a caller, or in a theorem with other values, it may be a question
         plain = with_values(conditions, visit.args, row)
         if plain is False or (plain and not visit.context):
             return plain
-        return ask([*equal(visit.args, row), *conditions], NEAR) == "sat"
+        return ask([*equal(visit.args, row), *conditions], effort) == "sat"
 
     def judge_start(self, mutant: Mutant) -> Result:
         """The verdict on another start of a fold."""

@@ -11,6 +11,8 @@ import z3
 from cratous.proofs.symbolic import SymMask, _raw
 from cratous.proofs.terms import free_names, known
 
+GLANCE = 8_000
+"""Effort to see that an input is one that a theorem speaks about."""
 NEAR = 120_000
 """Effort for a question whose inputs are fixed."""
 FAR = 3_000_000

@@ -129,7 +129,8 @@ def _chains(mission: Mission, plan: Plan) -> Iterator[Verdict]:
         yield _verdict(
             f"chain: vehicle {vehicle.id}",
             not faults,
-            "; ".join(faults) or f"{len(chain)} tasks, done at {free_ms / 1000:.3f} s",
+            "; ".join(faults)
+            or f"{len(chain)} task{'' if len(chain) == 1 else 's'}, done at {free_ms / 1000:.3f} s",
             "row_holds",
             checks=4 * len(chain),
             vehicles=(vehicle.id,),

@@ -36,6 +36,7 @@ from cratous.spec.daa import (
     Volume,
 )
 from cratous.spec.errors import BadInput
+from cratous.spec.text_file import text_of
 
 SPREADS = {"hdir": ("rad", "deg"), "hs": ("m_s", "knot"), "vs": ("m_s", "fpm"), "alt": ("m", "ft")}
 THRESHOLDS = {
@@ -346,13 +347,7 @@ def check(p: Parameters, where: str, lines: Mapping[str, str] = MappingProxyType
 
 def read(file: Path, base: Parameters | None = None) -> Configuration:
     """The configuration in a file; raises BadInput."""
-    try:
-        text = file.read_text(encoding="utf-8")
-    except FileNotFoundError as error:
-        raise BadInput("there is no such file", where=str(file)) from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise BadInput(f"the file cannot be read: {error}", where=str(file)) from error
-    return parse(text, str(file), base)
+    return parse(text_of(file), str(file), base)
 
 
 def _text(value: float, unit: str) -> str:

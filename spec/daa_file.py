@@ -20,6 +20,7 @@ from typing import Any
 from cratous.spec.daa import KEYS, OLD_NAMES, UNITS
 from cratous.spec.daa_conf import Entry, value_of
 from cratous.spec.errors import BadInput
+from cratous.spec.text_file import text_of
 
 COLUMNS: dict[str, tuple[tuple[str, ...], str, str]] = {
     "id": (("name", "aircraft", "id"), "", ""),
@@ -251,10 +252,4 @@ def _steps(file: str, own: str, settings: dict[str, Any], rows: Sequence[Row]) -
 
 def read(file: Path, ownship: str = "") -> Encounters:
     """The steps of a file; raises BadInput."""
-    try:
-        text = file.read_text(encoding="utf-8")
-    except FileNotFoundError as error:
-        raise BadInput("there is no such file", where=str(file)) from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise BadInput(f"the file cannot be read: {error}", where=str(file)) from error
-    return parse(text, str(file), ownship)
+    return parse(text_of(file), str(file), ownship)

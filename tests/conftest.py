@@ -1,9 +1,12 @@
-"""Where the reference inputs lie, if they are there; the product stands without them."""
+"""Where the reference inputs lie, if they are there (the product stands without them), and what is
+closed when a test ends."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -29,3 +32,12 @@ def shared() -> Path:
 def root() -> Path:
     """The repository."""
     return ROOT
+
+
+@pytest.fixture
+def opened() -> Iterator[list[Any]]:
+    """Everything in here is closed at the end."""
+    made: list[Any] = []
+    yield made
+    for one in reversed(made):
+        one.close()

@@ -64,6 +64,11 @@ def scene(rng: random.Random) -> tuple[Aircraft, list[Aircraft]]:
     return own, others
 
 
+def head_on(distance_m: float = 15000.0) -> tuple[Aircraft, Aircraft]:
+    own = Aircraft("own", 0, 0, 2000, 0, 100, 0)
+    return own, Aircraft("i", 200, distance_m, 2000, 0, -100, 0)
+
+
 def numbers(value: object) -> Iterator[float]:
     """All floats in nested tuples."""
     if isinstance(value, float):

@@ -17,6 +17,8 @@ from cratous.services.frames import Projection
 from cratous.spec.mission import Frame, Position
 
 DETECTION, RESPONSE = "DAIDALUS_WCV_Detection", "DAIDALUS_WCV_Response"
+SEES = f'Type="{DETECTION}" VehicleID="2" TurnRate="3"'
+ACTS = f'Type="{RESPONSE}" VehicleID="2"'
 PLANE = Projection(Frame(0.0, 0.0))
 VOLUME = (1222.32, 137.16, 35.0, 0.0)
 TURN_DEG_S = 3.0
@@ -172,3 +174,11 @@ def fly(sky: Sky, crafts: list[Craft], seconds: int, step_s: float = 1.0) -> lis
             c.fly(step_s)
         losses.append(any(lost(crafts[0], other) for other in crafts[1:]))
     return losses
+
+
+def head_on(**more: Any) -> list[Any]:
+    return [state(1, 6000.0, 0.0, 180.0, 50.0, 1000, **more), state(2, 0.0, 0.0, 0.0, 50.0, 1000)]
+
+
+def intervals(sky: Sky) -> Any:
+    return sky.got("WellClearViolationIntervals")[-1]

@@ -1,8 +1,11 @@
-"""Logs of messages for tests: written, read, copied into other formats."""
+"""Logs of messages for tests: written, read, copied into other formats; a disk that is full."""
 
 from __future__ import annotations
 
+import resource
+import signal
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from cratous.bridge import lmcp
@@ -62,3 +65,19 @@ def copy(log: Path, name: str, form: str, **options: bool) -> Path:
     with open_log(log) as source:
         export(source, target, form, **options)
     return target
+
+
+@contextmanager
+def full_disk(limit_bytes: int) -> Iterator[None]:
+    """Files of this process may not grow beyond limit_bytes: a disk that is full.
+
+    Not a fixture: pytest itself must be able to write between the phases of a test.
+    """
+    old = resource.getrlimit(resource.RLIMIT_FSIZE)
+    ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (limit_bytes, old[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, old)
+        signal.signal(signal.SIGXFSZ, ignored)

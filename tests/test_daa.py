@@ -1,35 +1,24 @@
-"""Detect and avoid: published vectors, degenerate encounters, histories, directives."""
+"""Detect and avoid: published vectors, degenerate encounters, bands, directives."""
 
 from __future__ import annotations
 
 import dataclasses
 import math
-from collections import deque
 from pathlib import Path
 
+import daa_scenes
 import numpy as np
 import pytest
+from daa_scenes import head_on
 
 from cratous.core.daa_bands import directive, grid, on_circle, region_of
-from cratous.core.daa_climb import climb, height
 from cratous.core.daa_engine import look, thresholds
-from cratous.core.daa_frame import project
-from cratous.core.daa_memory import BandMemory, Shown, m_of_n, resolved
 from cratous.core.daa_reason import reasons_at
 from cratous.core.daa_session import Session
 from cratous.core.daa_state import ALT, HDIR, HS, UNKNOWN, VS, Aircraft, Band, Sigma
-from cratous.core.daa_steps import piece_counts, straight_from, until, way_conflicts
-from cratous.core.daa_turn import turn_offset, turned
-from cratous.core.daa_uncertain import uncertain_span
-from cratous.core.daa_volume import in_conflict
-from cratous.core.daa_zones import contours, hazard_zone
-from cratous.core.kernel import Vec2
-from cratous.core.well_clear_interval import violation_interval_taumod
 from cratous.services import conform
 from cratous.services.conform.detect_and_avoid import LABELS
-from cratous.spec import daa_meaning
 from cratous.spec.daa import (
-    CYLINDER,
     FAR,
     MID,
     NEAR,
@@ -38,23 +27,11 @@ from cratous.spec.daa import (
     TAUMOD,
     TCAS,
     TCAS_LEVELS,
-    TCPA,
-    TEP,
     Parameters,
     Volume,
 )
 from cratous.spec.daa_presets import preset
 from cratous.spec.errors import BadInput
-
-
-def load_scenes():
-    import importlib.util
-
-    file = Path(__file__).with_name("daa_scenes.py")
-    spec = importlib.util.spec_from_file_location("daa_scenes", file)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")
@@ -67,17 +44,11 @@ def vectors(shared: Path) -> Path:
     return shared / "vectors"
 
 
-def head_on(distance_m: float = 15000.0) -> tuple[Aircraft, Aircraft]:
-    own = Aircraft("own", 0, 0, 2000, 0, 100, 0)
-    return own, Aircraft("i", 200, distance_m, 2000, 0, -100, 0)
-
-
 # -- against published vectors -----------------------------------------------------------
 KINDS = (
     "alert level", "violation times", "time to corrective volume", "resolution", "bands",
     "recovery", "last time to manoeuvre", "resolution shown",
 )  # fmt: skip
-
 ALLOWED = {("open-encounters-SUM", "bands"): 3, ("open-scenarios", "resolution shown"): 2}
 
 
@@ -115,7 +86,7 @@ def test_a_changed_vector_fails(vectors: Path):
 
 # -- degenerate encounters ---------------------------------------------------------------
 def test_random_and_degenerate_encounters():
-    answered, refused = load_scenes().run(400, seed=3)
+    answered, refused = daa_scenes.run(400, seed=3)
     assert answered + refused == 400
     assert answered > 300
 
@@ -143,65 +114,6 @@ def test_an_own_value_out_of_range_is_said(p: Parameters):
     assert "own alt -50 is outside of" in by_name["alt"].why
     assert by_name["hs"].why
     assert not by_name["vs"].why
-
-
-# -- kernels against their definitions -----------------------------------------------------
-def test_steps_against_sampled_instants():
-    rng = np.random.default_rng(5)
-    found = 0
-    for _ in range(300):
-        s, v = Vec2(*rng.normal(size=2) * 3000), Vec2(*rng.normal(size=2) * 100)
-        sz, vz = rng.normal() * 200, rng.normal() * 5
-        volume = (1222.0, 137.0, 35.0, 0.0, 0.0)
-        kind = int(rng.integers(0, 4))
-        at, begin, end = rng.uniform(0, 20), rng.uniform(0, 20), rng.uniform(20, 60)
-        red = in_conflict(kind, s, v, sz, vz, *volume, straight_from(at, begin), end - at)
-        lost = any(
-            daa_meaning.lost_from_step(
-                daa_meaning.violated_at(kind, s, v, sz, vz, *volume, t), t, at, begin, end
-            )
-            for t in np.linspace(0, 60, 121)
-        )
-        found += lost
-        assert red or not lost
-        blocked = piece_counts(at, begin, end) and in_conflict(kind, s, v, sz, vz, *volume, 0, 2.0)
-        on_piece = any(
-            daa_meaning.lost_on_piece(
-                daa_meaning.violated_at(kind, s, v, sz, vz, *volume, t), t, 2.0, at, begin, end
-            )
-            for t in np.linspace(0, 2, 9)
-        )
-        assert blocked or not on_piece
-    assert found > 20
-    assert way_conflicts([(False,), (True,), (False,)])
-    assert not way_conflicts([(False,)] * 4)
-    assert until(180, 55, 30, False) == 85
-    assert until(180, 55, 30, True) == 55
-
-
-def test_turn_steps_are_the_trajectory(p: Parameters):
-    own, _ = head_on()
-    g = grid(p, own, HDIR)
-    c, s = math.cos(g.step), math.sin(g.step)
-    v = Vec2(g.right[0, 3], g.right[0, 4])
-    for k in range(1, len(g.right)):
-        w = turned(v, c, s)
-        offset = turn_offset(v, w)
-        there = g.right[k - 1, :2] + np.array(offset) / p.turn_rate_rad_s
-        assert g.right[k, :2] == pytest.approx(there, abs=1e-6)
-        assert g.right[k, 3:5] == pytest.approx(tuple(w), abs=1e-9)
-        v = w
-
-
-@pytest.mark.parametrize("vz", [0.0, 4.0, -4.0])
-@pytest.mark.parametrize("target", [1000.0, 1001.0, 1005.0, 1500.0, 300.0])
-def test_a_climb_is_flown(vz: float, target: float):
-    phases = climb(1000.0, vz, target, 2.5, 2.0)
-    assert 0 <= phases.t1_s <= phases.t2_s <= phases.t3_s
-    z, dt = 1000.0, 0.001
-    for k in range(int(phases.t3_s / dt)):
-        z += height(1000.0, vz, target, 2.0, *phases, (k + 0.5) * dt).vz_m_s * dt
-    assert z == pytest.approx(target, abs=0.05)
 
 
 # -- bands ------------------------------------------------------------------------------
@@ -333,131 +245,3 @@ def test_uncertainty_adds_alerts_and_removes_none():
                 assert known.last_s >= sure.last_s - 1e-9
         more += seen.levels[0] > plain.levels[0]
     assert more > 5
-
-
-def test_uncertainty_covers_sampled_true_states():
-    rng = np.random.default_rng(9)
-    lost = missed = 0
-    limits = (1222.0, 137.0, 35.0, 0.0, 0.0)
-    for _ in range(300):
-        s, v = Vec2(*rng.normal(size=2) * 3000), Vec2(*rng.normal(size=2) * 80)
-        sz, vz, es, ez, ev, ew = *(rng.normal(size=2) * (150, 5)), 80.0, 40.0, 5.0, 2.0
-        span = uncertain_span(s, v, sz, vz, es, ez, ev, ew, *limits, 0.0, 60.0)
-        for _ in range(10):
-            d, e = rng.normal(size=2), rng.normal(size=2)
-            d, e = d / np.hypot(*d) * es * rng.random(), e / np.hypot(*e) * ev * rng.random()
-            dz, dw = rng.uniform(-ez, ez), rng.uniform(-ew, ew)
-            true = (Vec2(s.x + d[0], s.y + d[1]), Vec2(v.x + e[0], v.y + e[1]), sz + dz, vz + dw)
-            first, last = violation_interval_taumod(*true, *limits, 0.0, 60.0)
-            if first <= last:
-                lost += 1
-                missed += not (span.first_s <= first + 1e-6 and last <= span.last_s + 1e-6)
-    assert lost > 200
-    assert missed == 0
-
-
-@pytest.mark.parametrize("kind", [TAUMOD, TCPA, TEP, CYLINDER])
-def test_hazard_zones_are_where_the_volume_is_violated(kind: int):
-    from shapely import Point, Polygon
-
-    own, other = head_on()
-    other = other._replace(ve_m_s=40.0)
-    volume = Volume(kind, 1200.0, 100.0, 30.0 if kind != CYLINDER else 0.0)
-    shape = Polygon(hazard_zone(own, other, volume).points)
-    assert shape.is_valid
-    limits = (volume.dthr_m, volume.zthr_m, volume.tthr_s, 0.0, 0.0)
-    v = Vec2(own.ve_m_s - other.ve_m_s, own.vn_m_s - other.vn_m_s)
-    rng = np.random.default_rng(2)
-    inside = 0
-    for x, y in rng.uniform(-7000, 7000, (1200, 2)):
-        lost = in_conflict(kind, Vec2(-x, -y), v, 0.0, 0.0, *limits, 0.0, 0.0)
-        inside += lost
-        if abs(shape.exterior.distance(Point(x, y))) > 5.0:
-            assert shape.contains(Point(x, y)) == lost, (x, y)
-    assert inside > 10
-
-
-def test_contours_hold_the_conflict_ahead(p: Parameters):
-    own, other = head_on()
-    seen = look(p, own, [other])
-    shapes = contours(p, seen, 0)
-    assert len(shapes) == 1
-    first = seen.times[0][1].first_s
-    assert any(math.hypot(e - 0.0, n - first * 100.0) < 1.0 for e, n in shapes[0].points)
-    assert contours(p, look(p, own, [other._replace(alt_m=9000.0)]), 0) == []
-
-
-# -- history ----------------------------------------------------------------------------
-def test_m_of_n():
-    assert m_of_n(deque([3, 2, 0, 0]), 2) == 2
-    assert m_of_n(deque([3, 3, 0, 0]), 2) == 3
-    assert m_of_n(deque([1]), 2) == 0
-
-
-def test_alerts_persist_and_need_two_of_four():
-    shown = Shown(2, 4)
-    assert shown.update(0, 0.0, 4.0) == 0
-    assert shown.update(3, 1.0, 4.0) == 0
-    assert shown.update(3, 2.0, 4.0) == 3
-    assert [shown.update(0, t, 4.0) for t in (3.0, 4.0, 5.0)] == [3, 3, 3]
-    assert shown.update(0, 6.0, 4.0) == 0
-
-
-def test_history_ends_with_a_gap(p: Parameters):
-    own, other = head_on()
-    far = other._replace(north_m=90000.0)
-    session = Session(p)
-    assert session.step(0.0, own, [far], ()).alerts[0].level == 0
-    assert session.step(1.0, own, [other], ()).alerts[0].level == 0
-    assert session.step(100.0, own, [other], ()).alerts[0].level == 2
-    assert session.step(99.0, own, [far], ()).alerts[0].level == 0
-
-
-def test_bands_need_two_of_four():
-    memory = BandMemory(2, 4)
-    free, red = (Band(0, 10, NONE),), (Band(0, 5, NEAR), Band(5, 10, NONE))
-    assert memory.filtered(free) == free
-    assert memory.filtered(red) == free
-    assert memory.filtered(red) == red
-    recovering = memory.filtered((Band(0, 10, RECOVERY),))
-    assert recovering == (Band(0, 5, NEAR), Band(5, 10, NONE))
-    assert resolved(recovering, True) == (Band(0, 5, NEAR), Band(5, 10, RECOVERY))
-
-
-def test_a_band_history_begins_with_m_copies():
-    memory = BandMemory(3, 4)
-    free, red = (Band(0, 10, NONE),), (Band(0, 10, NEAR),)
-    assert [memory.filtered(b)[0].region for b in (free, red, red, red)] == [NONE, NONE, NONE, NEAR]
-
-
-def test_a_conflict_band_is_held():
-    memory = BandMemory(0, 0, persistence_s=4.0)
-    free, red = (Band(0, 10, NONE),), (Band(0, 5, NEAR), Band(5, 10, NONE))
-    mild = (Band(0, 6, MID), Band(6, 10, NONE))
-    assert memory.shown(red, False, 2.0, 0.0) == red
-    assert memory.shown(free, False, 2.0, 1.0) == red
-    assert memory.shown(mild, False, 2.0, 2.0) == (
-        Band(0, 5, NEAR), Band(5, 6, MID), Band(6, 10, NONE)
-    )  # fmt: skip
-    assert memory.shown(free, True, 2.0, 3.0) == (Band(0, 5, NEAR), Band(5, 10, RECOVERY))
-    assert memory.shown(free, False, 2.0, 4.0) == free
-    around = BandMemory(0, 0, persistence_s=4.0, turn=2 * math.pi)
-    ahead = (Band(0, 1, NEAR), Band(1, 6, NONE), Band(6, 2 * math.pi, NEAR))
-    assert around.shown(ahead, False, 0.5, 0.0) == ahead
-    assert around.shown((Band(0, 2 * math.pi, NONE),), False, 0.5, 1.0) == ahead
-
-
-def test_before_a_slow_turn_the_true_speed_is_flown(p: Parameters):
-    own = Aircraft("own", 0, 0, 2000, 0, 1.0, 0)
-    g = grid(p, own, HDIR)
-    assert g.right[0, 3:5] == pytest.approx([0.0, p.min_airspeed_m_s])
-    assert g.right[0, 6:8] == pytest.approx([0.0, 1.0])
-
-
-def test_projection():
-    at = project(0.6, -2.0, 0.6, -2.0, 30.0, 40.0)
-    assert at == pytest.approx((0.0, 0.0, 30.0, 40.0))
-    minute = math.pi / 180 / 60
-    assert project(0.0, 0.0, minute, 0.0, 0.0, 0.0).north_m == pytest.approx(1852.0, abs=1e-3)
-    over = project(0.0, math.pi - 1e-6, 0.0, -math.pi + 1e-6, 0.0, 0.0)
-    assert over.east_m == pytest.approx(2e-6 * 6366707, rel=1e-6)

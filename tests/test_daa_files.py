@@ -22,6 +22,15 @@ HEADER = "NAME lat lon alt trk gs vs time\nunitless [deg] [deg] [ft] [deg] [knot
 ROWS = "own 33.8 -117.0 5000 0 150 0 0\nintr 34.0 -117.0 5000 180 180 0 0\n"
 
 
+def refusal(text: str, line: int, item: str) -> BadInput:
+    """Why a configuration is refused, at this line and key."""
+    with pytest.raises(BadInput) as caught:
+        daa_conf.parse(text, "c")
+    assert caught.value.where == f"c:{line}"
+    assert caught.value.item == item
+    return caught.value
+
+
 @pytest.mark.parametrize("name", names())
 def test_presets_are_read_and_written_without_loss(name: str):
     made = preset(name)
@@ -74,11 +83,7 @@ def test_units_old_names_and_defaults():
     ],
 )  # fmt: skip
 def test_errors_of_configurations_name_line_key_and_what_was_expected(text, line, item, expected):
-    with pytest.raises(BadInput) as error:
-        daa_conf.parse(text, "my.conf")
-    assert error.value.where == f"my.conf:{line}"
-    assert error.value.item == item
-    assert expected in error.value.expected
+    assert expected in refusal(text, line, item).expected
 
 
 @pytest.mark.parametrize(
@@ -259,11 +264,7 @@ def test_another_tcas_table_is_refused_and_never_read_as_this_one(line: str, exp
 def test_a_configuration_error_names_line_key_expected_and_got(
     text: str, line: int, item: str, says: str
 ):
-    with pytest.raises(BadInput) as caught:
-        daa_conf.parse(text, "c")
-    assert caught.value.where == f"c:{line}"
-    assert caught.value.item == item
-    assert says in str(caught.value)
+    assert says in str(refusal(text, line, item))
 
 
 @pytest.mark.parametrize(

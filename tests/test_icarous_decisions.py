@@ -1,4 +1,4 @@
-"""Detection, resolution, return and the state machine of one ICAROUS instance."""
+"""Detection, resolution and return of one ICAROUS instance; who acts, and when."""
 
 from __future__ import annotations
 
@@ -8,26 +8,13 @@ import math
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from icarous_tools import ABILITY, NORTH, VOLUME, WIDE, head_on
 
-from cratous.bridge.text_protocol import (
-    FenceDone,
-    FenceVertex,
-    Message,
-    SetMode,
-    SetVelocity,
-    SoftReset,
-    StartMission,
-    Waypoint,
-    WaypointReached,
-)
-from cratous.core.gate import ICAROUS, UXAS, Gate
 from cratous.core.legs import leg_ok
-from cratous.core.manoeuvre import Ability, Motion, along, fly_to, velocity_of
-from cratous.core.prediction import Intruder, Piece, after, buffered, first_violation_s
+from cratous.core.manoeuvre import along, fly_to, velocity_of
+from cratous.core.prediction import Intruder, Piece, after, first_violation_s
 from cratous.core.resolution import Scene, first_conflict_s, resolve
-from cratous.services.frames import Projection
 from cratous.services.icarous import instance
-from cratous.services.icarous.inbox import Told, hear
 from cratous.services.icarous.return_to_path import goal_index, persistence_ms
 from cratous.services.icarous.traffic_monitor import (
     PERSIST_MS,
@@ -36,17 +23,7 @@ from cratous.services.icarous.traffic_monitor import (
     most_urgent,
     threats,
 )
-from cratous.spec.mission import Daa, Frame, Position, Velocity, WellClear, Zone, ZoneKind
-
-VOLUME = WellClear(150.0, 30.0, 15.0, 0.0)
-WIDE = buffered(VOLUME, 1.25)
-ABILITY = Ability(0.26, 15.0, 33.0, 4.0, 1.0, 60.0)
-NORTH = Motion(Position(0.0, 0.0, 300.0), 0.0, 22.0, 0.0)
-PROJECTION = Projection(Frame(45.0, -121.0, 0.0))
-
-
-def head_on(distance_m: float, vid: int = 9, cooperates: bool = False) -> Intruder:
-    return Intruder(vid, Position(distance_m, 0.0, 300.0), Velocity(-22.0, 0.0, 0.0), cooperates)
+from cratous.spec.mission import Position, Velocity, WellClear, Zone, ZoneKind
 
 
 def straight(duration_s: float = 60.0) -> tuple[Piece, ...]:
@@ -212,7 +189,8 @@ def test_when_nothing_is_free_it_says_so() -> None:
     assert "no manoeuvre is free" in instance.describe(choice)
 
 
-# who acts, and when ------------------------------------------------------------------------
+# ---- who acts, and when --------------------------------------------------------------------------
+
 
 LAST_S = last_time_s(ABILITY, WIDE, 500)
 HARD_S = hard_limit_s(ABILITY, 500)
@@ -275,127 +253,3 @@ def test_goal_is_ahead_and_not_too_near() -> None:
     past = NORTH._replace(position=Position(450.0, 300.0, 300.0))
     assert goal_index(past, 85.0, line, 1) == 5
     assert goal_index(NORTH._replace(position=Position(2000.0, 0.0, 300.0)), 85.0, line, 1) == 9
-
-
-# the inbox ---------------------------------------------------------------------------------
-
-
-def waypoints(*places: Position) -> list[Message]:
-    out: list[Message] = []
-    for k, p in enumerate(places):
-        lat, lon = PROJECTION.to_geodetic(p.north_m, p.east_m)
-        out.append(Waypoint(k + 1, 22.0, lat, lon, p.alt_m, k))
-    return [*out, StartMission()]
-
-
-def vertices(count: int) -> list[Message]:
-    out: list[Message] = []
-    for k in range(count):
-        lat, lon = PROJECTION.to_geodetic(
-            500 * math.cos(2 * math.pi * k / count), 500 * math.sin(2 * math.pi * k / count)
-        )
-        out.append(FenceVertex("KEEPOUT", count, k + 1, lat, lon, 0.0, 500.0, 1))
-    return out
-
-
-def test_inbox_takes_waypoints_only_when_started() -> None:
-    lines = waypoints(Position(0, 0, 300), Position(900, 0, 300))
-    told = hear(Told(), tuple(lines[:-1]), PROJECTION, 0)
-    assert told.waypoints == ()
-    told = hear(told, (lines[-1], WaypointReached(0)), PROJECTION, 500)
-    assert len(told.waypoints) == 2
-    assert (told.next_index, told.heard_ms) == (1, 500)
-
-
-def test_a_zone_counts_only_when_it_is_whole() -> None:
-    told = hear(Told(), (*vertices(5), FenceDone(1)), PROJECTION, 0)
-    assert [len(z.vertices) for z in told.zones] == [5]
-    broken = [v for k, v in enumerate(vertices(5)) if k != 3]
-    assert hear(Told(), (*broken, FenceDone(1)), PROJECTION, 0).zones == ()
-
-
-# the state machine -------------------------------------------------------------------------
-
-CONFIG = instance.Config(2, Daa(VOLUME), PROJECTION, 500)
-
-
-def inputs(
-    now_ms: int, gate: Gate, intruders: tuple[Intruder, ...], messages: list[Message] | None = None
-) -> instance.Inputs:
-    return instance.Inputs(now_ms, NORTH, ABILITY, intruders, gate, tuple(messages or ()))
-
-
-def started() -> instance.State:
-    way = waypoints(Position(-100, 0, 300), Position(3000, 0, 300), Position(4000, 0, 300))
-    state, out = instance.step(
-        CONFIG, instance.State(), inputs(0, Gate(UXAS, 0, False), (), [*way, WaypointReached(0)])
-    )
-    assert out.authority == ""
-    return state
-
-
-def test_cycle_of_takeover_offer_and_handback() -> None:
-    state = started()
-    state, out = instance.step(CONFIG, state, inputs(500, Gate(UXAS, 0, False), (head_on(1800.0),)))
-    assert (out.authority, out.intruder_id, state.mode) == ("takeover", 9, instance.Mode.AVOID)
-    assert SetMode("ACTIVE", 1) in out.messages
-    assert any(isinstance(m, SetVelocity) for m in out.messages)
-    owned, now = Gate(ICAROUS, 1, False), 500
-    for _ in range(10):
-        now += 500
-        state, out = instance.step(CONFIG, state, inputs(now, owned, (), [SoftReset()]))
-        assert out.velocity is not None
-        if out.authority == "offer":
-            break
-    assert out.authority == "offer"
-    assert SetMode("PASSIVE", 2) in out.messages
-    assert now - 1000 >= persistence_ms(0)
-    state, out = instance.step(CONFIG, state, inputs(now + 500, Gate(UXAS, 2, False), ()))
-    assert state.mode is instance.Mode.MONITOR
-    assert out.velocity is None
-
-
-def test_offer_is_withdrawn_when_a_conflict_comes_up() -> None:
-    state = started()
-    state, _ = instance.step(CONFIG, state, inputs(500, Gate(UXAS, 0, False), (head_on(1800.0),)))
-    for k in range(2, 12):
-        state, out = instance.step(
-            CONFIG, state, inputs(500 * k, Gate(ICAROUS, 1, False), (), [SoftReset()])
-        )
-        if out.authority == "offer":
-            break
-    assert state.mode is instance.Mode.HANDBACK
-    state, out = instance.step(
-        CONFIG, state, inputs(500 * k + 500, Gate(ICAROUS, 2, True), (head_on(1500.0),))
-    )
-    assert (out.authority, state.mode) == ("takeover", instance.Mode.AVOID)
-    assert SetMode("ACTIVE", 3) in out.messages
-
-
-def test_without_the_link_it_flies_on_and_offers_nothing() -> None:
-    state = started()
-    state, _ = instance.step(CONFIG, state, inputs(500, Gate(UXAS, 0, False), (head_on(1800.0),)))
-    for k in range(6, 40):
-        state, out = instance.step(CONFIG, state, inputs(500 * k, Gate(ICAROUS, 1, False), ()))
-        assert out.authority == ""
-        assert out.velocity is not None
-
-
-@settings(max_examples=30, deadline=None)
-@given(st.lists(st.tuples(st.booleans(), st.booleans(), st.floats(900, 4000)), max_size=12))
-def test_authority_wishes_fit_the_gate(history: list[tuple[bool, bool, float]]) -> None:
-    """Whatever happens: commands only while in command, offers only from command."""
-    from cratous.core.gate import gate_after, gate_offer, gate_takeover
-
-    state, gate = started(), Gate(UXAS, 0, False)
-    for k, (traffic, answer, distance) in enumerate(history, 1):
-        there = (head_on(distance),) if traffic else ()
-        state, out = instance.step(CONFIG, state, inputs(500 * k, gate, there, [SoftReset()]))
-        if out.authority == "takeover":
-            gate = gate_takeover(gate)
-        elif out.authority == "offer":
-            assert gate.owner == ICAROUS
-            gate = gate_offer(gate)
-        assert (out.velocity is not None) == (gate.owner == ICAROUS)
-        if answer:
-            gate = gate_after(gate, UXAS, gate.epoch)

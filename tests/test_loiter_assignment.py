@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from pipeline_messages import cost, matrix, option, options, unique
 from pipeline_tools import PIPELINE, Rig, must_fly, place, request, vehicle
-from test_pipeline import cost, matrix, option, options, unique
 
 from cratous.bridge import lmcp
 

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import importlib.util
 import resource
-import signal
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from log_tools import STATE, full_disk
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus, Envelope
@@ -20,7 +18,6 @@ from cratous.services.logs.sqlite_log import SqliteLog
 from cratous.services.message_logger import LogRule, MessageLogger
 from cratous.spec.errors import BadInput
 
-STATE = "afrl.cmasi.AirVehicleState"
 KEEP_ALIVE = "uxas.messages.uxnative.AutopilotKeepAlive"
 
 
@@ -163,24 +160,8 @@ def test_choosing_is_pure(tmp_path: Path) -> None:
     logger.close()
 
 
-@contextmanager
-def full_disk() -> Iterator[None]:
-    """Files of this process may not grow beyond 200 kB.
-
-    Not a fixture: pytest itself must be able to write between the phases of a test.
-    """
-    old = resource.getrlimit(resource.RLIMIT_FSIZE)
-    ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, old[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, old)
-        signal.signal(signal.SIGXFSZ, ignored)
-
-
 def test_trouble_is_said_once_on_the_bus_and_again_when_it_is_over(tmp_path: Path) -> None:
-    with full_disk():
+    with full_disk(200_000):
         logger = MessageLogger(tmp_path, batch=50, hold=200, every_s=None)
         envelope = Envelope(0, 0, "sim", STATE, lmcp.new("AirVehicleState"))
         state, said = logger.start(), []

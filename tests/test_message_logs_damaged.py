@@ -5,17 +5,14 @@ from __future__ import annotations
 import os
 import random
 import resource
-import signal
 import sqlite3
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from log_tools import STATE, copy, entries, read, state, write
+from log_tools import STATE, copy, entries, full_disk, read, state, write
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
@@ -219,24 +216,8 @@ def test_a_folder_that_cannot_be_written(tmp_path: Path, log: Path) -> None:
     assert read(log) == list(entries())
 
 
-@contextmanager
-def small_disk() -> Iterator[None]:
-    """Files of this process may not grow beyond 300 kB: a disk that is full.
-
-    Not a fixture: pytest itself must be able to write between the phases of a test.
-    """
-    old = resource.getrlimit(resource.RLIMIT_FSIZE)
-    ignored = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, old[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, old)
-        signal.signal(signal.SIGXFSZ, ignored)
-
-
 def test_a_full_disk_loses_nothing_silently(tmp_path: Path) -> None:
-    with small_disk():
+    with full_disk(300_000):
         path = tmp_path / "log.sqlite"
         store = LogStore(path, batch=100, every_s=None, hold=500)
         body = lmcp.binary.pack(state(400, 1))
@@ -265,7 +246,7 @@ def test_a_full_disk_loses_nothing_silently(tmp_path: Path) -> None:
 
 
 def test_a_disk_that_stays_full_is_an_error_at_the_end(tmp_path: Path) -> None:
-    with small_disk():
+    with full_disk(300_000):
         store = LogStore(tmp_path / "log.sqlite", batch=100, every_s=None, hold=500)
         body = lmcp.binary.pack(state(400, 1))
         for k in range(4000):
@@ -280,7 +261,7 @@ def test_a_disk_that_stays_full_is_an_error_at_the_end(tmp_path: Path) -> None:
 
 
 def test_a_flight_log_on_a_full_disk_is_an_error_and_no_file(tmp_path: Path) -> None:
-    with small_disk():
+    with full_disk(300_000):
 
         def fill() -> None:
             with LogWriter(tmp_path / "log.sqlite") as writer:

@@ -1,121 +1,24 @@
-"""Plans for whole missions: what is flown, seen, waited for, refused, and said on the bus."""
+"""Plans for whole missions: what is flown, waited for, planned again and refused."""
 
 import json
 import math
-from itertools import pairwise
 
 import pytest
+from planning_tools import FOUR, TWO, assert_flyable, box, mission, task, vehicle
 
 from cratous.bridge import lmcp
 from cratous.core.dubins import polyline_length_m
-from cratous.core.earliest import rows_hold
-from cratous.core.legs import first_bad_leg
 from cratous.core.visibility import circle
 from cratous.services.bus import Bus
-from cratous.services.frames import Projection
 from cratous.services.planning import make_plan
-from cratous.services.planning.options import expand, flyer_of
-from cratous.services.planning.smoothing import line_path
-from cratous.services.sensor import coverage, footprint, sees
+from cratous.services.planning.options import expand
+from cratous.services.sensor import coverage
 from cratous.spec.errors import BadInput, NoPlan
-from cratous.spec.mission import (
-    Camera,
-    Daa,
-    Frame,
-    Mission,
-    Position,
-    Task,
-    TaskKind,
-    Vehicle,
-    View,
-    WellClear,
-    Zone,
-    ZoneKind,
-)
+from cratous.spec.mission import Camera, Position, TaskKind, ZoneKind
 from cratous.spec.plan import Pose
 
-CAMERA = Camera()
-DOWN_LEFT = View(math.radians(-90), math.radians(-60))
-
-
-def vehicle(number, north, east, heading=0.0, alt=700.0, cameras=(CAMERA,)):
-    place = Position(north, east, alt)
-    bank = math.radians(20)
-    return Vehicle(
-        number, f"UAV {number}", place, heading, 22.0, 18.0, 33.0, bank, 5.0, True, cameras
-    )
-
-
-def task(number, kind, *points, **more):
-    return Task(number, kind, f"t{number}", tuple(Position(*p) for p in points), **more)
-
-
-def box(number, kind, south, west, north, east):
-    corners = ((south, west), (south, east), (north, east), (north, west))
-    return Zone(number, kind, corners, 0.0, 5000.0)
-
-
-TWO = (vehicle(1, 0.0, 0.0), vehicle(2, 0.0, 3000.0))
-FOUR = (
-    task(1, TaskKind.POINT_SEARCH, (3000.0, 0.0, 0.0)),
-    task(2, TaskKind.POINT_SEARCH, (3000.0, 3000.0, 0.0)),
-    task(3, TaskKind.MUST_FLY, (5000.0, 1500.0, 0.0)),
-    task(4, TaskKind.LOITER, (2000.0, 1000.0, 0.0), duration_ms=120_000, radius_m=300.0),
-)
-
-
-def mission(tasks=FOUR, vehicles=TWO, **more):
-    daa = Daa(WellClear(1000.0, 100.0, 30.0, 30.0))
-    return Mission("m", "m.yaml", Frame(45.0, -120.0), vehicles, tasks, daa, **more)
-
-
-def assert_flyable(plan, of):
-    """Chains hang together in place and time, legs obey zones, rows hold, turns are wide enough."""
-    starts = {item.task_id: item.start_ms for item in plan.items}
-    ends = {item.task_id: item.end_ms for item in plan.items}
-    assert rows_hold(plan.rows, starts, ends)
-    assert sorted(starts) == sorted(plan.chosen)
-    for one in of.vehicles:
-        at, clock = one.position, 0
-        for item in plan.chain(one.id):
-            wanted = of.task(item.task_id).eligible
-            assert not wanted or one.id in wanted
-            assert math.dist(item.transit[0], at) < 1e-6
-            assert math.dist(item.transit[-1], item.path[0]) < 1e-6
-            assert item.depart_ms == clock
-            flown = polyline_length_m(item.transit) / item.speed_m_s * 1000
-            assert item.arrive_ms - item.depart_ms == pytest.approx(flown, abs=1.01)
-            assert item.start_ms == item.arrive_ms + item.wait_ms
-            along = polyline_length_m(item.path) / item.speed_m_s * 1000
-            assert item.end_ms - item.start_ms == pytest.approx(along, abs=1.01)
-            assert first_bad_leg(item.transit + item.path, of.zones) is None
-            assert (item.hold is not None) == (item.wait_ms > 0)
-            if item.hold is not None:
-                radius = item.hold.radius_m
-                laps = item.wait_ms * item.speed_m_s / 1000 / (2 * math.pi * radius)
-                assert laps == pytest.approx(round(laps), abs=1e-6)
-                assert radius >= flyer_of(one).radius_m * 0.999
-                centre = (item.hold.north_m, item.hold.east_m)
-                assert math.dist(centre, item.path[0][:2]) == pytest.approx(radius)
-            assert_turns_wide(item.transit + item.path[1:], one)
-            at, clock = item.path[-1], item.end_ms
-
-
-def assert_turns_wide(points, one):
-    """At each corner the turn is no sharper than the chords of the tightest circle make it."""
-    radius = flyer_of(one).radius_m
-    for p, q, r in zip(points, points[1:], points[2:], strict=False):
-        if math.dist(p[:2], q[:2]) < 1e-6 or math.dist(q[:2], r[:2]) < 1e-6:
-            continue
-        first = math.atan2(q[1] - p[1], q[0] - p[0])
-        second = math.atan2(r[1] - q[1], r[0] - q[0])
-        turn = abs(math.remainder(second - first, 2 * math.pi))
-        # half of each chord's arc lies on this side of the corner
-        chords = math.dist(p[:2], q[:2]) + math.dist(q[:2], r[:2])
-        assert turn <= chords / 2 / radius * 1.02 + 1e-6
-
-
 # ---- whole missions ---------------------------------------------------------------------------
+
 
 RELATIONS = [
     "",
@@ -185,6 +88,24 @@ def test_the_same_mission_gives_the_same_messages_and_plan():
         logs.append(log)
     assert logs[0] == logs[1]
     assert plans[0] == plans[1]
+
+
+def test_a_long_dwell_is_flown_in_circles():
+    point = task(1, TaskKind.POINT_SEARCH, (2000.0, 0.0, 0.0), duration_ms=300_000)
+    of = mission((point,))
+    options, _ = expand(of, of.tasks, ())
+    assert options
+    for option in options:
+        assert option.duration_ms == 300_000
+        assert {round(math.dist(p[:2], (2000.0, 0.0)), 3) for p in option.path} == {
+            round(option.flyer.radius_m, 3)
+        }
+
+
+def test_a_hold_circle_comes_back_to_its_pose():
+    points = circle(Pose(10.0, 20.0, 300.0, 0.7), 150.0, True)
+    assert points[0] == points[-1]
+    assert polyline_length_m(points) == pytest.approx(2 * math.pi * 150.0, rel=2e-3)
 
 
 # ---- planning again, in flight ----------------------------------------------------------------
@@ -289,96 +210,6 @@ def test_a_line_through_a_keep_out_is_no_option():
         make_plan(mission((line,), zones=(middle,)))
 
 
-# ---- cameras ----------------------------------------------------------------------------------
-
-
-def test_the_footprint_straight_down_is_a_rectangle():
-    here = Position(0.0, 0.0, 1000.0)
-    quad = footprint(here, 0.0, CAMERA, (0.0, 0.0))
-    half = 1000.0 * math.tan(CAMERA.hfov_rad / 2)
-    assert sorted({round(e, 6) for _, e in quad}) == [round(-half, 6), round(half, 6)]
-    assert max(n for n, _ in quad) == pytest.approx(half / CAMERA.aspect, rel=1e-6)
-    assert sees(quad, (0.0, half - 1))
-    assert not sees(quad, (0.0, half + 1))
-
-
-@pytest.mark.parametrize("heading", [0.0, 1.0, -2.5])
-def test_the_boresight_of_a_slanted_view_is_in_the_footprint(heading):
-    here = Position(100.0, -50.0, 700.0)
-    for bearing in range(0, 360, 30):
-        target = (
-            100.0 + 400 * math.cos(math.radians(bearing)),
-            -50.0 + 400 * math.sin(math.radians(bearing)),
-        )
-        quad = footprint(here, heading, CAMERA, target)
-        assert sees(quad, target)
-        far = max(quad, key=lambda p: math.dist(p, here[:2]))
-        assert math.dist(far, here[:2]) > 400
-
-
-def test_there_is_no_footprint_where_a_corner_looks_above_the_horizon():
-    here = Position(0.0, 0.0, 100.0)
-    assert footprint(here, 0.0, CAMERA, (5000.0, 0.0)) is None
-    assert footprint(here, 0.0, CAMERA, (0.0, 0.0), terrain_m=100.0) is None
-
-
-def test_a_gimbal_stops_at_its_limits():
-    fixed = Camera(min_azimuth_rad=0.0, max_azimuth_rad=0.0)
-    here = Position(0.0, 0.0, 700.0)
-    behind = (-400.0, 0.0)
-    assert not sees(footprint(here, 0.0, fixed, behind), behind)
-    assert sees(footprint(here, math.pi, fixed, behind), behind)
-
-
-def test_a_flight_elsewhere_covers_nothing():
-    line = task(1, TaskKind.LINE_SEARCH, (0.0, 0.0, 0.0), (2000.0, 0.0, 0.0))
-    over = (Position(-100.0, 0.0, 700.0), Position(2100.0, 0.0, 700.0))
-    far = tuple(p._replace(east_m=5000.0) for p in over)
-    half = (Position(-100.0, 0.0, 700.0), Position(1000.0, 0.0, 700.0))
-    assert coverage(over, line, CAMERA) == 1.0
-    assert coverage(far, line, CAMERA) == 0.0
-    assert 0.5 < coverage(half, line, CAMERA) < 0.75
-
-
-@pytest.mark.parametrize("view", [None, DOWN_LEFT, View(math.radians(35), math.radians(-60))])
-def test_a_crooked_line_is_covered_by_a_flyable_path(view):
-    points = [(300.0 * k, 250.0 * (-1) ** k * (k % 3), 0.0) for k in range(12)]
-    line = task(1, TaskKind.LINE_SEARCH, *points, view=view)
-    made = line_path(line, CAMERA, 150.0, 700.0, 0.0)
-    assert made.coverage >= 0.99
-    assert coverage(made.points, line, CAMERA) >= 0.99
-    assert_turns_wide(made.points, TWO[0])
-
-
-def test_the_view_of_a_point_is_from_the_wanted_side():
-    wanted = View(math.radians(90), math.radians(-60))
-    point = task(1, TaskKind.POINT_SEARCH, (2000.0, 0.0, 0.0), view=wanted)
-    of = mission((point,))
-    options, dropped = expand(of, of.tasks, ())
-    assert len(options) == 18
-    assert dropped == ()
-    for option in options:
-        middle = option.path[1]
-        away = math.dist(middle[:2], (2000.0, 0.0))
-        assert away == pytest.approx(700.0 / math.tan(math.radians(60)))
-        # the target lies to the right of the direction of flight
-        bearing = math.atan2(-middle.east_m, 2000.0 - middle.north_m)
-        turn = math.remainder(bearing - option.start.heading_rad, 2 * math.pi)
-        assert turn == pytest.approx(math.pi / 2, abs=1e-9)
-
-
-def test_a_long_dwell_is_flown_in_circles():
-    point = task(1, TaskKind.POINT_SEARCH, (2000.0, 0.0, 0.0), duration_ms=300_000)
-    of = mission((point,))
-    options, _ = expand(of, of.tasks, ())
-    assert options
-    for option in options:
-        assert option.duration_ms == 300_000
-        assert {round(math.dist(p[:2], (2000.0, 0.0)), 3) for p in option.path} == {
-            round(option.flyer.radius_m, 3)
-        }
-
-
 # ---- the waterway -----------------------------------------------------------------------------
 
 
@@ -399,83 +230,3 @@ def test_the_waterway_is_planned_at_least_as_well_as_recorded(shared):
     line = of.task(1000)
     seen = coverage(plan.items[0].path, line, of.vehicle(400).cameras[0], of.frame.terrain_m)
     assert seen >= 0.99
-
-
-# ---- the messages -----------------------------------------------------------------------------
-
-
-def test_the_pipeline_speaks_the_messages_of_uxas_in_order():
-    of = mission(relations=".(p1 p2)-[60000-200000]")
-    bus = Bus(lmcp.full_names)
-    seen = []
-    bus.tap(lambda e: seen.append((e.topic.rsplit(".", 1)[-1], e.source, e.body)))
-    plan = make_plan(of, bus)
-    names = [name for name, _, _ in seen]
-    chain = [
-        "AutomationRequest",
-        "UniqueAutomationRequest",
-        "TaskPlanOptions",
-        "RoutePlanRequest",
-        "RoutePlanResponse",
-        "AssignmentCostMatrix",
-        "TaskAssignmentSummary",
-        "TaskImplementationRequest",
-        "TaskImplementationResponse",
-        "UniqueAutomationResponse",
-        "AutomationResponse",
-    ]
-    places = [names.index(name) for name in chain]
-    assert places == sorted(places)
-    assert names.count("TaskPlanOptions") == 2
-    assert names.count("AutomationResponse") == 1
-
-    by_name = {name: body for name, _, body in seen}
-    offered = {
-        (o.TaskID, o.OptionID): o for name, _, b in seen if name == "TaskPlanOptions"
-        for o in b.Options
-    }  # fmt: skip
-    matrix = by_name["AssignmentCostMatrix"].CostMatrix
-    assert {(r.DestinationTaskID, r.DestinationTaskOption) for r in matrix} == set(offered)
-    for item, told in zip(plan.items, by_name["TaskAssignmentSummary"].TaskList, strict=True):
-        assert (told.TaskID, told.OptionID) == (item.task_id, item.option_id)
-        assert told.AssignedVehicle == item.vehicle_id
-        assert told.TimeTaskCompleted == item.end_ms
-        assert offered[item.task_id, item.option_id].Cost == item.end_ms - item.start_ms
-
-    projection = Projection(of.frame)
-    commands = {c.VehicleID: c for c in by_name["AutomationResponse"].MissionCommandList}
-    assert set(commands) == {item.vehicle_id for item in plan.items}
-    for number, command in commands.items():
-        points = command.WaypointList
-        assert [w.Number for w in points] == list(range(1, len(points) + 1))
-        assert all(a.NextWaypoint == b.Number for a, b in pairwise(points))
-        flown = [projection.to_local(w.Latitude, w.Longitude) for w in points]
-        planned = [p for item in plan.chain(number) for p in (*item.transit[:-1], *item.path)]
-        assert len(flown) == len(planned)
-        assert max(math.dist(a, b[:2]) for a, b in zip(flown, planned, strict=True)) < 1e-4
-    waits = [
-        a for c in commands.values() for w in c.WaypointList for a in w.VehicleActionList
-        if type(a).__name__ == "LoiterAction"
-    ]  # fmt: skip
-    held = [item for item in plan.items if item.hold]
-    assert [a.Duration for a in waits] == [item.wait_ms for item in held]
-    assert waits[0].Radius == pytest.approx(held[0].hold.radius_m)
-
-
-def test_a_failed_request_ends_in_an_error_status_with_the_reasons():
-    bus = Bus(lmcp.full_names)
-    said = []
-    bus.tap(lambda e: said.append(e.body) if e.topic.endswith("ServiceStatus") else None)
-    with pytest.raises(NoPlan) as error:
-        make_plan(mission(relations="|(p1 p2_[0-60000])"), bus)
-    assert said[-1].StatusType == lmcp.enums["ServiceStatusType"].Error
-    told = [pair.Value for pair in said[-1].Info if pair.Key == "reason"]
-    assert tuple(told) == error.value.reasons
-    # the bus is fit for the next request
-    assert make_plan(mission(relations="|(p1 p2)"), bus).items
-
-
-def test_a_hold_circle_comes_back_to_its_pose():
-    points = circle(Pose(10.0, 20.0, 300.0, 0.7), 150.0, True)
-    assert points[0] == points[-1]
-    assert polyline_length_m(points) == pytest.approx(2 * math.pi * 150.0, rel=2e-3)

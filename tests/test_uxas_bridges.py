@@ -1,53 +1,51 @@
-"""Bridges of a UxAS process: captured frames, clients that come again, export rules, bad input,
-several processes on one bus, and a mission planned for a CMASI client."""
+"""Bridges of a UxAS process: captured frames, clients that come again, export rules, bad input."""
 
 from __future__ import annotations
 
-import gzip
 import json
 import re
 import socket
-import threading
-import time
-from collections import Counter
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 import zmq
-from uxas_tools import LIMIT_S, Client, free_port, process, started, until, write_cfg
+from bridge_tools import ALL, PAIR, TCP, seen, tcp_server
+from uxas_tools import Client, free_port, process, until, write_cfg
 
 from cratous.bridge import envelope as wire
 from cratous.bridge import lmcp, sentinel
-from cratous.bridge.zmq_curve import make_keys
 
-ALL = "".join(f'<SubscribeToMessage MessageType="{c}"/>' for c in "aeul")
-TCP = '<Bridge Type="LmcpObjectNetworkTcpBridge" Server="TRUE" TcpAddress="tcp://127.0.0.1:{}" {}>{}</Bridge>\n'
-PAIR = '<Bridge Type="{}" Address{}="{}" Address{}="{}" {}>{}</Bridge>\n'
 STATE = "afrl.cmasi.AirVehicleState"
+BAD = [
+    ("1.6 GB", b"+=+=+=+=1600000000#@#@#@#@LMCP", "1600000000"),
+    ("unknown series", None, "unknown message series"),
+    ("other version", None, "other version of a series"),
+    ("unknown type", None, "unknown message type"),
+    ("wrong checksum", None, "wrong checksum"),
+    ("truncated", None, "wrong length"),
+    ("no envelope", sentinel.frame(b"no dollars at all"), "no end of the address"),
+    ("json", sentinel.frame(b"a.b$json|a.b||1|2${}"), "unknown content type"),
+    ("bad id", sentinel.frame(b"a.b$lmcp|a.b||x|2$LMCP"), "wrong length|too short|not an id"),
+    ("garbage", bytes(range(256)) * 100, "outside of a frame"),
+]
 
 
-def tcp_server(folder: Path, attributes: str = "", inside: str = ALL, more: str = "") -> Any:
-    port = free_port()
-    one, said = process(write_cfg(folder, more + TCP.format(port, attributes, inside)))
-    return one, said, port
-
-
-@pytest.fixture
-def opened() -> Iterator[list[Any]]:
-    """Everything in here is closed at the end."""
-    made: list[Any] = []
-    yield made
-    for one in reversed(made):
-        one.close()
-
-
-def seen(one: Any, source: str = "") -> list[Any]:
-    """What the bus delivers from now on, from one source or from all."""
-    found: list[Any] = []
-    one.bus.tap(lambda e: found.append(e) if not source or e.source == source else None)
-    return found
+def spoiled(name: str) -> bytes:
+    data = bytearray(lmcp.binary.pack(lmcp.new("AirVehicleState", ID=1)))
+    if name == "unknown series":
+        data[9:17] = b"NOSERIES"
+    elif name == "unknown type":
+        data[17:21] = b"\x00\x00\xff\xff"
+    elif name == "other version":
+        data[21:23] = b"\x00\x63"
+    if name == "wrong checksum":
+        data[-1] ^= 1
+    else:
+        data[-4:] = bytes(4)  # not computed
+    if name == "truncated":
+        data = data[:-20]
+    return sentinel.frame(wire.enclose(STATE, bytes(data)).pack())
 
 
 def test_captured_frames_arrive_and_leave_byte_for_byte(
@@ -110,37 +108,6 @@ def test_subscriptions_are_prefixes_and_kill_service_is_never_exported(
         one.bus.publish(lmcp.new(kind), "test")
     until(lambda: len(client.read()) == 2, one)
     assert client.kinds() == ["AirVehicleState", "TaskInitialized"]
-
-
-BAD = [
-    ("1.6 GB", b"+=+=+=+=1600000000#@#@#@#@LMCP", "1600000000"),
-    ("unknown series", None, "unknown message series"),
-    ("other version", None, "other version of a series"),
-    ("unknown type", None, "unknown message type"),
-    ("wrong checksum", None, "wrong checksum"),
-    ("truncated", None, "wrong length"),
-    ("no envelope", sentinel.frame(b"no dollars at all"), "no end of the address"),
-    ("json", sentinel.frame(b"a.b$json|a.b||1|2${}"), "unknown content type"),
-    ("bad id", sentinel.frame(b"a.b$lmcp|a.b||x|2$LMCP"), "wrong length|too short|not an id"),
-    ("garbage", bytes(range(256)) * 100, "outside of a frame"),
-]
-
-
-def spoiled(name: str) -> bytes:
-    data = bytearray(lmcp.binary.pack(lmcp.new("AirVehicleState", ID=1)))
-    if name == "unknown series":
-        data[9:17] = b"NOSERIES"
-    elif name == "unknown type":
-        data[17:21] = b"\x00\x00\xff\xff"
-    elif name == "other version":
-        data[21:23] = b"\x00\x63"
-    if name == "wrong checksum":
-        data[-1] ^= 1
-    else:
-        data[-4:] = bytes(4)  # not computed
-    if name == "truncated":
-        data = data[:-20]
-    return sentinel.frame(wire.enclose(STATE, bytes(data)).pack())
 
 
 @pytest.mark.parametrize(("name", "data", "reason"), BAD, ids=[b[0] for b in BAD])
@@ -354,279 +321,3 @@ def test_zyre_bridges_find_each_other_and_tell_who_joins_and_leaves(
     assert not came(at_third, "AirVehicleState", 200)
     second.close()
     until(lambda: any(m.topic.endswith("EntityExit") for m in at_first), first, third)
-
-
-HUB = 'HubPUB="tcp://127.0.0.1:{}" HubPULL="tcp://127.0.0.1:{}"'
-SATELLITE = 'HubSUB="tcp://127.0.0.1:{}" HubPUSH="tcp://127.0.0.1:{}" FirstServiceID="150"'
-HELLO = '<Service Type="HelloWorld" StringToSend="{}" SendPeriod_ms="50"/>'
-
-
-def test_two_processes_share_one_bus_and_a_third_observes(tmp_path: Path) -> None:
-    ports = free_port(), free_port()
-    for name in ("hub", "far"):
-        (tmp_path / name).mkdir()
-    hub = write_cfg(tmp_path / "hub", HELLO.format("near"), HUB.format(*ports))
-    far = write_cfg(tmp_path / "far", HELLO.format("far"), SATELLITE.format(*ports))
-    context: zmq.Context[Any] = zmq.Context()
-    observer = context.socket(zmq.SUB)
-    observer.subscribe("afrl.cmasi.KeyValuePair")
-    observer.connect(f"tcp://127.0.0.1:{ports[0]}")
-    ids: list[str] = []
-    end = time.monotonic() + LIMIT_S
-    with started(hub, "-runUntil", "20") as one, started(far, "-runUntil", "20") as two:
-        while len(set(ids)) < 2 or len(ids) < 40:
-            assert time.monotonic() < end, ids
-            if observer.poll(100):
-                message = wire.parse(observer.recv())
-                body = lmcp.binary.unpack(message.payload)
-                assert (body.Key, message.entity_id) == (message.service_id, "100")
-                ids.append(message.service_id)
-        for running in (one, two):
-            running.terminate()
-        heard = [running.communicate(timeout=LIMIT_S)[0] for running in (one, two)]
-        assert (one.returncode, two.returncode) == (0, 0)
-    context.destroy(linger=0)
-    assert set(ids) == {"51", "151"}
-    assert "Received Id[51] Sent Id[151] Message[far]" in heard[0]
-    assert "Received Id[151] Sent Id[51] Message[near]" in heard[1]
-    assert "Sent Id[51]" not in heard[0], "nobody hears himself"
-
-
-def test_all_processes_see_one_order_and_keys_guard_the_hub(
-    tmp_path: Path, opened: list[Any]
-) -> None:
-    ports = free_port(), free_port()
-    for name in ("hub", "far", "known"):
-        (tmp_path / name).mkdir()
-    for name in ("server", "friend"):
-        make_keys(tmp_path / "keys", name)
-    (tmp_path / "known" / "friend.key").write_text((tmp_path / "keys/friend.key").read_text())
-    keys = ' CurveSecretKeyFile="../keys/{}.key_secret"'
-    hub, _ = process(
-        write_cfg(
-            tmp_path / "hub",
-            "",
-            HUB.format(*ports) + keys.format("server") + ' CurveClientKeys="../known"',
-        )
-    )
-    opened.append(hub)
-    path = write_cfg(
-        tmp_path / "far",
-        "",
-        SATELLITE.format(*ports)
-        + keys.format("friend")
-        + ' CurveServerKeyFile="../keys/server.key"',
-    )
-    made: list[Any] = []
-    joining = threading.Thread(target=lambda: made.append(process(path)[0]))
-    joining.start()  # a satellite waits for its hub, which this thread turns
-    until(lambda: not joining.is_alive(), hub)
-    far = made[0]
-    opened.append(far)
-    at_hub, at_far = seen(hub), seen(far)
-    for k in range(50):
-        (hub, far)[k % 2].bus.publish(lmcp.new("TaskInitialized", TaskID=k), "ServiceManager")
-        if k % 7 == 0:
-            far.turn(0.0)
-    until(lambda: len(at_far) >= 50, hub, far)
-    orders = [[m.body.TaskID for m in found] for found in (at_hub, at_far)]
-    assert orders[0] == orders[1]
-    assert sorted(orders[0]) == list(range(50))
-
-
-def test_a_satellite_without_a_hub_is_told_so(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    from cratous.services.uxas import hub
-    from cratous.spec.errors import BadInput
-
-    monkeypatch.setattr(hub, "_JOIN_S", 0.3)
-    path = write_cfg(tmp_path, "", SATELLITE.format(free_port(), free_port()))
-    with pytest.raises(BadInput, match="no hub answers"):
-        process(path)
-    path = write_cfg(tmp_path, "", SATELLITE.format(1, 2).replace('FirstServiceID="150"', ""))
-    with pytest.raises(BadInput, match="ids of its own"):
-        process(path)
-
-
-PIPELINE = "".join(
-    f'<Service Type="{name}"/>\n'
-    for name in (
-        "TaskManagerService",
-        "AutomationRequestValidatorService",
-        "RoutePlannerVisibilityService",
-        "RouteAggregatorService",
-        "AssignmentTreeBranchBoundService",
-        "PlanBuilderService",
-    )
-)
-LEFT_OUT = ("AutomationDiagramDataService", "MessageLoggerDataService")
-
-
-def test_the_waterway_mission_for_a_cmasi_client(shared: Path, tmp_path: Path) -> None:
-    """The example's own configuration; the client sends all messages and gets its plan by TCP."""
-    folder = shared / "examples/openuxas/waterway"
-    port, pub, pull = free_port(), free_port(), free_port()
-    text = (folder / "cfg_run.xml").read_text()
-    for old, new in (("15562", port), ("15560", pub), ("15561", pull)):
-        text = text.replace(old, str(new))
-    start, end = text.index('<Service Type="SendMessagesService"'), text.index("</Service>")
-    path = tmp_path / "cfg.xml"
-    path.write_text(text[:start] + text[end + len("</Service>") :])
-    bodies = []
-    for name in ("AirVehicleConfiguration_V400", "AirVehicleConfiguration_V500"):
-        bodies += lmcp.xml.read_file(folder / f"inputs/{name}.xml", [])
-    for name in ("AirVehicleState_V400", "AirVehicleState_V500"):
-        bodies += lmcp.xml.read_file(folder / f"inputs/{name}.xml", [])
-    for name in sorted((folder / "inputs/tasks").iterdir()):
-        bodies += lmcp.xml.read_file(name, [])
-    options = [part for name in LEFT_OUT for part in ("--without", name)]
-    with started(path, "-runUntil", "300", *options) as running:
-        client = Client(port)
-        for body in bodies[:-1]:
-            client.send(body)
-        client.wait("TaskInitialized")
-        client.send(bodies[-1])
-        response = client.wait("AutomationResponse")
-        summary = client.wait("TaskAssignmentSummary")
-        segment = client.wait("MissionCommand")
-        client.send(lmcp.new("KillService", ServiceID=-1))
-        assert running.wait(LIMIT_S) == 0
-    client.close()
-    (command,) = response.MissionCommandList
-    assert command.VehicleID == 400, "as the original assigns it"
-    assert len(command.WaypointList) > 50
-    assert len(segment.WaypointList) == 15, "as its waypoint manager is told"
-    assert summary.TaskList[0].TimeTaskCompleted < 729_820, "the original's makespan"
-    assert {path.name for path in (tmp_path / "log").iterdir()}
-
-
-def test_each_request_gets_one_response_in_order_with_reasons(
-    shared: Path, tmp_path: Path, opened: list[Any]
-) -> None:
-    one, said, port = tcp_server(tmp_path, more=PIPELINE)
-    opened.append(one)
-    client = Client(port)
-    opened.append(client)
-    folder = shared / "examples/openuxas/waterway/inputs"
-    for name in ("AirVehicleConfiguration_V400", "AirVehicleState_V400"):
-        client.send(lmcp.xml.read_file(folder / f"{name}.xml", [])[0])
-    (task,) = lmcp.xml.read_file(next((folder / "tasks").glob("1000*")), [])
-    client.send(task)
-    request = lmcp.new("AutomationRequest", EntityList=[400], TaskList=[1000])
-    for body in (
-        request,
-        request.copy(TaskList=[9]),
-        request.copy(EntityList=[7]),
-        request.copy(TaskRelationships="*(p1000)"),
-        request,
-    ):
-        client.send(body)
-    client.send(lmcp.new("CommRelayTask", TaskID=5))
-    client.send(request.copy(TaskList=[5]))
-    until(lambda: client.kinds().count("AutomationResponse") == 6, one)
-    client.send(lmcp.new("RemoveTasks", TaskList=[1000]))
-    client.send(request)
-    until(lambda: client.kinds().count("AutomationResponse") == 7, one)
-    answers = [
-        lmcp.binary.unpack(m.payload)
-        for m in client.got
-        if m.descriptor == "afrl.cmasi.AutomationResponse"
-    ]
-    assert [len(a.MissionCommandList) for a in answers] == [1, 0, 0, 0, 1, 0, 0]
-    reasons = [" ".join(p.Value for p in a.Info) for a in answers]
-    for k, text in (
-        (1, "task 9 does not exist"),
-        (2, "vehicle 7"),
-        (3, "TaskRelationships|expected"),
-        (6, "task 1000"),
-    ):
-        assert re.search(text, reasons[k]), reasons[k]
-    assert reasons[5], "a kind of task that is not covered is named"
-    assert said.has("unknown service type") or said.has("not covered yet")
-    assert not said.has("fails at")
-    names = one.bus.names()
-    assert not any("1000" in name for name in names), "the task's service has ended"
-    assert one.bus.state("AutomationRequestValidatorService").asked == {}
-    assert one.bus.state("PlanBuilderService").work == {}
-
-
-def test_a_second_task_of_the_same_id_takes_the_place_of_the_first(
-    tmp_path: Path, opened: list[Any]
-) -> None:
-    one, _, port = tcp_server(tmp_path, more=PIPELINE)
-    opened.append(one)
-    client = Client(port)
-    opened.append(client)
-    for x in (1.0, 2.0):
-        point = lmcp.new("Location3D", Latitude=x)
-        client.send(lmcp.new("PointSearchTask", TaskID=3, SearchLocation=point))
-    until(lambda: client.kinds().count("TaskInitialized") == 2, one)
-    assert client.kinds().count("KillService") == 0
-    assert [n for n in one.bus.names() if "[3]" in n] == ["CmasiPointSearchTaskService[3]"]
-    world = one.host.shared["contexts"].world
-    assert world.task(3).body.SearchLocation.Latitude == 2.0
-
-
-def test_a_request_without_a_response_is_answered_in_time_and_strays_do_not_end_it(
-    shared: Path, tmp_path: Path, opened: list[Any]
-) -> None:
-    slow = PIPELINE.replace(
-        '"AutomationRequestValidatorService"',
-        '"AutomationRequestValidatorService" MaxResponseTime_ms="1000"',
-    )
-    one, said, port = tcp_server(tmp_path, more=slow)
-    opened.append(one)
-    client = Client(port)
-    opened.append(client)
-    folder = shared / "examples/openuxas/waterway/inputs"
-    for name in ("AirVehicleConfiguration_V400", "AirVehicleState_V400"):
-        client.send(lmcp.xml.read_file(folder / f"{name}.xml", [])[0])
-    (task,) = lmcp.xml.read_file(next((folder / "tasks").glob("1000*")), [])
-    client.send(task)
-    until(lambda: "TaskInitialized" in client.kinds(), one)
-    number = next(n for n, name in one.manager.services.items() if name == "PlanBuilderService")
-    client.send(lmcp.new("KillService", ServiceID=number))
-    request = lmcp.new("AutomationRequest", EntityList=[400], TaskList=[1000])
-    client.send(request)
-    until(lambda: one.bus.state("AutomationRequestValidatorService").work == 1, one)
-    begun_ms = one.bus.now_ms
-    for _ in range(9):
-        client.send(lmcp.new("TaskPlanOptions", CorrespondingAutomationRequestID=77, TaskID=1000))
-        client.send(lmcp.new("AssignmentCostMatrix", CorrespondingAutomationRequestID=77))
-        client.send(lmcp.new("UniqueAutomationResponse", ResponseID=77))
-    until(lambda: "AutomationResponse" in client.kinds(), one)
-    assert one.bus.now_ms - begun_ms >= 500
-    assert one.bus.state("AutomationRequestValidatorService").work == 0
-    reasons = [p.Value for p in client.wait("AutomationResponse").Info]
-    assert reasons == ["no response within MaxResponseTime_ms = 1000"]
-    assert not said.has("fails at")
-
-
-def test_a_recorded_simulator_session_tells_the_world(
-    shared: Path, tmp_path: Path, opened: list[Any]
-) -> None:
-    """The bytes that OpenAMASE sent to a client, sent to ours."""
-    data = gzip.decompress(
-        (shared / "vectors/amase/session-waterway-rate10.tcp.bin.gz").read_bytes()
-    )
-    server = socket.create_server(("127.0.0.1", 0))
-    opened.append(server)
-    body = TCP.replace("TRUE", "FALSE").format(server.getsockname()[1], "", ALL)
-    one, said = process(write_cfg(tmp_path, PIPELINE + body))
-    opened.append(one)
-    kinds: Counter[str] = Counter()
-    one.bus.tap(lambda e: kinds.update([e.topic.rpartition(".")[2]]))
-    until(lambda: one.manager.bridges[57].port.peers == 1, one)
-    peer, _ = server.accept()
-    opened.append(peer)
-    sending = threading.Thread(target=peer.sendall, args=(data,))
-    sending.start()
-    until(lambda: kinds["AirVehicleState"] >= 3331 and kinds["SessionStatus"] >= 1672, one)
-    sending.join()
-    assert kinds["AirVehicleState"] == 3331
-    states = {body.ID: body for body in one.host.shared["contexts"].world.of("state")}
-    assert sorted(states) == [400, 500]
-    assert states[400].Time > 600_000, "the newest state of each is kept"
-    assert not one.manager.bridges[57].port.counts.refused
-    assert not said.has("fails at")

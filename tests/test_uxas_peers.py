@@ -6,7 +6,6 @@ import contextlib
 import os
 import struct
 import tty
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -24,15 +23,6 @@ SUBSCRIBED = '<SubscribeToMessage MessageType="afrl"/>'
 EXTERNAL = SUBSCRIBED + '<SubscribeToExternalMessage MessageType="afrl"/>'
 PAIR = '<Bridge Type="LmcpObjectNetwork{}Bridge" Address{}="{}" Address{}="{}">{}</Bridge>'
 TCP = '<Bridge Type="LmcpObjectNetworkTcpBridge" Server="TRUE" TcpAddress="tcp://127.0.0.1:{}">{}</Bridge>'
-
-
-@pytest.fixture
-def opened() -> Iterator[list[Any]]:
-    """Everything in here is closed at the end."""
-    made: list[Any] = []
-    yield made
-    for one in reversed(made):
-        one.close()
 
 
 def pair(key: str) -> Any:

@@ -32,6 +32,16 @@ def join_in_transit(chain: Chain, state: AirState) -> float:
     return track.s_m[goal_index(motion, radius, track.points, index)]
 
 
+def points_left(chain: Chain) -> tuple[Position, ...]:
+    """The present track from here on."""
+    points = chain.track.rest(chain.s_m)
+    if len(points) > 1:
+        return points
+    (p,), h = points, chain.track.heading_rad(chain.s_m)
+    # one point alone has no direction: a metre more gives it the track's
+    return (p, Position(p.north_m + math.cos(h), p.east_m + math.sin(h), p.alt_m))
+
+
 def last_lap(chain: Chain) -> tuple[Position, ...]:
     """One more lap of the final loiter, level, at the height that was reached."""
     points = chain.track.points

@@ -10,29 +10,25 @@ failure of the task.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 from cratous.core.following import Track
 from cratous.core.gate import UXAS
-from cratous.core.legs import first_bad_leg
 from cratous.core.timeliness import too_early
-from cratous.core.visibility import name_of
 from cratous.services.flight import chain as chains
-from cratous.services.flight.ahead import join_in_transit, last_lap, leaving_m, points_ahead
+from cratous.services.flight.ahead import last_lap, leaving_m, points_ahead, points_left
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import gated, path_command, task_progress
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.expectation import expected_times
 from cratous.services.flight.pace import FASTEST, broken_rows, trimmed_speed_m_s
-from cratous.services.flight.rejoining import Router
 from cratous.services.flight.timing import closed_by, opens_ms
+from cratous.services.flight.ways import Ways
 from cratous.services.frames import Projection
-from cratous.spec.changes import TASK_ADDED, TASK_REMOVED, VEHICLE_JOINS, VEHICLE_LOST
-from cratous.spec.mission import Change, Mission, Position, Zone
-from cratous.spec.plan import Plan, Pose, Row
+from cratous.spec.mission import Mission, Position, Zone
+from cratous.spec.plan import Plan, PlanItem, Row
 
 EARLY_MS = 500
 """A planned wait may end this much early; the rows themselves are never bent."""
@@ -65,7 +61,7 @@ class Executive:
     hurry: bool = False
 
     def __post_init__(self) -> None:
-        self.router = Router(self.zones)
+        self.ways = Ways(self.zones, self.dt_s)
 
     def begin(self, states: dict[int, AirState], now_ms: int = 0) -> list[Any]:
         """Set every vehicle on its way; the first messages."""
@@ -114,15 +110,8 @@ class Executive:
         chain = self.chains[vehicle_id]
         self.commands += 1
         tasks = (chain.item.task_id,) if chain.item and chain.phase is Phase.TASK else ()
-        points = chain.track.rest(chain.s_m)
-        if len(points) == 1:
-            h = chain.track.heading_rad(chain.s_m)
-            p = points[0]
-            # one point alone has no direction: a metre more gives it the track's
-            points = (p, Position(p.north_m + math.cos(h), p.east_m + math.sin(h), p.alt_m))
-        body = path_command(
-            self.projection, vehicle_id, self.commands, points, chain.speed_m_s, tasks
-        )
+        points, speed = points_left(chain), chain.speed_m_s
+        body = path_command(self.projection, vehicle_id, self.commands, points, speed, tasks)
         return gated(vehicle_id, epoch, UXAS, body)
 
     # events -------------------------------------------------------------------------------
@@ -160,55 +149,23 @@ class Executive:
             chain.k += 1
         item = chain.item
         if item is None:
-            chain.enter(Phase.DONE, self._final_loiter(chain, state), at_ms)
+            self._loiter(chain, at_ms, state)
             return
         chain.speed_m_s = item.speed_m_s
-        chain.enter(Phase.TRANSIT, self._transit(chain, state), at_ms)
+        chain.enter(Phase.TRANSIT, self.ways.transit(chain, state), at_ms)
         out.append(self._progress(chain, at_ms, "Transit", 0.0, ""))
 
-    def _transit(self, chain: Chain, state: AirState) -> Track:
-        """The planned way to the item, or a new one if we do not come from where it begins."""
-        item = chain.item
-        assert item is not None
-        track = chains.transit_track(item, state.position)
-        first = track.points[0]
-        off = math.hypot(
-            first.north_m - state.position.north_m, first.east_m - state.position.east_m
-        )
-        if off <= 3 * state.speed_m_s * self.dt_s + 1:
-            return track
-        return Track(self._way(chain, state, chains.start_pose(item)))
-
-    def _way(self, chain: Chain, state: AirState, target: Pose) -> tuple[Position, ...]:
-        slope = chain.vehicle.max_climb_m_s / chain.speed_m_s
-        return self.router.way_to(state, self._radius(chain), target, slope)
-
-    def _radius(self, chain: Chain) -> float:
-        return chains.ROUTE_MARGIN * turn_radius_m(
-            max(chain.speed_m_s, chain.vehicle.min_speed_m_s), chain.vehicle.max_bank_rad
-        )
-
-    def _final_loiter(self, chain: Chain, state: AirState) -> Track:
+    def _loiter(self, chain: Chain, at_ms: int, state: AirState) -> None:
         """Circle at the end of the chain; raised to a layer of its own while others still fly.
 
         The layer is one and a half buffered vertical thresholds per vehicle, in the order of
         finishing, so that one who has finished is in nobody's way.
         """
-        end = chain.track.at(chain.track.length_m) if chain.k > 0 else state.position
-        heading = (
-            chain.track.heading_rad(chain.track.length_m) if chain.k > 0 else state.heading_rad
-        )
         self.finished += 1
         others = any(c.item is not None for c in self.chains.values() if c is not chain)
         daa = self.mission.daa
         layer = 1.5 * daa.buffer * daa.well_clear.zthr_m * self.finished
-        return chains.final_loiter(
-            Pose(*end, heading),
-            self._radius(chain),
-            layer if others else 0.0,
-            0.9 * chain.vehicle.max_climb_m_s / chain.vehicle.max_speed_m_s,
-            self.zones,
-        )
+        chain.enter(Phase.DONE, self.ways.last(chain, state, layer if others else 0.0), at_ms)
 
     def _try_start(self, chain: Chain, at_ms: int, out: list[Any]) -> None:
         """At the start pose: begin the task, or fly a lap of the hold."""
@@ -223,10 +180,7 @@ class Executive:
             out.append(self._progress(chain, at_ms, "Active", 0.0, ""))
             return
         first = chain.phase is not Phase.WAIT
-        pose = chains.start_pose(item)
-        hold = item.hold or chains.tangent_hold(pose, self._radius(chain), ())
-        assert hold is not None
-        chain.enter(Phase.WAIT, Track(chains.lap_points(hold, Position(*pose[:3]))), at_ms)
+        chain.enter(Phase.WAIT, self.ways.lap(chain, item), at_ms)
         if first:
             note = row.text if row is not None else f"planned start at {item.start_ms} ms"
             out.append(self._progress(chain, at_ms, "Waiting", 0.0, note))
@@ -259,22 +213,10 @@ class Executive:
         """ICAROUS hands back: route to the resume point, then along the rest of the path."""
         chain = self.chains[vehicle_id]
         chain.suspended = False
-        flown = 0.0
+        back = self.ways.back(chain, state)
+        chain.enter(chain.phase, back.track, now_ms)
         if chain.phase is Phase.TASK:
-            join = leaving_m(chain)
-            flown = chain.base_m + join - chain.join_m
-        else:
-            join = join_in_transit(chain, state)
-        rest = Track(chain.track.rest(join), chain.track.heading_rad(join))
-        target = Pose(*rest.points[0], rest.heading_rad(0.0))
-        way = self._way(chain, state, target)
-        phase, speed = chain.phase, chain.speed_m_s
-        track = Track((*way, *rest.points[1:]), target.heading_rad)
-        chain.enter(phase, track, now_ms)
-        chain.speed_m_s = speed
-        if phase is Phase.TASK:
-            chain.join_m = max(0.0, track.length_m - rest.length_m)
-            chain.base_m, chain.away = flown, True
+            chain.join_m, chain.base_m, chain.away = back.join_m, back.flown_m, True
 
     # timing -----------------------------------------------------------------------------------
 
@@ -289,14 +231,7 @@ class Executive:
         item = chain.item
         if item is None or chain.suspended or chain.phase not in (Phase.TRANSIT, Phase.WAIT):
             return
-        starts, ends = self.expected(1.0, now_ms)
-        starts.pop(item.task_id, None)
-        target = opens_ms(item.task_id, self.plan.rows, starts, ends)
-        if target > 0:
-            target += OPEN_MARGIN_MS
-        if item.wait_ms > 0:
-            target = max(target, item.start_ms)
-        left = chain.left_m()
+        target, left = self._opens_ms(item, now_ms, OPEN_MARGIN_MS), chain.left_m()
         speed = trimmed_speed_m_s(item, chain.vehicle, left, target - now_ms, self.hurry)
         if abs(speed - chain.speed_m_s) > 0.02 * item.speed_m_s or (
             left < 10 * item.speed_m_s and abs(speed - chain.speed_m_s) > 0.002 * item.speed_m_s
@@ -344,36 +279,7 @@ class Executive:
 
     def know(self, zones: tuple[Zone, ...]) -> None:
         """These zones bind from now on."""
-        self.zones, self.router = zones, Router(zones)
-
-    def touched_by(
-        self, due: Sequence[Change], zones: Sequence[Zone], states: dict[int, AirState]
-    ) -> str:
-        """Why what has become known asks for another plan; empty if it does not.
-
-        A new zone does if a leg that is still to be flown breaks it (kernels by `first_bad_leg`).
-        """
-        left = {
-            c.vehicle.id: [i.task_id for i in c.items[max(c.k, 0) :]] for c in self.chains.values()
-        }
-        for change in due:
-            if change.kind == VEHICLE_LOST and left.get(change.vehicle):
-                return f"tasks {', '.join(map(str, left[change.vehicle]))} go to other vehicles"
-            if change.kind == TASK_REMOVED and change.task not in self.ends:
-                return f"task {change.task} is left out"
-            if change.kind in (TASK_ADDED, VEHICLE_JOINS):
-                return "what is left is shared out again"
-        for vid, chain in sorted(self.chains.items()):
-            ways = [(states[vid].position, *chain.track.rest(chain.s_m))]
-            for item in chain.items[max(chain.k, 0) + 1 :]:
-                ways += [item.transit, item.path]
-            if chain.item is not None and chain.phase is not Phase.TASK:
-                ways.append(chain.item.path)
-            for way in ways:
-                bad = first_bad_leg(way, zones) if way else None
-                if bad is not None:
-                    return f"the way of vehicle {vid} breaks {name_of(bad[1])}"
-        return ""
+        self.zones, self.ways = zones, Ways(zones, self.dt_s)
 
     def commands_now(self, epochs: dict[int, int]) -> list[Any]:
         """The present tracks, for all that UxAS commands."""
@@ -419,16 +325,16 @@ class Executive:
     def waypoints(self, vehicle_id: int, ahead_m: float) -> tuple[Position, ...]:
         """The present track and, beyond it, at least ahead_m of what follows if all goes well."""
         chain = self.chains[vehicle_id]
-        return points_ahead(chain, self._opens_ms(chain, chain.since_ms), ahead_m)
+        opens = self._opens_ms(chain.item, chain.since_ms) if chain.item is not None else 0
+        return points_ahead(chain, opens, ahead_m)
 
-    def _opens_ms(self, chain: Chain, now_ms: int) -> int:
-        """When the chain's next task is expected to be allowed to begin; 0 if it has none."""
-        item = chain.item
-        if item is None:
-            return 0
+    def _opens_ms(self, item: PlanItem, now_ms: int, margin_ms: int = 0) -> int:
+        """When an item's task is expected to be allowed to begin, and a margin if it must wait."""
         starts, ends = self.expected(1.0, now_ms)
         starts.pop(item.task_id, None)
         opens = opens_ms(item.task_id, self.plan.rows, starts, ends)
+        if opens > 0:
+            opens += margin_ms
         return max(opens, item.start_ms) if item.wait_ms > 0 else opens
 
     def _progress(self, chain: Chain, at_ms: int, phase: str, served: float, note: str) -> Any:

@@ -18,16 +18,17 @@ from cratous.bridge.loopback import Bridge, Delivered
 from cratous.bridge.text_protocol import Direction, Message, WireError
 from cratous.core.gate import ICAROUS, UXAS, Gate
 from cratous.services.bus import Bus
-from cratous.services.flight.commands import SENDERS, gated, velocity_command
+from cratous.services.flight.commands import gated, velocity_command
 from cratous.services.flight.communication import Communication
 from cratous.services.flight.dynamics import AirState, limits_of, traffic_state
 from cratous.services.flight.executive import Executive
+from cratous.services.flight.notices import authority_change, conflict, gate_state, plan_accepted
 from cratous.services.flight.sensing import camera_states, target_of
+from cratous.services.flight.touched import touched_by
 from cratous.services.flight.vehicle import VehicleNode, traffic_picture, truth
 from cratous.services.frames import Projection
 from cratous.services.icarous import instance
 from cratous.services.planning.zones import hard_zones
-from cratous.services.records import fingerprint, to_data
 from cratous.services.wind import CALM, all_in_wind, in_wind, known_at, told, wind_at
 from cratous.spec.changes import TASK_ADDED, VEHICLE_JOINS, split, words
 from cratous.spec.errors import NoPlan
@@ -134,33 +135,13 @@ class _Flight:
         """Say how the gate stands, if it has changed."""
         gate = self.nodes[vid].gate
         if gate != before:
-            state = lmcp.new(
-                "GateState",
-                VehicleID=vid,
-                Time=self.now_ms,
-                Owner=SENDERS[gate.owner],
-                Epoch=gate.epoch,
-                Offered=gate.offered,
-            )
-            self._say([state], f"vehicle/{vid}")
+            self._say([gate_state(vid, self.now_ms, gate)], f"vehicle/{vid}")
 
     def _authority(self, vid: int, reason: str, intruder_id: int) -> None:
         """Say who commands a vehicle from now on, and since which epoch."""
         gate = self.nodes[vid].gate
-        self._say(
-            [
-                lmcp.new(
-                    "AuthorityChange",
-                    VehicleID=vid,
-                    Time=self.now_ms,
-                    Owner=SENDERS[gate.owner],
-                    Epoch=gate.epoch,
-                    Reason=reason,
-                    IntruderID=intruder_id,
-                )
-            ],
-            f"vehicle/{vid}",
-        )
+        said = authority_change(vid, self.now_ms, gate, reason, intruder_id)
+        self._say([said], f"vehicle/{vid}")
 
     # the loop -----------------------------------------------------------------------------
 
@@ -206,15 +187,7 @@ class _Flight:
 
     def _accept(self, plan: Plan, done: frozenset[int]) -> None:
         """Say by which plan is flown from now on; `done` are the tasks already flown."""
-        tasks = done | {item.task_id for item in plan.items}
-        accepted = lmcp.new(
-            "PlanAccepted",
-            Time=self.now_ms,
-            Makespan=plan.makespan_ms,
-            PlanHash=fingerprint(to_data(plan)),
-            Tasks=sorted(tasks),
-        )
-        self._say([accepted], "uxas")
+        self._say([plan_accepted(self.now_ms, plan, done)], "uxas")
 
     def _outcome(self, limit_ms: int) -> str:
         back = all(node.gate.owner == UXAS for node in self.nodes.values())
@@ -325,15 +298,7 @@ class _Flight:
             node.offer()
             self._gate(vid, before)
         if out.resolution:
-            conflict = lmcp.new(
-                "Conflict",
-                VehicleID=vid,
-                IntruderID=out.intruder_id,
-                Time=self.now_ms,
-                TimeToViolation_s=out.first_violation_s,
-                Resolution=out.resolution,
-            )
-            self._say([conflict], f"icarous/{vid}")
+            self._say([conflict(vid, self.now_ms, out)], f"icarous/{vid}")
         if out.velocity is not None:
             self.commands += 1
             command = velocity_command(vid, self.commands, out.velocity)
@@ -351,7 +316,7 @@ class _Flight:
         what = "; ".join(words(change) for change in due)
         self.executive.know(self.zones)
         self.ics.know(self.zones)
-        touched = self.executive.touched_by(due, zones, states)
+        touched = touched_by(due, zones, self.executive.chains, self.executive.ends, states)
         why = "; ".join(text for text in (blown, touched) if text)
         out: list[Any] = []
         if not why:

@@ -123,7 +123,8 @@ class SeparationWatch:
             note = f"nearest {pair.nearest_m:.1f} m at {pair.nearest_ms / 1000:.2f} s"
         if lost:
             note = (
-                f"lost at {(pair.lost_ms or 0) / 1000:.2f} s, in {pair.lost_steps} steps; {note}; "
+                f"lost at {(pair.lost_ms or 0) / 1000:.2f} s, in {pair.lost_steps} "
+                f"step{'' if pair.lost_steps == 1 else 's'}; {note}; "
                 f"{sentence(losses)}"
             )
         return Verdict(

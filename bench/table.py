@@ -1,0 +1,32 @@
+"""Rows of the benchmarks as a table, measured on one core."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+
+Rows = list[tuple[str, float, str, float]]
+"""(what, ours [ns], peer, its time [ns])."""
+
+
+def on_one_core() -> None:
+    """Keep this process on one core, where the system can."""
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+
+
+def markdown(rows: Rows) -> list[str]:
+    """A line of the table for each row."""
+    lines = []
+    for what, ours, peer, theirs in rows:
+        digits = 2 if ours < 10 else 0
+        ns = [f"{value:,.{digits}f}" for value in (ours, theirs)]
+        lines.append(f"| {what} | {ns[0]} | {peer} | {ns[1]} | {theirs / ours:.2f} |")
+    return lines
+
+
+def alone(rows: Callable[[], Rows]) -> int:
+    """Measure one file's rows and print them."""
+    on_one_core()
+    print("\n".join(markdown(rows())))
+    return 0

@@ -1,0 +1,199 @@
+"""The pipeline behind a bridge: a CMASI client gets one response to each request, with reasons."""
+
+from __future__ import annotations
+
+import gzip
+import re
+import socket
+import threading
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+from bridge_tools import ALL, TCP, tcp_server
+from uxas_tools import LIMIT_S, Client, free_port, process, started, until, write_cfg
+
+from cratous.bridge import lmcp
+
+PIPELINE = "".join(
+    f'<Service Type="{name}"/>\n'
+    for name in (
+        "TaskManagerService",
+        "AutomationRequestValidatorService",
+        "RoutePlannerVisibilityService",
+        "RouteAggregatorService",
+        "AssignmentTreeBranchBoundService",
+        "PlanBuilderService",
+    )
+)
+LEFT_OUT = ("AutomationDiagramDataService", "MessageLoggerDataService")
+
+
+def send_one_vehicle_and_its_task(client: Client, shared: Path) -> None:
+    """Vehicle 400 and task 1000 of the waterway example."""
+    folder = shared / "examples/openuxas/waterway/inputs"
+    for name in ("AirVehicleConfiguration_V400", "AirVehicleState_V400"):
+        client.send(lmcp.xml.read_file(folder / f"{name}.xml", [])[0])
+    (task,) = lmcp.xml.read_file(next((folder / "tasks").glob("1000*")), [])
+    client.send(task)
+
+
+def test_the_waterway_mission_for_a_cmasi_client(shared: Path, tmp_path: Path) -> None:
+    """The example's own configuration; the client sends all messages and gets its plan by TCP."""
+    folder = shared / "examples/openuxas/waterway"
+    port, pub, pull = free_port(), free_port(), free_port()
+    text = (folder / "cfg_run.xml").read_text()
+    for old, new in (("15562", port), ("15560", pub), ("15561", pull)):
+        text = text.replace(old, str(new))
+    start, end = text.index('<Service Type="SendMessagesService"'), text.index("</Service>")
+    path = tmp_path / "cfg.xml"
+    path.write_text(text[:start] + text[end + len("</Service>") :])
+    bodies = []
+    for name in ("AirVehicleConfiguration_V400", "AirVehicleConfiguration_V500"):
+        bodies += lmcp.xml.read_file(folder / f"inputs/{name}.xml", [])
+    for name in ("AirVehicleState_V400", "AirVehicleState_V500"):
+        bodies += lmcp.xml.read_file(folder / f"inputs/{name}.xml", [])
+    for name in sorted((folder / "inputs/tasks").iterdir()):
+        bodies += lmcp.xml.read_file(name, [])
+    options = [part for name in LEFT_OUT for part in ("--without", name)]
+    with started(path, "-runUntil", "300", *options) as running:
+        client = Client(port)
+        for body in bodies[:-1]:
+            client.send(body)
+        client.wait("TaskInitialized")
+        client.send(bodies[-1])
+        response = client.wait("AutomationResponse")
+        summary = client.wait("TaskAssignmentSummary")
+        segment = client.wait("MissionCommand")
+        client.send(lmcp.new("KillService", ServiceID=-1))
+        assert running.wait(LIMIT_S) == 0
+    client.close()
+    (command,) = response.MissionCommandList
+    assert command.VehicleID == 400, "as the original assigns it"
+    assert len(command.WaypointList) > 50
+    assert len(segment.WaypointList) == 15, "as its waypoint manager is told"
+    assert summary.TaskList[0].TimeTaskCompleted < 729_820, "the original's makespan"
+    assert {path.name for path in (tmp_path / "log").iterdir()}
+
+
+def test_each_request_gets_one_response_in_order_with_reasons(
+    shared: Path, tmp_path: Path, opened: list[Any]
+) -> None:
+    one, said, port = tcp_server(tmp_path, more=PIPELINE)
+    opened.append(one)
+    client = Client(port)
+    opened.append(client)
+    send_one_vehicle_and_its_task(client, shared)
+    request = lmcp.new("AutomationRequest", EntityList=[400], TaskList=[1000])
+    for body in (
+        request,
+        request.copy(TaskList=[9]),
+        request.copy(EntityList=[7]),
+        request.copy(TaskRelationships="*(p1000)"),
+        request,
+    ):
+        client.send(body)
+    client.send(lmcp.new("CommRelayTask", TaskID=5))
+    client.send(request.copy(TaskList=[5]))
+    until(lambda: client.kinds().count("AutomationResponse") == 6, one)
+    client.send(lmcp.new("RemoveTasks", TaskList=[1000]))
+    client.send(request)
+    until(lambda: client.kinds().count("AutomationResponse") == 7, one)
+    answers = [
+        lmcp.binary.unpack(m.payload)
+        for m in client.got
+        if m.descriptor == "afrl.cmasi.AutomationResponse"
+    ]
+    assert [len(a.MissionCommandList) for a in answers] == [1, 0, 0, 0, 1, 0, 0]
+    reasons = [" ".join(p.Value for p in a.Info) for a in answers]
+    for k, text in (
+        (1, "task 9 does not exist"),
+        (2, "vehicle 7"),
+        (3, "TaskRelationships|expected"),
+        (6, "task 1000"),
+    ):
+        assert re.search(text, reasons[k]), reasons[k]
+    assert reasons[5], "a kind of task that is not covered is named"
+    assert said.has("unknown service type") or said.has("not covered yet")
+    assert not said.has("fails at")
+    names = one.bus.names()
+    assert not any("1000" in name for name in names), "the task's service has ended"
+    assert one.bus.state("AutomationRequestValidatorService").asked == {}
+    assert one.bus.state("PlanBuilderService").work == {}
+
+
+def test_a_second_task_of_the_same_id_takes_the_place_of_the_first(
+    tmp_path: Path, opened: list[Any]
+) -> None:
+    one, _, port = tcp_server(tmp_path, more=PIPELINE)
+    opened.append(one)
+    client = Client(port)
+    opened.append(client)
+    for x in (1.0, 2.0):
+        point = lmcp.new("Location3D", Latitude=x)
+        client.send(lmcp.new("PointSearchTask", TaskID=3, SearchLocation=point))
+    until(lambda: client.kinds().count("TaskInitialized") == 2, one)
+    assert client.kinds().count("KillService") == 0
+    assert [n for n in one.bus.names() if "[3]" in n] == ["CmasiPointSearchTaskService[3]"]
+    world = one.host.shared["contexts"].world
+    assert world.task(3).body.SearchLocation.Latitude == 2.0
+
+
+def test_a_request_without_a_response_is_answered_in_time_and_strays_do_not_end_it(
+    shared: Path, tmp_path: Path, opened: list[Any]
+) -> None:
+    slow = PIPELINE.replace(
+        '"AutomationRequestValidatorService"',
+        '"AutomationRequestValidatorService" MaxResponseTime_ms="1000"',
+    )
+    one, said, port = tcp_server(tmp_path, more=slow)
+    opened.append(one)
+    client = Client(port)
+    opened.append(client)
+    send_one_vehicle_and_its_task(client, shared)
+    until(lambda: "TaskInitialized" in client.kinds(), one)
+    number = next(n for n, name in one.manager.services.items() if name == "PlanBuilderService")
+    client.send(lmcp.new("KillService", ServiceID=number))
+    request = lmcp.new("AutomationRequest", EntityList=[400], TaskList=[1000])
+    client.send(request)
+    until(lambda: one.bus.state("AutomationRequestValidatorService").work == 1, one)
+    begun_ms = one.bus.now_ms
+    for _ in range(9):
+        client.send(lmcp.new("TaskPlanOptions", CorrespondingAutomationRequestID=77, TaskID=1000))
+        client.send(lmcp.new("AssignmentCostMatrix", CorrespondingAutomationRequestID=77))
+        client.send(lmcp.new("UniqueAutomationResponse", ResponseID=77))
+    until(lambda: "AutomationResponse" in client.kinds(), one)
+    assert one.bus.now_ms - begun_ms >= 500
+    assert one.bus.state("AutomationRequestValidatorService").work == 0
+    reasons = [p.Value for p in client.wait("AutomationResponse").Info]
+    assert reasons == ["no response within MaxResponseTime_ms = 1000"]
+    assert not said.has("fails at")
+
+
+def test_a_recorded_simulator_session_tells_the_world(
+    shared: Path, tmp_path: Path, opened: list[Any]
+) -> None:
+    """The bytes that OpenAMASE sent to a client, sent to ours."""
+    data = gzip.decompress(
+        (shared / "vectors/amase/session-waterway-rate10.tcp.bin.gz").read_bytes()
+    )
+    server = socket.create_server(("127.0.0.1", 0))
+    opened.append(server)
+    body = TCP.replace("TRUE", "FALSE").format(server.getsockname()[1], "", ALL)
+    one, said = process(write_cfg(tmp_path, PIPELINE + body))
+    opened.append(one)
+    kinds: Counter[str] = Counter()
+    one.bus.tap(lambda e: kinds.update([e.topic.rpartition(".")[2]]))
+    until(lambda: one.manager.bridges[57].port.peers == 1, one)
+    peer, _ = server.accept()
+    opened.append(peer)
+    sending = threading.Thread(target=peer.sendall, args=(data,))
+    sending.start()
+    until(lambda: kinds["AirVehicleState"] >= 3331 and kinds["SessionStatus"] >= 1672, one)
+    sending.join()
+    assert kinds["AirVehicleState"] == 3331
+    states = {body.ID: body for body in one.host.shared["contexts"].world.of("state")}
+    assert sorted(states) == [400, 500]
+    assert states[400].Time > 600_000, "the newest state of each is kept"
+    assert not one.manager.bridges[57].port.counts.refused
+    assert not said.has("fails at")
