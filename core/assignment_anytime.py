@@ -142,12 +142,10 @@ def estimate(instance: Instance, ahead: Ahead | None = None) -> int:
     if n > TASKS_MAX:
         return rough_bound(i)
     ahead = look_ahead(i) if ahead is None else ahead
-    scratch = [np.zeros(n, np.int64) for _ in range(3)]
     return int(
         machine_for(i, bound)(
-            first_state(i), n, i.vehicles, i.duration.size, ahead.reach, ahead.nearest,
-            ahead.cheapest, i.duration, i.task, i.may, ahead.least, ahead.head, ahead.tail, i.due,
-            i.weight, *scratch,
+            first_state(i), n, i.vehicles, i.duration.size, ahead.to_task, ahead.to_task_added,
+            ahead.apart, ahead.apart_added, ahead.least, ahead.head, ahead.tail, i.due, i.weight,
         )
     )  # fmt: skip
 

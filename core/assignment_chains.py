@@ -35,8 +35,9 @@ LEAF, EMPTY, TIRED = 1, 0, 2
 def descend(
     stack: np.ndarray, kids: np.ndarray, count: np.ndarray, turn: np.ndarray, control: np.ndarray,
     limit: int, budget: int, use_deals: int, effort: int, able: np.ndarray, kind_of: np.ndarray,
-    latest: np.ndarray, start: np.ndarray, reach: np.ndarray, nearest: np.ndarray,
-    cheapest: np.ndarray, least: np.ndarray, head: np.ndarray, tail: np.ndarray,
+    latest: np.ndarray, start: np.ndarray, to_task: np.ndarray, to_task_added: np.ndarray,
+    apart: np.ndarray, apart_added: np.ndarray, least: np.ndarray, head: np.ndarray,
+    tail: np.ndarray,
     travel: np.ndarray, added: np.ndarray, duration: np.ndarray, task: np.ndarray,
     may: np.ndarray, release: np.ndarray, due: np.ndarray, need: np.ndarray,
     ref_kind: np.ndarray, ref_group: np.ndarray, ref_user: np.ndarray, row_first: np.ndarray,
@@ -51,7 +52,6 @@ def descend(
     vehicles, options = may.shape
     n = release.size
     child = np.zeros(stack.shape[1], np.int64)
-    soonest, brief, extra = np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64)
     line, tight = np.zeros(64, np.int64), np.zeros(64, np.int64)
     parts, turns = np.zeros(64, np.int64), np.zeros(64, np.int64)
     everything = (1 << n) - 1
@@ -90,8 +90,8 @@ def descend(
                         continue
                     spent += 1
                     low = bound(
-                        child, n, vehicles, options, reach, nearest, cheapest, duration, task, may,
-                        least, head, tail, due, weight, soonest, brief, extra,
+                        child, n, vehicles, options, to_task, to_task_added, apart, apart_added,
+                        least, head, tail, due, weight,
                     )  # fmt: skip
                     if low >= limit:
                         continue
@@ -177,10 +177,11 @@ def chains_below(
             return Listed(limit, best, False, int(control[1]), leaves)
         found = run(
             stack, kids, count, turn, control, limit, min(left, 20_000), looked.used, EFFORT,
-            ahead.able, ahead.kind_of, looked.latest, looked.start, ahead.reach, ahead.nearest,
-            ahead.cheapest, ahead.least, ahead.head, ahead.tail, i.travel, i.added, i.duration,
-            i.task, i.may, i.release, looked.due, i.need, i.ref_kind, i.ref_group, i.ref_user,
-            i.row_first, i.row_ref, i.row_lo, i.twin, i.weight, i.waits,
+            ahead.able, ahead.kind_of, looked.latest, looked.start, ahead.to_task,
+            ahead.to_task_added, ahead.apart, ahead.apart_added, ahead.least, ahead.head,
+            ahead.tail, i.travel, i.added, i.duration, i.task, i.may, i.release, looked.due,
+            i.need, i.ref_kind, i.ref_group, i.ref_user, i.row_first, i.row_ref, i.row_lo, i.twin,
+            i.weight, i.waits,
         )  # fmt: skip
         if found == EMPTY:
             return Listed(limit, best, True, int(control[1]), leaves)

@@ -41,10 +41,10 @@ def least_cost(instance: Instance, limit: int, origins: Sequence[np.ndarray]) ->
         found = machine_for(i, closed)(
             layer, origin, into, table, np.empty(len(origin), np.int64), limit, i.waits,
             looked.used if depth + 1 < i.tasks else 0, EFFORT, ahead.able, ahead.kind_of,
-            looked.latest, looked.start, ahead.reach, ahead.nearest, ahead.cheapest, ahead.least,
-            ahead.head, ahead.tail, i.travel, i.added, i.duration, i.task, i.may, i.release,
-            looked.due, i.need, i.ref_kind, i.ref_group, i.ref_user, i.row_first, i.row_ref,
-            i.row_lo, i.twin, i.weight, i.waits,
+            looked.latest, looked.start, ahead.to_task, ahead.to_task_added, ahead.apart,
+            ahead.apart_added, ahead.least, ahead.head, ahead.tail, i.travel, i.added, i.duration,
+            i.task, i.may, i.release, looked.due, i.need, i.ref_kind, i.ref_group, i.ref_user,
+            i.row_first, i.row_ref, i.row_lo, i.twin, i.weight, i.waits,
         )  # fmt: skip
         if found >= 0:
             return 0, f"layer {depth + 1}: a child of state {found} is missing"

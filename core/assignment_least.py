@@ -125,6 +125,39 @@ def nearest_ways(reach: np.ndarray, may: np.ndarray) -> np.ndarray:
     return nearest
 
 
+def ways_to_tasks(
+    reach: np.ndarray, cheapest: np.ndarray, duration: np.ndarray, task: np.ndarray,
+    may: np.ndarray, n: int,
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    """[V, K + 1, n], twice: the least time from a vehicle's stop to the end of a task by any option
+    of it, and the least that a leg there costs."""
+    vehicles, options = may.shape
+    soonest = np.full((vehicles, options + 1, n), 1 << 40, np.int64)
+    extra = np.full((vehicles, options + 1, n), 1 << 40, np.int64)
+    for v in range(vehicles):
+        for a in range(options + 1):
+            for o in range(options):
+                j, counts = task[o], may[v, o] != 0
+                soonest[v, a, j] = least_of(soonest[v, a, j], counts, reach[v, a, o] + duration[o])
+                extra[v, a, j] = least_of(extra[v, a, j], counts, cheapest[a, o])
+    return soonest, extra
+
+
+def ways_between_tasks(
+    nearest: np.ndarray, cheapest: np.ndarray, duration: np.ndarray, task: np.ndarray, n: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """[n, n], twice: the least time from the end of a task to the end of another by any vehicle and
+    any options of both, and the least that a leg between them costs."""
+    options = task.size
+    brief, extra = np.full((n, n), 1 << 40, np.int64), np.full((n, n), 1 << 40, np.int64)
+    for k in range(options):
+        for o in range(options):
+            i, j = task[k], task[o]
+            brief[i, j] = least_of(brief[i, j], i != j, nearest[k, o] + duration[o])
+            extra[i, j] = least_of(extra[i, j], i != j, cheapest[k, o])
+    return brief, extra
+
+
 def heads(
     travel: np.ndarray, duration: np.ndarray, task: np.ndarray, may: np.ndarray,
     ready: np.ndarray, release: np.ndarray, ref_kind: np.ndarray, member_first: np.ndarray,

@@ -15,7 +15,14 @@ import numpy as np
 
 from cratous.core.assignment_compiled import machine_for
 from cratous.core.assignment_instance import FAR, TABLE_MAX_MS, Instance, horizon
-from cratous.core.assignment_least import heads, nearest_ways, shortest_ways, ways_hold
+from cratous.core.assignment_least import (
+    heads,
+    nearest_ways,
+    shortest_ways,
+    ways_between_tasks,
+    ways_hold,
+    ways_to_tasks,
+)
 from cratous.core.assignment_search import cost_now, expand, place, rehash
 from cratous.core.assignment_tables import CELLS_MAX, latest_tables
 from cratous.core.kernel import driver
@@ -34,9 +41,10 @@ ROOM_BYTES = 50_000_000
 class Ahead(NamedTuple):
     """What the search looks ahead with; the same for every limit, but for the tables."""
 
-    reach: np.ndarray
-    nearest: np.ndarray
-    cheapest: np.ndarray
+    to_task: np.ndarray
+    to_task_added: np.ndarray
+    apart: np.ndarray
+    apart_added: np.ndarray
     least: np.ndarray
     head: np.ndarray
     tail: np.ndarray
@@ -96,9 +104,11 @@ def look_ahead(instance: Instance) -> Ahead:
             leader.append(v)
         kind_of[v] = kinds[key]
     least_over = machine_for(i, nearest_ways)
-    return Ahead(
-        reach, least_over(reach, i.may), least_over(i.added, i.may), least, head, tail, able,
-        kind_of, np.array(leader, np.int64),
+    nearest, cheapest = least_over(reach, i.may), least_over(i.added, i.may)
+    return Ahead(  # type: ignore[call-arg]  # numba's results have no types
+        *machine_for(i, ways_to_tasks)(reach, cheapest, i.duration, i.task, i.may, i.tasks),
+        *machine_for(i, ways_between_tasks)(nearest, cheapest, i.duration, i.task, i.tasks),
+        least, head, tail, able, kind_of, np.array(leader, np.int64),
     )  # fmt: skip
 
 
@@ -177,11 +187,11 @@ def refute(
             kept, first = run(
                 layer, first, min(len(layer), first + CHUNK), kept, into, origin, rank, table,
                 chain, limit, i.waits, looked.used if depth + 1 < i.tasks else 0, EFFORT,
-                ahead.able, ahead.kind_of, looked.latest, looked.start, ahead.reach,
-                ahead.nearest, ahead.cheapest, ahead.least, ahead.head, ahead.tail, i.travel,
-                i.added, i.duration, i.task, i.may, i.release, looked.due, i.need, i.ref_kind,
-                i.ref_group, i.ref_user, i.row_first, i.row_ref, i.row_lo, i.twin, i.weight,
-                i.waits, counts,
+                ahead.able, ahead.kind_of, looked.latest, looked.start, ahead.to_task,
+                ahead.to_task_added, ahead.apart, ahead.apart_added, ahead.least, ahead.head,
+                ahead.tail, i.travel, i.added, i.duration, i.task, i.may, i.release, looked.due,
+                i.need, i.ref_kind, i.ref_group, i.ref_user, i.row_first, i.row_ref, i.row_lo,
+                i.twin, i.weight, i.waits, counts,
             )  # fmt: skip
             halted = stop is not None and stop(int(counts[0]))
             if kept + fan > room and first < len(layer):

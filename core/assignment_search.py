@@ -92,15 +92,14 @@ def cost_now(state: np.ndarray, vehicles: int, options: int, weight: np.ndarray)
 
 
 def bound(
-    state: np.ndarray, n: int, vehicles: int, options: int, reach: np.ndarray, nearest: np.ndarray,
-    cheapest: np.ndarray, duration: np.ndarray, task: np.ndarray, may: np.ndarray,
-    least: np.ndarray, head: np.ndarray, tail: np.ndarray, due: np.ndarray, weight: np.ndarray,
-    soonest: np.ndarray, brief: np.ndarray, extra: np.ndarray,
+    state: np.ndarray, n: int, vehicles: int, options: int, to_task: np.ndarray,
+    to_task_added: np.ndarray, apart: np.ndarray, apart_added: np.ndarray, least: np.ndarray,
+    head: np.ndarray, tail: np.ndarray, due: np.ndarray, weight: np.ndarray,
 ) -> int:  # fmt: skip
     """No completion of the state costs less. 2**60: there is none.
 
-    nearest: [K + 1, K] least travel by any vehicle; cheapest: likewise of what legs cost; soonest,
-    brief, extra: scratch of length n.
+    to_task [V, K + 1, n]: least time from a stop to a task's end; apart [n, n]: from one task's end
+    to another's; to_task_added, apart_added: likewise of what legs cost.
     """
     done = state[0]
     last = 0
@@ -109,40 +108,29 @@ def bound(
         if state[1 + v] != options:
             last = later(last, state[1 + vehicles + v])
             team += state[1 + vehicles + v]
-    for j in range(n):
-        soonest[j] = 1 << 40
-        brief[j] = 1 << 40
-        extra[j] = 1 << 40
-    for o in range(options):
-        j = task[o]
-        if (done >> j) & 1:
-            continue
-        short = 1 << 40
-        cheap = 1 << 40
-        for v in range(vehicles):
-            counts = may[v, o] != 0
-            at = state[1 + v]
-            way = reach[v, at, o]
-            soonest[j] = least_of(soonest[j], counts, state[1 + vehicles + v] + way + duration[o])
-            short = least_of(short, counts, way)
-            cheap = least_of(cheap, counts, cheapest[at, o])
-        for k in range(options):
-            counts = (done >> task[k]) & 1 == 0 and task[k] != j
-            short = least_of(short, counts, nearest[k, o])
-            cheap = least_of(cheap, counts, cheapest[k, o])
-        brief[j] = least_of(brief[j], True, short + duration[o])
-        extra[j] = least_of(extra[j], True, cheap)
     work = 0
     legs = state[2 + 2 * vehicles]
     for j in range(n):
         if (done >> j) & 1:
             continue
-        end = soonest_end(soonest[j], head[j], least[j])
-        if end > due[j] or brief[j] >= 1 << 40:
+        soonest = 1 << 40
+        brief = 1 << 40
+        extra = 1 << 40
+        for v in range(vehicles):
+            at = state[1 + v]
+            soonest = least_of(soonest, True, state[1 + vehicles + v] + to_task[v, at, j])
+            brief = least_of(brief, True, to_task[v, at, j])
+            extra = least_of(extra, True, to_task_added[v, at, j])
+        for i in range(n):
+            counts = (done >> i) & 1 == 0 and i != j
+            brief = least_of(brief, counts, apart[i, j])
+            extra = least_of(extra, counts, apart_added[i, j])
+        end = soonest_end(soonest, head[j], least[j])
+        if end > due[j] or brief >= 1 << 40:
             return 1 << 60
         last = later(last, end + tail[j])
-        work = add_least(work, True, brief[j])
-        legs = add_least(legs, True, extra[j])
+        work = add_least(work, True, brief)
+        legs = add_least(legs, True, extra)
     if work > 0:
         last = later(last, least_until(work, state[1 + vehicles : 1 + 2 * vehicles]))
     return weighted(last, team + work, legs, weight[0], weight[1])
@@ -174,8 +162,8 @@ def expand(
     layer: np.ndarray, first: int, count: int, kept: int, into: np.ndarray, origin: np.ndarray,
     rank: np.ndarray, table: np.ndarray, chain: np.ndarray, limit: int, floors: int, use_deals: int,
     effort: int, able: np.ndarray, kind_of: np.ndarray, latest: np.ndarray, start: np.ndarray,
-    reach: np.ndarray, nearest: np.ndarray, cheapest: np.ndarray, least: np.ndarray,
-    head: np.ndarray, tail: np.ndarray,
+    to_task: np.ndarray, to_task_added: np.ndarray, apart: np.ndarray, apart_added: np.ndarray,
+    least: np.ndarray, head: np.ndarray, tail: np.ndarray,
     travel: np.ndarray, added: np.ndarray, duration: np.ndarray, task: np.ndarray,
     may: np.ndarray, release: np.ndarray, due: np.ndarray, need: np.ndarray,
     ref_kind: np.ndarray, ref_group: np.ndarray, ref_user: np.ndarray, row_first: np.ndarray,
@@ -190,7 +178,6 @@ def expand(
     vehicles, options = may.shape
     n = release.size
     child = np.zeros(layer.shape[1], np.int64)
-    soonest, brief, extra = np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64)
     line, tight = np.zeros(64, np.int64), np.zeros(64, np.int64)
     turn, parts = np.zeros(64, np.int64), np.zeros(64, np.int64)
     size = table.size
@@ -215,8 +202,8 @@ def expand(
                     continue
                 counts[0] += 1
                 low = bound(
-                    child, n, vehicles, options, reach, nearest, cheapest, duration, task, may,
-                    least, head, tail, due, weight, soonest, brief, extra,
+                    child, n, vehicles, options, to_task, to_task_added, apart, apart_added, least,
+                    head, tail, due, weight,
                 )  # fmt: skip
                 if low >= limit:
                     counts[1] += 1
@@ -267,9 +254,9 @@ def rehash(
 def closed(
     parents: np.ndarray, origin: np.ndarray, into: np.ndarray, table: np.ndarray,
     chain: np.ndarray, limit: int, floors: int, use_deals: int, effort: int, able: np.ndarray,
-    kind_of: np.ndarray, latest: np.ndarray, start: np.ndarray, reach: np.ndarray,
-    nearest: np.ndarray, cheapest: np.ndarray, least: np.ndarray, head: np.ndarray,
-    tail: np.ndarray,
+    kind_of: np.ndarray, latest: np.ndarray, start: np.ndarray, to_task: np.ndarray,
+    to_task_added: np.ndarray, apart: np.ndarray, apart_added: np.ndarray, least: np.ndarray,
+    head: np.ndarray, tail: np.ndarray,
     travel: np.ndarray, added: np.ndarray, duration: np.ndarray, task: np.ndarray,
     may: np.ndarray, release: np.ndarray, due: np.ndarray, need: np.ndarray,
     ref_kind: np.ndarray, ref_group: np.ndarray, ref_user: np.ndarray, row_first: np.ndarray,
@@ -285,7 +272,6 @@ def closed(
     vehicles, options = may.shape
     n = release.size
     child = np.zeros(parents.shape[1], np.int64)
-    soonest, brief, extra = np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64)
     line, tight = np.zeros(64, np.int64), np.zeros(64, np.int64)
     turn, parts = np.zeros(64, np.int64), np.zeros(64, np.int64)
     table[:] = -1
@@ -327,8 +313,8 @@ def closed(
                 if there:
                     continue
                 low = bound(
-                    child, n, vehicles, options, reach, nearest, cheapest, duration, task, may,
-                    least, head, tail, due, weight, soonest, brief, extra,
+                    child, n, vehicles, options, to_task, to_task_added, apart, apart_added, least,
+                    head, tail, due, weight,
                 )  # fmt: skip
                 if low >= limit:
                     continue

@@ -10,8 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from cratous.core.assignment_compiled import machine_for
 from cratous.core.assignment_instance import Instance
 from cratous.core.assignment_refute import Ahead, first_state
@@ -123,9 +121,9 @@ class Settler:
             state[1 + i.vehicles + v] = start[k] + visits[k].duration_ms
             state[2 + 2 * i.vehicles] += int(i.added[v, at[v], o])
             state[1 + v] = at[v] = o
-        a, scratch = self.ahead, [np.zeros(i.tasks, np.int64) for _ in range(3)]
+        a = self.ahead
         low = machine_for(i, bound)(
-            state, i.tasks, i.vehicles, i.duration.size, a.reach, a.nearest, a.cheapest,
-            i.duration, i.task, i.may, a.least, a.head, a.tail, i.due, i.weight, *scratch,
+            state, i.tasks, i.vehicles, i.duration.size, a.to_task, a.to_task_added, a.apart,
+            a.apart_added, a.least, a.head, a.tail, i.due, i.weight,
         )  # fmt: skip
         return int(low) >= limit

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import copy
 import json
+import time
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from cratous.core.assignment_refute import look_ahead, refute
-from cratous.core.assignment_search import place
+from cratous.core.assignment_instance import Instance
+from cratous.core.assignment_refute import first_state, look_ahead, refute, shortest
+from cratous.core.assignment_search import bound, place
 from cratous.services.cli import main
 from cratous.services.planning import assign_certificate as certificates
-from cratous.services.planning.assign import Limits, solve
+from cratous.services.planning.assign import Limits, solve, warm
 from cratous.services.planning.assign_problem import arrays, parts
 from cratous.services.planning.assign_replay import replayed
 from cratous.services.planning.assign_solvers import none_below, schedule_holds, why_infeasible
@@ -323,3 +325,76 @@ def test_command_solves_and_explains(
     assert main(["assign", str(tmp_path / "late.json")]) == 1
     assert "contradict each other" in capsys.readouterr().out
     assert main(["assign", str(file), "--cost", "x"]) == 2
+
+
+# ---- bounds -----------------------------------------------------------------------------------
+def test_the_bound_takes_the_least_of_every_option_of_every_task() -> None:
+    """Tables by task give what asking every pair of options gives."""
+    rng = np.random.default_rng(7)
+    for vehicles, n, options in ((2, 4, 9), (3, 5, 5), (1, 3, 8)):
+        task = np.array([*range(n), *rng.integers(0, n, options - n)])
+        able = rng.random((vehicles, options)) < 0.8
+        able[0, :n] = True
+        choices = tuple(
+            Choice(int(task[o]) + 1, o, int(rng.integers(0, 50)),
+                   tuple(v + 1 for v in range(vehicles) if able[v, o]))
+            for o in range(options)
+        )  # fmt: skip
+        travel = tuple(
+            tuple(
+                tuple(int(w) if able[v, o] else None for o, w in enumerate(row))
+                for row in rng.integers(0, 100, (options + 1, options))
+            )
+            for v in range(vehicles)
+        )
+        p = AssignmentProblem("", (*range(1, vehicles + 1),), (0,) * vehicles, choices, travel, "")
+        i = arrays(p, parts(p)[0][0])
+        ahead = look_ahead(i)
+        for _ in range(20):
+            state, done = first_state(i), rng.random(n) < 0.4
+            state[0] = sum(1 << j for j in range(n) if done[j])
+            for v in range(vehicles):
+                at = [o for o in range(options) if i.may[v, o] and done[i.task[o]]]
+                if at and rng.random() < 0.7:
+                    state[1 + v], state[1 + vehicles + v] = rng.choice(at), rng.integers(0, 500)
+            found = bound(
+                state, n, vehicles, options, ahead.to_task, ahead.to_task_added, ahead.apart,
+                ahead.apart_added, ahead.least, ahead.head, ahead.tail, i.due, np.array([0, 1]),
+            )  # fmt: skip
+            assert found == least_sum(i, state)
+
+
+def least_sum(i: Instance, state: np.ndarray) -> int:
+    """Ends of what flies, and for each open task the cheapest leg and stay there is."""
+    v_s, k = range(i.vehicles), i.duration.size
+    reach = shortest(i, i.may)
+    is_open = [not (int(state[0]) >> int(j)) & 1 for j in i.task]
+    total = sum(int(state[1 + i.vehicles + v]) for v in v_s if state[1 + v] != k)
+    for j in {int(t) for t, open_ in zip(i.task, is_open, strict=True) if open_}:
+        total += min(
+            int(reach[v, a, o] + i.duration[o])
+            for v in v_s
+            for o in range(k)
+            if i.task[o] == j and i.may[v, o]
+            for a in [int(state[1 + v]), *[b for b in range(k) if is_open[b] and i.task[b] != j]]
+        )
+    return total
+
+
+@pytest.mark.slow
+def test_hundreds_of_options_do_not_slow_the_bound_down() -> None:
+    """As many as example 06 of OpenUxAS has; asked pair by pair the bounds took minutes."""
+    rng = np.random.default_rng(3)
+    tasks, each, vehicles = 20, 25, 4
+    count = tasks * each
+    choices = tuple(
+        Choice(1 + k // each, k, int(rng.integers(100, 300)), (1, 2, 3, 4)) for k in range(count)
+    )
+    rows = tuple(tuple(row) for row in rng.integers(50, 900, (count + 1, count)).tolist())
+    p = AssignmentProblem("", (1, 2, 3, 4), (0,) * vehicles, choices, (rows,) * vehicles, "")
+    warm()
+    begun = time.process_time()
+    found = solve(p, Limits(nodes=400_000, width=50_000))
+    assert found.cost is not None
+    assert found.nodes >= 400_000
+    assert time.process_time() - begun < 20

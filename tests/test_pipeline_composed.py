@@ -138,7 +138,8 @@ def _hold(rig: Rig, asked: int) -> None:
     state = rig.bus.state(VALIDATOR)
     assert (state.asked, state.work) == ({}, 0)
     assert (state.line.taken, state.line.answered) == (asked, asked)
-    published = [e for e in rig.all if e.source == VALIDATOR]
+    # in the order in which it said it: what was held back comes later
+    published = sorted((e for e in rig.all if e.source == VALIDATOR), key=lambda e: e.seq)
     out = 0
     for envelope in published:
         kind = envelope.topic.rpartition(".")[2]
@@ -148,6 +149,6 @@ def _hold(rig: Rig, asked: int) -> None:
         elif kind == "ImpactAutomationResponse":
             out = 0
     assert out == 0
-    uniques = [u.RequestID for u in rig.got("UniqueAutomationRequest", VALIDATOR)]
+    uniques = [e.body.RequestID for e in published if e.topic.endswith(".UniqueAutomationRequest")]
     assert uniques == sorted(set(uniques))
     assert not rig.said.has("fails at")

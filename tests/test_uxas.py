@@ -350,7 +350,8 @@ def test_run_duration_and_kill_end_the_process(tmp_path: Path) -> None:
     path = write_cfg(tmp_path, HELLO.format("x", 100), 'RunDuration_s="1"')
     begun = time.monotonic()
     with started(path) as running:
-        assert running.wait(LIMIT_S) == 0
+        said, _ = running.communicate(timeout=LIMIT_S)
+        assert running.returncode == 0, said
     assert time.monotonic() - begun >= 1.0
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import importlib
 import json
 import sys
+import traceback
 from typing import Any
 
 import click
@@ -17,6 +18,7 @@ import click
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 
 INTERNAL_ERROR = 70
+PACKAGE = "/cratous/"
 COMMANDS = {
     "run": "Plan, prove, fly, monitor and certify a mission.",
     "plan": "Plan a mission and check the plan; nothing flies.",
@@ -91,11 +93,17 @@ def main(argv: list[str] | None = None) -> int:
         if debug:
             raise
         name = type(error).__name__
-        click.echo(f"cratous: internal error ({name}: {error})", err=True)
+        click.echo(f"cratous: internal error ({name}: {error}){_place(error)}", err=True)
         click.echo("This is a defect of CRATOUS. Add --debug to see where it is.", err=True)
         if as_json:
             click.echo(json.dumps({"error": f"internal error: {name}", "exit_code": 70}))
         return INTERNAL_ERROR
+
+
+def _place(error: BaseException) -> str:
+    """Where in the product an error came from, so that one that happens once can be found."""
+    ours = [f for f in traceback.extract_tb(error.__traceback__) if PACKAGE in f.filename]
+    return f" at {ours[-1].filename.rpartition(PACKAGE)[2]}:{ours[-1].lineno}" if ours else ""
 
 
 def _usage(error: click.ClickException, as_json: bool) -> int:

@@ -9,6 +9,13 @@ from typing import Any
 
 import click
 
+_COMPILING = (
+    "TaskManagerService",
+    "RoutePlannerVisibilityService",
+    "AssignmentTreeBranchBoundService",
+)
+"""Services whose work runs in compiled loops."""
+
 
 @click.command(context_settings={"help_option_names": ["-h", "--help"]})
 @click.option(
@@ -69,6 +76,7 @@ def uxas(
     )
     try:
         _require_proofs(config, log, allow_unproved)
+        _compile_ahead(config, without, log)
         data = data_folder(config, Path("."))
         time.sleep(0 if virtual_time else root["StartDelay_ms"] / 1000)
         with Process(
@@ -105,6 +113,14 @@ def _require_proofs(config: Any, log: Any, allow_unproved: bool) -> None:
 
         standing = require(allow_unproved=allow_unproved)
         log("WARN" if standing.problems else "INFO", f"proofs: {standing.line}")
+
+
+def _compile_ahead(config: Any, without: tuple[str, ...], log: Any) -> None:
+    """What plans has to answer in time, so the compiler is not to begin at the first request."""
+    if {e.type for e in config.entries if e.type not in without} & {*_COMPILING}:
+        from cratous.services.warm import ensure_planning
+
+        ensure_planning(lambda text: log("WARN", text))
 
 
 def _versions() -> None:

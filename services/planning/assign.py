@@ -47,6 +47,8 @@ WORK = 16_000_000
 """Tasks that are decoded in one annealing: steps times tasks."""
 ROUNDS, ROUNDS_MAX = 12, 10_000
 """Improvements of a problem of many tasks without and with a limit."""
+STEPS_A_NODE = 8
+"""Steps of annealing that take about as long as a node of the exact search."""
 REBUILDS, REBUILD_NODES, HEATS = 150_000, 40, (0.0, 0.01, 0.003, 0.03)
 """Rounds times tasks of one improvement, what a round counts as, and first temperatures."""
 REPAIRS = 60
@@ -162,11 +164,12 @@ def _searched(
         firsts.append(moves)
         if moves is not None:
             run.better(improve(instance, moves, 0, run.limits.seed)[0], k, moves)
+    proofs = [Proof("estimate", estimate(instance)) for instance in made]
+    run.bound = min((p.bound for p in proofs), default=0)
+    # a first leaf that costs no more than the bound is not to be improved
     if run.limits.nodes != 0 and not run.near():
         _anneal(run, made, firsts)
-        proofs = _prove(run, made)
-    else:
-        proofs = [Proof("estimate", estimate(instance)) for instance in made]
+        _prove(run, made, proofs)
     _list_chains(run, proofs)
     run.bound = min((p.bound for p in proofs), default=NONE) if complete else 0
     return run, proofs
@@ -292,23 +295,23 @@ def _rebuild(run: _Run, instance: Instance, k: int, moves: Moves, again: int) ->
 def _try(
     run: _Run, instance: Instance, k: int, moves: Moves, steps: int, again: int, hot: float = 0.15
 ) -> tuple[int, Moves]:
-    """Anneal from a solution, within what is left of the node limit; steps count as nodes."""
+    """Anneal from a solution, within what is left of the node limit."""
     if run.limits.nodes is not None:
         # up to that many tasks refuting is worth the larger share
         share = 0.3 if instance.tasks <= DEALS_TASKS else 1.0
-        steps = min(steps, max(0, int(share * run.limits.nodes) - run.nodes))
+        left = max(0, int(share * run.limits.nodes) - run.nodes)
+        steps = min(steps, STEPS_A_NODE * left)
     if run.over():
         steps = 0
     hot = min(hot, 2.0 / instance.tasks)
     cost, better = improve(instance, moves, steps, run.limits.seed + again, hot)
-    run.nodes += steps
+    run.nodes += -(-steps // STEPS_A_NODE)
     run.better(cost, k, better)
     return cost, better
 
 
-def _prove(run: _Run, made: list[Instance]) -> list[Proof]:
-    """A proof of a bound for each branch; better solutions are taken on the way."""
-    proofs = [Proof("estimate", estimate(instance)) for instance in made]
+def _prove(run: _Run, made: list[Instance], proofs: list[Proof]) -> None:
+    """Better proofs of a bound for each branch; better solutions are taken on the way."""
     most = max((i.tasks for i in made), default=0)
     for share in (0, 1000) if most <= DEALS_SURE else (900, 950, 980, 1000):
         for k, instance in enumerate(made):
@@ -329,7 +332,6 @@ def _prove(run: _Run, made: list[Instance]) -> list[Proof]:
         run.tell()
         if run.near() or run.over():
             break
-    return proofs
 
 
 def _solution(run: _Run, proofs: list[Proof], replay: bool) -> Solution:

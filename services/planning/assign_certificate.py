@@ -76,7 +76,7 @@ def certified(
         status = "optimal" if found.cost <= low else "feasible"
     body: dict[str, Any] = {
         "format": FORMAT,
-        "problem": {**asdict(problem), "unable": sorted(problem.unable)},
+        "problem": _written(problem),
         "claim": {"status": status, "cost": found.cost, "bound": low},
         "steps": [asdict(step) for step in found.steps],
         "proofs": written,
@@ -89,8 +89,19 @@ def certified(
         low = min(low, checked[0])
         status = "optimal" if found.cost is not None and found.cost <= low else found.status
         body["claim"] = {"status": status, "cost": found.cost, "bound": low}
-    body["sha256"] = _digest(body)
+        text = json.dumps(body, sort_keys=True)
+    body["sha256"] = hashlib.sha256(text.encode()).hexdigest()  # as `_digest` has it
     return replace(found, status=status, bound=low), body
+
+
+def _written(problem: AssignmentProblem) -> dict[str, Any]:
+    """The problem's fields; tables are tuples already, so they are not copied number by number."""
+    return {
+        **vars(problem),
+        "choices": [asdict(choice) for choice in problem.choices],
+        "cost": asdict(problem.cost),
+        "unable": sorted(problem.unable),
+    }
 
 
 def _proof(proof: Proof) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from cratous.spec.algebra_meaning import tasks as tasks_of
 from cratous.spec.assignment import CUMULATIVE, MINMAX, AssignmentProblem, Choice, Solution
 from cratous.spec.mission import Mission
 
-NODES = 400_000
+NODES = 1_000_000
 """Nodes of a mission's search where it gives no limit, some seconds at most."""
 WIDTH = 50_000
 """States kept of a layer."""

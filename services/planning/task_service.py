@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from cratous.bridge import lmcp
@@ -55,7 +55,8 @@ class TaskService:
         body = envelope.body
         if envelope.topic == "uxas.messages.task.UniqueAutomationRequest":
             if self._task.id in body.OriginalRequest.TaskList:
-                return state, [self._offer(body.RequestID)]
+                options = self._desk.inputs(body.RequestID).options_of(self._task.id)
+                return state, [self._offer(body.RequestID, options)]
             return state, ()
         if envelope.topic == "uxas.messages.task.TaskImplementationRequest":
             if body.TaskID != self._task.id:
@@ -67,8 +68,7 @@ class TaskService:
         rest = {k: v for k, v in state.items() if k != key}
         return rest, [self._implement(state[key], body)]
 
-    def _offer(self, request_id: int) -> Any:
-        options = self._desk.inputs(request_id).options_of(self._task.id)
+    def _offer(self, request_id: int, options: Sequence[Option]) -> Any:
         numbers = " ".join(f"p{option.option_id}" for option in options)
         return lmcp.new(
             "TaskPlanOptions",

@@ -319,8 +319,8 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
     ),
     "Task services": (
         tasks.MessageTask,
-        ("TaskInitialized", "TaskPlanOptions", "RoutePlanRequest", "TaskImplementationResponse",
-         "TaskActive", "TaskComplete", "ServiceStatus"),
+        ("TaskInitialized", "SensorFootprintRequests", "TaskPlanOptions", "RoutePlanRequest",
+         "TaskImplementationResponse", "TaskActive", "TaskComplete", "ServiceStatus"),
     ),
     "RoutePlannerVisibilityService": (
         planner.RoutePlannerVisibilityService, ("RoutePlanResponse",)

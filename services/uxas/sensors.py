@@ -19,6 +19,7 @@ from cratous.services.planning.desk import status
 from cratous.services.sensor import Look, footprints
 from cratous.spec.mission import Camera
 
+NAME = "SensorManagerService"
 REQUESTS = "uxas.messages.task.SensorFootprintRequests"
 LEVEL_DEG = -0.5
 """A boresight above this elevation is said to see no ground."""
@@ -109,7 +110,7 @@ def footprint(
 class SensorManagerService:
     """Answers every request; what has no footprint is named in a status."""
 
-    name = "SensorManagerService"
+    name = NAME
     subscribes: tuple[str, ...] = (REQUESTS,)
     knows = ("EntityConfiguration",)
 

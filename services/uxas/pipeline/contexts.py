@@ -171,6 +171,10 @@ class Contexts:
             raise found
         return found
 
+    def serves(self, name: str) -> bool:
+        """True if a service of this name is on the same bus."""
+        return name in self._host.bus.names()
+
     def refused(self, request_id: int) -> bool:
         """True if a request means nothing that could be planned."""
         return isinstance(self._found.get(request_id), CratousError)

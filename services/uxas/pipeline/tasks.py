@@ -1,9 +1,10 @@
 """A task's service: the nine states of `core.contracts.tasks`, driven by messages.
 
-UniqueAutomationRequest -> TaskPlanOptions; TaskImplementationRequest -> RoutePlanRequest ->
+UniqueAutomationRequest -> SensorFootprintRequests -> SensorFootprintResponse -> RoutePlanRequests ->
+RoutePlanResponses -> TaskPlanOptions; TaskImplementationRequest -> RoutePlanRequest ->
 RoutePlanResponse -> TaskImplementationResponse; vehicles' states -> TaskActive, TaskComplete.
-Footprints and ways on the task are computed here from the configurations, so the states that wait
-for them are passed at once. Options and waypoints are those of `services.planning`.
+What is asked before options are offered: `asking`. Options and waypoints are those of
+`services.planning`.
 """
 
 from __future__ import annotations
@@ -16,8 +17,12 @@ from cratous.core.contracts.tasks import Task as Kernel
 from cratous.core.contracts.tasks import task_step
 from cratous.services.bus import Envelope
 from cratous.services.planning.desk import Inputs, status
+from cratous.services.planning.options import Option
 from cratous.services.planning.stages import hold_of
 from cratous.services.planning.task_service import NAMES, TaskService
+from cratous.services.uxas import sensors
+from cratous.services.uxas.pipeline import asking, planner
+from cratous.services.uxas.pipeline.asking import Asked
 from cratous.services.uxas.pipeline.contexts import UNIQUE, Contexts, RequestDesk, reasons_of
 from cratous.services.uxas.pipeline.ended import request_ended
 from cratous.spec.errors import BadInput, CratousError, NoPlan
@@ -44,6 +49,7 @@ ANNOUNCE, ASK_SENSORS, ASK_ROUTES, PUBLISH_OPTIONS = 1, 2, 3, 4
 ASK_FINAL, PUBLISH_PLAN, STEER, COMPLETE, STALE = 5, 6, 7, 8, 9
 ACTIVE = 7
 _EVENTS = {
+    asking.SENSORS: SENSORS_KNOWN,
     "uxas.messages.task.TaskImplementationRequest": CHOSEN,
     "uxas.messages.route.RoutePlanResponse": FINAL_KNOWN,
 }
@@ -53,13 +59,14 @@ class State(NamedTuple):
     """The kernel's state; the implementation request in work; the vehicle that the task is for.
 
     The kernel's requests are tickets that count up, as RequestIDs need not; tickets: the newest with
-    their RequestIDs.
+    their RequestIDs. asked: what others have said of the options.
     """
 
     task: Kernel = Kernel(0, 0, 0)
     chosen: Any = None
     vehicle: int = 0
     tickets: tuple[tuple[int, int], ...] = ((0, 0),)
+    asked: Asked = Asked()
 
     def number(self, ticket: int) -> int:
         """The RequestID of a ticket."""
@@ -86,6 +93,7 @@ class MessageTask(TaskService):
 
     subscribes: tuple[str, ...] = (
         UNIQUE,
+        asking.SENSORS,
         "uxas.messages.task.TaskImplementationRequest",
         "uxas.messages.route.RoutePlanResponse",
         "uxas.messages.task.UniqueAutomationResponse",
@@ -178,14 +186,26 @@ class MessageTask(TaskService):
         return False
 
     def _reply(self, state: State, event: int, body: Any) -> tuple[State, Iterable[Any]]:
-        """The choice of an option, or final routes, for this task."""
+        """Footprints, routes of options, the choice of one, or final routes, for this task."""
         if event == CHOSEN:
             if body.TaskID != self._task_id:
                 return state, ()
             ticket = state.ticket(body.CorrespondingAutomationRequestID)
             return self._advance(state, event, ticket, body)
+        if event == SENSORS_KNOWN:
+            tickets = (ticket for ticket, _ in state.tickets)
+            ticket = asking.ticket_of_sensors(self._task_id, body.ResponseID, tickets)
+            return (state, ()) if ticket < 0 else self._advance(state, event, ticket, body)
+        if body.AssociatedTaskID != self._task_id:
+            return state, ()
+        if body.ResponseID == asking.option_routes_id(state.task.request):
+            before = state.asked.waiting
+            state = state._replace(asked=state.asked.plus(body))
+            if state.asked.waiting or not before:
+                return state, ()
+            return self._advance(state, ROUTES_KNOWN, state.task.request, body)
         chosen = state.chosen
-        if chosen is None or body.AssociatedTaskID != self._task_id:
+        if chosen is None:
             return state, ()
         if (body.VehicleID, body.ResponseID) != (chosen.VehicleID, _route_id(chosen)):
             return state, ()
@@ -216,11 +236,15 @@ class MessageTask(TaskService):
             out.append(lmcp.new("TaskInitialized", TaskID=self._task_id))
             return state, PROCEED
         if act == ASK_SENSORS:
-            return state._replace(chosen=None, vehicle=0), SENSORS_KNOWN
+            return self._ask_sensors(state._replace(chosen=None, vehicle=0, asked=Asked()), out)
         if act == ASK_ROUTES:
-            return state, ROUTES_KNOWN
+            return self._ask_routes(state, body, out)
         if act == PUBLISH_OPTIONS:
-            out.append(self._offer(self._request))
+            out += [
+                status(self._request, "Warning", [("reason", text)])
+                for text in state.asked.reasons(self._task_id)
+            ]
+            out.append(self._offer(self._request, self._left(state)))
             self._contexts.of(self._request).offered.add(self._task_id)
         elif act == ASK_FINAL:
             region = self._contexts.of(self._request).region
@@ -242,6 +266,32 @@ class MessageTask(TaskService):
             out.append(self._ended(state, body))
             return state._replace(chosen=None, vehicle=0), PROCEED
         return state, 0
+
+    def _ask_sensors(self, state: State, out: list[Any]) -> tuple[State, int]:
+        context = self._contexts.of(self._request)
+        question = asking.sensor_request(context, self._task, state.task.request)
+        if question is None or not self._contexts.serves(sensors.NAME):
+            return state, SENSORS_KNOWN
+        out.append(question)
+        return state, 0
+
+    def _ask_routes(self, state: State, body: Any, out: list[Any]) -> tuple[State, int]:
+        context = self._contexts.of(self._request)
+        if hasattr(body, "Footprints"):
+            blind = asking.blind(context, self._task, body)
+            state = state._replace(asked=state.asked._replace(blind=blind))
+        if not self._contexts.serves(planner.NAME):
+            return state, ROUTES_KNOWN
+        options, ticket = self._left(state), state.task.request
+        questions = asking.route_requests(context, self._task_id, options, ticket)
+        out += questions
+        waiting = tuple(question.VehicleID for question in questions)
+        state = state._replace(asked=state.asked._replace(waiting=waiting))
+        return state, 0 if waiting else ROUTES_KNOWN
+
+    def _left(self, state: State) -> list[Option]:
+        """The options that are offered."""
+        return state.asked.left(self._inputs.options_of(self._task.id))
 
     def _known(self, request: Any) -> Any:
         """The request, if it names an option that this task has."""

@@ -1,0 +1,152 @@
+"""What a task asks others before it offers its options, and what the answers leave of them.
+
+In SensorRequest: the SensorManagerService, whether the sensors of a vehicle see ground; a vehicle of
+which no footprint comes is not offered. In OptionRoutes: the RoutePlannerVisibilityService, for the way from
+where each option begins to where it ends; an option whose places it cannot fly to is not offered.
+Only what runs on the same bus is asked; without it a state is passed at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.services.frames import compass
+from cratous.services.planning.flyers import camera_for, flyer_of
+from cratous.services.planning.options import Option
+from cratous.services.uxas.pipeline.contexts import Context
+from cratous.spec.mission import SEARCHES, Task
+
+SENSORS = "uxas.messages.task.SensorFootprintResponse"
+_SENSORS_FROM, _OPTIONS_FROM = 2**60, 2**61
+_TICKETS, _TASKS = 2**20, 2**39
+
+
+class Asked(NamedTuple):
+    """blind: vehicles of which no footprint came; waiting: vehicles whose routes are still to
+    come; refused: options that the planner has no way for, each with its reason."""
+
+    blind: frozenset[int] = frozenset()
+    waiting: tuple[int, ...] = ()
+    refused: tuple[tuple[int, str], ...] = ()
+
+    def left(self, options: Iterable[Option]) -> list[Option]:
+        """The options that are offered, and to whom."""
+        no = {number for number, _ in self.refused}
+        found = [
+            replace(o, vehicles=tuple(v for v in o.vehicles if v not in self.blind))
+            for o in options
+            if o.option_id not in no
+        ]
+        return [option for option in found if option.vehicles]
+
+    def reasons(self, task_id: int) -> list[str]:
+        """Why less is offered than could be."""
+        made = [
+            f"vehicle {vehicle} is not offered for task {task_id}: no footprint of its sensors came"
+            for vehicle in sorted(self.blind)
+        ]
+        return made + [
+            f"option {number} of task {task_id} is not offered: {why}"
+            for number, why in self.refused
+        ]
+
+    def plus(self, response: Any) -> Asked:
+        """With a planner's response; whom nobody asked, or what has come already, changes nothing."""
+        if response.VehicleID not in self.waiting:
+            return self
+        more = tuple(
+            (plan.RouteID, next((pair.Value for pair in plan.RouteError), "no way was found"))
+            for plan in response.RouteResponses
+            if plan.RouteCost < 0
+        )
+        waiting = tuple(v for v in self.waiting if v != response.VehicleID)
+        return self._replace(waiting=waiting, refused=(*self.refused, *more))
+
+
+def sensor_id(task_id: int, ticket: int) -> int:
+    """The RequestID of a task's question for footprints; tasks on one bus have different ones."""
+    return _SENSORS_FROM + task_id % _TASKS * _TICKETS + ticket % _TICKETS
+
+
+def ticket_of_sensors(task_id: int, number: int, tickets: Iterable[int]) -> int:
+    """The ticket that a ResponseID answers, -1 if it is none of this task's."""
+    return next((t for t in tickets if sensor_id(task_id, t) == number), -1)
+
+
+def option_routes_id(ticket: int) -> int:
+    """The RequestID of a task's question for the routes of its options."""
+    return _OPTIONS_FROM + ticket
+
+
+def sensors_asked(context: Context, task: Task) -> list[int]:
+    """The vehicles of which a footprint is needed: who may search, and has a camera for it."""
+    if task.kind not in SEARCHES:
+        return []
+    return [
+        vehicle.id
+        for vehicle in context.inputs.mission.vehicles
+        if (not task.eligible or vehicle.id in task.eligible)
+        and camera_for(task, flyer_of(vehicle).cameras) is not None
+    ]
+
+
+def sensor_request(context: Context, task: Task, ticket: int) -> Any | None:
+    """SensorFootprintRequests for a task, or None if it needs none."""
+    vehicles = sensors_asked(context, task)
+    if not vehicles:
+        return None
+    mission = context.inputs.mission
+    bands = [] if task.wavelength == "AllAny" else [task.wavelength]
+    return lmcp.new(
+        "SensorFootprintRequests",
+        RequestID=sensor_id(task.id, ticket),
+        Footprints=[
+            lmcp.new(
+                "FootprintRequest",
+                FootprintRequestID=k,
+                VehicleID=vehicle,
+                EligibleWavelengths=bands,
+                AglAltitudes=[flyer_of(mission.vehicle(vehicle)).alt_m - mission.frame.terrain_m],
+            )
+            for k, vehicle in enumerate(vehicles, 1)
+        ],
+    )
+
+
+def blind(context: Context, task: Task, response: Any) -> frozenset[int]:
+    """The vehicles that were asked about and of which no footprint came."""
+    seen = {footprint.VehicleID for footprint in response.Footprints}
+    return frozenset(sensors_asked(context, task)) - seen
+
+
+def route_requests(context: Context, task_id: int, options: list[Option], ticket: int) -> list[Any]:
+    """One RoutePlanRequest for each vehicle that stands for its class, RouteID the option's."""
+    of: dict[int, list[Option]] = {}
+    for option in options:
+        of.setdefault(option.vehicles[0], []).append(option)
+    location = context.desk.location
+    return [
+        lmcp.new(
+            "RoutePlanRequest",
+            RequestID=option_routes_id(ticket),
+            AssociatedTaskID=task_id,
+            VehicleID=vehicle,
+            OperatingRegion=context.region,
+            RouteRequests=[
+                lmcp.new(
+                    "RouteConstraints",
+                    RouteID=option.option_id,
+                    StartLocation=location(option.start),
+                    StartHeading=compass(option.start.heading_rad),
+                    EndLocation=location(option.end),
+                    EndHeading=compass(option.end.heading_rad),
+                )
+                for option in mine
+            ],
+            IsCostOnlyRequest=True,
+        )
+        for vehicle, mine in of.items()
+    ]
