@@ -37,7 +37,8 @@ SLACK = 1e-9
 
 
 class Traffic(NamedTuple):
-    """Intruders as arrays: states (n, 6); per region: mapped, kinds, volumes, alerting times, whether in conflict within them."""
+    """Intruders as arrays: states (n, 6); per region: mapped, kinds, volumes, alerting times, whether in
+    conflict within them; sides (n, 2) to keep to, horizontal and vertical, 0: none."""
 
     ids: tuple[str, ...]
     states: np.ndarray
@@ -47,6 +48,7 @@ class Traffic(NamedTuple):
     alerting_s: np.ndarray
     conflict: np.ndarray
     violated: np.ndarray
+    sides: np.ndarray
 
 
 class Grid(NamedTuple):
@@ -108,8 +110,9 @@ def grid(p: Parameters, own: Aircraft, dimension: int) -> Grid:
     """The trajectories of one dimension, or its target altitudes."""
     x0 = own_value(own, dimension)
     low, high = value_range(p, dimension, x0)
-    # the last two: how the ownship moves before the manoeuvre, also where that is slower than a turn
-    now = np.array([[*own[1:7], own.ve_m_s, own.vn_m_s]], dtype=np.float64)
+    # then: how the ownship moves before the manoeuvre, also where that is slower than a turn; and from
+    # the step to the next one
+    now = np.array([[*own[1:7], own.ve_m_s, own.vn_m_s, *own[4:7]]], dtype=np.float64)
     if dimension == ALT:
         step = p.step_alt_m
         count = math.floor((high - low) / step + SLACK) + 1
@@ -133,9 +136,9 @@ def grid(p: Parameters, own: Aircraft, dimension: int) -> Grid:
         count = _count(width, step)
         if dimension == HDIR and count * step > math.pi * (1 + SLACK):
             count -= 1
-        k = np.arange(count + 1)
+        k = np.arange(count + 2)
         t = k * step_s
-        path = np.repeat(now, count + 1, axis=0)
+        path = np.repeat(now, count + 2, axis=0)
         if dimension == HDIR:
             angle = x0 + sign * step * k
             path[:, 3], path[:, 4] = speed * np.sin(angle), speed * np.cos(angle)
@@ -156,8 +159,16 @@ def grid(p: Parameters, own: Aircraft, dimension: int) -> Grid:
             path[:, 1] += own.vn_m_s * t
             path[:, 2] += own.vu_m_s * t + sign * rate * t * t / 2
             path[:, 5] += sign * step * k
-        sides.append(path)
+        if step_s:
+            path[:-1, 8:11] = np.diff(path[:, :3], axis=0) / step_s
+        sides.append(path[:-1])
     return Grid(x0, low, high, step, step_s, sides[0], sides[1], EMPTY, 0.0, 0.0)
+
+
+def sides_in(dimension: int, sides: np.ndarray) -> np.ndarray:
+    """Those of the sides (n, 2) that matter in a dimension: the horizontal ones for directions and
+    speeds, the vertical ones for vertical speeds, none for altitudes."""
+    return sides * np.array([dimension in (HDIR, HS), dimension == VS])
 
 
 def _recovery_size(p: Parameters, alt_m: float) -> tuple[float, float]:
@@ -304,6 +315,7 @@ def raw_bands(
     safe_r = np.ones((5, size_r), dtype=np.bool_)
     safe_l = np.ones((5, len(g.left)), dtype=np.bool_)
     n = len(traffic.ids)
+    sides = sides_in(dimension, traffic.sides)
     peripheral = np.zeros((4, n), dtype=np.bool_)
     recovery, state = np.zeros(5), np.zeros(5, dtype=np.int64)
     radius, half = _recovery_size(p, own.alt_m)
@@ -311,8 +323,8 @@ def raw_bands(
         machine(guide)(
             g.right, g.left, g.step_s, g.targets, g.rate_m_s, g.accel_m_s2, SAMPLE_S,
             traffic.states, traffic.mapped, traffic.conflict, traffic.kinds, traffic.volumes,
-            traffic.alerting_s, p.lookahead_time_s, p.bands_add_time_to_maneuver,
-            p.corrective_region, recover, radius, half, p.horizontal_nmac_m, p.vertical_nmac_m,
+            traffic.alerting_s, sides * p.conflict_crit, sides * p.recovery_crit,
+            p.lookahead_time_s, p.bands_add_time_to_maneuver, p.corrective_region, recover, radius, half, p.horizontal_nmac_m, p.vertical_nmac_m,
             p.ca_bands, p.ca_factor, p.recovery_stability_time_s, safe_r, safe_l, peripheral,
             recovery, state,
         )  # fmt: skip

@@ -18,7 +18,8 @@ from cratous.core.daa_alerting import level_times, raw_levels
 from cratous.core.daa_bands import Raw, Traffic, last_times, out_of_range, raw_bands
 from cratous.core.daa_machine import machine
 from cratous.core.daa_spread import spread_conflict
-from cratous.core.daa_state import HDIR, Aircraft, LevelTimes
+from cratous.core.daa_state import HDIR, Aircraft, Coordination, LevelTimes
+from cratous.core.daa_urgency import coordination, sides
 from cratous.spec.daa import (
     FAR,
     NEAR,
@@ -126,7 +127,8 @@ def errors_of(p: Parameters, own: Aircraft, other: Aircraft) -> np.ndarray:
 
 
 class Seen(NamedTuple):
-    """One instant: who is there, which alerter judges whom, raw levels, times, and conflicts."""
+    """One instant: who is there, which alerter judges whom, raw levels, times, conflicts, and with
+    whom to coordinate."""
 
     own: Aircraft
     others: tuple[Aircraft, ...]
@@ -134,6 +136,7 @@ class Seen(NamedTuple):
     levels: tuple[int, ...]
     times: tuple[tuple[LevelTimes, ...], ...]
     traffic: Traffic
+    coordination: Coordination | None = None
 
 
 def look(
@@ -152,6 +155,8 @@ def look(
     index = tuple(alerters if alerters is not None else (alerter_index(p, own, o) for o in others))
     n = len(others)
     there = states(others)
+    together = coordination(p, own, others)
+    keep = sides(together, others)
     relative = states([own]) - there
     judged = np.array(index, dtype=np.int64).reshape(n)
     levels = np.zeros(n, dtype=np.int64)
@@ -176,6 +181,7 @@ def look(
                 int(t.kinds[a, k - 1]),
                 np.concatenate([t.volumes[a, k - 1], errors[i]]),
                 level,
+                keep[i] * p.conflict_crit,
             ):
                 levels[i] = k
                 break
@@ -198,6 +204,7 @@ def look(
         np.zeros((4, n)),
         np.zeros((4, n), dtype=np.bool_),
         np.zeros((4, n), dtype=np.bool_),
+        keep,
     )
     for i, a in enumerate(index):
         if a < 0:
@@ -218,7 +225,7 @@ def look(
             traffic.conflict[region, i] = entry is not None and entry < max(
                 min(limit_s, p.lookahead_time_s), 1e-300
             )
-    return Seen(own, tuple(others), index, tuple(int(x) for x in levels), times, traffic)
+    return Seen(own, tuple(others), index, tuple(int(x) for x in levels), times, traffic, together)
 
 
 def bands_now(p: Parameters, seen: Seen, dimension: int, terminal: bool = False) -> Raw | None:

@@ -4,6 +4,8 @@ Definitions: `spec.daa_meaning`. Everything here is search and bookkeeping over 
 `core.daa_steps` and `core.daa_climb`; arrays as described there. Regions are 1 FAR, 2 MID, 3 NEAR.
 """
 
+import numpy as np
+
 from cratous.core.daa_climb import safe_altitudes
 from cratous.core.daa_steps import safe_steps
 from cratous.core.kernel import driver, kernel
@@ -12,10 +14,10 @@ from cratous.core.kernel import driver, kernel
 @driver(checked_by=("in_conflict", "piece_counts", "straight_from"))
 def evaluate(
     right, left, step_s, piece_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen, kinds,
-    volumes, horizons, begin_s, radius_m, half_m, recovering, lookahead_s, counted, project_s, early,
+    volumes, horizons, sides, begin_s, radius_m, half_m, recovering, lookahead_s, counted, project_s, early,
     single, safe_r, safe_l,
 ):  # fmt: skip
-    """Safe steps to the right and left, or safe altitudes if there are targets.
+    """Safe steps to the right and left, or safe altitudes if there are targets, which know no sides.
 
     Returns whether there is a safe value: two neighbouring grid values, or any one if single.
     """
@@ -26,13 +28,13 @@ def evaluate(
             early, single, safe_r,
         )  # fmt: skip
     a = safe_steps(
-        right, step_s, piece_s, others, chosen, kinds, volumes, horizons, begin_s, radius_m, half_m,
+        right, step_s, piece_s, others, chosen, kinds, volumes, horizons, sides, begin_s, radius_m, half_m,
         recovering, lookahead_s, counted, project_s, early, single, safe_r,
     )  # fmt: skip
     if a and early:
         return True
     b = safe_steps(
-        left, step_s, piece_s, others, chosen, kinds, volumes, horizons, begin_s, radius_m, half_m,
+        left, step_s, piece_s, others, chosen, kinds, volumes, horizons, sides, begin_s, radius_m, half_m,
         recovering, lookahead_s, counted, project_s, early, single, safe_l,
     )  # fmt: skip
     return a or b
@@ -47,7 +49,7 @@ def shrunk(size_m: float, least_m: float, factor: float) -> float:
 @driver(checked_by=("in_conflict", "piece_counts", "straight_from", "shrunk"))
 def recover(
     right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen, kinds, volumes,
-    horizons, lookahead_s, counted, radius_m, half_m, nmac_m, nmac_half_m, shrinking, factor,
+    horizons, sides, lookahead_s, counted, radius_m, half_m, nmac_m, nmac_half_m, shrinking, factor,
     stability_s, safe_r, safe_l, result,
 ):  # fmt: skip
     """The earliest manoeuvres that regain the volume, and how far the intruder stays away until.
@@ -66,7 +68,7 @@ def recover(
     result[0], result[1], result[2], result[3], result[4] = 1.0, 0.0, 0.0, radius_m, half_m
     if not evaluate(
         right, left, step_s, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen, cylinders,
-        sizes, horizons, 0.0, 0.0, 0.0, False, lookahead_s, counted, 0.0, True, False, safe_r, safe_l,
+        sizes, horizons, sides, 0.0, 0.0, 0.0, False, lookahead_s, counted, 0.0, True, False, safe_r, safe_l,
     ):  # fmt: skip
         return
     shrinks = 0
@@ -75,7 +77,7 @@ def recover(
             sizes[i, 0], sizes[i, 1] = radius_m, half_m
         if evaluate(
             right, left, step_s, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen,
-            cylinders, sizes, horizons, 0.0, 0.0, 0.0, False, lookahead_s, counted, 0.0, True,
+            cylinders, sizes, horizons, sides, 0.0, 0.0, 0.0, False, lookahead_s, counted, 0.0, True,
             False, safe_r, safe_l,
         ):  # fmt: skip
             red_s, green_s = 0.0, lookahead_s
@@ -83,7 +85,7 @@ def recover(
                 middle_s = (red_s + green_s) / 2
                 if evaluate(
                     right, left, step_s, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen,
-                    kinds, volumes, horizons, middle_s, radius_m, half_m, True, lookahead_s,
+                    kinds, volumes, horizons, sides, middle_s, radius_m, half_m, True, lookahead_s,
                     counted, 0.0, True, False, safe_r, safe_l,
                 ):  # fmt: skip
                     green_s = middle_s
@@ -93,7 +95,7 @@ def recover(
                 time_s = min(lookahead_s, green_s + stability_s)
                 if evaluate(
                     right, left, step_s, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen,
-                    kinds, volumes, horizons, time_s, radius_m, half_m, True, lookahead_s,
+                    kinds, volumes, horizons, sides, time_s, radius_m, half_m, True, lookahead_s,
                     counted, 0.0, False, False, safe_r, safe_l,
                 ):  # fmt: skip
                     result[0], result[1], result[2] = 0.0, time_s, shrinks
@@ -112,7 +114,7 @@ def recover(
 @driver(checked_by=("in_conflict", "piece_counts", "straight_from"))
 def in_region(
     right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, mapped, conflict, kinds,
-    volumes, alerting_s, lookahead_s, counted, safe_r, safe_l, one_r, one_l, peripheral, chosen,
+    volumes, alerting_s, sides, lookahead_s, counted, safe_r, safe_l, one_r, one_l, peripheral, chosen,
     horizons,
 ):  # fmt: skip
     """Safe values with respect to one region: of each intruder by itself, then of all.
@@ -134,7 +136,7 @@ def in_region(
         one[0] = i
         evaluate(
             right, left, step_s, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, one, kinds,
-            volumes, horizons, 0.0, 0.0, 0.0, False, lookahead_s, counted, 0.0, False, False,
+            volumes, horizons, sides, 0.0, 0.0, 0.0, False, lookahead_s, counted, 0.0, False, False,
             one_r, one_l,
         )  # fmt: skip
         use = conflict[i]
@@ -163,13 +165,13 @@ def in_region(
 @driver(checked_by=("in_conflict", "piece_counts", "straight_from", "shrunk"))
 def guide(
     right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, mapped, conflict, kinds,
-    volumes, alerting_s, lookahead_s, counted, corrective, recovery_on, radius_m, half_m, nmac_m,
+    volumes, alerting_s, sides, recovery_sides, lookahead_s, counted, corrective, recovery_on, radius_m, half_m, nmac_m,
     nmac_half_m, shrinking, factor, stability_s, safe_r, safe_l, peripheral, recovery, state,
 ):  # fmt: skip
     """Everything about one dimension.
 
     mapped, conflict, peripheral: (4, n) by region and intruder; kinds, alerting_s: (4, n);
-    volumes: (4, n, 5). safe_r, safe_l: (5, K + 1) by region, row 4 for recovery.
+    volumes: (4, n, 5); sides, recovery_sides: (n, 2) to keep to in conflict and recovery bands, 0: none. safe_r, safe_l: (5, K + 1) by region, row 4 for recovery.
     state: (5,) per region 0 not asked, 1 has safe values, 2 has none; [4] 1 if recovery was
     computed. recovery: as `recover`.
     """
@@ -183,7 +185,7 @@ def guide(
             continue
         count, found = in_region(
             right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, mapped[region],
-            conflict[region], kinds[region], volumes[region], alerting_s[region], lookahead_s,
+            conflict[region], kinds[region], volumes[region], alerting_s[region], sides, lookahead_s,
             counted, safe_r[region], safe_l[region], safe_r[4], safe_l[4], peripheral[region],
             chosen, horizons,
         )  # fmt: skip
@@ -199,13 +201,13 @@ def guide(
         count, found = in_region(
             right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others,
             mapped[corrective], conflict[corrective], kinds[corrective], volumes[corrective],
-            alerting_s[corrective], lookahead_s, counted, safe_r[0], safe_l[0], safe_r[4],
+            alerting_s[corrective], sides, lookahead_s, counted, safe_r[0], safe_l[0], safe_r[4],
             safe_l[4], peripheral[corrective], chosen, horizons,
         )  # fmt: skip
     state[4] = 1
     recover(
         right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, chosen[:count],
-        kinds[corrective], volumes[corrective], horizons, lookahead_s, counted, radius_m, half_m,
+        kinds[corrective], volumes[corrective], horizons, recovery_sides, lookahead_s, counted, radius_m, half_m,
         nmac_m, nmac_half_m, shrinking, factor, stability_s, safe_r[4], safe_l[4], recovery,
     )  # fmt: skip
 
@@ -221,6 +223,7 @@ def last_time(
     """
     one = kinds[:1].copy()
     one[0] = i
+    sides = np.zeros((others.shape[0], 2), dtype=np.int64)
     horizons[i] = lookahead_s
     green_s, red_s = -1.0, entry_s
     if entry_s <= 0:
@@ -233,7 +236,7 @@ def last_time(
                 break
         if evaluate(
             right, left, step_s, piece_s, targets, rate_m_s, accel_m_s2, sample_s, others, one, kinds,
-            volumes, horizons, 0.0, 0.0, 0.0, False, lookahead_s, counted, middle_s, True,
+            volumes, horizons, sides, 0.0, 0.0, 0.0, False, lookahead_s, counted, middle_s, True,
             True, safe_r, safe_l,
         ):  # fmt: skip
             green_s = middle_s

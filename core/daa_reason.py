@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cratous.core.daa_bands import SAMPLE_S, Raw
+from cratous.core.daa_bands import SAMPLE_S, Raw, sides_in
 from cratous.core.daa_climb import altitude_conflict
+from cratous.core.daa_coordination import step_is_repulsive
 from cratous.core.daa_engine import Seen
 from cratous.core.daa_machine import machine
 from cratous.core.daa_steps import piece_counts, straight_from, until
@@ -24,7 +25,8 @@ class Reason(NamedTuple):
     """What is in the way of a value.
 
     intruder: its id; region: whose volume; on_way: while manoeuvring, not after it; first_s,
-    last_s: when the volume is violated [s from now]; miss_m, above_m: least horizontal distance in
+    last_s: when the volume is violated [s from now]; side: not the volume, but coordination is in the
+    way: the manoeuvre does not repel to that side from first_s on (0: the volume is); miss_m, above_m: least horizontal distance in
     that time and vertical distance at it [m]; limit_m, limit_z_m: the volume's thresholds.
     """
 
@@ -37,6 +39,7 @@ class Reason(NamedTuple):
     above_m: float | None
     limit_m: float
     limit_z_m: float
+    side: int = 0
 
 
 def _least(state: np.ndarray, first_s: float, last_s: float) -> tuple[float, float]:
@@ -45,6 +48,41 @@ def _least(state: np.ndarray, first_s: float, last_s: float) -> tuple[float, flo
     vv = u * u + v * v
     t = min(max(-(x * u + y * v) / vv, first_s), last_s) if vv > 0 else first_s
     return math.hypot(x + t * u, y + t * v), abs(z + t * w)
+
+
+@driver(checked_by=("repels", "repels_vertically"))
+def coordination_reasons(
+    p: Parameters, seen: Seen, raw: Raw, dimension: int, side: int, k: int
+) -> list[Reason]:
+    """Whether step k to one side leaves the side to keep to from the most urgent intruder; told for
+    each region in whose bands it counts."""
+    found: list[Reason] = []
+    g, traffic = raw.grid, seen.traffic
+    path = g.right if side > 0 else g.left
+    keep = sides_in(dimension, traffic.sides)
+    for i, name in enumerate(traffic.ids):
+        across, up = int(keep[i, 0]), int(keep[i, 1])
+        if not across and not up:
+            continue
+        steps = range(k, k + 1) if g.step_s == 0 else range(k + 1)
+        asked: Any = machine(step_is_repulsive)
+        at = next(
+            (j for j in steps if not asked(path, j, g.step_s, traffic.states[i], across, up)), -1
+        )
+        if at < 0:
+            continue
+        for region in range(NEAR, 0, -1):
+            recovering = p.recovery_crit and raw.recovery.computed and region == p.corrective_region
+            counts = (p.conflict_crit and raw.state[region]) or recovering
+            if counts and traffic.mapped[region, i]:
+                volume = traffic.volumes[region, i]
+                found.append(
+                    Reason(
+                        name, region, bool(g.step_s), at * g.step_s, None, None, None,
+                        float(volume[0]), float(volume[1]), across or up,
+                    )
+                )  # fmt: skip
+    return found
 
 
 @driver(checked_by=("in_conflict", "piece_counts", "straight_from"))
@@ -138,8 +176,11 @@ def altitude_reasons(p: Parameters, seen: Seen, raw: Raw, k: int) -> list[Reason
     return found
 
 
-def reasons_at(p: Parameters, seen: Seen, raw: Raw, value: float) -> list[Reason]:
-    """What is in the way of the grid value nearest to `value` (not wrapped around the circle)."""
+def reasons_at(
+    p: Parameters, seen: Seen, raw: Raw, value: float, dimension: int = -1
+) -> list[Reason]:
+    """What is in the way of the grid value nearest to `value` (not wrapped around the circle); with a
+    dimension, coordination too."""
     g = raw.grid
     if len(g.targets):
         k = int(np.argmin(np.abs(g.targets - value)))
@@ -147,4 +188,7 @@ def reasons_at(p: Parameters, seen: Seen, raw: Raw, value: float) -> list[Reason
     side = 1 if value >= g.own else -1
     path = g.right if side > 0 else g.left
     k = min(round(abs(value - g.own) / g.step), len(path) - 1)
-    return step_reasons(p, seen, raw, side, k)
+    found = step_reasons(p, seen, raw, side, k)
+    if dimension >= 0:
+        found += coordination_reasons(p, seen, raw, dimension, side, k)
+    return found

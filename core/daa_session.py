@@ -231,6 +231,9 @@ class Session:
         if not math.isfinite(time_s):
             raise BadInput("the time is not finite", item="time", got=str(time_s))
         checked(own, others)
+        if p.most_urgent_aircraft == own.id:
+            raise BadInput("an aircraft cannot coordinate with itself", item="most_urgent_aircraft",
+                           expected="the id of another", got=own.id)  # fmt: skip
         if not goes_on(time_s, self.time_s, p.hysteresis_time_s):
             self.forget()
         remembers = p.hysteresis_time_s > 0

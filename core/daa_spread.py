@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cratous.core.daa_bands import SAMPLE_S, Grid, grid
+from cratous.core.daa_bands import SAMPLE_S, Grid, grid, sides_in
 from cratous.core.daa_guide import evaluate
 from cratous.core.daa_machine import machine
 from cratous.core.daa_state import ALT, Aircraft
@@ -31,8 +31,10 @@ def spread_conflict(
     kind: int,
     volume: np.ndarray,
     level: Level,
+    sides: np.ndarray,
 ) -> bool:
-    """Whether some value within the level's spreads conflicts with the intruder `other` (6,)."""
+    """Whether some value within the level's spreads conflicts with the intruder `other` (6,), or leaves
+    one of the sides (2,) to keep to."""
     for dimension, spread in enumerate(level.spread):
         if spread == 0:
             continue
@@ -45,7 +47,8 @@ def spread_conflict(
             g.right, g.left, g.step_s, g.step_s, g.targets, g.rate_m_s, g.accel_m_s2, SAMPLE_S,
             other.reshape(1, 6), np.zeros(1, dtype=np.int64),
             np.array([kind], dtype=np.int64), volume.reshape(1, 11),
-            np.array([min(p.lookahead_time_s, level.alerting_time_s)]), 0.0, 0.0, 0.0, False,
+            np.array([min(p.lookahead_time_s, level.alerting_time_s)]),
+            sides_in(dimension, sides.reshape(1, 2)), 0.0, 0.0, 0.0, False,
             p.lookahead_time_s, p.bands_add_time_to_maneuver, 0.0, False, False, safe_r, safe_l,
         )  # fmt: skip
         if not safe_r.all() or not safe_l.all():

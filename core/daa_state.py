@@ -88,6 +88,15 @@ class Guidance(NamedTuple):
     why: str = ""
 
 
+class Coordination(NamedTuple):
+    """Implicit coordination with the most urgent intruder: its id; horizontal: 1 if it is to be passed
+    on the right hand of the relative flight, -1 on the left; vertical: 1 above it, -1 below it."""
+
+    id: str
+    horizontal: int
+    vertical: int
+
+
 class LevelTimes(NamedTuple):
     """First and last time within the look-ahead at which a level's volume is violated [s]."""
 

@@ -7,6 +7,7 @@ the straight flight from step k on within the horizon. Recovery asks for another
 cylinder) before the instant begin_s, and for the volume itself only from then on.
 """
 
+from cratous.core.daa_coordination import step_is_repulsive
 from cratous.core.daa_uncertain import lost
 from cratous.core.daa_volume import in_conflict
 from cratous.core.kernel import Vec2, driver, fold, kernel
@@ -55,17 +56,23 @@ def until(lookahead_s: float, horizon_s: float, manoeuvre_s: float, counted: boo
     return min(lookahead_s, horizon_s + manoeuvre_s)
 
 
-@driver(checked_by=("in_conflict", "piece_counts", "straight_from", "lost_before", "until"))
+@driver(
+    checked_by=(
+        "in_conflict", "piece_counts", "straight_from", "lost_before", "until", "repels",
+        "repels_vertically",
+    )
+)  # fmt: skip
 def safe_steps(
-    own, step_s, piece_s, others, chosen, kinds, volumes, horizons, begin_s, radius_m, half_m, recovering,
+    own, step_s, piece_s, others, chosen, kinds, volumes, horizons, sides, begin_s, radius_m, half_m, recovering,
     lookahead_s, counted, project_s, early, single, safe,
 ):  # fmt: skip
     """Which steps of one side are free of conflict with all chosen intruders, into `safe`.
 
-    own: (K + 1, 8) positions [m] and velocities [m/s] at the steps, in row 0 also the velocity east
-    and north before the manoeuvre; piece_s: how long a piece is looked at, step_s, or 0 to sample
+    own: (K + 1, 11) positions [m] and velocities [m/s] at the steps, the velocity east and north before
+    the manoeuvre, and the mean velocity from the step to the next one; piece_s: how long a piece is looked at, step_s, or 0 to sample
     the way at the steps; others: (n, 6) states now;
-    chosen: indices; kinds: (n), volumes: (n, 11) as in `lost`, horizons: (n) [s] of each; recovering: the
+    chosen: indices; kinds: (n), volumes: (n, 11) as in `lost`, horizons: (n) [s] of each; sides: (n, 2)
+    that the manoeuvre has to keep to, horizontal and vertical, 0: none; recovering: the
     cylinder (radius_m, half_m) is to be avoided before begin_s; project_s: the manoeuvre begins
     after so much straight flight; early: stop as soon as two neighbours are safe.
     Returns whether two neighbouring steps are safe.
@@ -91,6 +98,15 @@ def safe_steps(
             elif c <= lead:
                 q = c - 1
             i = chosen[q]
+            if sides[i, 0] != 0 or sides[i, 1] != 0:
+                repulsive = step_is_repulsive(own, k, step_s, others[i], sides[i, 0], sides[i, 1])
+                if step_s == 0:
+                    red = red or not repulsive
+                else:
+                    blocked = lost_before(blocked, not repulsive)
+                if blocked or (red and step_s == 0):
+                    first = q
+                    break
             t = at_s + project_s
             s = Vec2(sx0 - others[i, 0] - others[i, 3] * t, sy0 - others[i, 1] - others[i, 4] * t)
             v = Vec2(own[k, 3] - others[i, 3], own[k, 4] - others[i, 4])

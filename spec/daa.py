@@ -37,6 +37,14 @@ TAUMOD, TCPA, TEP, CYLINDER, TAUMOD_SUM, TCAS = 0, 1, 2, 3, 4, 5
 DETECTORS = ("WCV_TAUMOD", "WCV_TCPA", "WCV_TEP", "CDCylinder", "WCV_TAUMOD_SUM", "TCAS3D")
 """Kinds of volumes by their names in files."""
 
+NOBODY, FIXED, DCPA = 0, 1, 2
+URGENCIES = ("none", "fixed", "dcpa")
+"""Urgency strategies: how the most urgent intruder, with whom to coordinate, is found."""
+
+NMAC_RADIUS_M, NMAC_HALF_HEIGHT_M = 500 * FOOT, 100 * FOOT
+"""The cylinder that decides sides and urgency: one for all aircraft, whatever their parameters, so that
+their choices fit together. Source: RTCA SC-147."""
+
 
 class Volume(NamedTuple):
     """A volume that is to be kept clear: kind (`DETECTORS`) and thresholds.
@@ -132,6 +140,8 @@ class Parameters:
     alerting_n: int = 0
     conflict_crit: bool = False
     recovery_crit: bool = False
+    urgency_strategy: int = NOBODY
+    most_urgent_aircraft: str = ""
     h_pos_z_score: float = 0.0
     h_vel_z_score_min: float = 0.0
     h_vel_z_score_max: float = 0.0
@@ -186,6 +196,10 @@ _SIGNED = {"min_vs", "max_vs", "min_alt", "max_alt", "min_hs"}
 def _key(field: str, value: object) -> Key:
     if field == "corrective_region":
         return Key(field, field, "region", "", FAR, NEAR)
+    if field == "urgency_strategy":
+        return Key(field, field, "urgency", "", NOBODY, DCPA)
+    if isinstance(value, str):
+        return Key(field, field, "id", "", 0, 0)
     if isinstance(value, bool):
         return Key(field, field, "bool", "", 0, 1)
     if isinstance(value, int):

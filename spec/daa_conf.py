@@ -20,12 +20,14 @@ from typing import Any
 from cratous.spec.daa import (
     CYLINDER,
     DETECTORS,
+    FIXED,
     KEYS,
     OLD_NAMES,
     REGIONS,
     TCAS,
     TCAS_LEVELS,
     UNITS,
+    URGENCIES,
     Alerter,
     Key,
     Level,
@@ -140,6 +142,10 @@ def value_of(key: Key, entry: Entry) -> tuple[Any, str]:
         return _word(entry, {"true": True, "false": False}), ""
     if key.kind == "region":
         return _word(entry, {r.lower(): REGIONS.index(r) for r in REGIONS[1:4]}), ""
+    if key.kind == "urgency":
+        return _word(entry, {word: k for k, word in enumerate(URGENCIES)}), ""
+    if key.kind == "id":
+        return entry.value, ""
     dimension = UNITS[key.unit][0] if key.unit else ""
     value, unit = _number(entry, dimension, key.low, key.high)
     if key.kind == "int":
@@ -329,15 +335,12 @@ def check(p: Parameters, where: str, lines: Mapping[str, str] = MappingProxyType
         wrong("alerting_m", "at most alerting_n", f"{p.alerting_m} of {p.alerting_n}")
     if p.dta_alerter > len(p.alerters):
         wrong("dta_alerter", f"0 to {len(p.alerters)}", str(p.dta_alerter))
-    for item, on in (("conflict_crit", p.conflict_crit), ("recovery_crit", p.recovery_crit)):
-        if on:
-            raise BadInput(
-                "implicit coordination is not supported: bands would not change with it",
-                where=lines.get(item, where),
-                item=item,
-                expected="false",
-                got="true",
-            )
+    if (p.urgency_strategy == FIXED) != bool(p.most_urgent_aircraft):
+        wrong(
+            "most_urgent_aircraft",
+            "an id with the urgency strategy fixed, and none with another",
+            f"{p.most_urgent_aircraft or 'none'} with {URGENCIES[p.urgency_strategy]}",
+        )
     if p.ca_bands and not 0 < p.ca_factor < 1:
         wrong("ca_factor", "above 0 and below 1 with ca_bands", f"{p.ca_factor:g}")
 
@@ -370,6 +373,11 @@ def write(made: Configuration) -> str:
             lines.append(f"{name} = {str(value).lower()}")
         elif key.kind == "region":
             lines.append(f"{name} = {REGIONS[value]}")
+        elif key.kind == "urgency":
+            # keys of ours: written only where they say something
+            lines.append(f"{name} = {URGENCIES[value]}" if value else "")
+        elif key.kind == "id":
+            lines.append(f"{name} = {value}" if value else "")
         elif key.kind == "int":
             lines.append(f"{name} = {value}")
         else:

@@ -256,8 +256,8 @@ def test_another_tcas_table_is_refused_and_never_read_as_this_one(line: str, exp
         ("\nleft_hdir = 200 [deg]", 2, "left_hdir", "expected 0 to 180 deg; got 200 [deg]"),
         ("min_hs = 60 [ft]", 1, "min_hs", "expected m/s or mps"),
         ("turn_rate = 3 [deg/s]\n\nbank_angle = 20 [deg]", 3, "bank_angle", "not both"),
-        ("\nconflict_crit = true", 2, "conflict_crit", "implicit coordination is not supported"),
-        ("recovery_crit = true", 1, "recovery_crit", "implicit coordination is not supported"),
+        ("\nurgency_strategy = nearest", 2, "urgency_strategy", "none or fixed or dcpa"),
+        ("\nmost_urgent_aircraft = A", 2, "most_urgent_aircraft", "got A with none"),
         ("turn_rate = 3\nturn_rate = 4", 2, "turn_rate", "expected one line; got another in c:1"),
     ],
 )
@@ -272,7 +272,7 @@ def test_a_configuration_error_names_line_key_expected_and_got(
     [
         ("[ft]", "[fathom]", "e.daa:3: alt: an unknown unit; expected s or ms"),
         ("vs time", "vs tyme", "e.daa:2: tyme: an unknown column"),
-        ("vs time", "vs time conflict_crit", "implicit coordination is not supported"),
+        ("vs time", "vs time dta_alerter", "dta_alerter: values do not fit together"),
     ],
 )
 def test_an_encounter_error_says_what_is_wrong(
@@ -282,11 +282,11 @@ def test_an_encounter_error_says_what_is_wrong(
 
     text = (root / "examples/encounters/two_intruders.daa").read_text()
     lines = text.replace(old, new).splitlines()
-    if "conflict_crit" in new:
+    if "dta_alerter" in new:
         lines = [
             *lines[:2],
             lines[2] + " unitless",
-            *(line + " true" if line.strip() else line for line in lines[3:]),
+            *(line + " 99" if line.strip() else line for line in lines[3:]),
         ]
     file = tmp_path / "e.daa"
     file.write_text("\n".join(lines) + "\n")

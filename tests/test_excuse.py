@@ -134,7 +134,8 @@ def test_on_straight_traffic_the_answers_are_those_of_the_bands(p: Parameters) -
             machine(evaluate)(
                 g.right, g.left, g.step_s, g.step_s, g.targets, g.rate_m_s, g.accel_m_s2, 1.0,
                 np.array([state]), np.array([0]), np.array([kind]),
-                np.array([[*limits, *[0.0] * 6]]), np.array([90.0]), 0.0, 0.0, 0.0, False, 90.0,
+                np.array([[*limits, *[0.0] * 6]]), np.array([90.0]), np.zeros((1, 2), np.int64), 0.0, 0.0,
+                0.0, False, 90.0,
                 True, 0.0, False, True, safe_r, safe_l,
             )  # fmt: skip
             mine = [t.answer == FREE for t in tried if t.dimension == DIMENSIONS[dimension]]

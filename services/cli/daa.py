@@ -21,6 +21,14 @@ OUT = click.option(
     "--out", "-o", type=click.Path(path_type=Path, dir_okay=False), help="Write to this file."
 )
 FILE = click.argument("file", type=click.Path(path_type=Path, dir_okay=False))
+URGENCY = click.option(
+    "--urgency", type=click.Choice(["none", "fixed", "dcpa"]),
+    help="With whom to coordinate, for configurations with conflict_crit or recovery_crit: nobody, "
+    "the aircraft of --urgent, or who comes nearest.",
+)  # fmt: skip
+URGENT = click.option(
+    "--urgent", default="", help="Id of the most urgent aircraft (--urgency fixed)."
+)
 JSON = click.option("--json", "as_json", is_flag=True, help="JSON instead of CSV or text.")
 
 
@@ -34,12 +42,20 @@ def daa() -> None:
     """
 
 
-def _steps(file: Path, config: str, ownship: str, dimensions: tuple[int, ...]) -> Iterator[Any]:
+def _steps(
+    file: Path, config: str, ownship: str, dimensions: tuple[int, ...],
+    urgency: str | None = None, urgent: str = "",
+) -> Iterator[Any]:  # fmt: skip
     from cratous.services.daa import named_or_file, run
     from cratous.services.standing import require
+    from cratous.spec.daa import URGENCIES
 
     require()
-    return run(file, named_or_file(config).parameters, ownship, dimensions)
+    changes: dict[str, Any] = {}
+    if urgency or urgent:
+        changes["urgency_strategy"] = URGENCIES.index(urgency or "fixed")
+        changes["most_urgent_aircraft"] = urgent
+    return run(file, named_or_file(config).parameters, ownship, dimensions, changes)
 
 
 def _put(text: str, out: Path | None) -> None:
@@ -53,13 +69,16 @@ def _put(text: str, out: Path | None) -> None:
 
 
 def _table(kind: str) -> Callable[..., int]:
-    def command(file: Path, config: str, ownship: str, out: Path | None, as_json: bool) -> int:
+    def command(
+        file: Path, config: str, ownship: str, urgency: str | None, urgent: str,
+        out: Path | None, as_json: bool,
+    ) -> int:  # fmt: skip
         from cratous.services.daa.tables import ROWS, as_csv
 
         dimensions = (0, 1, 2, 3) if kind == "bands" else ()
         rows = [
             row
-            for step in _steps(file, config, ownship, dimensions)
+            for step in _steps(file, config, ownship, dimensions, urgency, urgent)
             for row in ROWS[kind](step.instant)
         ]
         _put(json.dumps(rows, allow_nan=False) if as_json else as_csv(rows), out)
@@ -73,20 +92,24 @@ for _kind, _help in (
     ("bands", "Bands of all four dimensions at each step, with resolutions."),
     ("metrics", "Separation and closest approach of each intruder at each step."),
 ):
-    daa.command(_kind, help=_help)(FILE(CONFIG(OWN(OUT(JSON(_table(_kind)))))))
+    daa.command(_kind, help=_help)(FILE(CONFIG(OWN(URGENCY(URGENT(OUT(JSON(_table(_kind)))))))))
 
 
 @daa.command()
 @FILE
 @CONFIG
 @OWN
+@URGENCY
+@URGENT
 @OUT
-def plot(file: Path, config: str, ownship: str, out: Path | None) -> int:
+def plot(
+    file: Path, config: str, ownship: str, urgency: str | None, urgent: str, out: Path | None
+) -> int:
     """Bands and alerts over time, and the plan view, as SVG or PNG."""
     from cratous.services.daa.plot import draw
 
     target = out or Path(file.stem + ".svg")
-    draw(list(_steps(file, config, ownship, (0, 1, 2, 3))), target)
+    draw(list(_steps(file, config, ownship, (0, 1, 2, 3), urgency, urgent)), target)
     click.echo(f"{target} written")
     return 0
 
@@ -139,6 +162,8 @@ def excuse(
 @FILE
 @CONFIG
 @OWN
+@URGENCY
+@URGENT
 @OUT
 @JSON
 @click.option(
@@ -148,13 +173,14 @@ def excuse(
     help="The step at this time [s]; by default the first with an alert.",
 )
 def explain(
-    file: Path, config: str, ownship: str, out: Path | None, as_json: bool, time_s: float | None
-) -> int:
+    file: Path, config: str, ownship: str, urgency: str | None, urgent: str, out: Path | None,
+    as_json: bool, time_s: float | None,
+) -> int:  # fmt: skip
     """Why: for each alert, band edge and resolution of one step."""
     from cratous.services.daa.explain import explain as words
     from cratous.services.daa.tables import as_data
 
-    steps = list(_steps(file, config, ownship, (0, 1, 2, 3)))
+    steps = list(_steps(file, config, ownship, (0, 1, 2, 3), urgency, urgent))
     if time_s is not None:
         chosen = _at(steps, time_s, file)
     else:

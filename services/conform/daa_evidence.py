@@ -69,7 +69,7 @@ def has_way(
     found = judge(
         g.right, g.left, g.step_s, 0.0, g.targets, g.rate_m_s, g.accel_m_s2, SAMPLE_S,
         traffic.states, np.array([i]), traffic.kinds[region], traffic.volumes[region], horizons,
-        0.0, 0.0, 0.0, False, p.lookahead_time_s, p.bands_add_time_to_maneuver, 0.0, True, True,
+        np.zeros_like(traffic.sides), 0.0, 0.0, 0.0, False, p.lookahead_time_s, p.bands_add_time_to_maneuver, 0.0, True, True,
         safe_r, safe_l,
     )  # fmt: skip
     return bool(found)

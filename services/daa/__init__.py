@@ -13,9 +13,11 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 from cratous.core.daa_frame import Local, project
 from cratous.core.daa_session import Instant, Session
@@ -92,14 +94,25 @@ def run(
     parameters: Parameters,
     ownship: str = "",
     dimensions: tuple[int, ...] = (0, 1, 2, 3),
+    changes: Mapping[str, Any] = MappingProxyType({}),
 ) -> Iterator[Step]:
-    """What is said at each step of an encounter file; raises BadInput."""
+    """What is said at each step of an encounter file; raises BadInput.
+
+    changes: fields of the parameters that win over those that the file sets.
+    """
     encounters = read(file, ownship)
     session: Session | None = None
+    there = {row.id for _, rows in encounters.steps for row in rows}
     for time_s, rows in encounters.steps:
-        wanted = dataclasses.replace(parameters, **{**encounters.settings, **rows[0].settings})
-        if rows[0].settings:
+        wanted = dataclasses.replace(
+            parameters, **{**encounters.settings, **rows[0].settings, **changes}
+        )
+        if encounters.settings or rows[0].settings or changes:
             check(wanted, str(file))
+        urgent = wanted.most_urgent_aircraft
+        if urgent and urgent not in there - {rows[0].id}:
+            raise BadInput("there is no such intruder", where=str(file), item="most_urgent_aircraft",
+                           expected=" or ".join(sorted(there - {rows[0].id})), got=urgent)  # fmt: skip
         if session is None or session.parameters != wanted:
             session = Session(wanted)  # any change of a parameter ends the history
         states, wind = aircraft(rows)

@@ -14,7 +14,7 @@ from cratous.core.daa_bands import Raw
 from cratous.core.daa_reason import Reason, reasons_at
 from cratous.core.daa_session import Instant
 from cratous.core.daa_state import DIMENSIONS, Alert, Guidance
-from cratous.spec.daa import DETECTORS, NONE, RECOVERY, REGIONS, Parameters
+from cratous.spec.daa import DETECTORS, NONE, RECOVERY, REGIONS, URGENCIES, Parameters
 
 SHOW = {"hdir": ("deg", 180 / math.pi), "hs": ("m/s", 1.0), "vs": ("m/s", 1.0), "alt": ("m", 1.0)}
 
@@ -32,6 +32,12 @@ def region_text(region: int) -> str:
 
 def reason_text(reason: Reason) -> str:
     """One reason in words."""
+    if reason.side:
+        when = f" from {reason.first_s:.1f} s on" if reason.on_way else ""
+        return (
+            f"{reason.intruder}: coordination: a manoeuvre that does not keep to its side and away "
+            f"counts as a {region_text(reason.region)} conflict{when}"
+        )
     text = f"{reason.intruder}: {region_text(reason.region)} volume"
     if reason.first_s is None:
         return text + f" ({reason.limit_m:.0f} m, {reason.limit_z_m:.0f} m) is violated"
@@ -90,7 +96,7 @@ def edges(p: Parameters, instant: Instant, g: Guidance, raw: Raw) -> Iterator[di
         edge = left.high
         severe_right = _rank(right.region) > _rank(left.region)
         probe = _unwrapped(g, raw, edge + (step if severe_right else -step))
-        found = reasons_at(p, instant.seen, raw, probe)
+        found = reasons_at(p, instant.seen, raw, probe, DIMENSIONS.index(g.dimension))
         worst = right.region if severe_right else left.region
         yield {
             "edge": edge, "below": region_text(left.region), "above": region_text(right.region),
@@ -110,7 +116,8 @@ def resolution(p: Parameters, instant: Instant, g: Guidance, raw: Raw) -> list[s
     if not g.needed:
         return [f"{name}: {value_text(name, g.own)} is free of conflict; nothing to resolve"]
     lines = []
-    solved = reasons_at(p, instant.seen, raw, g.own)
+    number = DIMENSIONS.index(name)
+    solved = reasons_at(p, instant.seen, raw, g.own, number)
     for reason in solved:
         lines.append(f"{name}: now {value_text(name, g.own)}: {reason_text(reason)}")
     ways = {"right" if name == "hdir" else "up": g.up, "left" if name == "hdir" else "down": g.down}
@@ -140,7 +147,8 @@ def resolution(p: Parameters, instant: Instant, g: Guidance, raw: Raw) -> list[s
             else "is free of every volume of the corrective region"
         )
         lines.append(f"{text}, chosen: {rest}")
-        before = reasons_at(p, instant.seen, raw, _unwrapped(g, raw, value) - sign * raw.grid.step)
+        nearer = _unwrapped(g, raw, value) - sign * raw.grid.step
+        before = reasons_at(p, instant.seen, raw, nearer, number)
         lines += [f"{name}:   one step less is refused: {reason_text(r)}" for r in before[:3]]
     r = g.recovery
     if r.computed and not r.saturated and r.radius_m is not None and r.half_height_m is not None:
@@ -151,10 +159,27 @@ def resolution(p: Parameters, instant: Instant, g: Guidance, raw: Raw) -> list[s
     return lines
 
 
+def coordination_text(p: Parameters, instant: Instant) -> list[str]:
+    """With whom and how the ownship coordinates; nothing where no criterion is on."""
+    if not (p.conflict_crit or p.recovery_crit):
+        return []
+    strategy, found = URGENCIES[p.urgency_strategy], instant.seen.coordination
+    if found is None:
+        return [f"coordination: nobody is most urgent now (urgency strategy {strategy})"]
+    hand = "right" if found.horizontal > 0 else "left"
+    level = "above" if found.vertical > 0 else "below"
+    bands = [n for n, on in (("conflict", p.conflict_crit), ("recovery", p.recovery_crit)) if on]
+    return [
+        f"coordination: {found.id} is most urgent (urgency strategy {strategy}): pass it on the "
+        f"{hand} hand of the relative flight, or go {level} it; asked of {' and '.join(bands)} bands"
+    ]
+
+
 def explain(p: Parameters, instant: Instant) -> list[str]:
     """Everything about one instant, in words."""
     lines = [f"time {instant.time_s:g} s, ownship {instant.own.id}"]
     lines += [f"alert {alert_text(p, instant, a)}" for a in instant.alerts]
+    lines += coordination_text(p, instant)
     for g, held in zip(instant.guidance, instant.held, strict=True):
         raw = instant.raw[DIMENSIONS.index(g.dimension)]
         if raw is None:

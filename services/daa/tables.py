@@ -105,6 +105,7 @@ def as_csv(rows: Iterable[dict[str, Any]]) -> str:
 
 def as_data(instant: Instant) -> dict[str, Any]:
     """An instant as plain data for JSON, SI; None where there is no value."""
+    together = instant.seen.coordination
     return {
         "time_s": instant.time_s,
         "ownship": instant.own.id,
@@ -130,4 +131,5 @@ def as_data(instant: Instant) -> dict[str, Any]:
         "metrics": [m._asdict() for m in instant.metrics],
         "conflict": {region_text(k): list(v) for k, v in instant.conflict.items()},
         "in_corrective_conflict": instant.corrective,
+        "coordination": together and together._asdict(),
     }

@@ -1,0 +1,461 @@
+"""Implicit coordination: sides that fit together, bands that keep to them, what both flights come to."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+import random
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
+
+from cratous.core.daa_coordination import (
+    horizontal_side,
+    repels,
+    repels_vertically,
+    step_is_repulsive,
+)
+from cratous.core.daa_session import Instant, Session
+from cratous.core.daa_state import ALT, HDIR, HS, VS, Aircraft
+from cratous.core.daa_urgency import coordination, nearest
+from cratous.core.kernel import Vec2
+from cratous.services import cli
+from cratous.services.conform import cases
+from cratous.services.daa import named_or_file, run
+from cratous.services.daa.explain import explain
+from cratous.services.daa.tables import as_data
+from cratous.spec import daa_conf, daa_coordination
+from cratous.spec.daa import (
+    DCPA,
+    FIXED,
+    NEAR,
+    NMAC_HALF_HEIGHT_M,
+    NMAC_RADIUS_M,
+    NONE,
+    RECOVERY,
+    Level,
+    Parameters,
+    Spread,
+)
+from cratous.spec.daa_presets import preset
+from cratous.spec.errors import BadInput
+
+SIZE = (NMAC_RADIUS_M, NMAC_HALF_HEIGHT_M)
+# small whole numbers meet ties, equal altitudes and standing still; the others do not
+NUMBERS = st.one_of(st.integers(-3, 3).map(float), st.floats(-9000, 9000, allow_subnormal=False))
+VECTORS = st.builds(Vec2, NUMBERS, NUMBERS)
+STILL = Vec2(0.0, 0.0)
+
+
+def back(v: Vec2) -> Vec2:
+    return Vec2(-v.x, -v.y)
+
+
+def goes_above(s: Vec2, v: Vec2, sz: float, vz: float, first: bool) -> int:
+    own = Aircraft("a" if first else "c", *s, sz, *v, vz)
+    other = Aircraft("b", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    on = Parameters(conflict_crit=True, urgency_strategy=FIXED, most_urgent_aircraft="b")
+    found = coordination(on, own, [other])
+    assert found is not None
+    assert found.horizontal == horizontal_side(s, v)
+    return found.vertical
+
+
+def plane(v: Vec2) -> daa_coordination.Plane:
+    return daa_coordination.Plane(*v)
+
+
+@pytest.fixture(scope="module")
+def p() -> Parameters:
+    return dataclasses.replace(preset("do_365b").parameters, hysteresis_time_s=0.0)
+
+
+def coordinating(p: Parameters, with_id: str, conflict: bool = True, recovery: bool = True):
+    return dataclasses.replace(
+        p, conflict_crit=conflict, recovery_crit=recovery, urgency_strategy=FIXED,
+        most_urgent_aircraft=with_id,
+    )  # fmt: skip
+
+
+def meeting(rng: random.Random) -> tuple[Aircraft, Aircraft]:
+    """Two aircraft that come within some hundred metres of each other in half a minute or more."""
+    turn, other_turn = rng.uniform(0, 2 * math.pi), rng.uniform(0, 2 * math.pi)
+    speed, other_speed = rng.uniform(60, 200), rng.uniform(60, 200)
+    u, v = speed * math.sin(turn), speed * math.cos(turn)
+    x, y = other_speed * math.sin(other_turn), other_speed * math.cos(other_turn)
+    climb, other_climb = (rng.choice((0.0, rng.uniform(-8, 8))) for _ in range(2))
+    t, miss, angle = rng.uniform(30, 70), rng.uniform(0, 900), rng.uniform(0, 2 * math.pi)
+    own = Aircraft("own", 0.0, 0.0, 3000.0, u, v, climb)
+    return own, Aircraft(
+        "intruder", t * (u - x) + miss * math.sin(angle), t * (v - y) + miss * math.cos(angle),
+        3000 + t * (climb - other_climb) + rng.uniform(-90, 90), x, y, other_climb,
+    )  # fmt: skip
+
+
+# -- sides --------------------------------------------------------------------------------
+@given(VECTORS, VECTORS, NUMBERS, NUMBERS, st.booleans())
+@example(STILL, STILL, 0.0, 0.0, True)
+@example(Vec2(0.0, 9000.0), Vec2(0.0, -200.0), 0.0, 0.0, False)
+@example(STILL, Vec2(1.0, 0.0), 0.0, -2.0, True)
+def test_two_aircraft_choose_sides_that_fit_together(
+    s: Vec2, v: Vec2, sz: float, vz: float, first: bool
+) -> None:
+    hand = horizontal_side(s, v)
+    assert hand == horizontal_side(back(s), back(v)) in (1, -1)
+    above = goes_above(s, v, sz, vz, first)
+    below = goes_above(back(s), back(v), -sz, -vz, not first)
+    assert above == -below in (1, -1)
+
+
+def test_sides_are_where_they_are_expected() -> None:
+    north, crossing = Vec2(0.0, 100.0), Vec2(100.0, 0.0)
+    # the intruder is ahead and to the right, or to the left
+    assert horizontal_side(Vec2(-300.0, -5000.0), north) == 1
+    assert horizontal_side(Vec2(300.0, -5000.0), north) == -1
+    assert horizontal_side(Vec2(0.0, -5000.0), north) == 1
+    # above now, but below when they pass, and no cylinder in between
+    apart = Vec2(-5000.0, -2000.0)
+    assert goes_above(apart, crossing, 100.0, -10.0, True) == -1
+    assert goes_above(apart, crossing, 100.0, 0.0, True) == 1
+    # through the cylinder: stays above
+    assert goes_above(Vec2(-5000.0, 0.0), crossing, 500.0, -10.05, True) == 1
+    assert goes_above(apart, crossing, 0.0, 0.0, True) == 1
+    assert goes_above(apart, crossing, 0.0, 0.0, False) == -1
+
+
+# -- what repels ---------------------------------------------------------------------------
+def least_apart(s: Vec2, v: Vec2) -> float:
+    """The least distance to come, by its own formula [m]."""
+    vv, sv = v.x * v.x + v.y * v.y, s.x * v.x + s.y * v.y
+    t = -sv / vv if sv < 0 else 0.0
+    return math.hypot(s.x + t * v.x, s.y + t * v.y)
+
+
+@settings(max_examples=300)
+@given(st.integers(0, 2**32 - 1), st.booleans())
+def test_velocities_that_repel_keep_the_distance_alone_and_together(seed: int, close: bool) -> None:
+    rng = random.Random(seed)
+
+    def some(size: float) -> Vec2:
+        return Vec2(rng.uniform(-size, size), rng.uniform(-size, size))
+
+    s, own, other = some(300.0 if close else 9000.0), some(200.0), some(200.0)
+    v = Vec2(own.x - other.x, own.y - other.y)
+    side = horizontal_side(s, v)
+    mine = [w for w in (some(200.0) for _ in range(40))
+            if repels(s, v, Vec2(w.x - other.x, w.y - other.y), side)]  # fmt: skip
+    theirs = [w for w in (some(200.0) for _ in range(40))
+              if repels(back(s), back(v), Vec2(w.x - own.x, w.y - own.y), side)]  # fmt: skip
+    before = least_apart(s, v)
+    for a in mine:
+        assert least_apart(s, Vec2(a.x - other.x, a.y - other.y)) >= before - 1e-6
+    for a in mine[:6]:
+        for b in theirs[:6]:
+            w = Vec2(a.x - b.x, a.y - b.y)
+            assert least_apart(s, w) >= before - 1e-6
+            passed = daa_coordination.on_the_side(plane(s), plane(w), side)
+            assert passed > 0 or s.x * w.x + s.y * w.y >= 0
+    if s.x * v.x + s.y * v.y < -1.0:
+        assert repels(s, v, Vec2(side * s.y, -side * s.x), side), "there is always one"
+
+
+@given(VECTORS, NUMBERS, NUMBERS, NUMBERS, st.sampled_from([1, -1]))
+def test_who_repels_vertically_climbs_to_its_side(
+    v: Vec2, vz: float, mine: float, theirs: float, side: int
+) -> None:
+    one = repels_vertically(v, vz, v, mine, side)
+    other = repels_vertically(back(v), -vz, back(v), -theirs, -side)
+    assert not one or side * mine > side * vz
+    if one and other and abs(mine - vz) > 1e-9:
+        assert side * (mine + theirs - vz) > side * vz
+
+
+# -- bands ----------------------------------------------------------------------------------
+def both(p: Parameters, own: Aircraft, other: Aircraft) -> tuple[Instant, Instant]:
+    """What each of two aircraft is told that coordinate with each other."""
+    return (
+        Session(coordinating(p, other.id)).step(0.0, own, [other]),
+        Session(coordinating(p, own.id)).step(0.0, other, [own]),
+    )
+
+
+@settings(max_examples=40)
+@given(st.integers(0, 2**32 - 1))
+def test_bands_of_both_never_offer_opposing_sides(p: Parameters, seed: int) -> None:
+    own, other = meeting(random.Random(seed))
+    mine, theirs = both(p, own, other)
+    one, two = mine.seen.coordination, theirs.seen.coordination
+    assert one is not None
+    assert two is not None
+    assert (one.id, two.id) == ("intruder", "own")
+    assert one.horizontal == two.horizontal
+    assert one.vertical == -two.vertical
+    offered = 0
+    for instant, found in ((mine, one), (theirs, two)):
+        vs = instant.guidance[VS]
+        for band in vs.bands:
+            if band.region in (NONE, RECOVERY):
+                # nothing on the wrong side of the own vertical speed
+                nearer = band.low if found.vertical > 0 else band.high
+                assert found.vertical * (nearer - vs.own) >= -1e-9, vs.bands
+        for dimension in (HDIR, HS):
+            raw = instant.raw[dimension]
+            assert raw is not None
+            g, there = raw.grid, instant.seen.traffic.states[0]
+            for path, safe in ((g.right, raw.safe_r), (g.left, raw.safe_l)):
+                rows = [r for r in range(1, 4) if raw.state[r]] + [4] * bool(
+                    raw.recovery.computed and not raw.recovery.saturated
+                )
+                for k in range(1, len(path)):
+                    if not any(safe[r, k] for r in rows):
+                        continue
+                    offered += 1
+                    t = k * g.step_s
+                    s = plane(Vec2(*(path[k, :2] - there[:2] - t * there[3:5])))
+                    v = plane(Vec2(*(path[k, 3:5] - there[3:5])))
+                    assert daa_coordination.on_the_side(s, v, found.horizontal) > 0
+    assume(offered)
+
+
+def test_both_flying_what_repels_keep_farther_apart(p: Parameters) -> None:
+    """Both turn as long as each step repels, then fly straight on: nothing is proved of turns at one
+    time, each step of which is judged against the other flying straight; so they are flown here."""
+    rng, flown, gained = random.Random(2), 0, 0.0
+    for _ in range(40):
+        own, other = meeting(rng)
+        paths = []
+        for instant, a, b in zip(both(p, own, other), (own, other), (other, own), strict=True):
+            raw, found = instant.raw[HDIR], instant.seen.coordination
+            assert raw is not None
+            assert found is not None
+            g, there = raw.grid, np.array(b[1:7])
+            turns = []
+            for path in (g.right, g.left):
+                k = 0
+                while k + 1 < 31 and step_is_repulsive(
+                    path, k + 1, g.step_s, there, found.horizontal, 0
+                ):
+                    k += 1
+                turns.append((k, path))
+            k, path = max(turns, key=lambda turn: turn[0])
+            paths.append((k, path, g.step_s, a))
+        if not all(k for k, *_ in paths):
+            continue
+        flown += 1
+
+        def place(flight: tuple, t: float) -> np.ndarray:
+            k, path, step_s, _ = flight
+            j = min(int(t / step_s), k)
+            rest = t - j * step_s
+            way = path[j, 8:10] if j < k else path[k, 3:5]
+            return np.asarray(path[j, :2] + rest * way)
+
+        times = np.arange(0.0, 150.0, 0.5)
+        apart = min(float(np.hypot(*(place(paths[0], t) - place(paths[1], t)))) for t in times)
+        s = Vec2(own.east_m - other.east_m, own.north_m - other.north_m)
+        v = Vec2(own.ve_m_s - other.ve_m_s, own.vn_m_s - other.vn_m_s)
+        # sampled twice a second, they are at most so much nearer in between
+        before = least_apart(s, v)
+        assert apart >= before
+        gained += apart - before
+    assert flown >= 30
+    assert gained / flown > 500
+
+
+def bands_of(p: Parameters, own: Aircraft, others: list[Aircraft]):
+    instant = Session(p).step(0.0, own, others)
+    return [g._replace(peripheral={}) for g in instant.guidance], instant
+
+
+def test_without_a_most_urgent_aircraft_bands_are_those_without_criteria(p: Parameters) -> None:
+    rng = random.Random(3)
+    for strategy in ({}, {"urgency_strategy": FIXED, "most_urgent_aircraft": "elsewhere"}):
+        on = dataclasses.replace(p, conflict_crit=True, recovery_crit=True, **strategy)
+        for _ in range(4):
+            own, other = meeting(rng)
+            found, instant = bands_of(on, own, [other])
+            assert found == bands_of(p, own, [other])[0]
+            assert instant.seen.coordination is None
+
+
+def test_on_published_encounters_the_default_strategy_changes_nothing(shared: Path) -> None:
+    file = shared / "vectors" / "daidalus" / "open-encounters.jsonl.gz"
+    compared = 0
+    for _, case in islice(cases(file), 0, 200, 10):
+        if case["config"] not in ("DO_365B_no_SUM", "nom_b", "CD3D"):
+            continue
+        name = {"DO_365B_no_SUM": "do_365b"}.get(case["config"], case["config"].lower())
+        without = preset(name).parameters
+        on = dataclasses.replace(without, conflict_crit=True, recovery_crit=True)
+        said = case["out"]
+        all_ = [said["own"], *(t["state"] for t in said["traffic"])]
+        own, *others = (Aircraft(a["id"], *a["s"], *a["v"]) for a in all_)
+        assert bands_of(on, own, others)[0] == bands_of(without, own, others)[0]
+        compared += 1
+    assert compared >= 10
+
+
+def test_a_criterion_counts_in_its_bands_only(p: Parameters) -> None:
+    own = Aircraft("own", 0.0, 0.0, 3000.0, 0.0, 100.0, 0.0)
+    other = Aircraft("intruder", 100.0, 9000.0, 3000.0, 0.0, -100.0, 0.0)
+    plain = bands_of(p, own, [other])[1]
+    only = bands_of(coordinating(p, "intruder", True, False), own, [other])[1]
+    late = bands_of(coordinating(p, "intruder", False, True), own, [other])[1]
+    assert only.guidance[ALT] == late.guidance[ALT] == plain.guidance[ALT]
+    for k, raw in enumerate(plain.raw):
+        assert raw is not None
+        assert only.raw[k] is not None
+        # a criterion frees nothing, and that of recovery leaves conflict bands alone
+        assert not (only.raw[k].safe_r[1:4] & ~raw.safe_r[1:4]).any()
+        assert (late.raw[k].safe_r[1:4] == raw.safe_r[1:4]).all()
+        assert (late.raw[k].safe_l[1:4] == raw.safe_l[1:4]).all()
+    turned = only.guidance[HDIR]
+    assert turned.bands != plain.guidance[HDIR].bands
+    assert not any(b.region in (NONE, RECOVERY) and b.high <= math.pi for b in turned.bands)
+
+
+def test_a_change_at_once_has_to_repel_by_itself() -> None:
+    p = dataclasses.replace(preset("cd3d").parameters, hysteresis_time_s=0.0)
+    own = Aircraft("own", 0.0, 0.0, 3000.0, 0.0, 100.0, 0.0)
+    other = Aircraft("intruder", 100.0, 30000.0, 3000.0, 0.0, -100.0, 0.0)
+    raw = bands_of(coordinating(p, "intruder"), own, [other])[1].raw[HDIR]
+    assert raw is not None
+    assert raw.grid.step_s == 0
+    free = [raw.safe_r[NEAR], raw.safe_l[NEAR]]
+    assert not free[0][0], "to fly on is no manoeuvre that repels"
+    assert not free[0].any()
+    assert free[1].any()
+
+
+def test_a_spread_alert_counts_what_does_not_repel(p: Parameters) -> None:
+    own = Aircraft("own", 0.0, 0.0, 3000.0, 0.0, 100.0, 0.0)
+    far = Aircraft("intruder", 20000.0, 90000.0, 3000.0, 0.0, -100.0, 0.0)
+    levels: tuple[Level, ...] = p.alerters[0].levels
+    wide = (*levels[:-1], levels[-1]._replace(spread=Spread(0.2)))
+    spread = dataclasses.replace(p, alerters=(p.alerters[0]._replace(levels=wide),))
+    assert Session(spread).step(0.0, own, [far]).alerts[0].level == 0
+    assert Session(coordinating(spread, "intruder")).step(0.0, own, [far]).alerts[0].level == 3
+
+
+# -- urgency ----------------------------------------------------------------------------------
+@given(VECTORS, VECTORS, NUMBERS, NUMBERS)
+def test_nobody_comes_nearer_than_the_nearest(s: Vec2, v: Vec2, sz: float, vz: float) -> None:
+    own = Aircraft("own", *s, sz, *v, vz)
+    size, time_s = nearest(own, Aircraft("i", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    assert time_s >= 0
+
+    def at(t: float) -> float:
+        x, y, z = s.x + t * v.x, s.y + t * v.y, sz + t * vz
+        return max((x * x + y * y) / SIZE[0] ** 2, (z / SIZE[1]) ** 2)
+
+    assert size == pytest.approx(at(time_s))
+    for t in (0.0, 0.5, 7.0, 60.0, 3600.0, time_s * 0.99, time_s * 1.01, time_s + 0.01):
+        assert size <= at(t) * (1 + 1e-6) + 1e-9
+
+
+def test_the_most_urgent_is_who_comes_nearest(p: Parameters) -> None:
+    on = dataclasses.replace(p, conflict_crit=True, urgency_strategy=DCPA)
+    own = Aircraft("own", 0.0, 0.0, 3000.0, 0.0, 100.0, 0.0)
+    wide = Aircraft("wide", 900.0, 5000.0, 3000.0, 0.0, -100.0, 0.0)
+    late = Aircraft("late", 50.0, 9000.0, 3000.0, 0.0, -100.0, 0.0)
+    soon = late._replace(id="soon", north_m=7000.0)
+    for others, expected in (
+        ([wide], "wide"),
+        ([wide, late], "late"),
+        ([late, soon, wide], "soon"),
+    ):
+        for order in (others, others[::-1]):
+            found = Session(on).step(0.0, own, order).seen.coordination
+            assert found is not None
+            assert found.id == expected
+    assert Session(on).step(0.0, own, []).seen.coordination is None
+
+
+# -- files, words, errors -----------------------------------------------------------------------
+def test_the_keys_are_read_and_written() -> None:
+    made = daa_conf.parse(
+        "conflict_crit = true\nurgency_strategy = fixed\nmost_urgent_aircraft = A-1"
+    )
+    p = made.parameters
+    assert (p.conflict_crit, p.urgency_strategy, p.most_urgent_aircraft) == (True, FIXED, "A-1")
+    assert daa_conf.parse(daa_conf.write(made)).parameters == p
+    plain = daa_conf.write(daa_conf.parse(""))
+    assert "conflict_crit = false" in plain
+    assert "urgen" not in plain, "keys of ours are written only where they say something"
+
+
+@pytest.mark.parametrize(
+    ("text", "item", "says"),
+    [
+        ("urgency_strategy = fixed", "most_urgent_aircraft", "got none with fixed"),
+        ("most_urgent_aircraft = A", "most_urgent_aircraft", "got A with none"),
+        (
+            "urgency_strategy = dcpa\nmost_urgent_aircraft = A",
+            "most_urgent_aircraft",
+            "A with dcpa",
+        ),
+        ("urgency_strategy = nearest", "urgency_strategy", "none or fixed or dcpa"),
+        ("conflict_crit = 1", "conflict_crit", "true or false"),
+    ],
+)
+def test_what_does_not_fit_is_refused(text: str, item: str, says: str) -> None:
+    with pytest.raises(BadInput) as caught:
+        daa_conf.parse(text, "c")
+    assert caught.value.item == item
+    assert says in str(caught.value)
+
+
+def test_an_unknown_aircraft_is_refused(p: Parameters, root: Path) -> None:
+    file = root / "examples/encounters/two_intruders.daa"
+    with pytest.raises(BadInput) as caught:
+        list(run(file, coordinating(p, "nobody")))
+    assert caught.value.item == "most_urgent_aircraft"
+    assert caught.value.got == "nobody"
+    own, other = meeting(random.Random(1))
+    with pytest.raises(BadInput) as caught:
+        Session(coordinating(p, "own")).step(0.0, own, [other])
+    assert caught.value.got == "own"
+
+
+def test_an_edge_of_coordination_says_so(p: Parameters) -> None:
+    own = Aircraft("own", 0.0, 0.0, 3000.0, 0.0, 100.0, 0.0)
+    other = Aircraft("intruder", 100.0, 6000.0, 3000.0, 0.0, -100.0, 0.0)
+    on = coordinating(p, "intruder")
+    instant = Session(on).step(0.0, own, [other])
+    lines = explain(on, instant)
+    said = next(x for x in lines if x.startswith("coordination:"))
+    assert "intruder is most urgent (urgency strategy fixed)" in said
+    assert "on the right hand" in said
+    assert "conflict and recovery bands" in said
+    begin = next(k for k, x in enumerate(lines) if x.startswith("hdir: edge"))
+    assert any("intruder: coordination:" in x for x in lines[begin : begin + 8])
+    data = as_data(instant)
+    # "intruder" is before "own", so at one altitude it goes above
+    assert data["coordination"] == {"id": "intruder", "horizontal": 1, "vertical": -1}
+    none = dataclasses.replace(on, urgency_strategy=0, most_urgent_aircraft="")
+    lines = explain(none, Session(none).step(0.0, own, [other]))
+    assert "coordination: nobody is most urgent now (urgency strategy none)" in lines
+    assert not any("coordination" in x for x in explain(p, Session(p).step(0.0, own, [other])))
+
+
+def test_the_command_takes_the_strategy(root: Path, tmp_path: Path, capsys) -> None:
+    file = str(root / "examples/encounters/two_intruders.daa")
+    conf = tmp_path / "c.conf"
+    text = daa_conf.write(named_or_file("do_365b"))
+    conf.write_text(text.replace("_crit = false", "_crit = true"))
+    rows = [
+        r for _, r in zip(range(2), run(Path(file), preset("do_365b").parameters), strict=False)
+    ]
+    name = rows[0].rows[1].id
+    assert cli.main(["daa", "explain", file, "-c", str(conf), "--urgent", name, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["coordination"]["id"] == name
+    assert cli.main(["daa", "explain", file, "-c", str(conf), "--urgency", "dcpa", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["coordination"] is not None
+    assert cli.main(["daa", "bands", file, "-c", str(conf), "--urgent", "nobody"]) == 2
+    assert "nobody" in capsys.readouterr().err
+    assert cli.main(["daa", "bands", file, "-c", str(conf), "--urgency", "fixed"]) == 2
