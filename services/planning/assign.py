@@ -240,7 +240,7 @@ def _anneal(run: _Run, made: list[Instance], firsts: list[Moves | None]) -> None
         for _, k, moves in ends[:2]:
             n = made[k].tasks
             if n > 10:
-                _try(run, made[k], k, moves, WORK // n if n > 12 else 3_000 * n, again)
+                _try(run, made[k], k, moves, WORK // n if n > 16 else 3_000 * n, again)
     _go_on(run, made)
 
 
