@@ -28,9 +28,10 @@ def horizontal_violation_within(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, 
     sv = s.x * v.x + s.y * v.y
     cross = s.x * v.y - s.y * v.x
     dd = dthr_m * dthr_m
-    if dips_to_zero(vv, 2 * sv, ss - dd, h_s):
+    if ss - dd <= 0:
         return True
-    # |s(t)|^2 - DTHR^2 + TTHR s(t).v <= 0 is tau_mod <= TTHR wherever the two converge
+    # |s(t)|^2 - DTHR^2 + TTHR s(t).v <= 0 is tau_mod <= TTHR wherever the two converge, and so no
+    # later than any entry into the circle
     return cross * cross <= dd * vv and dips_to_zero(
         vv, 2 * sv + tthr_s * vv, ss + tthr_s * sv - dd, h_s
     )

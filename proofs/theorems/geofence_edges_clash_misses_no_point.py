@@ -18,3 +18,4 @@ def claim(c: Claim) -> None:
     c.lemma("geofence_segments_meet_finds_every_common_point", p=a, q=b, a=d, b=e, s=s, t=t)
     common = c.define(geofence.share_a_point, a, b, d, e, s, t, False)
     c.show(c.implies(common, c.use(edges_clash, 0, a, b, d, e)), "apart")
+    c.show(c.same(common, c.define(geofence.common_point, a, b, d, e, s, t)), "apart: any point")

@@ -23,4 +23,16 @@ def claim(c: Claim) -> None:
         at = c.define(well_clear.horizontal_violation_at, s, v, dthr, tthr, t)
         return c.all_of(t >= 0, t <= h, at)  # type: ignore[operator]
 
-    c.show(c.implies(predicted, c.any_of(*[violated(t) for t in (h - h, h, closest, least)])))
+    now, apart = h - h, c.all_of(s.x * s.x + s.y * s.y > dthr * dthr, vv > 0)
+    c.show(c.implies(s.x * s.x + s.y * s.y <= dthr * dthr, violated(now)), "already inside")
+    c.show(c.implies(c.all_of(predicted, c.negation(violated(now))), apart), "on a course")
+    c.show(c.implies(c.all_of(predicted, apart), sv < 0), "converging")
+    reached = c.define(well_clear.within_at, s, v, dthr, closest)
+    c.show(c.implies(c.all_of(predicted, apart), reached), "the closest approach")
+    passed = c.all_of(predicted, apart, closest <= h)
+    c.show(c.implies(passed, violated(closest)), "within the horizon")
+    coming = c.all_of(predicted, apart, closest > h)
+    c.show(
+        c.implies(coming, c.any_of(*[violated(t) for t in (now, h, least)])), "beyond the horizon"
+    )
+    c.show(c.implies(predicted, c.any_of(*[violated(t) for t in (now, h, closest, least)])))
