@@ -297,7 +297,8 @@ def verdicts(c: Claim, name: str, made: Filter) -> None:
         ours[column.number] = value
         theirs[made.terms.column(column.value, column.kind).number] = value
     reals: dict[tuple[int, int], Any] = {}
-    tested: set[int] = set()
+    tested: dict[int, list[Any]] = {}
+    near: set[tuple[int, int, int]] = set()
     for found in made.compared:
         a, b = (arg.number for arg in found.original.args)
         if (a, b) not in reals:
@@ -306,13 +307,18 @@ def verdicts(c: Claim, name: str, made: Filter) -> None:
         ours[found.original.number] = RELATIONS[found.original.op](real.term, z3.RealVal(0))
         if found.above is None or found.below is None:
             theirs[found.certain.yes.number] = ours[found.original.number]
-        elif found.above.number not in tested:
-            tested.add(found.above.number)
-            parts = [c.real(f"{name}.{part}{a}_{b}") for part in ("value", "size", "bound")]
-            value, size, bound = parts
-            given.append(c.define(rounding.near, value, real, size, bound))
-            theirs[found.above.number] = c.use(surely_above, value, bound).term
+            continue
+        test = found.above.number
+        if test not in tested:
+            tested[test] = [c.real(f"{name}.{part}{a}_{b}") for part in ("value", "size", "bound")]
+            value, _, bound = tested[test]
+            theirs[test] = c.use(surely_above, value, bound).term
             theirs[found.below.number] = c.use(surely_below, value, bound).term
+        # one test may stand for several comparisons: x <= y, and x - y <= 0
+        if (a, b, test) not in near:
+            near.add((a, b, test))
+            value, size, bound = tested[test]
+            given.append(c.define(rounding.near, value, real, size, bound))
     finite = c.boolean(f"{name}.finite").term
     roots = [made.sure]
     for result in made.results:

@@ -196,6 +196,19 @@ def test_the_prover_refutes_a_wrong_verdict() -> None:
     assert not prove("verdicts", claim, "verdicts").proved
 
 
+def _one_test_for_two(a: float, b: float, c: float, d: float) -> bool:
+    """Two comparisons whose difference is one and the same."""
+    x = a * b
+    y = c * d
+    return x <= y or x - y <= 0
+
+
+def test_one_test_may_stand_for_two_comparisons() -> None:
+    claim = Claim()
+    rounding.verdicts(claim, "two", filtered(_one_test_for_two))
+    assert prove("verdicts", claim, "verdicts").proved
+
+
 def test_nothing_is_fused() -> None:
     columns = on_circle(300)
     exactly(horizontal_violation)(*columns)
