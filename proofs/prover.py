@@ -10,6 +10,7 @@ obligation can be written out as SMT-LIB for solvers that stand alone.
 from __future__ import annotations
 
 import time
+import traceback
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -284,8 +285,12 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
     where = place(find(name, folder))
     try:
         statement(claim)
-    except (ValueError, TypeError, LiftError) as error:
-        raise BadInput(f"the theorem cannot be stated: {error}", where=where) from error
+    except Exception as error:
+        line = _own_line(error, find(name, folder))
+        if not line and not isinstance(error, ValueError | TypeError | LiftError):
+            raise  # not the theorem's doing
+        at = f"{where.partition(':')[0]}:{line}" if line else where
+        raise BadInput(f"the theorem cannot be stated: {error}", where=at) from error
     wrong = {n for f in {v.function for v in claim.visits} if ours(f) for n in altered(f)}
     if wrong:
         raise BadInput(
@@ -312,6 +317,13 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
             "the theorem shows nothing", where=where, expected="at least one c.show(...)"
         )
     return claim, sentence
+
+
+def _own_line(error: BaseException, file: Path) -> int:
+    """The line of the file in which the error came up itself, or 0."""
+    frames = [] if error.__traceback__ is None else traceback.extract_tb(error.__traceback__)
+    last = frames[-1] if frames else None
+    return (last.lineno or 0) if last is not None and last.filename == str(file) else 0
 
 
 def prove_file(

@@ -125,6 +125,12 @@ def test_an_error_in_a_process_comes_back_as_it_is(tmp_path: Path):
         ledger.prove_theorems(["empty"], folder=tmp_path, jobs=2)
 
 
+def test_a_mistake_in_a_theorem_is_told_with_its_line(tmp_path: Path):
+    (tmp_path / "slip.py").write_text('"""A sentence."""\n\n\ndef claim(c):\n    c.shows(True)\n')
+    with pytest.raises(BadInput, match=r"slip.py:5: the theorem cannot be stated: .*'shows'"):
+        prover.prove_file("slip", folder=tmp_path)
+
+
 def test_a_process_that_dies_is_an_error(tmp_path: Path):
     (tmp_path / "dies.py").write_text(
         '"""A sentence."""\nimport os\n\n\ndef claim(c):\n    os._exit(9)\n'
