@@ -49,6 +49,15 @@ def test_make_targets_in_the_readme_exist(root: Path) -> None:
         assert re.search(rf"^{target}:", makefile, re.MULTILINE), target
 
 
+def test_no_half_merged_text_is_in_the_tree(root: Path) -> None:
+    # the pattern is not written out, or this file would match it
+    marks = ["git", "grep", "-l", "-E", "^(" + "<" * 7 + "|" + ">" * 7 + ") "]
+    found = subprocess.run(marks, cwd=root, capture_output=True, text=True, timeout=900)
+    if found.returncode not in (0, 1):
+        pytest.skip("not a git checkout")
+    assert found.stdout == ""
+
+
 def test_no_path_of_one_machine_is_in_the_tree(root: Path) -> None:
     listed = subprocess.run(
         ["git", "ls-files"], cwd=root, capture_output=True, text=True, timeout=900
