@@ -92,7 +92,9 @@ def document(data: dict[str, Any], keys: Keys) -> str:
     """The record as Markdown: counts per function, then every mutant that was not killed."""
     targets = dict(sorted(data["targets"].items()))
     old = stale(data, keys)
-    total = {v: sum(row["counts"][v] for row in targets.values()) for v in VERDICTS}
+    # what is no longer the code's own counts for nothing
+    fresh = {name: row for name, row in targets.items() if name not in old}
+    total = {v: sum(row["counts"][v] for row in fresh.values()) for v in VERDICTS}
     viable = total["killed"] + total["survived"] + total["undecided"]
     score = percent(Fraction(total["killed"], viable)) if viable else "nothing was"
     counts = ", ".join(f"{total[v]} {v}" for v in VERDICTS)
@@ -106,7 +108,7 @@ def document(data: dict[str, Any], keys: Keys) -> str:
         "fault changes nothing, everywhere or where the theorems apply (the list says which);",
         "*undecided* counts as not killed; *stillborn* mutants cannot be run.",
         "",
-        f"**{sum(total.values())} mutants in {len(targets)} functions: {counts}; {score} killed of "
+        f"**{sum(total.values())} mutants in {len(fresh)} functions: {counts}; {score} killed of "
         f"those that are viable and not proved equivalent. {len(old)} functions are not up to "
         "date.**",
         "",
@@ -114,7 +116,7 @@ def document(data: dict[str, Any], keys: Keys) -> str:
         "|---|" + "---|" * len(VERDICTS),
     ]
     for kind in ("kernel", "fold", "definition"):
-        rows = [row["counts"] for row in targets.values() if row["kind"] == kind]
+        rows = [row["counts"] for row in fresh.values() if row["kind"] == kind]
         lines.append(f"| {kind} | {' | '.join(str(sum(c[v] for c in rows)) for v in VERDICTS)} |")
     lines += ["", "## Not up to date", ""]
     lines += [f"- `{name}`: {why}" for name, why in sorted(old.items())] or ["None."]
