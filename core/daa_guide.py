@@ -165,13 +165,14 @@ def in_region(
 @driver(checked_by=("in_conflict", "piece_counts", "straight_from", "shrunk"))
 def guide(
     right, left, step_s, targets, rate_m_s, accel_m_s2, sample_s, others, mapped, conflict, kinds,
-    volumes, alerting_s, sides, recovery_sides, lookahead_s, counted, corrective, recovery_on, radius_m, half_m, nmac_m,
-    nmac_half_m, shrinking, factor, stability_s, safe_r, safe_l, peripheral, recovery, state,
+    volumes, alerting_s, sides, recovery_sides, lookahead_s, counted, corrective, recovery_on,
+    radius_m, half_m, nmac_m, nmac_half_m, shrinking, factor, stability_s, safe_r, safe_l, peripheral, recovery, state,
 ):  # fmt: skip
     """Everything about one dimension.
 
     mapped, conflict, peripheral: (4, n) by region and intruder; kinds, alerting_s: (4, n);
-    volumes: (4, n, 5); sides, recovery_sides: (n, 2) to keep to in conflict and recovery bands, 0: none. safe_r, safe_l: (5, K + 1) by region, row 4 for recovery.
+    volumes: (4, n, 5); sides, recovery_sides: (n, 2) to keep to in conflict and recovery bands, 0:
+    none. safe_r, safe_l: (5, K + 1) by region, row 4 for recovery.
     state: (5,) per region 0 not asked, 1 has safe values, 2 has none; [4] 1 if recovery was
     computed. recovery: as `recover`.
     """

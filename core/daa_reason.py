@@ -10,10 +10,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cratous.core.daa_bands import SAMPLE_S, Raw, sides_in
+from cratous.core.daa_bands import SAMPLE_S, Raw
 from cratous.core.daa_climb import altitude_conflict
 from cratous.core.daa_coordination import step_is_repulsive
 from cratous.core.daa_engine import Seen
+from cratous.core.daa_grid import sides_in
 from cratous.core.daa_machine import machine
 from cratous.core.daa_steps import piece_counts, straight_from, until
 from cratous.core.daa_uncertain import lost, lost_span
@@ -25,9 +26,9 @@ class Reason(NamedTuple):
     """What is in the way of a value.
 
     intruder: its id; region: whose volume; on_way: while manoeuvring, not after it; first_s,
-    last_s: when the volume is violated [s from now]; side: not the volume, but coordination is in the
-    way: the manoeuvre does not repel to that side from first_s on (0: the volume is); miss_m, above_m: least horizontal distance in
-    that time and vertical distance at it [m]; limit_m, limit_z_m: the volume's thresholds.
+    last_s: when the volume is violated [s from now]; miss_m, above_m: least horizontal distance in
+    that time and vertical distance at it [m]; limit_m, limit_z_m: the volume's thresholds; side: 0, or
+    not the volume but coordination is in the way: from first_s on it does not repel to that side.
     """
 
     intruder: str

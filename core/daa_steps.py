@@ -63,18 +63,18 @@ def until(lookahead_s: float, horizon_s: float, manoeuvre_s: float, counted: boo
     )
 )  # fmt: skip
 def safe_steps(
-    own, step_s, piece_s, others, chosen, kinds, volumes, horizons, sides, begin_s, radius_m, half_m, recovering,
-    lookahead_s, counted, project_s, early, single, safe,
+    own, step_s, piece_s, others, chosen, kinds, volumes, horizons, sides, begin_s, radius_m, half_m,
+    recovering, lookahead_s, counted, project_s, early, single, safe,
 ):  # fmt: skip
     """Which steps of one side are free of conflict with all chosen intruders, into `safe`.
 
     own: (K + 1, 11) positions [m] and velocities [m/s] at the steps, the velocity east and north before
-    the manoeuvre, and the mean velocity from the step to the next one; piece_s: how long a piece is looked at, step_s, or 0 to sample
-    the way at the steps; others: (n, 6) states now;
-    chosen: indices; kinds: (n), volumes: (n, 11) as in `lost`, horizons: (n) [s] of each; sides: (n, 2)
-    that the manoeuvre has to keep to, horizontal and vertical, 0: none; recovering: the
-    cylinder (radius_m, half_m) is to be avoided before begin_s; project_s: the manoeuvre begins
-    after so much straight flight; early: stop as soon as two neighbours are safe.
+    the manoeuvre, and the mean velocity from the step to the next one; piece_s: how long a piece is
+    looked at, step_s, or 0 to sample the way at the steps; others: (n, 6) states now; chosen: indices;
+    kinds: (n), volumes: (n, 11) as in `lost`, horizons: (n) [s] of each; sides: (n, 2) that the
+    manoeuvre has to keep to, horizontal and vertical, 0: none; recovering: the cylinder (radius_m,
+    half_m) is to be avoided before begin_s; project_s: the manoeuvre begins after so much straight
+    flight; early: stop as soon as two neighbours are safe.
     Returns whether two neighbouring steps are safe.
     """
     last = own.shape[0] - 1

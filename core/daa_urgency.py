@@ -36,7 +36,7 @@ def nearest(own: Aircraft, other: Aircraft) -> tuple[float, float]:
     that it gets into (1: the NMAC cylinder itself), and when [s].
 
     The size at an instant is the greater of two parabolas; its least lies now, at the lowest point of
-    one of them, or where they cross.
+    one of them, or where they cross. Distances and speeds are 0 or above 1e-100, so that squares count.
     """
     s, v, sz, vz = _relative(own, other)
     dd, hh = NMAC_RADIUS_M**2, NMAC_HALF_HEIGHT_M**2

@@ -59,8 +59,8 @@ zones:
 """A way around a zone, lanes with turns, footprints along a line: every loop that planning compiles."""
 
 
-def warm() -> int:
-    """Compile, and run once on one state; returns how many kernels."""
+def warm() -> None:
+    """Compile, and run once."""
     zero = 0.0
     state = (100.0, zero, -10.0, zero)
     compiled(horizontal_violation)(*state, 50.0, 10.0)
@@ -69,7 +69,6 @@ def warm() -> int:
     compiled(orient)(*state, zero, zero)
     warm_planning()
     require(allow_unproved=True)  # what is clean is remembered
-    return 5
 
 
 def warm_planning() -> None:
@@ -104,4 +103,5 @@ def _mark() -> Path:
 
 
 if __name__ == "__main__":
-    print(f"{warm()} kernels compiled")
+    warm()
+    print("what the runtime uses is compiled")

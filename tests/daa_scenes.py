@@ -5,6 +5,7 @@ Run as a program: `python tests/daa_scenes.py COUNT [SEED [SECONDS]]` (see `make
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import random
 import sys
@@ -14,6 +15,7 @@ from collections.abc import Iterator
 from cratous.core.daa_frame import project
 from cratous.core.daa_session import Instant, Session
 from cratous.core.daa_state import UNKNOWN, Aircraft, Sigma
+from cratous.spec.daa import DCPA, FIXED
 from cratous.spec.daa_presets import names, preset
 from cratous.spec.errors import BadInput
 
@@ -90,10 +92,23 @@ def check(instant: Instant) -> None:
         assert all(b.low < b.high for b in g.bands), g
 
 
+def sessions_to_fuzz() -> list[Session]:
+    """One of each preset as it is, and with each urgency strategy that can name somebody."""
+    plain = [preset(name).parameters for name in names()]
+    first = dataclasses.replace(
+        plain[0], conflict_crit=True, urgency_strategy=FIXED, most_urgent_aircraft="i0"
+    )
+    nearest = [
+        dataclasses.replace(p, conflict_crit=True, recovery_crit=True, urgency_strategy=DCPA)
+        for p in plain
+    ]
+    return [Session(p) for p in (*plain, first, *nearest)]
+
+
 def run(count: int, seed: int, seconds: float = math.inf) -> tuple[int, int]:
-    """So many instants of sessions under all presets; returns (answered, refused)."""
+    """So many instants of sessions; returns (answered, refused)."""
     rng = random.Random(seed)
-    sessions = [Session(preset(name).parameters) for name in names()]
+    sessions = sessions_to_fuzz()
     answered = refused = 0
     now, end = 0.0, time.monotonic() + seconds
     for _ in range(count):

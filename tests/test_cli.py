@@ -168,13 +168,18 @@ def test_several_problems_in_one_message(run: Run, tmp_path: Path) -> None:
 
 
 def test_an_internal_error_is_one_line(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    library: dict[str, Any] = {}
+    # a checkout may lie in a folder of the product's name, with the libraries below it
+    text = "def deep():\n    raise RuntimeError('a defect')\n"
+    exec(compile(text, "/x/cratous/.venv/lib/deep.py", "exec"), library)
+
     def fail(*_arguments: object) -> None:
-        raise RuntimeError("a defect")
+        library["deep"]()
 
     monkeypatch.setattr("cratous.services.loading.load", fail)
     code, _, err = run("plan", CROSSING)
     assert code == 70
-    assert "internal error (RuntimeError: a defect)" in err
+    assert "internal error (RuntimeError: a defect) at services/" in err
     assert "Traceback" not in err
     with pytest.raises(RuntimeError):
         main(["plan", str(CROSSING), "--debug"])

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 from daa_scenes import head_on
 
-from cratous.core.daa_bands import directive, grid, on_circle, region_of
+from cratous.core.daa_bands import directive, on_circle, region_of
 from cratous.core.daa_engine import look, thresholds
+from cratous.core.daa_grid import grid
 from cratous.core.daa_reason import reasons_at
 from cratous.core.daa_session import Session
 from cratous.core.daa_state import ALT, HDIR, HS, UNKNOWN, VS, Aircraft, Band, Sigma

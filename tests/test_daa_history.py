@@ -8,7 +8,7 @@ from collections import deque
 import pytest
 from daa_scenes import head_on
 
-from cratous.core.daa_bands import grid
+from cratous.core.daa_grid import grid
 from cratous.core.daa_memory import BandMemory, Shown, m_of_n, resolved
 from cratous.core.daa_session import Session
 from cratous.core.daa_state import HDIR, Aircraft, Band

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from daa_scenes import head_on
 
-from cratous.core.daa_bands import grid
 from cratous.core.daa_climb import climb, height
 from cratous.core.daa_engine import look
 from cratous.core.daa_frame import project
+from cratous.core.daa_grid import grid
 from cratous.core.daa_state import HDIR
 from cratous.core.daa_steps import piece_counts, straight_from, until, way_conflicts
 from cratous.core.daa_turn import turn_offset, turned

@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cratous.core import excuse_bands, excuse_check
-from cratous.core.daa_bands import grid
+from cratous.core.daa_grid import grid
 from cratous.core.daa_guide import evaluate
 from cratous.core.daa_machine import machine
 from cratous.core.daa_state import ALT, DIMENSIONS, Aircraft, Sigma

@@ -11,6 +11,7 @@ import importlib
 import json
 import sys
 import traceback
+from pathlib import Path
 from typing import Any
 
 import click
@@ -18,7 +19,8 @@ import click
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 
 INTERNAL_ERROR = 70
-PACKAGE = "/cratous/"
+PACKAGE = f"{Path(__file__).parents[2]}/"
+"""Where the product's modules are, as tracebacks name it."""
 COMMANDS = {
     "run": "Plan, prove, fly, monitor and certify a mission.",
     "plan": "Plan a mission and check the plan; nothing flies.",
@@ -102,8 +104,9 @@ def main(argv: list[str] | None = None) -> int:
 
 def _place(error: BaseException) -> str:
     """Where in the product an error came from, so that one that happens once can be found."""
-    ours = [f for f in traceback.extract_tb(error.__traceback__) if PACKAGE in f.filename]
-    return f" at {ours[-1].filename.rpartition(PACKAGE)[2]}:{ours[-1].lineno}" if ours else ""
+    frames = traceback.extract_tb(error.__traceback__)
+    ours = [f for f in frames if f.filename.startswith(PACKAGE)]
+    return f" at {ours[-1].filename.removeprefix(PACKAGE)}:{ours[-1].lineno}" if ours else ""
 
 
 def _usage(error: click.ClickException, as_json: bool) -> int:

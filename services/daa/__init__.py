@@ -25,7 +25,7 @@ from cratous.core.daa_state import Aircraft, Sigma
 from cratous.core.daa_terminal import in_terminal_area
 from cratous.core.excuse_judge import from_state as judge_way_out
 from cratous.spec.daa import Parameters
-from cratous.spec.daa_conf import check
+from cratous.spec.daa_check import check
 from cratous.spec.daa_file import Row, read
 from cratous.spec.daa_presets import named_or_file, names, preset
 from cratous.spec.errors import BadInput
@@ -109,6 +109,10 @@ def run(
         )
         if encounters.settings or rows[0].settings or changes:
             check(wanted, str(file))
+        if changes.get("urgency_strategy") and not (wanted.conflict_crit or wanted.recovery_crit):
+            raise BadInput("nothing would change: no criterion of coordination is on", where=str(file),
+                           item="urgency_strategy", expected="conflict_crit or recovery_crit = true",
+                           got="both false")  # fmt: skip
         urgent = wanted.most_urgent_aircraft
         if urgent and urgent not in there - {rows[0].id}:
             raise BadInput("there is no such intruder", where=str(file), item="most_urgent_aircraft",

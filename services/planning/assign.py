@@ -48,7 +48,7 @@ WORK = 16_000_000
 ROUNDS, ROUNDS_MAX = 12, 10_000
 """Improvements of a problem of many tasks without and with a limit."""
 STEPS_A_NODE = 8
-"""Steps of annealing that take about as long as a node of the exact search."""
+"""Steps of annealing that count as a node of the exact search; a node takes longer than they do."""
 REBUILDS, REBUILD_NODES, HEATS = 150_000, 40, (0.0, 0.01, 0.003, 0.03)
 """Rounds times tasks of one improvement, what a round counts as, and first temperatures."""
 REPAIRS = 60

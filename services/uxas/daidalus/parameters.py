@@ -177,7 +177,7 @@ def _changed(entry: Entry, values: Mapping[str, Any]) -> Parameters:
         if name in entry.attributes
     }
     made = replace(found, **changes)
-    from cratous.spec.daa_conf import check
+    from cratous.spec.daa_check import check
 
     check(made, entry.where)
     if not made.alerters or not made.alerters[0].levels:
