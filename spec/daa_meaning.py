@@ -89,9 +89,10 @@ def climb_is_flown(
     )
 
 
-def shrunk(before: float, after: float, least: float) -> bool:
-    """A recovery distance after it was made smaller: less than before, unless it is the least."""
-    return after >= least and after <= before and (after < before or after == least)
+def shrunk(before: float, after: float, least: float, factor: float) -> bool:
+    """A recovery distance after it was made smaller: by the factor, unless that is below the least."""
+    smaller = before - factor * before
+    return after == smaller if smaller >= least else after == least
 
 
 def reached(count: int, value: int, level: int) -> int:

@@ -25,11 +25,7 @@ def lost_at(violated: bool, t: float, piece: float) -> bool:
 
 def flown_step(flown: Flown, known: bool, lost: bool, surely: bool) -> Flown:
     """A piece more: whether the other aircraft is known then, the volume lost, and not by a hair."""
-    if known and not lost:
-        return flown
-    if known and surely:
-        return Flown(True, flown.open)
-    return Flown(flown.refused, True)
+    return Flown(flown.refused or (known and lost and surely), flown.open or not known or lost)
 
 
 def judged(flown: Flown) -> int:

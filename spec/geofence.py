@@ -45,6 +45,11 @@ def turn(a: Point, b: Point, c: Point) -> float:
     return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)
 
 
+def swept(a: Point, b: Point) -> float:
+    """Twice the area between the edge a-b and the y axis: positive on the way up on its right."""
+    return (a.x + b.x) * (b.y - a.y)
+
+
 def on_segment_at(p: Point, a: Point, b: Point, t: float) -> bool:
     """p is the point of the closed segment a-b at parameter t."""
     at = along(a, b, t)

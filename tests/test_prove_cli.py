@@ -52,6 +52,12 @@ def test_all_views_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     assert all("(check-sat)" in file.read_text() for file in files)
 
 
+def test_several_patterns_choose_what_matches_any(capsys: pytest.CaptureFixture[str]):
+    code, data = _json(capsys, "--only", "geofence_orient*", "--only", "square_within*")
+    assert code == 0
+    assert {t["name"].split("_")[0] for t in data["theorems"]} == {"geofence", "square"}
+
+
 def test_nothing_matches_is_bad_input(capsys: pytest.CaptureFixture[str]):
     assert main(["prove", "--only", "nothing*"]) == 2
     assert "no theorem matches" in capsys.readouterr().err

@@ -11,24 +11,24 @@ from cratous.core.kernel import fold, kernel
 
 
 @kernel(implements="contracts.checklists.open_step")
-def missing_step(missing: int, ticked: bool) -> int:
-    """Add one item of a list to how many are still missing (at most 2^60 are counted)."""
-    if ticked or missing >= 1152921504606846976:
+def missing_step(missing: bool, ticked: bool) -> bool:
+    """Add one item of a list to whether any is missing."""
+    if ticked:
         return missing
-    return missing + 1
+    return True
 
 
 @kernel(implements="contracts.checklists.complete")
-def missing_result(missing: int) -> bool:
+def missing_result(missing: bool) -> bool:
     """True iff the list is complete."""
-    return missing == 0
+    return not missing
 
 
 list_complete = fold(
     name="list_complete",
     implements="contracts.checklists.complete",
     step=missing_step,
-    start=0,
+    start=False,
     finish=missing_result,
 )
 

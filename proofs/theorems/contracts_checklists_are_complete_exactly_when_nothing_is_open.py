@@ -6,7 +6,7 @@ from cratous.spec.contracts.checklists import complete, open_step
 
 
 def claim(c: Claim) -> None:
-    missing, any_open, ticked = c.whole("missing"), c.boolean("any_open"), c.boolean("ticked")
+    missing, any_open, ticked = c.boolean("missing"), c.boolean("any_open"), c.boolean("ticked")
     c.fold(
         list_complete,
         acc=missing,
@@ -16,5 +16,5 @@ def claim(c: Claim) -> None:
         model_start=False,
         model_step=open_step,
         model_finish=complete,
-        relation=lambda m, o: c.all_of(m >= 0, m <= 2**60, c.same(m > 0, o)),
+        relation=c.same,
     )

@@ -3,7 +3,13 @@ every sequence of requests and every number of ids in each."""
 
 from typing import Any
 
-from cratous.core.contracts.checklists import Owners, free_after, owners_of, owns
+from cratous.core.contracts.checklists import (
+    Owners,
+    free_after,
+    owners_after,
+    owners_of,
+    owns,
+)
 from cratous.proofs.claim import Claim
 from cratous.spec.contracts import checklists
 from cratous.spec.contracts.checklists import Given
@@ -20,6 +26,10 @@ def claim(c: Claim) -> None:
     c.show(free == c.when(fits, first + count, first), "a block that fits is given out whole")
     inside = c.use(owns, first, free - first, number)
     c.show(c.same(inside, c.define(checklists.in_block, first, free - first, number)), "a block")
+
+    # from 1 on, a block of 2 holds the id 2: one more than the 3 that were counted before
+    one_more = c.use(owners_after, Owners(1, 3), 2, 2)
+    c.show(c.all_of(c.same(one_more.free, 3), c.same(one_more.owners, 4)), "an example")
 
     def related(o: Any, m: Any) -> Any:
         once = c.define(checklists.owners_due, m.free, number)

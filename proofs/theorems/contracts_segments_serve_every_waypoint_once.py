@@ -6,11 +6,11 @@ from typing import Any
 
 from cratous.core.contracts.segments import Spans, spans_serve
 from cratous.proofs.claim import Claim
-from cratous.spec.contracts import segments
+from cratous.spec.contracts.segments import Served, serve_step, times, times_due
 
 
 def serve(served: Any, overlap: Any, end: Any, length: Any, position: Any) -> Any:
-    return segments.serve_step(served, end, length, overlap, position)
+    return serve_step(served, end, length, overlap, position)
 
 
 def claim(c: Claim) -> None:
@@ -19,10 +19,13 @@ def claim(c: Claim) -> None:
     c.premise(c.all_of(end >= 0, end <= 2**60, length >= 2, length <= 2**60))
     acc = Spans(c.whole("first"), c.whole("last"), c.whole("times"))
     c.premise(c.all_of(overlap >= 0, overlap <= 2**60))
+    # after position 0 a piece of 6 with an overlap of 2 adds 4, whatever was new before
+    more = c.define(serve_step, Served(0, 3), 9, 6, 2, 1)
+    c.show(c.all_of(c.same(more.last, 4), c.same(more.times, 4)), "an example")
 
     def related(s: Any, served: Any) -> Any:
         place = c.all_of(s.first >= 0, s.last >= -1, s.last <= end, s.first <= s.last + 1)
-        due = c.define(segments.times_due, s.last, position)
+        due = c.define(times_due, s.last, position)
         alike = c.all_of(c.same(served.last, s.last), c.same(served.times, s.times))
         full = c.any_of(s.last == end, s.last < 0, s.last - s.first == length - 1)
         return c.all_of(place, alike, s.times == due, full)
@@ -30,11 +33,11 @@ def claim(c: Claim) -> None:
     c.fold(
         spans_serve,
         acc=acc,
-        model=segments.Served(c.whole("served_to"), c.whole("new")),
+        model=Served(c.whole("served_to"), c.whole("new")),
         item=(overlap,),
         context=(end, length, position),
-        model_start=segments.Served(-1, 0),
+        model_start=Served(-1, 0),
         model_step=serve,
-        model_finish=segments.times,
+        model_finish=times,
         relation=related,
     )

@@ -11,6 +11,8 @@ def claim(c: Claim) -> None:
     hull = c.use(span_hull, Span(first, last), Span(begin, end))
     either = c.define(daa_meaning.in_either, first, last, begin, end, t)
     c.show(c.implies(either, c.define(well_clear.in_span, *hull, t)), "holds both")
+    for time in (1, 3):
+        c.show(c.define(daa_meaning.in_either, 0, 1, 2, 3, time), "examples: in one of both")
     c.show(
         c.implies(
             c.all_of(first <= last, begin <= end),

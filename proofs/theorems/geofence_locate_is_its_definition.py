@@ -27,7 +27,7 @@ def claim(c: Claim) -> None:
 
     def related(seen: Any, count: Any) -> Any:
         odd = c.same(seen.odd, count.crossings % 2 == 1)
-        return c.all_of(c.same(seen.on, count.on), odd)
+        return c.all_of(c.same(seen.on, count.on), odd, count.crossings >= 0)
 
     c.fold(
         locate,

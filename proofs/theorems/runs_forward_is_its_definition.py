@@ -5,6 +5,15 @@ from cratous.core.timing import runs_forward
 from cratous.proofs.claim import Claim
 from cratous.spec import schedule
 
+EXAMPLES = (
+    ("it runs at 4", (4, 5, 3, 7), True),
+    ("it does not run at 2", (2, 5, 3, 7), False),
+    ("it does not run at 8", (8, 5, 3, 7), False),
+    ("it runs before mission start", (4, -1, -2, 7), False),
+    ("it runs after mission start as well", (4, 1, -2, 7), True),
+    ("it does not run where it is looked at before mission start", (4, -3, -2, 7), True),
+)
+
 
 def claim(c: Claim) -> None:
     start, end, t, u = (c.integer(name) for name in ["start", "end", "t", "u"])
@@ -15,3 +24,7 @@ def claim(c: Claim) -> None:
     at_start = c.define(schedule.interval_is_ordered, t, start, start, end)
     at_end = c.define(schedule.interval_is_ordered, t, end, start, end)
     c.show(c.implies(c.all_of(at_start, at_end), ordered), "if it runs so, it is")
+    for text, instants, said in EXAMPLES:
+        c.show(
+            c.same(c.define(schedule.interval_is_ordered, *instants), said), f"an example: {text}"
+        )

@@ -170,9 +170,9 @@ def _recheck(
 
 
 def _mutate(
-    pattern: str, about: list[str], home: Any, jobs: int, as_json: bool, keep: bool
+    patterns: tuple[str, ...], about: list[str], home: Any, jobs: int, as_json: bool, keep: bool
 ) -> dict[str, Any]:
-    """Judge the mutants; pattern: names of functions; about: theorems whose functions are meant too."""
+    """Judge the mutants; patterns: names of functions; about: theorems whose functions are meant too."""
     from cratous.proofs import mutate, mutation_record
     from cratous.proofs.mutation_keys import Keys
 
@@ -183,7 +183,7 @@ def _mutate(
         shown = ", ".join(f"{count} {v}" for v, count in counts.items() if count)
         click.echo(f"mutated    {target}: {shown or f'{len(results)} premises'}", err=True)
 
-    report = mutate.run((pattern,), tell, jobs, about=about, home=home)
+    report = mutate.run(patterns, tell, jobs, about=about, home=home)
     if keep:
         mutation_record.write(report, Keys(home))
     listed = {v: report.of(v) for v in ("survived", "undecided")}
@@ -208,8 +208,9 @@ def _mutate(
 @click.command()
 @click.option(
     "--only",
+    multiple=True,
     metavar="GLOB",
-    help="Only theorems whose name matches, with --mutate functions too; writes no ledger.",
+    help="Only theorems whose name matches (one of several), with --mutate functions too; writes no ledger.",
 )
 @click.option("--changed", is_flag=True, help="Only what differs from the ledger; writes none.")
 @click.option("--check", is_flag=True, help="Do not write the ledger; fail if it would differ.")
@@ -235,7 +236,7 @@ def _mutate(
 @click.option("--jobs", type=click.IntRange(1), help="Processes; by default one for each core.")
 @click.option("-v", "--verbose", is_flag=True, help="Print each theorem's sentence.")
 def prove(
-    only: str | None,
+    only: tuple[str, ...],
     changed: bool,
     check: bool,
     recheck: bool,
@@ -271,7 +272,7 @@ def prove(
     # thousands of syntax trees live to the end: looking for garbage in them is a third of a warm run
     gc.set_threshold(200_000, 20, 100)
     begun = time.monotonic()
-    if sum((only is not None, changed, check)) > 1:
+    if sum((bool(only), changed, check)) > 1:
         raise BadInput("--only, --changed and --check exclude each other", item="cratous prove")
     if package_name:
         sys.path.insert(0, str(Path.cwd()))
@@ -279,21 +280,25 @@ def prove(
     gate.load_all()
     gate.load_all(home)
     folder = prover.home_folder(home)
-    names = [n for n in prover.theorem_files(folder) if fnmatch.fnmatch(n, only or "*")]
+    names = [
+        n for n in prover.theorem_files(folder) if any(fnmatch.fnmatch(n, p) for p in only or "*")
+    ]
     if changed:
         names = ledger.changed_theorems(home)
-    about = [] if only is None and not changed else names
-    if mutate and only is not None:
+    whole = not only and not changed
+    about = [] if whole else names
+    if mutate and only:
         from cratous.proofs.mutate import Keys, chosen
 
         for name in prover.theorem_files(folder):
             prover.load_claim(name, folder)  # says what is wrong with a file, and where
         # the theorems that meet a function of this name are proved too
-        met = chosen((only,), Keys(home), about)
+        met = chosen(only, Keys(home), about)
         names = sorted({*names, *(name for users in met.values() for name in users)})
     if not changed and not names:
-        raise BadInput("no theorem matches", item="--only", got=str(only), expected="a file name")
-    whole = only is None and not changed
+        raise BadInput(
+            "no theorem matches", item="--only", got=" or ".join(only), expected="a file name"
+        )
     workers = jobs or ledger.jobs_default()
     store = cache.standard()
     memory = Recall(private_cache() / "theorems", home)
@@ -331,9 +336,9 @@ def prove(
         keep = home.product and not check
         data["recheck"] = _recheck(theorems, folder, workers, as_json, keep, whole, new)
     if mutate:
-        pattern = only if only is not None else ("*" if whole else "")
+        patterns = only or (("*",) if whole else ())
         keep = home.product and not check
-        data["mutation"] = _mutate(pattern, about, home, workers, as_json, keep)
+        data["mutation"] = _mutate(patterns, about, home, workers, as_json, keep)
     if smt2_folder is not None:
         count = _export(theorems, smt2_folder, folder)
         if not as_json:
