@@ -8,6 +8,7 @@ instant of the straight flight from it within a horizon. The definitions name th
 
 from cratous.spec.well_clear import (
     Plane,
+    horizontal_violation_at,
     in_span,
     layer_violation_at,
     violation_taumod_at,
@@ -154,6 +155,13 @@ def layer_may_be_violated_at(
 def may_be_within_at(s: Plane, v: Plane, es: float, ev: float, radius: float, t: float) -> bool:
     """After t seconds the disc in which the position is known comes within the radius."""
     return within_at(s, v, radius + es + ev * t, t)
+
+
+def straight_at(
+    distance: float, speed: float, es: float, ev: float, dthr: float, tthr: float, t: float
+) -> bool:
+    """Who is es nearer than the distance and comes straight on, ev faster, violates the circle at t."""
+    return horizontal_violation_at(Plane(distance - es, 0), Plane(-(speed + ev), 0), dthr, tthr, t)
 
 
 def in_either(first: float, last: float, other_first: float, other_last: float, t: float) -> bool:

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 
@@ -210,7 +211,18 @@ def test_the_ledger_is_a_gate(run: Run, tmp_path: Path, monkeypatch: pytest.Monk
 def test_a_run_leaves_one_whole_folder(flown: Path) -> None:
     assert [entry.name for entry in flown.parent.iterdir()] == ["crossing"]
     names = sorted(entry.name for entry in flown.iterdir())
-    assert names == ["certificate.json", "log.sqlite", "report.html", "report.json"]
+    assert names == ["certificate.json", "log.sqlite", "map.svg", "report.html", "report.json"]
+
+
+def test_the_map_is_a_picture_of_its_own(flown: Path) -> None:
+    text = (flown / "map.svg").read_text(encoding="utf-8")
+    picture = ElementTree.fromstring(text)
+    assert picture.tag == "{http://www.w3.org/2000/svg}svg"
+    classes = {element.get("class", "").split(" ")[0] for element in picture.iter()}
+    assert {"planned", "track", "taskline", "takeover", "start"} <= classes
+    assert ".track" in picture[0].text
+    assert "{%" not in text
+    assert "http" not in text.replace("http://www.w3.org/2000/svg", ""), "nothing is loaded"
 
 
 def test_crossing_is_avoided(flown: Path) -> None:

@@ -23,3 +23,7 @@ def claim(c: Claim) -> None:
         assignment.leaves_in_time, leave, soonest, due, after, release, duration, travel
     )
     c.show(c.implies(leave <= latest, at_once), "whoever leaves by then can be in time")
+    c.show(
+        c.any_of(latest == -(2**60), latest + travel >= release),
+        "if none can, -2^60 says so",
+    )

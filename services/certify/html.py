@@ -1,4 +1,4 @@
-"""`report.html` from report.json alone: one page, nothing loaded from elsewhere."""
+"""`report.html` and `map.svg` from report.json alone: nothing is loaded from elsewhere."""
 
 from __future__ import annotations
 
@@ -10,18 +10,29 @@ from cratous.services.certify.gantt import gantt, plan_bars, plan_rows, tree
 from cratous.services.certify.picture import map_view, separation_view, time_view
 from cratous.spec.algebra import parse
 
+MAP = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {{ map.width }} {{ map.height }}" \
+width="{{ map.width }}" height="{{ map.height }}" role="img" aria-label="Map of the flight">
+<style>
+{% include 'report.css' %}
+svg { background: var(--panel); }
+</style>
+{% include 'map.svg' %}
+</svg>
+"""
+
 
 @cache
-def _template() -> Any:
-    from jinja2 import Environment, StrictUndefined
+def _environment() -> Any:
+    from jinja2 import Environment, FunctionLoader, StrictUndefined
 
+    folder = files("cratous.services.certify")
     environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
+        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
+        loader=FunctionLoader(lambda name: folder.joinpath(name).read_text("utf-8")),
+    )  # fmt: skip
     environment.filters["seconds"] = seconds
     environment.filters["margin"] = margin
-    text = files("cratous.services.certify").joinpath("report.html").read_text("utf-8")
-    return environment.from_string(text)
+    return environment
 
 
 def seconds(time_ms: float | None) -> str:
@@ -44,10 +55,16 @@ def margin(row: dict[str, Any]) -> str:
 
 def render(report: dict[str, Any]) -> str:
     """The page; every text from the report is escaped."""
-    text: str = _template().render(
+    text: str = _environment().get_template("report.html").render(
         r=report, map=map_view(report), time=time_view(report), near=separation_view(report),
         gantt=_gantt(report), tree=_tree(report), losses=losses(report),
     )  # fmt: skip
+    return text
+
+
+def map_svg(report: dict[str, Any]) -> str:
+    """The map of the flight as a picture of its own, with its style."""
+    text: str = _environment().from_string(MAP).render(map=map_view(report))
     return text
 
 

@@ -171,12 +171,14 @@ def environment() -> dict[str, Any]:
 
 
 def write_report(report: dict[str, Any], folder: Path) -> None:
-    """Write `report.json` and, from it, `report.html` into a folder; each whole or not at all."""
-    from cratous.services.certify.html import render
+    """Write `report.json` and, from it, `report.html` and `map.svg` into a folder; each whole or not
+    at all."""
+    from cratous.services.certify.html import map_svg, render
 
     text = json.dumps(report, indent=1, sort_keys=True, ensure_ascii=False, allow_nan=False)
     _replace(folder / "report.json", text + "\n")
     _replace(folder / "report.html", render(json.loads(text)))
+    _replace(folder / "map.svg", map_svg(json.loads(text)))
 
 
 def _replace(path: Path, text: str) -> None:
