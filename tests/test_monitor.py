@@ -123,6 +123,20 @@ def test_loss_of_well_clear_between_two_samples_is_seen():
     assert verdict.vehicles == (1, 2)
     assert verdict.time_ms == 0
     assert "no evidence that no way out existed" in verdict.note
+    assert verdict.margin == -100, "headed for each other: a miss by 0 m, DTHR is 100 m"
+
+
+def test_a_loss_by_modified_tau_has_no_positive_margin():
+    # 250 m apart, closing at 40 m/s, headed for a miss by 60 m: lost by time, never near
+    on_the_way = [
+        at
+        for ms, gap in ((0, 250.0), (250, 240.0))
+        for at in (truth(1, ms, 0, 0), truth(2, ms, gap, 60))
+    ]
+    verdict = watch(mission(), [*on_the_way, *beats(3000), *done()])["G2"]
+    assert verdict.outcome is Outcome.VIOLATED
+    assert verdict.margin == pytest.approx(-40)
+    assert "headed for a miss by 60.0 m; nearest 247.4 m" in verdict.note
 
 
 def test_traffic_counts_and_an_unprotected_vehicle_is_not_covered():

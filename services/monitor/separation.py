@@ -34,6 +34,9 @@ class Pair:
     lost_steps: int = 0
     nearest_m: float = math.inf
     nearest_ms: int = 0
+    miss_m: float = math.inf
+    """Least miss distance that a step lost well clear with was headed for: by modified tau well clear
+    is lost before anybody is near."""
     level: bool = False
 
 
@@ -99,6 +102,7 @@ class SeparationWatch:
         self._measure(pair, after[own], after[other])
         if lost:
             pair.lost_steps += 1
+            pair.miss_m = min(pair.miss_m, _miss(*map(float, (*s0[:2], *v[:2]))))
             if pair.lost_ms is None:
                 pair.lost_ms = before[own].time_ms
                 self.violations.append(self._verdict(own, other, pair, judge=False))
@@ -122,9 +126,12 @@ class SeparationWatch:
             margin = pair.nearest_m - self._volume.dthr_m
             note = f"nearest {pair.nearest_m:.1f} m at {pair.nearest_ms / 1000:.2f} s"
         if lost:
+            # who is lost is headed for a miss by DTHR at most; doubles may say a hair more
+            margin = min(0.0, min(pair.nearest_m, pair.miss_m) - self._volume.dthr_m)
             note = (
                 f"lost at {(pair.lost_ms or 0) / 1000:.2f} s, in {pair.lost_steps} "
-                f"step{'' if pair.lost_steps == 1 else 's'}; {note}; "
+                f"step{'' if pair.lost_steps == 1 else 's'}, headed for a miss by "
+                f"{pair.miss_m:.1f} m; {note}; "
                 f"{sentence(losses)}"
             )
         return Verdict(
@@ -160,6 +167,13 @@ class SeparationWatch:
                     )
                 )
         return found
+
+
+def _miss(x: float, y: float, vx: float, vy: float) -> float:
+    """Least horizontal distance [m] of straight flight from now on, from relative position and velocity."""
+    if x * vx + y * vy >= 0:
+        return math.hypot(x, y)
+    return abs(x * vy - y * vx) / math.hypot(vx, vy)
 
 
 def _scene(samples: dict[int, Sample]) -> Scene:
