@@ -17,6 +17,7 @@ from typing import Any
 from cratous.core import ledger as gate
 from cratous.core.kernel import Fold
 from cratous.core.ledger import PRODUCT
+from cratous.proofs.mutation_judge import faults
 from cratous.proofs.mutation_keys import Keys, find
 from cratous.proofs.mutation_report import MutationReport, percent
 from cratous.proofs.mutation_results import VERDICTS
@@ -83,7 +84,10 @@ def stale(data: dict[str, Any], keys: Keys) -> dict[str, str]:
         wanted = [target] if entry.kind != "driver" else []
         # some definitions are kept in a file without a function of the name
         wanted += [definition] if entry.implements and find(definition) is not None else []
-        found |= {one: "it was never mutated" for one in wanted if one not in data["targets"]}
+        for one in wanted:
+            # of what has nothing to change there is nothing to record
+            if one not in data["targets"] and faults(find(one)):
+                found[one] = "it was never mutated"
     return found
 
 

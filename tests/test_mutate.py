@@ -346,6 +346,9 @@ def test_a_stale_result_is_listed_as_stale():
     name = "core.gate.gives_way"
     report = MutationReport((replace(result("killed"), target=name),), ())
     data = mutation_record.merged(mutation_record.EMPTY, report, KEYS)
+    bare = mutation_record.stale(mutation_record.EMPTY, KEYS)
+    assert bare["core.polygon.orient"] == "it was never mutated"
+    assert "core.geofence_distance.distance_result" not in bare, "it hands on what it is given"
     assert name not in mutation_record.stale(data, KEYS)
     fewer = Keys(theorems=["exactly_one_gives_way"])
     assert "changed since" in mutation_record.stale(data, fewer)[name]
