@@ -36,11 +36,14 @@ def claim(c: Claim) -> None:
         counters = c.all_of(w.answered >= 0, w.answered <= w.taken, w.taken <= MANY)
         planned = c.implies(w.busy, w.answered < w.taken)
         instant = c.all_of(w.sent_ms >= -(2**61), w.sent_ms <= 2**61)
+        unsent = c.implies(w.taken == 0, w.sent_ms == 0)
         stages = c.all_of(
             c.same(w.first, stage_of(c, w, one)), c.same(w.second, stage_of(c, w, other))
         )
         orderly = c.define(in_order, Pair(w.first, w.second))
-        return c.all_of(counters, planned, instant, stages, orderly, c.same(w.held, held), w.held)
+        return c.all_of(
+            counters, planned, instant, unsent, stages, orderly, c.same(w.held, held), w.held
+        )
 
     c.fold(
         requests_in_order,

@@ -31,6 +31,8 @@ def claim(c: Claim) -> None:
     bad = c.integer("bad")
     c.premise(c.any_of(bad < 1, bad >= length))
     c.show(c.same(c.use(span_after, span, end, length, bad), span), "an overlap that cannot be")
+    short = Span(2, 3)
+    c.show(c.same(c.use(span_after, short, 9, 4, 4), short), "an example: nor after a short piece")
     waypoint, count, back = c.integer("waypoint"), c.integer("count"), c.integer("back_to")
     c.premise(c.all_of(waypoint >= 0, waypoint < count))
     c.show(

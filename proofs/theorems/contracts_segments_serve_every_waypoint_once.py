@@ -4,7 +4,7 @@ served; for every path, length, overlap and number of pieces."""
 
 from typing import Any
 
-from cratous.core.contracts.segments import Spans, spans_serve
+from cratous.core.contracts.segments import Spans, spans_serve, spans_step
 from cratous.proofs.claim import Claim
 from cratous.spec.contracts.segments import Served, serve_step, times, times_due
 
@@ -22,6 +22,8 @@ def claim(c: Claim) -> None:
     # after position 0 a piece of 6 with an overlap of 2 adds 4, whatever was new before
     more = c.define(serve_step, Served(0, 3), 9, 6, 2, 1)
     c.show(c.all_of(c.same(more.last, 4), c.same(more.times, 4)), "an example")
+    found = c.use(spans_step, Spans(0, 0, 3), 2, 9, 6, 1)
+    c.show(c.all_of(c.same(found.last, 4), c.same(found.times, 4)), "the example for the kernel")
 
     def related(s: Any, served: Any) -> Any:
         place = c.all_of(s.first >= 0, s.last >= -1, s.last <= end, s.first <= s.last + 1)

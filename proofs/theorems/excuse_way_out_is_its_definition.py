@@ -1,13 +1,17 @@
 """There is no way out exactly if some manoeuvre was tried and every one, of any number, was refused; one
 free manoeuvre is a way out; anything else is undecided."""
 
-from cratous.core.excuse import way_out
+from cratous.core.excuse import answer_result, way_out
 from cratous.proofs.claim import Claim
 from cratous.spec import excuse
 
 
 def claim(c: Claim) -> None:
     free, open_, some = c.boolean("free"), c.boolean("open"), c.boolean("some")
+
+    other = c.integer("other")
+    answered = c.any_of(other == 1, other == -1)
+    c.show(c.implies(c.negation(answered), c.use(answer_result, other) == 0), "nothing else counts")
 
     def related(found: object, tried: excuse.Tried) -> object:
         word = c.when(tried.free, 1, c.when(tried.open, 0, c.when(tried.some, -1, 2)))
