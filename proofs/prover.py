@@ -286,11 +286,10 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
     try:
         statement(claim)
     except Exception as error:
-        line = _own_line(error, find(name, folder))
-        if not line and not isinstance(error, ValueError | TypeError | LiftError):
+        slip = _slip(error, folder)
+        if not slip and not isinstance(error, ValueError | TypeError | LiftError):
             raise  # not the theorem's doing
-        at = f"{where.partition(':')[0]}:{line}" if line else where
-        raise BadInput(f"the theorem cannot be stated: {error}", where=at) from error
+        raise BadInput(f"the theorem cannot be stated: {error}", where=slip or where) from error
     wrong = {n for f in {v.function for v in claim.visits} if ours(f) for n in altered(f)}
     if wrong:
         raise BadInput(
@@ -319,11 +318,13 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
     return claim, sentence
 
 
-def _own_line(error: BaseException, file: Path) -> int:
-    """The line of the file in which the error came up itself, or 0."""
+def _slip(error: BaseException, folder: Path) -> str:
+    """Where in the theorem's file, or in a lemma's, the error came up itself; nothing if elsewhere."""
     frames = [] if error.__traceback__ is None else traceback.extract_tb(error.__traceback__)
-    last = frames[-1] if frames else None
-    return (last.lineno or 0) if last is not None and last.filename == str(file) else 0
+    file = Path(frames[-1].filename) if frames else Path()
+    if file.parent not in (folder, FOLDER):
+        return ""
+    return f"{place(file).partition(':')[0]}:{frames[-1].lineno}"
 
 
 def prove_file(

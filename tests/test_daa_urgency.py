@@ -159,3 +159,19 @@ def test_a_strategy_without_a_criterion_is_refused(root: Path, capsys) -> None:
     said = capsys.readouterr().err
     assert "urgency_strategy" in said
     assert "conflict_crit or recovery_crit = true" in said
+
+
+def test_a_strategy_serves_where_one_step_turns_a_criterion_on(tmp_path: Path, capsys) -> None:
+    file = tmp_path / "late.daa"
+    rows = [
+        f"{name}, {time}, {sx}, 0, 3000, {trk}, 300, 0, {crit}"
+        for time, crit in ((0, "false"), (1, "true"))
+        for name, sx, trk in (("own", 0, 90), ("other", 4, 270))
+    ]
+    head = "NAME, time, sx, sy, sz, trk, gs, vs, conflict_crit\n"
+    units = "[none], [s], [nmi], [nmi], [ft], [deg], [knot], [fpm], [none]\n"
+    file.write_text(head + units + "\n".join(rows) + "\n")
+    asked = ["daa", "bands", str(file), "-c", "do_365b", "--urgency", "dcpa"]
+    assert cli.main(asked) == 0, capsys.readouterr().err
+    file.write_text(file.read_text().replace("true", "false"))
+    assert cli.main(asked) == 2

@@ -129,6 +129,9 @@ def test_a_mistake_in_a_theorem_is_told_with_its_line(tmp_path: Path):
     (tmp_path / "slip.py").write_text('"""A sentence."""\n\n\ndef claim(c):\n    c.shows(True)\n')
     with pytest.raises(BadInput, match=r"slip.py:5: the theorem cannot be stated: .*'shows'"):
         prover.prove_file("slip", folder=tmp_path)
+    (tmp_path / "user.py").write_text('"""A sentence."""\n\n\ndef claim(c):\n    c.lemma("slip")\n')
+    with pytest.raises(BadInput, match=r"slip.py:5: the theorem cannot be stated: .*'shows'"):
+        prover.prove_file("user", folder=tmp_path)
 
 
 def test_a_process_that_dies_is_an_error(tmp_path: Path):

@@ -56,7 +56,7 @@ def watch(log: Path) -> list[Verdict]:
 def certify_again(folder: Path) -> tuple[dict[str, Any], list[str]]:
     """The written report, and where it differs from what its log says (nothing: confirmed).
 
-    If it is confirmed, report.html is written again from report.json. The proof inventory is
+    If it is confirmed, report.html and map.svg are written again from report.json. The proof inventory is
     compared if the ledger is still the one of the flight; what it did not vouch for then stands
     in the log.
     """

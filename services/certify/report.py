@@ -177,8 +177,9 @@ def write_report(report: dict[str, Any], folder: Path) -> None:
 
     text = json.dumps(report, indent=1, sort_keys=True, ensure_ascii=False, allow_nan=False)
     _replace(folder / "report.json", text + "\n")
-    _replace(folder / "report.html", render(json.loads(text)))
-    _replace(folder / "map.svg", map_svg(json.loads(text)))
+    written = json.loads(text)
+    _replace(folder / "report.html", render(written))
+    _replace(folder / "map.svg", map_svg(written))
 
 
 def _replace(path: Path, text: str) -> None:

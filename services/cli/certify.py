@@ -15,7 +15,7 @@ def certify(folder: Path, as_json: bool) -> int:
     """Judge a finished flight again from its log and compare with its report.
 
     FOLDER is an output folder of `cratous run`. The log's digest, the plan check and the monitor
-    are made again; report.html is written again from report.json.
+    are made again; report.html and map.svg are written again from report.json.
 
     Example:  cratous certify out/crossing
 

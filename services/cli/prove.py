@@ -281,7 +281,9 @@ def prove(
     gate.load_all(home)
     folder = prover.home_folder(home)
     names = [
-        n for n in prover.theorem_files(folder) if any(fnmatch.fnmatch(n, p) for p in only or "*")
+        n
+        for n in prover.theorem_files(folder)
+        if any(fnmatch.fnmatch(n, p) for p in only or ("*",))
     ]
     if changed:
         names = ledger.changed_theorems(home)

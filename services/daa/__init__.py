@@ -103,16 +103,23 @@ def run(
     encounters = read(file, ownship)
     session: Session | None = None
     there = {row.id for _, rows in encounters.steps for row in rows}
+    coordinates = any(
+        {**dataclasses.asdict(parameters), **encounters.settings, **rows[0].settings, **changes}[
+            name
+        ]
+        for _, rows in encounters.steps
+        for name in ("conflict_crit", "recovery_crit")
+    )
+    if changes.get("urgency_strategy") and not coordinates:
+        raise BadInput("nothing would change: no criterion of coordination is on", where=str(file),
+                       item="urgency_strategy", expected="conflict_crit or recovery_crit = true",
+                       got="both false")  # fmt: skip
     for time_s, rows in encounters.steps:
         wanted = dataclasses.replace(
             parameters, **{**encounters.settings, **rows[0].settings, **changes}
         )
         if encounters.settings or rows[0].settings or changes:
             check(wanted, str(file))
-        if changes.get("urgency_strategy") and not (wanted.conflict_crit or wanted.recovery_crit):
-            raise BadInput("nothing would change: no criterion of coordination is on", where=str(file),
-                           item="urgency_strategy", expected="conflict_crit or recovery_crit = true",
-                           got="both false")  # fmt: skip
         urgent = wanted.most_urgent_aircraft
         if urgent and urgent not in there - {rows[0].id}:
             raise BadInput("there is no such intruder", where=str(file), item="most_urgent_aircraft",
