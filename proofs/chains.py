@@ -53,7 +53,8 @@ def closed_chain(
     starts = [fold.start for fold in folds]
     c._owe("base", f"{text}: a chain without edges", statement(invariant(starts, first, first)))
     # the folds are run only where the invariant holds, so what they owe is owed there
-    before = _given(c, invariant(accumulators, first, last))
+    before = len(c.facts)
+    c._grant(statement(invariant(accumulators, first, last)))
     edge(last, to)
     after = [
         read(fold.step, acc, last, to, *context)
@@ -61,16 +62,9 @@ def closed_chain(
     ]
     c._owe("step", f"{text}: one more edge", statement(invariant(after, first, to)))
     c.facts = c.facts[:before]
-    _given(c, invariant(accumulators, first, first))
+    c._grant(statement(invariant(accumulators, first, first)))
     results = [
         read(fold.finish, acc) for read, fold, acc in zip(readers, folds, accumulators, strict=True)
     ]
     c._owe("use", f"{text}: the chain is closed", statement(goal(results)))
-    c.facts = c.facts[:before]
-
-
-def _given(c: Claim, condition: Any) -> int:
-    """Take a condition for granted for now; returns how many facts there were before."""
-    before = len(c.facts)
-    c.facts.append(statement(condition))
-    return before
+    c.facts, c.granted = c.facts[:before], ()

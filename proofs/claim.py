@@ -11,7 +11,7 @@ once, lemmas may not go in a circle: a slip there would weaken a theorem without
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import z3
@@ -50,6 +50,7 @@ class Claim:
     stubs: dict[Callable[..., Any], Stub] = field(default_factory=dict)
     roots: list[z3.BoolRef] = field(default_factory=list)
     visits: list[Visit] = field(default_factory=list)
+    granted: tuple[z3.BoolRef, ...] = ()
     used: list[Callable[..., Any]] = field(default_factory=list)
     closed: set[Callable[..., Any]] = field(default_factory=set)
     vouched: set[Callable[..., Any]] = field(default_factory=set)
@@ -165,11 +166,11 @@ class Claim:
         """The function's value; `machine`: its integers are those of compiled code."""
         before = dict(OPAQUE)
         OPAQUE.update(self.stubs)
-        VISITS.append(self.visits)
+        VISITS.append([])
         try:
             lifted = lift(function, *args)
         finally:
-            VISITS.pop()
+            self.visits += [replace(v, granted=self.granted) for v in VISITS.pop()]
             OPAQUE.clear()
             OPAQUE.update(before)
         self.facts += lifted.roots
@@ -300,7 +301,7 @@ class Claim:
         )
         before = statement(relation(acc, model))
         # both are run only where the relation holds, so what they owe is owed there
-        self.facts.append(before)
+        self._grant(before)
         after = self.use(kernel_fold.step, acc, *item, *context)
         model_after = self.define(model_step, model, *item, *context)
         self._owe("step", "relation is kept", statement(relation(after, model_after)))
@@ -308,6 +309,12 @@ class Claim:
         wanted = self.define(model_finish, model)
         self._owe("use", "results are equal", statement(self.same(result, wanted)))
         self.facts = [fact for fact in self.facts if not fact.eq(before)]
+        self.granted = ()
+
+    def _grant(self, condition: z3.BoolRef) -> None:
+        """Take it for granted in what follows, as an induction does."""
+        self.facts.append(condition)
+        self.granted = (condition,)
 
     def _arbitrary(self, accumulators: Any, others: Any) -> None:
         """Refuse accumulators over which no induction runs."""

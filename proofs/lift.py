@@ -62,12 +62,16 @@ class Lifted:
 
 @dataclass(frozen=True)
 class Visit:
-    """One function as it was lifted: with which arguments, under which conditions, with what."""
+    """One function as it was lifted: with which arguments, under which conditions, with what.
+
+    granted: what an induction takes for granted there, beside the theorem's premises.
+    """
 
     function: Callable[..., Any]
     args: tuple[Any, ...]
     context: tuple[z3.BoolRef, ...]
     lifted: Lifted
+    granted: tuple[z3.BoolRef, ...] = ()
 
 
 VISITS: list[list[Visit]] = []

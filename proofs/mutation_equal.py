@@ -16,6 +16,8 @@ from cratous.proofs.mutation_terms import FAR, NEAR, SAME, flat, is_free, premis
 from cratous.proofs.symbolic import SymMask, _raw
 from cratous.proofs.terms import free_names, fresh, known
 
+EVERYWHERE = "equal everywhere"
+
 
 class Equality:
     """Compares mutants of one function with it, where the theorems look into it."""
@@ -33,25 +35,15 @@ class Equality:
 
         Gives verdict, note, and an input on which the two differ if the solver found one.
         """
-        hints = get_type_hints(self.original)
-        masks = self.masks()
-        symbols = tuple(
-            SymMask(z3.BitVec(name, 64)) if k in masks else fresh(name, hints[name])
-            for k, name in enumerate(inspect.signature(self.original).parameters)
-        )
-        try:
-            everywhere = self._differs(mutant, symbols, [], FAR)[0]
-        except (LiftError, TypeError):
-            everywhere = "unknown"  # some arguments must be literals, as theorems give them
-        if everywhere == "unsat":
-            return "equivalent", "equal everywhere", None
+        if self.everywhere(mutant, FAR):
+            return "equivalent", EVERYWHERE, None
         leaves, domain = self._domain(mutant)
         premises = {premise_text(p) for p in domain}
         undecided = False
         for name in self.visits:
             claim = claim_of(name)
             for visit in self.visits[name]:
-                given = [*claim.premises, *claim.facts, *visit.context]
+                given = [*claim.premises, *claim.facts, *visit.context, *visit.granted]
                 if leaves and _lies_in(domain, leaves, visit.args, given):
                     continue
                 # where one call is not decided, the others can only show a difference
@@ -59,10 +51,23 @@ class Equality:
                 if answer == "sat":
                     return "survived", "differs for values that a theorem allows", row
                 undecided = undecided or answer != "unsat"
-                premises.update(premise_text(p) for p in claim.premises)
+                premises.update(premise_text(p) for p in (*claim.premises, *visit.granted))
         if not undecided:
             return "equivalent", f"equal wherever {'; '.join(sorted(premises))}", None
         return "undecided", "neither refuted nor proved equivalent within the budget", None
+
+    def everywhere(self, mutant: Any, effort: int) -> bool:
+        """Is it proved with that effort that the two agree on all arguments?"""
+        hints = get_type_hints(self.original)
+        masks = self.masks()
+        symbols = tuple(
+            SymMask(z3.BitVec(name, 64)) if k in masks else fresh(name, hints[name])
+            for k, name in enumerate(inspect.signature(self.original).parameters)
+        )
+        try:
+            return self._differs(mutant, symbols, [], effort)[0] == "unsat"
+        except (LiftError, TypeError):
+            return False  # some arguments must be literals, as theorems give them
 
     def _domain(self, mutant: Any) -> tuple[list[z3.ExprRef], list[z3.BoolRef]]:
         """Premises on the arguments alone under which the two agree, and the arguments' names.
@@ -77,7 +82,8 @@ class Equality:
                     continue
                 leaves = [_raw(leaf) for leaf in flat(visit.args)]
                 names = {str(leaf) for leaf in leaves}
-                own = [p for p in claim_of(name).premises if free_names(p) <= names]
+                held = [*claim_of(name).premises, *visit.granted]
+                own = [p for p in held if free_names(p) <= names]
                 if self._differs(mutant, visit.args, own, SAME)[0] == "unsat":
                     return leaves, own
         return [], []

@@ -21,7 +21,7 @@ from cratous.core.sources import position
 from cratous.proofs import forked
 from cratous.proofs.asking import ask, renew
 from cratous.proofs.lift import Visit
-from cratous.proofs.mutation_equal import Equality
+from cratous.proofs.mutation_equal import EVERYWHERE, Equality
 from cratous.proofs.mutation_inputs import SAMPLES, compare, inputs
 from cratous.proofs.mutation_inputs import run as run_once
 from cratous.proofs.mutation_keys import Keys, Store
@@ -67,6 +67,7 @@ class Target:
         self.equality = Equality(original, {name: self.visits[name] for name in self.users})
         self.place = position(original).rpartition(":")[0]
         self.points: list[Point] = []
+        self.asked: dict[tuple[str, Any], list[list[z3.BoolRef]]] = {}
         if not isinstance(original, Fold):
             self.rows = inputs(original, self.equality.masks(), SAMPLES)
             self.results = [run_once(original, row) for row in self.rows]
@@ -112,8 +113,13 @@ class Target:
                 by = self.refuted(mutant.function, rows)
                 note = f"differs at {row_text(rows[0])}"
                 return verdict("killed", by) if by else verdict("survived", note=note)
-            # nothing tells the two apart: most such mutants are equivalent, and that is the cheaper
-            # question
+            # nothing tells the two apart: cheap questions first, whether nothing does or a theorem
+            if self.equality.everywhere(mutant.function, NEAR):
+                return verdict("equivalent", note=EVERYWHERE)
+            by = self.refuted_at_a_glance(mutant.function)
+            if by:
+                return verdict("killed", by)
+            # most that are left are equivalent where theorems apply
             what, note, row = self.equality.equivalent(mutant.function)
             if what == "equivalent":
                 return verdict(what, note=note)
@@ -128,6 +134,13 @@ class Target:
             return verdict(what, note=note)
         except Stillborn as error:
             return verdict("stillborn", note=str(error))
+
+    def refuted_at_a_glance(self, mutant: Any) -> str:
+        """The first theorem that little effort refutes with the mutant in place, or nothing."""
+        for name in self.users:
+            if self._refutes(name, self._questions(name, mutant), [], NEAR, NEAR):
+                return name
+        return ""
 
     def refuted(self, mutant: Any, rows: list[tuple]) -> str:
         """The first theorem that is refuted with the mutant in place, or nothing.
@@ -159,6 +172,11 @@ class Target:
 
     def _questions(self, name: str, mutant: Any) -> list[list[z3.BoolRef]]:
         """What has to be decided anew: the obligations that are not those that were proved."""
+        if (name, mutant) not in self.asked:
+            self.asked[name, mutant] = self._stated_with(name, mutant)
+        return self.asked[name, mutant]
+
+    def _stated_with(self, name: str, mutant: Any) -> list[list[z3.BoolRef]]:
         with in_place(self.original, mutant):
             claim = state(name)
         proved = stated(name).seen
@@ -198,10 +216,10 @@ class Target:
 
     def _allows(self, name: str, visit: Visit, row: tuple, effort: int) -> bool:
         """Do the theorem's premises leave this input to the visit?"""
-        conditions = [*claim_of(name).premises, *visit.context]
+        conditions = [*claim_of(name).premises, *visit.context, *visit.granted]
         # on a path of a caller, or in a theorem with other values, it may be a question
         plain = with_values(conditions, visit.args, row)
-        if plain is False or (plain and not visit.context):
+        if plain is False or (plain and not visit.context and not visit.granted):
             return plain
         return ask([*equal(visit.args, row), *conditions], effort) == "sat"
 

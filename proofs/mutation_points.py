@@ -21,7 +21,7 @@ from cratous.proofs.asking import number
 from cratous.proofs.lift import Visit
 from cratous.proofs.mutation_inputs import shaped
 from cratous.proofs.mutation_terms import flat
-from cratous.proofs.terms import known
+from cratous.proofs.terms import free_values, known
 
 TRIES, KEPT = 60, 25
 """Draws for one call of a theorem, and inputs that are kept of them."""
@@ -42,8 +42,8 @@ def points(
     """Inputs of this call, in a fixed order; none where draws do not meet the premises."""
     kinds = [get_type_hints(function)[name] for name in inspect.signature(function).parameters]
     args = [known(leaf) for leaf in flat(visit.args)]
-    conditions = [*premises, *visit.context]
-    free = _free([*args, *conditions])
+    conditions = [*premises, *visit.context, *visit.granted]
+    free = free_values([*args, *conditions])
     if any(_draw(one, random.Random(0), 1) is None for one in free):
         return []
     rng = random.Random(f"{theorem} {function.__name__}")
@@ -60,22 +60,6 @@ def points(
         if len(found) == KEPT:
             break
     return found
-
-
-def _free(terms: list[z3.ExprRef]) -> list[z3.ExprRef]:
-    """The arbitrary values in these terms, by name."""
-    seen: set[int] = set()
-    found: dict[str, z3.ExprRef] = {}
-    todo = list(terms)
-    while todo:
-        part = todo.pop()
-        if part.get_id() in seen:
-            continue
-        seen.add(part.get_id())
-        if z3.is_const(part) and part.decl().kind() == z3.Z3_OP_UNINTERPRETED:
-            found[str(part)] = part
-        todo += part.children()
-    return [found[name] for name in sorted(found)]
 
 
 def _draw(one: z3.ExprRef, rng: random.Random, reach: int) -> z3.ExprRef | None:

@@ -7,7 +7,7 @@ that stands for a function which is not looked into.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, get_type_hints
 
 import z3
@@ -67,16 +67,23 @@ def leaves(value: Any) -> list[Any]:
 
 def free_names(term: z3.ExprRef) -> set[str]:
     """The names of the values in a term."""
-    seen, names, todo = set(), set(), [term]
+    return {str(value) for value in free_values([term])}
+
+
+def free_values(terms: Iterable[z3.ExprRef]) -> list[z3.ExprRef]:
+    """The arbitrary values in these terms, by name."""
+    seen: set[int] = set()
+    found: dict[str, z3.ExprRef] = {}
+    todo = list(terms)
     while todo:
         part = todo.pop()
         if part.get_id() in seen:
             continue
         seen.add(part.get_id())
         if z3.is_const(part) and part.decl().kind() == z3.Z3_OP_UNINTERPRETED:
-            names.add(str(part))
+            found[str(part)] = part
         todo += part.children()
-    return names
+    return [found[name] for name in sorted(found)]
 
 
 def flatten(values: dict[str, Any]) -> dict[str, Any]:

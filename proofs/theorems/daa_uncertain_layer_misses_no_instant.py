@@ -1,0 +1,31 @@
+"""Whatever altitude and climb rate within the uncertainty are the true ones: an instant of [0, T] at
+which they violate the layer lies in the span."""
+
+from cratous.core.daa_uncertain import layer_above, layer_span
+from cratous.proofs.claim import Claim
+from cratous.spec import daa_meaning, well_clear
+
+
+def claim(c: Claim) -> None:
+    sz, vz, ez, ew, zthr, tcoa, vmod, end = c.reals("sz vz ez ew zthr tcoa vmod end")
+    dz, dw, t = c.reals("dz dw t")
+    for least in (zthr, tcoa, vmod, t):
+        c.premise(least >= 0)
+    c.premise(t <= end)
+    for error in (dz, dw):
+        bound = ez if error is dz else ew
+        c.premise(0 - bound <= error)
+        c.premise(error <= bound)
+    c.opaque(layer_above)
+    span = c.use(layer_span, sz, vz, ez, ew, zthr, tcoa, vmod, end)
+    z, w = sz + dz, vz + dw
+    names = ("low", "high", "slow", "fast", "zthr", "tcoa", "vmod", "end")
+    above, below = [dict(zip(names, args, strict=True)) for args in c.calls(layer_above)]
+    seen = "daa_uncertain_layer_above_misses_no_instant"
+    c.lemma(seen, when=z >= 0, z=z, w=w, t=t, **above)
+    c.lemma(seen, when=z <= 0, z=0 - z, w=0 - w, t=t, **below)
+    violated = c.define(
+        daa_meaning.layer_may_be_violated_at, sz, vz, dz, dw, ez, ew, zthr, tcoa, vmod, t
+    )
+    found = c.define(well_clear.in_span, *span, t)
+    c.show(c.implies(violated, found))
