@@ -88,26 +88,12 @@ def leaves_at(a: float, half: float, c: float) -> float:
     return (sqrt(max(half * half - a * c, 0)) - half) / a
 
 
-@kernel(implements="daa_meaning.may_be_violated_at")
-def circle_first(
-    s: Vec2, v: Vec2, es_m: float, ev_m_s: float, dthr_m: float, tthr_s: float, t_s: float
-) -> Span:
-    """When the worst state violates the circle, within [0, t_s]: on a course turned towards the
-    intruder as far as the discs of radius es_m < |s| and ev_m_s < |v| allow."""
-    ss = s.x * s.x + s.y * s.y
-    vv = v.x * v.x + v.y * v.y
-    # the course as seen from the way to the intruder, turned by the angles of both discs
-    course = Vec2(0 - s.x * v.x - s.y * v.y, abs(s.x * v.y - s.y * v.x))
-    once = turned(course, sqrt(max(ss - es_m * es_m, 0)), es_m)
-    twice = turned(once, sqrt(max(vv - ev_m_s * ev_m_s, 0)), ev_m_s)
-    far = sqrt(ss) - es_m
-    fast = sqrt(vv) + ev_m_s
-    if twice.y <= 0 or ss * vv <= 0:
-        return horizontal_interval_taumod(Vec2(0 - far, 0), Vec2(fast, 0), dthr_m, tthr_s, 0, t_s)
-    share = fast / (ss * vv)
-    return horizontal_interval_taumod(
-        Vec2(0 - far, 0), Vec2(share * twice.x, share * twice.y), dthr_m, tthr_s, 0, t_s
-    )
+@kernel(implements="daa_meaning.not_positive")
+def until_left(a: float, half: float, c: float, t_s: float) -> Span:
+    """From now to the last instant of [0, t_s] from which on a t^2 + 2 half t + c > 0; a > 0."""
+    if half * half < a * c:
+        return Span(1, 0)
+    return or_empty(0, min(leaves_at(a, half, c), t_s))
 
 
 @kernel(implements="daa_meaning.may_be_violated_at")
@@ -120,6 +106,28 @@ def circle_straight(
     far = sqrt(max(ss_m2, 0)) - es_m
     fast = sqrt(max(vv_m2_s2, 0)) + ev_m_s
     return horizontal_interval_taumod(Vec2(far, 0), Vec2(0 - fast, 0), dthr_m, tthr_s, 0, t_s)
+
+
+@kernel(implements="daa_meaning.may_be_violated_at")
+def circle_first(
+    s: Vec2, v: Vec2, es_m: float, ev_m_s: float, dthr_m: float, tthr_s: float, t_s: float
+) -> Span:
+    """When the worst state violates the circle, within [0, t_s]: on a course turned towards the
+    intruder as far as the discs of radius es_m < |s| and ev_m_s < |v| allow."""
+    ss = s.x * s.x + s.y * s.y
+    vv = v.x * v.x + v.y * v.y
+    # the course as seen from the way to the intruder, turned by the angles of both discs
+    course = Vec2(0 - s.x * v.x - s.y * v.y, abs(s.x * v.y - s.y * v.x))
+    once = turned(course, sqrt(max(ss - es_m * es_m, 0)), es_m)
+    twice = turned(once, sqrt(max(vv - ev_m_s * ev_m_s, 0)), ev_m_s)
+    if twice.y <= 0 or ss * vv <= 0:
+        return circle_straight(ss, vv, es_m, ev_m_s, dthr_m, tthr_s, t_s)
+    far = sqrt(ss) - es_m
+    fast = sqrt(vv) + ev_m_s
+    share = fast / (ss * vv)
+    return horizontal_interval_taumod(
+        Vec2(0 - far, 0), Vec2(share * twice.x, share * twice.y), dthr_m, tthr_s, 0, t_s
+    )
 
 
 @kernel(implements="daa_meaning.may_be_within_at")
@@ -139,18 +147,14 @@ def circle_span(
         if near.first_s > near.last_s:
             return Span(1, 0)
         return Span(near.first_s, t_s)
-    spare = vv - ev_m_s * ev_m_s
     half = s.x * v.x + s.y * v.y - ev_m_s * wide
-    rest = ss - wide * wide
-    if half * half < spare * rest:
-        return Span(1, 0)
-    last = leaves_at(spare, half, rest)
-    if inside:
-        return or_empty(0, min(last, t_s))
+    until = until_left(vv - ev_m_s * ev_m_s, half, ss - wide * wide, t_s)
+    if inside or until.first_s > until.last_s:
+        return until
     near = circle_first(s, v, es_m, ev_m_s, dthr_m, tthr_s, t_s)
     if near.first_s > near.last_s:
         return Span(1, 0)
-    return or_empty(near.first_s, min(last, t_s))
+    return or_empty(near.first_s, until.last_s)
 
 
 @kernel(implements="daa_meaning.may_be_violated_at")

@@ -25,6 +25,7 @@ from cratous.proofs.cache import Answer, Cache
 from cratous.proofs.claim import Claim, Obligation
 from cratous.proofs.counterexample import Model, Watched, story, telling
 from cratous.proofs.ladder import check, solvers
+from cratous.proofs.lemma_calls import hangs_on_calls
 from cratous.proofs.lift import LiftError
 from cratous.proofs.merkle import Hasher
 from cratous.proofs.smtlib import logic_of, question, smt2, sorts
@@ -285,6 +286,7 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
     where = place(find(name, folder))
     try:
         statement(claim)
+        hanging = [n for n in dict.fromkeys(claim.lemmas) if hangs_on_calls(n, folder)]
     except Exception as error:
         slip = _slip(error, folder)
         if not slip and not isinstance(error, ValueError | TypeError | LiftError):
@@ -314,6 +316,12 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
     if not claim.obligations:
         raise BadInput(
             "the theorem shows nothing", where=where, expected="at least one c.show(...)"
+        )
+    if hanging:
+        raise BadInput(
+            f"{hanging[0]} is no lemma: what it shows is made of the calls of a function",
+            where=where,
+            expected="goals that are the same where c.calls(...) is empty",
         )
     return claim, sentence
 

@@ -8,6 +8,7 @@ instant of the straight flight from it within a horizon. The definitions name th
 
 from cratous.spec.well_clear import (
     Plane,
+    dot,
     horizontal_violation_at,
     in_span,
     layer_violation_at,
@@ -152,6 +153,13 @@ def layer_may_be_violated_at(
     return layer_violation_at(sz + dz, vz + dw, zthr, tcoa, vmod, t)
 
 
+def share_of(below: float, above: float) -> float:
+    """How far from the one to the other 0 lies; 0 where the one is not below the other."""
+    if above <= below:
+        return 0
+    return (0 - below) / (above - below)
+
+
 def may_be_within_at(s: Plane, v: Plane, es: float, ev: float, radius: float, t: float) -> bool:
     """After t seconds the disc in which the position is known comes within the radius."""
     return within_at(s, v, radius + es + ev * t, t)
@@ -162,6 +170,12 @@ def straight_at(
 ) -> bool:
     """Who is es nearer than the distance and comes straight on, ev faster, violates the circle at t."""
     return horizontal_violation_at(Plane(distance - es, 0), Plane(-(speed + ev), 0), dthr, tthr, t)
+
+
+def sighted(s: Plane, v: Plane) -> Plane:
+    """A velocity as seen along the line of sight to the other, times the distance; never to the left."""
+    across = s.x * v.y - s.y * v.x
+    return Plane(-dot(s, v), across if across >= 0 else -across)
 
 
 def in_either(first: float, last: float, other_first: float, other_last: float, t: float) -> bool:
@@ -186,3 +200,12 @@ def not_positive(a: float, half: float, c: float, t: float) -> bool:
 def last_root(a: float, half: float, c: float, t: float, last: float) -> bool:
     """If the quadratic is not above 0 at t, then t is not after the last such time."""
     return not not_positive(a, half, c, t) or t <= last
+
+
+def in_own_or_both(
+    own_first: float, own_last: float, first: float, last: float, other_first: float,
+    other_last: float, begin: float, end: float, t: float,
+) -> bool:  # fmt: skip
+    """In a span of its own, or in two others at once and from begin to end."""
+    both = in_span(first, last, t) and in_span(other_first, other_last, t)
+    return in_span(own_first, own_last, t) or (both and begin <= t and t <= end)

@@ -134,6 +134,44 @@ def test_a_mistake_in_a_theorem_is_told_with_its_line(tmp_path: Path):
         prover.prove_file("user", folder=tmp_path)
 
 
+def test_a_lemma_shows_the_same_where_it_meets_no_calls(tmp_path: Path):
+    text = '''"""Of an altitude."""
+
+from cratous.core.well_clear_interval import times_vertical, vertical_interval
+from cratous.proofs.claim import Claim
+
+
+def claim(c: Claim) -> None:
+    a, b, d = c.reals("a b d")
+    c.opaque(CLOSED)
+    c.use(vertical_interval, a, b, d, d, d, d, d)
+    GOAL
+'''
+
+    def write(name: str, goal: str, closed: str = "times_vertical") -> None:
+        file = tmp_path / f"{name}.py"
+        file.write_text(text.replace("GOAL", goal).replace("CLOSED", closed))
+
+    # who does not look into the layer meets no calls, and "one of them" would be false there
+    write("made", "c.show(c.any_of(*[x[0] == a for x in c.calls(times_vertical)]))")
+    assert prover.prove_file("made", folder=tmp_path).proved
+    write("user", "c.lemma('made', a=a, b=b, d=d)\n    c.show(a > a)", "vertical_interval")
+    with pytest.raises(BadInput, match=r"user.py: made is no lemma"):
+        prover.prove_file("user", folder=tmp_path)
+    write("taken", "c.show(c.calls(times_vertical)[0][0] == a)")
+    write("second", "c.lemma('taken', a=a, b=b, d=d)\n    c.show(a > a)", "times_vertical")
+    with pytest.raises(BadInput, match=r"second.py: taken is no lemma"):
+        prover.prove_file("second", folder=tmp_path)
+    write("slip", "for x in c.calls(times_vertical):\n        c.step(x[0] == a)")
+    write("fourth", "c.lemma('slip', a=a, b=b, d=d)\n    c.show(a == a)", "vertical_interval")
+    with pytest.raises(BadInput, match=r"slip.py:12: the theorem cannot be stated"):
+        prover.prove_file("fourth", folder=tmp_path)
+    steps = "for x in c.calls(times_vertical):\n        c.step(x[0] == a, 'it')\n    c.show(a == a)"
+    write("cited", steps)
+    write("third", "c.lemma('cited', a=a, b=b, d=d)\n    c.show(a == a)", "vertical_interval")
+    assert prover.prove_file("third", folder=tmp_path).proved
+
+
 def test_a_process_that_dies_is_an_error(tmp_path: Path):
     (tmp_path / "dies.py").write_text(
         '"""A sentence."""\nimport os\n\n\ndef claim(c):\n    os._exit(9)\n'

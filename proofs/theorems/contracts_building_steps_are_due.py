@@ -36,7 +36,6 @@ def claim(c: Claim) -> None:
     report = c.all_of(step.act == 4, step.part == number, c.negation(step.done))
     c.show(c.implies(rest, c.all_of(c.same(after, b), report)), "nothing else")
     stage, asked, built = c.integer("part_stage"), c.boolean("asked"), c.boolean("built")
-    c.premise(c.all_of(stage >= 0, stage <= 3))
     part_stage = c.use(part_after, stage, asked, built)
     one = c.negation(c.all_of(asked, built))
     what = c.when(asked, building.ASKED, c.when(built, building.BUILT, 0))

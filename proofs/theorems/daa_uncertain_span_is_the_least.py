@@ -1,0 +1,30 @@
+"""The span for uncertain states is the least that holds the volume's own and every instant of [B, T] that
+the spans of altitude and circle share; and a conflict is found exactly if the volume itself is violated,
+or nothing is known exactly and that span holds an instant."""
+
+from cratous.core.daa_uncertain import circle_span, layer_span, uncertain_conflict, uncertain_span
+from cratous.core.well_clear_during import violation_during_taumod
+from cratous.core.well_clear_interval import violation_interval_taumod
+from cratous.proofs.claim import Claim
+from cratous.spec import daa_meaning, well_clear
+
+
+def claim(c: Claim) -> None:
+    s, v = c.vector("s"), c.vector("v")
+    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    es, ez, ev, ew, begin, end, t = c.reals("es ez ev ew begin end t")
+    c.opaque(violation_during_taumod, violation_interval_taumod, circle_span, layer_span)
+    limits = (dthr, zthr, tthr, tcoa, vmod)
+    state = (s, v, sz, vz, es, ez, ev, ew, *limits, begin, end)
+    span = c.use(uncertain_span, *state)
+    own = c.use(violation_interval_taumod, s, v, sz, vz, *limits, begin, end)
+    layer = c.use(layer_span, sz, vz, ez, ew, zthr, tcoa, vmod, end)
+    circle = c.use(circle_span, s, v, es, ev, dthr, tthr, end)
+    every = c.define(daa_meaning.in_own_or_both, *own, *layer, *circle, begin, end, t)
+    c.show(c.implies(every, c.define(well_clear.in_span, *span, t)), "holds them")
+    for instant in span:
+        at = c.define(daa_meaning.in_own_or_both, *own, *layer, *circle, begin, end, instant)
+        c.show(c.implies(span.first_s <= span.last_s, at), "is the least")
+    plain = c.use(violation_during_taumod, s, v, sz, vz, *limits, begin, end)
+    unknown = c.all_of(es > 0, ez > 0, ev > 0, ew > 0, span.first_s <= span.last_s)
+    c.show(c.same(c.use(uncertain_conflict, *state), c.any_of(plain, unknown)), "a conflict")
