@@ -48,8 +48,7 @@ def claim(c: Claim) -> None:
         (low, slow),
         (high, c.when(fast <= 0, fast, 0)),
     )
-    for number, args in enumerate(c.calls(vertical_interval)):
-        z, w = states[number]
+    for number, (args, (z, w)) in enumerate(zip(c.calls(vertical_interval), states, strict=False)):
         c.lemma("well_clear_vertical_interval_lies_within", **dict(zip(NAMES, args, strict=True)))
         begins, ends = c.use(vertical_interval, *args)
         for t, reached in ((begins, first), (ends, last)):

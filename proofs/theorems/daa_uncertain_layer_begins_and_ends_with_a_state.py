@@ -31,7 +31,9 @@ def claim(c: Claim) -> None:
     sizes = {"zthr": zthr, "tcoa": tcoa, "vmod": vmod}
     begun: list[Any] = []
     ended: list[Any] = []
-    for (sign, there, *bounds), args in zip(sides, c.calls(layer_above), strict=True):
+    calls = c.calls(layer_above)
+    c.show(len(calls) == 2, "from above and from below")
+    for (sign, there, *bounds), args in zip(sides, calls, strict=False):
         near, far, slowest, fastest = bounds
         least = c.when(fastest <= 0, fastest, 0)
         share = c.define(daa_meaning.share_of, near + slowest * end, far + least * end)
