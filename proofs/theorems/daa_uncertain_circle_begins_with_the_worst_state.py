@@ -45,3 +45,4 @@ def claim(c: Claim) -> None:
     begun = c.any_of(inside, c.all_of(some, worst <= t))
     held = c.define(well_clear.in_span, first, last, t)
     c.show(c.implies(c.all_of(t >= 0, t <= end, may, begun), held), "holds")
+    c.show(c.implies(first > last, c.all_of(first == 1, last == 0)), "one empty span")

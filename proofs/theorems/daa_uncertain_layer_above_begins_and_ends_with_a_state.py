@@ -34,8 +34,9 @@ def claim(c: Claim) -> None:
         values = dict(zip(NAMES, args, strict=True))
         c.lemma("well_clear_vertical_interval_is_exact", when=when, t=t, **values)
 
+    sizes = {"zthr": zthr, "tcoa": tcoa, "vmod": vmod}
+
     def layer(z: Any, w: Any, t: Any, t0: Any) -> None:
-        sizes = {"zthr": zthr, "tcoa": tcoa, "vmod": vmod}
         c.lemma("daa_layer_is_crossed_within_it", sz=z, vz=w, t=t, t0=t0, **sizes)
 
     def may(z: Any, w: Any, t: Any) -> Any:
@@ -60,6 +61,11 @@ def claim(c: Claim) -> None:
             level = c.define(level_at, z, w)
             exact(args, c.all_of(level >= 0, level <= end), level)
             layer(z, w, level, level)
+            # where it leaves, who falls fastest has come in
+            c.lemma(
+                "daa_uncertain_layer_above_misses_no_instant", when=c.all_of(begins <= ends, slow < 0),
+                low=low, high=high, slow=slow, fast=fast, z=z, w=w, t=ends, end=end, **sizes,
+            )  # fmt: skip
     c.show(c.implies(first <= last, c.any_of(*[may(z, w, first) for z, w in states])), "first")
     # where at T some are below co-altitude already and some still above, one between is there
     least = c.when(fast <= 0, fast, 0)
@@ -75,3 +81,4 @@ def claim(c: Claim) -> None:
         c.congruence(violates, (z0, w0, *limits, end), (z0, w0, *limits, last))
     reached = c.any_of(*[may(z0, w0, last) for z0, w0 in (*states, (z, w))])
     c.show(c.implies(first <= last, reached), "last")
+    c.show(c.implies(first > last, c.all_of(first == 1, last == 0)), "one empty span")

@@ -53,3 +53,4 @@ def claim(c: Claim) -> None:
             kept.append(c.all_of(reached == t, there, begins <= ends))
     c.show(c.implies(first <= last, c.any_of(*begun)), "first, on either side")
     c.show(c.implies(first <= last, c.any_of(*ended)), "last, on either side")
+    c.show(c.implies(first > last, c.all_of(first == 1, last == 0)), "one empty span")

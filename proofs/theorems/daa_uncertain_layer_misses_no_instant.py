@@ -20,10 +20,10 @@ def claim(c: Claim) -> None:
     span = c.use(layer_span, sz, vz, ez, ew, zthr, tcoa, vmod, end)
     z, w = sz + dz, vz + dw
     names = ("low", "high", "slow", "fast", "zthr", "tcoa", "vmod", "end")
-    above, below = [dict(zip(names, args, strict=True)) for args in c.calls(layer_above)]
     seen = "daa_uncertain_layer_above_misses_no_instant"
-    c.lemma(seen, when=z >= 0, z=z, w=w, t=t, **above)
-    c.lemma(seen, when=z <= 0, z=0 - z, w=0 - w, t=t, **below)
+    for sign, args in zip((1, -1), c.calls(layer_above), strict=False):
+        sides = dict(zip(names, args, strict=True))
+        c.lemma(seen, when=sign * z >= 0, z=sign * z, w=sign * w, t=t, **sides)
     violated = c.define(
         daa_meaning.layer_may_be_violated_at, sz, vz, dz, dw, ez, ew, zthr, tcoa, vmod, t
     )
