@@ -1,4 +1,4 @@
-"""LMCP in XML: reading (in any order of fields, strictly checked) and writing.
+"""LMCP in XML: reading (in any order of fields, strictly checked); writing is in `xml_writing`.
 
 `<Name Series="CMASI"> <Field>...</Field> ... </Name>`. Elements of primitive and enum arrays stand
 in tags of their type (`<int64>1</int64>`; another width of integer is accepted), structs in tags of theirs, null as `<null/>`, enums by
@@ -18,7 +18,10 @@ from typing import Any
 
 from cratous.bridge.lmcp import model
 from cratous.bridge.lmcp.objects import LmcpObject, enums, types, unknown_field
+from cratous.bridge.lmcp.xml_writing import dumps
 from cratous.spec.errors import BadInput
+
+__all__ = ["LmcpNote", "dumps", "loads", "parse", "read_element", "read_file", "read_messages"]
 
 _INTEGER = re.compile(r"[+-]?[0-9]{1,20}\Z")
 _REAL = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?\Z")
@@ -27,8 +30,6 @@ _NON_FINITE = {"NaN", "Infinity", "-Infinity", "nan", "inf", "-inf", "-nan", "In
 # OpenUxAS's own files write int64 elements as <uint32>; the range of the field's type counts.
 _TAGS: dict[str, set[str]] = {kind: set(model.INTEGER_RANGES) for kind in model.INTEGER_RANGES}
 _TAGS |= {kind: {"real32", "real64"} for kind in ("real32", "real64")}
-_ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", "\r": "&#13;"})
-_ILLEGAL = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 class LmcpNote(UserWarning):
@@ -349,60 +350,3 @@ def _primitive(field: model.Field, element: Any, source: _Source) -> Any:
     if not low <= int(text) <= high:
         raise wrong(f"{field.kind} from {low} to {high}")
     return int(text)
-
-
-def dumps(obj: LmcpObject) -> str:
-    """XML text of an object, fields in the order of the wire, two blanks of indentation."""
-    lines: list[str] = []
-    try:
-        _write(obj.copy().checked(), lines, "")
-    except RecursionError:
-        raise BadInput("nested too deeply", item=type(obj).__name__) from None
-    return "\n".join(lines) + "\n"
-
-
-def _write(obj: LmcpObject | None, lines: list[str], pad: str) -> None:
-    if obj is None:
-        lines.append(f"{pad}<null/>")
-        return
-    name = type(obj).__name__
-    lines.append(f'{pad}<{name} Series="{obj.series}">')
-    for field in obj.fields:
-        value = getattr(obj, field.name)
-        if field.array is not None:
-            lines.append(f"{pad}  <{field.name}>")
-            tag = field.type.rpartition("/")[2]
-            for element in value:
-                if field.kind in ("struct", "any"):
-                    _write(element, lines, pad + "    ")
-                else:
-                    lines.append(f"{pad}    <{tag}>{_text_of(field, element)}</{tag}>")
-            lines.append(f"{pad}  </{field.name}>")
-        elif field.kind in ("struct", "any"):
-            lines.append(f"{pad}  <{field.name}>")
-            _write(value, lines, pad + "    ")
-            lines.append(f"{pad}  </{field.name}>")
-        else:
-            lines.append(f"{pad}  <{field.name}>{_text_of(field, value)}</{field.name}>")
-    lines.append(f"{pad}</{name}>")
-
-
-def _text_of(field: model.Field, value: Any) -> str:
-    if field.kind == "enum":
-        return str(value.name)
-    if field.kind == "bool":
-        return "true" if value else "false"
-    if field.kind in ("string", "char"):
-        bad = _ILLEGAL.search(value)
-        if bad:
-            raise BadInput(
-                "text that XML cannot hold",
-                item=field.name,
-                expected="no control characters",
-                got=repr(bad.group()),
-            )
-        return str(value).translate(_ESCAPES)
-    if isinstance(value, float):
-        text = repr(value)
-        return {"nan": "NaN", "inf": "Infinity", "-inf": "-Infinity"}.get(text, text)
-    return str(value)
