@@ -173,11 +173,9 @@ def uncertain_span(
     )
     layer = layer_span(sz, vz, ez_m, ew_m_s, zthr_m, tcoa_s, vmod_s, t_s)
     circle = circle_span(s, v, es_m, ev_m_s, dthr_m, tthr_s, t_s)
-    if layer.first_s > layer.last_s or circle.first_s > circle.last_s:
-        return nominal
     first = max(max(layer.first_s, circle.first_s), b_s)
     last = min(min(layer.last_s, circle.last_s), t_s)
-    return span_hull(nominal, Span(first, last))
+    return span_hull(nominal, or_empty(first, last))
 
 
 @kernel(implements="daa_meaning.may_be_violated_at")

@@ -28,3 +28,11 @@ def claim(c: Claim) -> None:
     plain = c.use(violation_during_taumod, s, v, sz, vz, *limits, begin, end)
     unknown = c.all_of(es > 0, ez > 0, ev > 0, ew > 0, span.first_s <= span.last_s)
     c.show(c.same(c.use(uncertain_conflict, *state), c.any_of(plain, unknown)), "a conflict")
+    sizes = c.all_of(*[threshold >= 0 for threshold in limits])
+    c.lemma(
+        "well_clear_interval_taumod_first_and_last_violate", when=sizes,
+        s=s, v=v, sz=sz, vz=vz, begin=begin, end=end,
+        dthr=dthr, zthr=zthr, tthr=tthr, tcoa=tcoa, vmod=vmod,
+    )  # fmt: skip
+    empty = c.all_of(span.first_s == 1, span.last_s == 0)
+    c.show(c.implies(c.all_of(sizes, span.first_s > span.last_s), empty), "one empty span")
