@@ -47,7 +47,7 @@ def layer_above(
     up, climb rate in [slow_m_s, fast_m_s]."""
     away = Span(1, 0)
     near = Span(1, 0)
-    if fast_m_s > 0 or slow_m_s >= 0:
+    if fast_m_s >= 0:
         away = vertical_interval(low_m, max(slow_m_s, 0), zthr_m, tcoa_s, vmod_s, 0, t_s)
     if slow_m_s < 0:
         near = vertical_interval(low_m, slow_m_s, zthr_m, tcoa_s, vmod_s, 0, t_s)
@@ -73,7 +73,7 @@ def layer_span(
     fast = vz + ew_m_s
     above = Span(1, 0)
     below = Span(1, 0)
-    if high > 0 or low >= 0:
+    if high >= 0:
         above = layer_above(max(low, 0), high, slow, fast, zthr_m, tcoa_s, vmod_s, t_s)
     if low < 0:
         below = layer_above(
