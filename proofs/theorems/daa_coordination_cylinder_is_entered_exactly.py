@@ -4,6 +4,7 @@ says so, there is one: the begin or the end of the time at one height, or the cl
 from typing import Any
 
 from cratous.core.daa_coordination import enters_cylinder
+from cratous.core.kernel import Vec2
 from cratous.proofs.claim import Claim
 from cratous.spec import daa_coordination
 
@@ -12,6 +13,8 @@ def claim(c: Claim) -> None:
     s, v = c.vector("s"), c.vector("v")
     sz, vz, radius, half, t = c.reals("sz vz radius half t")
     begin, end, closest = c.reals("begin end closest")
+    never = c.negation(c.use(enters_cylinder, s, v, sz, vz, radius, half))
+    c.show(c.implies(half < 0, never), "a height below 0 holds nobody")
     c.premise(radius >= 0)
     c.premise(half >= 0)
     c.premise(t >= 0)
@@ -30,3 +33,7 @@ def claim(c: Claim) -> None:
     c.show(c.implies(there(t), found), "no instant is missed")
     named = c.any_of(there(t - t), there(begin), there(end), there(closest))
     c.show(c.implies(found, named), "one can be named")
+    # examples: in it now; past it before the heights meet
+    at, on = Vec2(0, 0), Vec2(10, 0)
+    c.show(c.use(enters_cylinder, at, Vec2(0, 0), 0, 1, 5, 1), "an example: now")
+    c.show(c.negation(c.use(enters_cylinder, at, on, -10, 1, 20, 1)), "an example: too late")
