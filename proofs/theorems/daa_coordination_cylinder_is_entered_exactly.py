@@ -13,8 +13,6 @@ def claim(c: Claim) -> None:
     s, v = c.vector("s"), c.vector("v")
     sz, vz, radius, half, t = c.reals("sz vz radius half t")
     begin, end, closest = c.reals("begin end closest")
-    never = c.negation(c.use(enters_cylinder, s, v, sz, vz, radius, half))
-    c.show(c.implies(half < 0, never), "a height below 0 holds nobody")
     c.premise(radius >= 0)
     c.premise(half >= 0)
     c.premise(t >= 0)
