@@ -232,6 +232,7 @@ def _known(term):
     return Fraction(term.numerator_as_long(), term.denominator_as_long())
 
 
+@pytest.mark.long  # test_lift.py compares every kernel, on more inputs
 @pytest.mark.parametrize("entry", KERNELS, ids=lambda e: e.name)
 def test_lifted_term_equals_running_function(entry):
     hints = get_type_hints(entry.function)
@@ -307,6 +308,7 @@ QUICK = [
 ]
 
 
+@pytest.mark.long  # CI proves every theorem from nothing before it runs the tests
 @pytest.mark.parametrize("name", QUICK)
 def test_theorem_holds(name):
     theorem = prover.prove_file(name)

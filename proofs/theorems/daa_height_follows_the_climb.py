@@ -9,6 +9,7 @@ def claim(c: Claim) -> None:
     z, vz, target, rate, accel, t = c.reals("z vz target rate accel t")
     c.premise(rate > 0)
     c.premise(accel > 0)
+    c.opaque(climb)
     phases = c.use(climb, z, vz, target, rate, accel)
     t1, t2, t3, held = phases
     c.lemma("daa_climb_is_flown", z=z, vz=vz, target=target, rate=rate, accel=accel)
