@@ -153,6 +153,13 @@ def layer_may_be_violated_at(
     return layer_violation_at(sz + dz, vz + dw, zthr, tcoa, vmod, t)
 
 
+def level_at(sz: float, vz: float) -> float:
+    """When co-altitude is reached from sz >= 0; 0 where it never is."""
+    if vz >= 0:
+        return 0
+    return sz / (0 - vz)
+
+
 def share_of(below: float, above: float) -> float:
     """How far from the one to the other 0 lies; 0 where the one is not below the other."""
     if above <= below:

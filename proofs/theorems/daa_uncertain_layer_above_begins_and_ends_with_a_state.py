@@ -11,13 +11,6 @@ from cratous.spec import daa_meaning, well_clear
 NAMES = ("sz", "vz", "zthr", "tcoa", "vmod", "begin", "end")
 
 
-def level_at(sz: float, vz: float) -> float:
-    """When co-altitude is reached from sz >= 0; 0 where it never is."""
-    if vz >= 0:
-        return 0
-    return sz / (0 - vz)
-
-
 def claim(c: Claim) -> None:
     low, high, slow, fast = c.reals("low high slow fast")
     zthr, tcoa, vmod, end = c.reals("zthr tcoa vmod end")
@@ -58,7 +51,7 @@ def claim(c: Claim) -> None:
         if number == 1:  # who has come in by T and is above co-altitude is in
             layer(z, w, end, begins)
         if number == 2:  # who was at co-altitude by T was in
-            level = c.define(level_at, z, w)
+            level = c.define(daa_meaning.level_at, z, w)
             exact(args, c.all_of(level >= 0, level <= end), level)
             layer(z, w, level, level)
             # where it leaves, who falls fastest has come in

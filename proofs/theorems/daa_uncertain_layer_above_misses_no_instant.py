@@ -6,16 +6,9 @@ from typing import Any
 from cratous.core.daa_uncertain import layer_above
 from cratous.core.well_clear_interval import vertical_interval
 from cratous.proofs.claim import Claim
-from cratous.spec import well_clear
+from cratous.spec import daa_meaning, well_clear
 
 NAMES = ("sz", "vz", "zthr", "tcoa", "vmod", "begin", "end")
-
-
-def level_at(sz: float, vz: float) -> float:
-    """When co-altitude is reached from sz >= 0; 0 where it never is."""
-    if vz >= 0:
-        return 0
-    return sz / (0 - vz)
 
 
 def claim(c: Claim) -> None:
@@ -43,7 +36,7 @@ def claim(c: Claim) -> None:
         c.lemma("well_clear_vertical_interval_lies_within", **dict(zip(NAMES, args, strict=True)))
         exact(args, t)
         if number == 1:  # who falls fastest is in the layer at t, or was at co-altitude before
-            exact(args, c.when(low + slow * t >= 0, t, c.define(level_at, low, slow)))
+            exact(args, c.when(low + slow * t >= 0, t, c.define(daa_meaning.level_at, low, slow)))
         if number == 2:  # who falls slowest has not left at t
             exact(args, c.use(vertical_interval, *args).first_s)
     found = c.define(well_clear.in_span, *span, t)
