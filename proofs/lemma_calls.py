@@ -28,6 +28,30 @@ class _Told(Claim):
         return [] if self.hidden else super().calls(function)
 
 
+Statement = Callable[[Claim], None]
+
+
+def listening(load: Callable[[str], Statement], asked: set[str]) -> Callable[[str], Statement]:
+    """Load lemmas so that the names of those that ask for calls are noted: few do."""
+
+    def loaded(name: str) -> Statement:
+        statement = load(name)
+
+        def stated(claim: Claim) -> None:
+            plain = claim.calls
+
+            def calls(function: Callable[..., Any]) -> list[tuple[Any, ...]]:
+                asked.add(name)
+                return plain(function)
+
+            claim.calls = calls  # type: ignore[method-assign]
+            statement(claim)
+
+        return stated
+
+    return loaded
+
+
 def hangs_on_calls(name: str, folder: Path) -> bool:
     """Does the theorem show something else, or nothing, where it meets no calls?"""
     statement = load_claim(name, folder)[0]

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import random
 from fractions import Fraction
-from typing import get_type_hints
 
 import pytest
 import z3
@@ -12,16 +10,13 @@ import z3
 from cratous.core import ledger as gate
 from cratous.core import well_clear
 from cratous.core.kernel import REGISTRY, Fold, Vec2
-from cratous.proofs import prover, recheck
+from cratous.proofs import prover
 from cratous.proofs.claim import Claim
 from cratous.proofs.ledger import Inventory, records
-from cratous.proofs.lift import lift
 from cratous.proofs.subset import lint, lint_all
-from cratous.proofs.symbolic import SymBool, SymInt, SymMask, SymReal
 from cratous.spec import well_clear as meaning
 
 gate.load_all()
-KERNELS = [e for e in REGISTRY.values() if e.kind == "kernel"]
 
 
 # -- deliberately wrong kernels ---------------------------------------------------------
@@ -193,81 +188,6 @@ def test_a_wrong_fold_is_refuted():
     assert statuses["use"] == "proved"
 
 
-# -- the lifter against the running function ----------------------------------------------
-def _symbols(hint, name):
-    if hint is float:
-        return SymReal(z3.Real(name))
-    if hint is int:
-        return SymInt(z3.Int(name))
-    if hint is bool:
-        return SymBool(z3.Bool(name))
-    return hint(*[_symbols(h, f"{name}.{f}") for f, h in get_type_hints(hint).items()])
-
-
-def _values(hint, name, rng, found):
-    if hint is float:
-        value = Fraction(rng.randint(-9, 9), rng.choice((1, 1, 2, 3)))
-        found.append((z3.Real(name), z3.RealVal(str(value))))
-    elif hint is int:
-        value = rng.randint(-3, 9)
-        found.append((z3.Int(name), z3.IntVal(value)))
-    elif hint is bool:
-        value = rng.random() < 0.5
-        found.append((z3.Bool(name), z3.BoolVal(value)))
-    else:
-        fields = get_type_hints(hint).items()
-        return hint(*[_values(h, f"{name}.{f}", rng, found) for f, h in fields])
-    return value
-
-
-def _flat(value):
-    return [x for v in value for x in _flat(v)] if isinstance(value, tuple) else [value]
-
-
-def _known(term):
-    if z3.is_bool(term):
-        return z3.is_true(term)
-    if z3.is_int(term):
-        return term.as_long()
-    return Fraction(term.numerator_as_long(), term.denominator_as_long())
-
-
-@pytest.mark.long  # test_lift.py compares every kernel, on more inputs
-@pytest.mark.parametrize("entry", KERNELS, ids=lambda e: e.name)
-def test_lifted_term_equals_running_function(entry):
-    hints = get_type_hints(entry.function)
-    del hints["return"]
-    if entry.name in ("eligible", "opened"):
-        pytest.skip("it works on masks: compared in test_lift.py")
-    symbols = {name: _symbols(hint, name) for name, hint in hints.items()}
-    whole = lift(entry.function, *symbols.values())
-    if whole.roots:
-        pytest.skip("it takes roots: compared in test_lift.py")
-    lifted = _flat(whole.value)
-    rng = random.Random(entry.name)
-    for _ in range(60):
-        found: list = []
-        arguments = [_values(h, n, rng, found) for n, h in hints.items()]
-        wanted = _flat(entry.function(*arguments))
-        for term, value in zip(lifted, wanted, strict=True):
-            if isinstance(term, (bool, int)):
-                assert term == value
-                continue
-            got = z3.simplify(z3.substitute(term.term, *found))
-            assert _known(got) == value, (arguments, got)
-
-
-def test_lifted_masks_equal_running_masks():
-    mask, bit = z3.BitVecs("mask bit", 64)
-    function = REGISTRY["eligible"].function
-    term = lift(function, SymMask(mask), SymMask(bit)).value.term
-    rng = random.Random(1)
-    for _ in range(60):
-        a, b = rng.getrandbits(62), 1 << rng.randrange(62)
-        pairs = [(mask, z3.BitVecVal(a, 64)), (bit, z3.BitVecVal(b, 64))]
-        assert z3.is_true(z3.simplify(z3.substitute(term, *pairs))) == function(a, b)
-
-
 # -- the subset -----------------------------------------------------------------------------
 def test_all_kernels_are_in_the_subset():
     assert [str(f) for f in lint_all()] == []
@@ -296,23 +216,6 @@ def test_the_lint_names_what_is_outside_of_the_subset():
         "no bare tuples",
     ):
         assert part in text, part
-
-
-# -- the theorems themselves ------------------------------------------------------------------
-# all theorems are proved by `cratous prove`; those that take little effort are proved here too, alone
-EFFORT = recheck.read()["theorems"]
-QUICK = [
-    name
-    for name in prover.theorem_files()
-    if not name.startswith("filter_") and EFFORT.get(name, {}).get("z3_effort", 0) < 10_000
-]
-
-
-@pytest.mark.long  # CI proves every theorem from nothing before it runs the tests
-@pytest.mark.parametrize("name", QUICK)
-def test_theorem_holds(name):
-    theorem = prover.prove_file(name)
-    assert theorem.proved, [(o.obligation.text, o.status) for o in theorem.outcomes]
 
 
 def test_smt2_export_says_what_it_is():

@@ -103,17 +103,15 @@ def run(
     encounters = read(file, ownship)
     session: Session | None = None
     there = {row.id for _, rows in encounters.steps for row in rows}
-    coordinates = any(
-        {**dataclasses.asdict(parameters), **encounters.settings, **rows[0].settings, **changes}[
-            name
+    if changes.get("urgency_strategy"):
+        every = [
+            {**encounters.settings, **rows[0].settings, **changes} for _, rows in encounters.steps
         ]
-        for _, rows in encounters.steps
-        for name in ("conflict_crit", "recovery_crit")
-    )
-    if changes.get("urgency_strategy") and not coordinates:
-        raise BadInput("nothing would change: no criterion of coordination is on", where=str(file),
-                       item="urgency_strategy", expected="conflict_crit or recovery_crit = true",
-                       got="both false")  # fmt: skip
+        criteria = ("conflict_crit", "recovery_crit")
+        if not any(own.get(name, getattr(parameters, name)) for own in every for name in criteria):
+            raise BadInput("nothing would change: no criterion of coordination is on",
+                           where=str(file), item="urgency_strategy",
+                           expected="conflict_crit or recovery_crit = true", got="both false")  # fmt: skip
     for time_s, rows in encounters.steps:
         wanted = dataclasses.replace(
             parameters, **{**encounters.settings, **rows[0].settings, **changes}
