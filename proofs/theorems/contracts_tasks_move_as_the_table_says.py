@@ -1,5 +1,5 @@
 """A task in any of its nine states moves exactly as the table of the definition says, for every event,
-and does nothing else; what concerns another request than its own changes nothing."""
+and does nothing else; what concerns another request than its own, or is no event, changes nothing."""
 
 from cratous.core.contracts.tasks import Task, task_replied, task_requested, task_step
 from cratous.proofs.claim import Claim
@@ -8,9 +8,15 @@ from cratous.spec.contracts import tasks
 
 def claim(c: Claim) -> None:
     request, kept, about = c.integer("request"), c.integer("kept"), c.integer("about")
+    unknown = c.integer("unknown")
     c.premise(c.all_of(request >= 0, kept >= 0))
     c.premise(c.any_of(kept == 0, kept > request))
+    c.premise(c.any_of(unknown < min(tasks.EVENTS), unknown > max(tasks.EVENTS)))
     for state in tasks.STATES:
+        moved = c.use(task_step, Task(state, request, kept), unknown, about)
+        same = c.all_of(moved.task.request == request, moved.task.kept == kept)
+        nothing = c.all_of(moved.task.state == state, same, moved.act == tasks.NOTHING)
+        c.show(nothing, f"state {state}, no event")
         for event in tasks.EVENTS:
             moved = c.use(task_step, Task(state, request, kept), event, about)
             after, act = tasks.row(state, event)

@@ -5,8 +5,9 @@ from typing import Any
 
 from cratous.core.daa_coordination import enters_cylinder
 from cratous.core.kernel import Vec2
+from cratous.core.well_clear import within_during
 from cratous.proofs.claim import Claim
-from cratous.spec import daa_coordination
+from cratous.spec import daa_coordination, well_clear
 
 
 def claim(c: Claim) -> None:
@@ -22,16 +23,36 @@ def claim(c: Claim) -> None:
     # when the heights are within half of each other
     c.premise(c.implies(vz > 0, c.all_of(begin * vz == 0 - half - sz, end * vz == half - sz)))
     c.premise(c.implies(vz < 0, c.all_of(begin * vz == half - sz, end * vz == 0 - half - sz)))
+    c.opaque(within_during, well_clear.within)
     found = c.use(enters_cylinder, s, v, sz, vz, radius, half)
 
-    def there(time: Any) -> Any:
-        inside = c.define(daa_coordination.in_cylinder_at, s, v, sz, vz, radius, half, time)
-        return c.all_of(time >= 0, inside)
+    # in scaled time the height grows with rate 1, and the relative position is w times as far away
+    w, z = c.when(vz > 0, vz, 0 - vz), c.when(vz > 0, sz, 0 - sz)
+    first = c.when(0 - half - z > 0, 0 - half - z, 0)
+    length = half - z - first
+    at = Vec2(s.x * w + first * v.x, s.y * w + first * v.y)
+    for args in c.calls(within_during):
+        c.congruence(within_during, (at, v, radius * w, length), args)
 
-    c.show(c.implies(there(t), found), "no instant is missed")
-    named = c.any_of(there(t - t), there(begin), there(end), there(closest))
-    c.show(c.implies(found, named), "one can be named")
-    # examples: in it now; past it before the heights meet
-    at, on = Vec2(0, 0), Vec2(10, 0)
-    c.show(c.use(enters_cylinder, at, Vec2(0, 0), 0, 1, 5, 1), "an example: now")
-    c.show(c.negation(c.use(enters_cylinder, at, on, -10, 1, 20, 1)), "an example: too late")
+    def place(scaled: Any) -> tuple[Any, Any]:
+        return Vec2(at.x + scaled * v.x, at.y + scaled * v.y), radius * w
+
+    inside = []
+    zero = length - length
+    for time in (t, t - t, begin, end, closest):
+        scaled = w * time - first
+        during = c.all_of(scaled >= 0, scaled <= length)
+        there = Vec2(s.x + time * v.x, s.y + time * v.y)
+        c.lemma("well_clear_within_during_scales", s=there, v=v, radius=radius, h=t - t, k=w)
+        for same in ((Vec2(w * there.x, w * there.y), w * radius), place(zero), place(length)):
+            c.congruence(well_clear.within, place(scaled), same)
+        in_it = c.define(daa_coordination.in_cylinder_at, s, v, sz, vz, radius, half, time)
+        inside.append(c.all_of(time >= 0, in_it))
+        near = c.define(well_clear.within, *place(scaled))
+        c.step(c.same(inside[-1], c.all_of(during, near)), "in scaled time")
+        c.lemma(
+            "well_clear_within_during_is_exact", when=during, s=at, v=v, radius=radius * w,
+            h=length, t=scaled, closest=w * closest - first,
+        )  # fmt: skip
+    c.show(c.implies(inside[0], found), "no instant is missed")
+    c.show(c.implies(found, c.any_of(*inside[1:])), "one can be named")

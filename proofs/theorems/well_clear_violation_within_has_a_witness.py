@@ -30,20 +30,7 @@ def claim(c: Claim) -> None:
     closest, least = c.reals("closest least")
     c.premise(c.implies(vv > 0, vv * closest + sv == 0))
     c.premise(c.implies(vv > 0, 2 * vv * least + 2 * sv + tthr * k * vv == 0))
-    c.lemma(
-        "well_clear_horizontal_violation_within_has_a_witness",
-        when=first <= last,
-        s=at,
-        v=v,
-        dthr=dthr * k,
-        tthr=tthr * k,
-        h=last - first,
-        closest=closest,
-        least=least,
-    )
-
-    lost = []
-    length = last - first
+    lost, length = [], last - first
     for number, scaled in enumerate((length - length, length, closest, least)):
         t = c.real(f"t{number}")
         c.premise(k * t == first + scaled)
@@ -58,4 +45,18 @@ def claim(c: Claim) -> None:
         )
         violated = c.define(well_clear.violation_at, s, v, sz, vz, dthr, zthr, tthr, tcoa, t)
         lost.append(c.all_of(inside, violated))
+        there_at = c.define(well_clear.horizontal_violation_at, at, v, dthr * k, tthr * k, scaled)
+        named = c.all_of(predicted, scaled >= 0, scaled <= length, there_at)
+        c.step(c.implies(named, lost[-1]), "at the instant whose scaled time it is")
+    c.lemma(
+        "well_clear_horizontal_violation_within_has_a_witness",
+        when=first <= last,
+        s=at,
+        v=v,
+        dthr=dthr * k,
+        tthr=tthr * k,
+        h=length,
+        closest=closest,
+        least=least,
+    )
     c.show(c.implies(predicted, c.any_of(*lost)))
