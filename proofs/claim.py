@@ -45,6 +45,8 @@ class Claim:
     obligations: list[Obligation] = field(default_factory=list)
     kernels: list[str] = field(default_factory=list)
     lemmas: list[str] = field(default_factory=list)
+    asking: set[str] = field(default_factory=set)
+    asked: bool = False
     assumptions: list[tuple[str, str, str]] = field(default_factory=list)
     goals: list[z3.BoolRef] = field(default_factory=list)
     stubs: dict[Callable[..., Any], Stub] = field(default_factory=dict)
@@ -150,6 +152,7 @@ class Claim:
 
     def calls(self, function: Callable[..., Any]) -> list[tuple[Any, ...]]:
         """The arguments of every call of an opaque function so far."""
+        self.asked = True
         return list(self.stubs[function].calls)
 
     def congruence(
@@ -227,6 +230,7 @@ class Claim:
             stubs=dict(self.stubs),
         )
         self.load(name)(inner)
+        self.asking |= {name} if inner.asked else set()
         strangers = sorted(set(inner.fixed) - inner.names)
         if strangers:
             raise ValueError(f"the lemma {name} has no value called {', '.join(strangers)}")

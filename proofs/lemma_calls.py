@@ -18,38 +18,13 @@ from cratous.proofs.theorem_files import load_claim
 
 @dataclass
 class _Told(Claim):
-    """A claim that knows whether it was asked for calls, and can hide them."""
+    """A claim that can hide calls."""
 
     hidden: bool = False
-    asked: bool = False
 
     def calls(self, function: Callable[..., Any]) -> list[tuple[Any, ...]]:
         self.asked = True
         return [] if self.hidden else super().calls(function)
-
-
-Statement = Callable[[Claim], None]
-
-
-def listening(load: Callable[[str], Statement], asked: set[str]) -> Callable[[str], Statement]:
-    """Load lemmas so that the names of those that ask for calls are noted: few do."""
-
-    def loaded(name: str) -> Statement:
-        statement = load(name)
-
-        def stated(claim: Claim) -> None:
-            plain = claim.calls
-
-            def calls(function: Callable[..., Any]) -> list[tuple[Any, ...]]:
-                asked.add(name)
-                return plain(function)
-
-            claim.calls = calls  # type: ignore[method-assign]
-            statement(claim)
-
-        return stated
-
-    return loaded
 
 
 def hangs_on_calls(name: str, folder: Path) -> bool:

@@ -124,7 +124,7 @@ class Target:
             if what == "equivalent":
                 return verdict(what, note=note)
             # where the solver found an input that the grids have not, it starts from there
-            by = self.refuted(mutant.function, [row] if row else [])
+            by = self.refuted(mutant.function, [row] if row else [], glanced=True)
             if by:
                 return verdict("killed", by)
             if what == "survived" and row:
@@ -142,17 +142,18 @@ class Target:
                 return name
         return ""
 
-    def refuted(self, mutant: Any, rows: list[tuple]) -> str:
+    def refuted(self, mutant: Any, rows: list[tuple], glanced: bool = False) -> str:
         """The first theorem that is refuted with the mutant in place, or nothing.
 
         rows: inputs that tell mutant and original apart; a question about one of them is a small
-        one. Cheap questions to all theorems come before dear ones to any.
+        one. Cheap questions to all theorems come before dear ones to any. glanced: those without
+        an input were asked before (`refuted_at_a_glance`).
         """
         changed = []
         for name in self.users:
             questions = self._questions(name, mutant)
             changed.append((name, questions))
-            if self._refutes(name, questions, rows, NEAR, NEAR):
+            if self._refutes(name, questions, rows, NEAR, 0 if glanced else NEAR):
                 return name
         for name, questions in changed:
             if self._refutes(name, questions, rows, FAR, budget(self.effort[name])):
@@ -162,11 +163,12 @@ class Target:
     def _refutes(
         self, name: str, questions: list[list[z3.BoolRef]], rows: list[tuple], near: int, far: int
     ) -> bool:
+        """near: the effort for a question about an input; far: for one about any, 0 for none."""
         starts = [[*p.values] for p in self.points if p.theorem == name and p.row in rows][:3]
         starts += [equal(v.args, row) for row in rows for v in self.visits[name][:2]]
         return any(
             ask([*start, *question], near if start else far) == "sat"
-            for start in [*starts, []]
+            for start in (*starts, *([[]] if far else []))
             for question in questions
         )
 

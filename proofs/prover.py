@@ -25,7 +25,7 @@ from cratous.proofs.cache import Answer, Cache
 from cratous.proofs.claim import Claim, Obligation
 from cratous.proofs.counterexample import Model, Watched, story, telling
 from cratous.proofs.ladder import check, solvers
-from cratous.proofs.lemma_calls import hangs_on_calls, listening
+from cratous.proofs.lemma_calls import hangs_on_calls
 from cratous.proofs.lift import LiftError
 from cratous.proofs.merkle import Hasher
 from cratous.proofs.smtlib import logic_of, question, smt2, sorts
@@ -282,12 +282,11 @@ def _satisfiable(terms: list[z3.BoolRef], rlimit: int, cache: Cache, hasher: Has
 def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
     """The claim of a theorem file, stated, and its sentence; the kernels must be registered."""
     statement, sentence = load_claim(name, folder)
-    asked: set[str] = set()
-    claim = Watched(load=listening(lambda other: load_claim(other, folder)[0], asked))
+    claim = Watched(load=lambda other: load_claim(other, folder)[0])
     where = place(find(name, folder))
     try:
         statement(claim)
-        hanging = sorted(n for n in asked & {*claim.lemmas} if hangs_on_calls(n, folder))
+        hanging = sorted(n for n in claim.asking if hangs_on_calls(n, folder))
     except Exception as error:
         slip = _slip(error, folder)
         if not slip and not isinstance(error, ValueError | TypeError | LiftError):

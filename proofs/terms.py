@@ -13,6 +13,7 @@ from typing import Any, get_type_hints
 import z3
 
 from cratous.core.kernel import Vec2
+from cratous.proofs.canonical import canonical
 from cratous.proofs.symbolic import PATHS, Sym, SymBool, SymInt, SymReal, _raw, as_real, wrap
 
 
@@ -28,22 +29,21 @@ class Stub:
         self.results: dict[str, Any] = {}
 
     def __call__(self, *args: Any) -> Any:
-        # an integer literal beside a real is one: equal arguments must have one text
-        key = "; ".join(
-            normal(arg, kind is float) for arg, kind in zip(args, self.kinds, strict=True)
-        )
+        key = "; ".join(normal(arg, kind) for arg, kind in zip(args, self.kinds, strict=True))
         if key not in self.results:
             self.results[key] = fresh(f"{self.name}#{len(self.calls)}", self.result)
             self.calls.append(args)
         return self.results[key]
 
 
-def normal(value: Any, real: bool = False) -> str:
-    """A normal form of an argument: polynomials expanded and sorted; `real`: of that type."""
+def normal(value: Any, kind: Any) -> str:
+    """A name that equal arguments of this type share: polynomials are expanded and sorted."""
     if isinstance(value, tuple):
-        return ", ".join(normal(part) for part in value)
-    term = as_real(known(value)) if real else known(value)
-    return str(z3.simplify(term, som=True, sort_sums=True).sexpr())
+        kinds = get_type_hints(kind)
+        fields = [kinds[part] for part in kind._fields]
+        return ", ".join(normal(part, one) for part, one in zip(value, fields, strict=True))
+    # an integer literal where a real is wanted is one
+    return canonical(as_real(known(value)) if kind is float else known(value))
 
 
 def fresh(name: str, kind: Any) -> Any:

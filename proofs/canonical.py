@@ -1,0 +1,52 @@
+"""One name for equal arguments: a hash of a term that does not depend on how it came to be.
+
+The solver sorts operands by internal numbers, which follow from what was built before and what has
+been given free since. So polynomials are expanded by its simplifier, and then operands of operators
+that commute count in the order of their own hashes. Two terms with one hash are equal; equal terms
+may have two, where the simplifier does not see it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+
+import z3
+
+COMMUTE = frozenset(
+    {
+        z3.Z3_OP_ADD, z3.Z3_OP_MUL, z3.Z3_OP_AND, z3.Z3_OP_OR, z3.Z3_OP_XOR, z3.Z3_OP_EQ,
+        z3.Z3_OP_DISTINCT, z3.Z3_OP_BADD, z3.Z3_OP_BMUL, z3.Z3_OP_BAND, z3.Z3_OP_BOR, z3.Z3_OP_BXOR,
+    }
+)  # fmt: skip
+"""Operators whose operands may stand in any order."""
+TURNED = {z3.Z3_OP_GE: z3.Z3_OP_LE, z3.Z3_OP_GT: z3.Z3_OP_LT}
+"""a >= b is b <= a."""
+
+
+def canonical(term: z3.ExprRef) -> str:
+    """The hash of the term's simplified form."""
+    return _hash(z3.simplify(term, som=True), {})
+
+
+def _hash(term: z3.ExprRef, known: dict[int, str]) -> str:
+    number = term.get_id()
+    if number not in known:
+        below = [_hash(child, known) for child in term.children()]
+        known[number] = _node(term, below)
+    return known[number]
+
+
+def _node(term: z3.ExprRef, below: list[str]) -> str:
+    operator = term.decl()
+    kind = operator.kind()
+    if kind in COMMUTE:
+        below = sorted(below)
+    if kind in TURNED:
+        kind, below = TURNED[kind], below[::-1]
+    name = str(kind)
+    if not below:
+        name = f"{kind} {term.sexpr()}"
+    elif kind == z3.Z3_OP_UNINTERPRETED:
+        name = f"{kind} {operator.name()}"
+    parts = [name, term.sort().sexpr(), *map(str, operator.params()), *below]
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
