@@ -14,6 +14,7 @@ import hashlib
 import json
 import os
 import platform
+import re
 from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
@@ -21,15 +22,20 @@ from typing import Any
 
 from cratous.core import ledger as gate
 from cratous.core.ledger import PRODUCT, Home
-from cratous.core.sources import ROOT, closure, digest, place
+from cratous.core.sources import ROOT, closure, digest, imports, place
 from cratous.proofs.prover import RLIMIT, Theorem, restore
 
-DYNAMIC = (
-    b"REGISTRY", b"load_all", b"import_module", b"__import__", b"importlib", b"read_text",
-    b"read_bytes", b"open(", b"environ", b"globals()", b"sys.modules",
-)  # fmt: skip
+DYNAMIC = re.compile(
+    rb"REGISTRY|load_all|import_module|__import__|importlib|read_text|read_bytes|(?<!\w)open\("
+    rb"|environ|globals\(\)|sys\.modules"
+)
 """Words in a file by which a theorem may depend on more than it imports."""
 REGISTRY_ITSELF = ROOT / "core" / "kernel.py"
+MACHINERY = frozenset(
+    ROOT / "core" / name for name in ("compiled.py", "domain.py", "private.py", "sources.py")
+)
+"""They look up sources, settings and machine code for whoever runs kernels on arrays. A term takes
+nothing from what they find, unless a theorem's own file asks them."""
 
 
 @functools.cache
@@ -43,8 +49,7 @@ def named(file: Path) -> str:
 
 @functools.cache
 def _dynamic(file: Path) -> bool:
-    text = file.read_bytes()
-    return file != REGISTRY_ITSELF and any(word in text for word in DYNAMIC)
+    return file != REGISTRY_ITSELF and DYNAMIC.search(file.read_bytes()) is not None
 
 
 @functools.cache
@@ -67,7 +72,9 @@ def files(name: str, home: Home = PRODUCT) -> tuple[Path, ...]:
             roots[one] = file
             todo += gate.mentioned(file) & known
     found = closure(*roots.values())
-    return _everything(home) if any(_dynamic(file) for file in found) else found
+    asked = {file for root in roots.values() for file in imports(root)}
+    looked_into = [file for file in found if file not in MACHINERY or file in asked]
+    return _everything(home) if any(_dynamic(file) for file in looked_into) else found
 
 
 def key(name: str, home: Home = PRODUCT) -> str:

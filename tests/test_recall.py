@@ -78,6 +78,32 @@ def test_a_theorem_about_whatever_is_registered_depends_on_every_file():
     assert set(files(NAME)) < every
 
 
+@pytest.mark.parametrize(
+    "line",
+    [
+        "import importlib",
+        "from cratous.core.kernel import REGISTRY",
+        "from cratous.core.sources import reached",
+        "from cratous.core import compiled",
+        "text = open(__file__).read()",
+    ],
+)
+def test_so_does_a_theorem_whose_file_asks_for_more_than_it_imports(line, tmp_path, monkeypatch):
+    real = gate.theorem_file(NAME, gate.PRODUCT)
+    changed = tmp_path / real.name
+    changed.write_text(f"{line}\n{real.read_text()}")
+    place = gate.theorem_file
+    found = lambda name, home: changed if name == NAME else place(name, home)  # noqa: E731
+    monkeypatch.setattr(gate, "theorem_file", found)
+    assert {*(ROOT / "core").glob("*.py")} <= set(files(NAME))
+
+
+def test_tools_for_arrays_behind_a_kernel_are_no_reason_to(monkeypatch):
+    found = set(files("well_clear_within_during_scales"))
+    assert {ROOT / "core/compiled.py", ROOT / "core/well_clear_during.py"} <= found
+    assert ROOT / "core/gate.py" not in found
+
+
 @pytest.mark.parametrize("what", ["solver_version", "python_version"])
 def test_another_version_is_another_theorem(what, monkeypatch):
     before = key(NAME)
