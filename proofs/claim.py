@@ -34,7 +34,10 @@ class Obligation:
 
 @dataclass
 class Claim:
-    """The theorem under construction."""
+    """The theorem under construction.
+
+    asked: whether it asked for the calls of an opaque function; asking: its lemmas that did.
+    """
 
     prefix: str = ""
     circle: tuple[str, ...] = ()
