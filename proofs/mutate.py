@@ -26,11 +26,12 @@ from functools import partial
 from typing import Any
 
 from cratous.core import ledger as gate
+from cratous.core.kernel import REGISTRY, Fold
 from cratous.core.ledger import PRODUCT, Home
 from cratous.core.private import private_cache
 from cratous.proofs import cache, forked, prover
 from cratous.proofs.mutation_judge import judge_target
-from cratous.proofs.mutation_keys import Keys, Store
+from cratous.proofs.mutation_keys import Keys, Store, reach
 from cratous.proofs.mutation_premises import judge_premises
 from cratous.proofs.mutation_report import MutationReport
 from cratous.proofs.mutation_results import VERDICTS, PremiseResult, Result
@@ -54,18 +55,35 @@ def chosen(
     keys = keys or Keys()
     patterns, theorems = list(names), set(about)
 
+    def named(key: str) -> bool:
+        return any(fnmatch.fnmatch(n, p) for p in patterns for n in (key, key.rpartition(".")[2]))
+
     def look() -> dict[str, list[str]]:
         gate.load_all(keys.home)
         theorems_from(keys.folder)
-        found = {}
-        for key, (target, users) in targets(keys.theorems, keys.home).items():
-            named = any(fnmatch.fnmatch(n, p) for p in patterns for n in (key, target.__name__))
-            if named or theorems & set(users):
-                found[key] = users
-        return found
+        mine = set(targets(sorted(theorems), keys.home))
+        # only what could look into one of them is stated
+        near = [
+            n for n in keys.theorems if any(named(k) or k in mine for k in _reached(n, keys.home))
+        ]
+        there = targets(near, keys.home)
+        return {k: users for k, (_, users) in there.items() if named(k) or k in mine}
 
     # in a process of its own, so that every judgement starts from a state without terms
     return forked.call(look)
+
+
+def _reached(theorem: str, home: Home) -> set[str]:
+    """The targets that a theorem could look into, by its imports: at least those that it does."""
+    found = set()
+    for name in reach(theorem, home):
+        entry = REGISTRY.get(name.removeprefix("fold "))
+        function = entry.function if entry is not None else None
+        path = name
+        if name.startswith("fold ") and isinstance(function, Fold):
+            path = f"{function.step.__module__}.{function.name}"
+        found.add(path.removeprefix(f"{home.name}."))
+    return found
 
 
 def run(

@@ -7,6 +7,7 @@ was never mutated. A run on some targets replaces those and leaves the others al
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 from collections.abc import Iterable
@@ -86,9 +87,14 @@ def stale(data: dict[str, Any], keys: Keys) -> dict[str, str]:
         wanted += [definition] if entry.implements and find(definition) is not None else []
         for one in wanted:
             # of what has nothing to change there is nothing to record
-            if one not in data["targets"] and faults(find(one)):
+            if one not in data["targets"] and _has_faults(find(one)):
                 found[one] = "it was never mutated"
     return found
+
+
+@functools.cache
+def _has_faults(function: Any) -> bool:
+    return bool(faults(function))
 
 
 # -- the document ---------------------------------------------------------------------------------
