@@ -119,6 +119,17 @@ boundary_distance = fold(
 )
 
 
+@kernel(implements="geofence.against")
+def ends_against(p: Vec2, q: Vec2, a: Vec2, b: Vec2, d_m: float) -> int:
+    """The least of four verdicts: of each end of p-q and of a-b against the other segment.
+
+    d_m: the buffer, >= 0, in the unit of the points.
+    """
+    leg = min(edge_against(p, a, b, d_m), edge_against(q, a, b, d_m))
+    edge = min(edge_against(a, p, q, d_m), edge_against(b, p, q, d_m))
+    return min(leg, edge)
+
+
 @kernel(implements="geofence.legs_nearer_at")
 def leg_nearer(p: Vec2, q: Vec2, a: Vec2, b: Vec2, d_m: float) -> bool:
     """True iff some point of the leg p-q is nearer than d_m to some point of the edge a-b.
@@ -126,11 +137,7 @@ def leg_nearer(p: Vec2, q: Vec2, a: Vec2, b: Vec2, d_m: float) -> bool:
     d_m: the buffer, > 0, in the unit of the points. Two segments that do not meet are nearest at
     an end of one of them.
     """
-    if segments_meet(p, q, a, b):
-        return True
-    if edge_against(p, a, b, d_m) < 0 or edge_against(q, a, b, d_m) < 0:
-        return True
-    return edge_against(a, p, q, d_m) < 0 or edge_against(b, p, q, d_m) < 0
+    return segments_meet(p, q, a, b) or ends_against(p, q, a, b, d_m) < 0
 
 
 @kernel(implements="geofence.legs_within_at")
@@ -139,11 +146,7 @@ def leg_within(p: Vec2, q: Vec2, a: Vec2, b: Vec2, d_m: float) -> bool:
 
     d_m: the buffer, >= 0, in the unit of the points.
     """
-    if segments_meet(p, q, a, b):
-        return True
-    if edge_against(p, a, b, d_m) <= 0 or edge_against(q, a, b, d_m) <= 0:
-        return True
-    return edge_against(a, p, q, d_m) <= 0 or edge_against(b, p, q, d_m) <= 0
+    return segments_meet(p, q, a, b) or ends_against(p, q, a, b, d_m) <= 0
 
 
 @kernel(implements="geofence.any_step")

@@ -1,7 +1,7 @@
 """If a pair of points of a leg and an edge, one of them an end of its segment, is within a buffer of
 each other, or nearer, the kernel says so."""
 
-from cratous.core.geofence_distance import edge_against, leg_nearer, leg_within
+from cratous.core.geofence_distance import edge_against, ends_against, leg_nearer, leg_within
 from cratous.core.polygon import segments_meet
 from cratous.proofs.claim import Claim
 from cratous.spec import geofence
@@ -10,7 +10,7 @@ from cratous.spec import geofence
 def claim(c: Claim) -> None:
     p, q, a, b = c.vector("p"), c.vector("q"), c.vector("a"), c.vector("b")
     d, s, t = c.reals("d s t")
-    c.opaque(segments_meet, edge_against)
+    c.opaque(segments_meet, edge_against, ends_against)
     c.premise(c.any_of(s == 0, s == 1, t == 0, t == 1))
     nearer = c.define(geofence.legs_nearer_at, p, q, a, b, d, s, t)
     within = c.define(geofence.legs_within_at, p, q, a, b, d, s, t)
@@ -24,5 +24,6 @@ def claim(c: Claim) -> None:
         for pair, definition in ((nearer, geofence.nearer_at), (within, geofence.within_at)):
             alone = c.define(definition, end, one, other, d, at)
             c.step(c.implies(c.all_of(case, pair), alone), "the same pair")
+    c.lemma("geofence_ends_verdict_is_the_least_of_four", p=p, q=q, a=a, b=b, d=d)
     c.show(c.implies(nearer, c.use(leg_nearer, p, q, a, b, d)), "nearer")
     c.show(c.implies(within, c.use(leg_within, p, q, a, b, d)), "no farther")

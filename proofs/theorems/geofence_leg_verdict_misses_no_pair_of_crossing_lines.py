@@ -3,7 +3,7 @@ the kernel says so: moved towards the crossing, the pair reaches an end of one o
 
 from typing import Any
 
-from cratous.core.geofence_distance import edge_against, leg_nearer, leg_within
+from cratous.core.geofence_distance import edge_against, ends_against, leg_nearer, leg_within
 from cratous.core.polygon import segments_meet
 from cratous.proofs.claim import Claim
 from cratous.spec import geofence
@@ -38,7 +38,7 @@ def claim(c: Claim) -> None:
     crossing = c.all_of(s0 >= 0, s0 <= 1, t0 >= 0, t0 <= 1)
     at_end = c.any_of(s1 == 0, s1 == 1, t1 == 0, t1 == 1)
     c.step(c.any_of(crossing, at_end), "they meet, or an end is reached")
-    c.opaque(segments_meet, edge_against)
+    c.opaque(segments_meet, edge_against, ends_against)
     c.lemma("geofence_leg_pairs_shrink_towards_a_crossing", **lines, s=s, t=t, s0=s0, t0=t0, k=k)
     c.lemma("geofence_leg_verdict_misses_no_pair_at_an_end", when=at_end, **lines, d=d, s=s1, t=t1)
     c.lemma("geofence_segments_meet_finds_every_common_point", **lines, s=s0, t=t0)

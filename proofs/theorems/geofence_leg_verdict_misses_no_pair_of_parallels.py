@@ -4,7 +4,7 @@ distance until it reaches an end of one of the two."""
 
 from typing import Any
 
-from cratous.core.geofence_distance import edge_against, leg_nearer, leg_within
+from cratous.core.geofence_distance import edge_against, ends_against, leg_nearer, leg_within
 from cratous.core.geofence_passage import cross
 from cratous.core.polygon import segments_meet
 from cratous.proofs.claim import Claim
@@ -53,7 +53,7 @@ def claim(c: Claim) -> None:
     c.premise(dy == other.y - one.y)
     for square in (before, after):
         c.step(square == dx * dx + dy * dy, "the same square")
-    c.opaque(segments_meet, edge_against)
+    c.opaque(segments_meet, edge_against, ends_against)
     lines: dict[str, Any] = {"p": p, "q": q, "a": a, "b": b}
     c.lemma("geofence_leg_verdict_misses_no_pair_at_an_end", **lines, d=d, s=s1, t=t1)
     for kernel, definition in (
