@@ -45,19 +45,16 @@ def layer_above(
 ) -> Span:  # fmt: skip
     """When the layer may be violated, within [0, t_s]: relative altitude in [low_m, high_m], from 0
     up, climb rate in [slow_m_s, fast_m_s]."""
-    away = Span(1, 0)
-    near = Span(1, 0)
-    if fast_m_s >= 0:
-        away = vertical_interval(low_m, max(slow_m_s, 0), zthr_m, tcoa_s, vmod_s, 0, t_s)
-    if slow_m_s < 0:
-        near = vertical_interval(low_m, slow_m_s, zthr_m, tcoa_s, vmod_s, 0, t_s)
-        left = vertical_interval(high_m, min(fast_m_s, 0), zthr_m, tcoa_s, vmod_s, 0, t_s)
-        if near.first_s <= near.last_s:
-            if left.first_s > left.last_s:
-                near = Span(near.first_s, t_s)
-            else:
-                near = Span(near.first_s, left.last_s)
-    return span_hull(away, near)
+    if slow_m_s >= 0:
+        return vertical_interval(low_m, slow_m_s, zthr_m, tcoa_s, vmod_s, 0, t_s)
+    # who may fall comes first from the lowest altitude, and leaves last from the highest
+    near = vertical_interval(low_m, slow_m_s, zthr_m, tcoa_s, vmod_s, 0, t_s)
+    left = vertical_interval(high_m, min(fast_m_s, 0), zthr_m, tcoa_s, vmod_s, 0, t_s)
+    if near.first_s > near.last_s:
+        return near
+    if left.first_s > left.last_s:
+        return Span(near.first_s, t_s)
+    return Span(near.first_s, left.last_s)
 
 
 @kernel(implements="daa_meaning.layer_may_be_violated_at")
@@ -71,14 +68,12 @@ def layer_span(
     high = sz + ez_m
     slow = vz - ew_m_s
     fast = vz + ew_m_s
-    above = Span(1, 0)
-    below = Span(1, 0)
-    if high >= 0:
-        above = layer_above(max(low, 0), high, slow, fast, zthr_m, tcoa_s, vmod_s, t_s)
-    if low < 0:
-        below = layer_above(
-            0 - min(high, 0), 0 - low, 0 - fast, 0 - slow, zthr_m, tcoa_s, vmod_s, t_s
-        )
+    if low >= 0:
+        return layer_above(low, high, slow, fast, zthr_m, tcoa_s, vmod_s, t_s)
+    if high < 0:
+        return layer_above(0 - high, 0 - low, 0 - fast, 0 - slow, zthr_m, tcoa_s, vmod_s, t_s)
+    above = layer_above(0, high, slow, fast, zthr_m, tcoa_s, vmod_s, t_s)
+    below = layer_above(0, 0 - low, 0 - fast, 0 - slow, zthr_m, tcoa_s, vmod_s, t_s)
     return span_hull(above, below)
 
 

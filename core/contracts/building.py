@@ -61,6 +61,25 @@ def part_after(stage: int, asked: bool, built: bool) -> int:
     return 3
 
 
+@kernel(implements="contracts.building.after")
+def part_seen(stage: int, part: int, act: int, asked: int, done: bool, built: int) -> int:
+    """The stage of part `part` after a step that asked for `asked` (if act is 1) and built `built`."""
+    return part_after(stage, act == 1 and asked == part, done and built == part)
+
+
+@kernel(implements="contracts.building.in_order")
+def parts_orderly(first: int, second: int, due: bool, again: bool) -> bool:
+    """Whether two parts are in order.
+
+    due: the request was answered with a plan that has to hold both; again: it was answered twice.
+    """
+    if again or first == 3 or second == 3:
+        return False
+    if second != 0 and first != 2:
+        return False
+    return second == 2 or not due
+
+
 class WatchedParts(NamedTuple):
     """A builder's progress, the stages of two of its parts, and its answers."""
 
@@ -80,14 +99,12 @@ def watched_parts_step(
 ) -> WatchedParts:
     """One step, with an eye on the parts `one` and `other`."""
     b, act, part, done = building_step(Building(w.stage, w.parts, w.at), event, number)
-    first = part_after(w.first, act == 1 and part == one, done and number == one)
-    second = part_after(w.second, act == 1 and part == other, done and number == other)
+    first = part_seen(w.first, one, act, part, done, number)
+    second = part_seen(w.second, other, act, part, done, number)
     planned = w.planned or act == 2
     failed = w.failed or act == 3
-    once = (act != 2 and act != 3) or (not w.planned and not w.failed)
-    lived = first != 3 and second != 3 and (second == 0 or first == 2)
-    whole = not planned or other >= b.parts or second == 2
-    held = w.held and lived and once and whole
+    again = (w.planned or w.failed) and (act == 2 or act == 3)
+    held = w.held and parts_orderly(first, second, planned and other < b.parts, again)
     return WatchedParts(b.stage, b.parts, b.at, first, second, planned, failed, held)
 
 

@@ -1,5 +1,6 @@
 """Watching two tickets changes nothing: the line goes on exactly as it does unwatched, and the stage of
-either ticket moves by what the line did, and by nothing else."""
+either ticket moves by what the line did, and by nothing else. All is held to be in order exactly as long
+as it is by definition."""
 
 from cratous.core.contracts.requests import (
     Line,
@@ -10,6 +11,7 @@ from cratous.core.contracts.requests import (
     watched_step,
 )
 from cratous.proofs.claim import Claim
+from cratous.spec.contracts.requests import Pair, in_order
 
 
 def claim(c: Claim) -> None:
@@ -19,10 +21,13 @@ def claim(c: Claim) -> None:
         c.integer("taken"), c.integer("answered"), c.boolean("busy"), c.integer("sent_ms")
     )
     c.opaque(line_step, happening, stage_after)
-    watched = Watched(*served, first, second, c.boolean("held"))
+    held = c.boolean("held")
+    watched = Watched(*served, first, second, held)
     w = c.use(watched_step, watched, event, ticket, now, limit, one, other)
     line, act, about = c.use(line_step, served, event, ticket, now, limit)
     c.show(c.same(Line(w.taken, w.answered, w.busy, w.sent_ms), line), "the line")
     for seen, before, watched_one in ((w.first, first, one), (w.second, second, other)):
         moved = c.use(stage_after, before, c.use(happening, act, about, watched_one))
         c.show(seen == moved, "a ticket")
+    orderly = c.define(in_order, Pair(w.first, w.second))
+    c.show(c.implies(w.second >= 0, c.same(w.held, c.all_of(held, orderly))), "in order")

@@ -15,6 +15,8 @@ def claim(c: Claim) -> None:
     other = c.all_of(event == 2, c.negation(c.all_of(line.busy, answer == line.answered)))
     passed = c.all_of(step.act == 3, step.ticket == answer, step.line.answered > answer)
     c.show(c.implies(mine, passed), "the answer that is waited for is passed on")
+    # what is kept of the last publication is its instant
+    c.show(c.implies(event != 3, step.line.sent_ms == line.sent_ms), "its instant stays")
     c.show(
         c.implies(other, c.all_of(step.act == 5, step.ticket == answer, c.same(step.line, line))),
         "any other is reported and changes nothing",
@@ -38,6 +40,7 @@ def claim(c: Claim) -> None:
     c.show(
         c.implies(full, c.all_of(step.act == 6, c.same(step.line, line))), "a full line refuses it"
     )
+    c.show(c.implies(full, step.ticket == line.taken), "by the ticket it would have had")
     free = c.all_of(event == 3, c.negation(line.busy), line.answered < line.taken)
     published = c.all_of(step.act == 2, step.ticket == line.answered, step.line.sent_ms == now)
     c.show(c.implies(free, published), "with none being planned the next one is published")
@@ -46,9 +49,12 @@ def claim(c: Claim) -> None:
         c.implies(over, c.all_of(step.act == 4, step.ticket == line.answered)),
         "one whose time ran out is answered so",
     )
+    c.show(c.implies(over, step.line.sent_ms == line.sent_ms), "its instant stays too")
+    wait = c.all_of(event == 3, line.busy, now - line.sent_ms < limit)
     empty = c.all_of(event == 3, c.negation(line.busy), line.answered == line.taken)
     unknown = c.all_of(event != 1, event != 2, event != 3)
     c.show(
-        c.implies(c.any_of(empty, unknown), c.all_of(step.act == 0, c.same(step.line, line))),
+        c.implies(c.any_of(wait, empty, unknown), c.all_of(step.act == 0, c.same(step.line, line))),
         "without a cause nothing happens",
     )
+    c.show(c.implies(step.act == 0, step.ticket == line.answered), "to the next to be answered")

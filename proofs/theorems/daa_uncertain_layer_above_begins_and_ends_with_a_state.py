@@ -36,21 +36,17 @@ def claim(c: Claim) -> None:
         violated = c.define(violates, z, w, *limits, t)
         return c.all_of(low <= z, z <= high, slow <= w, w <= fast, violated)
 
-    # away from the ownship, towards it from the lowest altitude, from the highest
-    states = (
-        (low, c.when(slow >= 0, slow, 0)),
-        (low, slow),
-        (high, c.when(fast <= 0, fast, 0)),
-    )
+    # from the lowest altitude at the slowest rate, from the highest towards the ownship
+    states = ((low, slow), (high, c.when(fast <= 0, fast, 0)))
     for number, (args, (z, w)) in enumerate(zip(c.calls(vertical_interval), states, strict=False)):
         c.lemma("well_clear_vertical_interval_lies_within", **dict(zip(NAMES, args, strict=True)))
         begins, ends = c.use(vertical_interval, *args)
         for t, reached in ((begins, first), (ends, last)):
             exact(args, begins <= ends, t)
             c.congruence(violates, (z, w, *limits, t), (z, w, *limits, reached))
-        if number == 1:  # who has come in by T and is above co-altitude is in
+        if number == 0:  # who has come in by T and is above co-altitude is in
             layer(z, w, end, begins)
-        if number == 2:  # who was at co-altitude by T was in
+        if number == 1:  # who was at co-altitude by T was in
             level = c.define(daa_meaning.level_at, z, w)
             exact(args, c.all_of(level >= 0, level <= end), level)
             layer(z, w, level, level)

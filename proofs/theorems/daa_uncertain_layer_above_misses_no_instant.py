@@ -31,13 +31,14 @@ def claim(c: Claim) -> None:
         values = dict(zip(NAMES, args, strict=True))
         c.lemma("well_clear_vertical_interval_is_exact", when=within, t=instant, **values)
 
-    # away from the ownship, towards it from the lowest altitude, from the highest
+    # from the lowest altitude at the slowest rate, from the highest towards the ownship
     for number, args in enumerate(c.calls(vertical_interval)):
         c.lemma("well_clear_vertical_interval_lies_within", **dict(zip(NAMES, args, strict=True)))
         exact(args, t)
-        if number == 1:  # who falls fastest is in the layer at t, or was at co-altitude before
+        if number == 0:  # who falls fastest is in the layer at t, or was at co-altitude before
             exact(args, c.when(low + slow * t >= 0, t, c.define(daa_meaning.level_at, low, slow)))
-        if number == 2:  # who falls slowest has not left at t
+            exact(args, t - t)  # who does not fall was in it all the time
+        if number == 1:  # who falls slowest has not left at t
             exact(args, c.use(vertical_interval, *args).first_s)
     found = c.define(well_clear.in_span, *span, t)
     c.show(c.implies(c.all_of(violated, c.negation(falling)), found), "not falling")

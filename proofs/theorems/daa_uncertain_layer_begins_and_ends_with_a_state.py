@@ -24,21 +24,25 @@ def claim(c: Claim) -> None:
         return c.define(daa_meaning.layer_may_be_violated_at, sz, vz, *off, ez, ew, *limits, t)
 
     low, high, slow, fast = sz - ez, sz + ez, vz - ew, vz + ew
+    up, down = (slow, fast), (0 - fast, 0 - slow)
+    both = c.all_of(low < 0, high >= 0)
     sides = (
-        (1, high >= 0, c.when(low >= 0, low, 0), high, slow, fast),
-        (-1, low < 0, 0 - c.when(high <= 0, high, 0), 0 - low, 0 - fast, 0 - slow),
+        (1, low >= 0, low, high, *up),
+        (-1, high < 0, 0 - high, 0 - low, *down),
+        (1, both, low - low, high, *up),
+        (-1, both, low - low, 0 - low, *down),
     )
     sizes = {"zthr": zthr, "tcoa": tcoa, "vmod": vmod}
     begun: list[Any] = []
     ended: list[Any] = []
     calls = c.calls(layer_above)
-    c.show(len(calls) == 2, "from above and from below")
+    c.show(len(calls) == 4, "above, below, and on both sides")
     for (sign, there, *bounds), args in zip(sides, calls, strict=False):
         near, far, slowest, fastest = bounds
         least = c.when(fastest <= 0, fastest, 0)
         share = c.define(daa_meaning.share_of, near + slowest * end, far + least * end)
         between = (near + share * (far - near), slowest + share * (least - slowest))
-        states = ((near, c.when(slowest >= 0, slowest, 0)), (near, slowest), (far, least), between)
+        states = ((near, slowest), (far, least), between)
         c.lemma(
             "daa_uncertain_layer_above_begins_and_ends_with_a_state",
             when=there,

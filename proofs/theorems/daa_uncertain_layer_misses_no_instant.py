@@ -21,9 +21,12 @@ def claim(c: Claim) -> None:
     z, w = sz + dz, vz + dw
     names = ("low", "high", "slow", "fast", "zthr", "tcoa", "vmod", "end")
     seen = "daa_uncertain_layer_above_misses_no_instant"
-    for sign, args in zip((1, -1), c.calls(layer_above), strict=False):
-        sides = dict(zip(names, args, strict=True))
-        c.lemma(seen, when=sign * z >= 0, z=sign * z, w=sign * w, t=t, **sides)
+    above, below = sz - ez >= 0, sz + ez < 0
+    both = c.negation(c.any_of(above, below))
+    sides = ((above, 1), (below, -1), (c.all_of(both, z >= 0), 1), (c.all_of(both, z < 0), -1))
+    for (there, sign), args in zip(sides, c.calls(layer_above), strict=False):
+        bounds = dict(zip(names, args, strict=True))
+        c.lemma(seen, when=there, z=sign * z, w=sign * w, t=t, **bounds)
     violated = c.define(
         daa_meaning.layer_may_be_violated_at, sz, vz, dz, dw, ez, ew, zthr, tcoa, vmod, t
     )
