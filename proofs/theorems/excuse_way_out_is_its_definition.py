@@ -12,6 +12,8 @@ def claim(c: Claim) -> None:
     other = c.integer("other")
     answered = c.any_of(other == 1, other == -1)
     c.show(c.implies(c.negation(answered), c.use(answer_result, other) == 0), "nothing else counts")
+    tried = c.define(excuse.tried_step, excuse.Tried(free, open_, some), 1)
+    c.show(c.same(tried.open, open_), "a free one leaves open what is open")
 
     def related(found: object, tried: excuse.Tried) -> object:
         word = c.when(tried.free, 1, c.when(tried.open, 0, c.when(tried.some, -1, 2)))
