@@ -24,3 +24,6 @@ def claim(c: Claim) -> None:
     )
     c.step(c.implies(met, c.all_of(least <= behind, ahead <= most)), "so they are within")
     c.show(c.implies(met, c.use(holds_in_wind, ground, wn, we, least, most)))
+    for side, airspeed in ((1, 8), (-1, 12)):
+        example = c.define(wind.holds, side, 0, 10, 2, 0, airspeed, airspeed)
+        c.show(example, "an example: with the wind, and into it")
