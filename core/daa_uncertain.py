@@ -51,7 +51,7 @@ def layer_above(
     near = vertical_interval(low_m, slow_m_s, zthr_m, tcoa_s, vmod_s, 0, t_s)
     left = vertical_interval(high_m, min(fast_m_s, 0), zthr_m, tcoa_s, vmod_s, 0, t_s)
     if near.first_s > near.last_s:
-        return near
+        return Span(1, 0)
     if left.first_s > left.last_s:
         return Span(near.first_s, t_s)
     return Span(near.first_s, left.last_s)

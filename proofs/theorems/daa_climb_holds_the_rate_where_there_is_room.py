@@ -30,7 +30,7 @@ def claim(c: Claim) -> None:
         c.show(c.implies(c.all_of(towards, side * held < least), t1 == t2), "no time at less")
         at_once = c.define(daa_meaning.accelerated, side * z, up, 0 - accel, stop)
         can: Any = c.all_of(up > 0, accel * stop == up, at_once <= side * target)
-        c.show(c.implies(can, side * held >= 0), "levels off where it can")
+        c.show(c.implies(can, side * held >= up), "levels off where it can")
 
     heads(1)
     heads(-1)
