@@ -24,6 +24,7 @@ def claim(c: Claim) -> None:
     c.show(c.all_of(free >= first, free <= MANY), "ids only grow, up to 2^60")
     fits = c.define(checklists.fits, first, count)
     c.show(free == c.when(fits, first + count, first), "a block that fits is given out whole")
+    c.show(c.define(checklists.fits, first, 0), "a block of none fits")
     inside = c.use(owns, first, free - first, number)
     c.show(c.same(inside, c.define(checklists.in_block, first, free - first, number)), "a block")
 
