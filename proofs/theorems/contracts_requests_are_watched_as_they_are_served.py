@@ -31,3 +31,4 @@ def claim(c: Claim) -> None:
         c.show(seen == moved, "a ticket")
     orderly = c.define(in_order, Pair(w.first, w.second))
     c.show(c.implies(w.second >= 0, c.same(w.held, c.all_of(held, orderly))), "in order")
+    c.show(c.negation(c.define(in_order, Pair(1, -1))), "a stage that there is not")

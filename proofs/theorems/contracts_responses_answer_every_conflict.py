@@ -16,6 +16,9 @@ def claim(c: Claim) -> None:
     act = step.act
     answer = c.define(responses.answered, ours, before.off, good, found, act)
     c.show(c.implies(conflict, answer), "every conflict is answered")
+    other = c.integer("other")
+    wrong = c.define(responses.answered, ours, before.off, good, found, other)
+    c.show(c.implies(c.all_of(conflict, other != act), c.negation(wrong)), "by nothing else")
     on_hold = c.same(step.response.state, responses.HOLD)
     c.show(c.implies(on_hold, c.define(responses.held, good, found, act)), "and so is a hold")
     c.show(
