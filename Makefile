@@ -13,7 +13,7 @@ help:
 	@echo "make venv      only set up (.venv, pinned dependencies, compiled kernels)"
 	@echo "make lint      style, types, kernel subset"
 	@echo "make prove     prove every kernel (the cache answers what it has proved) and hold the ledger against it"
-	@echo "make recheck   put every proof to the second solver (cvc5), a quarter of an hour"
+	@echo "make recheck   put every proof to the second solver (cvc5)"
 	@echo "make mutate    look for faults of kernels that no theorem would notice; pays for what has changed"
 	@echo "make crosshair look for bugs in functions that are no kernels, two minutes"
 	@echo "make fuzz      a million changed LMCP messages and frames, some minutes"

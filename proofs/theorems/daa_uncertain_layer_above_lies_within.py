@@ -9,7 +9,6 @@ def claim(c: Claim) -> None:
     low, high, slow, fast, zthr, tcoa, vmod, end = c.reals("low high slow fast zthr tcoa vmod end")
     for least in (zthr, tcoa, vmod, end):
         c.premise(least >= 0)
-    c.premise(slow <= fast)
     c.opaque(vertical_interval)
     first, last = c.use(layer_above, low, high, slow, fast, zthr, tcoa, vmod, end)
     names = ("sz", "vz", "zthr", "tcoa", "vmod", "begin", "end")

@@ -6,7 +6,7 @@ from cratous.proofs.claim import Claim
 
 def claim(c: Claim) -> None:
     sz, vz, ez, ew, zthr, tcoa, vmod, end = c.reals("sz vz ez ew zthr tcoa vmod end")
-    for least in (ez, ew, zthr, tcoa, vmod, end):
+    for least in (zthr, tcoa, vmod, end):
         c.premise(least >= 0)
     c.opaque(layer_above)
     first, last = c.use(layer_span, sz, vz, ez, ew, zthr, tcoa, vmod, end)
