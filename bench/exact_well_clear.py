@@ -102,6 +102,13 @@ def tangent(rng: np.random.Generator, n: int, low: int, high: int) -> Columns:
     return [3 * k + 4 * away, 4 * k - 3 * away, -4 * speed, 3 * speed, 5 * k, still]
 
 
+def wide_tangent(rng: np.random.Generator, n: int, low: int, high: int) -> Columns:
+    """The same with integers of up to 53 bits: ties that no pair of doubles holds."""
+    k, away, speed = rng.integers(1, 2**50, (3, n)) * 2.0 ** rng.integers(low, high, n)
+    still = np.full(n, 2.0**20)
+    return [3 * k + 4 * away, 4 * k - 3 * away, -4 * speed, 3 * speed, 5 * k, still]
+
+
 def check(columns: Columns, verdicts: np.ndarray, sample: int = 500) -> int:
     """Compare a sample with rationals; returns how many plain doubles get wrong."""
     plain = compiled(horizontal_violation)(*columns)
@@ -156,6 +163,7 @@ def rows() -> list[tuple[str, float, str, float]]:
         ("on the circle, 2^-100 to 2^100", on_circle, -98, 98),
         ("on the tau boundary, 2^-88 to 2^88", on_tau, -88, 88),
         ("tangent to the circle, 2^-80 to 2^80", tangent, -80, 80),
+        ("tangent to the circle, all bits, 2^-80 to 2^80", wide_tangent, -80, 30),
         ("on the circle, 2^-1020 to 2^-900", on_circle, -1020, -900),
         ("on the circle, 2^900 to 2^1020", on_circle, 900, 1020),
     ):

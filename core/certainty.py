@@ -1,7 +1,8 @@
 """When a computed difference decides the order of two real numbers, and how far rounding reaches.
 
 Definitions: `spec.rounding`. The float filter writes the first two kernels out for each
-comparison; the enclosed reading widens the result of each operation by the third.
+comparison; the enclosed reading widens the result of each operation by the third; the pairs of
+doubles of the exact reading count what they leave out by the last two.
 """
 
 from cratous.core.kernel import kernel
@@ -26,3 +27,36 @@ def outward_margin(value: float, share: float, least: float) -> float:
     share: part of the magnitude, 0 to 1; least: what underflow may take.
     """
     return abs(value) * share + least
+
+
+@kernel(implements="rounding.stands_for")
+def sum_left_out(a_left: float, b_left: float, low_rest: float, rest: float) -> float:
+    """How far the sum of two values lies at most from the pair of doubles that stands for it.
+
+    a_left, b_left: the same of the two values; low_rest, rest: what was rounded off. Any one unit.
+    """
+    return a_left + b_left + (abs(low_rest) + abs(rest))
+
+
+@kernel(implements="rounding.stands_for")
+def product_left_out(
+    a_left: float,
+    b_left: float,
+    a_size: float,
+    b_size: float,
+    cross_a: float,
+    cross_b: float,
+    low: float,
+    cross_rest: float,
+    rest: float,
+    share: float,
+) -> float:
+    """How far a product lies at most from the pair of doubles that stands for it.
+
+    a_left, b_left: the same of the factors, a_size, b_size: magnitudes of their pairs; cross_a,
+    cross_b, low: rounded products of the parts, the last not added; cross_rest, rest: what sums
+    rounded off; share: the relative error of a rounded product.
+    """
+    of_factors = a_left * (b_size + b_left) + b_left * a_size
+    of_products = share * (abs(cross_a) + abs(cross_b) + abs(low)) + abs(low)
+    return of_factors + of_products + (abs(cross_rest) + abs(rest))

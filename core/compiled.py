@@ -151,6 +151,13 @@ def _collect(function: Any, found: dict[str, str]) -> None:
     found[function.__name__] = "\n".join([f"@{FLAGS}", *lines])
 
 
+def sources(kernel: Callable[..., Any]) -> list[str]:
+    """The text of a kernel for numba, after that of all that it calls."""
+    found: dict[str, str] = {}
+    _collect(kernel, found)
+    return list(found.values())
+
+
 def _constructor(record: Any) -> str:
     """A NamedTuple under another name, and a function of its own name that fixes field types.
 

@@ -1,10 +1,10 @@
 """The exact reading: the verdict that a division-free kernel has on the reals its doubles are.
 
-Three stages, each generated from the kernel's graph. The *filter* (`core.filtering`) is as fast as
-the plain doubles and leaves undecided what rounding could have changed; *expansions*
-(`core.expansions`) decide exactly in machine code while nothing can overflow or underflow;
-*integers* (`core.integers`) decide everything else. All three are exact where they answer, so the
-verdict does not depend on which of them did.
+Four stages, each generated from the kernel's graph. The *filter* (`core.filtering`) is as fast as
+the plain doubles and leaves undecided what rounding could have changed; *pairs* of doubles
+(`core.pairs`) decide nearly all of that, and *expansions* (`core.expansions`) the rest exactly, in
+machine code while nothing can overflow or underflow; *integers* (`core.integers`) decide
+everything else. All are exact where they answer, so the verdict does not depend on which did.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from cratous.core import expansion_arithmetic, expansions, integers
+from cratous.core import expansion_arithmetic, expansions, integers, pairs
 from cratous.core.compiled import FLAGS, checked, load, loop_text, outcome, single
 from cratous.core.domain import nonnegative, refuse_negative
 from cratous.core.filtering import TRUE, UNDECIDED, Certain, Filter, filtered
@@ -29,6 +29,9 @@ from cratous.spec.errors import BadInput
 
 FEW = 64
 """So few undecided states go straight to the integers: machine code need not be made for them."""
+
+SHARED = expansion_arithmetic.primitives(FLAGS) + "\n\n" + pairs.arithmetic(FLAGS)
+"""The text that the machine code of all kernels shares."""
 
 
 # -- arrays -----------------------------------------------------------------------------
@@ -56,7 +59,7 @@ def _filter_map(found: Filter, scalars: frozenset[str]) -> Any:
 
 @functools.cache
 def _expansion_map(found: Filter, scalars: frozenset[str]) -> tuple[Any, int, int] | None:
-    shared = load(expansion_arithmetic.primitives(FLAGS)).__name__
+    shared = load(SHARED).__name__
     made = expansions.text(found, scalars, FLAGS, shared)
     if made is None:
         return None

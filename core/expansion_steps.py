@@ -41,11 +41,16 @@ class Cell:
 
 
 class Layout:
-    """The places that all comparisons of a kernel share, and how many values there are."""
+    """The places that all comparisons of a kernel share, and how many values there are.
 
-    def __init__(self, nodes: Sequence[Node]) -> None:
+    known: the first of the places where the signs of the comparisons stand; want: the place of the
+    number of the one that is missing.
+    """
+
+    def __init__(self, nodes: Sequence[Node], comparisons: int) -> None:
         self.fixed: dict[str, Cell] = {}
         self.values = 0
+        self.base = 0
         for node in nodes:
             if node.kind == "float" and node.op in ("in", "lit"):
                 self.fix(name(node))
@@ -53,11 +58,15 @@ class Layout:
                 self.fix(f"d{node.number}")
         for sign in ("1.0", "-1.0"):
             self.fix(sign)
-        self.base = len(self.fixed)
+        self.known = len(self.fixed)
+        self.want = self.known + comparisons
+        self.base = self.want + 1
 
     def fix(self, text: str) -> Cell:
         """The place of a column, literal or condition."""
         if text not in self.fixed:
+            if self.base:
+                raise ValueError(f"{text} has no place, and what comes behind is taken")
             self.fixed[text] = Cell(self.values, len(self.fixed), double=True)
             self.values += 1
         return self.fixed[text]

@@ -1,14 +1,17 @@
-"""The second stage of the exact reading: exact signs by floating-point expansions, compiled.
+"""The third stage of the exact reading: exact signs by floating-point expansions, compiled.
 
 For each comparison of a kernel that rounding could decide wrongly this module writes a function,
-which asks the filter first, and a table of steps on expansions (`expansion_steps`), which one
-compiled function carries out for all kernels (`expansion_arithmetic`). Verdicts
+which asks the filter first and pairs of doubles next (`pairs`), and a table of steps on expansions
+(`expansion_steps`), which one compiled function carries out for all kernels
+(`expansion_arithmetic`). Verdicts
 are short-circuited, so only what matters is computed: a verdict is evaluated with the signs known
-so far, and again with each that turns out to be missing.
+so far, and again with each that turns out to be missing. The known signs stand in the work array
+beside the numbers (2: not known), and so does which one is missing first (-1: none): each further
+array that is handed from function to function costs as much as a sum of pairs.
 
 Range: every real input is 0 or has a magnitude in [2^-E, 2^E]. E is the greatest number up to 100
-for which every value of the graph is a multiple of 2^-1074 and stays below 2^990; outside of it
-the generated function answers UNDECIDED.
+for which every value of the graph is a multiple of 2^-960 (so that not even a share of one part
+of it underflows) and stays below 2^990; outside of it the generated function answers UNDECIDED.
 """
 
 from __future__ import annotations
@@ -17,6 +20,8 @@ from cratous.core.expansion_arithmetic import TIMES
 from cratous.core.expansion_steps import Layout, Steps
 from cratous.core.filtering import UNDECIDED, Filter
 from cratous.core.nodes import Node, ordered
+from cratous.core.pairs import MOST_OPERATIONS, NAMES
+from cratous.core.pairs import Writer as Pairs
 from cratous.core.printing import name, straight
 
 MOST_CELLS = 200_000
@@ -41,7 +46,7 @@ def reach(nodes: list[Node]) -> int:
             else:
                 grid[node.number] = max(grid[a] for a in args)
                 top[node.number] = max(top[a] for a in args) + 1
-        if all(g <= 1074 for g in grid.values()) and all(t <= 990 for t in top.values()):
+        if all(g <= 960 for g in grid.values()) and all(t <= 990 for t in top.values()):
             return exponent
     return 0
 
@@ -49,8 +54,9 @@ def reach(nodes: list[Node]) -> int:
 class Writer:
     """Writes what decides one filtered kernel: functions, steps, and the layout of the array."""
 
-    def __init__(self, found: Filter) -> None:
+    def __init__(self, found: Filter, pairs: bool = True) -> None:
         self.program = found.program
+        self.pairs = pairs
         self.columns = ", ".join(str(column.value) for column in self.program.columns)
         self.compared_nodes = found.compared
         self.certain = {node.number: certain for node, certain in found.states}
@@ -58,13 +64,22 @@ class Writer:
         self.steps: list[tuple[int, ...]] = []
         self.spans: list[tuple[int, int]] = []
         self.reach = reach(self.program.nodes)
-        self.layout = Layout(self.program.nodes)
+        self.layout = Layout(self.program.nodes, len(found.compared))
         self.cells = self.layout.base
 
     @property
     def possible(self) -> bool:
         """True iff there is a range and the work array stays small."""
         return self.reach > 0 and self.cells <= MOST_CELLS
+
+    def sign(self, number: int) -> str:
+        """Where the sign of one comparison stands."""
+        return f"w[{self.layout.known + number}]"
+
+    @property
+    def want(self) -> str:
+        """Where the comparison stands whose sign is missing first."""
+        return f"w[{self.layout.want}]"
 
     # -- truth values and integers ------------------------------------------------------
     def truth(self, node: Node) -> str:
@@ -80,7 +95,7 @@ class Writer:
                 a, b = (self.truth(arg) for arg in node.args)
                 word = {"and": "and", "or": "or", "xor": "!="}[node.op]
                 self.define(label, [f"    return {a} {word} {b}"])
-            return f"{label}(w, known, want, {self.columns})"
+            return f"{label}(w, {self.columns})"
         sign = {"lt": "<", "le": "<=", "gt": ">", "ge": ">=", "eq": "==", "ne": "!="}[node.op]
         if self.certain[node.number].sharp:
             a, b = (self.plain(arg) for arg in node.args)
@@ -108,7 +123,7 @@ class Writer:
     def define(self, label: str, lines: list[str]) -> None:
         """Add a function; callees come first because they are defined first."""
         self.functions.pop(label, None)
-        head = f"@FLAGS\ndef {label}(w, known, want, {self.columns}):"
+        head = f"@FLAGS\ndef {label}(w, {self.columns}):"
         self.functions[label] = [head, *lines]
 
     # -- comparisons --------------------------------------------------------------------
@@ -119,10 +134,12 @@ class Writer:
             self.functions[label] = []
             lines = self.second(*node.args)
             number = len(self.spans) - 1
-            known = [f"    if known[{number}] != 2:", f"        return known[{number}]"]
-            ask = ["    if want[0] < 0:", f"        want[0] = {number}", "    return 0"]
-            self.define(label, [*known, *self.first(node, number), *lines, *ask])
-        return f"{label}(w, known, want, {self.columns})"
+            sign = self.sign(number)
+            known = [f"    if {sign} != 2:", f"        return {sign}"]
+            ask = [f"    if {self.want} < 0:", f"        {self.want} = {number}", "    return 0.0"]
+            sooner = [*self.first(node, number), *self.paired(node, number)]
+            self.define(label, [*known, *sooner, *lines, *ask])
+        return f"{label}(w, {self.columns})"
 
     def first(self, node: Node, number: int) -> list[str]:
         """The filter of one comparison, unless a value in it hangs on an uncertain one."""
@@ -133,11 +150,30 @@ class Writer:
         roots = [root for root in (found.above, found.below) if root is not None]
         lines = straight([arg for root in roots for arg in root.args], "    ")
         for root in roots:
-            word, sign = (">", 1) if root.op == "gt" else ("<", -1)
+            word, sign = (">", 1.0) if root.op == "gt" else ("<", -1.0)
             lines.append(f"    if {name(root.args[0])} {word} {name(root.args[1])}:")
-            lines.append(f"        known[{number}] = {sign}")
+            lines.append(f"        {self.sign(number)} = {sign}")
             lines.append(f"        return {sign}")
         return lines
+
+    def paired(self, node: Node, number: int) -> list[str]:
+        """The sign by pairs of doubles, unless that would be long."""
+        parts = [part for part in ordered(list(node.args)) if part.kind == "float"]
+        if not self.pairs or len(parts) > MOST_OPERATIONS:
+            return []
+        pairs = Pairs()
+        for part in parts:
+            condition = ""
+            if part.op == "if":
+                condition = f"t{part.number}"
+                pairs.lines.append(f"    {condition} = {self.truth(part.args[0])}")
+                if not self.certain[part.args[0].number].sharp:
+                    # another sign is missing that this one hangs on
+                    pairs.lines += [f"    if {self.want} >= 0:", "        return 0.0"]
+            pairs.value(part, condition)
+        a, b = node.args
+        pairs.sign(a, b, self.sign(number))
+        return pairs.lines
 
     def second(self, a: Node, b: Node) -> list[str]:
         """The steps to the sign of a - b; returned are lines that set conditions for them."""
@@ -161,16 +197,16 @@ class Writer:
 
 
 def text(
-    found: Filter, scalars: frozenset[str], flags: str, shared: str
+    found: Filter, scalars: frozenset[str], flags: str, shared: str, pairs: bool = True
 ) -> tuple[str, int, int] | None:
     """A module with `_map(out, code, index, w, length, columns...)`; its cells and values.
 
     It decides the states whose numbers stand in `index` and writes into `out`, or UNDECIDED into
     `code` where an input is out of range; columns named in `scalars` are single values. shared:
-    name of the module of `primitives`. None where the kernel has no range, or would need too
+    name of the module of `primitives`. pairs: False leaves them out, for tests. None where the kernel has no range, or would need too
     large a work array.
     """
-    writer = Writer(found)
+    writer = Writer(found, pairs)
     result = found.program.result
     if not isinstance(result, Node):
         return None
@@ -188,10 +224,8 @@ def text(
     body = [
         f"@FLAGS\ndef _map(out, code, index, w, length, {arguments}):",
         *[f"    w[{cell.place}] = {literal}" for literal, cell in literals],
-        f"    known = np.empty({len(writer.spans) + 1}, np.int64)",
-        "    want = np.empty(1, np.int64)",
-        "    for k in range(index.size):",
-        "        i = index[k]",
+        "    for j in range(index.size):",
+        "        i = index[j]",
         *[
             f"        {column.value} = a_{column.value}[i]"
             for column in columns
@@ -204,21 +238,23 @@ def text(
             f"        w[{writer.layout.fix(name(column)).place}] = {name(column)}"
             for column in source_columns
         ],
-        "        known[:] = 2",
+        *[f"        {writer.sign(k)} = 2.0" for k in range(len(writer.spans))],
         "        while True:",
         "            # with the signs known so far; then the one that was missed first",
-        "            want[0] = -1",
+        f"            {writer.want} = -1.0",
         f"            verdict = {verdict}",
-        "            if want[0] < 0:",
+        f"            if {writer.want} < 0:",
         "                break",
-        "            first, last = SPANS[want[0], 0], SPANS[want[0], 1]",
-        "            known[want[0]] = sign_of(w, length, STEPS, first, last)",
+        f"            k = int({writer.want})",
+        "            sign = sign_of(w, length, STEPS, SPANS[k, 0], SPANS[k, 1])",
+        f"            w[{writer.layout.known} + k] = sign",
         "        out[i] = verdict",
     ]
     spans = [list(span) for span in writer.spans] or [[0, 0]]
     rows = ",\n".join(f"        {list(step)}" for step in writer.steps) or f"        {[0] * 9}"
     head = (
-        f"import numpy as np\nfrom numba import njit\n\nfrom {shared} import sign_of, usable\n\n"
+        f"import numpy as np\nfrom numba import njit\n\nfrom {shared} import (\n"
+        f"    sign_of, usable, {NAMES}\n)\n\n"
         f"STEPS = np.array(\n    [\n{rows},\n    ],\n    dtype=np.int32,\n)\n"
         f"SPANS = np.array({spans}, dtype=np.int32)"
     )

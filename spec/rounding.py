@@ -21,6 +21,11 @@ def near(value: float, real: float, size: float, bound: float) -> bool:
     return abs(value - real) <= bound and abs(value) <= size
 
 
+def stands_for(high: float, low: float, real: float, left_out: float) -> bool:
+    """A pair of doubles stands for a real number that lies no farther from their sum."""
+    return abs(real - (high + low)) <= left_out
+
+
 def surely_positive(value: float, bound: float) -> bool:
     """Every real number within `bound` of `value` is positive."""
     return value - bound > 0

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from cratous.core import exactly as reading
-from cratous.core import polygon, well_clear
+from cratous.core import expansions, polygon, well_clear
 from cratous.core.bounds import UNIT
-from cratous.core.compiled import compiled, exact
+from cratous.core.compiled import FLAGS, compiled, exact, load
 from cratous.core.domain import nonnegative
 from cratous.core.exactly import exactly
 from cratous.core.filtering import UNDECIDED, filtered
@@ -96,7 +96,18 @@ def tangent(n: int) -> list[np.ndarray]:
     return [3 * k + 4 * away, 4 * k - 3 * away, -4 * speed, 3 * speed, 5 * k, np.full(n, 1e6)]
 
 
-BOUNDARIES = {"on the circle": on_circle, "on tau": on_tau, "tangent": tangent}
+def wide_tangent(n: int) -> list[np.ndarray]:
+    """The same with integers of 53 bits: ties that no two doubles hold."""
+    k, away, speed = np.random.default_rng(8).integers(2**49, 2**50, (3, n)).astype(float)
+    return [3 * k + 4 * away, 4 * k - 3 * away, -4 * speed, 3 * speed, 5 * k, np.full(n, 1e6)]
+
+
+BOUNDARIES = {
+    "on the circle": on_circle,
+    "on tau": on_tau,
+    "tangent": tangent,
+    "tangent, wide": wide_tangent,
+}
 
 
 def undecided(kernel: Any, columns: list[np.ndarray]) -> float:
@@ -138,6 +149,36 @@ def test_boundaries_of_the_horizontal_volume(name: str) -> None:
     if name != "tangent":
         # otherwise the test would show nothing: plain doubles are wrong here
         assert compiled(horizontal_violation)(*columns).tolist() != wanted
+
+
+def machine(kernel: Any, columns: list[np.ndarray], pairs_too: bool, shared: str) -> list[Any]:
+    """The verdicts of machine code alone, for every state."""
+    found = reading._filter_of(kernel)
+    made = expansions.text(found, frozenset(), FLAGS, load(shared).__name__, pairs_too)
+    assert made is not None
+    code = np.ones(columns[0].size, dtype=np.uint8)
+    work, lengths = np.zeros(made[1]), np.ones(made[2], dtype=np.int64)
+    load(made[0])._map(code, code, np.arange(code.size), work, lengths, *columns)
+    return code.tolist()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(BOUNDARIES))
+def test_expansions_alone_and_behind_pairs_are_right(name: str) -> None:
+    columns = BOUNDARIES[name](1000)
+    wanted = on_rationals(horizontal_violation, columns)
+    for pairs_too in (False, True):
+        assert machine(horizontal_violation, columns, pairs_too, reading.SHARED) == wanted
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", ["sum_left_out(ar, br", "product_left_out(ar, br"])
+def test_rationals_catch_pairs_that_forget_what_they_left_out(count: str) -> None:
+    columns = wide_tangent(300)
+    wanted = on_rationals(horizontal_violation, columns)
+    assert count in reading.SHARED
+    shared = reading.SHARED.replace(count, f"0.0 * {count}")
+    assert machine(horizontal_violation, columns, True, shared) != wanted
 
 
 @pytest.mark.parametrize(("low", "high"), [(-1020, -950), (960, 1020)])

@@ -1,0 +1,213 @@
+"""The second stage of the exact reading: values as pairs of doubles that know what they lack.
+
+Every real value of a comparison is carried as (high, low, left_out): the value differs from
+high + low by at most left_out, and high is their sum, rounded. Sums and products of doubles are
+split into what is rounded and the exact rest (Dekker 1971, Knuth; as in J. R. Shewchuk, "Adaptive
+Precision Floating-Point Arithmetic", 1997), so that left_out is 0 for as long as two doubles
+suffice and a pair decides exact ties too, where the numbers are short. What is left out is counted
+by kernels that are proved (`core.certainty`: sum_left_out, product_left_out). Nothing is
+approximated silently: what a pair cannot decide goes to `core.expansions`.
+
+The count is itself rounded, by a relative error of less than 2^-48 for each operation; `WIDER`
+covers a million of them. It never underflows where `expansions.reach` admits the input: every
+part of a value is a multiple of 2^-960, and the least share of one that is counted is 2^-52.
+"""
+
+from __future__ import annotations
+
+from cratous.core.bounds import UNIT
+from cratous.core.certainty import product_left_out, sum_left_out, surely_above, surely_below
+from cratous.core.compiled import sources
+from cratous.core.nodes import Node
+from cratous.core.printing import name
+
+WIDER = 1.0 + 2.0**-20
+"""What is left out is taken this much greater: covers the roundings of its count."""
+MOST_OPERATIONS = 80
+"""A comparison of more operations goes to the expansions at once: its code would be long."""
+
+ARITHMETIC = '''
+@FLAGS
+def two_sum(x, y):
+    """x + y, rounded, and the exact rest."""
+    s = x + y
+    t = s - x
+    return s, (x - (s - t)) + (y - t)
+
+
+@FLAGS
+def two_product(x, y):
+    """x * y, rounded, and the exact rest."""
+    p = x * y
+    t = 134217729.0 * x
+    a = t - (t - x)
+    b = x - a
+    t = 134217729.0 * y
+    c = t - (t - y)
+    d = y - c
+    return p, b * d - (((p - a * c) - b * c) - a * d)
+
+
+@FLAGS
+def sum_of_pair(ah, al, ar, y):
+    """A pair plus a double."""
+    s, e = two_sum(ah, y)
+    m, g = two_sum(e, al)
+    h, l = two_sum(s, m)
+    return h, l, sum_left_out(ar, 0.0, 0.0, g)
+
+
+@FLAGS
+def sum_of_pairs(ah, al, ar, bh, bl, br):
+    """A pair plus a pair."""
+    s, e = two_sum(ah, bh)
+    t, f = two_sum(al, bl)
+    m, g = two_sum(e, t)
+    h, l = two_sum(s, m)
+    return h, l, sum_left_out(ar, br, f, g)
+
+
+@FLAGS
+def product_of_pair(ah, al, ar, y):
+    """A pair times a double."""
+    p, e = two_product(ah, y)
+    c = al * y
+    m, g = two_sum(e, c)
+    h, l = two_sum(p, m)
+    size = abs(ah) + abs(al)
+    return h, l, product_left_out(ar, 0.0, size, abs(y), c, 0.0, 0.0, 0.0, g, SHARE)
+
+
+@FLAGS
+def product_of_pairs(ah, al, ar, bh, bl, br):
+    """A pair times a pair."""
+    p, e = two_product(ah, bh)
+    c = ah * bl
+    d = al * bh
+    t, f = two_sum(c, d)
+    m, g = two_sum(e, t)
+    h, l = two_sum(p, m)
+    m, n = abs(ah) + abs(al), abs(bh) + abs(bl)
+    return h, l, product_left_out(ar, br, m, n, c, d, al * bl, f, g, SHARE)
+'''
+
+
+def arithmetic(flags: str) -> str:
+    """The functions of one sum and one product, and the kernels that count what is left out."""
+    kernels = (sum_left_out, product_left_out, surely_above, surely_below)
+    rules = [text for kernel in kernels for text in sources(kernel)]
+    head = f"SHARE = {float(2 * UNIT)!r}"
+    return "\n\n\n".join([head, *rules, ARITHMETIC.strip().replace("@FLAGS", f"@{flags}")]) + "\n"
+
+
+NAMES = (
+    "product_of_pair, product_of_pairs, sum_of_pair, sum_of_pairs, surely_above, surely_below, "
+    "two_product, two_sum"
+)
+
+
+class Pair:
+    """The text of one value: high, low, left out; `double` if it is one double by itself."""
+
+    def __init__(self, high: str, low: str = "0.0", left: str = "0.0") -> None:
+        self.high, self.low, self.left = high, low, left
+        self.double = low == "0.0" and left == "0.0"
+
+    @property
+    def parts(self) -> str:
+        """high, low, left out."""
+        return f"{self.high}, {self.low}, {self.left}"
+
+    def negative(self) -> Pair:
+        """The value with the other sign."""
+        return Pair(f"(-{self.high})", self.low if self.double else f"(-{self.low})", self.left)
+
+
+class Writer:
+    """Lines that compute pairs; `lines` grows as values are asked for."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        self.made: dict[int, Pair] = {}
+
+    def named(self, number: int | str, value: str) -> Pair:
+        """A variable of three parts with this value."""
+        pair = Pair(f"h{number}", f"l{number}", f"r{number}")
+        self.lines.append(f"    {pair.parts} = {value}")
+        return pair
+
+    def sum(self, number: int | str, a: Pair, b: Pair) -> Pair:
+        """a + b."""
+        if a.double and b.double:
+            pair = Pair(f"h{number}", f"l{number}")
+            self.lines.append(f"    {pair.high}, {pair.low} = two_sum({a.high}, {b.high})")
+            return pair
+        if a.double or b.double:
+            a, b = (b, a) if a.double else (a, b)
+            return self.named(number, f"sum_of_pair({a.parts}, {b.high})")
+        return self.named(number, f"sum_of_pairs({a.parts}, {b.parts})")
+
+    def product(self, number: int, a: Pair, b: Pair) -> Pair:
+        """a * b."""
+        if a.double and b.double:
+            pair = Pair(f"h{number}", f"l{number}")
+            self.lines.append(f"    {pair.high}, {pair.low} = two_product({a.high}, {b.high})")
+            return pair
+        if a.double or b.double:
+            a, b = (b, a) if a.double else (a, b)
+            return self.named(number, f"product_of_pair({a.parts}, {b.high})")
+        return self.named(number, f"product_of_pairs({a.parts}, {b.parts})")
+
+    def chosen(
+        self, number: int, condition: str, a: Pair, b: Pair, left: str | None = None
+    ) -> Pair:
+        """a where the condition holds, else b; left: what is left out, if not that of the chosen."""
+        names = [f"h{number}", f"l{number}", f"r{number}"]
+        own = [(a.high, b.high), (a.low, b.low), (a.left, b.left)]
+        self.lines.append(f"    t{number} = {condition}")
+        for variable, (x, y) in zip(names, own, strict=True):
+            given = left if left is not None and variable[0] == "r" else None
+            self.lines.append(f"    {variable} = {given or f'{x} if t{number} else {y}'}")
+        return Pair(*names)
+
+    def value(self, node: Node, condition: str = "") -> None:
+        """One node, its operands being made; condition: the text of an `if`'s truth value."""
+        number, args = node.number, [self.made[a.number] for a in node.args if a.kind == "float"]
+        if node.op in ("in", "lit"):
+            made = Pair(name(node))
+        elif node.op == "add":
+            made = self.sum(number, *args)
+        elif node.op == "sub":
+            made = self.sum(number, args[0], args[1].negative())
+        elif node.op == "mul":
+            made = self.product(number, *args)
+        elif node.op == "neg":
+            made = args[0].negative()
+        elif node.op == "abs":
+            a = args[0]
+            made = self.chosen(number, f"{a.high} < 0", a.negative(), a)
+        elif node.op == "if":
+            a, b = args
+            made = self.chosen(number, condition, a, b)
+        else:
+            a, b = args
+            less = f"{b.high} < {a.high} or ({b.high} == {a.high} and {b.low} < {a.low})"
+            if node.op == "max":
+                less = f"{b.high} > {a.high} or ({b.high} == {a.high} and {b.low} > {a.low})"
+            made = self.chosen(number, less, b, a, f"{a.left} + {b.left}")
+        self.made[number] = made
+
+    def sign(self, a: Node, b: Node, known: str) -> None:
+        """Store the sign of a - b into `known` and return it, where it is certain."""
+        if b.op == "lit" and b.value == 0:
+            gap = self.made[a.number]
+        else:
+            gap = self.sum("", self.made[a.number], self.made[b.number].negative())
+        self.lines += [
+            f"    bound = {WIDER!r} * (abs({gap.low}) + {gap.left})",
+            f"    sign = 1.0 if surely_above({gap.high}, bound) else 0.0",
+            f"    sign = -1.0 if surely_below({gap.high}, bound) else sign",
+            f"    if sign != 0 or (bound == 0 and {gap.high} == 0):",
+            f"        {known} = sign",
+            "        return sign",
+        ]
