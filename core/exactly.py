@@ -2,7 +2,7 @@
 
 Four stages, each generated from the kernel's graph. The *filter* (`core.filtering`) is as fast as
 the plain doubles and leaves undecided what rounding could have changed; *pairs* of doubles
-(`core.pairs`) decide nearly all of that, and *expansions* (`core.expansions`) the rest exactly, in
+(`core.pairs`) and residues of what they leave decide nearly all of that, and *expansions* (`core.expansions`) the rest exactly, in
 machine code while nothing can overflow or underflow; *integers* (`core.integers`) decide
 everything else. All are exact where they answer, so the verdict does not depend on which did.
 """
@@ -18,9 +18,10 @@ from typing import Any
 
 import numpy as np
 
-from cratous.core import expansion_arithmetic, expansions, integers, pairs
+from cratous.core import expansions, integers, pairs, residues
 from cratous.core.compiled import FLAGS, checked, load, loop_text, outcome, single
 from cratous.core.domain import nonnegative, refuse_negative
+from cratous.core.expansion_arithmetic import primitives
 from cratous.core.filtering import TRUE, UNDECIDED, Certain, Filter, filtered
 from cratous.core.kernel import Fold
 from cratous.core.nodes import Node, NotInSubset, Program, Record, Value, leaves
@@ -30,7 +31,9 @@ from cratous.spec.errors import BadInput
 FEW = 64
 """So few undecided states go straight to the integers: machine code need not be made for them."""
 
-SHARED = expansion_arithmetic.primitives(FLAGS) + "\n\n" + pairs.arithmetic(FLAGS)
+SHARED = "\n\n".join(
+    ["import numpy as np", *(m(FLAGS) for m in (primitives, pairs.arithmetic, residues.arithmetic))]
+)
 """The text that the machine code of all kernels shares."""
 
 

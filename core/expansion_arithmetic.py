@@ -167,12 +167,15 @@ def _mul(w, a, n, b, k, c, t, u):
         a, n, b, k = b, k, a, n
     if k == 0:
         return 0
-    m = _scale(w, a, n, w[b], c)
-    for j in range(1, k):
+    if k == 1:
+        return _scale(w, a, n, w[b], c)
+    m = _scale(w, a, n, w[b], u)
+    for j in range(1, k - 1):
         p = _scale(w, a, n, w[b + j], t)
-        r = _sum(w, c, m, t, p, 1.0, u)
-        m = _times(w, u, r, 1.0, c)
-    return m
+        r = _sum(w, u, m, t, p, 1.0, c)
+        m = _times(w, c, r, 1.0, u)
+    p = _scale(w, a, n, w[b + k - 1], t)
+    return _sum(w, u, m, t, p, 1.0, c)
 
 
 @FLAGS

@@ -1,8 +1,8 @@
 """The third stage of the exact reading: exact signs by floating-point expansions, compiled.
 
 For each comparison of a kernel that rounding could decide wrongly this module writes a function,
-which asks the filter first and pairs of doubles next (`pairs`), and a table of steps on expansions
-(`expansion_steps`), which one compiled function carries out for all kernels
+which asks the filter first, pairs of doubles next (`pairs`) and residues then (`residues`), and a
+table of steps on expansions (`expansion_steps`), which one compiled function carries out for all kernels
 (`expansion_arithmetic`). Verdicts
 are short-circuited, so only what matters is computed: a verdict is evaluated with the signs known
 so far, and again with each that turns out to be missing. The known signs stand in the work array
@@ -16,11 +16,12 @@ of it underflows) and stays below 2^990; outside of it the generated function an
 
 from __future__ import annotations
 
+from cratous.core import residues
 from cratous.core.expansion_arithmetic import TIMES
 from cratous.core.expansion_steps import Layout, Steps
 from cratous.core.filtering import UNDECIDED, Filter
 from cratous.core.nodes import Node, ordered
-from cratous.core.pairs import MOST_OPERATIONS, NAMES
+from cratous.core.pairs import MOST_LINES, NAMES
 from cratous.core.pairs import Writer as Pairs
 from cratous.core.printing import name, straight
 
@@ -56,7 +57,7 @@ class Writer:
 
     def __init__(self, found: Filter, pairs: bool = True) -> None:
         self.program = found.program
-        self.pairs = pairs
+        self.paired_lines = MOST_LINES if pairs else 0
         self.columns = ", ".join(str(column.value) for column in self.program.columns)
         self.compared_nodes = found.compared
         self.certain = {node.number: certain for node, certain in found.states}
@@ -157,11 +158,9 @@ class Writer:
         return lines
 
     def paired(self, node: Node, number: int) -> list[str]:
-        """The sign by pairs of doubles, unless that would be long."""
-        parts = [part for part in ordered(list(node.args)) if part.kind == "float"]
-        if not self.pairs or len(parts) > MOST_OPERATIONS:
-            return []
+        """The sign by pairs of doubles and by residues, unless the kernel's lines of them are many already."""
         pairs = Pairs()
+        parts = [part for part in ordered(list(node.args)) if part.kind == "float"]
         for part in parts:
             condition = ""
             if part.op == "if":
@@ -172,8 +171,10 @@ class Writer:
                     pairs.lines += [f"    if {self.want} >= 0:", "        return 0.0"]
             pairs.value(part, condition)
         a, b = node.args
-        pairs.sign(a, b, self.sign(number))
-        return pairs.lines
+        high = pairs.sign(a, b, self.sign(number))
+        found = [*pairs.lines, *residues.lines(parts, a, b, high, "bound", self.sign(number))]
+        self.paired_lines -= len(found)
+        return found if self.paired_lines >= 0 else []
 
     def second(self, a: Node, b: Node) -> list[str]:
         """The steps to the sign of a - b; returned are lines that set conditions for them."""
@@ -254,7 +255,7 @@ def text(
     rows = ",\n".join(f"        {list(step)}" for step in writer.steps) or f"        {[0] * 9}"
     head = (
         f"import numpy as np\nfrom numba import njit\n\nfrom {shared} import (\n"
-        f"    sign_of, usable, {NAMES}\n)\n\n"
+        f"    sign_of, usable, {NAMES},\n    {residues.NAMES}\n)\n\n"
         f"STEPS = np.array(\n    [\n{rows},\n    ],\n    dtype=np.int32,\n)\n"
         f"SPANS = np.array({spans}, dtype=np.int32)"
     )

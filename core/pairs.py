@@ -23,8 +23,8 @@ from cratous.core.printing import name
 
 WIDER = 1.0 + 2.0**-20
 """What is left out is taken this much greater: covers the roundings of its count."""
-MOST_OPERATIONS = 80
-"""A comparison of more operations goes to the expansions at once: its code would be long."""
+MOST_LINES = 300
+"""Comparisons beyond so many lines for one kernel go to the expansions at once: code takes time."""
 
 ARITHMETIC = '''
 @FLAGS
@@ -197,8 +197,11 @@ class Writer:
             made = self.chosen(number, less, b, a, f"{a.left} + {b.left}")
         self.made[number] = made
 
-    def sign(self, a: Node, b: Node, known: str) -> None:
-        """Store the sign of a - b into `known` and return it, where it is certain."""
+    def sign(self, a: Node, b: Node, known: str) -> str:
+        """Store the sign of a - b into `known` and return it, where it is certain.
+
+        Gives the text of the high part of a - b; how far that may be off is in `bound`.
+        """
         if b.op == "lit" and b.value == 0:
             gap = self.made[a.number]
         else:
@@ -211,3 +214,4 @@ class Writer:
             f"        {known} = sign",
             "        return sign",
         ]
+        return gap.high

@@ -7,6 +7,8 @@ from typing import Any, get_type_hints
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from cratous.core import exactly as reading
 from cratous.core import expansions, polygon, well_clear
@@ -179,6 +181,62 @@ def test_rationals_catch_pairs_that_forget_what_they_left_out(count: str) -> Non
     assert count in reading.SHARED
     shared = reading.SHARED.replace(count, f"0.0 * {count}")
     assert machine(horizontal_violation, columns, True, shared) != wanted
+
+
+def _nearly_even(a: float, b: float, c: float, d: float, e: float) -> bool:
+    """Products that are equal, and something far below them."""
+    return a * a * (b * b) - c * c * (d * d) + e * e * (e * e) > 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "careless",
+    [("e + 126", "e + 400"), (" + (ONE if low < al else ZERO)", ""), (" + (middle >> HALF)", "")],
+)
+def test_rationals_catch_careless_residues(careless: tuple[str, str]) -> None:
+    rng = np.random.default_rng(9)
+    a, b, e = rng.uniform(1, 2, (3, 200))
+    cases = [(horizontal_violation, wide_tangent(200)), (_nearly_even, [a, b, a, b, e * 2.0**-60])]
+    assert careless[0] in reading.SHARED
+    wrong = reading.SHARED.replace(*careless)
+    caught = False
+    for kernel, columns in cases:
+        wanted = on_rationals(kernel, columns)
+        assert machine(kernel, columns, True, reading.SHARED) == wanted
+        caught |= machine(kernel, columns, True, wrong) != wanted
+    assert caught
+
+
+WORDS = st.integers(-(2**126), 2**126)
+
+
+@pytest.mark.slow
+@given(a=WORDS, b=WORDS, m=st.integers(-300, 300), n=st.integers(-300, 300), x=st.floats(
+    allow_nan=False, allow_infinity=False, allow_subnormal=False))  # fmt: skip
+def test_residues_are_those_of_integers(a: int, b: int, m: int, n: int, x: float) -> None:
+    made = load(reading.SHARED)
+
+    def words(value: int, exponent: int) -> tuple[Any, Any, int]:
+        return np.uint64(value >> 64 & 2**64 - 1), np.uint64(value & 2**64 - 1), exponent
+
+    def value(found: tuple[int, int, int]) -> int:
+        return (int(found[0]) << 64) + int(found[1])
+
+    one, other = words(a, m), words(b, n)
+    least = min(m, n)
+    total = made.sum_of_residues(*one, *other)
+    assert total[2] == least
+    assert (value(total) - (a << m - least) - (b << n - least)) % 2**128 == 0
+    product = made.product_of_residues(*one, *other)
+    assert product[2] == m + n
+    assert (value(product) - a * b) % 2**128 == 0
+    assert (value(made.negative_residue(*one)) + a) % 2**128 == 0
+    alone = made.residue(x)
+    signed = value(alone) - (2**128 if value(alone) >> 127 else 0)
+    assert signed == 0 == x or Fraction(signed) * Fraction(2) ** alone[2] == Fraction(x)
+    size = float(abs(a) or 1)
+    assert made.sign_of_residue(*words(a, 0), size) in ((a > 0) - (a < 0), 2)
+    assert made.sign_of_residue(*words(a, 0), 2.0**126) == 2
 
 
 @pytest.mark.parametrize(("low", "high"), [(-1020, -950), (960, 1020)])
