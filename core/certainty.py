@@ -16,8 +16,11 @@ def surely_above(value: float, bound: float) -> bool:
 
 @kernel(implements="rounding.surely_negative")
 def surely_below(value: float, bound: float) -> bool:
-    """True iff every real number within `bound` of `value` is negative; any one unit for both."""
-    return value < -bound
+    """True iff every real number within `bound` of `value` is negative; any one unit for both.
+
+    A sum of doubles, rounded, is below 0 where the sum is, and nowhere else.
+    """
+    return value + bound < 0
 
 
 @kernel(implements="rounding.outward_margin", nonnegative=("share", "least"))

@@ -2,9 +2,10 @@
 
 Four stages, each generated from the kernel's graph. The *filter* (`core.filtering`) is as fast as
 the plain doubles and leaves undecided what rounding could have changed; *pairs* of doubles
-(`core.pairs`) and residues of what they leave decide nearly all of that, and *expansions* (`core.expansions`) the rest exactly, in
-machine code while nothing can overflow or underflow; *integers* (`core.integers`) decide
-everything else. All are exact where they answer, so the verdict does not depend on which did.
+(`core.pairs`) with residues of what they lack (`core.residues`) decide nearly all of that, and
+*expansions* (`core.expansions`) the rest, in machine code while nothing can overflow or underflow;
+*integers* (`core.integers`) decide everything else. All are exact where they answer, so the verdict
+does not depend on which of them did.
 """
 
 from __future__ import annotations

@@ -82,7 +82,7 @@ class Compared:
     below: Node | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Filter:
     """A filtered kernel: columns and results as nodes of `terms`, and what was done to get there.
 
@@ -122,6 +122,7 @@ class _Maker:
         self.steps: list[Step] = []
         self.compared: list[Compared] = []
         self.bounds: list[Node] = []
+        self.sizes: list[Node] = []
         self.needed: list[Node] = []
 
     def make(self) -> Filter:
@@ -301,6 +302,7 @@ class _Maker:
                 # a doubled value may overflow, and then it is not exact
                 if any(part.op == "mul" for part in ordered([side.value])):
                     self.bounds.append(side.size)
+                    self.sizes.append(side.size)
             self.compared.append(Compared(node, sharp))
             return sharp
         found = self.sum("sub", a, b)
@@ -340,20 +342,19 @@ class _Maker:
 
     # -- finite input -------------------------------------------------------------------
     def finite(self) -> Node:
-        """True only if every real column is finite: the sum of all bounds and sizes is.
+        """True only if every real column is finite: the sum of bounds in which each stands is.
 
         A bound is finite only if every column in it is; one behind a choice may not be seen,
-        so it is added on its own.
+        so it is added on its own. A bound that is not finite decides nothing, so of those that say
+        nothing of a further column none needs to be here; sizes of exact values all do.
         """
         covered: set[Any] = set()
-        todo = list(self.bounds)
-        while todo:
-            node = todo.pop()
-            if node.op == "in":
-                covered.add(node.value)
-            elif node.op not in ("if", "min", "max"):
-                todo += node.args
-        total = list(self.bounds)
+        total = []
+        seen = {bound: _columns(bound) for bound in self.bounds}
+        for bound in sorted(self.bounds, key=lambda b: (b not in self.sizes, -len(seen[b]))):
+            if bound in self.sizes or seen[bound] - covered:
+                total.append(bound)
+                covered |= seen[bound]
         for column in self.source.columns:
             if column.kind == "float" and column.value not in covered:
                 total.append(self.plain("abs", self.terms.column(column.value, "float")))
@@ -361,3 +362,16 @@ class _Maker:
             return self.terms.literal(True, "bool")
         summed = functools.reduce(functools.partial(self.plain, "add"), total)
         return self.terms.compare("le", summed, self.terms.literal(LARGEST, "float"))
+
+
+def _columns(bound: Node) -> set[Any]:
+    """The columns that make a bound not finite where they are not."""
+    found: set[Any] = set()
+    todo = [bound]
+    while todo:
+        node = todo.pop()
+        if node.op == "in":
+            found.add(node.value)
+        elif node.op not in ("if", "min", "max"):
+            todo += node.args
+    return found

@@ -26,14 +26,14 @@ def stands_for(high: float, low: float, real: float, left_out: float) -> bool:
     return abs(real - (high + low)) <= left_out
 
 
-def surely_positive(value: float, bound: float) -> bool:
-    """Every real number within `bound` of `value` is positive."""
-    return value - bound > 0
+def surely_positive(real: float, value: float, bound: float) -> bool:
+    """The real number is positive if it lies within `bound` of `value`. FOR ALL real numbers."""
+    return not stands_for(value, 0, real, bound) or real > 0
 
 
-def surely_negative(value: float, bound: float) -> bool:
-    """Every real number within `bound` of `value` is negative."""
-    return value + bound < 0
+def surely_negative(real: float, value: float, bound: float) -> bool:
+    """The real number is negative if it lies within `bound` of `value`. FOR ALL real numbers."""
+    return not stands_for(value, 0, real, bound) or real < 0
 
 
 def outward_margin(value: float, share: float, least: float) -> float:
