@@ -12,10 +12,6 @@ def claim(c: Claim) -> None:
     for least in (zthr, tcoa, vmod, t):
         c.premise(least >= 0)
     c.premise(t <= end)
-    for error in (dz, dw):
-        bound = ez if error is dz else ew
-        c.premise(0 - bound <= error)
-        c.premise(error <= bound)
     c.opaque(layer_above)
     span = c.use(layer_span, sz, vz, ez, ew, zthr, tcoa, vmod, end)
     z, w = sz + dz, vz + dw
@@ -23,10 +19,12 @@ def claim(c: Claim) -> None:
     seen = "daa_uncertain_layer_above_misses_no_instant"
     above, below = sz - ez >= 0, sz + ez < 0
     both = c.negation(c.any_of(above, below))
+    # what the definition asks for
+    near = c.all_of(-ez <= dz, dz <= ez, -ew <= dw, dw <= ew)
     sides = ((above, 1), (below, -1), (c.all_of(both, z >= 0), 1), (c.all_of(both, z < 0), -1))
     for (there, sign), args in zip(sides, c.calls(layer_above), strict=False):
         bounds = dict(zip(names, args, strict=True))
-        c.lemma(seen, when=there, z=sign * z, w=sign * w, t=t, **bounds)
+        c.lemma(seen, when=c.all_of(near, there), z=sign * z, w=sign * w, t=t, **bounds)
     violated = c.define(
         daa_meaning.layer_may_be_violated_at, sz, vz, dz, dw, ez, ew, zthr, tcoa, vmod, t
     )
