@@ -9,6 +9,7 @@ obligation can be written out as SMT-LIB for solvers that stand alone.
 
 from __future__ import annotations
 
+import sys
 import time
 import traceback
 from collections.abc import Callable, Iterator
@@ -288,6 +289,14 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
         statement(claim)
         hanging = sorted(n for n in claim.asking if hangs_on_calls(n, folder))
     except Exception as error:
+        # ctypes, which z3 is called through, gives it another type
+        if isinstance(error, RecursionError) or "RecursionError" in str(error):
+            raise BadInput(
+                "the theorem cannot be stated: a term in it is nested too deeply to be read",
+                where=where,
+                expected="less in one kernel: split it, and do not look into the part (c.opaque)",
+                got=f"more than {sys.getrecursionlimit()} levels",
+            ) from error
         slip = _slip(error, folder)
         if not slip and not isinstance(error, ValueError | TypeError | LiftError):
             raise  # not the theorem's doing

@@ -125,6 +125,22 @@ def test_an_error_in_a_process_comes_back_as_it_is(tmp_path: Path):
         ledger.prove_theorems(["empty"], folder=tmp_path, jobs=2)
 
 
+def test_a_term_that_is_nested_too_deeply_is_told(tmp_path: Path):
+    lines = [
+        '"""A sentence."""',
+        "from cratous.core.well_clear import vertical_violation",
+        "def claim(c):",
+        "    a, b, d = c.reals('a b d')",
+        "    for _ in range(20_000):",
+        "        a = a * b + d",
+        "    c.show(c.use(vertical_violation, a, b, d, d))",
+    ]
+    (tmp_path / "deep.py").write_text("\n".join(lines))
+    with pytest.raises(BadInput, match=r"nested too deeply") as caught:
+        prover.prove_file("deep", folder=tmp_path)
+    assert caught.value.expected.startswith("less in one kernel")
+
+
 def test_a_mistake_in_a_theorem_is_told_with_its_line(tmp_path: Path):
     (tmp_path / "slip.py").write_text('"""A sentence."""\n\n\ndef claim(c):\n    c.shows(True)\n')
     with pytest.raises(BadInput, match=r"slip.py:5: the theorem cannot be stated: .*'shows'"):
