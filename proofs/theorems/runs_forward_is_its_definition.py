@@ -10,6 +10,8 @@ EXAMPLES = (
     ("it does not run at 2", (2, 5, 3, 7), False),
     ("it does not run at 8", (8, 5, 3, 7), False),
     ("it runs before mission start", (4, -1, -2, 7), False),
+    ("it runs later than it is seen before mission start", (-2, -1, -2, 3), False),
+    ("it is looked at before mission start when it has ended", (-6, -2, -6, -4), True),
     ("it runs after mission start as well", (4, 1, -2, 7), True),
     ("it does not run where it is looked at before mission start", (4, -3, -2, 7), True),
 )

@@ -6,6 +6,15 @@ from cratous.core.timing import schedule_step
 from cratous.proofs.claim import Claim
 from cratous.spec import schedule
 
+# a task that may not run before 0: the instants t and u, its start and end, and whether all is well
+SEEN = (
+    ("when it runs", (4, 5, 3, 7), True),
+    ("at a t at which it does not run yet", (2, 5, 3, 7), False),
+    ("at a t at which it has ended", (8, 5, 3, 7), False),
+    ("after mission start, though it started before", (4, 4, -2, 7), True),
+    ("before mission start", (4, -1, -2, 7), False),
+)
+
 
 def claim(c: Claim) -> None:
     ok = c.boolean("ok")
@@ -19,3 +28,7 @@ def claim(c: Claim) -> None:
     at_start = c.define(schedule.rows_hold_step, t, start, ok, *row)
     at_end = c.define(schedule.rows_hold_step, t, end, ok, *row)
     c.show(c.implies(c.all_of(at_start, at_end), held), "if not, start or end shows it")
+    for text, (t, u, start, end), said in SEEN:
+        one = (schedule.NOT_BEFORE, start, end, 0, 0, 0)
+        held = c.define(schedule.rows_hold_step, t, u, True, *one)
+        c.show(c.same(held, said), f"an example: seen {text}")
