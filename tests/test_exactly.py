@@ -159,9 +159,43 @@ def machine(kernel: Any, columns: list[np.ndarray], pairs_too: bool, shared: str
     made = expansions.text(found, frozenset(), FLAGS, load(shared).__name__, pairs_too)
     assert made is not None
     code = np.ones(columns[0].size, dtype=np.uint8)
+    truth = leaves(found.program.result)[0].kind == "bool"
+    out = code if truth else np.ones(code.size, dtype=np.int64)
     work, lengths = np.zeros(made[1]), np.ones(made[2], dtype=np.int64)
-    load(made[0])._map(code, code, np.arange(code.size), work, lengths, *columns)
-    return code.tolist()
+    load(made[0])._map(out, code, np.arange(code.size), work, lengths, *columns)
+    assert code.max(initial=0) < UNDECIDED
+    return out.tolist()
+
+
+def near_ties(kernel: Any, n: int) -> list[np.ndarray]:
+    """Small integers at scales of their own, some a unit or two in the last place away."""
+    rng = np.random.default_rng(len(kernel.__name__))
+    scale = 2.0 ** rng.integers(-20, 20, n)
+    found = []
+    for k, column in enumerate(states(kernel, "grid", n, seed=3)):
+        if column.dtype == float:
+            # one scale for all of a state, mostly
+            column = column * np.where(rng.random(n) < 0.9, scale, scale * 2.0**-k)
+            column = column * (1 + rng.integers(-1, 2, n) * (rng.random(n) < 0.2) * 2.0**-51)
+        found.append(column)
+    return found
+
+
+# absolute values, the greater, choices, a choice that hangs on a sign, and an integer as result
+EVERY_OPERATION = ("layer_violation", "violation_tcpa", "square_left_of", "repels", "edge_against")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(n, marks=pytest.mark.slow if n in EVERY_OPERATION else pytest.mark.long)
+        for n in sorted(KERNELS)
+    ],
+)
+def test_machine_code_decides_as_rationals_do(name: str) -> None:
+    kernel = KERNELS[name]
+    columns = near_ties(kernel, 400)
+    assert machine(kernel, columns, True, reading.SHARED) == on_rationals(kernel, columns)
 
 
 @pytest.mark.slow
