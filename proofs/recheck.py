@@ -193,11 +193,14 @@ def _stored(job: _Job, store: Store, solver: str) -> tuple[str, str, float]:
     return verdict, logic, seconds
 
 
-def _worker(
-    jobs: list[_Job], share: int, of: int, out: Connection, store: Store, solver: str
-) -> None:
-    for job in jobs[share::of]:
-        out.send(job.check(*_stored(job, store, solver)))
+def _worker(jobs: list[_Job], taken: Any, out: Connection, store: Store, solver: str) -> None:
+    """Take what is next until nothing is left, so that no worker waits for another's long ones."""
+    while True:
+        with taken.get_lock():
+            number, taken.value = taken.value, taken.value + 1
+        if number >= len(jobs):
+            break
+        out.send(jobs[number].check(*_stored(jobs[number], store, solver)))
     out.close()
 
 
@@ -233,9 +236,10 @@ def recheck(
     todo = list({job.key: job for job in wanted if job.key not in known}.values())
     fork = multiprocessing.get_context("fork")
     pipes: list[tuple[Connection, Any]] = []
-    for share in range(jobs):
+    taken = fork.Value("q", 0)
+    for _ in range(jobs):
         here, there = fork.Pipe(duplex=False)
-        process = fork.Process(target=_worker, args=(todo, share, jobs, there, kept, solver))
+        process = fork.Process(target=_worker, args=(todo, taken, there, kept, solver))
         process.start()
         there.close()
         pipes.append((here, process))
