@@ -117,6 +117,9 @@ ATTACKS = {
     "how kernels are compiled": ("core/compiled.py", "range(out.size)", "range(out.size - 1)",
                                  "the readings"),
     "the exact reading": ("core/exactly.py", "FEW = 64", "FEW = 65", "the readings"),
+    "what a residue may decide": ("core/residues.py", "e + 126", "e + 127", "the readings"),
+    "what a pair leaves out": ("core/pairs.py", "abs({gap.low}) + {gap.left}", "abs({gap.low})",
+                               "the readings"),
     "a driver": ("core/legs.py", "box[2] <= a.y <= box[3]", "box[2] < a.y <= box[3]", "leg_ok: changed"),
     "a driver's checker removed": (
         "core/prediction.py", '@driver(checked_by=("violation_within",))',
