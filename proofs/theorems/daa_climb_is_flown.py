@@ -20,13 +20,14 @@ NOT_FLOWN = (
 
 
 def claim(c: Claim) -> None:
+    # the examples come first: they refute a wrong definition at once, the long claim does not
+    c.show(c.define(daa_meaning.climb_is_flown, *FLOWN.values()), "an example")
+    for text, other in NOT_FLOWN:
+        flown = c.define(daa_meaning.climb_is_flown, *(FLOWN | other).values())
+        c.show(c.negation(flown), f"an example: {text}")
     z, vz, target, rate, accel = c.reals("z vz target rate accel")
     c.premise(rate > 0)
     c.premise(accel > 0)
     t1, t2, t3, held = c.use(climb, z, vz, target, rate, accel)
     c.show(c.define(daa_meaning.climb_is_flown, z, vz, target, accel, t1, t2, t3, held))
     c.show(t1 >= 0, "not before now")
-    c.show(c.define(daa_meaning.climb_is_flown, *FLOWN.values()), "an example")
-    for text, other in NOT_FLOWN:
-        flown = c.define(daa_meaning.climb_is_flown, *(FLOWN | other).values())
-        c.show(c.negation(flown), f"an example: {text}")
