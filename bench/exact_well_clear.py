@@ -163,7 +163,7 @@ def rows() -> list[tuple[str, float, str, float]]:
         ("on the circle, 2^-100 to 2^100", on_circle, -98, 98),
         ("on the tau boundary, 2^-88 to 2^88", on_tau, -88, 88),
         ("tangent to the circle, 2^-80 to 2^80", tangent, -80, 80),
-        ("tangent to the circle, all bits, 2^-80 to 2^80", wide_tangent, -80, 30),
+        ("tangent to the circle, all bits, 2^-80 to 2^80", wide_tangent, -128, 28),
         ("on the circle, 2^-1020 to 2^-900", on_circle, -1020, -900),
         ("on the circle, 2^900 to 2^1020", on_circle, 900, 1020),
     ):

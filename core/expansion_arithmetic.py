@@ -2,10 +2,11 @@
 
 An expansion is a sum of doubles of which no two overlap; sums and products of expansions are
 exact as long as nothing overflows or underflows (J. R. Shewchuk, "Adaptive Precision
-Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997; products split after Dekker,
-so that no fused operation is needed). One compiled function carries out tables of steps over a
-work array with fixed places; `expansion_steps` makes the tables. It is text and not code because
-it is compiled beside the kernels, in their private folder, with their flags.
+Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997; products split after T. J.
+Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971, so that no fused
+operation is needed). One compiled function carries out tables of steps over a work array with fixed
+places; `expansion_steps` makes the tables. It is text and not code because it is compiled beside
+the kernels, in their private folder, with their flags.
 """
 
 LONGEST = 2100
@@ -13,18 +14,12 @@ LONGEST = 2100
 MUL2, ADD2, SUB2, ADD, SUB, SCALE, MUL, TIMES, ABS, PICK, PICK_NOT, DOT, CROSS = range(13)
 
 PRIMITIVES = '''
-# An expansion's place has two cells more than it is long: results are written before it is known
-# whether they are zero, and no branch depends on the data.
 @FLAGS
-def _add2(w, c, x, y):
-    """x + y."""
+def two_sum(x, y):
+    """x + y, rounded, and the exact rest (Knuth)."""
     s = x + y
     t = s - x
-    e = (x - (s - t)) + (y - t)
-    w[c] = e
-    n = 1 if e != 0 else 0
-    w[c + n] = s
-    return n + (1 if s != 0 else 0)
+    return s, (x - (s - t)) + (y - t)
 
 
 @FLAGS
@@ -35,47 +30,50 @@ def _high(x):
 
 
 @FLAGS
-def _mul2(w, c, x, y):
-    """x * y."""
+def two_product(x, y):
+    """x * y, rounded, and the exact rest (Dekker)."""
     p = x * y
     a = _high(x)
     b = x - a
-    d = _high(y)
-    f = y - d
-    e = b * f - (((p - a * d) - b * d) - a * f)
+    c = _high(y)
+    d = y - c
+    return p, b * d - (((p - a * c) - b * c) - a * d)
+
+
+# An expansion's place has two cells more than it is long: results are written before it is known
+# whether they are zero, and no branch depends on the data.
+@FLAGS
+def _two(w, c, s, e):
+    """The expansion of e and s, the greater."""
     w[c] = e
     n = 1 if e != 0 else 0
-    w[c + n] = p
-    return n + (1 if p != 0 else 0)
+    w[c + n] = s
+    return n + (1 if s != 0 else 0)
+
+
+@FLAGS
+def _add2(w, c, x, y):
+    """x + y."""
+    s, e = two_sum(x, y)
+    return _two(w, c, s, e)
+
+
+@FLAGS
+def _mul2(w, c, x, y):
+    """x * y."""
+    p, e = two_product(x, y)
+    return _two(w, c, p, e)
 
 
 @FLAGS
 def _dot(w, c, x, y, u, v, sign):
     """x * y plus sign times u * v: a sum of two and two, without a loop."""
-    p = x * y
-    a = _high(x)
-    b = x - a
-    d = _high(y)
-    f = y - d
-    e = b * f - (((p - a * d) - b * d) - a * f)
-    q = sign * (u * v)
-    a = _high(u)
-    b = u - a
-    d = _high(v)
-    f = v - d
-    g = sign * (b * f - (((sign * q - a * d) - b * d) - a * f))
-    s = e + g
-    t = s - e
-    h0 = (e - (s - t)) + (g - t)
-    i = p + s
-    t = i - p
-    k = (p - (i - t)) + (s - t)
-    s = k + q
-    t = s - k
-    h1 = (k - (s - t)) + (q - t)
-    h3 = i + s
-    t = h3 - i
-    h2 = (i - (h3 - t)) + (s - t)
+    p, e = two_product(x, y)
+    q, g = two_product(sign * u, v)
+    s, h0 = two_sum(e, g)
+    i, k = two_sum(p, s)
+    s, h1 = two_sum(k, q)
+    h3, h2 = two_sum(i, s)
     w[c] = h0
     n = 1 if h0 != 0 else 0
     w[c + n] = h1
@@ -101,30 +99,18 @@ def _scale(w, a, n, y, c):
     """The expansion at a times y."""
     if n == 0 or y == 0:
         return 0
-    d = _high(y)
-    f = y - d
-    m = 0
-    q = 0.0
-    for k in range(n):
-        x = w[a + k]
-        p = x * y
-        g = _high(x)
-        h = x - g
-        low = h * f - (((p - g * d) - h * d) - g * f)
-        if k == 0:
-            q = p
-            w[c] = low
-            m = 1 if low != 0 else 0
-        else:
-            s = q + low
-            t = s - q
-            e = (q - (s - t)) + (low - t)
-            w[c + m] = e
-            m += 1 if e != 0 else 0
-            q = p + s
-            e = s - (q - p)
-            w[c + m] = e
-            m += 1 if e != 0 else 0
+    q, low = two_product(w[a], y)
+    w[c] = low
+    m = 1 if low != 0 else 0
+    for k in range(1, n):
+        p, low = two_product(w[a + k], y)
+        s, e = two_sum(q, low)
+        w[c + m] = e
+        m += 1 if e != 0 else 0
+        q = p + s
+        e = s - (q - p)
+        w[c + m] = e
+        m += 1 if e != 0 else 0
     w[c + m] = q
     m += 1 if q != 0 else 0
     return m
@@ -149,12 +135,9 @@ def _sum(w, a, n, b, k, sign, c):
         x = x if first else sign * y
         i += 1 if first else 0
         j += 0 if first else 1
-        s = q + x
-        t = s - q
-        e = (q - (s - t)) + (x - t)
+        q, e = two_sum(q, x)
         w[c + m] = e
         m += 1 if e != 0 else 0
-        q = s
     w[c + m] = q
     m += 1 if q != 0 else 0
     return m
@@ -243,5 +226,5 @@ def usable(x, low, high):
 
 
 def primitives(flags: str) -> str:
-    """The module that all kernels share: `sign_of` and `usable`."""
+    """What all kernels share: `two_sum`, `two_product`, `sign_of` and `usable`."""
     return "from numba import njit\n\n\n" + PRIMITIVES.strip().replace("@FLAGS", f"@{flags}") + "\n"

@@ -6,8 +6,7 @@ table of steps on expansions (`expansion_steps`), which one compiled function ca
 kernels (`expansion_arithmetic`). Verdicts are short-circuited, so only what matters is computed: a
 verdict is evaluated with the signs known so far, and again with each that turns out to be missing.
 The known signs stand in the work array beside the numbers (2: not known), and so does which one is
-missing first (-1: none): each further array that is handed from function to function costs as much
-as a sum of pairs.
+missing first (-1: none), so that one array alone is handed from function to function.
 
 Range: every real input is 0 or has a magnitude in [2^-E, 2^E]. E is the greatest number up to 100
 for which every value of the graph is a multiple of 2^-960 (so that not even a share of one part
@@ -158,23 +157,23 @@ class Writer:
         return lines
 
     def paired(self, node: Node, number: int) -> list[str]:
-        """The sign by pairs of doubles and by residues, unless the kernel's lines of them are many already."""
+        """The sign by pairs of doubles and by residues; [] where the kernel has many such lines."""
         pairs = Pairs()
         parts = [part for part in ordered(list(node.args)) if part.kind == "float"]
         for part in parts:
-            condition = ""
             if part.op == "if":
-                condition = f"t{part.number}"
-                pairs.lines.append(f"    {condition} = {self.truth(part.args[0])}")
+                pairs.lines.append(f"    t{part.number} = {self.truth(part.args[0])}")
                 if not self.certain[part.args[0].number].sharp:
                     # another sign is missing that this one hangs on
                     pairs.lines += [f"    if {self.want} >= 0:", "        return 0.0"]
-            pairs.value(part, condition)
+            pairs.value(part)
         a, b = node.args
         high = pairs.sign(a, b, self.sign(number))
         found = [*pairs.lines, *residues.lines(parts, a, b, high, "bound", self.sign(number))]
+        if len(found) > self.paired_lines:
+            return []
         self.paired_lines -= len(found)
-        return found if self.paired_lines >= 0 else []
+        return found
 
     def second(self, a: Node, b: Node) -> list[str]:
         """The steps to the sign of a - b; returned are lines that set conditions for them."""
@@ -204,8 +203,8 @@ def text(
 
     It decides the states whose numbers stand in `index` and writes into `out`, or UNDECIDED into
     `code` where an input is out of range; columns named in `scalars` are single values. shared:
-    name of the module of `primitives`. pairs: False leaves them out, for tests. None where the kernel has no range, or would need too
-    large a work array.
+    name of the module of what all kernels share. pairs: False leaves them out, for tests. None
+    where the kernel has no range, or would need too large a work array.
     """
     writer = Writer(found, pairs)
     result = found.program.result

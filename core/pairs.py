@@ -2,11 +2,10 @@
 
 Every real value of a comparison is carried as (high, low, left_out): the value differs from
 high + low by at most left_out, and high is their sum, rounded. Sums and products of doubles are
-split into what is rounded and the exact rest (Dekker 1971, Knuth; as in J. R. Shewchuk, "Adaptive
-Precision Floating-Point Arithmetic", 1997), so that left_out is 0 for as long as two doubles
-suffice and a pair decides exact ties too, where the numbers are short. What is left out is counted
-by kernels that are proved (`core.certainty`: sum_left_out, product_left_out). Nothing is
-approximated silently: what a pair cannot decide goes to `core.expansions`.
+split into what is rounded and the exact rest (`core.expansion_arithmetic`); left_out is 0 where
+nothing was dropped, and there a pair decides exact ties too. What is left out is counted by kernels
+that are proved (`core.certainty`: sum_left_out, product_left_out). Nothing is approximated
+silently: what a pair cannot decide goes on to residues and expansions.
 
 The count is itself rounded, by a relative error of less than 2^-48 for each operation; `WIDER`
 covers a million of them. It never underflows where `expansions.reach` admits the input: every
@@ -27,27 +26,6 @@ MOST_LINES = 300
 """Comparisons beyond so many lines for one kernel go to the expansions at once: code takes time."""
 
 ARITHMETIC = '''
-@FLAGS
-def two_sum(x, y):
-    """x + y, rounded, and the exact rest."""
-    s = x + y
-    t = s - x
-    return s, (x - (s - t)) + (y - t)
-
-
-@FLAGS
-def two_product(x, y):
-    """x * y, rounded, and the exact rest."""
-    p = x * y
-    t = 134217729.0 * x
-    a = t - (t - x)
-    b = x - a
-    t = 134217729.0 * y
-    c = t - (t - y)
-    d = y - c
-    return p, b * d - (((p - a * c) - b * c) - a * d)
-
-
 @FLAGS
 def sum_of_pair(ah, al, ar, y):
     """A pair plus a double."""
@@ -130,71 +108,54 @@ class Writer:
         self.lines: list[str] = []
         self.made: dict[int, Pair] = {}
 
-    def named(self, number: int | str, value: str) -> Pair:
-        """A variable of three parts with this value."""
+    def combined(self, what: str, number: int | str, a: Pair, b: Pair) -> Pair:
+        """a + b or a * b, as `what` is "sum" or "product", in variables of its own."""
         pair = Pair(f"h{number}", f"l{number}", f"r{number}")
-        self.lines.append(f"    {pair.parts} = {value}")
+        names, value = pair.parts, f"{what}_of_pairs({a.parts}, {b.parts})"
+        if a.double and b.double:
+            pair = Pair(pair.high, pair.low)
+            names, value = f"{pair.high}, {pair.low}", f"two_{what}({a.high}, {b.high})"
+        elif a.double or b.double:
+            a, b = (b, a) if a.double else (a, b)
+            value = f"{what}_of_pair({a.parts}, {b.high})"
+        self.lines.append(f"    {names} = {value}")
         return pair
 
-    def sum(self, number: int | str, a: Pair, b: Pair) -> Pair:
-        """a + b."""
-        if a.double and b.double:
-            pair = Pair(f"h{number}", f"l{number}")
-            self.lines.append(f"    {pair.high}, {pair.low} = two_sum({a.high}, {b.high})")
-            return pair
-        if a.double or b.double:
-            a, b = (b, a) if a.double else (a, b)
-            return self.named(number, f"sum_of_pair({a.parts}, {b.high})")
-        return self.named(number, f"sum_of_pairs({a.parts}, {b.parts})")
+    def chosen(self, number: int, a: Pair, b: Pair, left: str | None = None) -> Pair:
+        """a where `t` with the number holds, else b; left: what is left out, if not theirs."""
+        pair = Pair(f"h{number}", f"l{number}", f"r{number}")
+        for part in ("high", "low", "left"):
+            x, y, given = getattr(a, part), getattr(b, part), left if part == "left" else None
+            text = given or f"{x} if t{number} else {y}"
+            self.lines.append(f"    {getattr(pair, part)} = {text}")
+        return pair
 
-    def product(self, number: int, a: Pair, b: Pair) -> Pair:
-        """a * b."""
-        if a.double and b.double:
-            pair = Pair(f"h{number}", f"l{number}")
-            self.lines.append(f"    {pair.high}, {pair.low} = two_product({a.high}, {b.high})")
-            return pair
-        if a.double or b.double:
-            a, b = (b, a) if a.double else (a, b)
-            return self.named(number, f"product_of_pair({a.parts}, {b.high})")
-        return self.named(number, f"product_of_pairs({a.parts}, {b.parts})")
-
-    def chosen(
-        self, number: int, condition: str, a: Pair, b: Pair, left: str | None = None
-    ) -> Pair:
-        """a where the condition holds, else b; left: what is left out, if not that of the chosen."""
-        names = [f"h{number}", f"l{number}", f"r{number}"]
-        own = [(a.high, b.high), (a.low, b.low), (a.left, b.left)]
-        self.lines.append(f"    t{number} = {condition}")
-        for variable, (x, y) in zip(names, own, strict=True):
-            given = left if left is not None and variable[0] == "r" else None
-            self.lines.append(f"    {variable} = {given or f'{x} if t{number} else {y}'}")
-        return Pair(*names)
-
-    def value(self, node: Node, condition: str = "") -> None:
-        """One node, its operands being made; condition: the text of an `if`'s truth value."""
+    def value(self, node: Node) -> None:
+        """One node, its operands being made, and the truth value of an `if` in `t` with its number."""
         number, args = node.number, [self.made[a.number] for a in node.args if a.kind == "float"]
         if node.op in ("in", "lit"):
             made = Pair(name(node))
         elif node.op == "add":
-            made = self.sum(number, *args)
+            made = self.combined("sum", number, *args)
         elif node.op == "sub":
-            made = self.sum(number, args[0], args[1].negative())
+            made = self.combined("sum", number, args[0], args[1].negative())
         elif node.op == "mul":
-            made = self.product(number, *args)
+            made = self.combined("product", number, *args)
         elif node.op == "neg":
             made = args[0].negative()
+        elif node.op == "if":
+            made = self.chosen(number, *args)
         elif node.op == "abs":
             a = args[0]
-            made = self.chosen(number, f"{a.high} < 0", a.negative(), a)
-        elif node.op == "if":
-            a, b = args
-            made = self.chosen(number, condition, a, b)
+            self.lines.append(f"    t{number} = {a.high} < 0")
+            made = self.chosen(number, a.negative(), a)
         else:
             a, b = args
-            less = f"{b.high} < {a.high} or ({b.high} == {a.high} and {b.low} < {a.low})"
-            if node.op == "max":
-                less = f"{b.high} > {a.high} or ({b.high} == {a.high} and {b.low} > {a.low})"
-            made = self.chosen(number, less, b, a, f"{a.left} + {b.left}")
+            sign = "<" if node.op == "min" else ">"
+            sooner = f"{b.high} {sign} {a.high}"
+            later = f"{b.high} == {a.high} and {b.low} {sign} {a.low}"
+            self.lines.append(f"    t{number} = {sooner} or ({later})")
+            made = self.chosen(number, b, a, f"{a.left} + {b.left}")
         self.made[number] = made
 
     def sign(self, a: Node, b: Node, known: str) -> str:
@@ -205,7 +166,7 @@ class Writer:
         if b.op == "lit" and b.value == 0:
             gap = self.made[a.number]
         else:
-            gap = self.sum("", self.made[a.number], self.made[b.number].negative())
+            gap = self.combined("sum", "", self.made[a.number], self.made[b.number].negative())
         self.lines += [
             f"    bound = {WIDER!r} * (abs({gap.low}) + {gap.left})",
             f"    sign = 1.0 if surely_above({gap.high}, bound) else 0.0",
