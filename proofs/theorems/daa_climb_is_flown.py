@@ -8,23 +8,33 @@ from cratous.core.daa_climb import climb
 from cratous.proofs.claim import Claim
 from cratous.spec import daa_meaning
 
-# level at 2 m after one second up at 1 m/s^2, one held and one down
-FLOWN = {"z": 0, "vz": 0, "target": 2, "accel": 1, "t1": 1, "t2": 2, "t3": 3, "rate": 1}
-NOT_FLOWN = (
-    ("level above the target", {"target": 1}),
-    ("level below the target", {"target": 3}),
-    ("held for less than no time", {"target": 0, "t2": 0, "t3": 1}),
-    ("not level at the end", {"t3": 4, "target": 2}),
-    ("not yet at the rate", {"t1": 0, "t2": 1, "t3": 2, "target": Fraction(3, 2)}),
-)
+# z, vz, target, accel, t1, t2, t3, rate
+FLOWN = {
+    "climbing": (100, -2, 135, Fraction(1, 2), 10, 17, 23, 3),
+    "descending": (200, 6, 189, 2, 5, 8, 10, -4),
+    "climbing, slower than now": (10, 6, 40, 1, 2, 5, 9, 4),
+}
+# what is different from the first of them
+NOT_FLOWN = {
+    "level above the target": {"target": 134},
+    "level below the target": {"target": 136},
+    "held for less than no time": {"target": 111, "t2": 9, "t3": 15},
+    "not level at the end": {"target": Fraction(539, 4), "t3": 22},
+    "not at the rate": {"target": 130, "t1": 8, "t2": 15, "t3": 21},
+}
 
 
 def claim(c: Claim) -> None:
     # the examples come first: they refute a wrong definition at once, the long claim does not
-    c.show(c.define(daa_meaning.climb_is_flown, *FLOWN.values()), "an example")
-    for text, other in NOT_FLOWN:
-        flown = c.define(daa_meaning.climb_is_flown, *(FLOWN | other).values())
-        c.show(c.negation(flown), f"an example: {text}")
+    for text, flown in FLOWN.items():
+        c.show(c.define(daa_meaning.climb_is_flown, *flown), f"an example: {text}")
+    names = ("z", "vz", "target", "accel", "t1", "t2", "t3", "rate")
+    for text, other in NOT_FLOWN.items():
+        values = dict(zip(names, FLOWN["climbing"], strict=True)) | other
+        c.show(
+            c.negation(c.define(daa_meaning.climb_is_flown, *values.values())),
+            f"an example: {text}",
+        )
     z, vz, target, rate, accel = c.reals("z vz target rate accel")
     c.premise(rate > 0)
     c.premise(accel > 0)
