@@ -19,7 +19,7 @@ def claim(c: Claim) -> None:
         c.show(nothing, f"state {state}, no event")
         for event in tasks.EVENTS:
             moved = c.use(task_step, Task(state, request, kept), event, about)
-            after, act = tasks.row(state, event)
+            after, act = c.define(tasks.row, state, event)
             same = c.all_of(moved.task.request == request, moved.task.kept == kept)
             as_said = c.all_of(moved.task.state == after, moved.act == act)
             nothing = c.all_of(moved.task.state == state, same)

@@ -1,6 +1,8 @@
 """Who comes straight on violates the circle, for uncertain states, at exactly the instants at which the
 state does that is nearer and faster by as much as is not known."""
 
+from itertools import pairwise
+
 from cratous.core.daa_uncertain import circle_straight
 from cratous.core.well_clear_interval import horizontal_interval_taumod
 from cratous.proofs.claim import Claim
@@ -15,12 +17,13 @@ def claim(c: Claim) -> None:
     # the same state is judged alike, whatever the judgement is
     c.opaque(horizontal_interval_taumod, well_clear.horizontal_violation)
     span = c.use(circle_straight, distance * distance, speed * speed, es, ev, dthr, tthr, end)
-    (call,) = c.calls(horizontal_interval_taumod)
     names = ("s", "v", "dthr", "tthr", "begin", "end")
-    c.lemma(
-        "well_clear_horizontal_interval_taumod_is_exact",
-        **dict(zip(names, call, strict=True)), t=t,
-    )  # fmt: skip
+    for call in c.calls(horizontal_interval_taumod):
+        c.lemma(
+            "well_clear_horizontal_interval_taumod_is_exact",
+            **dict(zip(names, call, strict=True)), t=t,
+        )  # fmt: skip
     worst = c.define(daa_meaning.straight_at, distance, speed, es, ev, dthr, tthr, t)
-    c.congruence(well_clear.horizontal_violation, *c.calls(well_clear.horizontal_violation))
+    for one, other in pairwise(c.calls(well_clear.horizontal_violation)):
+        c.congruence(well_clear.horizontal_violation, one, other)
     c.show(c.same(c.define(well_clear.in_span, *span, t), worst))
