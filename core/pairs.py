@@ -144,7 +144,7 @@ class Writer:
         elif node.op == "neg":
             made = args[0].negative()
         elif node.op == "if":
-            made = self.chosen(number, *args)
+            made = self.chosen(number, args[0], args[1])
         elif node.op == "abs":
             a = args[0]
             self.lines.append(f"    t{number} = {a.high} < 0")
