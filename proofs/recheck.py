@@ -4,8 +4,9 @@ Each obligation is read by cvc5 under its exact logic and, if that gives no answ
 by cylindrical coverings alone, and under ALL, in a process of its own with 5 s of CPU each. A
 theorem is `confirmed` if cvc5 finds every obligation unsatisfiable, `contradicted` if it finds one
 satisfiable that z3 proved, else `no answer`. The verdicts are kept in `proofs/recheck.json` by the
-hash of the obligation, for the proof inventory. Answers are stored one by one as they come, so a
-run that was stopped goes on where it was; where there was no answer, cvc5 is asked again.
+hash of the obligation, for the proof inventory; who asks all again asks first in the way that
+answered last. Answers are stored one by one as they come, so a run that was stopped goes on where
+it was; where there was no answer, cvc5 is asked again.
 """
 
 from __future__ import annotations
@@ -119,6 +120,11 @@ def _child(text: str, way: tuple[str, dict[str, str]], out: Connection) -> None:
     out.close()
 
 
+def _named(way: tuple[str, dict[str, str]]) -> str:
+    """A way of asking, as `Check.logic` names it."""
+    return " ".join([way[0], *way[1]])
+
+
 @dataclass
 class _Job:
     """One obligation on its way through the solver."""
@@ -129,6 +135,10 @@ class _Job:
     text: str
     smt: str
     ways: list[tuple[str, dict[str, str]]]
+
+    def first(self, logic: str) -> None:
+        """Ask first in this way, as `Check.logic` names it, if it is one of them."""
+        self.ways.sort(key=lambda way: _named(way) != logic)
 
     def check(self, verdict: str, logic: str, seconds: float) -> Check:
         return Check(
@@ -176,14 +186,16 @@ def _ask(job: _Job) -> tuple[str, str, float]:
         spent += seconds
         if answer != "unknown":
             verdict = CONFIRMED if answer == "unsat" else CONTRADICTED
-            return verdict, " ".join([way[0], *way[1]]), spent
+            return verdict, _named(way), spent
     return NO_ANSWER, "", spent
 
 
 def _stored(job: _Job, store: Store, solver: str) -> tuple[str, str, float]:
     """What the store has, or cvc5's answer; that there was none in this time is stored too."""
     key = digest(["cvc5", solver, job.key])
-    none = digest(["cvc5", solver, job.key, f"none in {CPU_SECONDS} s", *map(str, job.ways)])
+    none = digest(
+        ["cvc5", solver, job.key, f"none in {CPU_SECONDS} s", *sorted(map(str, job.ways))]
+    )
     kept = store.get(key) or store.get(none)
     if kept is not None:
         return kept["verdict"], kept["logic"], 0.0
@@ -211,13 +223,15 @@ def recheck(
     jobs: int = 1,
     tell: Callable[[Check, int, int], None] | None = None,
     record: dict[str, Any] | None = None,
+    again: bool = False,
     store: Store | None = None,
 ) -> Recheck:
     """Put every proved obligation to cvc5.
 
     tell: called with each check, how many are done, and of how many. record: verdicts as `read`
-    gives them; what this version of the solver has a verdict on there is not asked again. store:
-    where answers are kept between runs; by default nowhere.
+    gives them; what this version of the solver has a verdict on there is not asked again, or, with
+    `again`, is asked first in the way that answered then. store: where answers are kept between
+    runs; by default nowhere.
     """
     solver = version()
     kept = store or Store(None)
@@ -232,6 +246,10 @@ def recheck(
     )
     for number in sorted(stated):
         wanted += stated[number]
+    if again:
+        for job in wanted:
+            job.first(known.get(job.key, {"logic": ""})["logic"])
+        known = {}
     # theorems may share an obligation: it is asked once
     todo = list({job.key: job for job in wanted if job.key not in known}.values())
     fork = multiprocessing.get_context("fork")

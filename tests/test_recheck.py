@@ -154,3 +154,28 @@ def test_a_run_that_was_stopped_goes_on(tmp_path: Path, monkeypatch: pytest.Monk
     monkeypatch.setattr(recheck, "CPU_SECONDS", recheck.CPU_SECONDS + 1)
     assert recheck.recheck([theorem], store=store).verdict(theorem.name) == "no answer"
     assert asked.exists()
+
+
+def test_asked_again_the_way_that_answered_is_first(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    (theorem,) = ledger.prove_theorems(["geofence_straddles_is_its_definition"])
+    asked = tmp_path / "asked"
+
+    def all_alone(text: str, logic: str, options: dict[str, str] | None = None) -> str:
+        with asked.open("a") as file:
+            file.write(f"{logic}\n")
+        return "unsat" if logic == "ALL" else "unknown"
+
+    monkeypatch.setattr(recheck, "solve", all_alone)
+    found = recheck.recheck([theorem])
+    assert set(asked.read_text().split()) > {"ALL"}
+    file = tmp_path / "recheck.json"
+    recheck.write(found, [theorem], file)
+    asked.unlink()
+    record = recheck.read(file)
+    assert recheck.recheck([theorem], record=record) == recheck.recheck([theorem], record=record)
+    assert not asked.exists()
+    again = recheck.recheck([theorem], record=record, again=True)
+    assert again.verdict(theorem.name) == "confirmed"
+    assert set(asked.read_text().split()) == {"ALL"}

@@ -137,7 +137,8 @@ def _recheck(
             folder=folder,
             jobs=jobs,
             tell=lambda c, n, of: bar.step("cvc5", n, of),
-            record=recheck.read() if new else None,
+            record=recheck.read(),
+            again=not new,
             store=Store(private_cache() / "recheck"),
         )
     if keep:
