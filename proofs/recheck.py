@@ -17,8 +17,8 @@ import multiprocessing
 import os
 import resource
 import time
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Container, Iterable
+from dataclasses import dataclass, field
 from functools import partial
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -27,6 +27,7 @@ from typing import Any
 from cratous.core.sources import ROOT, digest
 from cratous.proofs import forked, prover
 from cratous.proofs.mutation_keys import Store
+from cratous.proofs.smtlib import Seen
 from cratous.spec.errors import BadInput
 
 FILE = ROOT / "proofs" / "recheck.json"
@@ -133,8 +134,8 @@ class _Job:
     number: int
     key: str
     text: str
-    smt: str
-    ways: list[tuple[str, dict[str, str]]]
+    smt: str = ""
+    ways: list[tuple[str, dict[str, str]]] = field(default_factory=list)
 
     def first(self, logic: str) -> None:
         """Ask first in this way, as `Check.logic` names it, if it is one of them."""
@@ -146,25 +147,30 @@ class _Job:
         )
 
 
-def _jobs(theorem: prover.Theorem, folder: Path) -> list[_Job]:
+def _jobs(theorem: prover.Theorem, folder: Path, known: Container[str]) -> list[_Job]:
+    """What was proved; only where something is not known is the theorem stated and exported."""
+    found = [
+        _Job(theorem.name, number, outcome.key, f"{owed.kind}: {owed.text}")
+        for number, outcome in enumerate(theorem.outcomes, 1)
+        for owed in [outcome.obligation]
+        if outcome.status == "proved"
+    ]
+    new = [job for job in found if job.key not in known]
+    if not new:
+        return found
     claim, sentence = prover.state(theorem.name, folder)
     if len(claim.obligations) != len(theorem.outcomes):
         raise ValueError(f"{theorem.name}: other obligations than those that were proved")
-    found = []
-    for number, (obligation, outcome) in enumerate(
-        zip(claim.obligations, theorem.outcomes, strict=True), 1
-    ):
-        if outcome.status != "proved":
-            continue
-        logic = prover.logic_of(obligation)
-        ways: list[tuple[str, dict[str, str]]] = [(logic, {})]
+    seen: Seen = {}
+    for job in new:
+        obligation = claim.obligations[job.number - 1]
+        logic = prover.logic_of(obligation, seen)
+        job.ways = [(logic, {})]
         if logic in ("QF_NRA", "QF_NIRA", "QF_NIA", "QF_UFNRA", "QF_UFNIRA"):
-            ways.append((logic, {"nl-ext": "none", "nl-cov": "true"}))
+            job.ways.append((logic, {"nl-ext": "none", "nl-cov": "true"}))
         if logic != "ALL":
-            ways.append(("ALL", {}))
-        text = f"{obligation.kind}: {obligation.text}"
-        smt = prover.smt2(obligation, sentence)
-        found.append(_Job(theorem.name, number, outcome.key, text, smt, ways))
+            job.ways.append(("ALL", {}))
+        job.smt = prover.smt2(obligation, sentence, seen)
     return found
 
 
@@ -238,18 +244,19 @@ def recheck(
     known: dict[str, dict[str, Any]] = {}
     if record is not None and record.get("solver") == solver:
         known = record["obligations"]
+    before = known
+    if again:
+        known = {}
     import cvc5  # noqa: F401  (once here, so that the forked solvers have it already)
 
     wanted: list[_Job] = []
     stated: dict[int, list[_Job]] = dict(
-        forked.each([partial(_jobs, theorem, folder) for theorem in theorems], jobs)
+        forked.each([partial(_jobs, theorem, folder, set(known)) for theorem in theorems], jobs)
     )
     for number in sorted(stated):
         wanted += stated[number]
-    if again:
-        for job in wanted:
-            job.first(known.get(job.key, {"logic": ""})["logic"])
-        known = {}
+    for job in wanted:
+        job.first(before.get(job.key, {"logic": ""})["logic"])
     # theorems may share an obligation: it is asked once
     todo = list({job.key: job for job in wanted if job.key not in known}.values())
     fork = multiprocessing.get_context("fork")

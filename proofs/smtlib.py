@@ -9,9 +9,24 @@ import z3
 
 from cratous.proofs.claim import Obligation
 
+Seen = dict[int, tuple[z3.ExprRef, set[str]]]
+"""What `sorts` found of terms, by their id; the term beside it keeps the id its own."""
 
-def sorts(terms: list[z3.ExprRef]) -> set[str]:
-    """Which kinds of values occur: Real, Int, BitVec, quantifier, nonlinear, function."""
+
+def sorts(terms: list[z3.ExprRef], seen: Seen | None = None) -> set[str]:
+    """Which kinds of values occur: Real, Int, BitVec, quantifier, nonlinear, function.
+
+    Obligations of one claim share most of their terms: what is in `seen` is not looked at again.
+    """
+    if seen is None:
+        return _sorts(terms)
+    for term in terms:
+        if term.get_id() not in seen:
+            seen[term.get_id()] = term, _sorts([term])
+    return set().union(*[seen[term.get_id()][1] for term in terms])
+
+
+def _sorts(terms: list[z3.ExprRef]) -> set[str]:
     found: set[str] = set()
     seen: set[int] = set()
     todo = list(terms)
@@ -57,9 +72,12 @@ def question(obligation: Obligation) -> list[z3.BoolRef]:
     return [*obligation.given, z3.Not(obligation.goal)]
 
 
-def logic_of(obligation: Obligation) -> str:
-    """The smallest SMT-LIB logic that holds the obligation, e.g. QF_NRA or QF_BV."""
-    found = sorts(question(obligation))
+def logic_of(obligation: Obligation, seen: Seen | None = None) -> str:
+    """The smallest SMT-LIB logic that holds the obligation, e.g. QF_NRA or QF_BV.
+
+    seen: what was found of terms before, for many obligations of one claim.
+    """
+    found = sorts(question(obligation), seen)
     prefix = "" if "quantifier" in found else "QF_"
     functions = "UF" if "function" in found else ""
     numbers = "".join(letter for name, letter in (("Int", "I"), ("Real", "R")) if name in found)
@@ -71,12 +89,15 @@ def logic_of(obligation: Obligation) -> str:
     return f"{prefix}{functions}{'N' if 'nonlinear' in found else 'L'}{numbers}A"
 
 
-def smt2(obligation: Obligation, title: str) -> str:
-    """The obligation as SMT-LIB 2 with its exact logic: `unsat` means proved."""
+def smt2(obligation: Obligation, title: str, seen: Seen | None = None) -> str:
+    """The obligation as SMT-LIB 2 with its exact logic: `unsat` means proved.
+
+    seen: as for `logic_of`.
+    """
     solver = z3.Solver()
     solver.add(*question(obligation))
     lines = str(solver.to_smt2()).splitlines()
     body = "\n".join(line for line in lines if not line.startswith((";", "(set-info :status")))
     head = [f"; {title}", f"; {obligation.kind}: {obligation.text}", "; expected: unsat"]
-    head += [f"(set-logic {logic_of(obligation)})", "(set-info :status unsat)"]
+    head += [f"(set-logic {logic_of(obligation, seen)})", "(set-info :status unsat)"]
     return "\n".join([*head, body, ""])

@@ -93,7 +93,8 @@ def _export(theorems: list[Any], folder: Path, theorem_folder: Path) -> int:
 
     def texts(name: str) -> list[str]:
         claim, sentence = prover.state(name, theorem_folder)
-        return [prover.smt2(obligation, sentence) for obligation in claim.obligations]
+        seen: dict[int, Any] = {}
+        return [prover.smt2(obligation, sentence, seen) for obligation in claim.obligations]
 
     folder.mkdir(parents=True, exist_ok=True)
     written = 0
