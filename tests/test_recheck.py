@@ -59,7 +59,7 @@ def test_a_contradiction_is_seen(monkeypatch: pytest.MonkeyPatch):
     """A proof that z3 got wrong: here its obligation is replaced by a false one."""
     (theorem,) = ledger.prove_theorems(["geofence_straddles_is_its_definition"])
     false = _text(z3.Real("x") > 0)
-    monkeypatch.setattr(prover, "smt2", lambda obligation, title: false)
+    monkeypatch.setattr(prover, "smt2", lambda obligation, title, seen=None: false)
     found = recheck.recheck([theorem])
     assert found.verdict(theorem.name) == "contradicted"
     assert found.count("contradicted") == 1
