@@ -25,6 +25,7 @@ from cratous.core.sources import altered, ours, place
 from cratous.proofs.cache import Answer, Cache
 from cratous.proofs.claim import Claim, Obligation
 from cratous.proofs.counterexample import Model, Watched, story, telling
+from cratous.proofs.cpu_limit import OutOfTime, cpu_limit
 from cratous.proofs.ladder import check, solvers
 from cratous.proofs.lemma_calls import hangs_on_calls
 from cratous.proofs.lift import LiftError
@@ -36,6 +37,8 @@ from cratous.spec.errors import BadInput
 RLIMIT = 60_000_000
 FACTS_RLIMIT = 3_000_000
 PATH_RLIMIT = 1_000_000
+STATE_CPU_S = 300
+"""CPU seconds after which a statement is ended: many times what any takes."""
 _KEY = object()
 _NO_CACHE = Cache(None)
 
@@ -286,8 +289,16 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
     claim = Watched(load=lambda other: load_claim(other, folder)[0])
     where = place(find(name, folder))
     try:
-        statement(claim)
-        hanging = sorted(n for n in claim.asking if hangs_on_calls(n, folder))
+        with cpu_limit(STATE_CPU_S, z3.main_ctx()):
+            statement(claim)
+            hanging = sorted(n for n in claim.asking if hangs_on_calls(n, folder))
+    except OutOfTime as error:
+        raise BadInput(
+            "the theorem cannot be stated: its paths take too long to find",
+            where=where,
+            expected="less in one kernel: split it, and do not look into the part (c.opaque)",
+            got=f"more than {STATE_CPU_S} s of CPU",
+        ) from error
     except Exception as error:
         # ctypes, which z3 is called through, gives it another type
         if isinstance(error, RecursionError) or "RecursionError" in str(error):

@@ -1,0 +1,67 @@
+"""A block of code that may use so much CPU time and no more.
+
+Stating a theorem asks the solver which paths are feasible. Those questions are budgeted by effort,
+but there is work that z3 does not count, and a statement may also loop by itself. What uses too
+much is interrupted in the solver and in Python; only CPU time counts, not what else the machine
+does.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import z3
+
+PERIOD_S = 0.25
+"""Wall seconds between two looks at the CPU clock."""
+
+
+class OutOfTime(BaseException):
+    """The CPU time is used up; not an `Exception`, so that nothing in the block keeps it."""
+
+
+def _throw(thread: int, error: type[BaseException] | None) -> None:
+    """Raise the error in a thread as soon as it runs Python; with None what is pending is gone."""
+    pending = None if error is None else ctypes.py_object(error)
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), pending)
+
+
+@contextmanager
+def cpu_limit(seconds: float, context: z3.Context) -> Iterator[None]:
+    """Raises OutOfTime in the block once the process has used so many CPU seconds (s) in it.
+
+    context: the one whose questions the block asks; what is being solved in it is interrupted.
+    """
+    latest = time.process_time() + seconds
+    over, done = threading.Event(), threading.Event()
+    thread = threading.get_ident()
+
+    def watch() -> None:
+        # again until it has come through: an error raised inside a callback is lost
+        while not done.wait(PERIOD_S):
+            if time.process_time() > latest:
+                over.set()
+                context.interrupt()
+                _throw(thread, OutOfTime)
+
+    watcher = threading.Thread(target=watch, daemon=True)
+    watcher.start()
+    try:
+        try:
+            yield
+        finally:
+            # if the error comes up here, the next look is yet to come
+            done.set()
+    except Exception as error:
+        if over.is_set():
+            # the solver says in its own words that it was interrupted
+            raise OutOfTime from error
+        raise
+    finally:
+        done.set()
+        watcher.join()
+        _throw(thread, None)
