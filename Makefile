@@ -14,7 +14,7 @@ help:
 	@echo "make lint      style, types, kernel subset"
 	@echo "make prove     prove every kernel (the cache answers what it has proved) and hold the ledger against it"
 	@echo "make recheck   put every proof to the second solver (cvc5)"
-	@echo "make mutate    look for faults of kernels that no theorem would notice; pays for what has changed"
+	@echo "make mutate    look for faults of kernels that no theorem would notice, where they or their theorems changed"
 	@echo "make crosshair look for bugs in functions that are no kernels, two minutes"
 	@echo "make fuzz      a million changed LMCP messages and frames, some minutes"
 	@echo "make daa-fuzz  detect and avoid on 100,000 random and degenerate encounters"
@@ -57,7 +57,7 @@ recheck: venv
 	$(BIN)/cratous prove --recheck
 
 mutate: venv
-	$(BIN)/cratous prove --mutate
+	$(BIN)/cratous prove --mutate --new
 
 crosshair: venv
 	$(BIN)/python -m crosshair check --analysis_kind=asserts --per_condition_timeout=10 tests/crosshair_targets.py

@@ -10,7 +10,7 @@ from __future__ import annotations
 import functools
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -53,7 +53,7 @@ def merged(data: dict[str, Any], report: MutationReport, keys: Keys) -> dict[str
             "listed": listed,
         }
     premises = {n: row for n, row in data["premises"].items() if n in keys.theorems}
-    for theorem in dict.fromkeys(p.theorem for p in report.premises):
+    for theorem in dict.fromkeys((*report.judged, *(p.theorem for p in report.premises))):
         rows = [p for p in report.premises if p.theorem == theorem]
         found = [[p.premise, p.dropped, p.weakened] for p in rows]
         premises[theorem] = {"key": keys.premises(theorem), "rows": found}
@@ -69,7 +69,7 @@ def write(report: MutationReport, keys: Keys, path: Path = FILE) -> None:
 
 
 def stale(data: dict[str, Any], keys: Keys) -> dict[str, str]:
-    """Targets and theorems whose results are not those of the code as it stands, with the reason."""
+    """Targets whose results are not those of the code as it stands, with the reason."""
     found = {}
     for target, row in data["targets"].items():
         function = find(target)
@@ -92,6 +92,35 @@ def stale(data: dict[str, Any], keys: Keys) -> dict[str, str]:
     return found
 
 
+def stale_premises(data: dict[str, Any], keys: Keys) -> dict[str, str]:
+    """Theorems of whose premises the record does not say what they are worth, with the reason."""
+    found = {}
+    for theorem in keys.theorems:
+        row = data["premises"].get(theorem)
+        if row is None:
+            found[theorem] = "its premises were never judged"
+        elif row["key"] != keys.premises(theorem):
+            found[theorem] = "it, what it is about, or the judging code has changed since"
+    return found
+
+
+def fresh(data: dict[str, Any], keys: Keys) -> set[str]:
+    """Targets, and theorems with their premises, of which the record holds for the code as it is."""
+    old = {**stale(data, keys), **stale_premises(data, keys)}
+    return {*data["targets"], *data["premises"]} - set(old)
+
+
+def survivors(data: dict[str, Any], names: Container[str]) -> list[tuple[str, str, str]]:
+    """Target, kind and change of each recorded survivor of these targets."""
+    return [
+        (name, row["kind"], one["diff"])
+        for name, row in sorted(data["targets"].items())
+        if name in names
+        for one in row["listed"]
+        if one["verdict"] == "survived"
+    ]
+
+
 @functools.cache
 def _has_faults(function: Any) -> bool:
     return bool(faults(function))
@@ -102,9 +131,10 @@ def document(data: dict[str, Any], keys: Keys) -> str:
     """The record as Markdown: counts per function, then every mutant that was not killed."""
     targets = dict(sorted(data["targets"].items()))
     old = stale(data, keys)
+    loose = stale_premises(data, keys)
     # what is no longer the code's own counts for nothing
-    fresh = {name: row for name, row in targets.items() if name not in old}
-    total = {v: sum(row["counts"][v] for row in fresh.values()) for v in VERDICTS}
+    own = {name: row for name, row in targets.items() if name not in old}
+    total = {v: sum(row["counts"][v] for row in own.values()) for v in VERDICTS}
     viable = total["killed"] + total["survived"] + total["undecided"]
     score = percent(Fraction(total["killed"], viable)) if viable else "nothing was"
     counts = ", ".join(f"{total[v]} {v}" for v in VERDICTS)
@@ -112,24 +142,26 @@ def document(data: dict[str, Any], keys: Keys) -> str:
         "# Mutation of kernels, definitions and premises",
         "",
         "Generated from `proofs/mutation.json` by `make docs`; do not edit. `cratous prove --mutate`",
-        "writes that file: it pays only for what has changed, and `--only GLOB` for what matches.",
+        "writes that file, of what `--only GLOB` matches; with `--new` it judges only what the file",
+        "has no verdict on, because it or something that it depends on has changed.",
         "Each mutant is one small fault: put in place of the original, some theorem must be refuted.",
         "*Survived* means that a theorem is missing; *equivalent* that the solver proved that the",
         "fault changes nothing, everywhere or where the theorems apply (the list says which);",
         "*undecided* counts as not killed; *stillborn* mutants cannot be run.",
         "",
-        f"**{sum(total.values())} mutants in {len(fresh)} functions: {counts}; {score} killed of "
-        f"those that are viable and not proved equivalent. {len(old)} functions are not up to "
-        "date.**",
+        f"**{sum(total.values())} mutants in {len(own)} functions: {counts}; {score} killed of "
+        f"those that are viable and not proved equivalent. {len(old)} functions and the premises "
+        f"of {len(loose)} theorems are not up to date.**",
         "",
         "| kind | " + " | ".join(VERDICTS) + " |",
         "|---|" + "---|" * len(VERDICTS),
     ]
     for kind in ("kernel", "fold", "definition"):
-        rows = [row["counts"] for row in fresh.values() if row["kind"] == kind]
+        rows = [row["counts"] for row in own.values() if row["kind"] == kind]
         lines.append(f"| {kind} | {' | '.join(str(sum(c[v] for c in rows)) for v in VERDICTS)} |")
     lines += ["", "## Not up to date", ""]
-    lines += [f"- `{name}`: {why}" for name, why in sorted(old.items())] or ["None."]
+    known = sorted(old.items()) + sorted(loose.items())
+    lines += [f"- `{name}`: {why}" for name, why in known] or ["None."]
     lines += ["", "## By function", "", "| function | kind | mutants | " + " | ".join(VERDICTS)]
     lines[-1] += " | |"
     lines.append("|---|---|---|" + "---|" * len(VERDICTS) + "---|")
@@ -148,7 +180,12 @@ def document(data: dict[str, Any], keys: Keys) -> str:
             if one["verdict"] == verdict
         ]
         lines += found or ["None."]
-    premises = [(n, *row) for n, one in sorted(data["premises"].items()) for row in one["rows"]]
+    premises = [
+        (name, *row)
+        for name, one in sorted(data["premises"].items())
+        if name not in loose
+        for row in one["rows"]
+    ]
     lines += ["", "## Premises", "", *_premises(premises), ""]
     return "\n".join(lines)
 

@@ -10,10 +10,14 @@ from cratous.proofs.mutation_results import VERDICTS, PremiseResult, Result
 
 @dataclass(frozen=True)
 class MutationReport:
-    """All results, in the order of targets and source; premises of the theorems that were met."""
+    """All results, in the order of targets and source; premises of the theorems that were met.
+
+    judged: the theorems whose premises were judged, those without any included.
+    """
 
     results: tuple[Result, ...]
     premises: tuple[PremiseResult, ...]
+    judged: tuple[str, ...] = ()
 
     def count(self, verdict: str, kind: str = "") -> int:
         """How many mutants (of this kind: kernel, definition or fold) have this verdict."""

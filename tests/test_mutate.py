@@ -257,6 +257,24 @@ def test_no_mutant_is_judged_by_a_theorem_that_does_not_hold(monkeypatch):
         mutate.run(["gives_way"], theorems=["exactly_one_gives_way"], premises=False)
 
 
+def test_what_is_skipped_is_not_judged():
+    theorems = ["exactly_one_gives_way", "the_greater_id_gives_way"]
+    whole = mutate.run(["gives_way"], theorems=theorems, store=NOWHERE)
+    assert whole.judged == tuple(theorems)
+    premises = mutate.run(
+        ["gives_way"], theorems=theorems, store=NOWHERE, skip={"core.gate.gives_way"}
+    )
+    assert premises.judged == tuple(theorems)
+    assert premises.premises == whole.premises
+    assert not premises.results
+    mutants = mutate.run(["gives_way"], theorems=theorems, store=NOWHERE, skip=set(theorems))
+    assert mutants.results == whole.results
+    assert not mutants.judged
+    everything = {"core.gate.gives_way", *theorems}
+    nothing = mutate.run(["gives_way"], theorems=theorems, store=NOWHERE, skip=everything)
+    assert nothing == MutationReport((), ())
+
+
 @pytest.mark.long
 def test_results_are_stored_and_the_same_in_two_processes(monkeypatch):
     names = ["later", "runs_forward", "gives_way"]
@@ -340,6 +358,27 @@ def test_the_document_lists_what_was_not_killed():
     assert f"`{theorem}`: `x >= 0`" in text
     assert "slightly weaker" in text
     assert "- `core.gate.gate_offer`: it was never mutated" in text
+
+
+def test_the_record_tells_what_holds_for_the_code_as_it_is():
+    name, bare, theorem = "core.gate.gives_way", "daa_climb_in_numbers", "exactly_one_gives_way"
+    survivor = replace(result("survived"), target=name)
+    premise = PremiseResult(theorem, "x >= 0", "unused", "-")
+    report = MutationReport((survivor,), (premise,), (theorem, bare))
+    data = mutation_record.merged(mutation_record.EMPTY, report, KEYS)
+    assert data["premises"][bare]["rows"] == []
+    assert mutation_record.fresh(data, KEYS) == {name, theorem, bare}
+    assert mutation_record.survivors(data, {name}) == [(name, "kernel", "- a + -a")]
+    assert mutation_record.survivors(data, {theorem}) == []
+    open_ = mutation_record.stale_premises(data, KEYS)
+    assert open_["the_greater_id_gives_way"] == "its premises were never judged"
+    assert not {theorem, bare} & set(open_)
+    data["premises"][theorem]["key"] = "of other code"
+    assert theorem in mutation_record.stale_premises(data, KEYS)
+    assert mutation_record.fresh(data, KEYS) == {name, bare}
+    text = mutation_record.document(data, KEYS)
+    assert f"- `{theorem}`: it, what it is about, or the judging code has changed since" in text
+    assert f"`{theorem}`: `x >= 0`" not in text, "what is stale counts for nothing"
 
 
 def test_a_stale_result_is_listed_as_stale():

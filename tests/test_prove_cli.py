@@ -118,8 +118,9 @@ def test_mutation_is_reported(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Ca
     result = mutate.Result("f", "kernel", "op", "core/x.py:1", "a -> b", "survived")
     asked, kept = [], []
 
-    def run(names, tell, jobs, *, about, home):
+    def run(names, tell, jobs, *, about, home, skip):
         asked.append((names, about))
+        assert not skip
         tell("f", [result])
         return mutate.MutationReport((result,), ())
 
@@ -184,7 +185,7 @@ def test_mutation_of_functions_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
     """A pattern that only functions match proves and mutates what meets them."""
     asked = []
 
-    def run(names, tell, jobs, *, about, home):
+    def run(names, tell, jobs, *, about, home, skip):
         asked.append((names, about))
         return mutate.MutationReport((), ())
 
@@ -193,3 +194,32 @@ def test_mutation_of_functions_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
     assert main(["prove", "--only", "gives_way", "--mutate"]) == 0
     assert asked == [(("gives_way",), [])]
     assert main(["prove", "--only", "no_such_function", "--mutate"]) == 2
+
+
+def test_only_what_the_record_does_not_know_is_mutated(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With --new; what is recorded of the rest still counts."""
+    gone = {"targets": {}, "premises": {}}
+    kernel, theorem = "core.gate.gives_way", "the_greater_id_gives_way"
+    survivor = {"verdict": "survived", "operator": "sign", "diff": "a -> b", "note": "why"}
+    row = {"kind": "kernel", "counts": {}, "listed": [survivor]}
+    data = {"targets": {kernel: row}, "premises": {}}
+    skipped = []
+
+    def run(names, tell, jobs, *, about, home, skip):
+        skipped.append(skip)
+        return mutate.MutationReport((), (), (theorem,))
+
+    monkeypatch.setattr(mutate, "run", run)
+    monkeypatch.setattr(mutation_record, "read", lambda: data)
+    monkeypatch.setattr(mutation_record, "write", lambda report, keys: None)
+    monkeypatch.setattr(mutation_record, "fresh", lambda data, keys: set(data["targets"]))
+    assert main(["prove", "--only", "gives_way", "--mutate", "--new"]) == 1
+    assert skipped == [{kernel}]
+    out = capsys.readouterr().out
+    assert f"survived   {kernel}: a -> b (as recorded)" in out
+    data.update(gone)
+    assert main(["prove", "--only", "gives_way", "--mutate", "--new"]) == 0
+    assert main(["prove", "--only", "gives_way", "--new"]) == 2
+    assert "--new is of --recheck or --mutate" in capsys.readouterr().err

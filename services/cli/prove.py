@@ -172,9 +172,18 @@ def _recheck(
 
 
 def _mutate(
-    patterns: tuple[str, ...], about: list[str], home: Any, jobs: int, as_json: bool, keep: bool
+    patterns: tuple[str, ...],
+    about: list[str],
+    home: Any,
+    jobs: int,
+    as_json: bool,
+    keep: bool,
+    new: bool,
 ) -> dict[str, Any]:
-    """Judge the mutants; patterns: names of functions; about: theorems whose functions are meant too."""
+    """Judge the mutants; patterns: names of functions; about: theorems whose functions are meant too.
+
+    new: what the record has is not judged again; its survivors are told and count.
+    """
     from cratous.proofs import mutate, mutation_record
     from cratous.proofs.mutation_keys import Keys
 
@@ -185,7 +194,10 @@ def _mutate(
         shown = ", ".join(f"{count} {v}" for v, count in counts.items() if count)
         click.echo(f"mutated    {target}: {shown or f'{len(results)} premises'}", err=True)
 
-    report = mutate.run(patterns, tell, jobs, about=about, home=home)
+    data = mutation_record.read() if new and home.product else mutation_record.EMPTY
+    known = mutation_record.fresh(data, Keys(home)) if new else set()
+    report = mutate.run(patterns, tell, jobs, about=about, home=home, skip=known)
+    recorded = mutation_record.survivors(data, known)
     if keep:
         mutation_record.write(report, Keys(home))
     listed = {v: report.of(v) for v in ("survived", "undecided")}
@@ -193,12 +205,17 @@ def _mutate(
         for verdict, results in listed.items():
             for result in results:
                 click.echo(f"{verdict:10s} {result.place}: {result.target}: {result.diff}")
+        for target, _, diff in recorded:
+            click.echo(f"survived   {target}: {diff} (as recorded)")
         click.echo(report.line)
+        if new:
+            click.echo(f"{len(known)} functions and theorems stand as recorded in mutation.json")
     return {
         "mutants": len(report.results),
         **{verdict: report.count(verdict) for verdict in mutate.VERDICTS},
         "score": float(report.score),
-        "holds": report.holds,
+        "holds": report.holds and all(kind == "definition" for _, kind, _ in recorded),
+        "as_recorded": len(known),
         "listed": [
             {"verdict": v, "target": r.target, "place": r.place, "diff": r.diff, "note": r.note}
             for v, results in listed.items()
@@ -222,7 +239,7 @@ def _mutate(
 @click.option(
     "--new",
     is_flag=True,
-    help="With --recheck: only obligations on which proofs/recheck.json has no verdict.",
+    help="With --recheck or --mutate: only what proofs/recheck.json and mutation.json have no verdict on.",
 )
 @click.option("--mutate", is_flag=True, help="Also look for faults that no theorem would notice.")
 @click.option("--package", "package_name", metavar="NAME", help="A package with own kernels.")
@@ -278,6 +295,8 @@ def prove(
         raise BadInput("--only, --changed and --check exclude each other", item="cratous prove")
     if package_name:
         sys.path.insert(0, str(Path.cwd()))
+    if new and not (recheck or mutate):
+        raise BadInput("--new is of --recheck or --mutate", item="cratous prove")
     home = gate.package(package_name or "cratous")
     gate.load_all()
     gate.load_all(home)
@@ -342,7 +361,7 @@ def prove(
     if mutate:
         patterns = only or (("*",) if whole else ())
         keep = home.product and not check
-        data["mutation"] = _mutate(patterns, about, home, workers, as_json, keep)
+        data["mutation"] = _mutate(patterns, about, home, workers, as_json, keep, new)
     if smt2_folder is not None:
         count = _export(theorems, smt2_folder, folder)
         if not as_json:
