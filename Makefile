@@ -14,7 +14,7 @@ help:
 	@echo "make lint      style, types, kernel subset"
 	@echo "make prove     prove every kernel (the cache answers what it has proved) and hold the ledger against it"
 	@echo "make recheck   put every proof to the second solver (cvc5)"
-	@echo "make mutate    look for faults of kernels that no theorem would notice, where they or their theorems changed"
+	@echo "make mutate    look for faults that no theorem would notice, where something has changed since"
 	@echo "make crosshair look for bugs in functions that are no kernels, two minutes"
 	@echo "make fuzz      a million changed LMCP messages and frames, some minutes"
 	@echo "make daa-fuzz  detect and avoid on 100,000 random and degenerate encounters"

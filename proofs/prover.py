@@ -22,6 +22,7 @@ import z3
 from cratous.core.kernel import REGISTRY
 from cratous.core.ledger import Home
 from cratous.core.sources import altered, ours, place
+from cratous.proofs import plain_numbers
 from cratous.proofs.cache import Answer, Cache
 from cratous.proofs.claim import Claim, Obligation
 from cratous.proofs.counterexample import Model, Watched, story, telling
@@ -286,11 +287,17 @@ def _satisfiable(terms: list[z3.BoolRef], rlimit: int, cache: Cache, hasher: Has
 def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
     """The claim of a theorem file, stated, and its sentence; the kernels must be registered."""
     statement, sentence = load_claim(name, folder)
-    claim = Watched(load=lambda other: load_claim(other, folder)[0])
+
+    def stated(by: Callable[..., Any]) -> Watched:
+        claim = Watched(load=lambda other: load_claim(other, folder)[0])
+        by(claim)
+        return claim
+
     where = place(find(name, folder))
     try:
         with cpu_limit(STATE_CPU_S, z3.main_ctx()):
-            statement(claim)
+            claim = stated(statement)
+            plain_numbers.hold(stated, statement, claim.visits)
             hanging = sorted(n for n in claim.asking if hangs_on_calls(n, folder))
     except OutOfTime as error:
         raise BadInput(
@@ -299,6 +306,9 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
             expected="less in one kernel: split it, and do not look into the part (c.opaque)",
             got=f"more than {STATE_CPU_S} s of CPU",
         ) from error
+    except plain_numbers.Inexact as error:
+        what = f"the theorem cannot be stated: {error.where}: {error.what}"
+        raise BadInput(what, where=where, expected=error.expected, got=error.got) from error
     except Exception as error:
         # ctypes, which z3 is called through, gives it another type
         if isinstance(error, RecursionError) or "RecursionError" in str(error):

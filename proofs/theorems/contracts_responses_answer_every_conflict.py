@@ -21,6 +21,8 @@ def claim(c: Claim) -> None:
     c.show(c.implies(c.all_of(conflict, other != act), c.negation(wrong)), "by nothing else")
     on_hold = c.same(step.response.state, responses.HOLD)
     c.show(c.implies(on_hold, c.define(responses.held, good, found, act)), "and so is a hold")
+    wrong = c.define(responses.held, good, found, other)
+    c.show(c.implies(c.all_of(on_hold, other != act), c.negation(wrong)), "by nothing else either")
     c.show(
         c.same(c.use(manoeuvre_act, good, found), c.when(good, 2, c.when(found, 1, 3))),
         "what is flown comes before what is found, and a refusal last",

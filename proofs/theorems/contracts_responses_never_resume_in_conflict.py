@@ -1,5 +1,6 @@
-"""The mission is commanded only without a conflict, on a way that is free and has been for long enough;
-and once the way is not free any more, a vehicle that was sent back is held again at once."""
+"""A vehicle that is off its mission is sent back to it exactly when there is no conflict and the way is
+free and has been for long enough, unless it says that it is back; and once the way is not
+free any more, a vehicle that was sent back is held again at once."""
 
 from cratous.core.contracts.responses import Response, response_step
 from cratous.proofs.claim import Claim
@@ -16,6 +17,11 @@ def claim(c: Claim) -> None:
     may = c.define(responses.may_be_sent_back, conflict, free, lasted)
     c.show(
         c.implies(sent, c.all_of(may, before.off)), "only when it may be, and is off its mission"
+    )
+    is_back = c.define(responses.back, before.state, conflict, taken)
+    c.show(
+        c.implies(c.all_of(may, before.off, c.negation(is_back)), sent),
+        "and whenever it may be, unless the vehicle is back",
     )
     resumes = c.same(step.response.state, responses.RESUME)
     c.show(c.implies(resumes, c.all_of(free, c.negation(conflict))), "only on a free way")

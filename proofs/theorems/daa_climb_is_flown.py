@@ -2,6 +2,8 @@
 rate, held, and level at the very target, also where the target is so near that it must be flown through
 first."""
 
+from fractions import Fraction
+
 from cratous.core.daa_climb import climb
 from cratous.proofs.claim import Claim
 from cratous.spec import daa_meaning
@@ -25,12 +27,12 @@ NOT_FLOWN = {
 def claim(c: Claim) -> None:
     # the examples come first: they refute a wrong definition at once, the long claim does not
     for text, flown in FLOWN.items():
-        c.show(c.define(daa_meaning.climb_is_flown, *flown), f"an example: {text}")
+        c.show(c.define(daa_meaning.climb_is_flown, *map(Fraction, flown)), f"an example: {text}")
     names = ("z", "vz", "target", "accel", "t1", "t2", "t3", "rate")
     for text, other in NOT_FLOWN.items():
         values = dict(zip(names, FLOWN["climbing"], strict=True)) | other
         c.show(
-            c.negation(c.define(daa_meaning.climb_is_flown, *values.values())),
+            c.negation(c.define(daa_meaning.climb_is_flown, *map(Fraction, values.values()))),
             f"an example: {text}",
         )
     z, vz, target, rate, accel = c.reals("z vz target rate accel")
