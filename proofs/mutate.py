@@ -37,7 +37,16 @@ from cratous.proofs.mutation_report import MutationReport
 from cratous.proofs.mutation_results import VERDICTS, PremiseResult, Result
 from cratous.proofs.mutation_statements import targets, theorems_from
 
-__all__ = ["VERDICTS", "MutationReport", "PremiseResult", "Result", "chosen", "run", "standard"]
+__all__ = [
+    "VERDICTS",
+    "MutationReport",
+    "PremiseResult",
+    "Result",
+    "chosen",
+    "part",
+    "run",
+    "standard",
+]
 
 
 def standard() -> Store:
@@ -138,6 +147,13 @@ def run(
         tuple(row for name in weighed for row in rows[name]),
         tuple(weighed),
     )
+
+
+def part(name: str, results: list[Any]) -> MutationReport:
+    """What `tell` of `run` was told of one target, or of the premises of one theorem."""
+    if "." in name:
+        return MutationReport(tuple(results), ())
+    return MutationReport((), tuple(results), (name,))
 
 
 def _effort(names: list[str], home: Home, jobs: int) -> dict[str, int]:

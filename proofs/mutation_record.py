@@ -78,9 +78,7 @@ def stale(data: dict[str, Any], keys: Keys) -> dict[str, str]:
         elif keys.target(target, function) != row["key"]:
             found[target] = "it, a theorem about it, or the judging code has changed since"
     for name, entry in gate.load_all().items():
-        function = entry.function
-        module = function.step.__module__ if isinstance(function, Fold) else function.__module__
-        target = f"{module.removeprefix(f'{PRODUCT.name}.')}.{name}"
+        target = _target(name, entry.function)
         definition = f"spec.{entry.implements}"
         wanted = [target] if entry.kind != "driver" else []
         # some definitions are kept in a file without a function of the name
@@ -105,9 +103,19 @@ def stale_premises(data: dict[str, Any], keys: Keys) -> dict[str, str]:
 
 
 def fresh(data: dict[str, Any], keys: Keys) -> set[str]:
-    """Targets, and theorems with their premises, of which the record holds for the code as it is."""
+    """Targets, and theorems with their premises, of which the record holds for the code as it is.
+
+    Those in which there is nothing to change are among them.
+    """
     old = {**stale(data, keys), **stale_premises(data, keys)}
-    return {*data["targets"], *data["premises"]} - set(old)
+    entries = [(n, e.function) for n, e in gate.load_all().items() if e.kind != "driver"]
+    bare = {_target(name, function) for name, function in entries if not _has_faults(function)}
+    return ({*data["targets"], *data["premises"]} - set(old)) | bare
+
+
+def _target(name: str, function: Any) -> str:
+    module = function.step.__module__ if isinstance(function, Fold) else function.__module__
+    return f"{module.removeprefix(f'{PRODUCT.name}.')}.{name}"
 
 
 def survivors(data: dict[str, Any], names: Container[str]) -> list[tuple[str, str, str]]:

@@ -121,7 +121,8 @@ def test_mutation_is_reported(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Ca
     def run(names, tell, jobs, *, about, home, skip):
         asked.append((names, about))
         assert not skip
-        tell("f", [result])
+        tell("core.m.f", [result])
+        tell("a_theorem", [])
         return mutate.MutationReport((result,), ())
 
     monkeypatch.setattr(mutate, "run", run)
@@ -129,7 +130,10 @@ def test_mutation_is_reported(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Ca
     assert main(["prove", "--only", ONE, "--mutate"]) == 1, "a survivor on a kernel fails the run"
     out = capsys.readouterr().out
     assert asked == [((ONE,), [ONE])]
-    assert kept[0].of("survived") == (result,)
+    assert kept == [
+        mutate.MutationReport((result,), ()),
+        mutate.MutationReport((), (), ("a_theorem",)),
+    ], "each as it is reached"
     assert "survived" in out
     assert "a -> b" in out
 

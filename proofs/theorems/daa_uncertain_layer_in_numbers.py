@@ -10,11 +10,13 @@ from cratous.spec.daa_meaning import level_at, share_of
 
 
 def claim(c: Claim) -> None:
-    low, high, slow, fast, zthr, none, end = map(Fraction, (300, 320, -10, -8, 100, 0, 60))
+    low, high, slow, fast, zthr, none, end = given = c.reals("low high slow fast zthr none end")
+    for value, number in zip(given, (300, 320, -10, -8, 100, 0, 60), strict=True):
+        c.premise(value == number)
     span = c.use(layer_above, low, high, slow, fast, zthr, none, none, end)
     c.show(c.same(span, (20, Fraction(105, 2))), "within the layer")
     c.show(c.same(c.define(level_at, low, slow), 30), "the first at co-altitude")
     c.show(c.same(c.define(level_at, high, fast), 40), "the last at co-altitude")
     c.show(c.same(c.define(level_at, low, none), 0), "who does not sink")
-    c.show(c.same(c.define(share_of, Fraction(-1), Fraction(3)), Fraction(1, 4)), "0 between")
+    c.show(c.same(c.define(share_of, slow, high), Fraction(1, 33)), "0 between")
     c.show(c.same(c.define(share_of, high, low), 0), "the one above the other")

@@ -187,7 +187,12 @@ def _mutate(
     from cratous.proofs import mutate, mutation_record
     from cratous.proofs.mutation_keys import Keys
 
+    keys = Keys(home)
+
     def tell(target: str, results: list[Any]) -> None:
+        if keep:
+            # at once, so that a run that is stopped has not been in vain
+            mutation_record.write(mutate.part(target, results), keys)
         if as_json:
             return
         counts = {v: sum(getattr(r, "verdict", "") == v for r in results) for v in mutate.VERDICTS}
@@ -195,11 +200,9 @@ def _mutate(
         click.echo(f"mutated    {target}: {shown or f'{len(results)} premises'}", err=True)
 
     data = mutation_record.read() if new and home.product else mutation_record.EMPTY
-    known = mutation_record.fresh(data, Keys(home)) if new else set()
+    known = mutation_record.fresh(data, keys) if new else set()
     report = mutate.run(patterns, tell, jobs, about=about, home=home, skip=known)
     recorded = mutation_record.survivors(data, known)
-    if keep:
-        mutation_record.write(report, Keys(home))
     listed = {v: report.of(v) for v in ("survived", "undecided")}
     if not as_json:
         for verdict, results in listed.items():
