@@ -36,6 +36,7 @@ from cratous.proofs.mutation_premises import judge_premises
 from cratous.proofs.mutation_report import MutationReport
 from cratous.proofs.mutation_results import VERDICTS, PremiseResult, Result
 from cratous.proofs.mutation_statements import targets, theorems_from
+from cratous.spec.errors import BadInput
 
 __all__ = [
     "VERDICTS",
@@ -134,7 +135,7 @@ def run(
     calls: list[tuple[str, Callable[[], list[Any]]]] = []
     for key in order:
         spent = {name: effort[name] for name in work[key]}
-        calls.append((key, partial(judge_target, key, work[key], spent, keys, known)))
+        calls.append((key, partial(_judge, key, work[key], spent, keys, known)))
     for name in weighed:
         calls.append((name, partial(judge_premises, name, effort[name], keys, known)))
     rows: dict[str, list[Any]] = {}
@@ -147,6 +148,21 @@ def run(
         tuple(row for name in weighed for row in rows[name]),
         tuple(weighed),
     )
+
+
+def _judge(
+    key: str, users: list[str], effort: dict[str, int], keys: Keys, store: Store
+) -> list[Result]:
+    try:
+        return judge_target(key, users, effort, keys, store)
+    except (ArithmeticError, TypeError) as error:
+        # a fault of a function that Python computes by itself ends it where the solver would owe it
+        raise BadInput(
+            f"its mutants cannot be judged: {error}",
+            where=key,
+            expected="theorems that give it symbolic numbers (`c.real(...)` and a premise)",
+            got=f"plain numbers in one of {', '.join(users)}",
+        ) from error
 
 
 def part(name: str, results: list[Any]) -> MutationReport:

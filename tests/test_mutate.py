@@ -26,6 +26,7 @@ from cratous.proofs.mutation_results import PremiseResult, Result
 from cratous.proofs.mutation_statements import targets
 from cratous.proofs.mutation_terms import equal, with_values
 from cratous.proofs.symbolic import wrap
+from cratous.spec.errors import BadInput
 
 gate.load_all()
 KEYS, NOWHERE = Keys(), Store(None)
@@ -274,6 +275,15 @@ def test_what_is_skipped_is_not_judged():
     everything = {"core.gate.gives_way", *theorems}
     nothing = mutate.run(["gives_way"], theorems=theorems, store=NOWHERE, skip=everything)
     assert nothing == MutationReport((), ())
+
+
+def test_a_mutant_that_python_cannot_compute_is_told(monkeypatch):
+    def divides(*more):
+        raise ZeroDivisionError("Fraction(1, 0)")
+
+    monkeypatch.setattr(mutate, "judge_target", divides)
+    with pytest.raises(BadInput, match=r"core.gate.gives_way: its mutants .* symbolic numbers"):
+        mutate.run(["gives_way"], theorems=["exactly_one_gives_way"], premises=False, store=NOWHERE)
 
 
 @pytest.mark.long
