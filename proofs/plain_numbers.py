@@ -4,8 +4,8 @@ Where a theorem gives a function plain numbers, Python computes with them, and n
 `1 / 49 * 49 != 1` is true of doubles, and false. Symbolic values, fractions and integers are exact,
 so nothing is wrong unless a double comes up. Mixed with symbolic values a double is refused as it
 is; here the rest is looked for. A claim in which a double could come up is stated once more, with
-functions that look at every value that they compute. In a claim's own lines the same holds, but not
-in functions that it calls without lifting them.
+functions that look at every value that they compute. The lines of the claim and of its file are
+among them, what else it calls without lifting it is not.
 """
 
 from __future__ import annotations
@@ -59,6 +59,8 @@ class _Watching(ast.NodeTransformer):
         self.texts: list[str] = []
 
     def visit(self, node: Any) -> Any:
+        if isinstance(node, ast.pattern):
+            return node
         stored = not isinstance(getattr(node, "ctx", ast.Load()), ast.Load)
         constant = isinstance(node, ast.Constant) and isinstance(node.value, float)
         if stored or not (constant or isinstance(node, LOOKED_AT)):
@@ -109,6 +111,16 @@ def watching(function: types.FunctionType) -> types.FunctionType:
     made: types.FunctionType = scope[function.__name__]
     made.__defaults__, made.__kwdefaults__ = function.__defaults__, function.__kwdefaults__
     return made
+
+
+def _together(claim: types.FunctionType, own: dict[str, types.FunctionType]) -> types.FunctionType:
+    """The claim, watched, with the functions of its file, watched as well."""
+    made = {name: watching(function) for name, function in own.items()}
+    whole = watching(claim)
+    for function in (whole, *made.values()):
+        if "_look" in function.__globals__:
+            function.__globals__.update(made)
+    return whole
 
 
 def _plain(value: Any, kinds: Any = int | float | Fraction) -> bool:
@@ -183,13 +195,19 @@ def hold(
     come up.
     """
     assert isinstance(claim, types.FunctionType)
-    if not _divides(claim.__code__) and not doubtful(visits):
+    own = {
+        name: value
+        for name, value in claim.__globals__.items()
+        if isinstance(value, types.FunctionType) and value.__module__ == claim.__module__
+    }
+    divides = any(_divides(function.__code__) for function in (claim, *own.values()))
+    if not divides and not doubtful(visits):
         return
     functions = {v.function for v in visits if isinstance(v.function, types.FunctionType)}
     watched = {function: watching(function) for function in functions}
     REPLACED.update(watched)
     try:
-        state(watching(claim))
+        state(_together(claim, own))
     finally:
         for function in watched:
             del REPLACED[function]

@@ -66,6 +66,10 @@ def rounded(x):
     return float(x) + 1 > x
 
 
+def helped():
+    return inner(1)
+
+
 def half(x):
     return x / 2
 
@@ -91,6 +95,8 @@ INEXACT = {
     "c.define(added, *([TENTH] * 2))": "`TENTH`",
     "c.define(rounded, 2**53)": "`float(x)`",
     "1 / 49 * 49 != 1": "`1 / 49`",
+    "off(1, 49)": "`x / n`",
+    "helped()": "`x / n`",
     "c.define(half, 4) == 2": "`x / 2`",
 }
 EXACT = [
