@@ -66,13 +66,23 @@ def chosen(
     about: theorems; the kernels and folds that they are about are chosen too. skip: targets and
     theorems; a theorem of these that meets nothing but these is not looked for.
     """
+    return _chosen(names, keys, about, skip)[0]
+
+
+def _chosen(
+    names: Iterable[str], keys: Keys | None, about: Iterable[str], skip: Container[str]
+) -> tuple[dict[str, list[str]], list[str]]:
+    """What `chosen` gives, and every theorem that could meet a target by what it imports.
+
+    Some of these meet none, because they do not look into it.
+    """
     keys = keys or Keys()
     patterns, theorems = list(names), set(about)
 
     def named(key: str) -> bool:
         return any(fnmatch.fnmatch(n, p) for p in patterns for n in (key, key.rpartition(".")[2]))
 
-    def look() -> dict[str, list[str]]:
+    def look() -> tuple[dict[str, list[str]], list[str]]:
         gate.load_all(keys.home)
         theorems_from(keys.folder)
         mine = set(targets(sorted(theorems), keys.home))
@@ -82,8 +92,9 @@ def chosen(
             return bool(wanted) if theorem not in skip else any(k not in skip for k in wanted)
 
         # only what could look into one of them is stated
-        there = targets([n for n in keys.theorems if could_meet(n)], keys.home)
-        return {k: users for k, (_, users) in there.items() if named(k) or k in mine}
+        near = [n for n in keys.theorems if could_meet(n)]
+        there = targets(near, keys.home)
+        return {k: users for k, (_, users) in there.items() if named(k) or k in mine}, near
 
     # in a process of its own, so that every judgement starts from a state without terms
     return forked.call(look)
@@ -125,10 +136,9 @@ def run(
     gate.load_all(home)
     known = standard() if store is None else store
     keys = Keys(home, None if theorems is None else list(theorems))
-    met_by = chosen(names, keys, about, skip)
+    met_by, near = _chosen(names, keys, about, skip)
     work = {key: users for key, users in met_by.items() if key not in skip}
-    met = sorted({name for users in met_by.values() for name in users if name not in skip})
-    weighed = met if premises else []
+    weighed = [name for name in near if name not in skip] if premises else []
     effort = _effort(sorted({*weighed, *(n for users in work.values() for n in users)}), home, jobs)
     # the longest first, so that no process waits for one that began late
     order = sorted(work, key=lambda key: -sum(effort[name] for name in work[key]))
