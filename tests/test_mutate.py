@@ -277,6 +277,15 @@ def test_what_is_skipped_is_not_judged():
     assert nothing == MutationReport((), ())
 
 
+def test_premises_count_where_a_theorem_looks_into_nothing():
+    """All that it is about is opaque, so it meets no mutant; its premises may be idle all the same."""
+    name = "well_clear_tep_is_convex"
+    report = mutate.run(["violation_tep_at"], theorems=[name], store=NOWHERE)
+    assert not report.results
+    assert report.judged == (name,)
+    assert len(report.premises) > 3
+
+
 def test_a_mutant_that_python_cannot_compute_is_told(monkeypatch):
     def divides(*more):
         raise ZeroDivisionError("Fraction(1, 0)")
