@@ -56,27 +56,23 @@ def standard() -> Store:
 
 
 def chosen(
-    names: Iterable[str] = ("*",),
-    keys: Keys | None = None,
-    about: Iterable[str] = (),
-    skip: Container[str] = (),
+    names: Iterable[str] = ("*",), keys: Keys | None = None, about: Iterable[str] = ()
 ) -> dict[str, list[str]]:
     """The targets whose `module.name` or name matches a pattern, with the theorems that may kill.
 
-    about: theorems; the kernels and folds that they are about are chosen too. skip: targets and
-    theorems; a theorem of these that meets nothing but these is not looked for.
+    about: theorems; the kernels and folds that they are about are chosen too.
     """
-    return _chosen(names, keys, about, skip)[0]
+    return _chosen(names, keys or Keys(), about, ())[0]
 
 
 def _chosen(
-    names: Iterable[str], keys: Keys | None, about: Iterable[str], skip: Container[str]
+    names: Iterable[str], keys: Keys, about: Iterable[str], skip: Container[str]
 ) -> tuple[dict[str, list[str]], list[str]]:
     """What `chosen` gives, and every theorem that could meet a target by what it imports.
 
-    Some of these meet none, because they do not look into it.
+    Some of these meet none, because they do not look into it. skip: targets and theorems; a theorem
+    of these that could meet nothing but these is not stated.
     """
-    keys = keys or Keys()
     patterns, theorems = list(names), set(about)
 
     def named(key: str) -> bool:

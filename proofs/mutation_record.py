@@ -8,6 +8,7 @@ was never mutated. A run on some targets replaces those and leaves the others al
 from __future__ import annotations
 
 import functools
+import inspect
 import json
 import os
 from collections.abc import Container, Iterable
@@ -19,7 +20,7 @@ from cratous.core import ledger as gate
 from cratous.core.kernel import Fold
 from cratous.core.ledger import PRODUCT
 from cratous.proofs.mutation_judge import faults
-from cratous.proofs.mutation_keys import Keys, find
+from cratous.proofs.mutation_keys import Keys, find, reach
 from cratous.proofs.mutation_report import MutationReport, percent
 from cratous.proofs.mutation_results import VERDICTS
 
@@ -87,7 +88,17 @@ def stale(data: dict[str, Any], keys: Keys) -> dict[str, str]:
             # of what has nothing to change there is nothing to record
             if one not in data["targets"] and _has_faults(find(one)):
                 found[one] = "it was never mutated"
+    for one in _definitions(tuple(keys.theorems)) - set(data["targets"]):
+        found[one] = "it was never mutated"
     return found
+
+
+@functools.cache
+def _definitions(theorems: tuple[str, ...]) -> frozenset[str]:
+    """The functions of `spec` that these theorems could look into and in which there is something to change."""
+    names = {name.removeprefix(f"{PRODUCT.name}.") for one in theorems for name in reach(one)}
+    there = {name: find(name) for name in names if name.startswith("spec.")}
+    return frozenset(n for n, f in there.items() if inspect.isfunction(f) and _has_faults(f))
 
 
 def stale_premises(data: dict[str, Any], keys: Keys) -> dict[str, str]:
@@ -129,6 +140,34 @@ def survivors(data: dict[str, Any], names: Container[str]) -> list[tuple[str, st
     ]
 
 
+def totals(data: dict[str, Any], keys: Keys) -> dict[str, int]:
+    """How many mutants have each verdict, how many functions they are of, and what is out of date.
+
+    Only what holds for the code as it is counts.
+    """
+    old = stale(data, keys)
+    rows = [row for name, row in data["targets"].items() if name not in old]
+    found = {v: sum(row["counts"][v] for row in rows) for v in VERDICTS}
+    out = {
+        "functions_out_of_date": len(old),
+        "premises_out_of_date": len(stale_premises(data, keys)),
+    }
+    return {**found, "functions": len(rows), **out}
+
+
+def summary(counts: dict[str, int]) -> str:
+    """`totals` as a sentence or two."""
+    viable = counts["killed"] + counts["survived"] + counts["undecided"]
+    score = percent(Fraction(counts["killed"], viable)) if viable else "nothing was"
+    shown = ", ".join(f"{counts[v]} {v}" for v in VERDICTS)
+    return (
+        f"{sum(counts[v] for v in VERDICTS)} mutants in {counts['functions']} functions: {shown}; "
+        f"{score} killed of those that are viable and not proved equivalent. "
+        f"{counts['functions_out_of_date']} functions and the premises of "
+        f"{counts['premises_out_of_date']} theorems are not up to date."
+    )
+
+
 @functools.cache
 def _has_faults(function: Any) -> bool:
     return bool(faults(function))
@@ -142,10 +181,6 @@ def document(data: dict[str, Any], keys: Keys) -> str:
     loose = stale_premises(data, keys)
     # what is no longer the code's own counts for nothing
     own = {name: row for name, row in targets.items() if name not in old}
-    total = {v: sum(row["counts"][v] for row in own.values()) for v in VERDICTS}
-    viable = total["killed"] + total["survived"] + total["undecided"]
-    score = percent(Fraction(total["killed"], viable)) if viable else "nothing was"
-    counts = ", ".join(f"{total[v]} {v}" for v in VERDICTS)
     lines = [
         "# Mutation of kernels, definitions and premises",
         "",
@@ -157,9 +192,7 @@ def document(data: dict[str, Any], keys: Keys) -> str:
         "fault changes nothing, everywhere or where the theorems apply (the list says which);",
         "*undecided* counts as not killed; *stillborn* mutants cannot be run.",
         "",
-        f"**{sum(total.values())} mutants in {len(own)} functions: {counts}; {score} killed of "
-        f"those that are viable and not proved equivalent. {len(old)} functions and the premises "
-        f"of {len(loose)} theorems are not up to date.**",
+        f"**{summary(totals(data, keys))}**",
         "",
         "| kind | " + " | ".join(VERDICTS) + " |",
         "|---|" + "---|" * len(VERDICTS),

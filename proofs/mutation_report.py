@@ -40,6 +40,8 @@ class MutationReport:
     @property
     def line(self) -> str:
         """One line for the terminal."""
+        if not self.results:
+            return "no mutant was judged"
         counts = ", ".join(f"{self.count(v)} {v}" for v in VERDICTS)
         return f"{len(self.results)} mutants: {counts}; {percent(self.score)} killed"
 

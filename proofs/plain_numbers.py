@@ -5,7 +5,7 @@ Where a theorem gives a function plain numbers, Python computes with them, and n
 so nothing is wrong unless a double comes up. Mixed with symbolic values a double is refused as it
 is; here the rest is looked for. A claim in which a double could come up is stated once more, with
 functions that look at every value that they compute. The lines of the claim and of its file are
-among them, what else it calls without lifting it is not.
+among them; a function of another file that is called without being lifted is not looked into.
 """
 
 from __future__ import annotations
@@ -17,14 +17,15 @@ import functools
 import inspect
 import textwrap
 import types
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
 from cratous.proofs.lift import REPLACED, Visit
 from cratous.spec.errors import BadInput
 
-LOOKED_AT = (ast.BinOp, ast.UnaryOp, ast.Call, ast.Name, ast.Attribute, ast.Subscript, ast.IfExp)
+COMPUTED = (ast.BinOp, ast.UnaryOp, ast.Call)
+"""What rounds. A double that is only named or compared is the rational that it is."""
 HARMLESS = (abs, min, max, len, all, any, sum, range, bool, int, tuple, isinstance, zip, enumerate)
 """What gives no double unless it is given one."""
 
@@ -61,9 +62,7 @@ class _Watching(ast.NodeTransformer):
     def visit(self, node: Any) -> Any:
         if isinstance(node, ast.pattern):
             return node
-        stored = not isinstance(getattr(node, "ctx", ast.Load()), ast.Load)
-        constant = isinstance(node, ast.Constant) and isinstance(node.value, float)
-        if stored or not (constant or isinstance(node, LOOKED_AT)):
+        if not isinstance(node, COMPUTED):
             return self.generic_visit(node)
         self.texts.append(ast.unparse(node))
         number = ast.Constant(len(self.texts) - 1)
@@ -125,35 +124,60 @@ def _together(claim: types.FunctionType, own: dict[str, types.FunctionType]) -> 
 
 def _plain(value: Any, kinds: Any = int | float | Fraction) -> bool:
     """There is a number of these kinds in the value, not a symbolic one."""
-    if isinstance(value, tuple):
+    if isinstance(value, tuple | list):
         return any(_plain(part, kinds) for part in value)
     return isinstance(value, kinds) and not isinstance(value, bool)
 
 
+def _codes(code: types.CodeType) -> Iterator[types.CodeType]:
+    """The code and that of the comprehensions and functions in it."""
+    yield code
+    for part in code.co_consts:
+        if isinstance(part, types.CodeType):
+            yield from _codes(part)
+
+
 def _divides(code: types.CodeType) -> bool:
     """Written in it is a division, a power, or a double."""
-    return (
-        any(
+    return any(
+        _plain(part.co_consts, float | complex)
+        or any(
             i.opname == "BINARY_OP" and i.argrepr.rstrip("=") in ("/", "**")
-            for i in dis.get_instructions(code)
+            for i in dis.get_instructions(part)
         )
-        or _plain(code.co_consts, float | complex)
-        or any(_divides(part) for part in code.co_consts if isinstance(part, types.CodeType))
+        for part in _codes(code)
     )
+
+
+def _names(function: types.FunctionType) -> set[str]:
+    return {name for code in _codes(function.__code__) for name in code.co_names}
+
+
+def _used(function: types.FunctionType) -> list[Any]:
+    """What the function can get at beside its arguments."""
+    scope = vars(builtins) | function.__globals__
+    kept = [cell.cell_contents for cell in function.__closure__ or ()]
+    defaults = [*(function.__defaults__ or ()), *(function.__kwdefaults__ or {}).values()]
+    return [*(scope.get(name) for name in _names(function)), *kept, *defaults]
 
 
 @functools.cache
 def _could(function: types.FunctionType) -> bool:
-    """The function could make a double of integers, or has one."""
-    scope = vars(builtins) | function.__globals__
-    used = [scope.get(name) for name in function.__code__.co_names]
-    kinds = float | types.ModuleType | types.BuiltinFunctionType | type
+    """The function could make a double of integers and fractions."""
+    kinds = types.ModuleType | types.BuiltinFunctionType | type
     return _divides(function.__code__) or any(
         isinstance(value, kinds)
         and not any(value is harmless for harmless in HARMLESS)
         and not (isinstance(value, type) and issubclass(value, tuple))
-        for value in used
+        for value in _used(function)
     )
+
+
+@functools.cache
+def _owns(function: types.FunctionType) -> bool:
+    """The function has a double at hand that no argument brought."""
+    constants = [code.co_consts for code in _codes(function.__code__)]
+    return _plain((*_used(function), *constants), float | complex)
 
 
 @functools.cache
@@ -179,9 +203,9 @@ def doubtful(visits: Iterable[Visit]) -> bool:
         known = visit.function
         assert isinstance(known, types.FunctionType)
         numbers = _plain(visit.args) or _literals(known)
-        return _could(known) and (numbers or not given.isdisjoint(known.__code__.co_names))
+        return _could(known) and (numbers or not given.isdisjoint(_names(known)))
 
-    return any(_plain(v.args, float | complex) or could(v) for v in seen)
+    return any(_plain(v.args, float | complex) or _owns(v.function) or could(v) for v in seen)
 
 
 def hold(
@@ -200,8 +224,8 @@ def hold(
         for name, value in claim.__globals__.items()
         if isinstance(value, types.FunctionType) and value.__module__ == claim.__module__
     }
-    divides = any(_divides(function.__code__) for function in (claim, *own.values()))
-    if not divides and not doubtful(visits):
+    alone = any(_divides(f.__code__) or _owns(f) for f in (claim, *own.values()))
+    if not alone and not doubtful(visits):
         return
     functions = {v.function for v in visits if isinstance(v.function, types.FunctionType)}
     watched = {function: watching(function) for function in functions}

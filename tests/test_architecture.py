@@ -24,7 +24,11 @@ SPEC_DATA = {
     "cratous.spec.daa",
 }
 CORE_OUTSIDE = {"numpy", "numba"}
-PROOF_COMMANDS = {"services/cli/prove.py", "services/cli/certify.py"}
+PROOF_COMMANDS = {
+    "services/cli/prove.py",
+    "services/cli/prove_checks.py",
+    "services/cli/certify.py",
+}
 
 
 def _imports(file: Path) -> set[str]:

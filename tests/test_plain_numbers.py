@@ -66,6 +66,23 @@ def rounded(x):
     return float(x) + 1 > x
 
 
+def deeper(x):
+    return any(sqrt(y) * sqrt(y) != y for y in (x, x + 1))
+
+
+def by_default(x, k=TENTH):
+    return x + k > Fraction(3, 10)
+
+
+def enclosing():
+    k = TENTH
+
+    def added(x):
+        return x + k > Fraction(3, 10)
+
+    return added
+
+
 def helped():
     return inner(1)
 
@@ -83,16 +100,18 @@ def claim(c):
 INEXACT = {
     "c.define(off, 1, 49)": "`x / n`",
     "c.define(inner, 1)": "`x / n`",
-    "c.define(inner, a - a + 1) if 0 else c.define(off, 1, 49)": "`x / n`",
+    "c.define(deeper, 2)": "`sqrt(y)`",
+    "c.define(by_default, Fraction(1, 5))": "`x + k`",
+    "c.define(enclosing(), Fraction(1, 5))": "`x + k`",
+    "TENTH + TENTH + TENTH > Fraction(3, 10)": "`TENTH + TENTH`",
     "c.define(rooted, 2)": "`sqrt(x)`",
     "c.define(rooted, Fraction(2))": "`sqrt(x)`",
     "c.define(through_module, 2)": "`math.sqrt(x)`",
     "c.define(power, 49)": "`x ** (-1)`",
     "c.define(thirds)": "`(1 - three) / three`",
     "c.define(by_one, 49)": "`one() / n`",
-    "c.define(constant, Fraction(1, 5))": "`TENTH`",
-    "c.define(added, TENTH, Fraction(1, 5))": "`TENTH`",
-    "c.define(added, *([TENTH] * 2))": "`TENTH`",
+    "c.define(constant, Fraction(1, 5))": "`TENTH + x`",
+    "c.define(added, TENTH, Fraction(1, 5))": "`x + y`",
     "c.define(rounded, 2**53)": "`float(x)`",
     "1 / 49 * 49 != 1": "`1 / 49`",
     "off(1, 49)": "`x / n`",
@@ -100,6 +119,8 @@ INEXACT = {
     "c.define(half, 4) == 2": "`x / 2`",
 }
 EXACT = [
+    "Fraction(TENTH) > Fraction(1, 10)",
+    "TENTH > Fraction(1, 10)",
     "c.define(half, Fraction(4)) == 2",
     "c.negation(c.define(off, Fraction(1), 49))",
     "c.negation(c.define(inner, Fraction(1)))",
@@ -148,5 +169,5 @@ def test_functions_and_their_defaults_are_the_same_when_watched():
     assert watched is not scaled
     assert watched(2) == scaled(2) == 7
     assert watched(2, 4, and_more=2) == 10
-    with pytest.raises(plain_numbers.Inexact, match=r"`x` is computed in doubles"):
+    with pytest.raises(plain_numbers.Inexact, match=r"`x \* by` is computed in doubles"):
         watched(2.0)

@@ -8,63 +8,14 @@ import json
 import sys
 import time
 from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any
 
 import click
 
+from cratous.services.cli.progress import Bar
+from cratous.services.cli.prove_checks import mutation, second_solver
 from cratous.spec.errors import BadInput
-
-
-class _Bar:
-    """A progress bar on a terminal; silent everywhere else."""
-
-    def __init__(self, title: str, total: int, shown: bool) -> None:
-        self._parts: dict[str, tuple[int, int]] = {}
-        self._total = total
-        self._last = 0.0
-        self._context: AbstractContextManager[Any] = nullcontext()
-        if shown:
-            from rich.console import Console
-            from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-
-            columns = (
-                TextColumn(title),
-                BarColumn(),
-                MofNCompleteColumn(),
-                TextColumn("{task.fields[at]}"),
-            )
-            # no refresh thread: workers are forked from here
-            self._bar = Progress(
-                *columns, console=Console(stderr=True), auto_refresh=False, transient=True
-            )
-            self._task = self._bar.add_task(title, total=total, at="")
-            self._context = self._bar
-        self._shown = shown
-
-    def __enter__(self) -> _Bar:
-        self._context.__enter__()
-        return self
-
-    def __exit__(self, *error: Any) -> None:
-        self._context.__exit__(*error)
-
-    def step(self, name: str, done: int, of: int) -> None:
-        """One item is so far; the total grows as items become known."""
-        if not self._shown:
-            return
-        self._parts[name] = (done, of)
-        known = sum(o for _, o in self._parts.values())
-        self._bar.update(
-            self._task,
-            completed=sum(d for d, _ in self._parts.values()),
-            total=max(known, self._total),
-            at=name,
-        )
-        if time.monotonic() - self._last > 0.1:
-            self._last = time.monotonic()
-            self._bar.refresh()
 
 
 def _show(theorem: Any, verbose: bool) -> None:
@@ -115,116 +66,6 @@ def _refuse(problems: list[str]) -> None:
         where=where,
         expected="every kernel proved and every driver re-checked; the ledger is not written",
     )
-
-
-def _recheck(
-    theorems: list[Any],
-    folder: Path,
-    jobs: int,
-    as_json: bool,
-    keep: bool,
-    whole: bool,
-    new: bool,
-) -> dict[str, Any]:
-    from cratous.core.private import private_cache
-    from cratous.proofs import recheck
-    from cratous.proofs.mutation_keys import Store
-
-    begun = time.monotonic()
-    bar = _Bar("cvc5", 1, not as_json and sys.stderr.isatty())
-    with bar:
-        found = recheck.recheck(
-            theorems,
-            folder=folder,
-            jobs=jobs,
-            tell=lambda c, n, of: bar.step("cvc5", n, of),
-            record=recheck.read(),
-            again=not new,
-            store=Store(private_cache() / "recheck"),
-        )
-    if keep:
-        recheck.write(found, theorems, whole=whole)
-    names = found.theorems
-    counts = {v: found.count(v) for v in ("confirmed", "no answer", "contradicted")}
-    good = sum(check.verdict == recheck.CONFIRMED for check in found.checks)
-    if not as_json:
-        for check in found.checks:
-            if check.verdict != recheck.CONFIRMED:
-                click.echo(f"{check.verdict:12s} {check.theorem} {check.number}: {check.text}")
-        click.echo(
-            f"{found.solver}: {counts['confirmed']} of {len(names)} theorems confirmed, "
-            f"{counts['no answer']} no answer, {counts['contradicted']} contradicted; "
-            f"{good} of {len(found.checks)} obligations confirmed"
-        )
-    return {
-        "solver": found.solver,
-        "theorems": {name: found.verdict(name) for name in names},
-        **{key.replace(" ", "_"): value for key, value in counts.items()},
-        "obligations": len(found.checks),
-        "obligations_confirmed": good,
-        "not_confirmed": [
-            {"theorem": c.theorem, "obligation": c.text, "verdict": c.verdict, "key": c.key}
-            for c in found.checks
-            if c.verdict != recheck.CONFIRMED
-        ],
-        "seconds": round(time.monotonic() - begun, 1),
-    }
-
-
-def _mutate(
-    patterns: tuple[str, ...],
-    about: list[str],
-    home: Any,
-    jobs: int,
-    as_json: bool,
-    keep: bool,
-    new: bool,
-) -> dict[str, Any]:
-    """Judge the mutants; patterns: names of functions; about: theorems whose functions are meant too.
-
-    new: what the record has is not judged again; its survivors are told and count.
-    """
-    from cratous.proofs import mutate, mutation_record
-    from cratous.proofs.mutation_keys import Keys
-
-    keys = Keys(home)
-
-    def tell(target: str, results: list[Any]) -> None:
-        if keep:
-            # at once, so that a run that is stopped has not been in vain
-            mutation_record.write(mutate.part(target, results), keys)
-        if as_json:
-            return
-        counts = {v: sum(getattr(r, "verdict", "") == v for r in results) for v in mutate.VERDICTS}
-        shown = ", ".join(f"{count} {v}" for v, count in counts.items() if count)
-        click.echo(f"mutated    {target}: {shown or f'{len(results)} premises'}", err=True)
-
-    data = mutation_record.read() if new and home.product else mutation_record.EMPTY
-    known = mutation_record.fresh(data, keys) if new else set()
-    report = mutate.run(patterns, tell, jobs, about=about, home=home, skip=known)
-    recorded = mutation_record.survivors(data, known)
-    listed = {v: report.of(v) for v in ("survived", "undecided")}
-    if not as_json:
-        for verdict, results in listed.items():
-            for result in results:
-                click.echo(f"{verdict:10s} {result.place}: {result.target}: {result.diff}")
-        for target, _, diff in recorded:
-            click.echo(f"survived   {target}: {diff} (as recorded)")
-        click.echo(report.line)
-        if new:
-            click.echo(f"{len(known)} functions and theorems stand as recorded in mutation.json")
-    return {
-        "mutants": len(report.results),
-        **{verdict: report.count(verdict) for verdict in mutate.VERDICTS},
-        "score": float(report.score),
-        "holds": report.holds and all(kind == "definition" for _, kind, _ in recorded),
-        "as_recorded": len(known),
-        "listed": [
-            {"verdict": v, "target": r.target, "place": r.place, "diff": r.diff, "note": r.note}
-            for v, results in listed.items()
-            for r in results
-        ],
-    }
 
 
 @click.command()
@@ -329,7 +170,7 @@ def prove(
     store = cache.standard()
     memory = Recall(private_cache() / "theorems", home)
     remembered = Remembered(private_cache() / "remembered", home)
-    bar = _Bar("proving", len(names), not as_json and sys.stderr.isatty())
+    bar = Bar("proving", len(names), not as_json and sys.stderr.isatty())
     with bar:
         inventory = ledger.prove_all(
             names,
@@ -360,11 +201,11 @@ def prove(
     data: dict[str, Any] = {}
     if recheck:
         keep = home.product and not check
-        data["recheck"] = _recheck(theorems, folder, workers, as_json, keep, whole, new)
+        data["recheck"] = second_solver(theorems, folder, workers, as_json, keep, whole, new)
     if mutate:
         patterns = only or (("*",) if whole else ())
         keep = home.product and not check
-        data["mutation"] = _mutate(patterns, about, home, workers, as_json, keep, new)
+        data["mutation"] = mutation(patterns, about, home, workers, as_json, keep, new)
     if smt2_folder is not None:
         count = _export(theorems, smt2_folder, folder)
         if not as_json:
