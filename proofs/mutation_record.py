@@ -155,10 +155,16 @@ def totals(data: dict[str, Any], keys: Keys) -> dict[str, int]:
     return {**found, "functions": len(rows), **out}
 
 
+def score_of(counts: dict[str, int]) -> Fraction | None:
+    """Killed among those that are viable and not proved equivalent; None where there are none."""
+    viable = counts["killed"] + counts["survived"] + counts["undecided"]
+    return Fraction(counts["killed"], viable) if viable else None
+
+
 def summary(counts: dict[str, int]) -> str:
     """`totals` as a sentence or two."""
-    viable = counts["killed"] + counts["survived"] + counts["undecided"]
-    score = percent(Fraction(counts["killed"], viable)) if viable else "nothing was"
+    found = score_of(counts)
+    score = "nothing was" if found is None else percent(found)
     shown = ", ".join(f"{counts[v]} {v}" for v in VERDICTS)
     return (
         f"{sum(counts[v] for v in VERDICTS)} mutants in {counts['functions']} functions: {shown}; "

@@ -7,6 +7,9 @@ from fractions import Fraction
 
 from cratous.proofs.mutation_results import VERDICTS, PremiseResult, Result
 
+ENOUGH = Fraction(98, 100)
+"""What of the viable mutants is to be killed at least."""
+
 
 @dataclass(frozen=True)
 class MutationReport:
@@ -49,7 +52,7 @@ class MutationReport:
     def holds(self) -> bool:
         """True iff no kernel or fold has a survivor and 98 % of the viable mutants are killed."""
         loose = any(r.kind != "definition" for r in self.of("survived"))
-        return not loose and self.score >= Fraction(98, 100)
+        return not loose and self.score >= ENOUGH
 
 
 def percent(part: Fraction) -> str:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import ast
 import builtins
+import copy
 import dis
 import functools
 import inspect
@@ -62,6 +63,11 @@ class _Watching(ast.NodeTransformer):
     def visit(self, node: Any) -> Any:
         if isinstance(node, ast.pattern):
             return node
+        if isinstance(node, ast.AugAssign):
+            old = copy.deepcopy(node.target)
+            old.ctx = ast.Load()
+            value = ast.BinOp(old, node.op, node.value)
+            node = ast.copy_location(ast.Assign([node.target], value), node)
         if not isinstance(node, COMPUTED):
             return self.generic_visit(node)
         self.texts.append(ast.unparse(node))

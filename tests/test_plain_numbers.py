@@ -66,6 +66,11 @@ def rounded(x):
     return float(x) + 1 > x
 
 
+def in_place(x):
+    x /= 49
+    return x != Fraction(1, 49)
+
+
 def deeper(x):
     return any(sqrt(y) * sqrt(y) != y for y in (x, x + 1))
 
@@ -100,6 +105,7 @@ def claim(c):
 INEXACT = {
     "c.define(off, 1, 49)": "`x / n`",
     "c.define(inner, 1)": "`x / n`",
+    "c.define(in_place, 1)": "`x / 49`",
     "c.define(deeper, 2)": "`sqrt(y)`",
     "c.define(by_default, Fraction(1, 5))": "`x + k`",
     "c.define(enclosing(), Fraction(1, 5))": "`x + k`",

@@ -85,6 +85,7 @@ def mutation(
     """
     from cratous.proofs import mutate, mutation_record
     from cratous.proofs.mutation_keys import Keys
+    from cratous.proofs.mutation_report import ENOUGH
 
     keys = Keys(home)
 
@@ -124,6 +125,8 @@ def mutation(
     if new and home.product:
         # what was judged now says little: what counts is what is known of all
         found["record"] = mutation_record.totals(mutation_record.merged(data, report, keys), keys)
+        score = mutation_record.score_of(found["record"])
+        found["holds"] = found["holds"] and (score is None or score >= ENOUGH)
         if not as_json:
             click.echo(f"with what was recorded: {mutation_record.summary(found['record'])}")
     return found
