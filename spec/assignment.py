@@ -52,8 +52,8 @@ class AssignmentProblem:
     energy_mj: the same shape or empty; ready_ms: per vehicle; release_ms, due_ms: (task id, time);
     relations: empty means all tasks in any order; done: tasks that have been flown, as (task id,
     start, end), in the order of their starts: they have no choices, and no vehicle sets off before
-    they have started; unable: further tasks of the relations that nobody has a choice for, so that
-    only branches without them count.
+    they have started; unable: further tasks that are asked for and nobody has a choice for, so that
+    only branches without them count: none, if the relations are empty.
     """
 
     name: str

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Set
 from dataclasses import replace
 
 from cratous.spec import algebra
@@ -41,35 +41,63 @@ def known_at(mission: Mission, now_ms: int, done: Iterable[int] = ()) -> Mission
     """The mission as it is known at an instant: its zones, and who and what takes part.
 
     A vehicle takes part until it is lost, and from when it joins; a task from when it is requested until it
-    is removed, unless it is among those `done`. Relations lose the tasks that do not take part.
+    is removed, unless it is among those `done`. What was said last counts, and what is first said to
+    join or to be requested was not there before. Relations lose the tasks that do not take part.
     """
     if not mission.changes:
         return mission
-    flown = set(done)
-    gone_vehicles, gone_tasks, zones = set(), set(), list(mission.zones)
-    for change in mission.changes:
-        happened = change.at_ms <= now_ms
-        if change.kind == ZONE and happened and change.zone is not None:
-            zones.append(change.zone)
-        elif (change.kind == VEHICLE_LOST and happened) or (
-            change.kind == VEHICLE_JOINS and not happened
-        ):
-            gone_vehicles.add(change.vehicle)
-        elif (change.kind == TASK_REMOVED and happened and change.task not in flown) or (
-            change.kind == TASK_ADDED and not happened
-        ):
-            gone_tasks.add(change.task)
+    happened, _ = split(mission.changes, now_ms)
+    zones = [c.zone for c in happened if c.kind == ZONE and c.zone is not None]
+    away = without_vehicles(mission, now_ms)
+    known = _without_tasks(mission, _gone(mission, now_ms).keys() - set(done))
     return replace(
-        mission,
-        zones=tuple(zones),
-        vehicles=tuple(v for v in mission.vehicles if v.id not in gone_vehicles),
-        tasks=tuple(t for t in mission.tasks if t.id not in gone_tasks),
-        relations=_relations(mission, gone_tasks),
+        known,
+        zones=(*mission.zones, *zones),
+        vehicles=tuple(v for v in mission.vehicles if v.id not in away),
         changes=(),
     )
 
 
-def _relations(mission: Mission, gone: set[int]) -> str:
+def asked_by(mission: Mission, now_ms: int, done: Iterable[int] = ()) -> Mission:
+    """The mission with all tasks that it asks for, those too that are requested only after an instant:
+    without those that were removed by then, unless they are among those `done`."""
+    later = {c.task for c in mission.changes if c.kind == TASK_ADDED and c.at_ms > now_ms}
+    return _without_tasks(mission, _gone(mission, now_ms).keys() - set(done) - later)
+
+
+def without_vehicles(mission: Mission, now_ms: int) -> dict[int, Change]:
+    """The vehicles that do not take part at an instant, each with the change that says why."""
+    return _out(mission, now_ms, "vehicle", VEHICLE_JOINS, VEHICLE_LOST)
+
+
+def _gone(mission: Mission, now_ms: int) -> dict[int, Change]:
+    return _out(mission, now_ms, "task", TASK_ADDED, TASK_REMOVED)
+
+
+def _out(mission: Mission, now_ms: int, what: str, enters: str, leaves: str) -> dict[int, Change]:
+    """Who or what is not there, by the last change that has happened, else by the first to come."""
+    found: dict[int, Change] = {}
+    happened, to_come = split((c for c in mission.changes if c.kind in (enters, leaves)), now_ms)
+    for change in reversed(to_come):
+        found[getattr(change, what)] = change
+    for change in happened:
+        found[getattr(change, what)] = change
+    return {
+        number: change
+        for number, change in found.items()
+        if change.kind == (leaves if change.at_ms <= now_ms else enters)
+    }
+
+
+def _without_tasks(mission: Mission, gone: Set[int]) -> Mission:
+    return replace(
+        mission,
+        tasks=tuple(t for t in mission.tasks if t.id not in gone),
+        relations=_relations(mission, gone),
+    )
+
+
+def _relations(mission: Mission, gone: Set[int]) -> str:
     if not mission.relations.strip():
         return ""
     ids = [task.id for task in mission.tasks]
@@ -78,7 +106,7 @@ def _relations(mission: Mission, gone: set[int]) -> str:
     return "" if left is None else algebra.format_term(left)
 
 
-def _without(term: Term, gone: set[int]) -> Term | None:
+def _without(term: Term, gone: Set[int]) -> Term | None:
     """The term without these tasks; None if nothing is left. An operator with one operand stays."""
     if isinstance(term, Atom):
         return None if term.task in gone else term

@@ -35,8 +35,8 @@ REQUIREMENTS = (
     Requirement(
         "G3",
         "Completion",
-        "The mission completes in finite time if it can, and complete means that every chosen "
-        "task was served.",
+        "The mission completes in finite time, and complete means that every task that it asks "
+        "for was served.",
     ),
     Requirement(
         "G4",

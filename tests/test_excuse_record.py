@@ -23,7 +23,18 @@ from cratous.services.monitor import Monitor
 from cratous.spec.daa import Parameters
 from cratous.spec.daa_presets import preset
 from cratous.spec.guarantees import Outcome, exit_code
-from cratous.spec.mission import Daa, Frame, Mission, Position, Task, TaskKind, Vehicle, WellClear
+from cratous.spec.mission import (
+    Daa,
+    Frame,
+    Mission,
+    Position,
+    Task,
+    TaskKind,
+    Traffic,
+    Vehicle,
+    Velocity,
+    WellClear,
+)
 from cratous.spec.plan import Plan
 
 VOLUME = WellClear(400.0, 60.0, 10.0, 0.0)
@@ -135,7 +146,12 @@ class Envelope:
 def verdicts(scenes: list[Scene], numbers: tuple[int, ...] = (1,)) -> list[Any]:
     vehicles = tuple(vehicle(n) for n in numbers)
     tasks = (Task(1, TaskKind.MUST_FLY, "", (Position(10.0, 5000.0, 300.0),)),)
-    mission = Mission("m", "", Frame(45.0, -121.0), vehicles, tasks, Daa(VOLUME, 15.0))
+    there = [s.time_ms for s in scenes if 9 in s.places]
+    still = Velocity(0.0, 0.0, 0.0)
+    others = tuple(
+        Traffic(9, Position(0.0, 0.0, 0.0), still, ms) for ms in there[:1] if 9 not in numbers
+    )
+    mission = Mission("m", "", Frame(45.0, -121.0), vehicles, tasks, Daa(VOLUME, 15.0), (), others)
     monitor = Monitor(mission, Plan("m", (), (), (1,), 3000, "MINMAX", 1, True))
     for s in scenes:
         for number, (east, north, up) in s.places.items():

@@ -92,6 +92,7 @@ def beats(until: int, every: int = 500) -> list[tuple[int, Any]]:
 
 def done(until: int = 3000) -> list[tuple[int, Any]]:
     return [
+        *(command(0, "UxAS", 0, vehicle=v) for v in (1, 2)),
         progress(1, 1, 0, "Active"),
         progress(1, 1, 1000, "Complete"),
         progress(2, 2, 2000, "Active"),
@@ -142,7 +143,7 @@ def test_a_loss_by_modified_tau_has_no_positive_margin():
 def test_traffic_counts_and_an_unprotected_vehicle_is_not_covered():
     m = mission(vehicles=(vehicle(1), vehicle(2, protected=False)))
     near = [truth(2, ms, 0, 0) for ms in (0, 250)] + [truth(9, ms, 10, 0) for ms in (0, 250)]
-    assert watch(m, [*near, *done()])["G2"].outcome is Outcome.HOLDS
+    assert watch(m, [*near, *apart(), *done()])["G2"].outcome is Outcome.HOLDS
     near = [truth(1, ms, 0, 0) for ms in (0, 250)] + [truth(9, ms, 10, 0) for ms in (0, 250)]
     assert watch(m, sorted([*near, *done()], key=lambda x: x[0]))["G2"].vehicles == (1, 9)
     assert Monitor(m, PLAN).not_covered == (2,)
@@ -158,7 +159,7 @@ def test_entering_a_keep_out_between_samples_is_seen():
     assert verdict.outcome is Outcome.VIOLATED
     assert verdict.time_ms == 0
     over = [truth(1, 0, 0, 0, 600), truth(1, 250, 20, 0, 600)]
-    seen = watch(mission(zones=(zone,)), [*over, *done()])
+    seen = watch(mission(zones=(zone,)), [*over, *done(250)])
     assert seen["G1:zone: keep_out 7, flight of vehicle 1"].outcome is Outcome.HOLDS
 
 
@@ -222,8 +223,8 @@ def gate(ms: int, owner: str, epoch: int, offered: bool = False) -> tuple[int, A
     )
 
 
-def command(ms: int, sender: str, epoch: int) -> tuple[int, Any]:
-    return ms, lmcp.new("GatedCommand", VehicleID=1, Sender=sender, Epoch=epoch)
+def command(ms: int, sender: str, epoch: int, vehicle: int = 1) -> tuple[int, Any]:
+    return ms, lmcp.new("GatedCommand", VehicleID=vehicle, Sender=sender, Epoch=epoch)
 
 
 def dropped(ms: int, epoch: int) -> tuple[int, Any]:

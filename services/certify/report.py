@@ -15,8 +15,9 @@ from typing import Any
 
 from cratous import __version__
 from cratous.services.certify.timeline import bars, read_flight
-from cratous.services.certify.verdicts import requirement_rows
+from cratous.services.certify.verdicts import requirement_rows, with_promised
 from cratous.services.log import read_digest, read_log
+from cratous.services.monitor.promises import watched
 from cratous.services.records import canonical, fingerprint, to_data
 from cratous.spec.errors import BadInput
 from cratous.spec.guarantees import Outcome, exit_code, worst
@@ -62,10 +63,13 @@ def build_report(
     """The whole report as plain data.
 
     rows: of `verdicts.constraint_rows`; log: the message log; proofs: of `proofs.inventory`.
-    A flight with kernels that the ledger does not vouch for is at best unknown.
+    A row that a requirement promises and `rows` lacks is unknown: not observed. A flight with kernels that the ledger does not vouch for is at best unknown.
     """
-    found = sorted(rows, key=lambda row: (row["requirement"], row["source"], row["item"]))
     flight = read_flight(read_log(log), (vehicle.id for vehicle in mission.vehicles))
+    done = {task for task, end in flight.served.items() if end["phase"] == "Complete"}
+    seen = watched(mission, flight.end_ms, done, set(flight.accepted or plan.chosen))
+    found = with_promised(list(rows), seen)
+    found.sort(key=lambda row: (row["requirement"], row["source"], row["item"]))
     requirements = requirement_rows(found)
     outcomes = [Outcome(row["verdict"]) for row in requirements]
     if proofs["problems"]:
@@ -96,7 +100,7 @@ def build_report(
             "changes": flight.changes,
             "footprints": _seen(flight.footprints, mission),
             "served": [flight.served[task] for task in sorted(flight.served)],
-            "unserved": [task for task in plan.chosen if task not in flight.served],
+            "unserved": [task for task in sorted(seen.tasks) if task not in flight.served],
         },
         "log": {
             "file": LOG_NAME,

@@ -37,6 +37,8 @@ class Flight:
     end_ms: int = 0
     outcome: str = "the log has no end of mission"
     plan_hash: str = ""
+    accepted: tuple[int, ...] = ()
+    """The tasks of the last plan that was flown by, and those done before it."""
 
 
 def _footprints(flight: Flight, time_ms: int, body: dict[str, Any]) -> None:
@@ -167,7 +169,7 @@ def _progress(flight: Flight, body: dict[str, Any]) -> None:
             "note": body["Note"],
         }
     note = f" ({body['Note']})" if body["Note"] else ""
-    _note(flight, time_ms, number, f"task {task}: {phase.lower()}{note}")
+    _note(flight, time_ms, number or None, f"task {task}: {phase.lower()}{note}")
 
 
 def _event(flight: Flight, short: str, body: dict[str, Any]) -> None:
@@ -177,6 +179,7 @@ def _event(flight: Flight, short: str, body: dict[str, Any]) -> None:
         _note(flight, time_ms, None, f"end of mission: {body['Outcome']}")
     elif short == "PlanAccepted":
         flight.plan_hash = str(body["PlanHash"])
+        flight.accepted = tuple(body.get("Tasks") or ()) or flight.accepted
         _note(flight, time_ms, None, f"plan accepted, {body['Makespan'] / 1000:.1f} s long")
     elif short == "MissionChange":
         _note(flight, time_ms, None, f"{body['What']}: {body['Consequence']}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from cratous.services.monitor.promises import PLAN_ROWS, Row, Watched, missing, promised
 from cratous.spec.guarantees import REQUIREMENTS, Outcome, Verdict, worst
 
 
@@ -32,6 +33,16 @@ def constraint_rows(verdicts: Iterable[Verdict], source: str) -> list[dict[str, 
         for verdict in verdicts
         if verdict.item
     ]
+
+
+def with_promised(rows: list[dict[str, Any]], seen: Watched) -> list[dict[str, Any]]:
+    """The rows, and an unknown one for each that is promised and not among them."""
+    wanted = {"plan": [Row("G1", item) for item in PLAN_ROWS], "flight": list(promised(seen))}
+    found = list(rows)
+    for source, expected in wanted.items():
+        there = [(row["requirement"], row["item"]) for row in rows if row["source"] == source]
+        found += constraint_rows(missing(expected, there), source)
+    return found
 
 
 def requirement_rows(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:

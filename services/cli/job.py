@@ -15,6 +15,7 @@ from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
 
+from cratous.services.taking_part import absent
 from cratous.services.wind import known_at
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.guarantees import Outcome, Verdict, worst
@@ -50,9 +51,15 @@ def plan_and_check(mission: Mission, bus: Any) -> tuple[Plan, list[Verdict]]:
     from cratous.services.plan_check import check_plan
     from cratous.services.planning import make_plan
 
-    mission = known_at(mission, 0)
-    plan = make_plan(mission, bus)
-    return plan, check_plan(mission, plan)
+    known = known_at(mission, 0)
+    plan = make_plan(known, bus, absent=absent(mission, 0))
+    return plan, check_plan(known, plan)
+
+
+def absent_lines(mission: Mission) -> list[str]:
+    """A line for each vehicle that takes no part at the start."""
+    away = absent(mission, 0).items()
+    return [f"vehicle {vehicle} takes no part at the start: {why}" for vehicle, why in away]
 
 
 def write_certificate(bus: Any, file: Path) -> None:
@@ -147,7 +154,7 @@ def run_mission(
     with LogWriter(log, **meta) as writer:
         bus.tap(writer.tap)
         plan, checks = plan_and_check(mission, bus)
-        tell(plan_line(plan, checks))
+        tell("\n".join((plan_line(plan, checks), *absent_lines(mission))))
         refuse_bad_plan(checks)
         if plan.certificate:
             write_certificate(bus, folder / CERTIFICATE_NAME)

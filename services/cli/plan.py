@@ -33,7 +33,13 @@ def plan(
     """
     from cratous.core import ledger
     from cratous.services.certify.verdicts import constraint_rows
-    from cratous.services.cli.job import new_bus, plan_and_check, plan_line, write_certificate
+    from cratous.services.cli.job import (
+        absent_lines,
+        new_bus,
+        plan_and_check,
+        plan_line,
+        write_certificate,
+    )
     from cratous.services.cli.show import margin_text, table
     from cratous.services.loading import load
     from cratous.services.records import to_data
@@ -84,6 +90,7 @@ def plan(
         verdict_column=1,
     )
     click.echo()
-    click.echo(plan_line(made, checks))
+    for line in (plan_line(made, checks), *absent_lines(loaded)):
+        click.echo(line)
     click.echo(f"proofs: {standing.line}")
     return code

@@ -116,8 +116,9 @@ def _show(report: dict[str, Any], folder: Path) -> None:
     requirement_table(report["requirements"])
     for served in flight["served"]:
         note = f" ({served['note']})" if served["note"] else ""
+        who = f"vehicle {served['vehicle']}" if served["vehicle"] else "no vehicle"
         click.echo(
-            f"p{served['task']}: {served['phase'].lower()} by vehicle {served['vehicle']} "
+            f"p{served['task']}: {served['phase'].lower()} by {who} "
             f"at {served['time_ms'] / 1000:.1f} s, {100 * served['served']:.1f} % served{note}"
         )
     count = len(flight["takeovers"])

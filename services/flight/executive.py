@@ -10,7 +10,7 @@ failure of the task.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -32,6 +32,8 @@ from cratous.spec.plan import Plan, PlanItem, Row
 
 EARLY_MS = 500
 """A planned wait may end this much early; the rows themselves are never bent."""
+NOBODY = 0
+"""The vehicle of a task that was given to none."""
 OPEN_MARGIN_MS = 60
 """Aim this much later than the predicted opening, so that rounding never costs a lap."""
 
@@ -286,12 +288,24 @@ class Executive:
         free = [vid for vid, chain in self.chains.items() if not chain.suspended]
         return [self.command(vid, epochs[vid]) for vid in free]
 
-    def give_up(self, now_ms: int, why: str, states: dict[int, AirState], out: list[Any]) -> None:
-        """Nothing that is left can be done: every task of it fails by name."""
+    def give_up(
+        self,
+        now_ms: int,
+        why: str,
+        states: dict[int, AirState],
+        asked: Iterable[int],
+        out: list[Any],
+    ) -> None:
+        """Nothing that is left can be done: every task of it fails by name, and those too that are
+        asked for and no vehicle was given."""
         for chain in list(self.chains.values()):
             for item in chain.items[max(chain.k, 0) :]:
                 if item.task_id not in self.failed and item.task_id not in self.ends:
                     self._fail(item.task_id, now_ms, why, states, out)
+        for task_id in asked:
+            if task_id not in self.failed and task_id not in self.ends:
+                self.failed[task_id] = why
+                out.append(task_progress(task_id, NOBODY, now_ms, "Failed", 0.0, why))
 
     def _fail(
         self, task_id: int, now_ms: int, why: str, states: dict[int, AirState], out: list[Any]

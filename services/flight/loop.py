@@ -24,12 +24,14 @@ from cratous.services.flight.dynamics import AirState, limits_of, traffic_state
 from cratous.services.flight.executive import Executive
 from cratous.services.flight.notices import authority_change, conflict, gate_state, plan_accepted
 from cratous.services.flight.sensing import camera_states, target_of
-from cratous.services.flight.touched import touched_by
+from cratous.services.flight.touched import handed_over, left_by, nobody_may, touched_by
 from cratous.services.flight.vehicle import VehicleNode, traffic_picture, truth
 from cratous.services.frames import Projection
 from cratous.services.icarous import instance
 from cratous.services.planning.zones import hard_zones
+from cratous.services.taking_part import absent
 from cratous.services.wind import CALM, all_in_wind, in_wind, known_at, told, wind_at
+from cratous.spec.asked import asked
 from cratous.spec.changes import TASK_ADDED, VEHICLE_JOINS, split, words
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Change, Mission
@@ -111,10 +113,10 @@ class _Flight:
         self.now_ms = 0
         self.known = known_at(mission, 0)
         self.wind = CALM
-        self._blow(0)
+        self.blown = self._blow(0)
         self.no_plan = ""
         self._accepted: tuple[Plan, frozenset[int]] | None = None
-        self.to_come = split(mission.changes, 0)[1]
+        self.begun_with, self.to_come = split(mission.changes, 0)
 
     # publishing ---------------------------------------------------------------------------
 
@@ -150,6 +152,9 @@ class _Flight:
         simulation = self.mission.simulation
         self._gated = lmcp.types["GatedCommand"]
         self.bus.now_ms = 0
+        if self.begun_with:
+            what = "; ".join(words(change) for change in self.begun_with)
+            self._tell_change(what, "; ".join(filter(None, ("planned with it", self.blown))))
         self._accept(self.plan, frozenset())
         states = self._own_states()
         self._say(self.executive.begin(states), "uxas/executive")
@@ -193,8 +198,18 @@ class _Flight:
         back = all(node.gate.owner == UXAS for node in self.nodes.values())
         expected = any(c.kind in BRINGS_WORK for c in self.to_come)
         if self.executive.done() and back and not expected:
-            return "failed" if self.executive.failed else "complete"
+            return "failed" if self._left() else "complete"
         return "limit" if self.now_ms >= limit_ms else ""
+
+    def _left(self) -> list[int]:
+        """The tasks that are asked for and not done."""
+        ends = self.executive.ends.keys()
+        accepted = ends | {item.task_id for item in self.executive.plan.items}
+        return [task for task in asked(self.known, ends, accepted) if task not in ends]
+
+    def _tell_change(self, what: str, answer: str) -> None:
+        change = lmcp.new("MissionChange", Time=self.now_ms, What=what, Consequence=answer)
+        self._say([change], "uxas")
 
     def _own_states(self) -> dict[int, AirState]:
         return {vid: node.state for vid, node in self.nodes.items()}
@@ -318,19 +333,22 @@ class _Flight:
         self.ics.know(self.zones)
         touched = touched_by(due, zones, self.executive.chains, self.executive.ends, states)
         why = "; ".join(text for text in (blown, touched) if text)
-        out: list[Any] = []
+        before, out = left_by(self.executive.chains), list[Any]()
         if not why:
             answer = "the plan holds as it is"
         elif self.executive.plan_anew(states, now, what, out):
-            answer = f"planned anew: {why}"
+            moved = handed_over(before, self.executive.plan)
+            answer = f"planned anew: {'; '.join(filter(None, (why, moved)))}"
             out += self.executive.commands_now(self._epochs())
         else:
+            left = self._left()
+            none = nobody_may(self.known, left, absent(self.mission, now))
+            why = "; ".join(filter(None, (why, none)))
             answer = f"no plan for what is left ({self.no_plan}): {why}"
-            self.executive.give_up(now, f"{what}: {self.no_plan}", states, out)
+            self.executive.give_up(now, f"{what}: {self.no_plan}", states, left, out)
             out += self.executive.commands_now(self._epochs())
-        change = lmcp.new("MissionChange", Time=now, What=what, Consequence=answer)
         # the change is known before anything is done about it
-        self._say([change], "uxas")
+        self._tell_change(what, answer)
         if self._accepted is not None:
             self._accept(*self._accepted)
             self._accepted = None
@@ -358,7 +376,8 @@ class _Flight:
         here = {v.id for v in self.known.vehicles}
         poses = {vid: pose for vid, pose in poses.items() if vid in here}
         try:
-            plan = make_plan(self.known, starts=poses, done=flown, now_ms=now_ms)
+            away = absent(self.mission, now_ms)
+            plan = make_plan(self.known, starts=poses, done=flown, now_ms=now_ms, absent=away)
         except NoPlan as error:
             self.no_plan = str(error)
             return None

@@ -9,7 +9,47 @@ from cratous.core.visibility import name_of
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState
 from cratous.spec.changes import TASK_ADDED, TASK_REMOVED, VEHICLE_JOINS, VEHICLE_LOST
-from cratous.spec.mission import Change, Zone
+from cratous.spec.mission import Change, Mission, Zone
+from cratous.spec.plan import Plan
+
+
+def tasks_text(tasks: Sequence[int]) -> str:
+    """Tasks by number: `task 2`, `tasks 2, 3`."""
+    return f"task{'' if len(tasks) == 1 else 's'} {', '.join(map(str, tasks))}"
+
+
+def left_by(chains: Mapping[int, Chain]) -> dict[int, list[int]]:
+    """The tasks that each vehicle has still to end."""
+    return {c.vehicle.id: [i.task_id for i in c.items[max(c.k, 0) :]] for c in chains.values()}
+
+
+def handed_over(before: Mapping[int, list[int]], plan: Plan) -> str:
+    """Which tasks another plan gives to other vehicles, and which it does not have any more."""
+    who = {item.task_id: item.vehicle_id for item in plan.items}
+    to: dict[int, list[int]] = {}
+    out: list[int] = []
+    for vehicle, tasks in sorted(before.items()):
+        for task in tasks:
+            if task not in who:
+                out.append(task)
+            elif who[task] != vehicle:
+                to.setdefault(who[task], []).append(task)
+    parts = [f"{tasks_text(tasks)} to vehicle {vehicle}" for vehicle, tasks in sorted(to.items())]
+    return "; ".join([*parts, *([f"{tasks_text(out)} left out"] if out else [])])
+
+
+def nobody_may(known: Mission, left: Collection[int], absent: Mapping[int, str]) -> str:
+    """Which of the tasks that are left no vehicle that takes part is eligible for, and why not."""
+    here = {vehicle.id for vehicle in known.vehicles}
+    parts = []
+    for task in (t for t in known.tasks if t.id in left):
+        if here & set(task.eligible or here):
+            continue
+        away = [
+            f"vehicle {v}: {why}" for v, why in absent.items() if v in (task.eligible or absent)
+        ]
+        parts.append(f"no vehicle that takes part may do task {task.id} ({'; '.join(away)})")
+    return "; ".join(parts)
 
 
 def touched_by(
@@ -24,10 +64,10 @@ def touched_by(
     A new zone does if a leg that is still to be flown breaks it (kernels by `first_bad_leg`).
     ended: the tasks that are complete.
     """
-    left = {c.vehicle.id: [i.task_id for i in c.items[max(c.k, 0) :]] for c in chains.values()}
+    left = left_by(chains)
     for change in due:
         if change.kind == VEHICLE_LOST and left.get(change.vehicle):
-            return f"tasks {', '.join(map(str, left[change.vehicle]))} go to other vehicles"
+            return f"vehicle {change.vehicle} leaves {tasks_text(left[change.vehicle])}"
         if change.kind == TASK_REMOVED and change.task not in ended:
             return f"task {change.task} is left out"
         if change.kind in (TASK_ADDED, VEHICLE_JOINS):

@@ -15,9 +15,10 @@ from cratous.services.monitor.authority import AuthorityWatch
 from cratous.services.monitor.bridge import BridgeWatch
 from cratous.services.monitor.completion import CompletionWatch
 from cratous.services.monitor.constraints import ConstraintWatch
+from cratous.services.monitor.presence import Ending, Presence
+from cratous.services.monitor.promises import missing, promised, watched
 from cratous.services.monitor.samples import Sample, Sampler
 from cratous.services.monitor.separation import SeparationWatch
-from cratous.services.wind import known_at
 from cratous.spec.guarantees import REQUIREMENTS, Kind, Verdict, worst
 from cratous.spec.mission import Mission
 from cratous.spec.plan import Plan
@@ -37,11 +38,13 @@ class Monitor:
         self.mission = mission
         self.not_covered = tuple(v.id for v in mission.vehicles if not v.protected)
         self._sampler = Sampler(frozenset(v.id for v in mission.vehicles))
-        self.constraints = ConstraintWatch(known_at(mission, 0), plan)
-        self.separation = SeparationWatch(mission)
+        self.presence = Presence(mission.simulation.step_ms)
+        self.constraints = ConstraintWatch(mission, self.presence)
+        self.separation = SeparationWatch(mission, self.presence)
         self.completion = CompletionWatch(mission, plan)
         self.authority = AuthorityWatch(mission)
         self.bridge = BridgeWatch(mission)
+        self._last_ms, self._over = 0, False
         self._tell = on_violation
         self._told = 0
 
@@ -49,16 +52,14 @@ class Monitor:
         """One message of the bus or of a log: anything with `topic`, `time_ms` and `body`."""
         short = envelope.topic.rpartition(".")[2]
         body = envelope.body
+        if not self._over:
+            self._last_ms = max(self._last_ms, envelope.time_ms)
         if short == "TruthState":
             for step in self._sampler.add(body):
                 self._step(*step)
         elif short == "AirVehicleState":
             self.completion.state(body)
-        elif short == "MissionChange":
-            known = known_at(self.mission, body.Time, self.constraints.done())
-            self.constraints.change(known)
         elif short == "PlanAccepted" and body.Tasks:
-            self.constraints.accept(frozenset(body.Tasks))
             self.completion.accept(frozenset(body.Tasks))
         elif short == "TaskProgress":
             self.constraints.progress(body)
@@ -72,6 +73,7 @@ class Monitor:
         elif short == "MissionEnd":
             for step in self._sampler.flush():
                 self._step(*step)
+            self._last_ms, self._over = body.Time, True
             self.completion.end(body)
             self.authority.end(body)
             self.bridge.end(body)
@@ -82,14 +84,24 @@ class Monitor:
             self._told = len(events)
 
     def _step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
+        self.presence.step(before, after)
         self.constraints.step(before, after)
         self.separation.step(before, after)
         self.completion.step(before, after)
 
     def details(self) -> list[Verdict]:
-        """One verdict for each single constraint, pair, task, vehicle."""
-        parts = (self.constraints, self.separation, self.completion, self.authority, self.bridge)
-        return [verdict for part in parts for verdict in part.verdicts()]
+        """One verdict for each single constraint, pair, task, vehicle: every row that is promised."""
+        done, accepted = self.completion.done(), self.completion.accepted
+        seen = watched(self.mission, self._last_ms, done, accepted)
+        ending = Ending(self._last_ms, self._over)
+        found = [
+            *self.constraints.verdicts(seen, ending),
+            *self.separation.verdicts(seen, ending),
+            *self.completion.verdicts(seen),
+            *self.authority.verdicts(),
+            *self.bridge.verdicts(),
+        ]
+        return found + missing(promised(seen), ((v.requirement, v.item) for v in found))
 
     def verdicts(self) -> list[Verdict]:
         """One verdict for each of G1 to G5, followed by all details."""

@@ -19,6 +19,7 @@ from cratous.core.gate import (
     gate_offer,
     gate_takeover,
 )
+from cratous.services.monitor.promises import authority_item
 from cratous.spec.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission import Mission
 
@@ -123,10 +124,12 @@ class AuthorityWatch:
                 outcome, (time_ms, note) = Outcome.VIOLATED, seen.faults[0]
             elif not self._ended:
                 note = "the messages stop before the mission ends"
+            elif not seen.commands:
+                outcome, note = Outcome.UNKNOWN, "no command was seen"
             found.append(
                 Verdict(
                     "G4",
-                    f"authority over vehicle {vehicle}",
+                    authority_item(vehicle),
                     outcome,
                     Kind.EXACT,
                     note,

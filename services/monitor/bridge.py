@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cratous.core.timeliness import Beats, beats_in_time
+from cratous.services.monitor.promises import WAYS, beat_item
 from cratous.spec.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission import Mission
 
@@ -57,7 +58,7 @@ class BridgeWatch:
             (v.id, way): Beat(self._bound_ms)
             for v in mission.vehicles
             if v.protected
-            for way in ("Down", "Up")
+            for way in WAYS
         }
         self._downs: dict[int, str] = {}
         self._end_ms: int | None = None
@@ -99,7 +100,7 @@ class BridgeWatch:
             note = self._downs[vehicle]
         return Verdict(
             "G5",
-            f"heartbeat {'to' if way == 'Down' else 'from'} the ICAROUS instance of {vehicle}",
+            beat_item(vehicle, way),
             outcome,
             Kind.OBSERVED,
             note,

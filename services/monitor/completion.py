@@ -1,4 +1,4 @@
-"""G3: every chosen task was flown to its end and served; what search sensors really saw."""
+"""G3: every task that is asked for was flown to its end and served; what search sensors really saw."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from typing import Any
 from cratous.core.dubins import turn_radius_m
 from cratous.core.well_clear import dips_to_zero
 from cratous.services.monitor.coverage import CoverageWatch
+from cratous.services.monitor.promises import END, Watched, served_item
+from cratous.services.monitor.prospects import prospects
 from cratous.services.monitor.samples import Sample
 from cratous.spec.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission import AREAS, SEARCHES, Loiter, Mission, Position, Task, TaskKind
@@ -38,23 +40,26 @@ class Doing:
 
 
 class CompletionWatch:
-    """Completion and service of every chosen task."""
+    """Completion and service of every task that the mission asks for."""
 
     def __init__(self, mission: Mission, plan: Plan) -> None:
-        self._coverage = CoverageWatch(mission)
+        self._mission, self._coverage = mission, CoverageWatch(mission)
         self._kinds = {task.id: task for task in mission.tasks}
         self._vehicles = {vehicle.id: vehicle for vehicle in mission.vehicles}
         self._step_ms = mission.simulation.step_ms
-        self._tasks = {item.task_id: Doing(item.vehicle_id) for item in plan.items}
+        planned = {item.task_id: item.vehicle_id for item in plan.items}
+        self._tasks = {task.id: Doing(planned.get(task.id, 0)) for task in mission.tasks}
+        self.accepted = frozenset(planned)
         self._outcome: str | None = None
         self._end_ms: int | None = None
 
     def accept(self, chosen: frozenset[int]) -> None:
         """Another plan is flown from now on: these are its tasks and those already done."""
-        for task in chosen - self._tasks.keys():
-            self._tasks[task] = Doing()
-        for task in self._tasks.keys() - chosen:
-            del self._tasks[task]
+        self.accepted = chosen
+
+    def done(self) -> frozenset[int]:
+        """The tasks that were flown to their end."""
+        return frozenset(t for t, doing in self._tasks.items() if doing.complete_ms is not None)
 
     def progress(self, body: Any) -> None:
         """A task changed its phase."""
@@ -104,21 +109,19 @@ class CompletionWatch:
         """The mission ended."""
         self._outcome, self._end_ms = body.Outcome, body.Time
 
-    def verdicts(self) -> list[Verdict]:
-        """One verdict a task, and one on the mission's end."""
-        found = [self._task_verdict(task) for task in sorted(self._tasks)]
+    def verdicts(self, seen: Watched) -> list[Verdict]:
+        """One verdict for each task that is asked for, and one on the mission's end."""
+        found = [self._task_verdict(task, seen) for task in sorted(seen.tasks)]
         good = self._outcome == "complete"
         seconds = (self._end_ms or 0) / 1000
         note = f"mission ended {self._outcome!r} after {seconds:.2f} s"
         outcome = Outcome.HOLDS if good else Outcome.VIOLATED
         if self._outcome is None:
             note, outcome = "the messages stop before the mission ends", Outcome.UNKNOWN
-        found.append(
-            Verdict("G3", "end of mission", outcome, Kind.OBSERVED, note, self._end_ms, checks=1)
-        )
+        found.append(Verdict("G3", END, outcome, Kind.OBSERVED, note, self._end_ms, checks=1))
         return found
 
-    def _task_verdict(self, task: int) -> Verdict:
+    def _task_verdict(self, task: int, seen: Watched) -> Verdict:
         doing = self._tasks[task]
         covered = self._coverage.fraction(task)
         outcome, margin = Outcome.HOLDS, None
@@ -134,18 +137,23 @@ class CompletionWatch:
         missed = self._missed(task)
         if missed and outcome is Outcome.HOLDS:
             outcome, note = Outcome.VIOLATED, missed
+        evidence = None
+        if outcome is Outcome.VIOLATED:
+            could, evidence = prospects(self._mission, self._kinds[task], seen.end_ms)
+            note = f"{note}; {could}"
         return Verdict(
             "G3",
-            f"task {task} served",
+            served_item(task),
             outcome,
             Kind.OBSERVED,
             note,
             time_ms=doing.complete_ms,
-            vehicles=(doing.vehicle,),
+            vehicles=(doing.vehicle,) if doing.vehicle else (),
             margin=margin,
             unit="% of the search" if margin is not None else "",
             checks=1,
             method=_method(self._kinds[task]),
+            evidence=evidence,
         )
 
     def _missed(self, number: int) -> str:

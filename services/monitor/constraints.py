@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from cratous.core.timing import eligible
+from cratous.core.timing import eligible, runs_forward
+from cratous.services.monitor.presence import Ending, Presence
+from cratous.services.monitor.promises import CHOICE, Watched, eligible_item, fence_item, zones_of
 from cratous.services.monitor.samples import Sample
 from cratous.services.plan_check import term_rows
 from cratous.services.times import row_verdict
 from cratous.services.zones import distance_m, exact_leg_ok
 from cratous.spec.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission import Mission, Position, Zone
-from cratous.spec.plan import Plan
 
 ACTIVE, COMPLETE = "Active", "Complete"
 
@@ -26,62 +28,56 @@ class Fence:
 
 
 class ConstraintWatch:
-    """Zones, order, timing and eligibility."""
+    """Zones, order, timing and eligibility. `presence`: who was seen when."""
 
-    def __init__(self, mission: Mission, plan: Plan) -> None:
-        self._mission = mission
-        self._chosen = frozenset(item.task_id for item in plan.items)
+    def __init__(self, mission: Mission, presence: Presence) -> None:
+        self._mission, self._presence = mission, presence
         self._bits = {vehicle.id: 1 << k for k, vehicle in enumerate(mission.vehicles[:63])}
         self._protected = {v.id for v in mission.vehicles if v.protected}
         self._starts: dict[int, int] = {}
         self._ends: dict[int, int] = {}
-        self._who: dict[int, int] = {}
+        self._who: dict[int, list[int]] = {}
         self._fences: dict[tuple[int, int], Fence] = {}
         self._tracks: dict[int, list[Position]] = {}
         self.violations: list[Verdict] = []
-
-    def accept(self, chosen: frozenset[int]) -> None:
-        """Another plan is flown from now on: these are its tasks and those already done."""
-        self._chosen = chosen
-
-    def change(self, known: Mission) -> None:
-        """The mission is known to be this from now on."""
-        self._mission = known
-
-    def done(self) -> frozenset[int]:
-        """The tasks that were flown to their end."""
-        return frozenset(self._ends)
 
     def progress(self, body: Any) -> None:
         """A task began or ended."""
         if body.Phase.name == ACTIVE:
             self._starts.setdefault(body.TaskID, body.Time)
-            self._who[body.TaskID] = body.VehicleID
+            flown_by = self._who.setdefault(body.TaskID, [])
+            if body.VehicleID not in flown_by:
+                flown_by.append(body.VehicleID)
         elif body.Phase.name == COMPLETE:
             self._ends[body.TaskID] = body.Time
 
     def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
-        """Check the leg of every protected vehicle of ours against every zone."""
+        """Check the leg of every protected vehicle of ours against every zone that is known."""
         for vehicle in sorted(self._protected & before.keys() & after.keys()):
             p, q = before[vehicle].position, after[vehicle].position
             self._tracks.setdefault(vehicle, [p]).append(q)
-            for zone in self._mission.zones:
+            for zone, since_ms in zones_of(self._mission, after[vehicle].time_ms):
+                if not runs_forward(since_ms, before[vehicle].time_ms):
+                    continue
                 fence = self._fences.setdefault((vehicle, zone.id), Fence())
                 fence.checks += 1
                 if not exact_leg_ok(p, q, zone) and fence.broken_ms is None:
                     fence.broken_ms = before[vehicle].time_ms
-                    self.violations.append(self._fence_verdict(vehicle, zone, fence))
+                    self.violations.append(self._fence_verdict(vehicle, zone, fence, ""))
 
-    def _fence_verdict(self, vehicle: int, zone: Zone, fence: Fence) -> Verdict:
+    def _fence_verdict(self, vehicle: int, zone: Zone, fence: Fence, unseen: str) -> Verdict:
         broken = fence.broken_ms is not None
         distance = distance_m(self._tracks[vehicle], zone)
         note = f"{fence.checks} flown legs"
+        outcome = Outcome.HOLDS
         if broken:
-            note = f"entered at {(fence.broken_ms or 0) / 1000:.2f} s"
+            note, outcome = f"entered at {(fence.broken_ms or 0) / 1000:.2f} s", Outcome.VIOLATED
+        elif unseen:
+            note, outcome = f"{note}; {unseen}", Outcome.UNKNOWN
         return Verdict(
             "G1",
-            f"zone: {zone.kind.value} {zone.id}, flight of vehicle {vehicle}",
-            Outcome.VIOLATED if broken else Outcome.HOLDS,
+            fence_item(zone, vehicle),
+            outcome,
             Kind.EXACT,
             note,
             time_ms=fence.broken_ms,
@@ -92,42 +88,58 @@ class ConstraintWatch:
             method="leg_ok: locate, meets_boundary",
         )
 
-    def verdicts(self) -> list[Verdict]:
-        """One verdict for each fence, row and assignment."""
-        zones = {zone.id: zone for zone in self._mission.zones}
-        found = [
-            self._fence_verdict(vehicle, zones[zone], fence)
-            for (vehicle, zone), fence in sorted(self._fences.items())
-        ]
+    def verdicts(self, seen: Watched, ending: Ending) -> list[Verdict]:
+        """One verdict for each fence, row and assignment that something was seen of."""
+        zones, relations = self._zones(seen, ending), self._relations(seen, ending)
+        return [*zones, *relations, *self._eligibility(seen)]
+
+    def _zones(self, seen: Watched, ending: Ending) -> Iterator[Verdict]:
+        for zone, since_ms in zones_of(self._mission, seen.end_ms):
+            for vehicle in sorted(self._protected):
+                fence = self._fences.get((vehicle, zone.id))
+                if fence is not None:
+                    unseen = self._presence.unseen(vehicle, (since_ms, seen.end_ms), ending)
+                    yield self._fence_verdict(vehicle, zone, fence, unseen)
+
+    def _relations(self, seen: Watched, ending: Ending) -> Iterator[Verdict]:
+        """That no task beside the branch was begun, and the branch's rows."""
+        wanted = {task.id for task in seen.asked.tasks}
+        beside = sorted(self._starts.keys() & wanted - set(seen.tasks))
+        names = ", ".join(map(str, seen.tasks)) or "none"
+        note = f"tasks {names} are asked for"
+        if beside:
+            note += f", and tasks {', '.join(map(str, beside))} were begun besides"
+        outcome = Outcome.HOLDS if ending.over else Outcome.UNKNOWN
+        outcome = Outcome.VIOLATED if beside else outcome
+        yield Verdict("G1", CHOICE, outcome, Kind.EXACT, note, checks=1)
         times = {t: (self._starts[t], self._ends[t]) for t in self._starts if t in self._ends}
-        wanted = term_rows(self._mission, self._chosen)
-        if wanted is None:
-            names = ", ".join(map(str, sorted(self._chosen)))
-            note = f"tasks {names} are no complete choice of the mission's relations"
-            found.append(
-                Verdict("G1", "flight: choice", Outcome.VIOLATED, Kind.EXACT, note, checks=1)
-            )
-        for row in wanted or ():
-            if all(task in times for task in (row.i, *row.group)):
-                found.append(row_verdict(row, times, "flight"))
-                continue
+        for row in term_rows(seen.asked, frozenset(seen.tasks)) or ():
             missing = [t for t in (row.i, *row.group) if t not in times]
+            if not missing:
+                yield row_verdict(row, times, "flight")
+                continue
             note = f"not judged: task {', '.join(map(str, missing))} was not flown to its end"
-            found.append(Verdict("G1", f"flight: {row.text}", Outcome.UNKNOWN, Kind.OBSERVED, note))
-        for task, vehicle in sorted(self._who.items()):
-            allowed = self._mission.task(task).eligible or tuple(self._bits)
+            yield Verdict("G1", f"flight: {row.text}", Outcome.UNKNOWN, Kind.OBSERVED, note)
+
+    def _eligibility(self, seen: Watched) -> Iterator[Verdict]:
+        known = {task.id: task for task in self._mission.tasks}
+        for task, flown_by in sorted(self._who.items()):
+            if task not in known:
+                continue
+            allowed = known[task].eligible or tuple(self._bits)
             mask = sum(self._bits.get(v, 0) for v in set(allowed))
-            good = eligible(mask, self._bits.get(vehicle, 0))
-            found.append(
-                Verdict(
-                    "G1",
-                    f"eligibility: task {task} in flight",
-                    Outcome.HOLDS if good else Outcome.VIOLATED,
-                    Kind.EXACT,
-                    f"flown by vehicle {vehicle}",
-                    vehicles=(vehicle,),
-                    checks=1,
-                    method="eligible",
-                )
+            good = all(eligible(mask, self._bits.get(vehicle, 0)) for vehicle in flown_by)
+            outcome, note = Outcome.HOLDS if good else Outcome.VIOLATED, "flown by vehicle "
+            note += ", ".join(map(str, flown_by))
+            if good and task in seen.tasks and task not in self._ends:
+                outcome, note = Outcome.UNKNOWN, f"{note}, not to its end"
+            yield Verdict(
+                "G1",
+                eligible_item(task),
+                outcome,
+                Kind.EXACT,
+                note,
+                vehicles=tuple(flown_by),
+                checks=len(flown_by),
+                method="eligible",
             )
-        return found

@@ -20,6 +20,8 @@ from cratous.core.excuse_watch import LossWatch, pair_excused
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import violation_within
 from cratous.services.monitor.excuses import evidence, sentence
+from cratous.services.monitor.presence import Ending, Presence
+from cratous.services.monitor.promises import Watched, alone_item, pair_item, pairs_of
 from cratous.services.monitor.samples import Sample
 from cratous.spec.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission import Mission
@@ -50,9 +52,10 @@ def _relative(own: Sample, other: Sample) -> tuple[Fraction, Fraction, Fraction]
 
 
 class SeparationWatch:
-    """Well clear of every protected vehicle."""
+    """Well clear of every protected vehicle. `presence`: who was seen when."""
 
-    def __init__(self, mission: Mission) -> None:
+    def __init__(self, mission: Mission, presence: Presence) -> None:
+        self._mission, self._presence = mission, presence
         self._protected = sorted(v.id for v in mission.vehicles if v.protected)
         volume = mission.daa.well_clear
         self._volume = volume
@@ -105,7 +108,7 @@ class SeparationWatch:
             pair.miss_m = min(pair.miss_m, _miss(*map(float, (*s0[:2], *v[:2]))))
             if pair.lost_ms is None:
                 pair.lost_ms = before[own].time_ms
-                self.violations.append(self._verdict(own, other, pair, judge=False))
+                self.violations.append(self._verdict(own, other, pair, "", judge=False))
         return bool(lost)
 
     def _measure(self, pair: Pair, own: Sample, other: Sample) -> None:
@@ -116,7 +119,9 @@ class SeparationWatch:
             if distance < pair.nearest_m:
                 pair.nearest_m, pair.nearest_ms = distance, own.time_ms
 
-    def _verdict(self, own: int, other: int, pair: Pair, judge: bool = True) -> Verdict:
+    def _verdict(
+        self, own: int, other: int, pair: Pair, unseen: str, judge: bool = True
+    ) -> Verdict:
         lost = pair.lost_ms is not None
         losses = self._losses.losses((own, other)) if lost and judge else []
         excused = pair_excused(losses)
@@ -134,10 +139,15 @@ class SeparationWatch:
                 f"{pair.miss_m:.1f} m; {note}; "
                 f"{sentence(losses)}"
             )
+        outcome = Outcome.HOLDS
+        if lost:
+            outcome = Outcome.EXCUSED if excused else Outcome.VIOLATED
+        if unseen and outcome is not Outcome.VIOLATED:
+            outcome, note = Outcome.UNKNOWN, f"{note}; {unseen}"
         return Verdict(
             "G2",
-            f"well clear of {own} and {other}",
-            (Outcome.EXCUSED if excused else Outcome.VIOLATED) if lost else Outcome.HOLDS,
+            pair_item(own, other),
+            outcome,
             Kind.EXACT,
             note,
             time_ms=pair.lost_ms if lost else pair.nearest_ms,
@@ -149,22 +159,27 @@ class SeparationWatch:
             evidence=evidence(losses) if losses else None,
         )
 
-    def verdicts(self) -> list[Verdict]:
-        """One verdict a pair; a protected vehicle that met nobody is said to have met nobody."""
-        found = [self._verdict(*key, pair) for key, pair in sorted(self.pairs.items())]
-        met = {i for key in self.pairs for i in key}
+    def verdicts(self, seen: Watched, ending: Ending) -> list[Verdict]:
+        """One verdict a pair that was seen; and that a protected vehicle had nobody to meet."""
+        wanted = pairs_of(self._mission, seen.end_ms)
+        found = []
+        for key, pair in sorted(self.pairs.items()):
+            spans = ((number, wanted[key]) for number in key) if key in wanted else ()
+            gaps = (self._presence.unseen(number, span, ending) for number, span in spans)
+            found.append(self._verdict(*key, pair, next(filter(None, gaps), "")))
+        met, strangers = (
+            {number for key in keys for number in key} for keys in (wanted, self.pairs)
+        )
         for own in self._protected:
             if own not in met:
+                unseen = self._presence.unseen(own, (0, seen.end_ms), ending)
+                outcome = Outcome.UNKNOWN if unseen else Outcome.HOLDS
                 note = "no other aircraft was in the air"
+                if own in strangers:
+                    note = "the mission has no other aircraft; those seen are rows of their own"
+                note = unseen or note
                 found.append(
-                    Verdict(
-                        "G2",
-                        f"well clear of {own}",
-                        Outcome.HOLDS,
-                        Kind.EXACT,
-                        note,
-                        vehicles=(own,),
-                    )
+                    Verdict("G2", alone_item(own), outcome, Kind.EXACT, note, vehicles=(own,))
                 )
         return found
 

@@ -154,7 +154,7 @@ def term_of(problem: AssignmentProblem) -> algebra.Term:
     """The relations as a term; AlgebraError for a text that is none, BadInput if a task is lost."""
     known = (*(task for task, _, _ in problem.done), *problem.tasks)
     if not problem.relations.strip():
-        return algebra.parallel_of(known)
+        return algebra.parallel_of((*known, *sorted(problem.unable)))
     named = problem.unable | frozenset(known)
     term = algebra.parse(problem.relations, named, where=problem.name)
     lost = sorted(named - set(algebra_meaning.tasks(term)))

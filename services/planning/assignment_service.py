@@ -46,9 +46,7 @@ class AssignmentTreeBranchBoundService:
         key = matrix.CorrespondingAutomationRequestID
         inputs = self._desk.inputs(key)
         travel_ms = travel_of(inputs, matrix.CostMatrix)
-        why = reasons.why_none(
-            inputs.mission, inputs.wanted, inputs.options, inputs.dropped, inputs.routes
-        )
+        why = reasons.why_none(inputs)
         found = self._found(inputs, travel_ms, why)
         if found.assignment is None:
             failed = {**state.failed, key: found.reasons}

@@ -6,8 +6,8 @@ frame and remembers what the pure stages computed from them. It decides nothing.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -32,13 +32,15 @@ from cratous.spec.schedule import AFTER_END
 class Inputs:
     """One planning request in the mission frame, and what follows from it (computed once).
 
-    assigned, certificate: what the assignment service has found for it.
+    absent: the vehicles that take no part, with the reasons; assigned, certificate: what the
+    assignment service has found for it.
     """
 
     mission: Mission
     starts: dict[int, Pose]
     fixed: tuple[Fixed, ...]
     now_ms: int
+    absent: Mapping[int, str] = field(default_factory=dict)
     assigned: Assignment | None = None
     certificate: dict[str, Any] | None = None
 

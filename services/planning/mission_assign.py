@@ -18,7 +18,7 @@ from cratous.services.planning.assign_certificate import certified, verify
 from cratous.services.planning.assign_problem import binding
 from cratous.services.planning.assign_replay import branch_of
 from cratous.services.planning.options import Option
-from cratous.spec.algebra import Term
+from cratous.spec.algebra import Term, format_term
 from cratous.spec.algebra_meaning import tasks as tasks_of
 from cratous.spec.assignment import CUMULATIVE, MINMAX, AssignmentProblem, Choice, Solution
 from cratous.spec.mission import Mission
@@ -72,9 +72,11 @@ def problem_of(
         for v, v_id in enumerate(ids)
     )
     known = {c.task_id for c in choices} | {f.task_id for f in fixed}
+    # both forms of "all tasks, in any order" are one problem, with the tasks in the same order
+    relations = mission.relations if mission.relations.strip() else format_term(term)
     done = sorted(fixed, key=lambda f: (f.start_ms, f.end_ms, f.task_id))
     return AssignmentProblem(
-        mission.name, ids, (now_ms,) * len(ids), choices, travel, mission.relations,
+        mission.name, ids, (now_ms,) * len(ids), choices, travel, relations,
         cost=COSTS[mission.cost], semantics=mission.order,
         done=tuple((f.task_id, f.start_ms, f.end_ms) for f in done),
         unable=frozenset(tasks_of(term)) - known,

@@ -13,7 +13,7 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus
-from cratous.services.planning import stages
+from cratous.services.planning import reasons, stages
 from cratous.services.planning.assignment_service import AssignmentTreeBranchBoundService
 from cratous.services.planning.builder import PlanBuilderService
 from cratous.services.planning.desk import Desk, Inputs
@@ -53,22 +53,28 @@ def make_plan(
     starts: Mapping[int, Pose] | None = None,
     done: Iterable[Any] = (),
     now_ms: int = 0,
+    absent: Mapping[int, str] | None = None,
 ) -> Plan:
     """The best plan found for the mission. BadInput for a bad start, NoPlan with reasons.
 
     bus: where the planning messages go (its own if None); the services join it on first use and
     its queue is run until it is empty. starts: present poses by vehicle id, instead of the
     mission's; done: tasks already flown, as (task_id, start_ms, end_ms) or anything with these
-    attributes; now_ms: when the vehicles set off. In flight (starts given) a vehicle inside a
-    zone is no bad input: there is just no route from where it is.
+    attributes; now_ms: when the vehicles set off; absent: vehicles that are not in the mission as it
+    is known, with the reason. In flight (starts given) a vehicle inside a
+    zone is no bad input: there is just no route from where it is; and nothing may be left to do.
     """
+    if not mission.tasks and starts is not None:
+        return stages.nothing_asked(mission)
     bus = Bus(lmcp.full_names) if bus is None else bus
     poses = stages.start_poses(mission, starts)
-    inputs = Inputs(mission, poses, stages.fixed_tasks(done), now_ms)
+    inputs = Inputs(mission, poses, stages.fixed_tasks(done), now_ms, absent or {})
     if starts is None:
         stages.check_starts(mission, poses, inputs.zones)
     if not inputs.wanted:
         return stages.nothing_left(mission, inputs.branches, inputs.fixed)
+    if not mission.vehicles:
+        raise NoPlan(reasons.without_options(inputs))
     desk = join(bus, mission)
     key = desk.open(inputs)
     request = lmcp.new(

@@ -8,16 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from cratous.core.assignment_anytime import NONE
 from cratous.services.planning.assign import Limits, search
 from cratous.services.planning.assign_problem import Part, parts
-from cratous.services.planning.options import Dropped, Option
-from cratous.services.planning.routes import Routes
 from cratous.spec.assignment import MINMAX, AssignmentProblem, Solution
-from cratous.spec.mission import Mission
 from cratous.spec.plan import Row
 from cratous.spec.schedule import NOT_AFTER, NOT_BEFORE, WITHIN_END, WITHIN_START
+
+if TYPE_CHECKING:
+    from cratous.services.planning.desk import Inputs
 
 PROBES = 20_000
 """Nodes per question asked of the search while looking for reasons."""
@@ -33,48 +34,38 @@ def nowhere(_text: str) -> str:
     return ""
 
 
-def why_none(
-    mission: Mission,
-    wanted: Sequence[int],
-    options: Sequence[Option],
-    dropped: Sequence[Dropped],
-    routes: Routes,
-) -> tuple[str, ...]:
+def why_none(inputs: Inputs) -> tuple[str, ...]:
     """What no vehicle can do or reach."""
-    why = without_options(mission, wanted, options, dropped)
-    return why or without_routes(mission, wanted, options, routes)
+    return without_options(inputs) or without_routes(inputs)
 
 
-def without_options(
-    mission: Mission, wanted: Sequence[int], options: Sequence[Option], dropped: Sequence[Dropped]
-) -> tuple[str, ...]:
+def without_options(inputs: Inputs) -> tuple[str, ...]:
     """A reason for each wanted task that no vehicle can fly."""
     reasons = []
-    for task_id in wanted:
-        if any(option.task_id == task_id for option in options):
+    for task_id in inputs.wanted:
+        if any(option.task_id == task_id for option in inputs.options):
             continue
-        causes: dict[tuple[int, str], None] = {}
-        for drop in dropped:
+        causes: dict[str, None] = {}
+        for drop in inputs.dropped:
             if drop.task_id == task_id:
-                causes.update(((vehicle, drop.reason), None) for vehicle in drop.vehicles)
-        said = "; ".join(f"vehicle {vehicle}: {reason}" for vehicle, reason in causes)
-        label = mission.task(task_id).label
+                causes.update((f"vehicle {v}: {drop.reason}", None) for v in drop.vehicles)
+        said = "; ".join((*causes, *_absent(inputs, task_id)))
+        label = inputs.mission.task(task_id).label
         named = f"task {task_id}" + (f" ({label})" if label else "")
         reasons.append(f"no vehicle can do {named}: {said or 'no vehicle is eligible'}")
     return tuple(reasons)
 
 
-def without_routes(
-    mission: Mission, wanted: Sequence[int], options: Sequence[Option], routes: Routes
-) -> tuple[str, ...]:
+def without_routes(inputs: Inputs) -> tuple[str, ...]:
     """A reason for each wanted task that no vehicle can reach, from its start or another task."""
     reasons = []
-    for task_id in wanted:
+    options, routes = inputs.options, inputs.routes
+    for task_id in inputs.wanted:
         mine = [k for k, option in enumerate(options) if option.task_id == task_id]
         causes: dict[str, None] = {}
         reached = False
         for k in mine:
-            for v, vehicle in enumerate(mission.vehicles):
+            for v, vehicle in enumerate(inputs.mission.vehicles):
                 if vehicle.id not in options[k].vehicles:
                     continue
                 before = [-1, *(j for j, other in enumerate(options) if other.task_id != task_id)]
@@ -88,8 +79,19 @@ def without_routes(
             if reached:
                 break
         if mine and not reached:
-            reasons.append(f"no vehicle can reach task {task_id}: " + "; ".join(causes))
+            said = "; ".join((*causes, *_absent(inputs, task_id)))
+            reasons.append(f"no vehicle can reach task {task_id}: {said}")
     return tuple(reasons)
+
+
+def _absent(inputs: Inputs, task_id: int) -> list[str]:
+    """The eligible vehicles that take no part, and why."""
+    eligible = inputs.mission.task(task_id).eligible
+    return [
+        f"vehicle {vehicle}: {why}"
+        for vehicle, why in inputs.absent.items()
+        if not eligible or vehicle in eligible
+    ]
 
 
 Question = tuple[bool | None, int | None]

@@ -15,7 +15,7 @@ from cratous.core.legs import first_bad_leg
 from cratous.core.visibility import circle, name_of, start_point
 from cratous.services.planning.options import Option
 from cratous.services.planning.routes import Routes
-from cratous.spec import algebra, algebra_meaning
+from cratous.spec import algebra, algebra_meaning, asked
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission import Mission, Zone
 from cratous.spec.plan import Hold, Plan, PlanItem, Pose
@@ -50,12 +50,10 @@ def check_starts(mission: Mission, starts: Mapping[int, Pose], zones: Sequence[Z
 
 def term_of(mission: Mission) -> algebra.Term:
     """The mission's relations as a term; every task in any order if there are none."""
-    ids = [task.id for task in mission.tasks]
-    if not ids:
+    term = asked.term_of(mission)
+    if term is None:
         raise NoPlan(("the mission has no tasks",))
-    if not mission.relations.strip():
-        return algebra.parallel_of(ids)
-    return algebra.parse(mission.relations, frozenset(ids), where=mission.source)
+    return term
 
 
 def fixed_tasks(done: Iterable[Any]) -> tuple[Fixed, ...]:
@@ -172,3 +170,8 @@ def nothing_left(mission: Mission, branches: Sequence[Branch], fixed: Sequence[F
         raise NoPlan(("what has been flown fits no branch of the relations",))
     first, last = branches[0], max((f.end_ms for f in fixed), default=0)
     return Plan(mission.name, (), first.rows, first.tasks, last, mission.cost, 0, True, "optimal")
+
+
+def nothing_asked(mission: Mission) -> Plan:
+    """The plan when all tasks have been withdrawn in flight."""
+    return Plan(mission.name, (), (), (), 0, mission.cost, 0, True, "optimal")

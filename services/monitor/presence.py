@@ -1,0 +1,64 @@
+"""From when to when each aircraft was seen without a break: what nobody saw is not said to hold."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from cratous.core.timeliness import in_time
+from cratous.services.monitor.samples import Sample
+from cratous.spec.mission import Traffic
+
+Span = tuple[int, int]
+
+
+class Ending(NamedTuple):
+    """When the messages end [ms], and whether the mission had ended by then."""
+
+    at_ms: int
+    over: bool
+
+
+class Presence:
+    """The spans over which each aircraft was sampled step by step, none longer than the simulation's."""
+
+    def __init__(self, step_ms: int) -> None:
+        self.step_ms = step_ms
+        self._spans: dict[int, list[Span]] = {}
+
+    def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
+        """Two successive instants; who is in both was seen between them."""
+        for number in before.keys() & after.keys():
+            begin, end = before[number].time_ms, after[number].time_ms
+            if not in_time(begin, end, self.step_ms):
+                continue
+            spans = self._spans.setdefault(number, [])
+            if spans and spans[-1][1] == begin:
+                spans[-1] = (spans[-1][0], end)
+            else:
+                spans.append((begin, end))
+
+    def unseen(self, number: int, wanted: Span, ending: Ending) -> str:
+        """What was not seen of the aircraft between two instants, in words; empty if all was."""
+        here, until = wanted
+        for begin, end in self._spans.get(number, ()):
+            if begin > here:
+                break
+            here = max(here, end)
+        if here < until:
+            back = min((b for b, _ in self._spans.get(number, ()) if b > here), default=until)
+            return f"aircraft {number} was not observed from {_s(here)} to {_s(min(back, until))}"
+        if not ending.over:
+            return f"the messages stop at {_s(ending.at_ms)}, before the mission ends"
+        return ""
+
+
+def in_the_air(traffic: Traffic, step_ms: int, end_ms: int) -> Span | None:
+    """The first and the last instant of a flight at which such an aircraft is there; None if at none."""
+    first = -(-max(traffic.appears_ms, 0) // step_ms) * step_ms
+    last = end_ms if traffic.vanishes_ms is None else min(traffic.vanishes_ms, end_ms)
+    last = last // step_ms * step_ms
+    return (first, last) if first <= last else None
+
+
+def _s(time_ms: int) -> str:
+    return f"{time_ms / 1000:.2f} s"
