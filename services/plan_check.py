@@ -13,8 +13,8 @@ from itertools import pairwise
 from cratous.core.timing import eligible, row_holds
 from cratous.services.times import all_hold, row_verdict
 from cratous.services.zones import distance_m, exact_leg_ok
-from cratous.spec.algebra import parallel_of, parse
 from cratous.spec.algebra_meaning import branches, rows, tasks
+from cratous.spec.asked import term_of
 from cratous.spec.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.plan import Plan, PlanItem, Row
@@ -38,9 +38,9 @@ def check_plan(mission: Mission, plan: Plan) -> list[Verdict]:
 
 def term_rows(mission: Mission, chosen: frozenset[int]) -> tuple[Row, ...] | None:
     """The constraint rows of the branch that consists of the chosen tasks; None if there is none."""
-    known = frozenset(task.id for task in mission.tasks)
-    text = mission.relations.strip()
-    term = parse(text, known) if text else parallel_of(sorted(known))
+    term = term_of(mission)
+    if term is None:
+        return None if chosen else ()
     for branch in branches(term):
         if frozenset(tasks(branch)) == chosen:
             return rows(branch)

@@ -285,3 +285,13 @@ def test_the_earliest_of_a_group_does_not_creep():
               visit(1, previous=0, travel=1, duration=1), visit(2, travel=10**9)]  # fmt: skip
     times = earliest(chains, [row(AFTER_START, 3, (1, 2), lo=1)])
     assert times.start_ms[0] == 10**9 + 1
+
+
+@pytest.mark.parametrize("relations", ["", "|(p1 p2)"])
+def test_a_task_that_nobody_can_do_is_not_left_out(relations):
+    choices, travel = (Choice(1, 1, 10, (1,)),), (((5,), (5,)),)
+    problem = AssignmentProblem("unable", (1,), (0,), choices, travel, relations)
+    alone = replace(problem, relations="")
+    assert solve(alone, Limits()).cost is not None
+    with pytest.raises(BadInput, match="no vehicle is eligible for task 2"):
+        solve(replace(problem, unable=frozenset({2})), Limits())

@@ -41,7 +41,7 @@ class Monitor:
         self.presence = Presence(mission.simulation.step_ms)
         self.constraints = ConstraintWatch(mission, self.presence)
         self.separation = SeparationWatch(mission, self.presence)
-        self.completion = CompletionWatch(mission, plan)
+        self.completion = CompletionWatch(mission, plan, self.presence)
         self.authority = AuthorityWatch(mission)
         self.bridge = BridgeWatch(mission)
         self._last_ms, self._over = 0, False

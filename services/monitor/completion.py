@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
 from cratous.core.dubins import turn_radius_m
 from cratous.core.well_clear import dips_to_zero
 from cratous.services.monitor.coverage import CoverageWatch
+from cratous.services.monitor.presence import Ending, Presence
 from cratous.services.monitor.promises import END, Watched, served_item
 from cratous.services.monitor.prospects import prospects
 from cratous.services.monitor.samples import Sample
@@ -28,9 +29,12 @@ CAPTURE_M = 50.0
 
 @dataclass
 class Doing:
-    """What has been seen of one task. near_ms: time spent as close to its point as it asks."""
+    """What has been seen of one task. flown_by: who has begun it, since began_ms; near_ms: time spent as
+    close to its point as it asks."""
 
     vehicle: int = 0
+    flown_by: set[int] = field(default_factory=set)
+    began_ms: int = 0
     active: bool = False
     complete_ms: int | None = None
     failed: str = ""
@@ -40,10 +44,11 @@ class Doing:
 
 
 class CompletionWatch:
-    """Completion and service of every task that the mission asks for."""
+    """Completion and service of every task that the mission asks for. `presence`: who was seen when."""
 
-    def __init__(self, mission: Mission, plan: Plan) -> None:
+    def __init__(self, mission: Mission, plan: Plan, presence: Presence) -> None:
         self._mission, self._coverage = mission, CoverageWatch(mission)
+        self._presence = presence
         self._kinds = {task.id: task for task in mission.tasks}
         self._vehicles = {vehicle.id: vehicle for vehicle in mission.vehicles}
         self._step_ms = mission.simulation.step_ms
@@ -69,6 +74,9 @@ class CompletionWatch:
         doing.vehicle = body.VehicleID
         phase = body.Phase.name
         doing.active = phase == "Active"
+        if doing.active:
+            doing.began_ms = doing.began_ms if doing.flown_by else body.Time
+            doing.flown_by.add(body.VehicleID)
         if phase == "Complete":
             doing.complete_ms = body.Time
         elif phase == "Failed":
@@ -137,6 +145,9 @@ class CompletionWatch:
         missed = self._missed(task)
         if missed and outcome is Outcome.HOLDS:
             outcome, note = Outcome.VIOLATED, missed
+        unseen = self._unseen(task)
+        if unseen and not doing.too_near and (outcome is Outcome.HOLDS or missed):
+            outcome, note = Outcome.UNKNOWN, unseen
         evidence = None
         if outcome is Outcome.VIOLATED:
             could, evidence = prospects(self._mission, self._kinds[task], seen.end_ms)
@@ -155,6 +166,16 @@ class CompletionWatch:
             method=_method(self._kinds[task]),
             evidence=evidence,
         )
+
+    def _unseen(self, number: int) -> str:
+        """What was not seen of the flight of a complete task that is judged by places; empty if nothing."""
+        task, doing = self._kinds[number], self._tasks[number]
+        by_place = task.standoff_m or task.kind in (TaskKind.MUST_FLY, TaskKind.LOITER)
+        if not by_place or doing.complete_ms is None:
+            return ""
+        span, ending = (doing.began_ms, doing.complete_ms), Ending(doing.complete_ms, over=True)
+        gaps = (self._presence.unseen(v, span, ending) for v in sorted(doing.flown_by))
+        return next(filter(None, gaps), "")
 
     def _missed(self, number: int) -> str:
         """What a must-fly or loiter task lacks to be served; empty if nothing."""
