@@ -22,8 +22,10 @@ from cratous.core.exactly import exactly
 from cratous.core.kernel import Vec2
 from cratous.core.polygon import edges_of, locate
 from cratous.core.well_clear import horizontal_violation, violation_within
+from cratous.core.whole_file import write_atomically
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
+
 import containment
 import daa
 import day_of_traffic
@@ -113,7 +115,7 @@ def main() -> int:
     if "--write" in sys.argv:
         before, rest = README.read_text(encoding="utf-8").split(MARK)
         after = rest.split(END)[1]
-        README.write_text(f"{before}{MARK}\n{text}\n{END}{after}", encoding="utf-8")
+        write_atomically(README, f"{before}{MARK}\n{text}\n{END}{after}")
     return 0
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 import services_table
 
 from cratous.core import ledger
+from cratous.core.whole_file import write_atomically
 from cratous.proofs import mutation_record, recheck
 from cratous.proofs.mutation_keys import Keys
 
@@ -94,7 +95,7 @@ def main() -> int:
             print(f"{name}: {'up to date' if good else 'run `make docs`'}")
             wrong += not good
         else:
-            file.write_text(text, encoding="utf-8")
+            write_atomically(file, text)
             print(f"{name}: {len(text.splitlines())} lines")
     return 1 if wrong else 0
 

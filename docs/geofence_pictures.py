@@ -18,6 +18,7 @@ from matplotlib import pyplot as plt
 
 from cratous.core import geofence
 from cratous.core.geofence import Place
+from cratous.core.whole_file import replacing
 
 FOLDER = Path(__file__).resolve().parent / "img"
 COLOURS = {Place.INSIDE: "#2a7ab0", Place.BOUNDARY: "#d08a00", Place.OUTSIDE: "#9a9a9a"}
@@ -29,7 +30,8 @@ matplotlib.rcParams.update(
 
 
 def _save(figure: Any, name: str) -> None:
-    figure.savefig(FOLDER / name, metadata={"Date": None}, bbox_inches="tight")
+    with replacing(FOLDER / name) as part:
+        figure.savefig(part, metadata={"Date": None}, bbox_inches="tight")
     plt.close(figure)
 
 

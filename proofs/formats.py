@@ -14,6 +14,7 @@ from typing import Any
 from cratous.core.kernel import REGISTRY
 from cratous.core.ledger import PRODUCT, Home
 from cratous.core.sources import place, position
+from cratous.core.whole_file import write_atomically
 from cratous.proofs.prover import Outcome, Theorem, theorem_files
 
 
@@ -155,4 +156,4 @@ def sarif(theorems: Iterable[Theorem], problems: Iterable[str], home: Home = PRO
 def write(path: Path, text: str) -> None:
     """Write a result file, with its folder."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text, encoding="utf-8")
+    write_atomically(path, text)

@@ -10,7 +10,6 @@ from __future__ import annotations
 import functools
 import inspect
 import json
-import os
 from collections.abc import Container, Iterable
 from fractions import Fraction
 from pathlib import Path
@@ -19,6 +18,7 @@ from typing import Any
 from cratous.core import ledger as gate
 from cratous.core.kernel import Fold
 from cratous.core.ledger import PRODUCT
+from cratous.core.whole_file import write_atomically
 from cratous.proofs.mutation_judge import faults
 from cratous.proofs.mutation_keys import Keys, find, reach
 from cratous.proofs.mutation_report import MutationReport, percent
@@ -64,9 +64,7 @@ def merged(data: dict[str, Any], report: MutationReport, keys: Keys) -> dict[str
 def write(report: MutationReport, keys: Keys, path: Path = FILE) -> None:
     """Put a report into the record."""
     text = json.dumps(merged(read(path), report, keys), indent=1, sort_keys=True) + "\n"
-    part = path.with_suffix(f".{os.getpid()}")
-    part.write_text(text, encoding="utf-8")
-    part.replace(path)
+    write_atomically(path, text)
 
 
 def stale(data: dict[str, Any], keys: Keys) -> dict[str, str]:

@@ -14,7 +14,6 @@ from __future__ import annotations
 import importlib.metadata
 import json
 import multiprocessing
-import os
 import resource
 import time
 from collections.abc import Callable, Container, Iterable
@@ -25,6 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from cratous.core.sources import ROOT, digest
+from cratous.core.whole_file import write_atomically
 from cratous.proofs import forked, prover
 from cratous.proofs.mutation_keys import Store
 from cratous.proofs.smtlib import Seen
@@ -329,9 +329,7 @@ def write(
     new = text(found, theorems)
     if not whole and path.is_file():
         new = _joined(read(path), json.loads(new), path)
-    part = path.with_suffix(f".{os.getpid()}")
-    part.write_text(new, encoding="utf-8")
-    part.replace(path)
+    write_atomically(path, new)
 
 
 def _joined(old: dict[str, Any], new: dict[str, Any], path: Path) -> str:

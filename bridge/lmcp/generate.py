@@ -13,6 +13,7 @@ from pathlib import Path
 
 import cratous.spec
 from cratous.bridge.lmcp import model, schema, stubs
+from cratous.core.whole_file import write_atomically
 
 MESSAGES = Path(__file__).resolve().parent / "messages"
 SCHEMA = Path(cratous.spec.__path__[0]).resolve() / "lmcp" / "lmcp.schema.json"
@@ -33,7 +34,7 @@ def main(check: bool) -> int:
         if check:
             print(f"{file.name}: not up to date, run `make docs`")
         else:
-            file.write_text(files()[file], encoding="utf-8")
+            write_atomically(file, files()[file])
     return int(check and bool(stale))
 
 

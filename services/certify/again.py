@@ -7,8 +7,6 @@ from typing import Any
 
 from cratous.services.certify.proofs import inventory
 from cratous.services.certify.report import (
-    CERTIFICATE_NAME,
-    LOG_NAME,
     build_report,
     differences,
     read_report,
@@ -17,6 +15,7 @@ from cratous.services.certify.report import (
 from cratous.services.certify.verdicts import constraint_rows
 from cratous.services.log import read_envelopes, read_meta
 from cratous.services.records import from_data
+from cratous.services.results.names import CERTIFICATE_NAME, LOG_NAME
 from cratous.services.wind import known_at
 from cratous.spec.errors import BadInput
 from cratous.spec.guarantees import Verdict

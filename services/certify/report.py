@@ -14,19 +14,18 @@ from pathlib import Path
 from typing import Any
 
 from cratous import __version__
+from cratous.core.whole_file import write_atomically
 from cratous.services.certify.timeline import bars, read_flight
 from cratous.services.certify.verdicts import requirement_rows, with_promised
 from cratous.services.log import read_digest, read_log
 from cratous.services.monitor.promises import watched
 from cratous.services.records import canonical, fingerprint, to_data
+from cratous.services.results.names import FORMAT, HTML_NAME, LOG_NAME, MAP_NAME, REPORT_NAME
 from cratous.spec.errors import BadInput
 from cratous.spec.guarantees import Outcome, exit_code, worst
 from cratous.spec.mission import Mission
 from cratous.spec.plan import Plan
 
-FORMAT = "cratous-report/1"
-LOG_NAME = "log.sqlite"
-CERTIFICATE_NAME = "certificate.json"
 LIMITS = (
     "Python and z3 are not qualified tools, so this is evidence, not certification credit.",
     "Proofs hold for the kernels in real arithmetic; the compiled kernels compute in doubles.",
@@ -180,16 +179,10 @@ def write_report(report: dict[str, Any], folder: Path) -> None:
     from cratous.services.certify.html import map_svg, render
 
     text = json.dumps(report, indent=1, sort_keys=True, ensure_ascii=False, allow_nan=False)
-    _replace(folder / "report.json", text + "\n")
+    write_atomically(folder / REPORT_NAME, text + "\n", "the report")
     written = json.loads(text)
-    _replace(folder / "report.html", render(written))
-    _replace(folder / "map.svg", map_svg(written))
-
-
-def _replace(path: Path, text: str) -> None:
-    part = path.with_name(path.name + ".part")
-    part.write_text(text, encoding="utf-8")
-    os.replace(part, path)
+    write_atomically(folder / HTML_NAME, render(written), "the report")
+    write_atomically(folder / MAP_NAME, map_svg(written), "the map")
 
 
 def read_report(folder: Path) -> dict[str, Any]:

@@ -2,7 +2,8 @@
 
 A module is imported only when its command runs, so that `cratous --help` is quick. Whatever goes
 wrong ends as one message and an exit code: 0 all hold, 1 something is violated or no plan exists,
-2 bad input, 3 something is unknown or excused; 70 is an error of the product itself.
+2 bad input, 3 something is unknown or excused; 70 is an error of the product itself, and 128 and
+more say which signal ended it.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from typing import Any
 
 import click
 
+from cratous.services.cli.stopping import Stopped, stoppable
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 
 INTERNAL_ERROR = 70
@@ -78,10 +80,14 @@ def main(argv: list[str] | None = None) -> int:
     arguments = [part for part in arguments if part != "--debug"]
     as_json = "--json" in arguments
     try:
-        result = cli.main(args=arguments, prog_name="cratous", standalone_mode=False)
+        with stoppable():
+            result = cli.main(args=arguments, prog_name="cratous", standalone_mode=False)
         return result if isinstance(result, int) else 0
     except click.exceptions.Exit as done:
         return done.exit_code
+    except Stopped as stop:
+        click.echo(f"cratous: stopped ({stop.name})", err=True)
+        return stop.exit_code
     except SystemExit as done:
         return done.code if isinstance(done.code, int) else int(done.code is not None)
     except click.ClickException as error:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from cratous.core.whole_file import write_atomically
 from cratous.spec.assignment import CUMULATIVE, MINMAX, AssignmentProblem, Cost, Solution
 from cratous.spec.errors import BadInput
 
@@ -66,7 +67,7 @@ def assign(
     if certificate is not None:
         write(certificate, body)
     if svg is not None:
-        svg.write_text(_picture(problem, solution), encoding="utf-8")
+        write_atomically(svg, _picture(problem, solution), "the picture")
     reasons, sure = why_infeasible(problem) if solution.status == "infeasible" else ((), True)
     code = _code(solution.status, solution.gap, gap, nodes, seconds)
     if as_json:

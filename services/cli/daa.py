@@ -10,6 +10,7 @@ from typing import Any
 
 import click
 
+from cratous.core.whole_file import write_atomically
 from cratous.spec.errors import BadInput
 
 CONFIG = click.option(
@@ -62,10 +63,7 @@ def _put(text: str, out: Path | None) -> None:
     if out is None:
         click.echo(text, nl=not text.endswith("\n"))
         return
-    try:
-        out.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise BadInput(f"the file cannot be written: {error}", where=str(out)) from error
+    write_atomically(out, text)
 
 
 def _table(kind: str) -> Callable[..., int]:

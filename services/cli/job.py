@@ -1,23 +1,15 @@
-"""The main job for one mission: gate, plan, check, fly, monitor, certify.
-
-The output folder is filled under a temporary name beside its final one and renamed when it is
-whole; an error on the way leaves nothing.
-"""
+"""The main job for one mission: gate, plan, check, fly, monitor, certify."""
 
 from __future__ import annotations
 
-import os
-import shutil
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from tempfile import mkdtemp
 from typing import Any
 
 from cratous.services.taking_part import absent
 from cratous.services.wind import known_at
-from cratous.spec.errors import BadInput, NoPlan
+from cratous.spec.errors import NoPlan
 from cratous.spec.guarantees import Outcome, Verdict, worst
 from cratous.spec.mission import Mission
 from cratous.spec.plan import Plan
@@ -78,46 +70,6 @@ def folder_name(mission: Mission) -> str:
     return f"{mission.name}-seed{mission.seed}" if mission.seed else mission.name
 
 
-@contextmanager
-def whole_folder(target: Path) -> Iterator[Path]:
-    """A fresh folder that takes the place of `target` if all goes well, else vanishes."""
-    from cratous.services.certify.report import FORMAT
-
-    if target.exists() and not (target.is_dir() and _is_ours(target)):
-        raise BadInput(
-            "the output folder holds something else",
-            where=str(target),
-            expected=f"no such folder, or one with a report ({FORMAT})",
-            got="other files",
-        )
-    made = not target.parent.exists()
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        part = Path(mkdtemp(prefix=f".{target.name}-", dir=target.parent))
-    except OSError as error:
-        raise BadInput(
-            f"the output folder cannot be made ({error.strerror})", where=str(target.parent)
-        ) from None
-    try:
-        part.chmod(0o755)
-        yield part
-        if target.exists():
-            old = Path(mkdtemp(prefix=f".{target.name}-old-", dir=target.parent))
-            os.replace(target, old)
-            os.replace(part, target)
-            shutil.rmtree(old, ignore_errors=True)
-        else:
-            os.replace(part, target)
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
-        if made and not any(target.parent.iterdir()):
-            target.parent.rmdir()
-
-
-def _is_ours(folder: Path) -> bool:
-    return (folder / "report.json").is_file() or not any(folder.iterdir())
-
-
 def run_mission(
     mission: Mission, folder: Path, settings: Settings, tell: Tell = silent
 ) -> dict[str, Any]:
@@ -125,18 +77,13 @@ def run_mission(
     from cratous import __version__
     from cratous.core import ledger
     from cratous.services.certify.proofs import inventory
-    from cratous.services.certify.report import (
-        CERTIFICATE_NAME,
-        LOG_NAME,
-        build_report,
-        mission_hash,
-        write_report,
-    )
+    from cratous.services.certify.report import build_report, mission_hash, write_report
     from cratous.services.certify.verdicts import constraint_rows
     from cratous.services.flight.loop import fly
     from cratous.services.log import LogWriter
     from cratous.services.monitor import Monitor
     from cratous.services.records import to_data
+    from cratous.services.results.names import CERTIFICATE_NAME, LOG_NAME
 
     standing = ledger.require(allow_unproved=settings.allow_unproved)
     proofs = inventory(standing)

@@ -15,6 +15,7 @@ from cratous.bridge import envelope
 from cratous.bridge.lmcp import describe as words
 from cratous.bridge.lmcp import differences, enums, forms, mdm, model, stubs, types
 from cratous.bridge.lmcp import schema as schemas
+from cratous.core.whole_file import write_atomically
 from cratous.spec.errors import BadInput
 
 EXAMPLES = """
@@ -155,10 +156,7 @@ def encode(
         raise BadInput("no message", where=" ".join(file))
     data = b"".join(written)
     if output:
-        try:
-            Path(output).write_bytes(data)
-        except OSError as err:
-            raise BadInput("cannot be written", where=output, got=err.strerror or "") from None
+        write_atomically(Path(output), data)
     else:
         sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()

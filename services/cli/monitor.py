@@ -24,9 +24,9 @@ def monitor(log: Path, as_json: bool, allow_unproved: bool) -> int:
     """
     from cratous.core import ledger
     from cratous.services.certify.again import watch
-    from cratous.services.certify.report import LOG_NAME
     from cratous.services.certify.verdicts import constraint_rows, requirement_rows
     from cratous.services.cli.show import requirement_table
+    from cratous.services.results.names import LOG_NAME
 
     standing = ledger.require(allow_unproved=allow_unproved)
     verdicts = watch(log / LOG_NAME if log.is_dir() else log)

@@ -13,6 +13,7 @@ from typing import Any
 
 import click
 
+from cratous.core.whole_file import write_atomically
 from cratous.services.cli.progress import Bar
 from cratous.services.cli.prove_checks import mutation, second_solver
 from cratous.spec.errors import BadInput
@@ -51,7 +52,7 @@ def _export(theorems: list[Any], folder: Path, theorem_folder: Path) -> int:
     written = 0
     for theorem in theorems:
         for number, text in enumerate(forked.call(partial(texts, theorem.name)), 1):
-            (folder / f"{theorem.name}-{number:02d}.smt2").write_text(text, encoding="utf-8")
+            write_atomically(folder / f"{theorem.name}-{number:02d}.smt2", text)
             written += 1
     return written
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import click
 
-from cratous.services.cli.job import Settings, folder_name, run_mission, whole_folder
+from cratous.services.cli.job import Settings, folder_name, run_mission
 from cratous.services.cli.show import progress, requirement_table, table
 from cratous.spec.errors import CratousError, NoPlan
 from cratous.spec.guarantees import Outcome, exit_code
@@ -52,7 +52,8 @@ def run(
     """Plan, prove, fly, monitor and certify a MISSION.
 
     MISSION is a mission file (YAML), or a UxAS folder or configuration as it is. The results,
-    report.html first of all, are written to out/<mission>/ when everything is done.
+    report.html first of all, are written to out/<mission>/ when everything is done; former results
+    there are replaced, other files stay.
 
     Example:  cratous run examples/crossing/mission.yaml
 
@@ -87,10 +88,11 @@ def run_one(
 ) -> tuple[dict[str, Any], Path]:
     """Load, run and keep one mission; returns the report and its folder."""
     from cratous.services.loading import load
+    from cratous.services.results.folder import results_folder
 
     loaded = load(path, seed)
     target = out / folder_name(loaded)
-    with whole_folder(target) as folder:
+    with results_folder(target, tell) as folder:
         report = run_mission(loaded, folder, settings, tell)
     return report, target
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
+from cratous.core.whole_file import replacing
 from cratous.services.daa import Step
 from cratous.spec.errors import BadInput
 
@@ -84,10 +85,9 @@ def draw(steps: Sequence[Step], file: Path) -> None:
         loc="outside upper center",
         ncols=6,
     )
-    try:
-        figure.savefig(file, metadata={"Date": None} if file.suffix == ".svg" else None)
-    except OSError as error:
-        raise BadInput(f"the picture cannot be written: {error}", where=str(file)) from error
+    kind = file.suffix[1:]
+    with replacing(file, "the picture") as part:
+        figure.savefig(part, format=kind, metadata={"Date": None} if kind == "svg" else None)
 
 
 NEAR_M = 1000.0

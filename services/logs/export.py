@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from cratous.core.whole_file import replacing
 from cratous.services.logs import files
 from cratous.services.logs.entry import Entry, any_data
 from cratous.services.logs.selection import Selection
@@ -67,23 +67,12 @@ def export(
                 raise
             done.damage = error
 
-    part = target.with_name(f".{target.name}.{os.getpid()}.part")
-    write = _WRITERS[form]
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        part.unlink(missing_ok=True)
-        job = _Job(source, entries, part, done, chosen, with_bytes)
-        write(job)
-        os.replace(part, target)
     except OSError as error:
         raise cannot_write(target, error) from None
-    except BadInput as error:
-        error.where = error.where.replace(str(part), str(target))
-        raise
-    finally:
-        for end in ("", "-journal", "-wal", "-shm"):
-            with suppress(OSError):
-                part.with_name(part.name + end).unlink(missing_ok=True)
+    with replacing(target, "the log") as part:
+        _WRITERS[form](_Job(source, entries, part, done, chosen, with_bytes))
     return done
 
 

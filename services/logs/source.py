@@ -13,9 +13,8 @@ from cratous.services.logs.entry import Entry
 from cratous.services.logs.selection import Selection
 from cratous.services.logs.sqlite_log import Closing, SqliteLog, TopicCount, tables_of
 from cratous.services.logs.store import Gap
+from cratous.services.results.names import LOG_NAME
 from cratous.spec.errors import BadInput
-
-LOG_NAME = "log.sqlite"
 
 
 class Source:

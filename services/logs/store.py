@@ -18,6 +18,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple
 
+from cratous.core import whole_file
 from cratous.services.logs.entry import Entry
 from cratous.services.logs.schema import INSERT, TABLES, Digest
 from cratous.services.records import canonical
@@ -40,13 +41,7 @@ class Gap(NamedTuple):
 
 def cannot_write(path: Path, error: Exception) -> BadInput:
     """The error for a log that cannot be written."""
-    text = getattr(error, "strerror", None) or str(error)
-    return BadInput(
-        "the log cannot be written",
-        where=str(path),
-        expected="a folder that can be written, and room on its disk",
-        got=text,
-    )
+    return whole_file.cannot_write(path, error, "the log")
 
 
 class LogStore:

@@ -25,6 +25,7 @@ from cratous.core.assignment_anytime import NONE, Proof, estimate
 from cratous.core.assignment_chains import chains_below
 from cratous.core.assignment_check import least_cost
 from cratous.core.assignment_order import by_sets, is_sets
+from cratous.core.whole_file import write_atomically
 from cratous.services.planning.assign_problem import Part, arrays, check, parts, settler
 from cratous.services.planning.assign_replay import replayed
 from cratous.services.planning.assign_solvers import none_below, schedule_holds
@@ -122,8 +123,8 @@ def _digest(body: dict[str, Any]) -> str:
 
 
 def write(file: Path, certificate: dict[str, Any]) -> None:
-    """Write a certificate."""
-    file.write_text(json.dumps(certificate, sort_keys=True) + "\n", encoding="utf-8")
+    """Write a certificate, whole or not at all."""
+    write_atomically(file, json.dumps(certificate, sort_keys=True) + "\n", "the certificate")
 
 
 def read(file: Path) -> dict[str, Any]:

@@ -1,0 +1,50 @@
+"""SIGTERM and SIGHUP end a command as Ctrl-C does: what is half done is cleaned up on the way out."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any
+
+STOPS = (signal.SIGTERM, signal.SIGHUP)
+
+
+class Stopped(SystemExit):
+    """A signal asks to end; the exit code is 128 and its number."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(128 + number)
+        self.exit_code = 128 + number
+        self.name = signal.Signals(number).name
+
+
+@contextmanager
+def stoppable() -> Iterator[None]:
+    """In here these signals raise `Stopped`; those that the caller ignores (nohup) stay ignored."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    process = os.getpid()
+
+    def stop(number: int, _frame: Any) -> None:
+        if os.getpid() != process:  # a process forked from here has nothing of ours to clean up
+            signal.signal(number, signal.SIG_DFL)
+            os.kill(os.getpid(), number)
+            return
+        for other in STOPS:  # once is enough: nothing disturbs the cleaning
+            signal.signal(other, signal.SIG_IGN)
+        raise Stopped(number)
+
+    before = {n: signal.getsignal(n) for n in STOPS}
+    ours = [n for n in STOPS if before[n] is signal.SIG_DFL]
+    for number in ours:
+        signal.signal(number, stop)
+    try:
+        yield
+    finally:
+        for number in ours:
+            with suppress(ValueError):
+                signal.signal(number, signal.SIG_DFL)

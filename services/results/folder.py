@@ -1,0 +1,162 @@
+"""The results folder of a run: whole or not at all, and other files that are in it stay."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from cratous.core.whole_file import NO_ROOM, Workspace, cannot_write, in_turn, sync
+from cratous.services.results.names import MANIFEST_NAME
+from cratous.services.results.ownership import manifest_text
+from cratous.services.results.swap import (
+    FILLING,
+    JOURNAL,
+    READY,
+    RUN,
+    Tell,
+    clear,
+    install,
+    keep,
+    recover,
+    refuse_foreign,
+    remove,
+)
+from cratous.spec.errors import BadInput
+
+STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+def _nobody(_text: str) -> None:
+    """Tell nobody."""
+
+
+@contextmanager
+def results_folder(target: Path, tell: Tell = _nobody) -> Iterator[Path]:
+    """A fresh folder that takes the place of the results at `target` if all goes well, else vanishes.
+
+    BadInput before anything is done if the target cannot be replaced later. Files there that we did
+    not write stay; if one of them is in the way only at the end, the new results are kept beside
+    it, and the error names where.
+    """
+    place = _resolved(target)
+    made = [folder for folder in place.parents if not folder.exists()]
+    try:
+        place.parent.mkdir(parents=True, exist_ok=True)
+        with in_turn(place.parent):
+            recover(place.parent, tell)
+        refuse_foreign(place, target)
+        run = _Run(place)
+    except OSError as error:
+        _remove_empty(made)
+        raise cannot_write(target, error, "the results folder") from None
+    except BaseException:
+        _remove_empty(made)
+        raise
+    filled = False
+    try:
+        yield run.filling
+        filled = True
+        run.put_in_place(tell)
+    except OSError as error:
+        ours = error.filename is not None and str(run.space.path) in str(error.filename)
+        if not ours and not filled and error.errno not in NO_ROOM:
+            raise
+        name = Path(str(error.filename)).name if ours else ""
+        raise cannot_write(target / name, error, "the results folder") from None
+    except BadInput as error:
+        error.where = error.where.replace(str(run.filling), str(target))
+        raise
+    finally:
+        run.close()
+        _remove_empty(made)
+
+
+def _resolved(target: Path) -> Path:
+    """Where the results end up: links are followed, so that a link stays one."""
+    try:
+        place = target.resolve()
+    except (OSError, RuntimeError):
+        raise BadInput(
+            "the results folder is a link that leads nowhere", where=str(target),
+            expected="a folder, or a link to one", got="a loop of links",
+        ) from None  # fmt: skip
+    if os.path.lexists(place) and not place.is_dir():
+        raise BadInput(
+            "the results folder is no folder", where=str(target),
+            expected="no such name, or a folder", got="a file",
+        )  # fmt: skip
+    if os.path.ismount(place):
+        raise BadInput(
+            "the results folder is where a file system is mounted, so it cannot be replaced",
+            where=str(target), expected="a folder in it (--out)",
+        )  # fmt: skip
+    return place
+
+
+class _Run:
+    """The hidden folder of one run: what it fills, and what it says to those who find it."""
+
+    def __init__(self, place: Path) -> None:
+        self.place = place
+        self.space = Workspace(place.parent, place.name, RUN)
+        self.filling = self.space.path / FILLING
+        self._stays = False
+        try:
+            self.filling.mkdir()
+            note = {"target": place.name, "inode": self.filling.stat().st_ino}
+            (self.space.path / JOURNAL).write_text(json.dumps(note), encoding="utf-8")
+        except BaseException:
+            self.close()
+            raise
+
+    def put_in_place(self, tell: Tell) -> None:
+        """Exchange the new results for the old ones; signals wait until it is done."""
+        text = manifest_text(self.filling, sorted(entry.name for entry in self.filling.iterdir()))
+        (self.filling / MANIFEST_NAME).write_text(text, encoding="utf-8")
+        for entry in self.filling.iterdir():
+            sync(entry)
+        sync(self.filling)
+        with _undisturbed(), in_turn(self.place.parent):
+            self._stays = True
+            os.rename(self.filling, self.space.path / READY)
+            try:
+                install(self.space.path, self.place)
+                clear(self.space.path, self.place, tell)
+            except (OSError, BadInput) as error:
+                keep(self.space.path, self.place, error, tell)
+                return
+            self._stays = False
+
+    def close(self) -> None:
+        """Remove the hidden folder, unless something is in it that is nowhere else."""
+        if not self._stays:
+            remove(self.space.path)
+        self.space.release()
+
+
+def _remove_empty(made: list[Path]) -> None:
+    for folder in made:
+        with suppress(OSError):
+            folder.rmdir()
+
+
+@contextmanager
+def _undisturbed() -> Iterator[None]:
+    """SIGINT, SIGTERM and SIGHUP are held back, and act at the end."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came: list[int] = []
+    before = {n: signal.signal(n, lambda number, _frame: came.append(number)) for n in STOPS}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, signal.SIG_DFL if handler is None else handler)
+        if came:
+            signal.raise_signal(came[0])

@@ -1,0 +1,11 @@
+"""The files of a results folder."""
+
+from __future__ import annotations
+
+FORMAT = "cratous-report/1"
+REPORT_NAME, HTML_NAME, MAP_NAME = "report.json", "report.html", "map.svg"
+LOG_NAME, CERTIFICATE_NAME = "log.sqlite", "certificate.json"
+MANIFEST_NAME = "manifest.json"
+NAMES = (REPORT_NAME, HTML_NAME, MAP_NAME, LOG_NAME, CERTIFICATE_NAME, MANIFEST_NAME)
+BESIDE_LOG = tuple(LOG_NAME + end for end in ("-journal", "-wal", "-shm"))
+"""SQLite would take these for part of a new log."""
