@@ -37,7 +37,10 @@ def add_least(total: int, is_open: bool, least: int) -> int:
     return total
 
 
-@kernel(implements="assignment_bounds.stop_is_no_shortcut")
+@kernel(
+    implements="assignment_bounds.stop_is_no_shortcut",
+    restates="the bounds of a search count on ways that no stop makes shorter",
+)
 def no_shortcut(direct: int, first: int, stay: int, second: int) -> bool:
     """True iff a way with a stop is no shorter than what is said of the way without one.
 

@@ -44,7 +44,7 @@ def room_step(room: int, until: int, free: int) -> int:
     return room + max(0, until - free)
 
 
-@kernel(implements="assignment.cannot_all_be_done")
+@kernel(implements="assignment.all_is_done")
 def lacks_room(room: int, work: int) -> bool:
     """True iff the work [ms] does not fit into the room [ms]."""
     return room < work
@@ -60,7 +60,7 @@ def soonest_end(soonest: int, head: int, least: int) -> int:
     return max(soonest, head + least)
 
 
-@kernel(implements="assignment.keeps_step")
+@kernel(implements="assignment.all_may_leave_at")
 def keeps_step(ok: bool, free: int, latest: int) -> bool:
     """Add one vehicle to whether all leave in time: it is free at `free`, must leave by `latest`."""
     return ok and free <= latest
@@ -72,7 +72,7 @@ def covers_step(ok: bool, mine: int, other: int) -> bool:
     return ok and mine <= other
 
 
-@kernel(implements="assignment.covered_result")
+@kernel(supports="covers")
 def covers_result(ok: bool) -> bool:
     """Whether no time of the one state is later than that of the other."""
     return ok
@@ -80,14 +80,17 @@ def covers_result(ok: bool) -> bool:
 
 covers = fold(
     name="covers",
-    implements="assignment.is_covered",
+    implements="assignment.is_covered_step",
     step=covers_step,
     start=True,
     finish=covers_result,
 )
 
 
-@kernel(implements="assignment.weighted")
+@kernel(
+    implements="assignment.weighted",
+    restates="what the mission weighs: the meaning is the formula itself",
+)
 def weighted(makespan: int, team: int, added: int, per_makespan: int, per_team: int) -> int:
     """The cost: weighted latest end, weighted sum of the vehicles' last ends, and what legs cost.
 
@@ -114,7 +117,7 @@ def chain_step(chain: Chain, travel: int, start: int, end: int, duration: int) -
     return Chain(ok, end)
 
 
-@kernel(implements="assignment.chain_result")
+@kernel(supports="chain_holds")
 def chain_result(chain: Chain) -> bool:
     """Whether every leg of the chain held."""
     return chain.ok
@@ -122,7 +125,7 @@ def chain_result(chain: Chain) -> bool:
 
 chain_holds = fold(
     name="chain_holds",
-    implements="assignment.leg_is_flown",
+    implements="assignment.chain_step",
     step=chain_step,
     start=Chain(True, 0),
     finish=chain_result,
@@ -141,7 +144,7 @@ def opened(done: int, need: int) -> bool:
     return done & need == need
 
 
-@kernel(implements="assignment.waits_in_laps")
+@kernel(implements="assignment.is_flown_in_laps")
 def wait_holds(wait: int, laps: int, lap: int, lap_max: int) -> bool:
     """True iff a vehicle can wait so long: not at all, or in so many laps of a circle.
 

@@ -19,7 +19,7 @@ def within_step(so_far: bool, a: Vec2, b: Vec2, centre: Vec2, half: float) -> bo
     return so_far and square_left_of(a, b, centre, half)
 
 
-@kernel(implements="geofence.every_result")
+@kernel(supports="square_within")
 def within_result(so_far: bool) -> bool:
     """Whether the square is left of all edges."""
     return so_far
@@ -27,7 +27,7 @@ def within_result(so_far: bool) -> bool:
 
 square_within = fold(
     name="square_within",
-    implements="geofence.square_point_left_of",
+    implements="geofence.every_step",
     step=within_step,
     start=True,
     finish=within_result,

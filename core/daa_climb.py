@@ -65,7 +65,7 @@ class Height(NamedTuple):
     vz_m_s: float
 
 
-@kernel(implements="daa_meaning.climb_is_flown")
+@kernel(implements="daa_meaning.accelerated")
 def height(
     z_m: float, vz_m_s: float, target_m: float, accel_m_s2: float,
     t1_s: float, t2_s: float, t3_s: float, rate_m_s: float, t_s: float,

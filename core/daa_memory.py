@@ -17,7 +17,10 @@ from cratous.core.kernel import driver, kernel
 from cratous.spec.daa import NONE, RECOVERY
 
 
-@kernel(implements="daa_meaning.reached")
+@kernel(
+    implements="daa_meaning.reached",
+    restates="M of N: how many of the last N values count",
+)
 def count_reached(before: int, value: int, level: int) -> int:
     """How many values reach a level: one more if this one does."""
     if value >= level:
@@ -25,7 +28,10 @@ def count_reached(before: int, value: int, level: int) -> int:
     return before
 
 
-@kernel(implements="daa_meaning.enough")
+@kernel(
+    implements="daa_meaning.enough",
+    restates="M of N: the number that raises an alert",
+)
 def enough(count: int, m: int) -> bool:
     """True iff at least m did."""
     return count >= m

@@ -13,7 +13,7 @@ from cratous.core.daa_volume import in_conflict
 from cratous.core.kernel import Vec2, driver, fold, kernel
 
 
-@kernel(implements="daa_meaning.counts")
+@kernel(implements="daa_meaning.lost_on_piece")
 def piece_counts(at_s: float, from_s: float, until_s: float) -> bool:
     """True iff a piece begun at at_s is looked at: not before from_s, not after until_s [s]."""
     return at_s >= from_s and at_s <= until_s
@@ -25,13 +25,13 @@ def straight_from(at_s: float, from_s: float) -> float:
     return max(from_s - at_s, 0)
 
 
-@kernel(implements="daa_meaning.step_conflicts")
+@kernel(supports="way_conflicts")
 def lost_before(before: bool, piece: bool) -> bool:
     """Whether the way to a step loses a volume: it did before, or the piece from here does."""
     return before or piece
 
 
-@kernel(implements="daa_meaning.the_way")
+@kernel(supports="way_conflicts")
 def lost_on_way(lost: bool) -> bool:
     """Whether the way loses a volume, after all of its pieces."""
     return lost
@@ -39,7 +39,7 @@ def lost_on_way(lost: bool) -> bool:
 
 way_conflicts = fold(
     name="way_conflicts",
-    implements="daa_meaning.step_conflicts",
+    implements="daa_meaning.lost_somewhere",
     step=lost_before,
     start=False,
     finish=lost_on_way,

@@ -13,7 +13,10 @@ from cratous.core.kernel import kernel
 from cratous.spec.daa import Parameters
 
 
-@kernel(implements="daa_meaning.in_area")
+@kernel(
+    implements="daa_meaning.in_area",
+    restates="the area is a cylinder that stands on the ground, by its own definition",
+)
 def inside_area(
     east_m: float, north_m: float, alt_m: float, radius_m: float, height_m: float
 ) -> bool:

@@ -7,13 +7,13 @@ no kernel calls a trigonometric function. Positive s turns right (x east, y nort
 from cratous.core.kernel import Vec2, kernel
 
 
-@kernel(implements="daa_meaning.turned")
+@kernel(implements="daa_meaning.is_turned")
 def turned(v: Vec2, c: float, s: float) -> Vec2:
     """The velocity v [m/s] turned to the right by the angle with cosine c and sine s."""
     return Vec2(v.x * c + v.y * s, v.y * c - v.x * s)
 
 
-@kernel(implements="daa_meaning.turned")
+@kernel(implements="daa_meaning.is_arc")
 def turn_offset(v: Vec2, w: Vec2) -> Vec2:
     """Where a turn from velocity v to velocity w leads, times the turn rate (right positive).
 

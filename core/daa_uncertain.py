@@ -38,7 +38,7 @@ def span_hull(a: Span, b: Span) -> Span:
     return Span(min(a.first_s, b.first_s), max(a.last_s, b.last_s))
 
 
-@kernel(implements="daa_meaning.layer_may_be_violated_at")
+@kernel(supports="layer_span")
 def layer_above(
     low_m: float, high_m: float, slow_m_s: float, fast_m_s: float, zthr_m: float, tcoa_s: float,
     vmod_s: float, t_s: float,
@@ -103,7 +103,7 @@ def circle_straight(
     return horizontal_interval_taumod(Vec2(far, 0), Vec2(0 - fast, 0), dthr_m, tthr_s, 0, t_s)
 
 
-@kernel(implements="daa_meaning.may_be_violated_at")
+@kernel(supports="circle_span")
 def circle_first(
     s: Vec2, v: Vec2, es_m: float, ev_m_s: float, dthr_m: float, tthr_s: float, t_s: float
 ) -> Span:
@@ -152,7 +152,7 @@ def circle_span(
     return or_empty(near.first_s, until.last_s)
 
 
-@kernel(implements="daa_meaning.may_be_violated_at")
+@kernel(implements="daa_meaning.in_own_or_both")
 def uncertain_span(
     s: Vec2, v: Vec2, sz: float, vz: float, es_m: float, ez_m: float, ev_m_s: float, ew_m_s: float,
     dthr_m: float, zthr_m: float, tthr_s: float, tcoa_s: float, vmod_s: float, b_s: float,
@@ -173,7 +173,7 @@ def uncertain_span(
     return span_hull(nominal, or_empty(first, last))
 
 
-@kernel(implements="daa_meaning.may_be_violated_at")
+@kernel(implements="daa_meaning.in_own_or_both")
 def uncertain_conflict(
     s: Vec2, v: Vec2, sz: float, vz: float, es_m: float, ez_m: float, ev_m_s: float, ew_m_s: float,
     dthr_m: float, zthr_m: float, tthr_s: float, tcoa_s: float, vmod_s: float, b_s: float,

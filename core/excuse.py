@@ -94,7 +94,10 @@ def both_say(one: int, other: int) -> int:
     return 0
 
 
-@kernel(implements="excuse.excuses")
+@kernel(
+    implements="excuse.excuses",
+    restates="which answer excuses a loss: the code that stands for `no way out`",
+)
 def is_excused(answer: int) -> bool:
     """True iff the answer excuses a loss: only -1, that there was no way out, does."""
     return answer == -1

@@ -21,13 +21,13 @@ class Gate(NamedTuple):
     offered: bool
 
 
-@kernel(implements="authority.takeover")
+@kernel(implements="authority.is_takeover")
 def gate_takeover(gate: Gate) -> Gate:
     """ICAROUS takes over (or withdraws its offer): it owns the vehicle, in a new epoch."""
     return Gate(1, gate.epoch + 1, False)
 
 
-@kernel(implements="authority.offer")
+@kernel(implements="authority.is_offer")
 def gate_offer(gate: Gate) -> Gate:
     """ICAROUS offers control back, in a new epoch; nothing happens if it has none to offer."""
     if gate.owner == 1 and not gate.offered:
@@ -35,7 +35,10 @@ def gate_offer(gate: Gate) -> Gate:
     return gate
 
 
-@kernel(implements="authority.accepts")
+@kernel(
+    implements="authority.may_act",
+    restates="the rule of the gate; what it keeps from happening is proved of it",
+)
 def gate_accepts(gate: Gate, sender: int, epoch: int) -> bool:
     """True iff a command of this sender and epoch may reach the actuators."""
     if epoch != gate.epoch:
@@ -45,7 +48,7 @@ def gate_accepts(gate: Gate, sender: int, epoch: int) -> bool:
     return sender == 1 and gate.owner == 1
 
 
-@kernel(implements="authority.after_command")
+@kernel(implements="authority.is_after_command")
 def gate_after(gate: Gate, sender: int, epoch: int) -> Gate:
     """The gate after a command arrived: an accepted one from UxAS completes the handback."""
     if gate_accepts(gate, sender, epoch) and sender == 0:
@@ -53,7 +56,7 @@ def gate_after(gate: Gate, sender: int, epoch: int) -> Gate:
     return gate
 
 
-@kernel(implements="authority.gives_way")
+@kernel(implements="authority.one_gives_way")
 def gives_way(own_id: int, intruder_id: int, intruder_cooperates: bool) -> bool:
     """True iff the ownship must manoeuvre first: always, unless the other is ours and has to."""
     if not intruder_cooperates:

@@ -29,7 +29,10 @@ def ahead(p: Vec2, a: Vec2, b: Vec2) -> float:
     return (p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y)
 
 
-@kernel(implements="geofence.squared_distance")
+@kernel(
+    implements="geofence.squared_distance",
+    restates="the square of a Euclidean distance, by which distances are compared",
+)
 def apart_squared(p: Vec2, m: Vec2) -> float:
     """The squared distance of two points; any one unit."""
     return (m.x - p.x) * (m.x - p.x) + (m.y - p.y) * (m.y - p.y)
@@ -59,7 +62,7 @@ def edge_distance(p: Vec2, a: Vec2, b: Vec2) -> Ratio:
     return Ratio(orient(a, b, p) * orient(a, b, p), apart_squared(a, b))
 
 
-@kernel(implements="geofence.against")
+@kernel(implements="geofence.within_at")
 def edge_against(p: Vec2, a: Vec2, b: Vec2, d_m: float) -> int:
     """-1 if the closed edge a-b is nearer to p than d_m, 0 if just so near, 1 if farther.
 
@@ -75,7 +78,7 @@ def nearest_step(least: int, a: Vec2, b: Vec2, p: Vec2, d_m: float) -> int:
     return min(least, edge_against(p, a, b, d_m))
 
 
-@kernel(implements="geofence.nearest_result")
+@kernel(supports="boundary_against")
 def nearest_result(least: int) -> int:
     """The least of all verdicts: that of the nearest edge."""
     return least
@@ -90,7 +93,7 @@ boundary_against = fold(
 )
 
 
-@kernel(implements="geofence.least_step")
+@kernel(supports="boundary_distance")
 def lesser(one: Ratio, other: Ratio) -> Ratio:
     """The lesser of two ratios; the first of two equal ones."""
     if one.num * other.den <= other.num * one.den:
@@ -98,13 +101,13 @@ def lesser(one: Ratio, other: Ratio) -> Ratio:
     return other
 
 
-@kernel(implements="geofence.least_step")
+@kernel(supports="boundary_distance")
 def distance_step(least: Ratio, a: Vec2, b: Vec2, p: Vec2) -> Ratio:
     """The least squared distance so far, and that of the edge a-b."""
     return lesser(least, edge_distance(p, a, b))
 
 
-@kernel(implements="geofence.least_step")
+@kernel(supports="boundary_distance")
 def distance_result(least: Ratio) -> Ratio:
     """The least of all squared distances."""
     return least
@@ -119,7 +122,7 @@ boundary_distance = fold(
 )
 
 
-@kernel(implements="geofence.against")
+@kernel(supports="leg_within")
 def ends_against(p: Vec2, q: Vec2, a: Vec2, b: Vec2, d_m: float) -> int:
     """The least of four verdicts: of each end of p-q and of a-b against the other segment.
 
@@ -155,7 +158,7 @@ def approach_step(near: bool, a: Vec2, b: Vec2, p: Vec2, q: Vec2, d_m: float) ->
     return near or leg_within(p, q, a, b, d_m)
 
 
-@kernel(implements="geofence.any_result")
+@kernel(supports="comes_within")
 def approach_result(near: bool) -> bool:
     """Whether any edge was near."""
     return near
@@ -163,7 +166,7 @@ def approach_result(near: bool) -> bool:
 
 comes_within = fold(
     name="comes_within",
-    implements="geofence.any_result",
+    implements="geofence.any_step",
     step=approach_step,
     start=False,
     finish=approach_result,

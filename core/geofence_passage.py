@@ -12,13 +12,13 @@ from cratous.core.geofence_distance import Ratio, ahead, apart_squared
 from cratous.core.kernel import Vec2, kernel
 
 
-@kernel(implements="geofence.turn")
+@kernel(supports="crossing")
 def cross(p: Vec2, q: Vec2, a: Vec2, b: Vec2) -> float:
     """The determinant of the directions of p-q and a-b; 0 iff parallel."""
     return (q.x - p.x) * (b.y - a.y) - (q.y - p.y) * (b.x - a.x)
 
 
-@kernel(implements="geofence.common_point")
+@kernel(implements="geofence.lines_meet_at")
 def crossing(p: Vec2, q: Vec2, a: Vec2, b: Vec2) -> Ratio:
     """The parameter at which the line p-q crosses the line a-b; den = 0 if they are parallel.
 

@@ -75,7 +75,7 @@ def place_result(place: int) -> int:
 
 place_in_all = fold(
     name="place_in_all",
-    implements="geofence.intersection",
+    implements="geofence.intersection_step",
     step=everywhere_step,
     start=1,
     finish=place_result,
@@ -83,7 +83,7 @@ place_in_all = fold(
 
 place_in_any = fold(
     name="place_in_any",
-    implements="geofence.union",
+    implements="geofence.union_step",
     step=anywhere_step,
     start=-1,
     finish=place_result,

@@ -29,7 +29,8 @@ class Entry:
     """One registered function: what it is, what it implements, and the function.
 
     uses: kernels that a fold is made of or that re-check a driver; nonnegative: arguments for which
-    a number below 0 means nothing.
+    a number below 0 means nothing; supports: the kernel or fold of which it is a part, which has the
+    definition; restates: what a formula is for that its definition only repeats.
     """
 
     name: str
@@ -38,6 +39,8 @@ class Entry:
     function: Callable[..., Any]
     uses: tuple[str, ...] = ()
     nonnegative: tuple[str, ...] = ()
+    supports: str = ""
+    restates: str = ""
 
 
 REGISTRY: dict[str, Entry] = {}
@@ -57,20 +60,36 @@ def _register(entry: Entry) -> None:
     REGISTRY[entry.name] = entry
 
 
-def kernel(*, implements: str, nonnegative: tuple[str, ...] = ()) -> Callable[[F], F]:
-    """Register a kernel under its function name; `implements` names its definition in `spec`.
+def kernel(
+    *,
+    implements: str = "",
+    supports: str = "",
+    restates: str = "",
+    nonnegative: tuple[str, ...] = (),
+) -> Callable[[F], F]:
+    """Register a kernel under its function name.
 
-    nonnegative: arguments that the theorems take to be at least 0 and that come from outside, as
-    thresholds do; the exact and the enclosed reading refuse a number below 0 there. Raises
-    ValueError for a name that is no argument.
+    implements: its definition in `spec`, as `module.function`; or supports: the kernel or fold that
+    it is a step of, which calls it and has a definition. restates: what the formula is for, where
+    the definition can only repeat it. nonnegative: arguments that the theorems take to be at least
+    0 and that come from outside, as thresholds do; the exact and the enclosed reading refuse a
+    number below 0 there. Raises ValueError for a name that is no argument, and unless exactly one
+    of implements and supports is given.
     """
 
     def mark(function: F) -> F:
+        name = function.__name__
         strangers = set(nonnegative) - set(inspect.signature(function).parameters)
         if strangers:
-            raise ValueError(f"{function.__name__} has no argument {', '.join(sorted(strangers))}")
-        name = function.__name__
-        _register(Entry(name, "kernel", implements, function, nonnegative=nonnegative))
+            raise ValueError(f"{name} has no argument {', '.join(sorted(strangers))}")
+        if bool(implements) == bool(supports):
+            raise ValueError(
+                f"{name}: give its definition (implements) or what it is a step of "
+                "(supports), one of the two"
+            )
+        if restates and not implements:
+            raise ValueError(f"{name}: what restates no definition (implements) has nothing to say")
+        _register(Entry(name, "kernel", implements, function, (), nonnegative, supports, restates))
         return function
 
     return mark

@@ -20,13 +20,13 @@ class Seen(NamedTuple):
     odd: bool
 
 
-@kernel(implements="geofence.turn")
+@kernel(implements="geofence.swept_by_triangle")
 def orient(a: Vec2, b: Vec2, c: Vec2) -> float:
     """Twice the signed area of the triangle a, b, c; its sign is the direction of the turn."""
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)
 
 
-@kernel(implements="geofence.on_segment")
+@kernel(implements="geofence.on_segment_at")
 def on_segment(p: Vec2, a: Vec2, b: Vec2) -> bool:
     """True iff p is a point of the closed segment from a to b."""
     if orient(a, b, p) != 0:
@@ -48,13 +48,13 @@ def crosses_ray(p: Vec2, a: Vec2, b: Vec2) -> bool:
     return orient(a, b, p) < 0
 
 
-@kernel(implements="geofence.location_step")
+@kernel(supports="locate")
 def location_step(seen: Seen, a: Vec2, b: Vec2, p: Vec2) -> Seen:
     """Add the edge a-b to what has been seen from p."""
     return Seen(seen.on or on_segment(p, a, b), seen.odd != crosses_ray(p, a, b))
 
 
-@kernel(implements="geofence.location_result")
+@kernel(supports="locate")
 def location_result(seen: Seen) -> int:
     """BOUNDARY (0) if on an edge, else INSIDE (1) for an odd number of crossings, else -1."""
     if seen.on:
@@ -73,7 +73,7 @@ locate = fold(
 )
 
 
-@kernel(implements="geofence.segments_meet")
+@kernel(implements="geofence.common_point")
 def segments_meet(p: Vec2, q: Vec2, a: Vec2, b: Vec2) -> bool:
     """True iff the closed segments p-q and a-b have a point in common."""
     if min(p.x, q.x) > max(a.x, b.x) or min(a.x, b.x) > max(p.x, q.x):
@@ -85,19 +85,19 @@ def segments_meet(p: Vec2, q: Vec2, a: Vec2, b: Vec2) -> bool:
     )
 
 
-@kernel(implements="geofence.opposite_or_zero")
+@kernel(supports="segments_meet")
 def straddles(one: float, other: float) -> bool:
     """True iff the two are not strictly on the same side of zero."""
     return (one <= 0 or other <= 0) and (one >= 0 or other >= 0)
 
 
-@kernel(implements="geofence.contact_step")
+@kernel(supports="meets_boundary")
 def contact_step(met: bool, a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> bool:
     """Add the edge a-b to whether the leg p-q has met the boundary."""
     return met or segments_meet(p, q, a, b)
 
 
-@kernel(implements="geofence.contact_result")
+@kernel(supports="meets_boundary")
 def contact_result(met: bool) -> bool:
     """Whether any edge was met."""
     return met
@@ -105,14 +105,14 @@ def contact_result(met: bool) -> bool:
 
 meets_boundary = fold(
     name="meets_boundary",
-    implements="geofence.meets_boundary",
+    implements="geofence.any_step",
     step=contact_step,
     start=False,
     finish=contact_result,
 )
 
 
-@kernel(implements="geofence.keep_out_leg_holds")
+@kernel(implements="geofence.enters_keep_out_at")
 def keep_out_leg_ok(
     where: int, meets: bool, low_m: float, high_m: float, floor_m: float, ceiling_m: float
 ) -> bool:
@@ -126,7 +126,7 @@ def keep_out_leg_ok(
     return where < 0 and not meets
 
 
-@kernel(implements="geofence.keep_in_leg_holds")
+@kernel(implements="geofence.leaves_keep_in_at")
 def keep_in_leg_ok(
     where: int, meets: bool, low_m: float, high_m: float, floor_m: float, ceiling_m: float
 ) -> bool:
@@ -148,13 +148,13 @@ def edges_clash(after: int, a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> bool:
     return segments_meet(a, b, c, d)
 
 
-@kernel(implements="geofence.turn")
+@kernel(supports="twice_area")
 def area_step(twice: float, a: Vec2, b: Vec2, p: Vec2) -> float:
     """Add the triangle of p and the edge a-b to twice the signed area so far."""
     return twice + orient(p, a, b)
 
 
-@kernel(implements="geofence.turn")
+@kernel(supports="twice_area")
 def area_result(twice: float) -> float:
     """Twice the signed area: positive if the chain turns from +x towards +y."""
     return twice
@@ -162,7 +162,7 @@ def area_result(twice: float) -> float:
 
 twice_area: Fold[float] = fold(
     name="twice_area",
-    implements="geofence.turn",
+    implements="geofence.swept",
     step=area_step,
     start=0,
     finish=area_result,

@@ -44,13 +44,13 @@ class Beats(NamedTuple):
     ok: bool
 
 
-@kernel(implements="timeliness.in_time", nonnegative=("bound",))
+@kernel(supports="beats_in_time", nonnegative=("bound",))
 def beats_step(beats: Beats, time: int, bound: int) -> Beats:
     """Add a heartbeat, or the end of the mission [ms]; bound: the longest gap [ms]."""
     return Beats(time, beats.ok and in_time(beats.last, time, bound))
 
 
-@kernel(implements="timeliness.beats_result")
+@kernel(supports="beats_in_time")
 def beats_result(beats: Beats) -> bool:
     """Whether each came in time."""
     return beats.ok

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from cratous.core.kernel import Vec2, kernel
 
 
-@kernel(implements="well_clear.quadratic_reaches_zero")
+@kernel(implements="well_clear.parabola")
 def dips_to_zero(a: float, b: float, c: float, h: float) -> bool:
     """True iff a t^2 + b t + c <= 0 for some t in [0, h]; a >= 0, h >= 0."""
     if c <= 0:
@@ -20,7 +20,7 @@ def dips_to_zero(a: float, b: float, c: float, h: float) -> bool:
     return b < 0 and 0 - b < 2 * a * h and b * b >= 4 * a * c
 
 
-@kernel(implements="well_clear.horizontal_violation_within", nonnegative=("dthr_m", "tthr_s"))
+@kernel(implements="well_clear.horizontal_violation_at", nonnegative=("dthr_m", "tthr_s"))
 def horizontal_violation_within(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, h_s: float) -> bool:
     """True iff the horizontal volume is violated at some t in [0, h_s] of straight flight."""
     ss = s.x * s.x + s.y * s.y
@@ -94,7 +94,7 @@ def within_during(s: Vec2, v: Vec2, radius_m: float, h_s: float) -> bool:
     return dips_to_zero(vv, 2 * sv, s.x * s.x + s.y * s.y - radius_m * radius_m, h_s)
 
 
-@kernel(implements="well_clear.horizontal_violation_tcpa_at", nonnegative=("dthr_m", "tthr_s"))
+@kernel(supports="violation_during_tcpa", nonnegative=("dthr_m", "tthr_s"))
 def horizontal_violation_within_tcpa(
     s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, h_s: float
 ) -> bool:
@@ -110,7 +110,7 @@ def horizontal_violation_within_tcpa(
     return cross * cross <= dd * vv and sv < 0 and 0 - sv <= (h_s + tthr_s) * vv
 
 
-@kernel(implements="well_clear.horizontal_violation_tep_at", nonnegative=("dthr_m", "tthr_s"))
+@kernel(supports="violation_during_tep", nonnegative=("dthr_m", "tthr_s"))
 def horizontal_violation_within_tep(
     s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, h_s: float
 ) -> bool:

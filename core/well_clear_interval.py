@@ -35,7 +35,7 @@ def or_empty(first_s: float, last_s: float) -> Span:
 
 
 # -- vertical -------------------------------------------------------------------------------
-@kernel(implements="well_clear.layer_violation_at", nonnegative=("zthr_m", "tcoa_s", "vmod_s"))
+@kernel(supports="vertical_interval", nonnegative=("zthr_m", "tcoa_s", "vmod_s"))
 def times_vertical(
     sz: float, vz: float, zthr_m: float, tcoa_s: float, vmod_s: float, b_s: float, t_s: float
 ) -> Span:
@@ -80,7 +80,7 @@ def course_reaches(s: Vec2, v: Vec2, dthr_m: float) -> bool:
     return cross * cross <= dthr_m * dthr_m * vv
 
 
-@kernel(implements="well_clear.horizontal_violation_at", nonnegative=("dthr_m", "tthr_s"))
+@kernel(supports="horizontal_interval_taumod", nonnegative=("dthr_m", "tthr_s"))
 def times_taumod(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, b_s: float, t_s: float) -> Span:
     """First and last instant of [b_s, t_s] at which the volume with tau_mod is violated, if any is.
 
@@ -113,7 +113,7 @@ def horizontal_interval_taumod(
     return or_empty(first, last)
 
 
-@kernel(implements="well_clear.horizontal_violation_tcpa_at", nonnegative=("dthr_m", "tthr_s"))
+@kernel(supports="horizontal_interval_tcpa", nonnegative=("dthr_m", "tthr_s"))
 def times_tcpa(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, b_s: float, t_s: float) -> Span:
     """First and last instant of [b_s, t_s] at which the volume with tcpa is violated, if any is.
 
@@ -145,7 +145,7 @@ def horizontal_interval_tcpa(
     return or_empty(first, last)
 
 
-@kernel(implements="well_clear.horizontal_violation_tep_at", nonnegative=("dthr_m", "tthr_s"))
+@kernel(supports="horizontal_interval_tep", nonnegative=("dthr_m", "tthr_s"))
 def times_tep(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float, b_s: float, t_s: float) -> Span:
     """First and last instant of [b_s, t_s] at which the volume with tep is violated, if any is.
 

@@ -24,7 +24,7 @@ def horizontal_violation(s: Vec2, v: Vec2, dthr_m: float, tthr_s: float) -> bool
     return horizontal_decision(ss, vv, sv, cross, dd, tthr_s)
 
 
-@kernel(implements="well_clear.horizontal_violation_by_invariants", nonnegative=("tthr_s",))
+@kernel(implements="well_clear.horizontal_violation", nonnegative=("tthr_s",))
 def horizontal_decision(
     ss: float, vv: float, sv: float, cross: float, dd: float, tthr_s: float
 ) -> bool:

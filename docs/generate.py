@@ -71,6 +71,10 @@ def inventory() -> str:
     for name, kernel in sorted(kernels.items()):
         stands = kernel["theorems"] or [f"checked by {k}" for k in kernel["checked_by"]]
         definition = f"`{kernel['implements']}`" if kernel["implements"] else "search or map"
+        if kernel["supports"]:
+            definition = f"a step of `{kernel['supports']}`"
+        if kernel["restates"]:
+            definition += f", restated: {kernel['restates']}"
         lines.append(f"| `{name}` | {kernel['kind']} | {definition} | {', '.join(stands)} |")
     return "\n".join(lines) + "\n"
 

@@ -53,7 +53,7 @@ def _digest(entries: dict[str, Entry]) -> str:
     for text in tools:
         add(text.encode())
     for name, entry in entries.items():
-        add(repr((name, entry.kind, entry.implements, entry.uses)).encode())
+        add(repr((name, entry.kind, entry.implements, entry.supports, entry.uses)).encode())
         add(position(entry.function).encode())
     files = [file for folder in FOLDERS for file in sorted((ROOT / folder).rglob("*.py"))]
     for file in (*files, ledger.LEDGER):

@@ -137,9 +137,10 @@ def leaves_in_time(
     return start >= leave + travel and start >= release and end <= due and end <= after
 
 
-def keeps_step(ok: bool, free: int, latest: int) -> bool:
-    """All vehicles so far leave in time, and so does one that is free at `free`."""
-    return ok and not (free > latest)
+def all_may_leave_at(leave: int, ok: bool, free: int, latest: int) -> bool:
+    """All vehicles so far leave in time, and one more does at `leave`, when it is free and not after
+    its latest departure. THERE IS an instant `leave`."""
+    return ok and free <= leave and leave <= latest
 
 
 def work_is_done(work: int, room: int, until: int, free: int) -> bool:
@@ -149,9 +150,10 @@ def work_is_done(work: int, room: int, until: int, free: int) -> bool:
     return rest <= 0 or free + rest <= until
 
 
-def cannot_all_be_done(room: int, work: int) -> bool:
-    """There is more work than room for it."""
-    return work > room
+def all_is_done(room: int, work: int, done: int) -> bool:
+    """What is done fits into the room, and nothing of the work is left. THERE IS such a `done`."""
+    left = work - done
+    return done <= room and left <= 0
 
 
 def task_may_end(end: int, soonest: int, head: int, least: int) -> bool:
@@ -160,14 +162,15 @@ def task_may_end(end: int, soonest: int, head: int, least: int) -> bool:
     return end >= soonest and end - least >= head
 
 
-def is_covered(mine: int, other: int) -> bool:
-    """FOR ALL times of two states: the one is not later than the other."""
-    return not (mine > other)
+def ready(time: int, t: int) -> bool:
+    """At the instant t this time of a state has come."""
+    return time <= t
 
 
-def is_covered_step(ok: bool, mine: int, other: int) -> bool:
-    """No time so far was later, and this one is not."""
-    return ok and is_covered(mine, other)
+def is_covered_step(t: int, ok: bool, mine: int, other: int) -> bool:
+    """So far the one state was ready wherever the other was, and so it is with this time of both,
+    seen at the instant t. FOR ALL t."""
+    return ok and not (ready(other, t) and not ready(mine, t))
 
 
 def covered_result(ok: bool) -> bool:
@@ -214,8 +217,14 @@ def all_needed_done(k: int, done: int, need: int) -> bool:
     return (need >> k) & 1 == 0 or (done >> k) & 1 == 1
 
 
-def waits_in_laps(wait: int, laps: int, lap: int, lap_max: int) -> bool:
-    """The vehicle does not wait, or flies at least one lap, and so many laps can take that long: all
-    shortest ones take no more, all longest ones no less. THERE IS a number of laps."""
-    too_long, too_short = lap * laps > wait, lap_max * laps < wait
-    return wait == 0 or not (laps < 1 or too_long or too_short)
+def is_flown_in_laps(wait: int, laps: int, lap: int, lap_max: int, each: int, longer: int) -> bool:
+    """The vehicle does not wait, or flies laps that together take as long as the wait: `longer` of them
+    take 1 ms more than `each`, the others just that, and it can fly all of them. THERE ARE such
+    numbers."""
+    if wait == 0:
+        return True
+    longest = each
+    if longer > 0:
+        longest = each + 1
+    possible = each >= lap and longest <= lap_max
+    return longer >= 0 and longer < laps and possible and each * laps + longer == wait

@@ -29,6 +29,55 @@ def may_command(state: State, sender: int) -> bool:
     return sender == 1 and state.owner == 1
 
 
+def may_act(state: State, sender: int, epoch: int) -> bool:
+    """A command of this sender, made in this epoch, may reach the actuators: nothing has changed
+    hands since it was made."""
+    return may_command(state, sender) and epoch == state.epoch
+
+
+def stale(after: State, epoch: int) -> bool:
+    """Whatever was commanded in this epoch cannot act any more, whoever sent it."""
+    return not may_act(after, 0, epoch) and not may_act(after, 1, epoch)
+
+
+def begins_epoch(before: State, after: State) -> bool:
+    """After the change the next epoch runs, which none before it was, and what was commanded in the
+    one before is stale."""
+    return after.epoch == before.epoch + 1 and stale(after, before.epoch)
+
+
+def is_takeover(before: State, after: State) -> bool:
+    """ICAROUS alone may command, in an epoch that begins with the takeover."""
+    alone = may_command(after, 1) and not may_command(after, 0)
+    return well_formed(after) and alone and begins_epoch(before, after)
+
+
+def is_offer(before: State, after: State) -> bool:
+    """ICAROUS, which alone commanded, lets UxAS command as well and goes on until it does, in an epoch
+    that begins with the offer; where ICAROUS did not command alone there is nothing to offer."""
+    if not may_command(before, 1) or may_command(before, 0):
+        return after == before
+    both = may_command(after, 0) and may_command(after, 1)
+    return well_formed(after) and both and begins_epoch(before, after)
+
+
+def is_after_command(before: State, sender: int, epoch: int, after: State) -> bool:
+    """A command that may act leaves its sender in command: UxAS alone, for that ends an offer, ICAROUS
+    as before. No command begins an epoch, and one that may not act changes nothing."""
+    if not may_act(before, sender, epoch) or sender != 0:
+        return after == before
+    alone = may_command(after, 0) and not may_command(after, 1)
+    return well_formed(after) and alone and after.epoch == before.epoch
+
+
+def one_gives_way(gives: bool, other_gives: bool, cooperate: bool) -> bool:
+    """Two that cooperate: exactly one of them gives way, so that they neither wait for each other nor
+    dodge into each other. To one that does not cooperate everybody gives way."""
+    if cooperate:
+        return gives != other_gives
+    return gives and other_gives
+
+
 def may_offer(offered: bool, free: bool, lasted: bool, linked: bool) -> bool:
     """ICAROUS may offer control: it has not yet, the way back is free and has been for long enough,
     and UxAS can hear the offer."""

@@ -49,16 +49,16 @@ def lost_from_step(violated: bool, t: float, at: float, begin: float, end: float
     return t >= 0 and at + t >= begin and at + t <= end and violated
 
 
-def step_conflicts(way: bool, piece: bool) -> bool:
-    """The way to a step loses a volume: on an earlier piece, or on this one."""
-    if way:
-        return True
-    return piece
-
-
-def the_way(lost: bool) -> bool:
-    """Whether it was lost on the way."""
+def lost_pieces(lost: int, piece: bool) -> int:
+    """On how many pieces of a way a volume is lost, with one piece more."""
+    if piece:
+        return lost + 1
     return lost
+
+
+def lost_somewhere(lost: int) -> bool:
+    """A way loses a volume: on how many of its pieces, none or more, it does."""
+    return lost > 0
 
 
 def horizon(until: float, lookahead: float, time: float, manoeuvre: float, counted: bool) -> bool:
@@ -119,9 +119,23 @@ def goes_on(now: float, before: float, gap: float) -> bool:
     return before < now and now <= before + gap
 
 
-def turned(v: Plane, c: float, s: float) -> Plane:
-    """A velocity turned to the right by the angle with cosine c and sine s."""
-    return Plane(c * v.x + s * v.y, c * v.y - s * v.x)
+def to_the_right(v: Plane) -> Plane:
+    """The direction a quarter turn to the right of v, as long as v."""
+    return Plane(v.y, -v.x)
+
+
+def is_turned(v: Plane, w: Plane, c: float, s: float) -> bool:
+    """w is as long as v and lies to the right of it by the angle with cosine c and sine s."""
+    angle = dot(v, w) == c * dot(v, v) and dot(to_the_right(v), w) == s * dot(v, v)
+    return dot(w, w) == dot(v, v) and angle
+
+
+def is_arc(v: Plane, d: Plane, c: float, s: float) -> bool:
+    """d is where a circle to the right leads that begins with velocity v, after the angle with cosine
+    c and sine s, times its turn rate: the sine of the radius ahead, and to the right the radius less
+    its cosine. The radius times the turn rate is the speed."""
+    ahead = dot(v, d) == s * dot(v, v)
+    return ahead and dot(to_the_right(v), d) == (1 - c) * dot(v, v)
 
 
 def in_area(east: float, north: float, alt: float, radius: float, height: float) -> bool:

@@ -50,6 +50,11 @@ def swept(a: Point, b: Point) -> float:
     return (a.x + b.x) * (b.y - a.y)
 
 
+def swept_by_triangle(a: Point, b: Point, c: Point) -> float:
+    """Twice the signed area of a triangle: what its sides sweep, in order (Green)."""
+    return swept(a, b) + swept(b, c) + swept(c, a)
+
+
 def on_segment_at(p: Point, a: Point, b: Point, t: float) -> bool:
     """p is the point of the closed segment a-b at parameter t."""
     at = along(a, b, t)
@@ -118,6 +123,12 @@ def common_point(p: Point, q: Point, a: Point, b: Point, s: float, t: float) -> 
     return inside and one.x == other.x and one.y == other.y
 
 
+def lines_meet_at(p: Point, q: Point, a: Point, b: Point, s: float, t: float) -> bool:
+    """The point of the line p-q at s is the point of the line a-b at t."""
+    one, other = along(p, q, s), along(a, b, t)
+    return one.x == other.x and one.y == other.y
+
+
 def altitude_in_keep_out(alt: float, floor: float, ceiling: float) -> bool:
     """The altitude belongs to a keep-out's layer."""
     return floor <= alt and alt <= ceiling
@@ -126,6 +137,25 @@ def altitude_in_keep_out(alt: float, floor: float, ceiling: float) -> bool:
 def altitude_in_keep_in(alt: float, floor: float, ceiling: float) -> bool:
     """The altitude lies strictly within a keep-in's layer."""
     return floor < alt and alt < ceiling
+
+
+def enters_keep_out_at(place: int, meets: bool, alt: float, floor: float, ceiling: float) -> bool:
+    """A leg that has this altitude somewhere is in a keep-out there, or may be.
+
+    place: of its first point among the zone's places, altitude apart; meets: it meets the zone's
+    boundary. THERE IS an altitude of the leg at which it is not clear of the zone.
+    """
+    clear = not in_closed(place) and not meets
+    return not clear and altitude_in_keep_out(alt, floor, ceiling)
+
+
+def leaves_keep_in_at(place: int, meets: bool, alt: float, floor: float, ceiling: float) -> bool:
+    """A leg that has this altitude somewhere is not strictly within a keep-in there, or may be not.
+
+    Arguments as for `enters_keep_out_at`. THERE IS an altitude at which it is not within.
+    """
+    within = in_open(place) and not meets
+    return not within or not altitude_in_keep_in(alt, floor, ceiling)
 
 
 def any_step(found: bool, here: bool) -> bool:

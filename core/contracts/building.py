@@ -29,7 +29,7 @@ class Built(NamedTuple):
     done: bool
 
 
-@kernel(implements="contracts.building.after")
+@kernel(supports="parts_in_order")
 def building_step(b: Building, event: int, number: int) -> Built:
     """One step.
 
@@ -61,7 +61,7 @@ def part_after(stage: int, asked: bool, built: bool) -> int:
     return 3
 
 
-@kernel(implements="contracts.building.after")
+@kernel(supports="parts_in_order")
 def part_seen(stage: int, part: int, act: int, asked: int, done: bool, built: int) -> int:
     """The stage of part `part` after a step that asked for `asked` (if act is 1) and built `built`."""
     return part_after(stage, act == 1 and asked == part, done and built == part)
@@ -108,7 +108,7 @@ def watched_parts_step(
     return WatchedParts(b.stage, b.parts, b.at, first, second, planned, failed, held)
 
 
-@kernel(implements="contracts.building.in_order")
+@kernel(supports="parts_in_order")
 def watched_parts_result(w: WatchedParts) -> bool:
     """Whether all was in order all the time."""
     return w.held

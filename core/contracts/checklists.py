@@ -10,7 +10,7 @@ from typing import NamedTuple
 from cratous.core.kernel import fold, kernel
 
 
-@kernel(implements="contracts.checklists.open_step")
+@kernel(supports="list_complete")
 def missing_step(missing: bool, ticked: bool) -> bool:
     """Add one item of a list to whether any is missing."""
     if ticked:
@@ -18,7 +18,7 @@ def missing_step(missing: bool, ticked: bool) -> bool:
     return True
 
 
-@kernel(implements="contracts.checklists.complete")
+@kernel(supports="list_complete")
 def missing_result(missing: bool) -> bool:
     """True iff the list is complete."""
     return not missing
@@ -33,7 +33,7 @@ list_complete = fold(
 )
 
 
-@kernel(implements="contracts.checklists.in_block")
+@kernel(implements="contracts.checklists.is_number_of_block")
 def owns(first: int, count: int, number: int) -> bool:
     """True iff an id belongs to the block of `count` ids that begins with `first`."""
     return number >= first and number < first + count
@@ -66,7 +66,7 @@ def owners_after(o: Owners, count: int, number: int) -> Owners:
     return Owners(free, o.owners)
 
 
-@kernel(implements="contracts.checklists.owners")
+@kernel(supports="owners_of")
 def owners_result(o: Owners) -> int:
     """How many blocks hold the id."""
     return o.owners

@@ -35,7 +35,7 @@ class Step(NamedTuple):
     ticket: int
 
 
-@kernel(implements="contracts.requests.after")
+@kernel(supports="requests_in_order")
 def line_step(line: Line, event: int, ticket: int, now_ms: int, limit_ms: int) -> Step:
     """One step of the line.
 
@@ -61,7 +61,7 @@ def line_step(line: Line, event: int, ticket: int, now_ms: int, limit_ms: int) -
     return Step(line, 0, line.answered)
 
 
-@kernel(implements="contracts.requests.after")
+@kernel(implements="contracts.requests.means")
 def happening(act: int, about: int, ticket: int) -> int:
     """What a step's act, about one ticket, is for the request with that ticket: 0 if not its own."""
     if about != ticket:

@@ -26,7 +26,7 @@ class Answer(NamedTuple):
     act: int
 
 
-@kernel(implements="contracts.responses.answered")
+@kernel(supports="response_step")
 def manoeuvre_act(flown: bool, found: bool) -> int:
     """2 go on with the manoeuvre that is flown, 1 command one that was found, 3 refuse.
 
@@ -80,7 +80,7 @@ def heading_blocked(heading_deg: float, low_deg: float, high_deg: float) -> bool
     return low_deg <= heading_deg and heading_deg <= high_deg
 
 
-@kernel(implements="contracts.responses.in_band")
+@kernel(implements="contracts.responses.apart")
 def value_blocked(value: float, low: float, high: float) -> bool:
     """True iff a value lies in an interval, which has its ends; m/s or m."""
     return low <= value and value <= high

@@ -15,13 +15,13 @@ class Span(NamedTuple):
     last: int
 
 
-@kernel(implements="contracts.segments.new_here")
+@kernel(supports="spans_serve")
 def first_span(end: int, length: int) -> Span:
     """The first piece. end: last position of the path; length: positions in a piece, >= 2."""
     return Span(0, min(end, length - 1))
 
 
-@kernel(implements="contracts.segments.new_here")
+@kernel(supports="spans_serve")
 def span_after(span: Span, end: int, length: int, overlap: int) -> Span:
     """The piece after this one of `length`; the same if it was the last, or the overlap cannot be.
 
@@ -61,7 +61,7 @@ def spans_step(s: Spans, overlap: int, end: int, length: int, position: int) -> 
     return Spans(first, last, s.times)
 
 
-@kernel(implements="contracts.segments.times")
+@kernel(supports="spans_serve")
 def spans_result(s: Spans) -> int:
     """How often the position was new."""
     return s.times

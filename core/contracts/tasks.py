@@ -31,7 +31,7 @@ class Moved(NamedTuple):
     act: int
 
 
-@kernel(implements="contracts.tasks.row")
+@kernel(supports="task_step")
 def task_requested(task: Task, request: int) -> Moved:
     """A request names the task; a newer one overrides, any other is stale."""
     if request <= task.request or request <= task.kept:
@@ -43,7 +43,7 @@ def task_requested(task: Task, request: int) -> Moved:
     return Moved(Task(2, request, 0), 2)
 
 
-@kernel(implements="contracts.tasks.row")
+@kernel(supports="task_step")
 def task_replied(task: Task, event: int, request: int) -> Moved:
     """An answer arrives: 3 sensor footprints, 4 option routes, 5 the choice, 6 final routes.
 

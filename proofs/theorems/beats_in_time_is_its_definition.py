@@ -3,18 +3,20 @@ before, for every number of heartbeats."""
 
 from typing import Any
 
-from cratous.core.timeliness import Beats, beats_in_time, in_time
+from cratous.core.timeliness import Beats, beats_in_time
 from cratous.proofs.claim import Claim
-from cratous.spec.timeliness import beats_result
+from cratous.spec.timeliness import beats_result, in_time
 
 
 def claim(c: Claim) -> None:
     ok, time, bound = c.boolean("all_in_time"), c.integer("time"), c.integer("bound")
+    c.premise(bound >= 0)
     acc = Beats(c.whole("last"), c.boolean("ok"))
     model = Beats(c.whole("model_last"), ok)
 
     def model_step(beats: Any, now: Any, longest: Any) -> Any:
-        return Beats(now, in_time(beats.last, now, longest) and beats.ok)
+        # at no instant is a message older than when the next one comes
+        return Beats(now, in_time(now, beats.last, now, longest) and beats.ok)
 
     def related(one: Any, other: Any) -> Any:
         ranged = c.all_of(one.last >= -(2**61), one.last <= 2**61)

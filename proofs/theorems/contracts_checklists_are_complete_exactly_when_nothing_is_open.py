@@ -2,19 +2,19 @@
 
 from cratous.core.contracts.checklists import list_complete
 from cratous.proofs.claim import Claim
-from cratous.spec.contracts.checklists import complete, open_step
+from cratous.spec.contracts.checklists import complete, open_items
 
 
 def claim(c: Claim) -> None:
-    missing, any_open, ticked = c.boolean("missing"), c.boolean("any_open"), c.boolean("ticked")
+    missing, ticked = c.boolean("missing"), c.boolean("ticked")
     c.fold(
         list_complete,
         acc=missing,
-        model=any_open,
+        model=c.whole("still_open"),
         item=(ticked,),
         context=(),
-        model_start=False,
-        model_step=open_step,
+        model_start=0,
+        model_step=open_items,
         model_finish=complete,
-        relation=c.same,
+        relation=lambda any_open, number: c.all_of(number >= 0, c.same(any_open, number > 0)),
     )

@@ -26,7 +26,11 @@ def claim(c: Claim) -> None:
     c.show(free == c.when(fits, first + count, first), "a block that fits is given out whole")
     c.show(c.define(checklists.fits, first, 0), "a block of none fits")
     inside = c.use(owns, first, free - first, number)
-    c.show(c.same(inside, c.define(checklists.in_block, first, free - first, number)), "a block")
+    place = c.integer("place")
+    one_of_it = c.define(checklists.is_number_of_block, first, free - first, number, place)
+    c.show(c.implies(one_of_it, inside), "each number of a block is in it")
+    counted = c.define(checklists.is_number_of_block, first, free - first, number, number - first)
+    c.show(c.implies(inside, counted), "and nothing else")
 
     # from 1 on, a block of 2 holds the id 2: one more than the 3 that were counted before
     one_more = c.use(owners_after, Owners(1, 3), 2, 2)

@@ -3,6 +3,7 @@ the two velocities, and offsets of consecutive steps add up."""
 
 from cratous.core.daa_turn import turn_offset, turned
 from cratous.proofs.claim import Claim
+from cratous.spec import daa_meaning
 
 
 def claim(c: Claim) -> None:
@@ -11,7 +12,10 @@ def claim(c: Claim) -> None:
     c.premise(cos * cos + sin * sin == 1)
     w = c.use(turned, v, cos, sin)
     d = c.use(turn_offset, v, w)
-    vv = v.x * v.x + v.y * v.y
+    c.show(c.define(daa_meaning.is_arc, v, d, cos, sin), "it leads along the circle")
+    other, vv = c.vector("other"), v.x * v.x + v.y * v.y
+    as_well = c.all_of(vv > 0, c.define(daa_meaning.is_arc, v, other, cos, sin))
+    c.show(c.implies(as_well, c.same(tuple(other), tuple(d))), "nothing else does")
     c.show(d.x * d.x + d.y * d.y == 2 * (1 - cos) * vv, "length")
     c.show(d.x * (v.y + w.y) - d.y * (v.x + w.x) == 0, "direction")
     on = c.use(turn_offset, w, u)

@@ -12,7 +12,10 @@ def claim(c: Claim) -> None:
     c.premise(cos_a * cos_a + sin_a * sin_a == 1)
     c.premise(cos_b * cos_b + sin_b * sin_b == 1)
     w = c.use(turned, v, cos_a, sin_a)
-    c.show(c.same(tuple(w), tuple(c.define(daa_meaning.turned, v, cos_a, sin_a))), "definition")
+    c.show(c.define(daa_meaning.is_turned, v, w, cos_a, sin_a), "it is turned")
+    other = c.vector("other")
+    as_well = c.define(daa_meaning.is_turned, v, other, cos_a, sin_a)
+    c.show(c.implies(as_well, c.same(tuple(other), tuple(w))), "no other velocity is")
     vv = v.x * v.x + v.y * v.y
     c.show(w.x * w.x + w.y * w.y == vv, "speed")
     c.show(v.x * w.x + v.y * w.y == cos_a * vv, "cosine")

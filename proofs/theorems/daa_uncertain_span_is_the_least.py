@@ -1,10 +1,15 @@
 """The span for uncertain states is the least that holds the volume's own and every instant of [B, T] that
 the spans of altitude and circle share; and a conflict is found exactly if the volume itself is violated,
-or nothing is known exactly and that span holds an instant."""
+or nothing is known exactly and that span holds an instant: where nothing is, exactly if there is an
+instant of the volume's own or one that the spans of altitude and circle share."""
 
 from cratous.core.daa_uncertain import circle_span, layer_span, uncertain_conflict, uncertain_span
-from cratous.core.well_clear_during import violation_during_taumod
-from cratous.core.well_clear_interval import violation_interval_taumod
+from cratous.core.kernel import Vec2
+from cratous.core.well_clear_during import layer_window, violation_during_taumod
+from cratous.core.well_clear_interval import (
+    horizontal_interval_taumod,
+    violation_interval_taumod,
+)
 from cratous.proofs.claim import Claim
 from cratous.spec import daa_meaning, well_clear
 
@@ -14,6 +19,7 @@ def claim(c: Claim) -> None:
     sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
     es, ez, ev, ew, begin, end, t = c.reals("es ez ev ew begin end t")
     c.opaque(violation_during_taumod, violation_interval_taumod, circle_span, layer_span)
+    c.opaque(horizontal_interval_taumod, layer_window)
     limits = (dthr, zthr, tthr, tcoa, vmod)
     state = (s, v, sz, vz, es, ez, ev, ew, *limits, begin, end)
     span = c.use(uncertain_span, *state)
@@ -29,6 +35,24 @@ def claim(c: Claim) -> None:
     unknown = c.all_of(es > 0, ez > 0, ev > 0, ew > 0, span.first_s <= span.last_s)
     c.show(c.same(c.use(uncertain_conflict, *state), c.any_of(plain, unknown)), "a conflict")
     sizes = c.all_of(*[threshold >= 0 for threshold in limits])
+    k, low, high = c.use(layer_window, sz + begin * vz, vz, zthr, tcoa, vmod, end - begin)
+    at_low = Vec2((s.x + begin * v.x) * k + low * v.x, (s.y + begin * v.y) * k + low * v.y)
+    scaled, _ = c.use(
+        horizontal_interval_taumod, at_low, v, dthr * k, tthr * k, low - low, high - low
+    )
+    # the instant that stands for a detection, named by the equation that defines it
+    witness = c.real("witness")
+    c.premise(c.implies(k > 0, k * (witness - begin) == low + scaled))
+    c.lemma(
+        "well_clear_detection_taumod_is_the_interval", when=sizes, witness=witness,
+        s=s, v=v, sz=sz, vz=vz, begin=begin, end=end,
+        dthr=dthr, zthr=zthr, tthr=tthr, tcoa=tcoa, vmod=vmod,
+    )  # fmt: skip
+    found = c.use(uncertain_conflict, *state)
+    inexact = c.all_of(sizes, es > 0, ez > 0, ev > 0, ew > 0)
+    c.show(c.implies(c.all_of(inexact, every), found), "a conflict misses no instant")
+    at_first = c.define(daa_meaning.in_own_or_both, *own, *layer, *circle, begin, end, span.first_s)
+    c.show(c.implies(c.all_of(inexact, found), at_first), "and has one")
     c.lemma(
         "well_clear_interval_taumod_first_and_last_violate", when=sizes,
         s=s, v=v, sz=sz, vz=vz, begin=begin, end=end,

@@ -9,11 +9,11 @@ def claim(c: Claim) -> None:
     c.fold(
         way_conflicts,
         acc=c.boolean("lost"),
-        model=c.boolean("any_lost"),
+        model=c.whole("lost_pieces"),
         item=(c.boolean("piece"),),
         context=(),
-        model_start=False,
-        model_step=daa_meaning.step_conflicts,
-        model_finish=daa_meaning.the_way,
-        relation=c.same,
+        model_start=0,
+        model_step=daa_meaning.lost_pieces,
+        model_finish=daa_meaning.lost_somewhere,
+        relation=lambda lost, pieces: c.all_of(pieces >= 0, c.same(lost, pieces > 0)),
     )

@@ -3,6 +3,7 @@ aircraft that does not cooperate the ownship always does. So no encounter is sym
 
 from cratous.core.gate import gives_way
 from cratous.proofs.claim import Claim
+from cratous.spec import authority
 
 
 def claim(c: Claim) -> None:
@@ -11,5 +12,6 @@ def claim(c: Claim) -> None:
     c.premise(c.negation(one == other))
     mine = c.use(gives_way, one, other, yes)
     theirs = c.use(gives_way, other, one, yes)
+    c.show(c.define(authority.one_gives_way, mine, theirs, yes), "they do not meet alike")
     c.show(c.implies(yes, c.same(mine, c.negation(theirs))), "exactly one of the two")
     c.show(c.implies(c.negation(yes), mine), "always to one that does not cooperate")

@@ -21,3 +21,9 @@ def claim(c: Claim) -> None:
         c.define(geofence.altitude_in_keep_in, high, floor, ceiling),
     )
     c.show(c.implies(c.all_of(clear, ends), accepted), "no other leg is refused")
+    at = [
+        c.define(geofence.leaves_keep_in_at, where, meets, z, floor, ceiling)
+        for z in (alt, low, high)
+    ]
+    c.show(c.implies(accepted, c.negation(at[0])), "it leaves at no altitude")
+    c.show(c.implies(c.negation(accepted), c.any_of(at[1], at[2])), "or at one of its ends")

@@ -22,3 +22,7 @@ def claim(c: Claim) -> None:
     touches = c.define(geofence.altitude_in_keep_out, nearest, floor, ceiling)
     refused = c.negation(accepted)
     c.show(c.implies(refused, c.all_of(touches, c.negation(clear))), "refused legs are not")
+    at_any = c.define(geofence.enters_keep_out_at, where, meets, alt, floor, ceiling)
+    c.show(c.implies(accepted, c.negation(at_any)), "it enters at no altitude")
+    at_it = c.define(geofence.enters_keep_out_at, where, meets, nearest, floor, ceiling)
+    c.show(c.implies(refused, at_it), "or at that one")

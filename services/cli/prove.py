@@ -57,6 +57,20 @@ def _export(theorems: list[Any], folder: Path, theorem_folder: Path) -> int:
     return written
 
 
+def _meaning(theorems: list[Any], home: Any, cache: Path | None) -> list[str]:
+    """What is wrong with the definitions that kernels name."""
+    from cratous.core import ledger as gate
+    from cratous.proofs import definitions
+    from cratous.proofs.relations import Kept
+
+    proofs = definitions.Proofs(
+        {theorem.name: theorem.kernels for theorem in theorems},
+        frozenset(theorem.name for theorem in theorems if theorem.proved),
+        Kept(cache and cache / "relations", home).all(theorem.name for theorem in theorems),
+    )
+    return definitions.problems(gate.load_all(home), home, proofs)
+
+
 def _refuse(problems: list[str]) -> None:
     """Structural faults end the run: no ledger could say anything of such code."""
     for problem in problems:
@@ -196,6 +210,8 @@ def prove(
             for name in inventory.bare
         ]
     problems = [*structural, *(str(finding) for finding in inventory.findings)]
+    unmeant = _meaning(theorems, home, private_cache()) if whole else []
+    problems += unmeant
     if whole and home.product:
         lint = remembered.text("decisions", "", lambda: json.dumps(decisions.unexplained()))
         problems += json.loads(lint)
@@ -212,7 +228,7 @@ def prove(
         if not as_json:
             click.echo(f"{count} SMT-LIB files in {smt2_folder}")
     proved = sum(t.proved for t in theorems)
-    if whole and not structural:
+    if whole and not structural and not unmeant:
         if check:
             old = home.ledger.read_text(encoding="utf-8") if home.ledger.is_file() else ""
             if ledger.text(inventory, home, remembered) != old:
@@ -259,7 +275,7 @@ def prove(
         if not whole:
             click.echo("a part only: the ledger is not written")
     if structural:
-        _refuse(structural)
+        _refuse([*structural, *unmeant])
     contradicted = bool(data.get("recheck", {}).get("contradicted"))
     survives = mutate and not data["mutation"]["holds"]
     if proved < len(theorems) or problems or contradicted or survives:

@@ -12,19 +12,22 @@ IDLE, AWAITS_OPTIONS, AWAITS_ROUTES, HANDED_OVER = 0, 1, 2, 3
 """Stages of the collector of one request's costs."""
 
 
-def open_step(any_open: bool, ticked: bool) -> bool:
-    """One more item has been looked at: is any so far still open?"""
-    return any_open or not ticked
+def open_items(still_open: int, ticked: bool) -> int:
+    """How many items are still open, with one item more."""
+    if ticked:
+        return still_open
+    return still_open + 1
 
 
-def complete(any_open: bool) -> bool:
-    """Nothing is open."""
-    return not any_open
+def complete(still_open: int) -> bool:
+    """Of all items none is open."""
+    return still_open == 0
 
 
-def in_block(first: int, count: int, number: int) -> bool:
-    """The id lies in the block of `count` ids that begins with `first`."""
-    return first <= number and number < first + count
+def is_number_of_block(first: int, count: int, number: int, place: int) -> bool:
+    """The id is the one at this place, from 0 on, of the `count` ids that are given out from `first`
+    on. THERE IS a place."""
+    return place >= 0 and place < count and number == first + place
 
 
 class Given(NamedTuple):
@@ -43,7 +46,8 @@ def give_step(given: Given, count: int, number: int) -> Given:
     """A request asks for a block of ids; one that does not fit gets none."""
     if not fits(given.free, count):
         return given
-    if in_block(given.free, count, number):
+    place = number - given.free
+    if is_number_of_block(given.free, count, number, place):
         return Given(given.free + count, given.owners + 1)
     return Given(given.free + count, given.owners)
 
