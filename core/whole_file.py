@@ -31,13 +31,13 @@ NO_ROOM = {
     errno.EDQUOT: "the disk quota is used up",
     errno.EFBIG: "the greatest size of a file is reached",
 }
-SQLITE_FULL = 13
+SQLITE_FULL, SQLITE_TEXT = 13, "database or disk is full"
 
 
 def cannot_write(path: Path, error: BaseException, what: str = "the file") -> BadInput:
     """The error for something that cannot be written; says so if it is for want of room."""
     full = NO_ROOM.get(getattr(error, "errno", None) or 0)
-    if getattr(error, "sqlite_errorcode", None) == SQLITE_FULL:
+    if getattr(error, "sqlite_errorcode", None) == SQLITE_FULL or SQLITE_TEXT in str(error):
         full = NO_ROOM[errno.ENOSPC]
     return BadInput(
         f"{what} cannot be written" + (f": {full}" if full else ""),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from pathlib import Path
 from typing import Any
@@ -11,9 +12,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cratous.services.certify.comparing import differences, text_difference
 from cratous.services.certify.html import margin, render, seconds
 from cratous.services.certify.picture import map_view, separation_view, time_view
-from cratous.services.certify.report import differences, read_report
+from cratous.services.certify.reading import read_report
 from cratous.services.certify.timeline import bars, read_flight
 from cratous.services.certify.verdicts import constraint_rows, requirement_rows
 from cratous.services.log import Row
@@ -212,14 +214,78 @@ def test_words_for_times_and_margins() -> None:
 
 
 def test_differences_are_named() -> None:
-    one = {"a": {"b": 1, "c": [1]}, "environment": 1}
-    assert differences(one, {"a": {"b": 1, "c": [1]}, "environment": 2}) == []
-    assert differences(one, {"a": {"b": 2, "c": [1]}}) == ["a.b: written 1, found 2"]
-    assert len(differences({str(k): 1 for k in range(30)}, {})) == 10
+    one = {"a": {"b": 1, "c": [1, {"d": 2}]}, "environment": 1}
+    assert differences(one, one) == []
+    two = {"a": {"b": 2, "c": [1, {"d": True}, 3]}, "x y": []}
+    assert differences(one, two) == [
+        "a.b: written 1, found 2",
+        "a.c[1].d: written 2, found true",
+        "a.c: written 2 entries, found 3",
+        "environment: written 1, found nothing",
+        '["x y"]: written nothing, found []',
+    ]
+    assert len(differences({str(k): 1 for k in range(30)}, {})) == 30, "none is left out"
 
 
-@pytest.mark.parametrize("text", ["{", "[]", '{"format": "other"}'])
-def test_what_is_no_report(tmp_path: Path, text: str) -> None:
-    (tmp_path / "report.json").write_text(text)
-    with pytest.raises(BadInput):
+@pytest.mark.parametrize("pair", [(1, 1.0), (1, True), (0.0, -0.0), (None, 0), ("1", 1), ([], {})])
+def test_what_only_python_takes_for_equal(pair: tuple[Any, Any]) -> None:
+    assert len(differences(*pair)) == 1
+
+
+def test_a_difference_shows_where_it_is() -> None:
+    before, after = "a" * 500, "b" * 500
+    (line,) = differences(before + "X\x1b[31m" + after, before + "Y" + after, "note")
+    assert "aaa" + "X\\u001b[31mbbb" in line
+    assert "aaaYbbb" in line
+    assert len(line) < 300
+    assert "\x1b" not in line, "nothing of it acts on a terminal"
+    page = "\n" * 7 + "one two\n"
+    shown = text_difference("page", page.replace("two", "2").encode() + b"\xff", page)
+    assert shown.startswith("page, line 8: written ")
+    assert "one 2" in shown
+
+
+BAD = {
+    "cut": "{",
+    "empty": "",
+    "list": "[]",
+    "other": '{"format": "other"}',
+    "format": '{"format": ["cratous-report/1"]}',
+    "nan": '{"format": "cratous-report/1", "exit_code": NaN}',
+    "infinite": '{"format": "cratous-report/1", "exit_code": 1e999}',
+    "digits": '{"format": "cratous-report/1", "exit_code": ' + "9" * 5000 + "}",
+    "deep": '{"format": "cratous-report/1", "x": ' + "[" * 200_000 + "]" * 200_000 + "}",
+    "nested": '{"format": "cratous-report/1", "x": ' + "[" * 300 + "]" * 300 + "}",
+    "twice": '{"format": "cratous-report/1", "a": 1, "a": 2}',
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_what_is_no_report(tmp_path: Path, case: str) -> None:
+    (tmp_path / "report.json").write_text(BAD[case])
+    with pytest.raises(BadInput) as caught:
+        read_report(tmp_path)
+    assert str(tmp_path / "report.json") in str(caught.value)
+    assert len(str(caught.value)) < 500
+
+
+def test_reports_that_cannot_be_read(tmp_path: Path) -> None:
+    file = tmp_path / "report.json"
+    with pytest.raises(BadInput, match="no such file"):
+        read_report(tmp_path)
+    file.write_bytes(b"\xff\xfe{")
+    with pytest.raises(BadInput, match="not JSON"):
+        read_report(tmp_path)
+    file.unlink()
+    file.mkdir()
+    with pytest.raises(BadInput, match="not a file"):
+        read_report(tmp_path)
+    file.rmdir()
+    os.mkfifo(file)
+    with pytest.raises(BadInput, match="not a file"):
+        read_report(tmp_path)
+    file.unlink()
+    with file.open("wb") as stream:
+        stream.truncate(1 << 29)
+    with pytest.raises(BadInput, match="too large"):
         read_report(tmp_path)

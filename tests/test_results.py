@@ -389,3 +389,4 @@ def test_a_full_disk_is_called_full(tmp_path: Path, number: int) -> None:
     from cratous.services.logs.store import cannot_write
 
     assert "the disk is full" in cannot_write(tmp_path, full).what
+    assert "the disk is full" in cannot_write(tmp_path, sqlite3.Error(str(full))).what

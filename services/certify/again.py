@@ -1,19 +1,20 @@
-"""Judge a finished flight again: from its log alone, then against its report."""
+"""Judge a finished flight again: from its log alone, then against all that is written of it."""
 
 from __future__ import annotations
 
+import json
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from cratous.services.certify.proofs import inventory
-from cratous.services.certify.report import (
-    build_report,
-    differences,
-    read_report,
-    write_report,
-)
+from cratous.services.certify.comparing import differences
+from cratous.services.certify.reading import read_report
+from cratous.services.certify.recorded import flown_of
+from cratous.services.certify.report import build_report, mission_hash, plan_hash, report_text
 from cratous.services.certify.verdicts import constraint_rows
-from cratous.services.log import read_envelopes, read_meta
+from cratous.services.certify.written import Files
+from cratous.services.log import read_envelopes, read_log, read_meta
+from cratous.services.logs.sqlite_log import SqliteLog
 from cratous.services.records import from_data
 from cratous.services.results.names import CERTIFICATE_NAME, LOG_NAME
 from cratous.services.wind import known_at
@@ -21,6 +22,8 @@ from cratous.spec.errors import BadInput
 from cratous.spec.guarantees import Verdict
 from cratous.spec.mission import Mission
 from cratous.spec.plan import Plan
+
+ACCEPTED = "cratous.PlanAccepted"
 
 
 def subject(log: Path) -> tuple[Mission, Plan]:
@@ -52,42 +55,87 @@ def watch(log: Path) -> list[Verdict]:
     return monitor.verdicts()
 
 
-def certify_again(folder: Path) -> tuple[dict[str, Any], list[str]]:
-    """The written report, and where it differs from what its log says (nothing: confirmed).
+@dataclass(frozen=True)
+class Judgement:
+    """What certifying found. report: as the log gives it; found: what is not so (nothing: confirmed).
 
-    If it is confirmed, report.html and map.svg are written again from report.json. The proof inventory is
-    compared if the ledger is still the one of the flight; what it did not vouch for then stands
-    in the log.
+    unchecked: what neither the log nor this program can vouch for, with the reason; rewritten: files
+    made anew because the user asked for it.
     """
-    from cratous.core import ledger
-    from cratous.services.plan_check import check_plan
 
+    report: dict[str, Any]
+    found: list[str]
+    unchecked: list[str] = field(default_factory=list)
+    rewritten: list[str] = field(default_factory=list)
+
+
+def certify_again(folder: Path, *, rewrite: bool = False) -> Judgement:
+    """Judge the flight in a folder again and hold every file of it against what was found.
+
+    rewrite: files that are made from report.json are made anew where they differ, if all else is
+    confirmed; without it nothing is written.
+    """
     written = read_report(folder)
     log = folder / LOG_NAME
+    wrong = log_faults(log, written)
+    if wrong:
+        return Judgement({}, wrong, ["all else: the log is not the one of the report"])
+    report, silent, found = rebuilt(log, written)
+    left = {key: value for key, value in silent.items() if "." not in key}
+    found += differences(
+        {key: value for key, value in written.items() if key not in left},
+        {key: value for key, value in report.items() if key not in left},
+    )
+    _, plan = subject(log)
+    files = Files(folder, report, read_meta(log), same=not found)
+    found += _certificate(plan, folder) + files.wrong
+    unchecked = [f"{key}: {why}" for key, why in sorted(silent.items())] + files.unchecked
+    if rewrite and files.differing and not found:
+        return Judgement(report, [], unchecked, files.rewrite())
+    return Judgement(report, found + files.differing, unchecked)
+
+
+def log_faults(log: Path, written: dict[str, Any]) -> list[str]:
+    """What shows that the log is not as it was written, or not the one that the report is about."""
+    meta = read_meta(log)
     mission, plan = subject(log)
+    with SqliteLog(log) as source:
+        digest, closing = source.digest(), source.closing()
+        ended = source.old or closing is not None
+    found = []
+    if not ended:
+        found.append(f"{LOG_NAME}: its writer never said that it is whole")
+    if closing is not None and closing.digest != digest:
+        found.append(f"{LOG_NAME}: digest at its end {closing.digest}, of its messages {digest}")
+    of_report = written.get("log")
+    stated = of_report.get("digest") if isinstance(of_report, dict) else None
+    found += differences(stated, digest, "log.digest")
+    if "mission_hash" in meta and meta["mission_hash"] != mission_hash(mission):
+        found.append(f"{LOG_NAME}: meta.mission is not the mission that was flown")
+    if found:
+        return found  # nothing can be relied on any more
+    accepted = next((row for row in read_log(log) if row.topic == ACCEPTED), None)
+    if accepted is not None and json.loads(accepted.body)["PlanHash"] != plan_hash(plan):
+        found.append(f"{LOG_NAME}: meta.plan is not the plan that was accepted")
+    return found
+
+
+def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[str, str], list[str]]:
+    """The report as the log gives it, what of it could not be checked, and what is wrong.
+
+    The proof inventory is made anew if the ledger is still the one of the flight, else held against
+    the digest in the log.
+    """
+    from cratous.services.plan_check import check_plan
+
+    mission, plan = subject(log)
+    flown, silent, wrong = flown_of(read_meta(log), written, str(log))
     rows = constraint_rows(check_plan(known_at(mission, 0), plan), "plan")
     rows += constraint_rows(watch(log), "flight")
-    standing = ledger.require(allow_unproved=bool(written["proofs"]["problems"]))
-    proofs, flown = inventory(standing), read_meta(log).get("proofs", {})
-    if proofs["seal"] != flown.get("seal"):
-        proofs = {**written["proofs"], "seal": flown.get("seal")}
-    proofs["problems"] = flown.get("problems", [])
-    again = build_report(
-        mission,
-        plan,
-        rows,
-        log,
-        command=written["command"],
-        daa=written["avoidance"],
-        proofs=proofs,
-    )
-    found = differences(
-        {**written, "proofs": _stable(written["proofs"])}, {**again, "proofs": _stable(proofs)}
-    )
-    found += _certificate(plan, folder)
-    if not found:
-        write_report(written, folder)
-    return written, found
+    report = json.loads(report_text(build_report(mission, plan, rows, log, flown)))
+    if wrong:  # one sentence says it; what differs in detail says no more
+        report["proofs"] = written.get("proofs")
+    return report, silent, wrong
 
 
 def _certificate(plan: Plan, folder: Path) -> list[str]:
@@ -108,8 +156,3 @@ def _certificate(plan: Plan, folder: Path) -> list[str]:
     if (verdict.status, verdict.bound) != (plan.status, plan.bound):
         return [f"{CERTIFICATE_NAME}: the plan claims something else than it"]
     return []
-
-
-def _stable(proofs: dict[str, Any]) -> dict[str, Any]:
-    """The inventory without the line that also counts what is vouched for today."""
-    return {key: value for key, value in proofs.items() if key != "line"}

@@ -1,7 +1,8 @@
 """`report.json`: everything that is claimed about one flight, with its evidence.
 
 It is made from the mission, the plan, the checks and the message log, and from nothing else; the
-HTML is a view of it. The same log and mission give the same report but for `environment`.
+HTML is a view of it. The same log and mission give the same report; `environment` is what the log's
+meta says.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,13 +20,13 @@ from cratous.services.certify.timeline import bars, read_flight
 from cratous.services.certify.verdicts import requirement_rows, with_promised
 from cratous.services.log import read_digest, read_log
 from cratous.services.monitor.promises import watched
-from cratous.services.records import canonical, fingerprint, to_data
+from cratous.services.records import fingerprint, to_data
 from cratous.services.results.names import FORMAT, HTML_NAME, LOG_NAME, MAP_NAME, REPORT_NAME
-from cratous.spec.errors import BadInput
 from cratous.spec.guarantees import Outcome, exit_code, worst
 from cratous.spec.mission import Mission
 from cratous.spec.plan import Plan
 
+PROOFS_KEPT = ("line", "problems", "seal", "solver")
 LIMITS = (
     "Python and z3 are not qualified tools, so this is evidence, not certification credit.",
     "Proofs hold for the kernels in real arithmetic; the compiled kernels compute in doubles.",
@@ -37,6 +38,29 @@ LIMITS = (
     "before it, others flying as recorded. The set is one change at a time: direction, speed, climb "
     "rate or altitude, on a grid; zones and the ground below flight are no reason to refuse one.",
 )
+
+
+@dataclass(frozen=True)
+class Flown:
+    """How a mission was flown, which the messages do not say; the log's meta keeps it.
+
+    proofs: of `proofs.inventory`; environment: of `environment`.
+    """
+
+    command: str
+    avoidance: bool
+    proofs: dict[str, Any]
+    environment: dict[str, Any]
+
+    def meta(self) -> dict[str, Any]:
+        """What the log keeps of it, so that a report can be held against it."""
+        kept = {key: self.proofs[key] for key in PROOFS_KEPT}
+        return {
+            "command": self.command,
+            "avoidance": self.avoidance,
+            "environment": self.environment,
+            "proofs": {**kept, "sha256": fingerprint(self.proofs)},
+        }
 
 
 def mission_hash(mission: Mission) -> str:
@@ -54,15 +78,13 @@ def build_report(
     plan: Plan,
     rows: Iterable[dict[str, Any]],
     log: Path,
-    *,
-    command: str,
-    daa: bool,
-    proofs: dict[str, Any],
+    flown: Flown,
 ) -> dict[str, Any]:
     """The whole report as plain data.
 
-    rows: of `verdicts.constraint_rows`; log: the message log; proofs: of `proofs.inventory`.
-    A row that a requirement promises and `rows` lacks is unknown: not observed. A flight with kernels that the ledger does not vouch for is at best unknown.
+    rows: of `verdicts.constraint_rows`; log: the message log; flown: how it was flown.
+    A row that a requirement promises and `rows` lacks is unknown: not observed. A flight with
+    kernels that the ledger does not vouch for is at best unknown.
     """
     flight = read_flight(read_log(log), (vehicle.id for vehicle in mission.vehicles))
     done = {task for task, end in flight.served.items() if end["phase"] == "Complete"}
@@ -71,7 +93,7 @@ def build_report(
     found.sort(key=lambda row: (row["requirement"], row["source"], row["item"]))
     requirements = requirement_rows(found)
     outcomes = [Outcome(row["verdict"]) for row in requirements]
-    if proofs["problems"]:
+    if flown.proofs["problems"]:
         outcomes.append(Outcome.UNKNOWN)
     return {
         "format": FORMAT,
@@ -81,8 +103,8 @@ def build_report(
         "counts": _counts(found),
         "mission": {**to_data(mission), "source": _shown(mission.source)},
         "mission_hash": mission_hash(mission),
-        "command": command,
-        "avoidance": daa,
+        "command": flown.command,
+        "avoidance": flown.avoidance,
         "not_covered": [v.id for v in mission.vehicles if not v.protected],
         "requirements": requirements,
         "constraints": found,
@@ -107,9 +129,9 @@ def build_report(
             "messages": sum(flight.counts.values()),
             "by_topic": dict(sorted(flight.counts.items())),
         },
-        "proofs": proofs,
+        "proofs": flown.proofs,
         "limits": [*LIMITS, _scale(mission)],
-        "environment": environment(),
+        "environment": flown.environment,
     }
 
 
@@ -173,50 +195,21 @@ def environment() -> dict[str, Any]:
     }
 
 
-def write_report(report: dict[str, Any], folder: Path) -> None:
-    """Write `report.json` and, from it, `report.html` and `map.svg` into a folder; each whole or not
-    at all."""
+def report_text(report: dict[str, Any]) -> str:
+    """The text of report.json."""
+    text = json.dumps(report, indent=1, sort_keys=True, ensure_ascii=False, allow_nan=False)
+    return text + "\n"
+
+
+def pages(report: dict[str, Any]) -> dict[str, str]:
+    """The files that are made from report.json alone, by name."""
     from cratous.services.certify.html import map_svg, render
 
-    text = json.dumps(report, indent=1, sort_keys=True, ensure_ascii=False, allow_nan=False)
-    write_atomically(folder / REPORT_NAME, text + "\n", "the report")
-    written = json.loads(text)
-    write_atomically(folder / HTML_NAME, render(written), "the report")
-    write_atomically(folder / MAP_NAME, map_svg(written), "the map")
+    written = json.loads(report_text(report))
+    return {HTML_NAME: render(written), MAP_NAME: map_svg(written)}
 
 
-def read_report(folder: Path) -> dict[str, Any]:
-    """The report.json of a folder; BadInput if it is missing or of another format."""
-    path = folder / "report.json"
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except OSError:
-        raise BadInput(
-            "there is no such file", where=str(path), expected="the output folder of cratous run"
-        ) from None
-    except ValueError as error:
-        raise BadInput(f"not JSON ({error})", where=str(path)) from None
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        got = data.get("format", "none") if isinstance(data, dict) else "no mapping"
-        raise BadInput("another format", where=str(path), expected=FORMAT, got=str(got))
-    return data
-
-
-def differences(written: dict[str, Any], again: dict[str, Any], path: str = "") -> list[str]:
-    """Where two reports say different things (`environment` is left aside), at most ten."""
-    found: list[str] = []
-    for key in sorted({*written, *again}):
-        if not path and key in ("environment", "command"):
-            continue
-        name = f"{path}.{key}" if path else key
-        one, two = written.get(key), again.get(key)
-        if isinstance(one, dict) and isinstance(two, dict):
-            found += differences(one, two, name)
-        elif canonical(one) != canonical(two):
-            found.append(f"{name}: written {_brief(one)}, found {_brief(two)}")
-    return found[:10]
-
-
-def _brief(value: Any) -> str:
-    text = canonical(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
+def write_report(report: dict[str, Any], folder: Path) -> None:
+    """Write `report.json` and what is made from it into a folder; each whole or not at all."""
+    for name, text in {REPORT_NAME: report_text(report), **pages(report)}.items():
+        write_atomically(folder / name, text, "the report")

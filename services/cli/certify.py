@@ -7,15 +7,23 @@ from pathlib import Path
 
 import click
 
+SHOWN = 20
+
 
 @click.command()
 @click.argument("folder", type=click.Path(path_type=Path))
-@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-def certify(folder: Path, as_json: bool) -> int:
-    """Judge a finished flight again from its log and compare with its report.
+@click.option(
+    "--rewrite", is_flag=True, help="Make report.html and map.svg anew where they differ."
+)
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON, all differences.")
+def certify(folder: Path, rewrite: bool, as_json: bool) -> int:
+    """Judge a finished flight again from its log and compare with all that is written of it.
 
     FOLDER is an output folder of `cratous run`. The log's digest, the plan check and the monitor
-    are made again; report.html and map.svg are written again from report.json.
+    are made again; every entry of report.json, report.html, map.svg and manifest.json is held
+    against what they give and against what the log recorded. What could not be checked is listed.
+    Nothing is written, unless with --rewrite: what is made from report.json is then made anew, if
+    report.json and the rest are confirmed.
 
     Example:  cratous certify out/crossing
 
@@ -25,24 +33,34 @@ def certify(folder: Path, as_json: bool) -> int:
     from cratous.services.certify.again import certify_again
     from cratous.services.cli.show import requirement_table
 
-    report, found = certify_again(folder)
+    done = certify_again(folder, rewrite=rewrite)
+    report, found = done.report, done.found
     code = 1 if found else int(report["exit_code"])
     if as_json:
         data = {
             "confirmed": not found,
             "differences": found,
-            "verdict": report["verdict"],
-            "digest": report["log"]["digest"],
+            "not_checked": done.unchecked,
+            "rewritten": done.rewritten,
+            "verdict": report.get("verdict"),
+            "digest": report["log"]["digest"] if report else None,
             "exit_code": code,
         }
         click.echo(json.dumps(data, indent=1))
         return code
     if found:
-        click.echo(f"cratous: {folder}: the report is not what its log says", err=True)
-        for difference in found:
+        click.echo(f"cratous: {folder}: not what the log of the flight gives", err=True)
+        for difference in found[:SHOWN]:
             click.echo(f"  {difference}", err=True)
-        return code
-    requirement_table(report["requirements"])
-    click.echo(f"confirmed from the log with the digest {report['log']['digest']}")
-    click.echo(f"report: {folder / 'report.html'}")
+        if len(found) > SHOWN:
+            click.echo(f"  and {len(found) - SHOWN} more (--json lists all)", err=True)
+    else:
+        requirement_table(report["requirements"])
+        click.echo(f"confirmed from the log with the digest {report['log']['digest']}")
+    for text in done.unchecked:
+        click.echo(f"not checked: {text}", err=bool(found))
+    for name in done.rewritten:
+        click.echo(f"rewritten: {name}")
+    if not found:
+        click.echo(f"report: {folder / 'report.html'}")
     return code

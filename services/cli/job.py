@@ -77,7 +77,13 @@ def run_mission(
     from cratous import __version__
     from cratous.core import ledger
     from cratous.services.certify.proofs import inventory
-    from cratous.services.certify.report import build_report, mission_hash, write_report
+    from cratous.services.certify.report import (
+        Flown,
+        build_report,
+        environment,
+        mission_hash,
+        write_report,
+    )
     from cratous.services.certify.verdicts import constraint_rows
     from cratous.services.flight.loop import fly
     from cratous.services.log import LogWriter
@@ -92,11 +98,13 @@ def run_mission(
         mission = replace(mission, instances=())
     bus = new_bus()
     log = folder / LOG_NAME
+    flown = Flown(settings.command, settings.daa, proofs, environment())
     meta = {
         "mission": to_data(mission),
         "version": __version__,
         "seed": mission.seed,
         "mission_hash": mission_hash(mission),
+        **flown.meta(),
     }
     with LogWriter(log, **meta) as writer:
         bus.tap(writer.tap)
@@ -106,21 +114,12 @@ def run_mission(
         if plan.certificate:
             write_certificate(bus, folder / CERTIFICATE_NAME)
         writer.note("plan", to_data(plan))
-        writer.note("proofs", {"seal": proofs["seal"], "problems": proofs["problems"]})
         monitor = Monitor(mission, plan, on_violation=lambda v: tell(f"VIOLATION {sentence(v)}"))
         bus.tap(monitor.tap)
         fly(mission, plan, bus, daa=settings.daa, progress=_progress(tell))
         verdicts = monitor.verdicts()
     rows = constraint_rows(checks, "plan") + constraint_rows(verdicts, "flight")
-    report = build_report(
-        mission,
-        plan,
-        rows,
-        log,
-        command=settings.command,
-        daa=settings.daa,
-        proofs=proofs,
-    )
+    report = build_report(mission, plan, rows, log, flown)
     write_report(report, folder)
     return report
 
