@@ -15,8 +15,8 @@ from cratous.bridge import lmcp
 from cratous.core.contracts.checklists import free_after, list_complete, owns
 from cratous.core.legs import first_bad_leg
 from cratous.services.bus import Envelope
+from cratous.services.pipeline.contexts import Contexts
 from cratous.services.planning.zones import hard_zones
-from cratous.services.uxas.pipeline.contexts import Contexts
 from cratous.spec.errors import CratousError
 from cratous.spec.mission import Position, ZoneKind
 

@@ -16,9 +16,9 @@ from cratous.bridge import lmcp
 from cratous.core.circling import broken_by
 from cratous.core.visibility import name_of
 from cratous.services.bus import Envelope
+from cratous.services.pipeline.contexts import Contexts, reasons_of
 from cratous.services.planning.desk import status
 from cratous.services.planning.zones import hard_zones
-from cratous.services.uxas.pipeline.contexts import Contexts, reasons_of
 from cratous.spec.errors import CratousError
 from cratous.spec.mission import Position
 

@@ -15,11 +15,11 @@ from typing import Any
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus, Envelope
 from cratous.services.loading.problems import refuse
+from cratous.services.pipeline.tasks import TASKS, MessageTask
 from cratous.services.planning.desk import status
 from cratous.services.uxas import bridge_kinds, own, registry
 from cratous.services.uxas.bridges import CREATE, KILL, Bridge
 from cratous.services.uxas.frame import Host
-from cratous.services.uxas.pipeline.tasks import TASKS, MessageTask
 from cratous.services.uxas.settings import Attr, Configuration, Entry, entry, nearest, values_of
 from cratous.spec.errors import BadInput, CratousError
 

@@ -10,21 +10,22 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cratous.services.message_logger import MessageLogger
-from cratous.services.uxas import batch, leash, regions, sensors, small, tracker, waypoints
-from cratous.services.uxas.daidalus import detection, response
-from cratous.services.uxas.daidalus import parameters as daidalus
-from cratous.services.uxas.frame import Host
-from cratous.services.uxas.pipeline import (
+from cratous.services.pipeline import (
     aggregator,
     assignment,
     builder,
     loiter,
     planner,
+    sensors,
     task_manager,
     tasks,
 )
-from cratous.services.uxas.pipeline.contexts import Contexts
-from cratous.services.uxas.pipeline.validator import AutomationRequestValidatorService
+from cratous.services.pipeline.contexts import Contexts
+from cratous.services.pipeline.validator import AutomationRequestValidatorService
+from cratous.services.uxas import batch, leash, regions, small, tracker, waypoints
+from cratous.services.uxas.daidalus import detection, response
+from cratous.services.uxas.daidalus import parameters as daidalus
+from cratous.services.uxas.frame import Host
 from cratous.services.uxas.settings import Attr, Entry, choice, flag, number, whole
 from cratous.spec.errors import BadInput
 

@@ -22,9 +22,9 @@ from cratous.core.contracts.checklists import (
     owns,
 )
 from cratous.services.bus import Envelope
+from cratous.services.pipeline.contexts import UNIQUE, Contexts
+from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
 from cratous.services.planning.desk import status
-from cratous.services.uxas.pipeline.contexts import UNIQUE, Contexts
-from cratous.services.uxas.pipeline.ended import ENDINGS, newest, request_ended
 from cratous.spec.errors import CratousError
 
 NAME = "RouteAggregatorService"

@@ -20,12 +20,12 @@ from cratous.services.loading.places import Places
 from cratous.services.loading.uxas import mission_of, surroundings_of
 from cratous.services.loading.uxas_cfg import Sent
 from cratous.services.loading.uxas_parts import point
+from cratous.services.pipeline.world import World
 from cratous.services.planning import stages
 from cratous.services.planning.desk import Desk, Inputs
 from cratous.services.planning.routes import Routes
 from cratous.services.planning.zones import hard_zones
 from cratous.services.uxas.frame import Host
-from cratous.services.uxas.world import World
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 from cratous.spec.mission import Mission, Position
 from cratous.spec.plan import Pose

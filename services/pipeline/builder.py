@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.core.contracts.building import Building, building_step
 from cratous.services.bus import Envelope
+from cratous.services.pipeline.contexts import UNIQUE
+from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
 from cratous.services.planning.desk import status
-from cratous.services.uxas.pipeline.contexts import UNIQUE
-from cratous.services.uxas.pipeline.ended import ENDINGS, newest, request_ended
 
 NAME = "PlanBuilderService"
 SUMMARY = "uxas.messages.task.TaskAssignmentSummary"

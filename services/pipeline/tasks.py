@@ -3,7 +3,7 @@
 UniqueAutomationRequest -> SensorFootprintRequests -> SensorFootprintResponse -> RoutePlanRequests ->
 RoutePlanResponses -> TaskPlanOptions; TaskImplementationRequest -> RoutePlanRequest ->
 RoutePlanResponse -> TaskImplementationResponse; vehicles' states -> TaskActive, TaskComplete.
-What is asked before options are offered: `asking`. Options and waypoints are those of
+What is asked before options are offered: `questions`. Options and waypoints are those of
 `services.planning`.
 """
 
@@ -16,15 +16,14 @@ from cratous.bridge import lmcp
 from cratous.core.contracts.tasks import Task as Kernel
 from cratous.core.contracts.tasks import task_step
 from cratous.services.bus import Envelope
+from cratous.services.pipeline import planner, questions, sensors
+from cratous.services.pipeline.contexts import UNIQUE, Contexts, RequestDesk, reasons_of
+from cratous.services.pipeline.endings import request_ended
+from cratous.services.pipeline.questions import Asked
 from cratous.services.planning.desk import Inputs, status
 from cratous.services.planning.options import Option
 from cratous.services.planning.stages import hold_of
 from cratous.services.planning.task_service import NAMES, TaskService
-from cratous.services.uxas import sensors
-from cratous.services.uxas.pipeline import asking, planner
-from cratous.services.uxas.pipeline.asking import Asked
-from cratous.services.uxas.pipeline.contexts import UNIQUE, Contexts, RequestDesk, reasons_of
-from cratous.services.uxas.pipeline.ended import request_ended
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 from cratous.spec.mission import Task, TaskKind
 
@@ -49,7 +48,7 @@ ANNOUNCE, ASK_SENSORS, ASK_ROUTES, PUBLISH_OPTIONS = 1, 2, 3, 4
 ASK_FINAL, PUBLISH_PLAN, STEER, COMPLETE, STALE = 5, 6, 7, 8, 9
 ACTIVE = 7
 _EVENTS = {
-    asking.SENSORS: SENSORS_KNOWN,
+    questions.SENSORS: SENSORS_KNOWN,
     "uxas.messages.task.TaskImplementationRequest": CHOSEN,
     "uxas.messages.route.RoutePlanResponse": FINAL_KNOWN,
 }
@@ -93,7 +92,7 @@ class MessageTask(TaskService):
 
     subscribes: tuple[str, ...] = (
         UNIQUE,
-        asking.SENSORS,
+        questions.SENSORS,
         "uxas.messages.task.TaskImplementationRequest",
         "uxas.messages.route.RoutePlanResponse",
         "uxas.messages.task.UniqueAutomationResponse",
@@ -194,11 +193,11 @@ class MessageTask(TaskService):
             return self._advance(state, event, ticket, body)
         if event == SENSORS_KNOWN:
             tickets = (ticket for ticket, _ in state.tickets)
-            ticket = asking.ticket_of_sensors(self._task_id, body.ResponseID, tickets)
+            ticket = questions.ticket_of_sensors(self._task_id, body.ResponseID, tickets)
             return (state, ()) if ticket < 0 else self._advance(state, event, ticket, body)
         if body.AssociatedTaskID != self._task_id:
             return state, ()
-        if body.ResponseID == asking.option_routes_id(state.task.request):
+        if body.ResponseID == questions.option_routes_id(state.task.request):
             before = state.asked.waiting
             state = state._replace(asked=state.asked.plus(body))
             if state.asked.waiting or not before:
@@ -269,7 +268,7 @@ class MessageTask(TaskService):
 
     def _ask_sensors(self, state: State, out: list[Any]) -> tuple[State, int]:
         context = self._contexts.of(self._request)
-        question = asking.sensor_request(context, self._task, state.task.request)
+        question = questions.sensor_request(context, self._task, state.task.request)
         if question is None or not self._contexts.serves(sensors.NAME):
             return state, SENSORS_KNOWN
         out.append(question)
@@ -278,14 +277,14 @@ class MessageTask(TaskService):
     def _ask_routes(self, state: State, body: Any, out: list[Any]) -> tuple[State, int]:
         context = self._contexts.of(self._request)
         if hasattr(body, "Footprints"):
-            blind = asking.blind(context, self._task, body)
+            blind = questions.blind(context, self._task, body)
             state = state._replace(asked=state.asked._replace(blind=blind))
         if not self._contexts.serves(planner.NAME):
             return state, ROUTES_KNOWN
         options, ticket = self._left(state), state.task.request
-        questions = asking.route_requests(context, self._task_id, options, ticket)
-        out += questions
-        waiting = tuple(question.VehicleID for question in questions)
+        asked = questions.route_requests(context, self._task_id, options, ticket)
+        out += asked
+        waiting = tuple(question.VehicleID for question in asked)
         state = state._replace(asked=state.asked._replace(waiting=waiting))
         return state, 0 if waiting else ROUTES_KNOWN
 

@@ -11,13 +11,13 @@ from collections.abc import Iterable
 from typing import Any
 
 from cratous.services.bus import Envelope
+from cratous.services.pipeline.contexts import UNIQUE, Contexts, reasons_of
+from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
+from cratous.services.pipeline.offers import OPTIONS, Told, read
 from cratous.services.planning.assignment_service import (
     AssignmentTreeBranchBoundService as Search,
 )
 from cratous.services.planning.desk import Inputs, status
-from cratous.services.uxas.pipeline.contexts import UNIQUE, Contexts, reasons_of
-from cratous.services.uxas.pipeline.ended import ENDINGS, newest, request_ended
-from cratous.services.uxas.pipeline.offers import OPTIONS, Told, read
 from cratous.spec.errors import CratousError
 
 NAME = "AssignmentTreeBranchBoundService"

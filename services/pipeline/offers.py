@@ -10,10 +10,10 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from cratous.services.frames import compass
+from cratous.services.pipeline.contexts import Context
 from cratous.services.planning.desk import Inputs
 from cratous.services.planning.flyers import Flyer, flyer_of
 from cratous.services.planning.options import Dropped, Option, hold_rooms
-from cratous.services.uxas.pipeline.contexts import Context
 from cratous.spec import algebra
 from cratous.spec.errors import BadInput
 from cratous.spec.plan import Pose

@@ -12,7 +12,7 @@ from collections.abc import Collection
 from typing import Any, NamedTuple
 
 from cratous.core.contracts.validity import NOT_READY, item_fault, request_valid
-from cratous.services.uxas.world import World
+from cratous.services.pipeline.world import World
 
 VEHICLE, TASK, REGION, ZONE = 1, 2, 3, 4
 _NAMES = {VEHICLE: "vehicle", TASK: "task", REGION: "operating region", ZONE: "zone"}

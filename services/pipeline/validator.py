@@ -22,11 +22,11 @@ from cratous.core.contracts import requests
 from cratous.core.contracts.requests import Line, line_step
 from cratous.services.bus import Envelope, Wake
 from cratous.services.frames import compass
+from cratous.services.pipeline.answers import Asked, answer, asked_of, refusal
+from cratous.services.pipeline.contexts import Context, Contexts
+from cratous.services.pipeline.validity import things_of, verdict
 from cratous.services.planning.desk import status
 from cratous.services.uxas.frame import Host
-from cratous.services.uxas.pipeline.answers import Asked, answer, asked_of, refusal
-from cratous.services.uxas.pipeline.contexts import Context, Contexts
-from cratous.services.uxas.pipeline.validity import things_of, verdict
 
 NAME = "AutomationRequestValidatorService"
 RESPONSE = "uxas.messages.task.UniqueAutomationResponse"

@@ -20,12 +20,12 @@ from typing import Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.core.assignment_steps import chain_holds
 from cratous.services.bus import Envelope, Wake
+from cratous.services.pipeline.contexts import UNIQUE, Context, Contexts, reasons_of
+from cratous.services.pipeline.endings import ENDINGS, RESPONSE, newest, request_ended
+from cratous.services.pipeline.offers import OPTIONS, Told, read
 from cratous.services.planning.assignment_service import travel_of
 from cratous.services.planning.desk import status
 from cratous.services.planning.loiters import Given, Loiter, loiters_of, schedule
-from cratous.services.uxas.pipeline.contexts import UNIQUE, Context, Contexts, reasons_of
-from cratous.services.uxas.pipeline.ended import ENDINGS, RESPONSE, newest, request_ended
-from cratous.services.uxas.pipeline.offers import OPTIONS, Told, read
 from cratous.spec.errors import BadInput, CratousError
 from cratous.spec.mission import Position
 

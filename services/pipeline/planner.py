@@ -14,7 +14,7 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope, Send, unicast
-from cratous.services.uxas.pipeline.contexts import Contexts, RequestDesk, Way, reasons_of
+from cratous.services.pipeline.contexts import Contexts, RequestDesk, Way, reasons_of
 from cratous.spec.errors import CratousError
 
 NAME = "RoutePlannerVisibilityService"
