@@ -21,7 +21,7 @@ from cratous.core.daa_machine import machine
 from cratous.core.leg_arrays import table
 from cratous.core.visibility import Roadmap
 from cratous.services.loading import load
-from cratous.services.planning import make_plan
+from cratous.services.pipeline.plan import make_plan
 from cratous.services.planning.zones import roadmaps
 from cratous.spec.mission import Zone, ZoneKind
 

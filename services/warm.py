@@ -22,7 +22,8 @@ from cratous.core.sources import ROOT
 from cratous.core.swift import at_once
 from cratous.core.well_clear import horizontal_violation, violation, violation_within
 from cratous.services.loading import load
-from cratous.services.planning import assign, make_plan
+from cratous.services.pipeline.plan import make_plan
+from cratous.services.planning import assign
 from cratous.services.standing import require
 
 MISSION = """

@@ -15,7 +15,7 @@ from cratous.core.legs import leg_ok
 from cratous.services.bus import Bus
 from cratous.services.flight.loop import FlightResult, fly
 from cratous.services.flight.timing import broken_by, closed_by, opens_ms
-from cratous.services.planning.plan import make_plan
+from cratous.services.pipeline.plan import make_plan
 from cratous.spec.mission import (
     Camera,
     Daa,

@@ -15,7 +15,7 @@ from cratous.core.kernel import Vec2
 from cratous.core.well_clear import violation_within
 from cratous.services.bus import Bus
 from cratous.services.flight.loop import fly
-from cratous.services.planning.plan import make_plan
+from cratous.services.pipeline.plan import make_plan
 from cratous.spec.mission import (
     Daa,
     Frame,

@@ -13,9 +13,9 @@ from cratous.services.bus import Bus
 from cratous.services.cli import main
 from cratous.services.loading import load
 from cratous.services.loading.assignment_attributes import NODES_PER_MS
+from cratous.services.pipeline.plan import certificate_of, make_plan
 from cratous.services.plan_check import check_plan
 from cratous.services.planning.assign_certificate import verify
-from cratous.services.planning.plan import certificate_of, make_plan
 from cratous.spec.errors import NoPlan
 from cratous.spec.guarantees import Outcome
 

@@ -10,7 +10,7 @@ from cratous.bridge import lmcp
 from cratous.core.dubins import polyline_length_m
 from cratous.core.visibility import circle
 from cratous.services.bus import Bus
-from cratous.services.planning import make_plan
+from cratous.services.pipeline.plan import make_plan
 from cratous.services.planning.options import expand
 from cratous.services.sensor import coverage
 from cratous.spec.errors import BadInput, NoPlan

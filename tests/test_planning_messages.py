@@ -9,7 +9,7 @@ from planning_tools import mission
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus
 from cratous.services.frames import Projection
-from cratous.services.planning import make_plan
+from cratous.services.pipeline.plan import make_plan
 from cratous.spec.errors import NoPlan
 
 

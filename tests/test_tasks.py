@@ -12,7 +12,7 @@ from task_tools import ELL, area, keep_out, mission, options, pattern, point, ve
 from cratous.core.dubins import polyline_length_m
 from cratous.core.following import Track
 from cratous.core.legs import first_bad_leg
-from cratous.services.planning import make_plan
+from cratous.services.pipeline.plan import make_plan
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Camera, Loiter, Pattern, Position, Task, TaskKind, Vehicle, View
 

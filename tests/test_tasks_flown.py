@@ -16,7 +16,7 @@ from cratous.services.cli.job import plan_and_check
 from cratous.services.flight.loop import fly
 from cratous.services.loading import load
 from cratous.services.monitor import Monitor
-from cratous.services.planning import make_plan
+from cratous.services.pipeline.plan import make_plan
 from cratous.services.sensor import look_on_line, sample_distance_m, zoomed
 from cratous.spec.guarantees import Outcome
 from cratous.spec.mission import Camera, Position, Task, View

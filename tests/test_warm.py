@@ -24,7 +24,7 @@ import numba.core.event as event
 from cratous.core.swift import at_once
 from cratous.services import warm
 from cratous.services.loading import load
-from cratous.services.planning import make_plan
+from cratous.services.pipeline.plan import make_plan
 
 warm.ensure_planning(print)
 mission = load(Path(sys.argv[1]))

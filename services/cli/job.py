@@ -40,8 +40,8 @@ def new_bus() -> Any:
 
 def plan_and_check(mission: Mission, bus: Any) -> tuple[Plan, list[Verdict]]:
     """The plan, and the verdicts of the kernels on it. NoPlan with reasons if there is none."""
+    from cratous.services.pipeline.plan import make_plan
     from cratous.services.plan_check import check_plan
-    from cratous.services.planning import make_plan
 
     known = known_at(mission, 0)
     plan = make_plan(known, bus, absent=absent(mission, 0))
@@ -56,8 +56,8 @@ def absent_lines(mission: Mission) -> list[str]:
 
 def write_certificate(bus: Any, file: Path) -> None:
     """Write the certificate of the plan that was made on a bus; NoPlan if it has none."""
+    from cratous.services.pipeline.plan import certificate_of
     from cratous.services.planning.assign_certificate import write
-    from cratous.services.planning.plan import certificate_of
 
     certificate = certificate_of(bus)
     if certificate is None:
@@ -156,7 +156,7 @@ def plan_line(plan: Plan, checks: list[Verdict]) -> str:
 
 def standing(plan: Plan) -> str:
     """How good a plan is, as far as its certificate shows."""
-    from cratous.services.planning.plan import cost_of
+    from cratous.services.pipeline.plan import cost_of
 
     if plan.status == "optimal":
         return "optimal"

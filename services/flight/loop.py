@@ -367,7 +367,7 @@ class _Flight:
     def _replan(
         self, states: dict[int, AirState], done: frozenset[int], now_ms: int
     ) -> Plan | None:
-        from cratous.services.planning.plan import make_plan
+        from cratous.services.pipeline.plan import make_plan
 
         poses = {vid: state.pose for vid, state in states.items()}
         flown = [

@@ -1,5 +1,1 @@
-"""Planning: from a mission to a plan, as pure stages and as the UxAS pipeline on the bus."""
-
-from cratous.services.planning.plan import make_plan
-
-__all__ = ["make_plan"]
+"""Planning: from a mission to a plan, as pure stages; `services.pipeline` drives them by messages."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from cratous.core.assignment import START, Assignment, Branch, Fixed, Placed
@@ -121,3 +122,17 @@ def indexed(problem: AssignmentProblem, solution: Solution, digest: str) -> Assi
         Branch(tasks, binding(problem, part)), tuple(placed), solution.cost, solution.bound,
         solution.status, solution.nodes, digest,
     )  # fmt: skip
+
+
+def places_in(mission: Mission) -> reasons.Places:
+    """Where a text of the relations stands in the mission's file, if it is still there."""
+
+    def where(text: str) -> str:
+        try:
+            lines = Path(mission.source).read_text(encoding="utf-8").splitlines()
+        except (OSError, UnicodeDecodeError):
+            return ""
+        found = [k for k, line in enumerate(lines, 1) if text in line]
+        return f"{mission.source}:{found[0]}" if found else ""
+
+    return where

@@ -18,7 +18,7 @@ from cratous.spec.plan import Row
 from cratous.spec.schedule import NOT_AFTER, NOT_BEFORE, WITHIN_END, WITHIN_START
 
 if TYPE_CHECKING:
-    from cratous.services.planning.desk import Inputs
+    from cratous.services.planning.inputs import Inputs
 
 PROBES = 20_000
 """Nodes per question asked of the search while looking for reasons."""

@@ -4,19 +4,33 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from copy import copy
+from typing import Protocol
 
 import numpy as np
 
 from cratous.core.assignment import START
 from cratous.core.routing import FOUND
 from cratous.core.visibility import Roadmap, Route, route, routes
-from cratous.services.planning.options import Flyer, Option, flight_ms, flyer_of
+from cratous.services.planning.options import Flyer, flight_ms, flyer_of
 from cratous.services.planning.zones import roadmaps
 from cratous.spec.mission import Mission, Zone
 from cratous.spec.plan import Pose
 
 Ends = tuple[Pose, Flyer, Pose]
 """What a route depends on: where it begins, the class of the vehicle, where it ends."""
+
+
+class Ending(Protocol):
+    """An option, or anything else with a pose to go to and one to leave from."""
+
+    @property
+    def start(self) -> Pose:
+        """Where a way to it ends."""
+
+    @property
+    def end(self) -> Pose:
+        """Where a way from it begins."""
 
 
 class Routes:
@@ -30,7 +44,7 @@ class Routes:
         self,
         mission: Mission,
         starts: Mapping[int, Pose],
-        options: Sequence[Option],
+        options: Sequence[Ending],
         zones: Sequence[Zone],
     ) -> None:
         self.options = options
@@ -40,6 +54,12 @@ class Routes:
         self._maps: dict[float, tuple[Roadmap, ...]] = {}
         self._found: dict[Ends, Route] = {}
         self._times: dict[Ends, int | None] = {}
+
+    def between(self, options: Sequence[Ending]) -> Routes:
+        """The same routes between other ends; what either finds, both have."""
+        other = copy(self)
+        other.options = options
+        return other
 
     def _ends(self, vehicle: int, before: int, to: int) -> Ends:
         start = self.poses[vehicle] if before == START else self.options[before].end

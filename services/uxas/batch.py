@@ -16,7 +16,7 @@ from cratous.core.contracts.checklists import free_after, list_complete, owns
 from cratous.core.legs import first_bad_leg
 from cratous.services.bus import Envelope
 from cratous.services.planning.zones import hard_zones
-from cratous.services.uxas.pipeline.contexts import Contexts
+from cratous.services.uxas.message_source import MessageSource
 from cratous.spec.errors import CratousError
 from cratous.spec.mission import Position, ZoneKind
 
@@ -57,8 +57,8 @@ class BatchSummaryService:
     subscribes: tuple[str, ...] = (REQUEST, RESPONSE)
     knows = ("EntityConfiguration", "EntityState", "KeepOutZone")
 
-    def __init__(self, contexts: Contexts) -> None:
-        self._contexts = contexts
+    def __init__(self, source: MessageSource) -> None:
+        self._source = source
 
     def start(self) -> Batches:
         return Batches()
@@ -78,9 +78,7 @@ class BatchSummaryService:
         return state, ()
 
     def _ask(self, state: Batches, request: Any) -> Step:
-        vehicles = list(request.Vehicles) or [
-            body.ID for body in self._contexts.world.of("configuration")
-        ]
+        vehicles = list(request.Vehicles) or self._source.world.ids("configuration")
         pairs = tuple((t, v) for t in request.TaskList for v in vehicles)
         batch = Batch(request, state.free, pairs)
         if batch.complete:
@@ -121,7 +119,7 @@ class BatchSummaryService:
     def _vehicle(self, request: Any, task: int, vehicle: int, answer: Any) -> Any:
         commands = answer.OriginalResponse.MissionCommandList
         points = list(commands[0].WaypointList) if commands else []
-        to, on = _times_ms(self._contexts.world.get("state", vehicle), points, task)
+        to, on = _times_ms(self._source.world.get("state", vehicle), points, task)
         zones = self._meets(request.OperatingRegion, vehicle, points)
         return lmcp.new(
             "VehicleSummary",
@@ -137,17 +135,17 @@ class BatchSummaryService:
 
     def _meets(self, region: int, vehicle: int, points: list[Any]) -> list[int]:
         """Keep-out zones that a plan meets, by id."""
-        world = self._contexts.world
+        world = self._source.world
         outs = [z.ZoneID for z in world.of("zone") if type(z).__name__ == "KeepOutZone"]
         if not points or not outs:
             return []
         try:
-            desk, mission = self._contexts.surroundings(vehicle, outs)
+            places = self._source.among(vehicle, outs)
             path = [
-                Position(*desk.projection.to_local(w.Latitude, w.Longitude), w.Altitude)
+                Position(*places.projection.to_local(w.Latitude, w.Longitude), w.Altitude)
                 for w in points
             ]
-            zones = hard_zones([z for z in mission.zones if z.kind is ZoneKind.KEEP_OUT])
+            zones = hard_zones([z for z in places.mission.zones if z.kind is ZoneKind.KEEP_OUT])
         except CratousError:
             return outs  # what cannot be told is not called free
         return [zone.id for zone in zones if first_bad_leg(path, (zone,)) is not None]

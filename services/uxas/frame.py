@@ -55,7 +55,7 @@ class Clock:
 class Host:
     """The process that a service lives in: bus, loggers, clock, who and where it is.
 
-    shared: what services of one process have in common (the planning desk), by name.
+    shared: what services of one process have in common (what is known, ids given), by name.
     """
 
     bus: Bus

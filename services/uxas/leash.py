@@ -16,9 +16,9 @@ from cratous.bridge import lmcp
 from cratous.core.circling import broken_by
 from cratous.core.visibility import name_of
 from cratous.services.bus import Envelope
-from cratous.services.planning.desk import status
+from cratous.services.pipeline.contexts import Contexts, reasons_of
+from cratous.services.pipeline.status import status
 from cratous.services.planning.zones import hard_zones
-from cratous.services.uxas.pipeline.contexts import Contexts, reasons_of
 from cratous.spec.errors import CratousError
 from cratous.spec.mission import Position
 
@@ -146,11 +146,11 @@ class LoiterLeash:
     def _room(self, region: int, places: list[Any], radius_m: float) -> tuple[Any, list[str]]:
         """The first place around which there is room to loiter; the last one and why, if none has it."""
         try:
-            desk, mission = self._contexts.for_routes(region, self._vehicle)
-            zones = hard_zones(mission.zones)
+            known = self._contexts.for_routes(region, self._vehicle)
+            zones = hard_zones(known.mission.zones)
             bad = None
             for k, place in enumerate(places):
-                centre = Position(*desk.pose(place, 0.0, "loiter", f"place {k}")[:3])
+                centre = Position(*known.pose(place, 0.0, "loiter", f"place {k}")[:3])
                 bad = broken_by(centre, radius_m, zones)
                 if bad is None:
                     return place, []

@@ -10,16 +10,18 @@ from __future__ import annotations
 
 import html
 from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus, Envelope
 from cratous.services.loading.problems import refuse
-from cratous.services.planning.desk import status
+from cratous.services.pipeline.status import status
+from cratous.services.pipeline.tasks import TASKS, TaskService
+from cratous.services.pipeline.world import World
 from cratous.services.uxas import bridge_kinds, own, registry
 from cratous.services.uxas.bridges import CREATE, KILL, Bridge
 from cratous.services.uxas.frame import Host
-from cratous.services.uxas.pipeline.tasks import TASKS, MessageTask
 from cratous.services.uxas.settings import Attr, Configuration, Entry, entry, nearest, values_of
 from cratous.spec.errors import BadInput, CratousError
 
@@ -193,8 +195,7 @@ class ServiceManager:
                 "the id is taken", where=where, item="ServiceID", got=self._names[number]
             )
         if item.type in TASKS:
-            contexts = registry.contexts_of(self._host)
-            world = contexts.world
+            world = registry.source_of(self._host).world
             if task is None:
                 raise BadInput(
                     "no task", where=where, item="<TaskRequest>", expected=f"a {item.type}"
@@ -206,13 +207,22 @@ class ServiceManager:
                 for part in getattr(body, field):
                     if not world.knows(part):
                         world.add(part, where)
-            self._add(MessageTask(contexts, task, TASKS[item.type]), number)
+            contexts, kind = registry.contexts_of(self._host), TASKS[item.type]
+            ended = partial(_forget, world, task)
+            self._add(TaskService(contexts, task.TaskID, kind, ended), number)
             return
         problems: list[BadInput] = []
         running = set(self._names.values())
         _check(item, [*(e for e in self._config.entries if e.type in running), item], problems)
         refuse(problems)
         self._make(item, number)
+
+
+def _forget(world: World, task: Any) -> None:
+    """A task is no more, unless another has taken its place already."""
+    known = world.task(task.TaskID)
+    if known is not None and known.body == task:
+        world.forget("task", task.TaskID)
 
 
 def check(config: Configuration, without: frozenset[str] = frozenset()) -> list[Entry]:

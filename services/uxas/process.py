@@ -21,7 +21,7 @@ import zmq
 from cratous.bridge import lmcp
 from cratous.bridge.port import is_due, often
 from cratous.services.bus import Bus, Envelope
-from cratous.services.planning.desk import status
+from cratous.services.pipeline.status import status
 from cratous.services.uxas.bridge_kinds import curve_of
 from cratous.services.uxas.frame import Clock, Host
 from cratous.services.uxas.hub import Hub, RemoteBus, Satellite

@@ -10,21 +10,23 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cratous.services.message_logger import MessageLogger
-from cratous.services.uxas import batch, leash, regions, sensors, small, tracker, waypoints
-from cratous.services.uxas.daidalus import detection, response
-from cratous.services.uxas.daidalus import parameters as daidalus
-from cratous.services.uxas.frame import Host
-from cratous.services.uxas.pipeline import (
+from cratous.services.pipeline import (
     aggregator,
     assignment,
     builder,
     loiter,
     planner,
+    sensors,
     task_manager,
     tasks,
 )
-from cratous.services.uxas.pipeline.contexts import Contexts
-from cratous.services.uxas.pipeline.validator import AutomationRequestValidatorService
+from cratous.services.pipeline.contexts import Contexts
+from cratous.services.pipeline.validator import AutomationRequestValidatorService
+from cratous.services.uxas import batch, leash, regions, small, tracker, waypoints
+from cratous.services.uxas.daidalus import detection, response
+from cratous.services.uxas.daidalus import parameters as daidalus
+from cratous.services.uxas.frame import Host
+from cratous.services.uxas.message_source import MessageSource
 from cratous.services.uxas.settings import Attr, Entry, choice, flag, number, whole
 from cratous.spec.errors import BadInput
 
@@ -52,14 +54,24 @@ VALIDATOR = "AutomationRequestValidatorService"
 def contexts_of(host: Host) -> Contexts:
     """What the messages mean to the services of a process; it joins the bus when first asked for."""
     if "contexts" not in host.shared:
-        host.shared["contexts"] = Contexts(host)
+        host.shared["source"] = MessageSource(host)
+        host.shared["contexts"] = Contexts(host.shared["source"])
         host.bus.add(host.shared["contexts"])
     contexts: Contexts = host.shared["contexts"]
     return contexts
 
 
+def source_of(host: Host) -> MessageSource:
+    """What the messages have told the services of a process."""
+    contexts_of(host)  # which hears the messages
+    source: MessageSource = host.shared["source"]
+    return source
+
+
 def _validator(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return AutomationRequestValidatorService(host, contexts_of(host), v["MaxResponseTime_ms"])
+    return AutomationRequestValidatorService(
+        host.shared, contexts_of(host), v["MaxResponseTime_ms"]
+    )
 
 
 def _planner(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
@@ -79,14 +91,13 @@ def _loiter(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int)
 
 
 def _builder(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    world = contexts_of(host).world
     loiter_m = v["DefaultLoiterRadius_m"] if v["AddLoiterToEndOfMission"] else 0.0
     options = builder.Options(v["TurnType"], loiter_m)
-    return builder.PlanBuilderService(lambda vehicle: world.get("state", vehicle), options)
+    return builder.PlanBuilderService(contexts_of(host), options)
 
 
 def _task_manager(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    world = contexts_of(host).world
+    world = source_of(host).world
     return task_manager.TaskManagerService(name, world, host.shared["new_id"])
 
 
@@ -151,7 +162,7 @@ def _simple(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int)
 
 
 def _sensors(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    world = contexts_of(host).world
+    world = source_of(host).world
     return sensors.SensorManagerService(
         lambda vehicle: world.get("configuration", vehicle), v["ElevationAngles"] == "radian"
     )
@@ -176,7 +187,7 @@ def _response(host: Host, entry: Entry, v: dict[str, Any], name: str, number: in
 
 
 def _batch(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return batch.BatchSummaryService(contexts_of(host))
+    return batch.BatchSummaryService(source_of(host))
 
 
 def _tracker(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
@@ -318,7 +329,7 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
         task_manager.TaskManagerService, ("CreateNewService", "KillService")
     ),
     "Task services": (
-        tasks.MessageTask,
+        tasks.TaskService,
         ("TaskInitialized", "SensorFootprintRequests", "TaskPlanOptions", "RoutePlanRequest",
          "TaskImplementationResponse", "TaskActive", "TaskComplete", "ServiceStatus"),
     ),

@@ -13,10 +13,10 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
-from cratous.services.frames import compass
+from cratous.services.pipeline.contexts import Context
+from cratous.services.pipeline.places import RequestPlaces
 from cratous.services.planning.flyers import camera_for, flyer_of
 from cratous.services.planning.options import Option
-from cratous.services.uxas.pipeline.contexts import Context
 from cratous.spec.mission import SEARCHES, Task
 
 SENSORS = "uxas.messages.task.SensorFootprintResponse"
@@ -127,7 +127,6 @@ def route_requests(context: Context, task_id: int, options: list[Option], ticket
     of: dict[int, list[Option]] = {}
     for option in options:
         of.setdefault(option.vehicles[0], []).append(option)
-    location = context.desk.location
     return [
         lmcp.new(
             "RoutePlanRequest",
@@ -135,18 +134,22 @@ def route_requests(context: Context, task_id: int, options: list[Option], ticket
             AssociatedTaskID=task_id,
             VehicleID=vehicle,
             OperatingRegion=context.region,
-            RouteRequests=[
-                lmcp.new(
-                    "RouteConstraints",
-                    RouteID=option.option_id,
-                    StartLocation=location(option.start),
-                    StartHeading=compass(option.start.heading_rad),
-                    EndLocation=location(option.end),
-                    EndHeading=compass(option.end.heading_rad),
-                )
-                for option in mine
-            ],
+            RouteRequests=[_through(context.places, option) for option in mine],
             IsCostOnlyRequest=True,
         )
         for vehicle, mine in of.items()
     ]
+
+
+def _through(places: RequestPlaces, option: Option) -> Any:
+    """The way from where an option begins to where it ends."""
+    start, start_deg = places.sent(option.start)
+    end, end_deg = places.sent(option.end)
+    return lmcp.new(
+        "RouteConstraints",
+        RouteID=option.option_id,
+        StartLocation=start,
+        StartHeading=start_deg,
+        EndLocation=end,
+        EndHeading=end_deg,
+    )

@@ -7,7 +7,7 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
-from cratous.services.uxas.world import World
+from cratous.services.pipeline.world import World
 
 
 class TaskManagerService:

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.core.contracts.building import Building, building_step
 from cratous.services.bus import Envelope
-from cratous.services.planning.desk import status
-from cratous.services.uxas.pipeline.contexts import UNIQUE
-from cratous.services.uxas.pipeline.ended import ENDINGS, newest, request_ended
+from cratous.services.pipeline.contexts import UNIQUE, Contexts
+from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
+from cratous.services.pipeline.status import status
 
 NAME = "PlanBuilderService"
 SUMMARY = "uxas.messages.task.TaskAssignmentSummary"
@@ -55,9 +55,8 @@ class PlanBuilderService:
     subscribes: tuple[str, ...] = (UNIQUE, SUMMARY, IMPLEMENTED, *ENDINGS)
     knows = ("EntityState",)
 
-    def __init__(self, state_of: Any, options: Options = Options()) -> None:
-        """state_of(vehicle): its newest EntityState, or None."""
-        self._state_of, self._options = state_of, options
+    def __init__(self, contexts: Contexts, options: Options = Options()) -> None:
+        self._contexts, self._options = contexts, options
 
     def start(self) -> Built:
         return Built({})
@@ -122,9 +121,10 @@ class PlanBuilderService:
         task = work.parts[part]
         vehicle = task.AssignedVehicle
         last = work.finals.get(vehicle)
-        place, heading, time = self._from(work, vehicle) if last is None else (
-            last.FinalLocation, last.FinalHeading, last.FinalTime
-        )  # fmt: skip
+        if last is None:
+            (place, heading), time = self._from(work, vehicle), self._contexts.begin_ms(key)
+        else:
+            place, heading, time = last.FinalLocation, last.FinalHeading, last.FinalTime
         return lmcp.new(
             "TaskImplementationRequest",
             RequestID=part + 1,
@@ -143,13 +143,13 @@ class PlanBuilderService:
             ],
         )
 
-    def _from(self, work: Work, vehicle: int) -> tuple[Any, float, int]:
-        """Where a vehicle plans from: as the request says, else where it is. Time 0 is now."""
+    def _from(self, work: Work, vehicle: int) -> tuple[Any, float]:
+        """Where a vehicle plans from: as the request says, else where it is."""
         for planning in work.request.PlanningStates:
             if planning.EntityID == vehicle:
-                return planning.PlanningPosition, planning.PlanningHeading, 0
-        state = self._state_of(vehicle)
-        return (None, 0.0, 0) if state is None else (state.Location, state.Heading, 0)
+                return planning.PlanningPosition, planning.PlanningHeading
+        state = self._contexts.world.get("state", vehicle)
+        return (None, 0.0) if state is None else (state.Location, state.Heading)
 
     def _finish(self, commands: int, key: int, work: Work) -> Any:
         made, finals = [], []

@@ -20,14 +20,13 @@ from typing import Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.core.assignment_steps import chain_holds
 from cratous.services.bus import Envelope, Wake
-from cratous.services.planning.assignment_service import travel_of
-from cratous.services.planning.desk import status
+from cratous.services.pipeline.contexts import UNIQUE, Context, Contexts
+from cratous.services.pipeline.endings import ENDINGS, RESPONSE, newest, request_ended
+from cratous.services.pipeline.implementation import loiter_action
+from cratous.services.pipeline.offers import OPTIONS, Told, read, travel_of
+from cratous.services.pipeline.status import status
 from cratous.services.planning.loiters import Given, Loiter, loiters_of, schedule
-from cratous.services.uxas.pipeline.contexts import UNIQUE, Context, Contexts, reasons_of
-from cratous.services.uxas.pipeline.ended import ENDINGS, RESPONSE, newest, request_ended
-from cratous.services.uxas.pipeline.offers import OPTIONS, Told, read
 from cratous.spec.errors import BadInput, CratousError
-from cratous.spec.mission import Position
 
 NAME = "LoiterAssignmentService"
 MATRIX = "uxas.messages.task.AssignmentCostMatrix"
@@ -113,8 +112,7 @@ class LoiterAssignmentService:
             due = _due(self._contexts.of(key), mine, summary)
         except CratousError as error:
             left = {k: v for k, v in state.work.items() if k != key}
-            reasons = [("reason", text) for text in reasons_of(error)]
-            return state._replace(work=left), [status(key, "Error", reasons)]
+            return state._replace(work=left), [self._contexts.fail(key, error)]
         facts = [("loiter", _text(one.loiter)) for one in due]
         work = {**state.work, key: mine._replace(due=due)}
         return state._replace(work=work), [status(key, "Information", facts)] if facts else ()
@@ -188,18 +186,8 @@ def _due(context: Context, mine: Work, summary: Any) -> tuple[Due, ...]:
     return tuple(Due(loiter, _action(context, loiter)) for loiter in loiters)
 
 
-def _action(context: Context, loiter: Loiter) -> Any:
-    hold = loiter.hold
-    return lmcp.new(
-        "LoiterAction",
-        AssociatedTaskList=[loiter.task_id],
-        LoiterType="Circular",
-        Radius=hold.radius_m,
-        Direction="Clockwise" if hold.clockwise else "CounterClockwise",
-        Duration=loiter.wait_ms,
-        Airspeed=loiter.speed_m_s,
-        Location=context.desk.location(Position(hold.north_m, hold.east_m, hold.alt_m)),
-    )
+def _action(context: Context, one: Loiter) -> Any:
+    return loiter_action(context.places, one.task_id, one.hold, one.wait_ms, one.speed_m_s)
 
 
 def _held(point: Any, task: int) -> int:

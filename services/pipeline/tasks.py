@@ -3,28 +3,26 @@
 UniqueAutomationRequest -> SensorFootprintRequests -> SensorFootprintResponse -> RoutePlanRequests ->
 RoutePlanResponses -> TaskPlanOptions; TaskImplementationRequest -> RoutePlanRequest ->
 RoutePlanResponse -> TaskImplementationResponse; vehicles' states -> TaskActive, TaskComplete.
-What is asked before options are offered: `asking`. Options and waypoints are those of
-`services.planning`.
+What is asked before options are offered: `questions`. Options and ways are those of
+`services.planning`; what is said of them, `implementation`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.core.contracts.tasks import Task as Kernel
 from cratous.core.contracts.tasks import task_step
 from cratous.services.bus import Envelope
-from cratous.services.planning.desk import Inputs, status
+from cratous.services.pipeline import planner, questions, sensors
+from cratous.services.pipeline.contexts import UNIQUE, Context, Contexts
+from cratous.services.pipeline.endings import request_ended
+from cratous.services.pipeline.implementation import implemented, offer, way_asked
+from cratous.services.pipeline.questions import Asked
+from cratous.services.pipeline.status import status
 from cratous.services.planning.options import Option
-from cratous.services.planning.stages import hold_of
-from cratous.services.planning.task_service import NAMES, TaskService
-from cratous.services.uxas import sensors
-from cratous.services.uxas.pipeline import asking, planner
-from cratous.services.uxas.pipeline.asking import Asked
-from cratous.services.uxas.pipeline.contexts import UNIQUE, Contexts, RequestDesk, reasons_of
-from cratous.services.uxas.pipeline.ended import request_ended
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 from cratous.spec.mission import Task, TaskKind
 
@@ -40,6 +38,14 @@ TASKS = {
     "afrl.impact.PatternSearchTask": TaskKind.PATTERN_SEARCH,
     "afrl.impact.WatchTask": TaskKind.POINT_SEARCH,  # of what stands still, as the loader has it
 }
+NAMES = {
+    TaskKind.LINE_SEARCH: "CmasiLineSearchTaskService",
+    TaskKind.POINT_SEARCH: "CmasiPointSearchTaskService",
+    TaskKind.MUST_FLY: "MustFlyTaskService",
+    TaskKind.LOITER: "LoiterTaskService",
+    TaskKind.AREA_SEARCH: "CmasiAreaSearchTaskService",
+    TaskKind.PATTERN_SEARCH: "PatternSearchTaskService",
+}
 ROUTES_FROM = 2**60
 """Ids of a task's own route requests: beyond the blocks that the aggregator gives out."""
 
@@ -49,7 +55,7 @@ ANNOUNCE, ASK_SENSORS, ASK_ROUTES, PUBLISH_OPTIONS = 1, 2, 3, 4
 ASK_FINAL, PUBLISH_PLAN, STEER, COMPLETE, STALE = 5, 6, 7, 8, 9
 ACTIVE = 7
 _EVENTS = {
-    asking.SENSORS: SENSORS_KNOWN,
+    questions.SENSORS: SENSORS_KNOWN,
     "uxas.messages.task.TaskImplementationRequest": CHOSEN,
     "uxas.messages.route.RoutePlanResponse": FINAL_KNOWN,
 }
@@ -88,12 +94,16 @@ class State(NamedTuple):
         return self._replace(tickets=(*kept, (ticket, number))), ticket
 
 
-class MessageTask(TaskService):
+def nothing() -> None:
+    """Nothing has to be done when a task is no more."""
+
+
+class TaskService:
     """One task; it lives until it is killed."""
 
     subscribes: tuple[str, ...] = (
         UNIQUE,
-        asking.SENSORS,
+        questions.SENSORS,
         "uxas.messages.task.TaskImplementationRequest",
         "uxas.messages.route.RoutePlanResponse",
         "uxas.messages.task.UniqueAutomationResponse",
@@ -102,45 +112,38 @@ class MessageTask(TaskService):
         "afrl.cmasi.EntityState",
     )
 
-    def __init__(self, contexts: Contexts, task: Any, kind: TaskKind) -> None:
-        """task: the LMCP task that it serves."""
-        self._contexts, self._body = contexts, task
-        self._task_id = task.TaskID
+    def __init__(
+        self, contexts: Contexts, task_id: int, kind: TaskKind, ended: Callable[[], None] = nothing
+    ) -> None:
+        """ended: called when the task is no more."""
+        self._contexts, self._task_id, self._when_ended = contexts, task_id, ended
         self._request = 0
-        self.name = f"{NAMES[kind]}[{task.TaskID}]"
-
-    # what the computing of `services.planning` asks for: the desk, and the task in its mission
+        self.name = f"{NAMES[kind]}[{task_id}]"
 
     @property
-    def _desk(self) -> RequestDesk:  # type: ignore[override]
-        return self._contexts.of(self._request).desk
+    def _context(self) -> Context:
+        """Of the request in work."""
+        return self._contexts.of(self._request)
 
-    @property
-    def _inputs(self) -> Inputs:
-        return self._contexts.of(self._request).inputs
-
-    @property
-    def _task(self) -> Task:  # type: ignore[override]
-        for task in self._inputs.mission.tasks:
+    def _task_in(self, context: Context) -> Task:
+        for task in context.inputs.mission.tasks:
             if task.id == self._task_id:
                 return task
         raise BadInput(
             "the request does not have this task done",
             item="TaskID",
-            expected=", ".join(map(str, self._inputs.wanted)),
+            expected=", ".join(map(str, context.inputs.wanted)),
             got=str(self._task_id),
         )
 
-    def start(self) -> State:  # type: ignore[override]
+    def start(self) -> State:
         return State()
 
     def begin(self, state: State) -> tuple[State, Iterable[Any]]:
         """The task needs nothing to initialise itself: it is there."""
         return self._advance(state, INITIALISED, 0, None)
 
-    def handle(  # type: ignore[override]
-        self, state: State, envelope: Envelope, now_ms: int
-    ) -> tuple[State, Iterable[Any]]:
+    def handle(self, state: State, envelope: Envelope, now_ms: int) -> tuple[State, Iterable[Any]]:
         body, topic = envelope.body, envelope.topic
         if topic == UNIQUE:
             return self._requested(state, body)
@@ -163,8 +166,7 @@ class MessageTask(TaskService):
         """A request that means nothing is answered, once a process; it disturbs no task."""
         number = body.RequestID
         if self._contexts.refused(number):
-            facts = [("reason", text) for text in self._contexts.reasons(number)]
-            return state, [status(number, "Error", facts)] if facts else []
+            return state, self._contexts.refusal(number)
         if self._task_id not in body.OriginalRequest.TaskList:
             return state, ()
         state, ticket = state.arrived(number)
@@ -194,11 +196,11 @@ class MessageTask(TaskService):
             return self._advance(state, event, ticket, body)
         if event == SENSORS_KNOWN:
             tickets = (ticket for ticket, _ in state.tickets)
-            ticket = asking.ticket_of_sensors(self._task_id, body.ResponseID, tickets)
+            ticket = questions.ticket_of_sensors(self._task_id, body.ResponseID, tickets)
             return (state, ()) if ticket < 0 else self._advance(state, event, ticket, body)
         if body.AssociatedTaskID != self._task_id:
             return state, ()
-        if body.ResponseID == asking.option_routes_id(state.task.request):
+        if body.ResponseID == questions.option_routes_id(state.task.request):
             before = state.asked.waiting
             state = state._replace(asked=state.asked.plus(body))
             if state.asked.waiting or not before:
@@ -224,8 +226,7 @@ class MessageTask(TaskService):
             try:
                 state, event = self._do(state, act, body, out)
             except CratousError as error:
-                facts = [("reason", text) for text in reasons_of(error)]
-                out.append(status(self._request, "Error", facts))
+                out.append(self._contexts.fail(self._request, error))
                 event = WITHDRAWN if act == PUBLISH_PLAN else ENDED
             ticket = state.task.request
         return state, out
@@ -244,12 +245,11 @@ class MessageTask(TaskService):
                 status(self._request, "Warning", [("reason", text)])
                 for text in state.asked.reasons(self._task_id)
             ]
-            out.append(self._offer(self._request, self._left(state)))
-            self._contexts.of(self._request).offered.add(self._task_id)
+            context = self._context
+            out.append(offer(context, self._task_id, self._left(state, context)))
+            context.offered.add(self._task_id)
         elif act == ASK_FINAL:
-            region = self._contexts.of(self._request).region
-            asked = self._ask_route(self._known(body))
-            out.append(asked.copy(RequestID=_route_id(body), OperatingRegion=region))
+            out.append(way_asked(self._context, self._option(body), body, _route_id(body)))
             return state._replace(chosen=body, vehicle=body.VehicleID), 0
         elif act == PUBLISH_PLAN:
             out.append(self._plan(state.chosen, body))
@@ -268,43 +268,45 @@ class MessageTask(TaskService):
         return state, 0
 
     def _ask_sensors(self, state: State, out: list[Any]) -> tuple[State, int]:
-        context = self._contexts.of(self._request)
-        question = asking.sensor_request(context, self._task, state.task.request)
-        if question is None or not self._contexts.serves(sensors.NAME):
+        context = self._context
+        question = questions.sensor_request(context, self._task_in(context), state.task.request)
+        if question is None or not self._contexts.source.asks(sensors.NAME):
             return state, SENSORS_KNOWN
         out.append(question)
         return state, 0
 
     def _ask_routes(self, state: State, body: Any, out: list[Any]) -> tuple[State, int]:
-        context = self._contexts.of(self._request)
+        context = self._context
         if hasattr(body, "Footprints"):
-            blind = asking.blind(context, self._task, body)
+            blind = questions.blind(context, self._task_in(context), body)
             state = state._replace(asked=state.asked._replace(blind=blind))
-        if not self._contexts.serves(planner.NAME):
+        if not self._contexts.source.asks(planner.NAME):
             return state, ROUTES_KNOWN
-        options, ticket = self._left(state), state.task.request
-        questions = asking.route_requests(context, self._task_id, options, ticket)
-        out += questions
-        waiting = tuple(question.VehicleID for question in questions)
+        options, ticket = self._left(state, context), state.task.request
+        asked = questions.route_requests(context, self._task_id, options, ticket)
+        out += asked
+        waiting = tuple(question.VehicleID for question in asked)
         state = state._replace(asked=state.asked._replace(waiting=waiting))
         return state, 0 if waiting else ROUTES_KNOWN
 
-    def _left(self, state: State) -> list[Option]:
+    def _left(self, state: State, context: Context) -> list[Option]:
         """The options that are offered."""
-        return state.asked.left(self._inputs.options_of(self._task.id))
+        return state.asked.left(context.inputs.options_of(self._task_in(context).id))
 
-    def _known(self, request: Any) -> Any:
-        """The request, if it names an option that this task has."""
-        inputs = self._inputs
-        if (request.TaskID, request.OptionID) not in inputs.index:
-            known = [option.option_id for option in inputs.options_of(self._task_id)]
-            raise BadInput(
-                f"task {self._task_id} has no such option",
-                item="TaskImplementationRequest.OptionID",
-                expected=", ".join(map(str, known)) or "none",
-                got=str(request.OptionID),
-            )
-        return request
+    def _option(self, request: Any) -> Option:
+        """The option that an implementation request names."""
+        inputs = self._context.inputs
+        mine = inputs.options_of(self._task_id) if self._task_id in inputs.wanted else ()
+        for option in mine:
+            if option.option_id == request.OptionID:
+                return option
+        known = [option.option_id for option in mine]
+        raise BadInput(
+            f"task {self._task_id} has no such option",
+            item="TaskImplementationRequest.OptionID",
+            expected=", ".join(map(str, known)) or "none",
+            got=str(request.OptionID),
+        )
 
     def _plan(self, request: Any, response: Any) -> Any:
         plan = response.RouteResponses[0] if response.RouteResponses else None
@@ -316,16 +318,8 @@ class MessageTask(TaskService):
                     for text in why or ["the planner does not say why"]
                 )
             )
-        option = self._inputs.options[self._inputs.index[request.TaskID, request.OptionID]]
-        wait = max(0, request.TimeThreshold - request.StartTime - plan.RouteCost)
-        if wait > 0 and hold_of(option, wait, self._inputs.zones) is None:
-            raise NoPlan(
-                (
-                    f"vehicle {request.VehicleID} has to wait {wait / 1000:.3f} s before task "
-                    f"{self._task_id}, and no hold circle there obeys the zones",
-                )
-            )
-        return self._implement(request, response)
+        context = self._context
+        return implemented(context, self._task_in(context), self._option(request), request, plan)
 
     def _ended(self, state: State, body: Any) -> Any:
         """The task is over: complete if a vehicle flew it and went on, else it ends undone."""
@@ -340,10 +334,8 @@ class MessageTask(TaskService):
         return status(0, "Warning", [("TaskID", str(self._task_id)), ("reason", text)])
 
     def stop(self, state: State) -> None:
-        """The task is no more, unless another has taken its place already."""
-        known = self._contexts.world.task(self._task_id)
-        if known is not None and known.body == self._body:
-            self._contexts.world.forget("task", self._task_id)
+        """The task is no more."""
+        self._when_ended()
 
 
 def _route_id(implementation: Any) -> int:

@@ -14,7 +14,8 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope, Send, unicast
-from cratous.services.uxas.pipeline.contexts import Contexts, RequestDesk, Way, reasons_of
+from cratous.services.pipeline.contexts import Contexts, reasons_of
+from cratous.services.pipeline.places import RequestPlaces, Way
 from cratous.spec.errors import CratousError
 
 NAME = "RoutePlannerVisibilityService"
@@ -53,13 +54,11 @@ class RoutePlannerVisibilityService:
         return None, [Send(answer, unicast(envelope.entity_id, envelope.service_id))]
 
     def _plans(self, request: Any) -> list[Any]:
-        desk, mission = self._contexts.for_routes(request.OperatingRegion, request.VehicleID)
-        plans: list[Any] = []
-        ways: list[Way] = []
-        for constraint in request.RouteRequests:
-            cruise_m = mission.vehicle(request.VehicleID).position.alt_m
-            ways.append(_way(desk, constraint, cruise_m))
-        routes = desk.routes_of(ways)
+        places = self._contexts.for_routes(request.OperatingRegion, request.VehicleID)
+        mission, plans = places.mission, list[Any]()
+        cruise_m = mission.vehicle(request.VehicleID).position.alt_m
+        ways = [_way(places, constraint, cruise_m) for constraint in request.RouteRequests]
+        routes = places.routes_of(ways)
         vehicle = [v.id for v in mission.vehicles].index(request.VehicleID)
         if request.IsCostOnlyRequest:  # all at once, which is faster
             routes.prepare(vehicle, [(k, k) for k in range(len(ways))])
@@ -73,22 +72,23 @@ class RoutePlannerVisibilityService:
             if not request.IsCostOnlyRequest:
                 speed = mission.vehicle(request.VehicleID).speed_m_s
                 points = routes.route(vehicle, k, k).points
-                plan.Waypoints = desk.waypoints(points, 1, speed, ())
+                plan.Waypoints = places.waypoints(points, 1, speed, ())
             plans.append(plan)
         return plans
 
 
-def _way(desk: RequestDesk, constraint: Any, cruise_m: float) -> Way:
+def _way(places: RequestPlaces, constraint: Any, cruise_m: float) -> Way:
     """Where a heading is not asked for, it is that of the straight way.
 
-    An altitude of 0 says nothing, as the original's tasks have it: the start's holds, or cruise_m.
+    An altitude of 0 that was not sent from here says nothing, as the original's tasks have it: the
+    start's holds, or cruise_m.
     """
-    where = f"route {constraint.RouteID}"
-    start = desk.pose(constraint.StartLocation, constraint.StartHeading, where, "StartLocation")
-    end = desk.pose(constraint.EndLocation, constraint.EndHeading, where, "EndLocation")
-    if start.alt_m == 0:
+    where, asked = f"route {constraint.RouteID}", constraint
+    start = places.pose(asked.StartLocation, asked.StartHeading, where, "StartLocation")
+    end = places.pose(asked.EndLocation, asked.EndHeading, where, "EndLocation")
+    if start.alt_m == 0 and places.exact(asked.StartLocation, asked.StartHeading) is None:
         start = start._replace(alt_m=cruise_m)
-    if end.alt_m == 0:
+    if end.alt_m == 0 and places.exact(asked.EndLocation, asked.EndHeading) is None:
         end = end._replace(alt_m=start.alt_m)
     straight = atan2(end.east_m - start.east_m, end.north_m - start.north_m)
     if not constraint.UseStartHeading:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
-from cratous.services.planning.desk import status
+from cratous.services.pipeline.status import status
 
 _INFO = 8  # entries of AutomationResponse.Info
 

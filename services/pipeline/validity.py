@@ -12,7 +12,7 @@ from collections.abc import Collection
 from typing import Any, NamedTuple
 
 from cratous.core.contracts.validity import NOT_READY, item_fault, request_valid
-from cratous.services.uxas.world import World
+from cratous.services.pipeline.source import Known
 
 VEHICLE, TASK, REGION, ZONE = 1, 2, 3, 4
 _NAMES = {VEHICLE: "vehicle", TASK: "task", REGION: "operating region", ZONE: "zone"}
@@ -55,13 +55,13 @@ class Verdict(NamedTuple):
 
 
 def things_of(
-    request: Any, given: Collection[int], world: World, initialised: Collection[int]
+    request: Any, given: Collection[int], world: Known, initialised: Collection[int]
 ) -> list[Thing]:
     """Everything that an AutomationRequest names; no EntityList means all vehicles.
 
     given: vehicles whose state comes with the request; initialised: tasks that have said so.
     """
-    vehicles = list(request.EntityList) or [body.ID for body in world.of("configuration")]
+    vehicles = list(request.EntityList) or world.ids("configuration")
     made = [
         Thing(VEHICLE, world.has("configuration", v), world.has("state", v), v in given, v)
         for v in vehicles
@@ -80,7 +80,7 @@ def things_of(
     return made
 
 
-def _lacking(world: World, task: int) -> str:
+def _lacking(world: Known, task: int) -> str:
     """The place of interest that a task names and that nobody has told, empty if there is none."""
     body = world.get("task", task)
     for field, sort in _PLACES.items():

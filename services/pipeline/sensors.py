@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
-from cratous.services.planning.desk import status
+from cratous.services.pipeline.status import status
 from cratous.services.sensor import Look, footprints
 from cratous.spec.mission import Camera
 

@@ -22,9 +22,8 @@ from cratous.core.contracts.checklists import (
     owns,
 )
 from cratous.services.bus import Envelope
-from cratous.services.planning.desk import status
-from cratous.services.uxas.pipeline.contexts import UNIQUE, Contexts
-from cratous.services.uxas.pipeline.ended import ENDINGS, newest, request_ended
+from cratous.services.pipeline.contexts import UNIQUE, Contexts
+from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
 from cratous.spec.errors import CratousError
 
 NAME = "RouteAggregatorService"
@@ -102,9 +101,7 @@ class RouteAggregatorService:
         body, topic = envelope.body, envelope.topic
         if topic == UNIQUE:
             if self._contexts.refused(body.RequestID):
-                reasons = self._contexts.reasons(body.RequestID)
-                facts = [("reason", text) for text in reasons]
-                return state, [status(body.RequestID, "Error", facts)] if reasons else []
+                return state, self._contexts.refusal(body.RequestID)
             return self._collect(state, Collecting(AWAITS_OPTIONS, body, {}))
         if topic == OPTIONS:
             mine = state.collecting.get(body.CorrespondingAutomationRequestID)
@@ -149,7 +146,7 @@ class RouteAggregatorService:
                 try:
                     state, mine, asked = self._ask(state, mine)
                 except CratousError as error:
-                    out.append(status(key, "Error", [("reason", str(error))]))
+                    out.append(self._contexts.fail(key, error))
                     break
                 out += asked
             elif act == HAND_OVER:
@@ -215,9 +212,8 @@ class RouteAggregatorService:
 
     def _aggregate(self, state: Open, request: Any) -> Step:
         """One plan request for each vehicle of a RouteRequest; no vehicle means all that are known."""
-        world = self._contexts.world
         vehicles = list(dict.fromkeys(request.VehicleID))
-        vehicles = vehicles or [body.ID for body in world.of("configuration")]
+        vehicles = vehicles or self._contexts.world.ids("configuration")
         block = Block(state.free, tuple(vehicles))
         if block.complete:
             return state, [_reply(request, block)]

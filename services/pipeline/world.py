@@ -79,6 +79,10 @@ class World:
         sort, number = _key(body)
         return number in self._kept.get(sort, {})
 
+    def ids(self, sort: str) -> list[int]:
+        """The ids of all objects of a sort."""
+        return list(self._kept.get(sort, {}))
+
     def of(self, sort: str) -> list[Any]:
         """All objects of a sort: configuration, state, task, zone, region, point, line, area."""
         return [sent.body for sent in self._kept.get(sort, {}).values()]

@@ -21,12 +21,10 @@ from cratous.bridge import lmcp
 from cratous.core.contracts import requests
 from cratous.core.contracts.requests import Line, line_step
 from cratous.services.bus import Envelope, Wake
-from cratous.services.frames import compass
-from cratous.services.planning.desk import status
-from cratous.services.uxas.frame import Host
-from cratous.services.uxas.pipeline.answers import Asked, answer, asked_of, refusal
-from cratous.services.uxas.pipeline.contexts import Context, Contexts
-from cratous.services.uxas.pipeline.validity import things_of, verdict
+from cratous.services.pipeline.answers import Asked, answer, asked_of, refusal
+from cratous.services.pipeline.contexts import Context, Contexts
+from cratous.services.pipeline.status import status
+from cratous.services.pipeline.validity import things_of, verdict
 
 NAME = "AutomationRequestValidatorService"
 RESPONSE = "uxas.messages.task.UniqueAutomationResponse"
@@ -42,7 +40,7 @@ REQUESTS = (
 )
 
 
-class Desk(NamedTuple):
+class Requests(NamedTuple):
     """line: the kernel's; asked: requests by ticket, each with its RequestID; published: the one
     whose turn it is is out; initialised: tasks that have said so; notes: for its answer."""
 
@@ -60,7 +58,7 @@ class Desk(NamedTuple):
         return self.asked[self.line.answered].number
 
 
-Step = tuple[Desk, Iterable[Any]]
+Step = tuple[Requests, Iterable[Any]]
 
 
 class AutomationRequestValidatorService:
@@ -80,13 +78,14 @@ class AutomationRequestValidatorService:
         "afrl.cmasi.OperatingRegion",
     )
 
-    def __init__(self, host: Host, contexts: Contexts, limit_ms: int) -> None:
-        self._host, self._contexts, self._limit_ms = host, contexts, limit_ms
+    def __init__(self, shared: dict[str, Any], contexts: Contexts, limit_ms: int) -> None:
+        """shared: keeps the RequestIDs that were given, also for another validator on the bus."""
+        self._shared, self._contexts, self._limit_ms = shared, contexts, limit_ms
 
-    def start(self) -> Desk:
-        return Desk(Line(0, 0, False, 0), {}, False, frozenset())
+    def start(self) -> Requests:
+        return Requests(Line(0, 0, False, 0), {}, False, frozenset())
 
-    def handle(self, state: Desk, envelope: Envelope, now_ms: int) -> Step:
+    def handle(self, state: Requests, envelope: Envelope, now_ms: int) -> Step:
         body, topic = envelope.body, envelope.topic
         out: list[Any] = []
         if topic in REQUESTS:
@@ -103,16 +102,18 @@ class AutomationRequestValidatorService:
             state = state._replace(initialised=state.initialised - {body.TaskID})
         return self._pump(state, out, now_ms), out
 
-    def wake(self, state: Desk, key: int, now_ms: int) -> Step:
+    def wake(self, state: Requests, key: int, now_ms: int) -> Step:
         """A request's time may be over; whether it is, the kernel says."""
         out: list[Any] = []
         return self._pump(state, out, now_ms), out
 
-    def _step(self, state: Desk, event: int, ticket: int, now_ms: int) -> tuple[Desk, int, int]:
+    def _step(
+        self, state: Requests, event: int, ticket: int, now_ms: int
+    ) -> tuple[Requests, int, int]:
         line, act, about = line_step(state.line, event, ticket, now_ms, self._limit_ms)
         return state._replace(line=line), act, about
 
-    def _arrive(self, state: Desk, asked: Asked, out: list[Any], now_ms: int) -> Desk:
+    def _arrive(self, state: Requests, asked: Asked, out: list[Any], now_ms: int) -> Requests:
         state, act, ticket = self._step(state, requests.ARRIVAL, 0, now_ms)
         if act != requests.TAKE:
             out += refusal(asked, 0, ["no more requests are taken"])
@@ -122,7 +123,7 @@ class AutomationRequestValidatorService:
 
     def _number(self, wanted: int) -> int:
         """The RequestID that is asked for, if no newer request has had it, else the next free one."""
-        shared = self._host.shared
+        shared = self._shared
         used: dict[int, None] = shared.setdefault("RequestIDs", {})
         number = wanted
         if not wanted or wanted in used:
@@ -135,7 +136,7 @@ class AutomationRequestValidatorService:
             used.pop(next(iter(used)))
         return number
 
-    def _respond(self, state: Desk, body: Any, out: list[Any], now_ms: int) -> Desk:
+    def _respond(self, state: Requests, body: Any, out: list[Any], now_ms: int) -> Requests:
         # before the request is out, no response can be its own
         ticket = state.line.answered if state.work and body.ResponseID == state.work else -1
         state, act, ticket = self._step(state, requests.ANSWER, ticket, now_ms)
@@ -146,7 +147,7 @@ class AutomationRequestValidatorService:
         out.append(answer(state.asked[ticket], body, state.notes))
         return _done(state, ticket)
 
-    def _fail(self, state: Desk, body: Any, out: list[Any], now_ms: int) -> Desk:
+    def _fail(self, state: Requests, body: Any, out: list[Any], now_ms: int) -> Requests:
         """An error ends the request that it names; without a name, the one in the pipeline."""
         if body.StatusType.name != "Error" or not state.work:
             return state
@@ -158,8 +159,8 @@ class AutomationRequestValidatorService:
         return self._refuse(state, why, out, now_ms, said=True)
 
     def _refuse(
-        self, state: Desk, why: Iterable[str], out: list[Any], now_ms: int, said: bool = False
-    ) -> Desk:
+        self, state: Requests, why: Iterable[str], out: list[Any], now_ms: int, said: bool = False
+    ) -> Requests:
         """Answer the request whose turn it is with an error; said: the status is out already."""
         state, act, ticket = self._step(state, requests.ANSWER, state.line.answered, now_ms)
         if act == requests.PASS_ON:
@@ -167,7 +168,7 @@ class AutomationRequestValidatorService:
             out += refusal(asked, asked.number, list(why))[1 if said else 0 :]
         return _done(state, ticket)
 
-    def _pump(self, state: Desk, out: list[Any], now_ms: int) -> Desk:
+    def _pump(self, state: Requests, out: list[Any], now_ms: int) -> Requests:
         """Do what is due until nothing is."""
         while True:
             if state.line.busy and not state.published:
@@ -187,12 +188,12 @@ class AutomationRequestValidatorService:
             else:
                 return state
 
-    def _verdict(self, state: Desk, asked: Asked) -> Any:
+    def _verdict(self, state: Requests, asked: Asked) -> Any:
         given = {planning.EntityID for planning in asked.states}
         things = things_of(asked.request, given, self._contexts.world, state.initialised)
         return verdict(things)
 
-    def _begin(self, state: Desk, out: list[Any], now_ms: int) -> Desk:
+    def _begin(self, state: Requests, out: list[Any], now_ms: int) -> Requests:
         """Publish the request whose turn it is, if it is valid; refuse it if it never will be."""
         asked = state.asked[state.line.answered]
         number = asked.number
@@ -229,20 +230,22 @@ class AutomationRequestValidatorService:
         tasks = [task for task in request.TaskList if task in inputs.wanted]
         if tasks != request.TaskList:
             request = request.copy(TaskList=tasks)
-        states = [
-            lmcp.new(
-                "PlanningState",
-                EntityID=vehicle,
-                PlanningPosition=context.desk.location(inputs.starts[vehicle]),
-                PlanningHeading=compass(inputs.starts[vehicle].heading_rad),
+        states = []
+        for vehicle in context.vehicles:
+            place, heading_deg = context.places.sent(inputs.starts[vehicle])
+            states.append(
+                lmcp.new(
+                    "PlanningState",
+                    EntityID=vehicle,
+                    PlanningPosition=place,
+                    PlanningHeading=heading_deg,
+                )
             )
-            for vehicle in context.vehicles
-        ]
         made = unique.copy(OriginalRequest=request, PlanningStates=states)
-        self._contexts.put(made, inputs, context.desk)
+        self._contexts.put(made, context)
         return made
 
 
-def _done(state: Desk, ticket: int) -> Desk:
+def _done(state: Requests, ticket: int) -> Requests:
     left = {k: v for k, v in state.asked.items() if k != ticket}
     return state._replace(asked=left, published=False, notes=())

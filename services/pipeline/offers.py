@@ -6,17 +6,21 @@ Whatever is missing, or stands in the costs without having been offered, is a na
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from cratous.services.frames import compass
-from cratous.services.planning.desk import Inputs
-from cratous.services.planning.flyers import Flyer, flyer_of
+from cratous.core.assignment import START, Branch
+from cratous.services.pipeline.contexts import Context
+from cratous.services.planning.flyers import flyer_of
+from cratous.services.planning.inputs import Inputs
+from cratous.services.planning.mission_assign import Travel
 from cratous.services.planning.options import Dropped, Option, hold_rooms
-from cratous.services.uxas.pipeline.contexts import Context
+from cratous.services.planning.routes import Routes
 from cratous.spec import algebra
 from cratous.spec.errors import BadInput
-from cratous.spec.plan import Pose
+from cratous.spec.mission import Zone
 
 OPTIONS = "uxas.messages.task.TaskPlanOptions"
 
@@ -31,8 +35,12 @@ class Told(NamedTuple):
 class Offered(Inputs):
     """Inputs whose options are those that the tasks have offered in messages."""
 
-    offered: tuple[Option, ...] = ()
-    not_offered: tuple[Dropped, ...] = ()
+    def __init__(self, base: Inputs, offered: tuple[Option, ...], known: bool) -> None:
+        """known: options were computed here, so that it is known which were dropped, and why."""
+        super().__init__(
+            base.mission, base.starts, base.fixed, base.now_ms, base.flying, base.absent
+        )
+        self.offered, self._base, self._known = offered, base, known
 
     @cached_property
     def options(self) -> tuple[Option, ...]:
@@ -40,7 +48,19 @@ class Offered(Inputs):
 
     @cached_property
     def dropped(self) -> tuple[Dropped, ...]:
-        return self.not_offered
+        return self._base.dropped if self._known else ()
+
+    @cached_property
+    def zones(self) -> tuple[Zone, ...]:
+        return self._base.zones
+
+    @cached_property
+    def resolved(self) -> tuple[tuple[Branch, ...], bool]:
+        return self._base.resolved
+
+    @cached_property
+    def finder(self) -> Routes:
+        return self._base.finder
 
     def options_of(self, task_id: int) -> tuple[Option, ...]:
         """The options of one task."""
@@ -69,12 +89,8 @@ def read(told: Told, matrix: Any, context: Context) -> Read:
             item="AssignmentCostMatrix",
             expected="TaskPlanOptions of task " + ", ".join(map(str, missing)),
         )
-    inputs = Offered(context.inputs.mission, context.inputs.starts, (), 0)
-    inputs.offered = tuple(
-        option for task in tasks for option in _options(told.options[task], context)
-    )
-    if context.offered:
-        inputs.not_offered = context.inputs.dropped
+    options = (option for task in tasks for option in _options(told.options[task], context))
+    inputs = Offered(context.inputs, tuple(options), bool(context.offered))
     rows = [row for row in matrix.CostMatrix if row.VehicleID in context.vehicles]
     foreign = len(matrix.CostMatrix) - len(rows)
     rows = [r for r in rows if not {r.IntialTaskID, r.DestinationTaskID} & unnamed]
@@ -107,8 +123,9 @@ def _options(told: Any, context: Context) -> list[Option]:
         able = [v for v in option.EligibleEntities or flyers if v in flyers]
         if not able:
             continue
-        start = context.desk.pose(option.StartLocation, option.StartHeading, where, "StartLocation")
-        end = context.desk.pose(option.EndLocation, option.EndHeading, where, "EndLocation")
+        places = context.places
+        start = places.pose(option.StartLocation, option.StartHeading, where, "StartLocation")
+        end = places.pose(option.EndLocation, option.EndHeading, where, "EndLocation")
         if option.TaskID != told.TaskID or option.Cost < 0:
             raise BadInput(
                 "an option that is none",
@@ -116,24 +133,35 @@ def _options(told: Any, context: Context) -> list[Option]:
                 expected=f"TaskID {told.TaskID} and a Cost of 0 ms or more",
                 got=f"TaskID {option.TaskID}, Cost {option.Cost}",
             )
-        if start.alt_m == 0:  # it says nothing of the altitude: that of the vehicles
-            start = start._replace(alt_m=flyers[able[0]].alt_m)
         flyer, known = flyers[able[0]], ours.get((told.TaskID, option.OptionID))
-        if known is not None and _same_start(known, flyer, start, option.StartHeading):
-            rooms = known.holds
-        else:
-            rooms = hold_rooms(start, flyer.radius_m, context.inputs.zones)
+        same = known and (known.start, known.end, known.duration_ms, known.flyer)
+        if known is not None and same == (start, end, option.Cost, flyer):
+            made.append(replace(known, vehicles=tuple(able)))
+            continue
+        if start.alt_m == 0:  # it says nothing of the altitude: that of the vehicles
+            start = start._replace(alt_m=flyer.alt_m)
+        rooms = hold_rooms(start, flyer.radius_m, context.inputs.zones)
         label = f"option {option.OptionID}"
         ids = told.TaskID, option.OptionID, tuple(able)
         made.append(Option(*ids, flyer, start, end, (), option.Cost, rooms, label))
     return made
 
 
-def _same_start(known: Option, flyer: Flyer, start: Pose, heading_deg: float) -> bool:
-    """True if an option computed here starts there, so that its room to hold is known."""
-    there = (*known.start[:3], compass(known.start.heading_rad), known.flyer)
-    asked = (*start[:3], heading_deg, flyer)
-    return there == asked
+def travel_of(inputs: Inputs, rows: Iterable[Any]) -> Travel:
+    """The ways of an AssignmentCostMatrix in indices of vehicles and options."""
+    times: dict[tuple[int, int, int], int] = {}
+    for row in rows:
+        before = (row.IntialTaskID, row.IntialTaskOption)
+        times[
+            inputs.vehicle_index[row.VehicleID],
+            START if before == (0, 0) else inputs.index[before],
+            inputs.index[row.DestinationTaskID, row.DestinationTaskOption],
+        ] = row.TimeToGo
+
+    def travel_ms(vehicle: int, before: int, to: int) -> int | None:
+        return times.get((vehicle, before, to))
+
+    return travel_ms
 
 
 def _is_choice(term: algebra.Term) -> bool:

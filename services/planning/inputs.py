@@ -1,20 +1,15 @@
-"""What the planning services share besides messages: exact poses, polylines and found routes.
+"""One planning request in the mission frame, and what the pure stages compute from it, each once.
 
-Messages carry degrees and costs; the desk keeps, per request, the exact inputs in the mission
-frame and remembers what the pure stages computed from them. It decides nothing.
+Messages carry degrees and costs; here are the exact poses, polylines and found routes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
-from cratous.bridge import lmcp
-from cratous.core.assignment import Assignment, Branch, Fixed
-from cratous.services.bus import Envelope
-from cratous.services.frames import Projection
+from cratous.core.assignment import Branch, Fixed
 from cratous.services.planning import stages
 from cratous.services.planning.mission_assign import problem_of
 from cratous.services.planning.options import Dropped, Option, expand
@@ -23,43 +18,48 @@ from cratous.services.planning.zones import hard_zones
 from cratous.spec.algebra import Term
 from cratous.spec.algebra_meaning import tasks
 from cratous.spec.assignment import AssignmentProblem
-from cratous.spec.mission import Mission, Position, Zone
+from cratous.spec.mission import Mission, Zone
 from cratous.spec.plan import Pose
 from cratous.spec.schedule import AFTER_END
 
 
 @dataclass
 class Inputs:
-    """One planning request in the mission frame, and what follows from it (computed once).
+    """A mission from given poses at an instant [ms], with what has been flown of it.
 
-    absent: the vehicles that take no part, with the reasons; assigned, certificate: what the
-    assignment service has found for it.
+    flying: the poses are where the vehicles are, not where a user has put them; absent: the vehicles
+    that take no part, with the reasons.
     """
 
     mission: Mission
     starts: dict[int, Pose]
-    fixed: tuple[Fixed, ...]
-    now_ms: int
+    fixed: tuple[Fixed, ...] = ()
+    now_ms: int = 0
+    flying: bool = False
     absent: Mapping[int, str] = field(default_factory=dict)
-    assigned: Assignment | None = None
-    certificate: dict[str, Any] | None = None
+
+    def check_starts(self) -> None:
+        """BadInput if a user has put a vehicle where it may not be."""
+        if not self.flying:
+            stages.check_starts(self.mission, self.starts, self.zones)
 
     @cached_property
     def zones(self) -> tuple[Zone, ...]:
         return hard_zones(self.mission.zones)
 
     @cached_property
-    def _branches(self) -> tuple[tuple[Branch, ...], bool]:
+    def resolved(self) -> tuple[tuple[Branch, ...], bool]:
+        """The branches, and whether they are all."""
         return stages.branches_of(self.mission, self.fixed)
 
     @property
     def branches(self) -> tuple[Branch, ...]:
-        return self._branches[0]
+        return self.resolved[0]
 
     @property
     def all_branches(self) -> bool:
         """False if there were more ways to resolve `+` than were looked at here."""
-        return self._branches[1]
+        return self.resolved[1]
 
     @cached_property
     def term(self) -> Term:
@@ -125,73 +125,15 @@ class Inputs:
         return {vehicle.id: k for k, vehicle in enumerate(self.mission.vehicles)}
 
     @cached_property
+    def finder(self) -> Routes:
+        """Routes of the mission's vehicles, between no ends yet."""
+        return Routes(self.mission, self.starts, (), self.zones)
+
+    @cached_property
     def routes(self) -> Routes:
-        return Routes(self.mission, self.starts, self.options, self.zones)
+        """Routes from the starts and between the options."""
+        return self.finder.between(self.options)
 
     def problem(self, travel_ms: Callable[[int, int, int], int | None]) -> AssignmentProblem:
         """The assignment problem with travel times from elsewhere (the cost matrix)."""
         return problem_of(self.mission, self.term, self.options, travel_ms, self.fixed, self.now_ms)
-
-
-class Desk:
-    """The requests so far; a service without subscriptions, so that it is found on its bus."""
-
-    name = "PlanningDesk"
-    subscribes: tuple[str, ...] = ()
-
-    def __init__(self, mission: Mission) -> None:
-        self.mission = mission
-        self.projection = Projection(mission.frame)
-        self.requests: list[Inputs] = []
-
-    def start(self) -> Any:
-        return self
-
-    def handle(self, state: Any, envelope: Envelope, now_ms: int) -> tuple[Any, Iterable[Any]]:
-        return state, ()
-
-    def open(self, inputs: Inputs) -> int:
-        """Put a request on the desk; its id, from 1."""
-        self.requests.append(inputs)
-        return len(self.requests)
-
-    def inputs(self, request_id: int) -> Inputs:
-        """The request with this id."""
-        return self.requests[request_id - 1]
-
-    def location(self, point: Position | Pose) -> Any:
-        """A point as Location3D (degrees, metres MSL)."""
-        lat, lon = self.projection.to_geodetic(point.north_m, point.east_m)
-        return lmcp.new("Location3D", Latitude=lat, Longitude=lon, Altitude=point.alt_m)
-
-    def waypoints(
-        self, points: Sequence[Position], first: int, speed_m_s: float, tasks: Sequence[int]
-    ) -> list[Any]:
-        """Waypoints numbered from `first`, each leading to the next."""
-        lats, lons = self.projection.to_geodetic_many(
-            [p.north_m for p in points], [p.east_m for p in points]
-        )
-        return [
-            lmcp.new(
-                "Waypoint",
-                Latitude=float(lat),
-                Longitude=float(lon),
-                Altitude=point.alt_m,
-                Number=first + k,
-                NextWaypoint=first + k + 1,
-                Speed=speed_m_s,
-                AssociatedTasks=list(tasks),
-            )
-            for k, (point, lat, lon) in enumerate(zip(points, lats, lons, strict=True))
-        ]
-
-
-def status(request_id: int, kind: str, facts: Iterable[tuple[str, str]]) -> Any:
-    """A ServiceStatus about a request: kind is Information, Warning or Error."""
-    pairs = [("RequestID", str(request_id)), *facts]
-    return lmcp.new(
-        "ServiceStatus",
-        StatusType=kind,
-        PercentComplete=100.0 if kind == "Information" else 0.0,
-        Info=[lmcp.new("KeyValuePair", Key=key, Value=value) for key, value in pairs],
-    )

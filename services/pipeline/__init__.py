@@ -1,0 +1,1 @@
+"""The planning services of UxAS on the bus: drivers of the proved kernels of `core.contracts`."""

@@ -1,0 +1,136 @@
+"""AssignmentTreeBranchBoundService: options and costs -> who does what, or why nobody can.
+
+Options, their costs and who may fly them come from TaskPlanOptions, the ways from the
+AssignmentCostMatrix; vehicles that the request does not name take no part, whatever rows there are.
+The search is that of `services.planning.mission_assign`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.core.assignment import Assignment
+from cratous.services.bus import Envelope
+from cratous.services.pipeline.contexts import UNIQUE, Contexts
+from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
+from cratous.services.pipeline.offers import OPTIONS, Offered, Told, read, travel_of
+from cratous.services.pipeline.status import status
+from cratous.services.planning import mission_assign, reasons
+from cratous.spec.errors import BadInput, CratousError, NoPlan
+
+NAME = "AssignmentTreeBranchBoundService"
+
+
+class AssignmentTreeBranchBoundService:
+    """UniqueAutomationRequest, TaskPlanOptions, AssignmentCostMatrix -> TaskAssignmentSummary.
+
+    In the summary TimeThreshold is the instant at which the task starts, so that a later
+    departure becomes a wait; TimeTaskCompleted is its end (ms after mission start).
+    """
+
+    name = NAME
+    subscribes: tuple[str, ...] = (
+        UNIQUE,
+        OPTIONS,
+        "uxas.messages.task.AssignmentCostMatrix",
+        *ENDINGS,
+    )
+
+    def __init__(self, contexts: Contexts) -> None:
+        self._contexts = contexts
+
+    def start(self) -> dict[int, Told]:
+        return {}
+
+    def handle(
+        self, state: dict[int, Told], envelope: Envelope, now_ms: int
+    ) -> tuple[dict[int, Told], Iterable[Any]]:
+        body, topic = envelope.body, envelope.topic
+        if topic == UNIQUE:
+            return newest({**state, body.RequestID: Told(body, {})}), ()
+        if topic in ENDINGS:
+            ended = request_ended(topic, body)
+            return {k: v for k, v in state.items() if k != ended}, ()
+        key = body.CorrespondingAutomationRequestID
+        mine = state.get(key)
+        if mine is None:
+            return state, ()
+        if topic == OPTIONS:
+            if body.TaskID in mine.options:
+                return state, ()
+            told = mine._replace(options={**mine.options, body.TaskID: body})
+            return {**state, key: told}, ()
+        left = {k: v for k, v in state.items() if k != key}
+        out: list[Any] = []
+        try:
+            self._assign(mine, body, out)
+        except CratousError as error:
+            out.append(self._contexts.fail(key, error))
+        return left, out
+
+    def _assign(self, mine: Told, matrix: Any, out: list[Any]) -> None:
+        """The summary of an assignment; NoPlan or BadInput with the reasons why there is none."""
+        key = mine.request.RequestID
+        context = self._contexts.of(key)
+        offered = read(mine, matrix, context)
+        if offered.foreign:
+            text = f"{offered.foreign} rows are of vehicles that the request does not name: they take no part"
+            out.append(status(key, "Warning", [("reason", text)]))
+        context.assigned = _found(offered.inputs, offered.rows, offered.tasks)
+        result = context.assigned.assignment
+        assert result is not None
+        inputs = offered.inputs
+        listed = [
+            lmcp.new(
+                "TaskAssignment",
+                TaskID=inputs.options[placed.candidate].task_id,
+                OptionID=inputs.options[placed.candidate].option_id,
+                AssignedVehicle=inputs.mission.vehicles[placed.vehicle].id,
+                TimeThreshold=placed.start_ms,
+                TimeTaskCompleted=placed.end_ms,
+            )
+            for placed in result.placed
+        ]
+        summary = lmcp.new(
+            "TaskAssignmentSummary",
+            CorrespondingAutomationRequestID=key,
+            OperatingRegion=matrix.OperatingRegion,
+            TaskList=listed,
+        )
+        out += [status(key, "Information", facts(result)), summary]
+
+
+def _found(inputs: Offered, rows: list[Any], tasks: Iterable[int]) -> mission_assign.Found:
+    """The assignment; else NoPlan with what no vehicle can do or reach, or which constraints clash."""
+    mission = inputs.mission
+    try:
+        found = mission_assign.assign(
+            inputs.problem(travel_of(inputs, rows)),
+            mission_assign.limits_of(mission),
+            mission_assign.places_in(mission),
+        )
+    except BadInput as error:
+        # only what is said of tasks better elsewhere is no mistake of ours
+        why = reasons.why_none(inputs)
+        if not why:
+            raise
+        raise NoPlan(why) from error
+    if found.assignment is None:
+        reached = {row.DestinationTaskID for row in rows}
+        missing = [f"the costs have no way to task {task}" for task in tasks if task not in reached]
+        raise NoPlan(reasons.why_none(inputs) or (*found.reasons, *missing))
+    return found
+
+
+def facts(result: Assignment) -> list[tuple[str, str]]:
+    """What is known of an assignment, for a status: `optimal` only with a certificate."""
+    return [
+        ("cost_ms", str(result.cost)),
+        ("status", result.status),
+        ("bound", str(result.bound) if result.bound > 0 else "unknown"),
+        ("gap", f"{result.gap:.6f}" if result.bound > 0 else "unknown"),
+        ("nodes", str(result.nodes)),
+        ("certificate", result.digest),
+    ]

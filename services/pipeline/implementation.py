@@ -1,0 +1,157 @@
+"""What a task says of itself in messages: its options, and the waypoints of the chosen one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.services.pipeline.contexts import Context
+from cratous.services.pipeline.places import RequestPlaces
+from cratous.services.planning.flyers import camera_for
+from cratous.services.planning.options import Option
+from cratous.services.planning.stages import hold_of
+from cratous.services.sensor import zoomed
+from cratous.spec.errors import NoPlan
+from cratous.spec.mission import Camera, Position, Task
+from cratous.spec.plan import Hold
+
+
+def offer(context: Context, task_id: int, options: Sequence[Option]) -> Any:
+    """The TaskPlanOptions of a task: a choice of one of its options."""
+    numbers = " ".join(f"p{option.option_id}" for option in options)
+    return lmcp.new(
+        "TaskPlanOptions",
+        CorrespondingAutomationRequestID=context.request.RequestID,
+        TaskID=task_id,
+        Composition=f"+({numbers})" if options else "",
+        Options=[_option(context.places, option) for option in options],
+    )
+
+
+def _option(places: RequestPlaces, option: Option) -> Any:
+    start, start_deg = places.sent(option.start)
+    end, end_deg = places.sent(option.end)
+    return lmcp.new(
+        "TaskOption",
+        TaskID=option.task_id,
+        OptionID=option.option_id,
+        EligibleEntities=list(option.vehicles),
+        Cost=option.duration_ms,
+        StartLocation=start,
+        StartHeading=start_deg,
+        EndLocation=end,
+        EndHeading=end_deg,
+    )
+
+
+def way_asked(context: Context, option: Option, request: Any, number: int) -> Any:
+    """The RoutePlanRequest for the way to a chosen option, from where the vehicle is by then."""
+    place, heading_deg = context.places.sent(option.start)
+    route = lmcp.new(
+        "RouteConstraints",
+        RouteID=1,
+        StartLocation=request.StartPosition,
+        StartHeading=request.StartHeading,
+        EndLocation=place,
+        EndHeading=heading_deg,
+    )
+    return lmcp.new(
+        "RoutePlanRequest",
+        RequestID=number,
+        AssociatedTaskID=option.task_id,
+        VehicleID=request.VehicleID,
+        OperatingRegion=context.region,
+        RouteRequests=[route],
+        IsCostOnlyRequest=False,
+    )
+
+
+def implemented(context: Context, task: Task, option: Option, request: Any, plan: Any) -> Any:
+    """The waypoints of the way there (a RoutePlan), the hold if there is a wait, and the task.
+
+    NoPlan if there is no room to hold.
+    """
+    places = context.places
+    first, speed = request.StartingWaypointID, option.flyer.speed_m_s
+    # copies of the planner's waypoints, renumbered: a published object is a value
+    points = [
+        w.copy(Number=first + k, NextWaypoint=first + k + 1)
+        for k, w in enumerate(plan.Waypoints[:-1])
+    ]
+    mine = places.waypoints(option.path, first + len(points), speed, [task.id])
+    wait = max(0, request.TimeThreshold - request.StartTime - plan.RouteCost)
+    hold = hold_of(option, wait, context.inputs.zones) if wait > 0 else None
+    if wait > 0 and hold is None:
+        raise NoPlan(
+            (
+                f"vehicle {request.VehicleID} has to wait {wait / 1000:.3f} s before task "
+                f"{task.id}, and no hold circle there obeys the zones",
+            )
+        )
+    actions = _views(task, option, context.inputs.mission.frame.terrain_m)
+    if hold is not None:
+        actions.append(loiter_action(places, task.id, hold, wait, speed))
+    mine[0].VehicleActionList = actions
+    end, heading_deg = places.sent(option.end)
+    return lmcp.new(
+        "TaskImplementationResponse",
+        ResponseID=request.RequestID,
+        CorrespondingAutomationRequestID=request.CorrespondingAutomationRequestID,
+        TaskID=task.id,
+        OptionID=request.OptionID,
+        VehicleID=request.VehicleID,
+        TaskWaypoints=points + mine,
+        FinalLocation=end,
+        FinalHeading=heading_deg,
+        FinalTime=request.StartTime + plan.RouteCost + wait + option.duration_ms,
+    )
+
+
+def _views(task: Task, option: Option, terrain_m: float) -> list[Any]:
+    """Where the camera looks and how wide it sees, if the task asks for a view."""
+    if option.view_elevation_rad is None:
+        return []
+    camera = camera_for(task, option.flyer.cameras)
+    look = lmcp.new(
+        "GimbalAngleAction",
+        AssociatedTaskList=[task.id],
+        PayloadID=camera.payload_id if camera else 0,
+        Azimuth=math.degrees(option.view_azimuth_rad),
+        Elevation=math.degrees(option.view_elevation_rad),
+    )
+    return [look, *_zoom(task, camera, option.flyer.alt_m - terrain_m)]
+
+
+def _zoom(task: Task, camera: Camera | None, height_m: float) -> list[Any]:
+    """The camera's field of view, if the task asks for another than the present one."""
+    if camera is None:
+        return []
+    narrow = zoomed(camera, task, height_m)
+    if narrow == camera:
+        return []
+    return [
+        lmcp.new(
+            "CameraAction",
+            AssociatedTaskList=[task.id],
+            PayloadID=camera.camera_id,
+            HorizontalFieldOfView=math.degrees(narrow.hfov_rad),
+        )
+    ]
+
+
+def loiter_action(
+    places: RequestPlaces, task_id: int, hold: Hold, wait: int, speed_m_s: float
+) -> Any:
+    """The LoiterAction of a wait [ms] before a task."""
+    return lmcp.new(
+        "LoiterAction",
+        AssociatedTaskList=[task_id],
+        LoiterType="Circular",
+        Radius=hold.radius_m,
+        Direction="Clockwise" if hold.clockwise else "CounterClockwise",
+        Duration=wait,
+        Airspeed=speed_m_s,
+        Location=places.location(Position(hold.north_m, hold.east_m, hold.alt_m)),
+    )

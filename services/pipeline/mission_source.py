@@ -1,0 +1,79 @@
+"""What the services of the pipeline know of a mission: its exact inputs, for the one request made of it.
+
+Messages have degrees; what was read from the mission stays exact beside them.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.services.bus import Envelope
+from cratous.services.pipeline.places import RequestPlaces
+from cratous.services.planning.inputs import Inputs
+from cratous.spec.errors import BadInput
+
+
+class MissionWorld:
+    """What a mission has, by id; nobody has sent messages about it."""
+
+    def __init__(self, inputs: Inputs) -> None:
+        vehicles = [vehicle.id for vehicle in inputs.mission.vehicles]
+        tasks = [task.id for task in inputs.mission.tasks]
+        self._ids = {"configuration": vehicles, "state": vehicles, "task": tasks}
+
+    def has(self, sort: str, number: int) -> bool:
+        """True if there is an object of a sort with this id."""
+        return number in self.ids(sort)
+
+    def get(self, sort: str, number: int) -> Any:
+        """No message about anything."""
+        return None
+
+    def ids(self, sort: str) -> list[int]:
+        """All of a sort."""
+        return self._ids.get(sort, [])
+
+
+class MissionSource:
+    """The facts of one request: what a mission has left to do, from given poses."""
+
+    subscribes: tuple[str, ...] = ()
+
+    def __init__(self, inputs: Inputs) -> None:
+        self.world = MissionWorld(inputs)
+        self._inputs = inputs
+        self.request = lmcp.new(
+            "AutomationRequest",
+            EntityList=[vehicle.id for vehicle in inputs.mission.vehicles],
+            TaskList=list(inputs.wanted),
+            TaskRelationships=inputs.mission.relations,
+        )
+
+    def hear(self, envelope: Envelope, now_ms: int) -> None:
+        """Nothing that comes in messages changes a mission."""
+
+    def asks(self, service: str) -> bool:
+        """Nobody: options were held against the mission's zones and cameras, exactly."""
+        return False
+
+    def inputs(self, request: Any, where: str) -> Inputs:
+        """The mission's inputs; BadInput for another request."""
+        if request.OriginalRequest != self.request:
+            raise BadInput(
+                "this is not the request of the mission",
+                where=where,
+                item="UniqueAutomationRequest",
+                expected=f"tasks {', '.join(map(str, self.request.TaskList))}",
+                got=f"tasks {', '.join(map(str, request.OriginalRequest.TaskList))}",
+            )
+        return self._inputs
+
+    def surroundings(self, vehicle: int, region: int) -> RequestPlaces:
+        """BadInput: routes are asked for as parts of the request."""
+        raise BadInput(
+            "no such vehicle or region in the mission",
+            where=self._inputs.mission.source,
+            expected="a vehicle of the mission, and region 0",
+            got=f"vehicle {vehicle}, region {region}",
+        )

@@ -1,0 +1,106 @@
+"""Places of one request: messages have degrees, the mission's frame has metres.
+
+A place or pose that was sent from here is read as exactly the one that it was, so that nothing is
+lost on the way through messages; any other is read from the message.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import radians
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.services.frames import Projection, compass
+from cratous.services.loading.places import Places
+from cratous.services.loading.uxas_cfg import Sent
+from cratous.services.loading.uxas_parts import point
+from cratous.services.planning.routes import Routes
+from cratous.spec.mission import Mission, Position
+from cratous.spec.plan import Pose
+
+_Spot = tuple[float, float, float, str]
+
+
+def _spot(location: Any) -> _Spot:
+    """What a Location3D says."""
+    kind = location.AltitudeType.name
+    return location.Latitude, location.Longitude, location.Altitude, kind
+
+
+def read_pose(location: Any, heading_deg: float, places: Places, where: str, item: str) -> Pose:
+    """A Location3D and a heading as a pose of a frame; BadInput for what is no place."""
+    position = point(location, places, Sent(None, where, 0), item)
+    return Pose(*position, radians(heading_deg))
+
+
+class Way(NamedTuple):
+    """From where to where, as `Routes` takes it: from a way's own `end` to its own `start`."""
+
+    end: Pose
+    start: Pose
+
+
+class RequestPlaces:
+    """Of one mission: places to and from messages, and routes between any of them."""
+
+    def __init__(self, mission: Mission, finder: Routes) -> None:
+        """finder: routes of the mission's vehicles among its zones; what is found is kept there."""
+        self.mission = mission
+        self.projection = Projection(mission.frame)
+        self._finder = finder
+        self._places = Places(mission.frame)
+        self._points: dict[_Spot, Position] = {}
+        self._poses: dict[tuple[_Spot, float], Pose] = {}
+
+    def routes_of(self, ways: Sequence[Way]) -> Routes:
+        """Routes of the mission's vehicles: way k is that from k to k."""
+        return self._finder.between(ways)
+
+    def location(self, point: Position | Pose) -> Any:
+        """A point as Location3D (degrees, metres MSL)."""
+        lat, lon = self.projection.to_geodetic(point.north_m, point.east_m)
+        made = lmcp.new("Location3D", Latitude=lat, Longitude=lon, Altitude=point.alt_m)
+        self._points[_spot(made)] = Position(*point[:3])
+        return made
+
+    def sent(self, pose: Pose) -> tuple[Any, float]:
+        """A pose as Location3D and compass heading [deg]."""
+        made, heading_deg = self.location(pose), compass(pose.heading_rad)
+        self._poses[_spot(made), heading_deg] = pose
+        return made, heading_deg
+
+    def exact(self, location: Any, heading_deg: float) -> Pose | None:
+        """The pose that was sent as this Location3D and heading, None if none was."""
+        return None if location is None else self._poses.get((_spot(location), heading_deg))
+
+    def pose(self, location: Any, heading_deg: float, where: str, item: str) -> Pose:
+        """A Location3D and a heading as a pose of the frame; BadInput for what is no place."""
+        exact = self.exact(location, heading_deg)
+        if exact is not None:
+            return exact
+        known = None if location is None else self._points.get(_spot(location))
+        if known is None:
+            return read_pose(location, heading_deg, self._places, where, item)
+        return Pose(*known, radians(heading_deg))
+
+    def waypoints(
+        self, points: Sequence[Position], first: int, speed_m_s: float, tasks: Sequence[int]
+    ) -> list[Any]:
+        """Waypoints numbered from `first`, each leading to the next."""
+        lats, lons = self.projection.to_geodetic_many(
+            [p.north_m for p in points], [p.east_m for p in points]
+        )
+        return [
+            lmcp.new(
+                "Waypoint",
+                Latitude=float(lat),
+                Longitude=float(lon),
+                Altitude=point.alt_m,
+                Number=first + k,
+                NextWaypoint=first + k + 1,
+                Speed=speed_m_s,
+                AssociatedTasks=list(tasks),
+            )
+            for k, (point, lat, lon) in enumerate(zip(points, lats, lons, strict=True))
+        ]

@@ -1,0 +1,216 @@
+"""Make a plan for a mission: one automation request to the services of the pipeline, on a bus.
+
+AutomationRequest -> validator -> UniqueAutomationRequest -> tasks -> TaskPlanOptions
+-> route aggregator and planner -> AssignmentCostMatrix -> branch and bound
+-> TaskAssignmentSummary -> plan builder and tasks -> UniqueAutomationResponse
+-> validator -> AutomationResponse
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.core.assignment import START, Placed
+from cratous.services.bus import Bus, Envelope
+from cratous.services.pipeline.aggregator import RouteAggregatorService
+from cratous.services.pipeline.assignment import AssignmentTreeBranchBoundService
+from cratous.services.pipeline.builder import PlanBuilderService
+from cratous.services.pipeline.contexts import Context, Contexts
+from cratous.services.pipeline.mission_source import MissionSource
+from cratous.services.pipeline.planner import RoutePlannerVisibilityService
+from cratous.services.pipeline.tasks import TaskService
+from cratous.services.pipeline.validator import AutomationRequestValidatorService
+from cratous.services.planning import reasons, stages
+from cratous.services.planning.inputs import Inputs
+from cratous.spec.errors import BadInput, NoPlan
+from cratous.spec.mission import Mission
+from cratous.spec.plan import Plan, Pose
+
+LIMIT_MS = 5000
+"""How long a request may take [ms]; here no time passes while one is planned."""
+
+
+class MissionRequests:
+    """Who asks for the plans of a mission: hears what the services say of its requests.
+
+    shared: RequestIDs that were given on this bus; certificate: of the newest assignment; told: of
+    the request in work, by type.
+    """
+
+    name = "Mission"
+    subscribes: tuple[str, ...] = (
+        "uxas.messages.task.UniqueAutomationRequest",
+        "uxas.messages.task.TaskAssignmentSummary",
+        "afrl.cmasi.ServiceStatus",
+        "afrl.cmasi.AutomationResponse",
+    )
+
+    def __init__(self) -> None:
+        self.shared: dict[str, Any] = {}
+        self.certificate: dict[str, Any] | None = None
+        self.told: dict[str, list[Any]] = {}
+
+    def start(self) -> MissionRequests:
+        return self
+
+    def handle(self, state: Any, envelope: Envelope, now_ms: int) -> tuple[Any, Iterable[Any]]:
+        self.told.setdefault(type(envelope.body).__name__, []).append(envelope.body)
+        return state, ()
+
+    def newest(self, kind: str) -> Any:
+        """The newest message of a type, None if none came."""
+        return next(reversed(self.told.get(kind, ())), None)
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why there is no plan, as the services say."""
+        said = self.told.get("ServiceStatus", ())
+        errors = [body for body in said if body.StatusType.name == "Error"]
+        return tuple(p.Value for body in errors for p in body.Info if p.Key == "reason")
+
+
+def make_plan(
+    mission: Mission,
+    bus: Bus | None = None,
+    *,
+    starts: Mapping[int, Pose] | None = None,
+    done: Iterable[Any] = (),
+    now_ms: int = 0,
+    absent: Mapping[int, str] | None = None,
+) -> Plan:
+    """The best plan found for the mission. BadInput for a bad start, NoPlan with reasons.
+
+    bus: where the planning messages go (its own if None); its queue is run until it is empty, and
+    the services leave it afterwards. starts: present poses by vehicle id, instead of the mission's;
+    done: tasks already flown, as (task_id, start_ms, end_ms) or anything with these attributes;
+    now_ms: when the vehicles set off; absent: vehicles that are not in the mission as it is known,
+    with the reason. In flight (starts given) a vehicle inside a zone is no bad input: there is just
+    no route from where it is; and nothing may be left to do.
+    """
+    flying = starts is not None
+    if not mission.tasks and flying:
+        return stages.nothing_asked(mission)
+    bus = Bus(lmcp.full_names) if bus is None else bus
+    poses = stages.start_poses(mission, starts)
+    inputs = Inputs(mission, poses, stages.fixed_tasks(done), now_ms, flying, absent or {})
+    inputs.check_starts()
+    if not inputs.wanted:
+        return stages.nothing_left(mission, inputs.branches, inputs.fixed)
+    if not mission.vehicles:
+        raise NoPlan(reasons.without_options(inputs))
+    requests = requests_on(bus)
+    source = MissionSource(inputs)
+    with services_on(bus, inputs, Contexts(source), requests) as contexts:
+        bus.publish(source.request, MissionRequests.name)
+        bus.run()
+        plan = _answered(requests, contexts)
+    requests.told = {}
+    return plan
+
+
+def requests_on(bus: Bus) -> MissionRequests:
+    """Who asks for plans on a bus; joins it when first asked for."""
+    if MissionRequests.name not in bus.names():
+        bus.add(MissionRequests())
+    found: MissionRequests = bus.state(MissionRequests.name)
+    found.told = {}
+    found.certificate = None
+    return found
+
+
+@contextmanager
+def services_on(
+    bus: Bus, inputs: Inputs, contexts: Contexts, requests: MissionRequests
+) -> Iterator[Contexts]:
+    """The services of the pipeline on a bus, for one request of a mission."""
+    services: list[Any] = [
+        contexts,
+        AutomationRequestValidatorService(requests.shared, contexts, LIMIT_MS),
+        RouteAggregatorService(contexts),
+        RoutePlannerVisibilityService(contexts),
+        *(TaskService(contexts, task.id, task.kind) for task in inputs.mission.tasks),
+        AssignmentTreeBranchBoundService(contexts),
+        PlanBuilderService(contexts),
+    ]
+    for service in services:
+        bus.add(service)
+    try:
+        yield contexts
+    finally:
+        for service in services:
+            bus.remove(service.name)
+
+
+def _answered(requests: MissionRequests, contexts: Contexts) -> Plan:
+    """The plan that the services have answered with; NoPlan or BadInput with what they say."""
+    unique, response = (
+        requests.newest("UniqueAutomationRequest"),
+        requests.newest("AutomationResponse"),
+    )
+    commands = response.MissionCommandList if response is not None else ()
+    if not commands:
+        error = contexts.error(unique.RequestID) if unique is not None else None
+        if isinstance(error, BadInput):
+            raise error
+        raise NoPlan(requests.reasons or ("the services have not answered",))
+    context = contexts.of(unique.RequestID)
+    plan = _exact(context, requests.newest("TaskAssignmentSummary"))
+    said = {c.VehicleID: _order(c) for c in commands}
+    flown = {v: [item.task_id for item in plan.chain(v)] for v in said}
+    if said != flown or len(plan.items) != sum(map(len, said.values())):
+        raise RuntimeError(f"the commands are of {said}, the plan of {flown}")
+    assert context.assigned is not None
+    requests.certificate = context.assigned.certificate
+    return plan
+
+
+def _order(command: Any) -> list[int]:
+    """The tasks of a MissionCommand, in the order of flight."""
+    return list(dict.fromkeys(t for w in command.WaypointList for t in w.AssociatedTasks))
+
+
+def _exact(context: Context, summary: Any) -> Plan:
+    """The plan in the mission frame: times from the summary, ways and constraints from the inputs."""
+    inputs = context.inputs
+    assert context.assigned is not None
+    assert context.assigned.assignment is not None
+    free = {vehicle.id: inputs.now_ms for vehicle in inputs.mission.vehicles}
+    at: dict[int, int] = {}
+    placed = []
+    for task in summary.TaskList:
+        vehicle = task.AssignedVehicle
+        v, k = inputs.vehicle_index[vehicle], inputs.index[task.TaskID, task.OptionID]
+        travel = inputs.routes.travel_ms(v, at.get(vehicle, START), k)
+        assert travel is not None
+        start = task.TimeTaskCompleted - inputs.options[k].duration_ms
+        placed.append(
+            Placed(v, k, free[vehicle], free[vehicle] + travel, start, task.TimeTaskCompleted)
+        )
+        free[vehicle], at[vehicle] = task.TimeTaskCompleted, k
+    return stages.build(
+        inputs.mission,
+        inputs.options,
+        inputs.routes,
+        replace(context.assigned.assignment, placed=tuple(placed)),
+        inputs.zones,
+        inputs.fixed,
+    )
+
+
+def cost_of(plan: Plan) -> int:
+    """The cost of a plan's own items [ms]: the latest end, or the sum of the vehicles' last ends."""
+    last = {item.vehicle_id: item.end_ms for item in plan.items}
+    ends = last.values()
+    return sum(ends) if plan.cost == "CUMULATIVE" else max(ends, default=0)
+
+
+def certificate_of(bus: Bus) -> dict[str, Any] | None:
+    """The certificate of the last assignment that was made on a bus; None if there is none."""
+    if MissionRequests.name not in bus.names():
+        return None
+    requests: MissionRequests = bus.state(MissionRequests.name)
+    return requests.certificate

@@ -1,0 +1,101 @@
+"""What the services of a UxAS process know: what the messages have told, read by the loader.
+
+The world is the newest of each entity, task, zone and region. A UniqueAutomationRequest is a mission in
+the world as it is when the request comes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.services.bus import Envelope
+from cratous.services.loading.places import Places
+from cratous.services.loading.uxas import mission_of, surroundings_of
+from cratous.services.loading.uxas_cfg import Configuration, Sent
+from cratous.services.pipeline.places import RequestPlaces, read_pose
+from cratous.services.pipeline.world import World
+from cratous.services.planning import stages
+from cratous.services.planning.inputs import Inputs
+from cratous.services.uxas.frame import Host
+from cratous.spec.errors import BadInput
+
+IMPACT = "afrl.impact.ImpactAutomationRequest"
+IMPACT_ANSWER = "afrl.impact.ImpactAutomationResponse"
+_OF_ZONES = -1  # no region that comes in a message is this one
+MOST_OVERRIDDEN = 1000
+
+
+class MessageSource:
+    """The facts of one process."""
+
+    subscribes: tuple[str, ...] = (*World.subscribes, IMPACT, IMPACT_ANSWER)
+
+    def __init__(self, host: Host) -> None:
+        self.world = World()
+        self._host = host
+        self._overridden: dict[int, Any] = {}  # requests with conditions of their own, unanswered
+
+    def hear(self, envelope: Envelope, now_ms: int) -> None:
+        """A message about the world, or a request with conditions of its own."""
+        body = envelope.body
+        if envelope.topic == IMPACT:
+            if body.OverridePlanningConditions:
+                kept = {**self._overridden, body.RequestID: body.TrialRequest}
+                self._overridden = dict(list(kept.items())[-MOST_OVERRIDDEN:])
+        elif envelope.topic == IMPACT_ANSWER:
+            self._overridden.pop(body.ResponseID, None)
+        else:
+            self.world.add(body, f"message {envelope.seq} from {envelope.source}", now_ms)
+
+    def asks(self, service: str) -> bool:
+        """Whatever runs on the same bus is asked."""
+        return service in self._host.bus.names()
+
+    def inputs(self, request: Any, where: str) -> Inputs:
+        """A request as a mission; BadInput says what is wrong with it."""
+        # which of two equal requests it is cannot be told: neither is planned as the other
+        if any(body == request.OriginalRequest for body in self._overridden.values()):
+            raise BadInput(
+                "OverridePlanningConditions are not covered",
+                where=where,
+                item="ImpactAutomationRequest",
+                expected="speeds and altitudes in the configurations",
+            )
+        cfg = self._configuration(Sent(request.OriginalRequest, where, 0))
+        mission = mission_of(cfg, str(self._host.config))
+        for note in mission.notes:
+            self._host.log("INFO", f"request {request.RequestID}: {note}")
+        frame = Places(mission.frame)
+        given = {
+            state.EntityID: read_pose(
+                state.PlanningPosition, state.PlanningHeading, frame, where, f"PlanningStates[{k}]"
+            )
+            for k, state in enumerate(request.PlanningStates)
+        }
+        poses = stages.start_poses(mission, given)
+        return Inputs(mission, {vehicle.id: poses[vehicle.id] for vehicle in mission.vehicles})
+
+    def surroundings(self, vehicle: int, region: int) -> RequestPlaces:
+        """The frame and zones of a region for one vehicle. BadInput if something is unknown."""
+        return self._surroundings(vehicle, region, ())
+
+    def among(self, vehicle: int, zones: list[int]) -> RequestPlaces:
+        """The frame and some zones, whatever region they are of. BadInput if one is unknown."""
+        extra = lmcp.new("OperatingRegion", ID=_OF_ZONES, KeepOutAreas=zones)
+        return self._surroundings(vehicle, _OF_ZONES, (Sent(extra, "zones", 0),))
+
+    def _surroundings(self, vehicle: int, region: int, more: tuple[Sent, ...]) -> RequestPlaces:
+        body = lmcp.new("AutomationRequest", EntityList=[vehicle], OperatingRegion=region)
+        cfg = self._configuration(Sent(body, f"routes of vehicle {vehicle}", 0))
+        mission = surroundings_of(
+            replace(cfg, messages=(*more, *cfg.messages)), str(self._host.config)
+        )
+        inputs = Inputs(mission, stages.start_poses(mission))
+        return RequestPlaces(mission, inputs.finder)
+
+    def _configuration(self, sent: Sent) -> Configuration:
+        root = {k: str(v) for k, v in self._host.root.items() if v}
+        services = self._host.shared.get("services", ())
+        return self.world.configuration(self._host.config, root, services, sent)

@@ -1,1 +1,0 @@
-"""The UxAS planning pipeline on messages: drivers of the proved kernels of `core.contracts`."""
