@@ -26,6 +26,7 @@ NUMBER = r"(-?\d+)"
 ITEMS = (
     ("G1", rf"zone: keep_(?:in|out) {NUMBER}, flight of vehicle {NUMBER}", "zone"),
     ("G1", rf"eligibility: task {NUMBER} in flight", "eligible"),
+    ("G1", r"flight: choice", "choice"),
     ("G1", r"flight: .*", "relations"),
     ("G2", rf"well clear of {NUMBER} and {NUMBER}", "pair"),
     ("G2", rf"well clear of {NUMBER}", "pair"),
@@ -54,6 +55,7 @@ class Difference:
 
 
 Key = tuple[str, ...]
+CHOICE = ("G1", "choice")
 
 
 def report_of(path: Path) -> Path | None:
@@ -86,6 +88,8 @@ def differences(rows: list[Row], report: Node, digest: str) -> list[Difference]:
     if report["log"]["digest"].text != digest:
         note = "the report is about another log"
         found.append(Difference(DISAGREE, "", "log", digest[:12], "another digest", note))
+    if CHOICE in theirs:
+        mine[CHOICE] = _choice(rows)
     for key in sorted({*mine, *theirs}):
         one = _compare(key, mine.get(key, []), theirs.get(key, []), mine)
         if one is not None:
@@ -97,6 +101,11 @@ def differences(rows: list[Row], report: Node, digest: str) -> list[Difference]:
             note = "a row that the judge cannot read"
             found.append(Difference(DISAGREE, guarantee, bad[0], whole, VIOLATED, note))
     return sorted(found, key=lambda d: (DISAGREE, CLAIMED, UNDECIDED).index(d.kind))
+
+
+def _choice(rows: list[Row]) -> list[Row]:
+    """The judge's rows on what a monitor calls the choice: whether it is one, and whether it was done."""
+    return [row for row in rows if row.subject[0] == "served" or row.item.startswith("choice: ")]
 
 
 def _key(row: Row) -> Key:

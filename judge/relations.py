@@ -19,6 +19,7 @@ from cratous.judge.algebra import Term, Window, all_of, parse, without
 from cratous.judge.log import Log
 from cratous.judge.mission import Mission
 from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, doubted, seconds, worst
+from cratous.spec.errors import BadInput
 
 WAYS = 2000
 """So many ways to resolve `+` are looked at."""
@@ -89,8 +90,6 @@ def asked(mission: Mission, done: dict[int, Deed]) -> Term | None:
 
 
 def _refuse_strangers(mission: Mission, term: Term) -> None:
-    from cratous.spec.errors import BadInput
-
     differ = set(term.tasks()) ^ set(mission.tasks)
     if differ:
         raise BadInput(

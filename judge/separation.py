@@ -35,6 +35,7 @@ class Pair:
     """What was seen of two aircraft."""
 
     checks: int = 0
+    covered_ms: int = 0
     lost_ms: int | None = None
     last_ms: int = 0
     nearest_m: float = math.inf
@@ -130,7 +131,7 @@ def _row(own: int, other: int, flown: dict[int, Track], volume: Volume) -> Row:
     subject = ("pair", *map(str, sorted((own, other))))
     item = f"well clear of {own} and {other}"
     pair = _watch(flown[own], flown[other], volume)
-    doubt = flown[own].doubt or flown[other].doubt
+    doubt = flown[own].doubt or flown[other].doubt or _unmatched(flown[own], flown[other], pair)
     note = f"nearest {pair.nearest_m:.1f} m at {seconds(pair.nearest_ms)} within ZTHR of altitude"
     if pair.nearest_m == math.inf:
         note = "never within ZTHR of altitude at a sample"
@@ -162,6 +163,7 @@ def _watch(one: Track, two: Track, volume: Volume) -> Pair:
         if j + 1 == len(b) or b[j + 1].time_ms != a[i + 1].time_ms:
             continue
         pair.checks += 1
+        pair.covered_ms += a[i + 1].time_ms - a[i].time_ms
         legs = a[i], a[i + 1], b[j], b[j + 1]
         _measure(pair, a[i + 1], b[j + 1], volume)
         if not clear_by_far(*legs, volume) and lost_on_leg(*legs, volume):
@@ -169,6 +171,18 @@ def _watch(one: Track, two: Track, volume: Volume) -> Pair:
             if pair.lost_ms is None:
                 pair.lost_ms = a[i].time_ms
     return pair
+
+
+def _unmatched(one: Track, two: Track, pair: Pair) -> str:
+    """Why the two were not held against each other all the time that both were in the air."""
+    if not one.times or not two.times:
+        return ""
+    first, last = max(one.times[0], two.times[0]), min(one.times[-1], two.times[-1])
+    if last > first and pair.covered_ms < last - first:
+        return f"they were logged at different instants, for {last - first - pair.covered_ms} ms"
+    if last == first and not pair.checks:
+        return f"they were in the air together at one logged instant only, {seconds(first)}"
+    return ""
 
 
 def _measure(pair: Pair, a: State, b: State, volume: Volume) -> None:

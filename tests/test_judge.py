@@ -128,6 +128,18 @@ def test_every_aircraft_counts_and_what_is_not_seen_is_unknown(tmp_path: Path) -
     assert one(tmp_path, scene, "well clear of 1 and 90") == "holds"
     scene.straight(55, (0, 50, 300), NORTH)  # an aircraft that the mission does not know
     assert one(tmp_path, scene, "well clear of 1 and 55") == "violated"
+    # one that is logged in between was there, but was held against nobody
+    between = Scene().straight(1, (0, 0, 300), NORTH).straight(55, (0, 9000, 300), NORTH)
+    for message in between.messages:
+        if message.body["VehicleID"] == 55:
+            message.body["Time"] += 500
+    assert one(tmp_path, between, "well clear of 1 and 55") == "unknown"
+    for k, expected in ((9, "holds"), (10, "unknown")):
+        short = Scene().straight(1, (0, 0, 300), NORTH).straight(55, (0, 9000, 300), NORTH)
+        short.messages = [
+            m for m in short.messages if m.body["VehicleID"] == 1 or m.body["Time"] >= 1000 * k
+        ]
+        assert one(tmp_path, short, "well clear of 1 and 55") == expected
     alone = Scene().straight(1, (0, 0, 300), NORTH)
     assert one(tmp_path, alone, "well clear of 1") == "holds"
 
@@ -426,6 +438,13 @@ def test_a_story_with_a_hole(tmp_path: Path, left_out: int) -> None:
         [TAKEN[0], (1000, "state", "ICAROUS", 2), (1000, "change", "ICAROUS", 2)],
         [TAKEN[0], (1000, "change", "ICAROUS", 1)],
         [*TAKEN[:5], (5000, "state", "UxAS", 2), (5000, "change", "UxAS", 2)],
+        # UxAS takes what was not offered
+        [
+            *TAKEN[:4],
+            (5000, "command", "UxAS", 1),
+            (5000, "state", "UxAS", 1),
+            (5000, "change", "UxAS", 1),
+        ],
     ],
 )
 def test_stories_that_do_not_fit(tmp_path: Path, rows) -> None:
