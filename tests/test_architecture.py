@@ -16,7 +16,11 @@ ALLOWED = {
     "proofs": {"spec", "core"},
     "bridge": {"spec", "core"},
     "services": {"spec", "core", "bridge"},
+    "judge": {"spec"},
 }
+JUDGE_MAY_IMPORT = {"cratous.spec.errors"}
+JUDGE_OUTSIDE = {"numpy", "yaml"}
+JUDGE_COMMAND = "services/cli/judge.py"
 SPEC_DATA = {
     "cratous.spec.mission",
     "cratous.spec.plan",
@@ -62,6 +66,8 @@ def test_imports_follow_the_table(part: str, root: Path) -> None:
                 continue
             if target == "proofs" and place in PROOF_COMMANDS:
                 continue
+            if target == "judge" and place == JUDGE_COMMAND:
+                continue
             wrong.append(f"{place} imports {name}")
     assert not wrong
 
@@ -74,6 +80,47 @@ def test_core_uses_only_data_of_spec(root: Path) -> None:
         if name.startswith("cratous.spec.") and name not in SPEC_DATA
     ]
     assert not wrong
+
+
+def test_the_judge_shares_no_code(root: Path) -> None:
+    wrong = []
+    for file in sorted((root / "judge").rglob("*.py")):
+        assert "import_module" not in file.read_text()
+        for name in _imports(file):
+            ours = name == "cratous" or name.startswith("cratous.")
+            if ours and not name.startswith("cratous.judge"):
+                wrong += [] if _base(name) in JUDGE_MAY_IMPORT else [f"{file.name} imports {name}"]
+            elif not ours and name.split(".")[0] not in sys.stdlib_module_names | JUDGE_OUTSIDE:
+                wrong.append(f"{file.name} imports {name}")
+    ours = {name for name in _imports(root / JUDGE_COMMAND) if name.startswith("cratous")}
+    wrong += [f"{JUDGE_COMMAND} imports {n}" for n in ours if not n.startswith("cratous.judge")]
+    assert not wrong
+
+
+def _base(name: str) -> str:
+    return ".".join(name.split(".")[:3])
+
+
+def test_nothing_of_the_judged_is_loaded_with_the_judge() -> None:
+    """What the import statements say is also what happens, down to what is imported by what is imported."""
+    code = (
+        "import sys, pathlib\n"
+        "from cratous.judge import judge\n"
+        "import cratous.judge.mission_file\n"
+        "try:\n"
+        "    judge(pathlib.Path('no such log'))\n"
+        "except Exception as error:\n"
+        "    assert type(error).__name__ == 'BadInput'\n"
+        "print(*sorted(m for m in sys.modules if m.startswith('cratous')))\n"
+        "print(*[m for m in ('numba', 'z3', 'shapely', 'lark', 'pyproj') if m in sys.modules])\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=900
+    )
+    ours, engines = done.stdout.splitlines()
+    loaded = {m for m in ours.split() if not m.startswith("cratous.judge")}
+    assert loaded == {"cratous", "cratous.spec", "cratous.spec.errors"}
+    assert engines == ""
 
 
 def _module(root: Path, name: str) -> Path | None:
@@ -111,12 +158,13 @@ def test_no_circular_imports(root: Path) -> None:
 
 
 def test_folders_refuse_another_name(root: Path) -> None:
-    code = "import sys; sys.path.insert(0, '.'); import core"
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=root, capture_output=True, text=True, timeout=900
-    )
-    assert done.returncode != 0
-    assert "cratous.core" in done.stderr
+    for name in ("core", "judge"):
+        code = f"import sys; sys.path.insert(0, '.'); import {name}"
+        done = subprocess.run(
+            [sys.executable, "-c", code], cwd=root, capture_output=True, text=True, timeout=900
+        )
+        assert done.returncode != 0
+        assert f"cratous.{name}" in done.stderr
 
 
 @pytest.mark.slow

@@ -32,6 +32,7 @@ COMMANDS = {
     "certify": "Judge a finished flight again from its log.",
     "assign": "Solve an assignment problem, with a certificate.",
     "certify-plan": "Check the certificate of an assignment.",
+    "judge": "Judge a flight by a program that shares no code with it.",
     "monitor": "Watch a message log for violations of G1 to G5.",
     "log": "List, filter, follow, export, import and replay message logs.",
     "lmcp": "Read, write, explain and compare LMCP messages.",

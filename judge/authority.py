@@ -1,0 +1,140 @@
+"""G4: exactly one of UxAS and ICAROUS commands each protected vehicle, and takeovers end.
+
+Three sources must tell one story: the gate's states, the commands that were let through or dropped,
+and the announced changes of authority. A vehicle begins with UxAS in epoch 0. ICAROUS takes over, offers
+control, or withdraws its offer, each in the next epoch. UxAS has control again when its first command
+of the offer's epoch has come; that begins no epoch. A command acts if its epoch is the present one and
+its sender has control, or is UxAS under an offer; any other must be dropped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from cratous.judge.log import Gate, Log
+from cratous.judge.mission import Mission
+from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, seconds
+
+UXAS, ICAROUS = "UxAS", "ICAROUS"
+
+
+class _Story:
+    """What has been told of one vehicle so far. due: what has to be told next."""
+
+    def __init__(self) -> None:
+        self.owner, self.epoch, self.offered = UXAS, 0, False
+        self.due = ""
+        self.said_owner = UXAS
+        self.commands = self.takeovers = self.handbacks = self.dropped = 0
+        self.open_ms: int | None = None
+        self.faults: list[tuple[int, str]] = []
+
+    def fault(self, at_ms: int, text: str) -> None:
+        self.faults.append((at_ms, text))
+
+    def settle(self, at_ms: int) -> None:
+        """Nothing may be due any more."""
+        if self.due == "drop":
+            self.fault(at_ms, "a command came through from one who did not have control")
+        elif self.due == "handback":
+            self.fault(at_ms, "UxAS took the offer, and the gate did not change")
+        self.due = ""
+
+    def command(self, said: Gate) -> None:
+        self.settle(said.time_ms)
+        self.commands += 1
+        acts = said.epoch == self.epoch and (
+            said.side == self.owner or (said.side == UXAS and self.offered)
+        )
+        if not acts:
+            self.due = "drop"
+        elif said.side != self.owner:
+            self.due = "handback"
+
+    def drop(self, said: Gate) -> None:
+        self.dropped += 1
+        if self.due != "drop":
+            self.fault(said.time_ms, f"a command of {said.side} was dropped that had control")
+            self.settle(said.time_ms)
+        self.due = ""
+
+    def state(self, said: Gate) -> None:
+        now = (said.side, said.epoch, said.offered)
+        taking_back = self.due == "handback"
+        if not taking_back:
+            self.settle(said.time_ms)
+        allowed = {(UXAS, self.epoch, False)} if taking_back else {(ICAROUS, self.epoch + 1, False)}
+        if not taking_back and self.owner == ICAROUS and not self.offered:
+            allowed.add((ICAROUS, self.epoch + 1, True))
+        if now not in allowed:
+            before = _words(self.owner, self.epoch, self.offered)
+            self.fault(said.time_ms, f"the gate went from {before} to {_words(*now)}")
+        self._announced(said.time_ms)
+        self.due = ""
+        if self.owner == UXAS and said.side == ICAROUS:
+            self.takeovers += 1
+            self.open_ms = said.time_ms
+        elif self.owner == ICAROUS and said.side == UXAS:
+            self.handbacks += 1
+            self.open_ms = None
+        self.owner, self.epoch, self.offered = now
+
+    def change(self, said: Gate) -> None:
+        if (said.side, said.epoch) != (self.owner, self.epoch):
+            text = f"{said.side} is announced in epoch {said.epoch}, the gate has "
+            self.fault(said.time_ms, text + _words(self.owner, self.epoch, self.offered))
+        elif said.side == self.said_owner:
+            self.fault(said.time_ms, f"{said.side} is announced twice")
+        self.said_owner = said.side
+
+    def _announced(self, at_ms: int) -> None:
+        if self.said_owner != self.owner:
+            self.fault(at_ms, f"that {self.owner} has control was not announced")
+            self.said_owner = self.owner
+
+    def end(self, at_ms: int, failed_ms: int | None) -> str:
+        """The mission's end; what is said of a takeover that was not handed back."""
+        self.settle(at_ms)
+        self._announced(at_ms)
+        if self.open_ms is None:
+            return ""
+        if failed_ms is not None and failed_ms >= self.open_ms:
+            return f"; the last one ended in the failure declared at {seconds(failed_ms)}"
+        self.fault(self.open_ms, f"the takeover of {seconds(self.open_ms)} was never handed back")
+        return ""
+
+
+def _words(owner: str, epoch: int, offered: bool) -> str:
+    return f"{owner} in epoch {epoch}{', offered' if offered else ''}"
+
+
+def rows(mission: Mission, log: Log) -> Iterator[Row]:
+    """One row for each protected vehicle."""
+    for vehicle in mission.protected:
+        story = _Story()
+        for said in log.gates:
+            if said.vehicle == vehicle:
+                getattr(story, said.kind)(said)
+        subject, item = ("authority", str(vehicle)), f"authority over vehicle {vehicle}"
+        ended = ""
+        if log.end_ms is not None:
+            failed = [
+                p.time_ms for p in log.progress if p.vehicle == vehicle and p.phase == "Failed"
+            ]
+            ended = story.end(log.end_ms, failed[-1] if failed else None)
+        note = (
+            f"{story.takeovers} takeovers, {story.handbacks} handbacks, {story.commands} commands, "
+            f"{story.dropped} of them dropped{ended}"
+        )
+        if story.faults:
+            at_ms, text = min(story.faults, key=lambda fault: fault[0])
+            note = f"{text} (at {seconds(at_ms)}; {len(story.faults)} faults); {note}"
+            yield Row("G4", subject, item, VIOLATED, note, at_ms, story.commands)
+        elif not story.commands:
+            yield Row("G4", subject, item, UNKNOWN, "no command to it was logged")
+        elif log.end_ms is None:
+            yield Row(
+                "G4", subject, item, UNKNOWN, f"the log stops before the mission ends; {note}"
+            )
+        else:
+            yield Row("G4", subject, item, HOLDS, note, None, story.commands)

@@ -1,0 +1,183 @@
+"""The judge's rows beside those of the flight's monitor, as its report.json has them.
+
+- *disagree*: one says that something holds and the other that it is violated; or a violation that the
+  monitor has no row for, or calls unknown; or something it excuses that holds; or a row that the
+  judge does not expect.
+- *claimed excused*: violated here, excused there. The judge knows no excuses.
+- *undecided*: one of the two cannot say.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from cratous.judge.fields import Node
+from cratous.judge.verdict import GUARANTEES, HOLDS, UNKNOWN, VIOLATED, Row, worst
+from cratous.spec.errors import BadInput
+
+NAME = "report.json"
+FORMAT = "cratous-report/1"
+EXCUSED = "excused"
+DISAGREE, CLAIMED, UNDECIDED = "disagree", "claimed excused", "undecided"
+NUMBER = r"(-?\d+)"
+ITEMS = (
+    ("G1", rf"zone: keep_(?:in|out) {NUMBER}, flight of vehicle {NUMBER}", "zone"),
+    ("G1", rf"eligibility: task {NUMBER} in flight", "eligible"),
+    ("G1", r"flight: choice", "choice"),
+    ("G1", r"flight: .*", "relations"),
+    ("G2", rf"well clear of {NUMBER} and {NUMBER}", "pair"),
+    ("G2", rf"well clear of {NUMBER}", "pair"),
+    ("G3", rf"task {NUMBER} served", "served"),
+    ("G3", r"end of mission", "end"),
+    ("G4", rf"authority over vehicle {NUMBER}", "authority"),
+    ("G5", rf"heartbeat to the ICAROUS instance of {NUMBER}", "to"),
+    ("G5", rf"heartbeat from the ICAROUS instance of {NUMBER}", "from"),
+)
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Where the two do not say the same."""
+
+    kind: str
+    guarantee: str
+    item: str
+    judge: str
+    monitor: str
+    note: str
+
+    def line(self) -> str:
+        """In one line."""
+        return f"{self.guarantee} {self.item}: judge {self.judge}, monitor {self.monitor} ({self.note})"
+
+
+Key = tuple[str, ...]
+CHOICE = ("G1", "choice")
+
+
+def report_of(path: Path) -> Path | None:
+    """The report beside a log, if there is one."""
+    folder = path if path.is_dir() else path.parent
+    if not path.is_dir() and path.name != "log.sqlite":
+        return None
+    report = folder / NAME
+    return report if report.is_file() else None
+
+
+def read(path: Path) -> Node:
+    """The report; BadInput if it is none."""
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise BadInput(f"not a report ({str(error)[:100]})", where=str(path)) from None
+    report = Node(data, str(path), "report")
+    report["format"].one_of(FORMAT)
+    return report
+
+
+def differences(rows: list[Row], report: Node, digest: str) -> list[Difference]:
+    """All of them, those that disagree first."""
+    theirs, strange = _theirs(report)
+    mine: dict[Key, list[Row]] = {}
+    for row in rows:
+        mine.setdefault(_key(row), []).append(row)
+    found = []
+    if report["log"]["digest"].text != digest:
+        note = "the report is about another log"
+        found.append(Difference(DISAGREE, "", "log", digest[:12], "another digest", note))
+    if CHOICE in theirs:
+        mine[CHOICE] = _choice(rows)
+    for key in sorted({*mine, *theirs}):
+        one = _compare(key, mine.get(key, []), theirs.get(key, []), mine)
+        if one is not None:
+            found.append(one)
+    for guarantee in GUARANTEES:
+        bad = [item for g, item, verdict in strange if g == guarantee and verdict == VIOLATED]
+        whole = worst([row.verdict for row in rows if row.guarantee == guarantee])
+        if bad and whole != VIOLATED:
+            note = "a row that the judge cannot read"
+            found.append(Difference(DISAGREE, guarantee, bad[0], whole, VIOLATED, note))
+    return sorted(found, key=lambda d: (DISAGREE, CLAIMED, UNDECIDED).index(d.kind))
+
+
+def _choice(rows: list[Row]) -> list[Row]:
+    """The judge's rows on what a monitor calls the choice: whether it is one, and whether it was done."""
+    return [row for row in rows if row.subject[0] == "served" or row.item.startswith("choice: ")]
+
+
+def _key(row: Row) -> Key:
+    return (row.guarantee, "relations") if row.subject[0] == "relations" else (
+        row.guarantee, *row.subject
+    )  # fmt: skip
+
+
+def _theirs(report: Node) -> tuple[dict[Key, list[tuple[str, str]]], list[tuple[str, str, str]]]:
+    """The monitor's verdicts by the judge's keys, and those that fit no key."""
+    found: dict[Key, list[tuple[str, str]]] = {}
+    strange = []
+    for row in report["constraints"]:
+        if row["source"].text != "flight":
+            continue
+        guarantee, item = row["requirement"].text, row["item"].text
+        verdict = row["verdict"].one_of(HOLDS, VIOLATED, UNKNOWN, EXCUSED)
+        key = _read_item(guarantee, item)
+        if key is None:
+            strange.append((guarantee, item, verdict))
+        else:
+            found.setdefault(key, []).append((verdict, item))
+    return found, strange
+
+
+def _read_item(guarantee: str, item: str) -> Key | None:
+    for where, pattern, name in ITEMS:
+        match = re.fullmatch(pattern, item, re.DOTALL)
+        if where != guarantee or match is None:
+            continue
+        parts = match.groups()
+        if name == "pair":
+            parts = tuple(map(str, sorted(map(int, parts))))
+        if name in ("to", "from"):
+            return (guarantee, "beat", *parts, "Down" if name == "to" else "Up")
+        return (guarantee, name, *parts)
+    return None
+
+
+def _compare(
+    key: Key, mine: list[Row], theirs: list[tuple[str, str]], all_mine: dict[Key, list[Row]]
+) -> Difference | None:
+    here = worst([row.verdict for row in mine]) if mine else ""
+    there = _worst_of([verdict for verdict, _ in theirs])
+    if here == there:
+        return None
+    row = next((row for row in mine if row.verdict == here), None)
+    item = row.item if row else theirs[0][1]
+    note = row.note if row else "the judge expects no such row"
+    kind = UNDECIDED
+    if not here:
+        if _met_nobody(key, all_mine):
+            return None
+        kind = DISAGREE
+    elif not there:
+        if here == HOLDS:
+            return None
+        kind = DISAGREE if here == VIOLATED else UNDECIDED
+    elif here == VIOLATED:
+        kind = CLAIMED if there == EXCUSED else DISAGREE
+    elif here == HOLDS and there != UNKNOWN:
+        kind = DISAGREE
+    return Difference(kind, key[0], item, here or "no row", there or "no row", note)
+
+
+def _worst_of(verdicts: list[str]) -> str:
+    return next((v for v in (VIOLATED, UNKNOWN, EXCUSED, HOLDS) if v in verdicts), "")
+
+
+def _met_nobody(key: Key, mine: dict[Key, list[Row]]) -> bool:
+    """A row of the monitor that says that a vehicle met nobody, which the judge says pair by pair."""
+    if key[:2] != ("G2", "pair") or len(key) != 3:
+        return False
+    pairs = [rows for other, rows in mine.items() if other[:2] == key[:2] and key[2] in other[2:]]
+    return all(row.verdict == HOLDS for rows in pairs for row in rows)

@@ -1,0 +1,96 @@
+"""Plain data (of JSON or YAML) read with its types: what does not fit is a BadInput with its path."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from cratous.spec.errors import BadInput
+
+MOST = 2**61
+"""No whole number reaches this."""
+FARTHEST = 1e15
+"""No real number exceeds this; squares and products of four stay far from the end of the doubles."""
+
+
+class Node:
+    """A value with the place where it stands; `where` is the file."""
+
+    def __init__(self, data: Any, where: str, item: str) -> None:
+        self.data, self.where, self.item = data, where, item
+
+    def wrong(self, expected: str) -> BadInput:
+        """The error that this value is."""
+        got = repr(self.data) if not isinstance(self.data, int) else _digits(self.data)
+        return BadInput(
+            "does not fit", where=self.where, item=self.item, expected=expected, got=got[:80]
+        )
+
+    def __getitem__(self, name: str) -> Node:
+        """A field of an object; BadInput if it is missing."""
+        if not isinstance(self.data, dict):
+            raise self.wrong("an object")
+        if name not in self.data:
+            raise BadInput(
+                "a field is missing", where=self.where, item=f"{self.item}.{name}", expected=name
+            )
+        return Node(self.data[name], self.where, f"{self.item}.{name}")
+
+    def get(self, name: str, default: Any = None) -> Node:
+        """A field of an object, or this default."""
+        if not isinstance(self.data, dict):
+            raise self.wrong("an object")
+        return Node(self.data.get(name, default), self.where, f"{self.item}.{name}")
+
+    def __iter__(self) -> Iterator[Node]:
+        """The entries of a list."""
+        if not isinstance(self.data, list):
+            raise self.wrong("a list")
+        for k, part in enumerate(self.data):
+            yield Node(part, self.where, f"{self.item}[{k}]")
+
+    def has(self, name: str) -> bool:
+        """Whether an object has the field, and not null in it."""
+        return isinstance(self.data, dict) and self.data.get(name) is not None
+
+    @property
+    def whole(self) -> int:
+        """A whole number."""
+        if type(self.data) is not int or abs(self.data) >= MOST:
+            raise self.wrong("a whole number of at most 61 bits")
+        return self.data
+
+    @property
+    def real(self) -> float:
+        """A finite number."""
+        if type(self.data) not in (int, float):
+            raise self.wrong("a number")
+        if not abs(self.data) <= FARTHEST or not math.isfinite(self.data):
+            raise self.wrong(f"a number of at most {FARTHEST:g}")
+        return float(self.data)
+
+    @property
+    def text(self) -> str:
+        """A text."""
+        if type(self.data) is not str:
+            raise self.wrong("a text")
+        return self.data
+
+    @property
+    def flag(self) -> bool:
+        """True or false."""
+        if type(self.data) is not bool:
+            raise self.wrong("true or false")
+        return self.data
+
+    def one_of(self, *choices: str) -> str:
+        """One of these texts."""
+        if self.data not in choices:
+            raise self.wrong(" or ".join(choices))
+        return str(self.data)
+
+
+def _digits(number: int) -> str:
+    # a number of very many digits is not written out
+    return str(number) if abs(number) < 10**60 else f"a number of {number.bit_length()} bits"

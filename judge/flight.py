@@ -1,0 +1,116 @@
+"""The whole judgement of one log."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from cratous.judge import (
+    authority,
+    compare,
+    heartbeat,
+    log,
+    mission_file,
+    relations,
+    separation,
+    service,
+    zones,
+)
+from cratous.judge.compare import DISAGREE, Difference
+from cratous.judge.mission import Mission, from_log
+from cratous.judge.tracks import tracks
+from cratous.judge.verdict import GUARANTEES, HOLDS, VIOLATED, Row, doubted, worst
+from cratous.judge.work import Flight
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """Rows, and where the flight's report says otherwise. report: whether there is one."""
+
+    rows: tuple[Row, ...]
+    differences: tuple[Difference, ...]
+    report: bool
+    not_covered: tuple[int, ...]
+    digest: str
+
+    @property
+    def verdict(self) -> str:
+        """The worst of all."""
+        return worst([self.of(guarantee) for guarantee in GUARANTEES])
+
+    def of(self, guarantee: str) -> str:
+        """The verdict on G1 to G5; without a row it is unknown."""
+        return worst([row.verdict for row in self.rows if row.guarantee == guarantee])
+
+    @property
+    def disagreements(self) -> list[Difference]:
+        """Where one of the two must be wrong."""
+        return [d for d in self.differences if d.kind == DISAGREE]
+
+    @property
+    def exit_code(self) -> int:
+        """0 holds, 1 violated or in disagreement with the monitor, 3 unknown."""
+        if self.disagreements or self.verdict == VIOLATED:
+            return 1
+        return 0 if self.verdict == HOLDS else 3
+
+    def data(self) -> dict[str, Any]:
+        """All of it as plain data."""
+        return {
+            "verdict": self.verdict,
+            "exit_code": self.exit_code,
+            "disagreements": len(self.disagreements),
+            "guarantees": {name: self.of(name) for name in GUARANTEES},
+            "not_covered": list(self.not_covered),
+            "log_digest": self.digest,
+            "compared": self.report,
+            "differences": [asdict(d) for d in self.differences],
+            "rows": [{**asdict(row), "subject": list(row.subject)} for row in self.rows],
+        }
+
+
+def judge(path: Path, mission: Path | None = None) -> Judgement:
+    """Judge a log, or the folder it is in, against its mission or that of a file.
+
+    Raises BadInput (`cratous.spec.errors`), and nothing else, for what cannot be judged.
+    """
+    found = log.read(log.place_of(path))
+    asked = mission_file.read(mission) if mission else from_log(log.mission_node(found))
+    rows = tuple(judged(asked, found))
+    report = compare.report_of(path)
+    said = compare.differences(list(rows), compare.read(report), found.digest) if report else []
+    uncovered = tuple(sorted(v.id for v in asked.vehicles.values() if not v.protected))
+    return Judgement(rows, tuple(said), report is not None, uncovered, found.digest)
+
+
+def judged(mission: Mission, found: log.Log) -> list[Row]:
+    """All rows that the mission asks for, and that the log adds."""
+    flown = tracks(mission, found)
+    done = relations.deeds(mission, found)
+    flight = Flight(mission, found, flown, done)
+    served = service.served(flight)
+    good = {task for task, (verdict, *_) in served.items() if verdict == HOLDS}
+    safe = [*zones.rows(mission, flown), *separation.rows(mission, flown)]
+    rows = [*safe, *relations.rows(mission, found, done, good), *service.rows(flight, served)]
+    rows += authority.rows(mission, found)
+    rows += heartbeat.rows(mission, found, _unsafe(safe))
+    doubts = list(found.doubts)
+    if found.end_ms is None:
+        doubts.append("the log stops before the mission ends")
+    return [doubted(row, doubts[0] if doubts else "") for row in sorted(rows, key=_place)]
+
+
+def _place(row: Row) -> tuple[str, bool]:
+    return row.guarantee, row.subject[0] == "end"
+
+
+def _unsafe(rows: list[Row]) -> dict[int, list[int]]:
+    """When each vehicle broke a zone or lost well clear, by vehicle."""
+    found: dict[int, list[int]] = {}
+    for row in rows:
+        if row.verdict == VIOLATED and row.at_ms is not None:
+            who = row.subject[2:] if row.subject[0] == "zone" else row.subject[1:]
+            for vehicle in who:
+                found.setdefault(int(vehicle), []).append(row.at_ms)
+    return found

@@ -1,0 +1,78 @@
+"""G5: heartbeats both ways, none later than two periods; or the vehicle acts safely alone.
+
+A silence that nobody declared is a violation. During one that was declared (BridgeStatus) the vehicle
+acts alone: if it then breaks a zone or loses well clear that is a violation; if not, it is not known
+whether it would have acted, and the verdict is unknown.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+from cratous.judge.log import Beat, Log
+from cratous.judge.mission import Mission
+from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, seconds
+
+PERIODS = 2
+
+
+def rows(mission: Mission, log: Log, unsafe: dict[int, list[int]]) -> Iterator[Row]:
+    """One row for each protected vehicle and direction. unsafe: when each broke G1's zones or G2."""
+    for vehicle in mission.protected:
+        for way, name in (("Down", "to"), ("Up", "from")):
+            yield _row(mission, log, (vehicle, way), name, unsafe.get(vehicle, []))
+
+
+def _row(mission: Mission, log: Log, key: tuple[int, str], name: str, unsafe: list[int]) -> Row:
+    vehicle, way = key
+    subject = ("beat", str(vehicle), way)
+    item = f"heartbeat {name} the ICAROUS instance of {vehicle}"
+    if vehicle not in mission.instances:
+        note = "the vehicle has no ICAROUS instance: there is no bridge to judge"
+        return Row("G5", subject, item, UNKNOWN, note)
+    if log.end_ms is None:
+        return Row("G5", subject, item, UNKNOWN, "the log stops before the mission ends")
+    bound = PERIODS * mission.heartbeat_ms
+    beats = log.beats.get(key, [])
+    fault = _fault(beats, bound)
+    if fault:
+        return Row("G5", subject, item, VIOLATED, fault[1], fault[0], len(beats))
+    times = [0, *(b.time_ms for b in beats), log.end_ms]
+    gaps = [(b - a, a) for a, b in pairwise(times)]
+    longest, since = max(gaps)
+    numbers = beats[-1].number - beats[0].number + 1 - len(beats) if beats else 0
+    note = f"{len(beats)} heartbeats, longest silence {longest} ms at {seconds(since)}"
+    if numbers:
+        note += f", {numbers} lost by their numbers"
+    silences = [(a, a + gap) for gap, a in gaps if gap > bound]
+    downs = [s.time_ms for s in log.bridges.get(vehicle, []) if not s.alive]
+    if not silences:
+        if downs:
+            note += f"; said to be down at {seconds(downs[0])} all the same"
+            return Row("G5", subject, item, UNKNOWN, note, downs[0], len(beats))
+        return Row("G5", subject, item, HOLDS, note, since, len(beats))
+    for first, last in silences:
+        if not any(first <= at <= last for at in downs):
+            note += f"; silent from {seconds(first)}, and nobody declared the bridge down"
+            return Row("G5", subject, item, VIOLATED, note, first, len(beats))
+        if any(first <= at <= last for at in unsafe):
+            note += f"; silent from {seconds(first)}, and unsafe alone"
+            return Row("G5", subject, item, VIOLATED, note, first, len(beats))
+    note += (
+        "; alone it kept its zones and well clear, whether it would have acted is not in the log"
+    )
+    return Row("G5", subject, item, UNKNOWN, note, silences[0][0], len(beats))
+
+
+def _fault(beats: list[Beat], bound: int) -> tuple[int, str] | None:
+    """A heartbeat that came late after it was sent, or not in order."""
+    last: Beat | None = None
+    for beat in beats:
+        late = beat.logged_ms - beat.time_ms
+        if not 0 <= late <= bound:
+            return beat.time_ms, f"heartbeat {beat.number} came {late} ms after it was sent"
+        if last is not None and (beat.time_ms < last.time_ms or beat.number <= last.number):
+            return beat.time_ms, f"heartbeat {beat.number} came after heartbeat {last.number}"
+        last = beat
+    return None

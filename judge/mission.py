@@ -1,0 +1,285 @@
+"""The mission as the judge sees it: from the data that a log carries. See also `mission_file`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from cratous.judge.fields import Node
+from cratous.judge.plane import fault_of_ring
+from cratous.spec.errors import BadInput
+
+Point = tuple[float, float]
+SEARCHES = ("line_search", "point_search", "area_search", "pattern_search")
+KINDS = (*SEARCHES, "must_fly", "loiter")
+CHANGES = ("zone", "vehicle_lost", "vehicle_joins", "task_added", "task_removed", "wind")
+
+
+class Camera(NamedTuple):
+    """A camera, by the payload that reports it."""
+
+    payload: int
+    wavelength: str
+    pixels: int
+
+
+@dataclass(frozen=True)
+class Vehicle:
+    """One of ours."""
+
+    id: int
+    protected: bool
+    speed_m_s: float
+    bank_rad: float
+    cameras: tuple[Camera, ...] = ()
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is asked for. shape, size_m, length_m: of a loiter; pattern, extent_m: of a pattern."""
+
+    id: int
+    kind: str
+    points: tuple[Point, ...]
+    eligible: frozenset[int]
+    duration_ms: int = 0
+    standoff_m: float = 0.0
+    gsd_m: float = 0.0
+    wavelength: str = "AllAny"
+    shape: str = ""
+    radius_m: float = 0.0
+    length_m: float = 0.0
+    pattern: str = ""
+    extent_m: float = 0.0
+
+
+@dataclass(frozen=True)
+class Zone:
+    """A polygon (north, east) between two altitudes, known from an instant on.
+
+    padding_m widens a keep-out and narrows a keep-in, by distance.
+    """
+
+    id: int
+    keep_in: bool
+    ring: tuple[Point, ...]
+    floor_m: float
+    ceiling_m: float
+    padding_m: float = 0.0
+    from_ms: int = 0
+
+
+class Traffic(NamedTuple):
+    """An aircraft of others, and when it is there."""
+
+    id: int
+    appears_ms: int
+    vanishes_ms: int | None
+
+
+class Volume(NamedTuple):
+    """The well-clear volume: DTHR and ZTHR [m], TTHR and TCOA [s]."""
+
+    dthr_m: float
+    zthr_m: float
+    tthr_s: float
+    tcoa_s: float
+
+
+@dataclass(frozen=True)
+class Mission:
+    """All of it. lost, joins, added, removed: since when, by id [ms]."""
+
+    name: str
+    latitude_deg: float
+    longitude_deg: float
+    vehicles: dict[int, Vehicle]
+    tasks: dict[int, Task]
+    zones: tuple[Zone, ...]
+    traffic: tuple[Traffic, ...]
+    relations: str
+    instances: frozenset[int]
+    volume: Volume
+    step_ms: int = 250
+    heartbeat_ms: int = 500
+    limit_ms: int = 7_200_000
+    seed: int = 0
+    lost: dict[int, int] = field(default_factory=dict)
+    joins: dict[int, int] = field(default_factory=dict)
+    added: dict[int, int] = field(default_factory=dict)
+    removed: dict[int, int] = field(default_factory=dict)
+
+    @property
+    def protected(self) -> list[int]:
+        """The vehicles that the guarantees are for."""
+        return sorted(v.id for v in self.vehicles.values() if v.protected)
+
+
+def from_log(data: Node) -> Mission:
+    """The mission that the log's meta data carry; BadInput if they do not fit."""
+    frame, simulation, daa = data["frame"], data["simulation"], data["daa"]["well_clear"]
+    zones = [zone(z) for z in data["zones"]]
+    since: dict[str, dict[int, int]] = {name: {} for name in CHANGES}
+    for change in data["changes"]:
+        kind, at = change["kind"].one_of(*CHANGES), _not_negative(change["at_ms"])
+        if kind == "zone":
+            zones.append(zone(change["zone"], at))
+        elif kind != "wind":
+            number = change["vehicle" if kind.startswith("vehicle") else "task"].whole
+            since[kind].setdefault(number, at)
+    volume = Volume(*(daa[name].real for name in Volume._fields))
+    mission = Mission(
+        name=data["name"].text,
+        latitude_deg=frame["latitude_deg"].real,
+        longitude_deg=frame["longitude_deg"].real,
+        vehicles=by_id([_vehicle(v) for v in data["vehicles"]], data["vehicles"]),
+        tasks=by_id([_task(t) for t in data["tasks"]], data["tasks"]),
+        zones=tuple(zones),
+        traffic=tuple(_traffic(t) for t in data["traffic"]),
+        relations=data["relations"].text,
+        instances=frozenset(n.whole for n in data["instances"]),
+        volume=volume,
+        step_ms=positive(simulation["step_ms"]),
+        heartbeat_ms=positive(simulation["heartbeat_ms"]),
+        limit_ms=positive(simulation["limit_ms"]),
+        seed=data["seed"].whole,
+        lost=since["vehicle_lost"],
+        joins=since["vehicle_joins"],
+        added=since["task_added"],
+        removed=since["task_removed"],
+    )
+    check(mission, data)
+    return mission
+
+
+def check(mission: Mission, data: Node) -> None:
+    """What a mission has to be, whichever way it was read."""
+    if min(mission.volume) < 0:
+        raise data["daa"].wrong("a well-clear volume without negative sizes")
+    if not abs(mission.latitude_deg) <= 90:
+        raise data["frame"].wrong("a latitude from -90 to 90")
+    known = {*mission.vehicles, *mission.tasks}
+    named = [*mission.lost, *mission.joins, *mission.added, *mission.removed]
+    strange = [n for n in named if n not in known]
+    if strange:
+        raise data["changes"].wrong(f"vehicles and tasks that exist, not {strange[0]}")
+
+
+def zone(data: Node, from_ms: int = 0) -> Zone:
+    """A zone; BadInput if its outline is no simple polygon."""
+    found = Zone(
+        data["id"].whole,
+        data["kind"].one_of("keep_in", "keep_out") == "keep_in",
+        tuple(pair(v) for v in data["vertices"]),
+        data["floor_m"].real,
+        data["ceiling_m"].real,
+        data["padding_m"].real,
+        from_ms,
+    )
+    refuse_bad_ring(found.ring, data["vertices"])
+    if found.padding_m < 0:
+        raise data["padding_m"].wrong("0 or more")
+    return found
+
+
+def refuse_bad_ring(ring: tuple[Point, ...], data: Node) -> None:
+    """BadInput if these corners are no simple polygon."""
+    fault = fault_of_ring(ring)
+    if fault:
+        raise BadInput(
+            f"not a simple polygon: {fault}",
+            where=data.where,
+            item=data.item,
+            expected="at least three corners, and edges that meet nowhere else",
+        )
+
+
+def pair(data: Node) -> Point:
+    """Two numbers."""
+    found = tuple(x.real for x in data)
+    if len(found) != 2:
+        raise data.wrong("two numbers")
+    return found[0], found[1]
+
+
+def by_id(found: Sequence[Any], data: Node) -> dict[int, Any]:
+    """By their ids; BadInput if one stands twice."""
+    numbers = [one.id for one in found]
+    if len(set(numbers)) != len(numbers):
+        raise data.wrong("each id once")
+    return dict(zip(numbers, found, strict=True))
+
+
+def _not_negative(data: Node) -> int:
+    if data.whole < 0:
+        raise data.wrong("0 or more")
+    return data.whole
+
+
+def positive(data: Node) -> int:
+    """A whole number above 0."""
+    if data.whole <= 0:
+        raise data.wrong("more than 0")
+    return data.whole
+
+
+def _vehicle(data: Node) -> Vehicle:
+    cameras = tuple(
+        Camera(c["payload_id"].whole, c["wavelength"].text, c["pixels"].whole)
+        for c in data["cameras"]
+    )
+    return Vehicle(
+        data["id"].whole,
+        data["protected"].flag,
+        data["speed_m_s"].real,
+        data["max_bank_rad"].real,
+        cameras,
+    )
+
+
+def _task(data: Node) -> Task:
+    kind = data["kind"].one_of(*KINDS)
+    points = tuple((p["north_m"].real, p["east_m"].real) for p in data["points"])
+    shape, radius, length = "", data["radius_m"].real, 0.0
+    if data.has("loiter"):
+        loiter = data["loiter"]
+        shape, radius = loiter["shape"].text, loiter["radius_m"].real
+        length = loiter["length_m"].real
+        if kind == "loiter":
+            points = ((loiter["centre"]["north_m"].real, loiter["centre"]["east_m"].real),)
+    found = Task(
+        id=data["id"].whole,
+        kind=kind,
+        points=points,
+        eligible=frozenset(n.whole for n in data["eligible"]),
+        duration_ms=_not_negative(data["duration_ms"]),
+        standoff_m=data["standoff_m"].real,
+        gsd_m=data["gsd_m"].real,
+        wavelength=data["wavelength"].text,
+        shape=shape,
+        radius_m=radius,
+        length_m=length,
+        pattern=data["pattern"].text if data.has("pattern") else "",
+        extent_m=data["extent_m"].real,
+    )
+    check_task(found, data)
+    return found
+
+
+def check_task(task: Task, data: Node) -> None:
+    """BadInput if a task does not say where."""
+    least = {"line_search": 2, "area_search": 3}.get(task.kind, 1)
+    if len(task.points) < least:
+        raise data.get("points").wrong(f"at least {least} points")
+    if task.kind == "area_search":
+        refuse_bad_ring(task.points, data.get("points"))
+    if task.kind == "pattern_search":
+        data["pattern"].one_of("spiral", "square", "sector", "sweep")
+        if task.extent_m <= 0:
+            raise data["extent_m"].wrong("more than 0")
+
+
+def _traffic(data: Node) -> Traffic:
+    vanishes = data["vanishes_ms"].whole if data.has("vanishes_ms") else None
+    return Traffic(data["id"].whole, data["appears_ms"].whole, vanishes)

@@ -1,0 +1,174 @@
+"""The mission as its file (YAML) says it, with the judge's own reading of units and paddings.
+
+Paddings stay distances here, where the log has outlines with mitred corners. A file with a
+`variation` says another mission for every seed, so it is not taken for a flown variant.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from cratous.judge import mission as m
+from cratous.judge.earth import to_local
+from cratous.judge.fields import Node
+from cratous.spec.errors import BadInput
+
+LARGEST = 20_000_000
+CORNERS = 64
+"""A circle of an area stands for a polygon around it with so many corners."""
+
+
+def read(path: Path) -> m.Mission:
+    """The mission in a file; BadInput if it does not fit."""
+    try:
+        if path.stat().st_size > LARGEST:
+            raise BadInput("too large", where=str(path), expected=f"at most {LARGEST} bytes")
+        data = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, ValueError, yaml.YAMLError, RecursionError) as error:
+        text = " ".join(str(error).split())[:200]
+        raise BadInput(f"not a mission file ({text})", where=str(path)) from None
+    root = Node(data, str(path), "mission")
+    found = _Reader(root).mission()
+    m.check(found, root)
+    return found
+
+
+class _Reader:
+    def __init__(self, root: Node) -> None:
+        self.root, self.frame = root, root["frame"]
+        self.origin = self.frame["latitude_deg"].real, self.frame["longitude_deg"].real
+
+    def mission(self) -> m.Mission:
+        root = self.root
+        zones = [self.zone(z, 0) for z in root.get("zones", [])]
+        since: dict[str, dict[int, int]] = {name: {} for name in m.CHANGES}
+        for change in root.get("changes", []):
+            at = _ms(change["at_s"])
+            for name in m.CHANGES:
+                if name == "zone" and change.has(name):
+                    zones.append(self.zone(change[name], at))
+                elif name != "wind" and change.has(name):
+                    since[name].setdefault(change[name].whole, at)
+        vehicles = [self.vehicle(v) for v in root["vehicles"]]
+        guarded = [v.id for v in vehicles if v.protected]
+        count = root.get("bridge", {}).get("instances", len(guarded)).whole
+        volume = root.get("daa", {}).get("well_clear", {})
+        usual = {"dthr_m": 150.0, "zthr_m": 30.0, "tthr_s": 15.0, "tcoa_s": 0.0}
+        simulation = root.get("simulation", {})
+        return m.Mission(
+            name=root["name"].text,
+            latitude_deg=self.origin[0],
+            longitude_deg=self.origin[1],
+            vehicles=m.by_id(vehicles, root["vehicles"]),
+            tasks=m.by_id([self.task(t) for t in root["tasks"]], root["tasks"]),
+            zones=tuple(zones),
+            traffic=tuple(self.traffic(t) for t in root.get("traffic", [])),
+            relations=root.get("relations", "").text,
+            instances=frozenset(guarded[: max(count, 0)]),
+            volume=m.Volume(*(volume.get(n, usual[n]).real for n in m.Volume._fields)),
+            step_ms=m.positive(simulation.get("step_ms", 250)),
+            heartbeat_ms=m.positive(simulation.get("heartbeat_ms", 500)),
+            limit_ms=_ms(simulation.get("limit_s", 7200)),
+            lost=since["vehicle_lost"],
+            joins=since["vehicle_joins"],
+            added=since["task_added"],
+            removed=since["task_removed"],
+        )
+
+    def point(self, data: Node) -> m.Point:
+        """A place in metres, in degrees, or as a pair of metres."""
+        if isinstance(data.data, list):
+            return m.pair(data)
+        if data.has("latitude_deg"):
+            local = to_local(*self.origin, data["latitude_deg"].real, data["longitude_deg"].real)
+            if local is None:
+                raise data.wrong("a place on this side of the Earth")
+            return local
+        return data["north_m"].real, data["east_m"].real
+
+    def zone(self, data: Node, from_ms: int) -> m.Zone:
+        plain: dict[str, Any] = {
+            "id": data["id"].data,
+            "kind": data["kind"].data,
+            "vertices": [list(self.point(v)) for v in data["vertices"]],
+            "floor_m": data.get("floor_m", -1000.0).data,
+            "ceiling_m": data.get("ceiling_m", 100_000.0).data,
+            "padding_m": data.get("padding_m", 0.0).data,
+        }
+        return m.zone(Node(plain, data.where, data.item), from_ms)
+
+    def vehicle(self, data: Node) -> m.Vehicle:
+        cameras = tuple(
+            m.Camera(
+                c.get("payload_id", 1).whole, c.get("wavelength", "AllAny").text,
+                c.get("pixels", 0).whole,
+            )
+            for c in data.get("cameras", [])
+        )  # fmt: skip
+        bank = math.radians(data.get("max_bank_deg", 30.0).real)
+        protected = data.get("protected", True).flag
+        return m.Vehicle(data["id"].whole, protected, data["speed_m_s"].real, bank, cameras)
+
+    def task(self, data: Node) -> m.Task:
+        kind = data["kind"].one_of(*m.KINDS)
+        points = self.places(data)
+        shape, radius, length = "", data.get("radius_m", 0.0).real, 0.0
+        if data.has("loiter"):
+            loiter = data["loiter"]
+            shape, length = loiter.get("shape", "circular").text, loiter.get("length_m", 0.0).real
+            radius = loiter.get("radius_m", radius).real
+            if kind == "loiter" and loiter.has("centre"):
+                points = (self.point(loiter["centre"]),)
+        found = m.Task(
+            id=data["id"].whole,
+            kind=kind,
+            points=points,
+            eligible=frozenset(n.whole for n in data.get("eligible", [])),
+            duration_ms=_ms(data.get("duration_s", 0)),
+            standoff_m=data.get("standoff_m", 0.0).real,
+            gsd_m=data.get("ground_sample_distance_m", 0.0).real,
+            wavelength=data.get("wavelength", "AllAny").text,
+            shape=shape,
+            radius_m=radius,
+            length_m=length,
+            pattern=data.get("pattern", "").text,
+            extent_m=data.get("extent_m", 0.0).real,
+        )
+        m.check_task(found, data)
+        return found
+
+    def places(self, data: Node) -> tuple[m.Point, ...]:
+        """Points, or the corners of a rectangle or of a polygon around a circle."""
+        if data.has("rectangle"):
+            shape = data["rectangle"]
+            n, e = self.point(shape["centre"])
+            turn = math.radians(shape.get("rotation_deg", 0.0).real)
+            north, east = shape["height_m"].real / 2, shape["width_m"].real / 2
+            along = math.cos(turn), math.sin(turn)
+            return tuple(
+                (n + a * along[0] - b * along[1], e + a * along[1] + b * along[0])
+                for a, b in ((north, east), (-north, east), (-north, -east), (north, -east))
+            )
+        if data.has("circle"):
+            (n, e), step = self.point(data["circle"]["centre"]), 2 * math.pi / CORNERS
+            reach = data["circle"]["radius_m"].real / math.cos(step / 2)
+            return tuple(
+                (n + reach * math.cos(k * step), e + reach * math.sin(k * step))
+                for k in range(CORNERS)
+            )
+        return tuple(self.point(p) for p in data["points"])
+
+    def traffic(self, data: Node) -> m.Traffic:
+        vanishes = _ms(data["vanishes_s"]) if data.has("vanishes_s") else None
+        return m.Traffic(data["id"].whole, _ms(data.get("appears_s", 0)), vanishes)
+
+
+def _ms(data: Node) -> int:
+    """Seconds as milliseconds; not negative."""
+    if data.real < 0:
+        raise data.wrong("0 or more")
+    return round(data.real * 1000)

@@ -1,0 +1,161 @@
+"""Searches: what the logged footprints covered, of cameras that suit the task."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from cratous.judge.coverage import area_m2, area_seen, footprints, line_seen, outlines, point_seen
+from cratous.judge.earth import ACCURACY_M, to_local
+from cratous.judge.log import Look
+from cratous.judge.mission import Point, Task
+from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED
+from cratous.judge.work import Flight, nearest_m
+
+SHARE = 0.99
+SPACING_M = 10.0
+"""A line's share is that of points this far apart, so half of it more or less unseen is not decided."""
+COARSER = 1.01
+"""A footprint counts up to this many times the ground sample distance that is asked for."""
+
+
+def searched(flight: Flight, task: Task) -> tuple[str, str]:
+    """Verdict and note on a search."""
+    judge = {"line_search": _line, "point_search": _point}.get(task.kind, _area)
+    verdict, note = judge(flight, task)
+    if verdict != VIOLATED and task.gsd_m and not _resolves(flight, task):
+        return UNKNOWN, f"{note}; how many pixels the camera has is not known"
+    return verdict, note
+
+
+def _looks(flight: Flight, task: Task) -> list[tuple[Look, list[Point]]]:
+    """The footprints that count for a task, in the mission frame."""
+    found = []
+    spans = flight.spans(task.id)
+    mission = flight.mission
+    for look in flight.log.looks:
+        if not any(v == look.vehicle and a <= look.time_ms <= b for v, a, b in spans):
+            continue
+        if len(look.corners) < 3 or not _suits(flight, task, look):
+            continue
+        local = [to_local(mission.latitude_deg, mission.longitude_deg, *c) for c in look.corners]
+        corners = [c for c in local if c is not None]
+        if len(corners) == len(local):
+            found.append((look, corners))
+    return found
+
+
+def _suits(flight: Flight, task: Task, look: Look) -> bool:
+    """Whether the camera sees the wavelength, and finely enough, as far as that is known."""
+    vehicle = flight.mission.vehicles.get(look.vehicle)
+    camera = (
+        next((c for c in vehicle.cameras if c.payload == look.payload), None) if vehicle else None
+    )
+    if camera is None:
+        return False
+    if (
+        "AllAny" not in (task.wavelength, camera.wavelength)
+        and task.wavelength != camera.wavelength
+    ):
+        return False
+    if not task.gsd_m or not camera.pixels:
+        return True
+    slant = _slant_m(flight, look)
+    if slant is None:
+        return False
+    pixel = 2 * slant * math.tan(math.radians(look.hfov_deg) / 2) / camera.pixels
+    return pixel <= task.gsd_m * COARSER
+
+
+def _slant_m(flight: Flight, look: Look) -> float | None:
+    """From the aircraft to the place below the middle of its view [m]."""
+    track = flight.tracks.get(look.vehicle)
+    index = track.from_index(look.time_ms) if track else 0
+    if track is None or index >= len(track.states) or look.centre is None:
+        return None
+    state = track.states[index]
+    mission = flight.mission
+    centre = to_local(mission.latitude_deg, mission.longitude_deg, *look.centre[:2])
+    if state.time_ms != look.time_ms or centre is None:
+        return None
+    return math.dist((state.north_m, state.east_m, state.alt_m), (*centre, look.centre[2]))
+
+
+def _resolves(flight: Flight, task: Task) -> bool:
+    """Whether the pixels of all cameras that may have looked are known."""
+    for vehicle, *_ in flight.spans(task.id):
+        flyer = flight.mission.vehicles.get(vehicle)
+        if flyer is None or any(not c.pixels for c in flyer.cameras):
+            return False
+    return True
+
+
+def _by_share(sure: float, may: float, what: str) -> tuple[str, str]:
+    note = f"footprints covered {100 * sure:.3f} % of its {what}"
+    if sure >= SHARE:
+        return HOLDS, note
+    if may < SHARE:
+        return VIOLATED, note
+    return UNKNOWN, f"{note} for sure and {100 * may:.3f} % perhaps"
+
+
+def _line(flight: Flight, task: Task) -> tuple[str, str]:
+    prints = footprints([corners for _, corners in _looks(flight, task)])
+    sure, may, whole = line_seen(prints, task.points)
+    if whole == 0:
+        return UNKNOWN, "the line has no length"
+    # all but a millimetre at each end of a footprint is all
+    close = 4 * ACCURACY_M * (len(task.points) + 1)
+    if whole - sure <= close:
+        sure = whole
+    half = SPACING_M / 2 if sure < whole else 0.0
+    return _by_share((sure - half) / whole, min(1.0, (may + half) / whole), "line")
+
+
+def _area(flight: Flight, task: Task) -> tuple[str, str]:
+    prints = footprints([corners for _, corners in _looks(flight, task)])
+    inner, outer = outlines(task)
+    seen = area_seen(prints, outer)
+    whole, least = area_m2(outer), area_m2(inner)
+    if least == 0:
+        return UNKNOWN, "the area is empty"
+    sure, unseen = seen.seen, max(0.0, seen.unseen - (whole - least))
+    verdict, note = _by_share(1 - (whole - sure) / least, 1 - unseen / whole, "area")
+    return verdict, f"{note} (squares of {seen.finest_m:g} m)"
+
+
+def _point(flight: Flight, task: Task) -> tuple[str, str]:
+    point = task.points[0]
+    looks = _looks(flight, task)
+    sure, may = point_seen(footprints([corners for _, corners in looks]), point)
+    times = sorted({look.time_ms for (look, _), s in zip(looks, sure, strict=True) if s})
+    perhaps = sorted({look.time_ms for (look, _), s in zip(looks, may, strict=True) if s})
+    note = f"seen in {len(times)} footprints"
+    if not np.any(may):
+        return VIOLATED, note
+    verdict = HOLDS if times else UNKNOWN
+    if task.duration_ms:
+        seen, most = (_stayed_ms(flight, x) for x in (times, perhaps))
+        note += f", for {seen / 1000:g} of {task.duration_ms / 1000:g} s"
+        # two footprints are a heartbeat apart: at both ends of the dwell one period is not decided
+        room = 2 * flight.mission.heartbeat_ms
+        if most + room < task.duration_ms:
+            return VIOLATED, note
+        if seen + room < task.duration_ms:
+            verdict = UNKNOWN
+    if task.standoff_m:
+        nearest = nearest_m(flight, task, point)
+        note += f"; came within {nearest:.1f} m, allowed {task.standoff_m:g} m"
+        if nearest < task.standoff_m - ACCURACY_M:
+            return VIOLATED, note
+        if nearest < task.standoff_m + ACCURACY_M:
+            verdict = UNKNOWN
+    return verdict, note
+
+
+def _stayed_ms(flight: Flight, times: list[int]) -> int:
+    """How long something was seen, with no look in between missing."""
+    period = flight.mission.heartbeat_ms
+    return sum(b - a for a, b in pairwise(times) if b - a <= period)

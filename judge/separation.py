@@ -1,0 +1,193 @@
+"""G2: is well clear ever lost between a protected vehicle and another aircraft? Exact, between samples.
+
+Well clear (modified tau) is lost at an instant if, of the relative position s and velocity v,
+- horizontally |s| <= DTHR; or s.v < 0, the closest approach on straight flight is within DTHR, and
+  0 <= (DTHR^2 - |s|^2) / (s.v) <= TTHR; and
+- vertically |h| <= ZTHR; or 0 <= -h / h' <= TCOA.
+
+On a leg v is constant. With q(t) = |s + t v|^2 and d(t) = (s + t v).v = q'(t) / 2, the horizontal
+condition holds from the lower root of q + TTHR d - DTHR^2 to the upper root of q - DTHR^2, if the course
+comes within DTHR at all, and never else: before the closest approach d < 0, so (DTHR^2 - q) / d <= TTHR says
+q + TTHR d <= DTHR^2, which |s| <= DTHR implies there. Whether the vertical condition's interval,
+whose ends are rational, meets that one is decided by signs at those ends: no root is taken.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+
+from cratous.judge.log import State
+from cratous.judge.mission import Mission, Volume
+from cratous.judge.tracks import Track
+from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, doubted, seconds
+
+ROUND = 2.0**-50
+"""More than the relative rounding of a difference of differences, with its terms' sizes."""
+NMAC = (152.4, 30.48)
+"""Near mid-air collision: 500 ft and 100 ft. Told, not judged: the mission says what is well clear."""
+
+
+@dataclass
+class Pair:
+    """What was seen of two aircraft."""
+
+    checks: int = 0
+    covered_ms: int = 0
+    lost_ms: int | None = None
+    last_ms: int = 0
+    nearest_m: float = math.inf
+    nearest_ms: int = 0
+    collision_ms: int | None = None
+
+
+def clear_by_far(a0: State, a1: State, b0: State, b1: State, volume: Volume) -> bool:
+    """Certainly never lost on the leg, by doubles with room for their rounding.
+
+    A loss needs |s| <= DTHR + TTHR |v| at an instant: from q + TTHR d <= DTHR^2 and |d| <= |s| |v|.
+    """
+    h = (a1.time_ms - a0.time_ms) / 1000
+    n0, e0 = a0.north_m - b0.north_m, a0.east_m - b0.east_m
+    n1, e1 = a1.north_m - b1.north_m, a1.east_m - b1.east_m
+    moved = math.hypot(n1 - n0, e1 - e0)
+    size = (
+        abs(a0.north_m) + abs(b0.north_m) + abs(a1.north_m) + abs(b1.north_m)
+        + abs(a0.east_m) + abs(b0.east_m) + abs(a1.east_m) + abs(b1.east_m)
+    )  # fmt: skip
+    moved = (moved + size * ROUND) * (1 + 1e-9)
+    reach = (volume.dthr_m + (volume.tthr_s / h + 1) * moved) * (1 + 1e-9) + 1e-9
+    if math.hypot(n0, e0) > reach:
+        return True
+    z0, z1 = a0.alt_m - b0.alt_m, a1.alt_m - b1.alt_m
+    size = abs(a0.alt_m) + abs(b0.alt_m) + abs(a1.alt_m) + abs(b1.alt_m)
+    climbed = (abs(z1 - z0) + size * ROUND) * (1 + 1e-9)
+    reach = (volume.zthr_m + (volume.tcoa_s / h + 1) * climbed) * (1 + 1e-9) + 1e-9
+    return abs(z0) > reach
+
+
+def lost_on_leg(a0: State, a1: State, b0: State, b1: State, volume: Volume) -> bool:
+    """Whether well clear is lost at an instant of the leg, its ends included. Exact."""
+    span = Fraction(a1.time_ms - a0.time_ms, 1000)
+    s = [Fraction(a0[k]) - Fraction(b0[k]) for k in (1, 2, 3)]
+    v = [(Fraction(a1[k]) - Fraction(b1[k]) - s[k - 1]) / span for k in (1, 2, 3)]
+    return lost_within(s, v, span, volume)
+
+
+def lost_within(s: list[Fraction], v: list[Fraction], span: Fraction, volume: Volume) -> bool:
+    """The same from relative position and velocity (north, east, up), for 0 <= t <= span."""
+    dthr, zthr, tthr, tcoa = map(Fraction, volume)
+    times = _vertical(s[2], v[2], zthr, tcoa, span)
+    if times is None:
+        return False
+    first, last = times
+    vv, sv = v[0] * v[0] + v[1] * v[1], s[0] * v[0] + s[1] * v[1]
+    ss, dd = s[0] * s[0] + s[1] * s[1], dthr * dthr
+    if vv == 0:
+        return ss <= dd
+    if (ss - dd) * vv > sv * sv:
+        return False  # the course never comes within DTHR
+
+    def apart(t: Fraction) -> Fraction:
+        return vv * t * t + 2 * sv * t + ss - dd
+
+    # the instants that count are those from the lower root of `soon` to the upper root of `apart`
+    def soon(t: Fraction) -> Fraction:
+        return apart(t) + tthr * (sv + vv * t)
+
+    after_lower = soon(last) <= 0 or 2 * vv * last + 2 * sv + tthr * vv >= 0
+    before_upper = apart(first) <= 0 or vv * first + sv <= 0
+    return after_lower and before_upper
+
+
+def _vertical(
+    sz: Fraction, vz: Fraction, zthr: Fraction, tcoa: Fraction, span: Fraction
+) -> tuple[Fraction, Fraction] | None:
+    """The instants of the leg at which the vertical condition holds: one interval, or none."""
+    zero = Fraction(0)
+    if vz == 0:
+        return (zero, span) if abs(sz) <= zthr else None
+    level = -sz / vz
+    first = max(zero, level - max(tcoa, zthr / abs(vz)))
+    last = min(span, level + zthr / abs(vz))
+    return (first, last) if first <= last else None
+
+
+def rows(mission: Mission, flown: dict[int, Track]) -> Iterator[Row]:
+    """One row for each protected vehicle and each other aircraft, of the mission or of the log."""
+    protected = mission.protected
+    for own in protected:
+        others = [i for i in sorted(flown) if i != own and not (i in protected and i < own)]
+        for other in others:
+            yield _row(own, other, flown, mission.volume)
+        if len(flown) == 1:
+            subject = ("pair", str(own))
+            note = "the mission and the log know of no other aircraft"
+            yield Row("G2", subject, f"well clear of {own}", HOLDS, note)
+
+
+def _row(own: int, other: int, flown: dict[int, Track], volume: Volume) -> Row:
+    subject = ("pair", *map(str, sorted((own, other))))
+    item = f"well clear of {own} and {other}"
+    pair = _watch(flown[own], flown[other], volume)
+    doubt = flown[own].doubt or flown[other].doubt or _unmatched(flown[own], flown[other], pair)
+    note = f"nearest {pair.nearest_m:.1f} m at {seconds(pair.nearest_ms)} within ZTHR of altitude"
+    if pair.nearest_m == math.inf:
+        note = "never within ZTHR of altitude at a sample"
+    if pair.collision_ms is not None:
+        note += (
+            f"; near mid-air collision (within 152.4 m and 30.48 m) at {seconds(pair.collision_ms)}"
+        )
+    if pair.lost_ms is not None:
+        note = f"lost from {seconds(pair.lost_ms)}, last at {seconds(pair.last_ms)}; {note}"
+        return Row("G2", subject, item, VIOLATED, note, pair.lost_ms, pair.checks)
+    if not pair.checks:
+        if doubt:
+            return Row("G2", subject, item, UNKNOWN, doubt)
+        return Row("G2", subject, item, HOLDS, "never in the air together")
+    row = Row("G2", subject, item, HOLDS, note, pair.nearest_ms, pair.checks)
+    return doubted(row, doubt)
+
+
+def _watch(one: Track, two: Track, volume: Volume) -> Pair:
+    """Every leg that both have flown from the same instant to the same instant."""
+    pair = Pair()
+    place = {time: k for k, time in enumerate(two.times)}
+    a, b = one.states, two.states
+    for i in range(len(a) - 1):
+        j = place.get(a[i].time_ms)
+        if j is None:
+            continue
+        _measure(pair, a[i], b[j], volume)
+        if j + 1 == len(b) or b[j + 1].time_ms != a[i + 1].time_ms:
+            continue
+        pair.checks += 1
+        pair.covered_ms += a[i + 1].time_ms - a[i].time_ms
+        legs = a[i], a[i + 1], b[j], b[j + 1]
+        _measure(pair, a[i + 1], b[j + 1], volume)
+        if not clear_by_far(*legs, volume) and lost_on_leg(*legs, volume):
+            pair.last_ms = a[i].time_ms
+            if pair.lost_ms is None:
+                pair.lost_ms = a[i].time_ms
+    return pair
+
+
+def _unmatched(one: Track, two: Track, pair: Pair) -> str:
+    """Why the two were not held against each other all the time that both were in the air."""
+    if not one.times or not two.times:
+        return ""
+    first, last = max(one.times[0], two.times[0]), min(one.times[-1], two.times[-1])
+    if last > first and pair.covered_ms < last - first:
+        return f"they were logged at different instants, for {last - first - pair.covered_ms} ms"
+    if last == first and not pair.checks:
+        return f"they were in the air together at one logged instant only, {seconds(first)}"
+    return ""
+
+
+def _measure(pair: Pair, a: State, b: State, volume: Volume) -> None:
+    above, apart = abs(a.alt_m - b.alt_m), math.hypot(a.north_m - b.north_m, a.east_m - b.east_m)
+    if above <= volume.zthr_m and apart < pair.nearest_m:
+        pair.nearest_m, pair.nearest_ms = apart, a.time_ms
+    if pair.collision_ms is None and apart <= NMAC[0] and above <= NMAC[1]:
+        pair.collision_ms = a.time_ms

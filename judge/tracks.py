@@ -1,0 +1,100 @@
+"""The flown way of each aircraft: straight legs between the logged states, and what spoils them.
+
+A leg is taken to be straight. Whoever logs also says the velocity of the coming leg, so that can be
+looked at: where it does not lead to the next position, the way in between is not known.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_left
+from dataclasses import dataclass, field
+
+from cratous.judge.log import Log, State
+from cratous.judge.mission import Mission
+from cratous.judge.verdict import seconds
+
+APART_M = 1e-3
+"""A leg may end this far from where its velocity leads to [m]."""
+
+
+@dataclass
+class Track:
+    """States in the order of time; flaws: instant and reason, where the way is not known."""
+
+    states: list[State]
+    times: list[int]
+    flaws: list[tuple[int, str]] = field(default_factory=list)
+
+    @property
+    def doubt(self) -> str:
+        """Why the way is not known throughout; empty if it is."""
+        return self.flaws[0][1] if self.flaws else ""
+
+    def from_index(self, time_ms: int) -> int:
+        """Index of the first state at or after an instant."""
+        return bisect_left(self.times, time_ms)
+
+
+def tracks(mission: Mission, log: Log) -> dict[int, Track]:
+    """Of every aircraft that the mission or the log knows."""
+    names = {*mission.vehicles, *(t.id for t in mission.traffic), *log.states}
+    return {name: _track(name, mission, log) for name in sorted(names)}
+
+
+def _track(name: int, mission: Mission, log: Log) -> Track:
+    found = Track([], [])
+    for state in log.states.get(name, []):
+        if found.times and state.time_ms <= found.times[-1]:
+            text = f"the positions of {name} are not in the order of time"
+            found.flaws.append((state.time_ms, text))
+            continue
+        found.states.append(state)
+        found.times.append(state.time_ms)
+    begin, end = _span(name, mission, log)
+    if not found.states:
+        if begin is not None and (end is None or begin <= end):
+            found.flaws.append((begin, f"no position of {name} was logged"))
+        return found
+    _ends(found, name, begin, end, mission.step_ms)
+    for before, after in zip(found.states, found.states[1:], strict=False):
+        gap = after.time_ms - before.time_ms
+        if gap > mission.step_ms:
+            text = f"no position of {name} from {seconds(before.time_ms)} for {gap} ms"
+            found.flaws.append((before.time_ms, text))
+        elif not _led(before, after):
+            text = (
+                f"the position of {name} at {seconds(after.time_ms)} is not where its velocity led"
+            )
+            found.flaws.append((before.time_ms, text))
+    return found
+
+
+def _span(name: int, mission: Mission, log: Log) -> tuple[int | None, int | None]:
+    """From when to when an aircraft has to be seen."""
+    if name in mission.vehicles:
+        return 0, log.end_ms
+    for traffic in mission.traffic:
+        if traffic.id == name:
+            end = log.end_ms
+            if traffic.vanishes_ms is not None and end is not None:
+                end = min(end, traffic.vanishes_ms)
+            return traffic.appears_ms, end
+    return None, None
+
+
+def _ends(track: Track, name: int, begin: int | None, end: int | None, step_ms: int) -> None:
+    # an aircraft that comes or goes between two steps is first and last seen at a step
+    if begin is not None and track.times[0] - begin >= max(1, step_ms if begin else 1):
+        track.flaws.append((begin, f"no position of {name} before {seconds(track.times[0])}"))
+    if end is not None and end - track.times[-1] >= step_ms:
+        track.flaws.append(
+            (track.times[-1], f"no position of {name} after {seconds(track.times[-1])}")
+        )
+
+
+def _led(before: State, after: State) -> bool:
+    dt = (after.time_ms - before.time_ms) / 1000
+    reach = max(abs(x) for x in (*before[1:4], *after[1:4]))
+    off = max(abs(before[k] + before[k + 3] * dt - after[k]) for k in (1, 2, 3))
+    return off <= APART_M + 1e-12 * reach and math.isfinite(off)
