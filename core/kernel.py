@@ -2,16 +2,21 @@
 
 A *kernel* is a plain typed function in the subset of `core.subset`. A *fold* runs a kernel step
 over data of run-time length. A *driver* is a map, a fold or a search whose output a proved kernel
-re-checks. All three are registered here by name, so that the ledger can be held against them.
-The decorators return the function itself: CPython runs exactly what is written.
+re-checks. All three are registered here under their qualified names, `package.module.function`, so
+that the ledger can be held against them and two of one bare name stand side by side. The
+decorators return the function itself: CPython runs exactly what is written.
 """
 
 from __future__ import annotations
 
 import inspect
+import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Generic, NamedTuple, TypeVar
+
+from cratous.core.names import candidates, near
+from cratous.spec.errors import BadInput
 
 F = TypeVar("F", bound=Callable[..., Any])
 Acc = TypeVar("Acc")
@@ -26,10 +31,10 @@ class Vec2(NamedTuple):
 
 @dataclass(frozen=True)
 class Entry:
-    """One registered function: what it is, what it implements, and the function.
+    """One registered function: its qualified name, what it is, what it implements, the function.
 
-    uses: kernels that a fold is made of or that re-check a driver; nonnegative: arguments for which
-    a number below 0 means nothing.
+    uses: kernels that a fold is made of, or that re-check a driver as its author names them (see
+    `checkers`); nonnegative: arguments for which a number below 0 means nothing.
     """
 
     name: str
@@ -43,22 +48,84 @@ class Entry:
 REGISTRY: dict[str, Entry] = {}
 
 
-def _home(function: Callable[..., Any]) -> str:
-    return function.step.__module__ if isinstance(function, Fold) else function.__module__
+def qualified(item: Callable[..., Any] | Fold[Any]) -> str:
+    """The name under which a function or fold is registered: `package.module.function`."""
+    if isinstance(item, Fold):
+        return f"{item.module}.{item.name}"
+    return f"{item.__module__}.{item.__qualname__}"
+
+
+def entry_of(item: Any) -> Entry | None:
+    """The entry of this very function or fold; None for anything else, of whatever name."""
+    if not (isinstance(item, Fold) or inspect.isfunction(item)):
+        return None
+    entry = REGISTRY.get(qualified(item))
+    return entry if entry is not None and entry.function is item else None
+
+
+def named(text: str) -> Entry:
+    """The entry of this name; the end of a name will do where only one ends so. Raises BadInput."""
+    found = [text] if text in REGISTRY else candidates(text, REGISTRY)
+    if len(found) == 1:
+        return REGISTRY[found[0]]
+    raise BadInput(
+        "there is no such kernel" if not found else "several kernels have this name",
+        item=text,
+        expected=" or ".join(found or near(text, REGISTRY)) or "the name of a registered kernel",
+    )
+
+
+def checkers(entry: Entry) -> tuple[str, ...]:
+    """Qualified names of the kernels that re-check a driver.
+
+    A bare name is what the driver's module calls so, else the only kernel of its package that is
+    called so; what is neither stays as it is. Raises BadInput for a name of several.
+    """
+    return tuple(_resolved(name, entry) for name in entry.uses)
+
+
+def _resolved(name: str, entry: Entry) -> str:
+    if name in REGISTRY:
+        return name
+    module = entry.function.__module__
+    here = entry_of(vars(sys.modules[module]).get(name))
+    if here is not None:
+        return here.name
+    package = module.split(".")[0]
+    found = [one for one in candidates(name, REGISTRY) if one.split(".")[0] == package]
+    if len(found) > 1:
+        raise BadInput(
+            "several kernels have this name",
+            where=entry.name,
+            item=name,
+            expected=" or ".join(found),
+        )
+    return found[0] if found else name
 
 
 def _register(entry: Entry) -> None:
     old = REGISTRY.get(entry.name)
-    if old is not None and _home(old.function) != _home(entry.function):
-        raise ValueError(
-            f"two kernels are called {entry.name!r}: in {_home(old.function)} "
-            f"and in {_home(entry.function)}"
+    if old is not None and not _alike(old, entry):
+        raise BadInput(
+            "two functions are registered under one name",
+            item=entry.name,
+            expected="one definition in a module, or another name",
         )
     REGISTRY[entry.name] = entry
 
 
+def _alike(old: Entry, new: Entry) -> bool:
+    """The same text, read again."""
+    if (old.kind, old.implements, old.uses) != (new.kind, new.implements, new.uses):
+        return False
+    one, other = old.function, new.function
+    if isinstance(one, Fold) or isinstance(other, Fold):
+        return isinstance(one, Fold) and isinstance(other, Fold) and one.start == other.start
+    return bool(one.__code__ == other.__code__)
+
+
 def kernel(*, implements: str, nonnegative: tuple[str, ...] = ()) -> Callable[[F], F]:
-    """Register a kernel under its function name; `implements` names its definition in `spec`.
+    """Register a kernel under its qualified name; `implements` names its definition in `spec`.
 
     nonnegative: arguments that the theorems take to be at least 0 and that come from outside, as
     thresholds do; the exact and the enclosed reading refuse a number below 0 there. Raises
@@ -69,8 +136,9 @@ def kernel(*, implements: str, nonnegative: tuple[str, ...] = ()) -> Callable[[F
         strangers = set(nonnegative) - set(inspect.signature(function).parameters)
         if strangers:
             raise ValueError(f"{function.__name__} has no argument {', '.join(sorted(strangers))}")
-        name = function.__name__
-        _register(Entry(name, "kernel", implements, function, nonnegative=nonnegative))
+        _register(
+            Entry(qualified(function), "kernel", implements, function, nonnegative=nonnegative)
+        )
         return function
 
     return mark
@@ -80,7 +148,7 @@ def driver(*, checked_by: tuple[str, ...]) -> Callable[[F], F]:
     """Register a search or map; `checked_by` names the kernels that re-check its output."""
 
     def mark(function: F) -> F:
-        _register(Entry(function.__name__, "driver", "", function, checked_by))
+        _register(Entry(qualified(function), "driver", "", function, checked_by))
         return function
 
     return mark
@@ -90,8 +158,9 @@ def driver(*, checked_by: tuple[str, ...]) -> Callable[[F], F]:
 class Fold(Generic[Acc]):
     """`finish(step(... step(step(start, item0, *context), item1, *context) ..., *context))`.
 
-    step and finish are kernels; start is a tuple of integers or booleans. The prover turns each
-    fold into three obligations (base, step, use), so its theorem holds for every number of items.
+    step and finish are kernels; start is a tuple of integers or booleans; module: where it is made.
+    The prover turns each fold into three obligations (base, step, use), so its theorem holds for
+    every number of items.
     """
 
     name: str
@@ -99,6 +168,7 @@ class Fold(Generic[Acc]):
     step: Callable[..., Acc]
     start: Acc
     finish: Callable[..., Any]
+    module: str = ""
 
     @property
     def __name__(self) -> str:
@@ -115,6 +185,8 @@ def fold(
     *, name: str, implements: str, step: Callable[..., Acc], start: Acc, finish: Callable[..., Any]
 ) -> Fold[Acc]:
     """Make and register a fold over a proved step."""
-    made = Fold(name, implements, step, start, finish)
-    _register(Entry(name, "fold", implements, made, (step.__name__, finish.__name__)))
+    made = Fold(name, implements, step, start, finish, sys._getframe(1).f_globals["__name__"])
+    _register(
+        Entry(qualified(made), "fold", implements, made, (qualified(step), qualified(finish)))
+    )
     return made
