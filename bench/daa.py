@@ -12,9 +12,9 @@ import time
 import numpy as np
 from table import on_one_core
 
+from cratous.core.compiled import machine
 from cratous.core.daa_alerting import raw_levels
 from cratous.core.daa_engine import tables_at
-from cratous.core.daa_machine import machine
 from cratous.core.daa_session import Session
 from cratous.core.daa_state import Aircraft
 from cratous.spec.daa_presets import preset

@@ -17,7 +17,7 @@ import numpy as np
 from table import alone
 
 from cratous.core import routing
-from cratous.core.daa_machine import machine
+from cratous.core.compiled import machine
 from cratous.core.leg_arrays import table
 from cratous.core.visibility import Roadmap
 from cratous.services.loading import load

@@ -1,8 +1,6 @@
-"""The compiled reading of search loops: a function with all that it calls, as one module of numba.
+"""The search loops in machine code (`core.compiled.machine`), where an instance is worth compiling for.
 
-The text is that of the functions themselves, kernels included, with only the decorators changed;
-`core.compiled.load` keeps it in the private cache folder under the hash of the text. CPython runs
-the same functions, and gives the same results: small instances are not worth compiling for.
+CPython runs the same functions, and gives the same results.
 """
 
 from __future__ import annotations
@@ -13,22 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from cratous.core.compiled import _collect, load
+from cratous.core.compiled import machine
 
 SMALL_TASKS, SMALL_MOVES = 3, 24
 """Up to so many tasks, and vehicles times options, an instance is small."""
-
-
-@functools.cache
-def machine(function: Callable[..., Any]) -> Callable[..., Any]:
-    """The function compiled. It may use numpy, kernels, and functions of `core` like itself."""
-    found: dict[str, str] = {}
-    _collect(function, found)
-    head = "from math import sqrt\nfrom typing import Any, NamedTuple\n\nimport numpy as np\nfrom numba import njit\n"
-    compiled: Callable[..., Any] = getattr(
-        load("\n\n".join([head, *found.values()])), function.__name__
-    )
-    return compiled
 
 
 def machine_for(instance: Any, function: Callable[..., Any]) -> Callable[..., Any]:

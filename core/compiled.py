@@ -1,11 +1,12 @@
 """The compiled reading: a kernel over numpy arrays, by numba; and the exact one, on rationals.
 
 A kernel without division, or with a record as result, is printed from its graph as straight-line
-code, so that the compiler can work on several states at once; any other kernel is compiled from its
-own source and that of everything it calls, unchanged but for the decorators. The text is written into a module in a
-private cache folder that is named by the hash of that text, and compiled there. So machine code
-can never outlive the source it was made from. No fastmath, no parallel loops: the result of each
-element is what CPython computes on doubles.
+code, so that the compiler can work on several states at once; any other kernel, and every function
+with loops (`machine`), is compiled from its own source and that of everything it calls, under names
+that tell all of it apart (`core.source_text`). The text is written into a module in a private cache
+folder that is named by the hash of that text, and compiled there. So machine code can never outlive
+the source it was made from. No fastmath, no parallel loops: the result of each element is what
+CPython computes on doubles.
 """
 
 from __future__ import annotations
@@ -16,7 +17,6 @@ import inspect
 import math
 import os
 import sys
-import textwrap
 from collections.abc import Callable
 from typing import Any, get_type_hints
 
@@ -28,6 +28,7 @@ from cratous.core.nodes import Node, NotInSubset, Program, Record, leaves
 from cratous.core.printing import name as text_of
 from cratous.core.printing import straight
 from cratous.core.private import private_cache
+from cratous.core.source_text import SourceText
 from cratous.core.sources import digest
 from cratous.spec.errors import BadInput
 
@@ -128,48 +129,18 @@ def _record(shape: Any, arrays: list[Any]) -> Any:
     return arrays.pop(0)
 
 
-# -- the kernel's own source ------------------------------------------------------------
-def _collect(function: Any, found: dict[str, str]) -> None:
-    """Sources of a kernel and of what it uses, callees first."""
-    if function.__name__ in found:
-        return
-    if not inspect.isclass(function):
-        for name in function.__code__.co_names:
-            value = function.__globals__.get(name)
-            ours = getattr(value, "__module__", "").startswith(("cratous.", function.__module__))
-            if ours and (inspect.isfunction(value) or inspect.isclass(value)):
-                _collect(value, found)
-        for hint in get_type_hints(function).values():
-            if inspect.isclass(hint) and hasattr(hint, "_fields"):
-                _collect(hint, found)
-    if inspect.isclass(function):
-        found[function.__name__] = _constructor(function)
-        return
-    lines = textwrap.dedent(inspect.getsource(function)).splitlines()
-    while not lines[0].startswith("def "):
-        lines.pop(0)
-    found[function.__name__] = "\n".join([f"@{FLAGS}", *lines])
+# -- the function's own source ------------------------------------------------------------
+@functools.cache
+def machine(function: Callable[..., Any]) -> Callable[..., Any]:
+    """A function with loops in machine code, as written, with all that it calls (`source_text`).
 
-
-def sources(kernel: Callable[..., Any]) -> list[str]:
-    """The text of a kernel for numba, after that of all that it calls."""
-    found: dict[str, str] = {}
-    _collect(kernel, found)
-    return list(found.values())
-
-
-def _constructor(record: Any) -> str:
-    """A NamedTuple under another name, and a function of its own name that fixes field types.
-
-    Kernels may write the integer literal 0 for a real field; machine code needs one type.
+    Arguments are numbers and arrays of float64, int64 or bool. CPython runs the same function, and
+    gives the same results.
     """
-    fields = get_type_hints(record)
-    name = record.__name__
-    lines = [f"class {name}_(NamedTuple):"]
-    lines += [f"    {field}: {kind.__name__}" for field, kind in fields.items()]
-    casts = ", ".join(f"{kind.__name__}({field})" for field, kind in fields.items())
-    lines += ["", "", f"@{FLAGS}", f"def {name}({', '.join(fields)}):"]
-    return "\n".join([*lines, f"    return {name}_({casts})"])
+    made = SourceText(FLAGS)
+    name = made.add(function)
+    compiled_one: Callable[..., Any] = getattr(load(made.text), name)
+    return compiled_one
 
 
 def _flat(hint: Any) -> int:
@@ -178,7 +149,7 @@ def _flat(hint: Any) -> int:
     return len(fields) or 1
 
 
-def _map_source(kernel: Callable[..., Any]) -> str:
+def _map_source(kernel: Callable[..., Any], text: SourceText) -> str:
     hints = get_type_hints(kernel)
     arrays, values = [], []
     for name in inspect.signature(kernel).parameters:
@@ -186,20 +157,19 @@ def _map_source(kernel: Callable[..., Any]) -> str:
         columns = [f"{name}_{k}" for k in range(count)] if count > 1 else [name]
         arrays += columns
         inner = ", ".join(f"{column}[i]" for column in columns)
-        values.append(f"{hints[name].__name__}({inner})" if count > 1 else inner)
+        values.append(f"{text.add(hints[name])}({inner})" if count > 1 else inner)
     return (
         f"@{FLAGS}\ndef _map(out, {', '.join(arrays)}):\n"
         f"    for i in range(out.size):\n"
-        f"        out[i] = {kernel.__name__}({', '.join(values)})\n"
+        f"        out[i] = {text.add(kernel)}({', '.join(values)})\n"
     )
 
 
 @functools.cache
 def _source_map(kernel: Callable[..., Any]) -> Any:
-    found: dict[str, str] = {}
-    _collect(kernel, found)
-    head = "from math import sqrt\nfrom typing import NamedTuple\n\nfrom numba import njit\n"
-    return load("\n\n".join([head, *found.values(), _map_source(kernel)]))._map
+    made = SourceText(FLAGS)
+    made.parts.append(_map_source(kernel, made))
+    return load(made.text)._map
 
 
 # -- the map ----------------------------------------------------------------------------

@@ -1,7 +1,7 @@
 """The squares of an area, and which of them footprints contain: loops over arrays.
 
 The kernels are those of `core.polygon` and `core.coverage_steps`, step by step as their folds run
-them. CPython runs these functions as they stand; `core.daa_machine.machine` compiles the same text.
+them. CPython runs these functions as they stand; `core.compiled.machine` compiles the same text.
 """
 
 import numpy as np

@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from cratous.core.compiled import machine
 from cratous.core.daa_grid import SLACK, Grid, grid, own_value, sides_in, value_range
 from cratous.core.daa_guide import guide, last_time
-from cratous.core.daa_machine import machine
 from cratous.core.daa_state import (
     ALT,
     DIMENSIONS,

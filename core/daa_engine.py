@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from cratous.core.compiled import machine
 from cratous.core.daa_alerting import level_times, raw_levels
 from cratous.core.daa_bands import Raw, Traffic, last_times, out_of_range, raw_bands
-from cratous.core.daa_machine import machine
 from cratous.core.daa_spread import spread_conflict
 from cratous.core.daa_state import HDIR, Aircraft, Coordination, LevelTimes
 from cratous.core.daa_urgency import coordination, sides

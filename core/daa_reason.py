@@ -10,12 +10,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from cratous.core.compiled import machine
 from cratous.core.daa_bands import SAMPLE_S, Raw
 from cratous.core.daa_climb import altitude_conflict
 from cratous.core.daa_coordination import step_is_repulsive
 from cratous.core.daa_engine import Seen
 from cratous.core.daa_grid import sides_in
-from cratous.core.daa_machine import machine
 from cratous.core.daa_steps import piece_counts, straight_from, until
 from cratous.core.daa_uncertain import lost, lost_span
 from cratous.core.kernel import Vec2, driver

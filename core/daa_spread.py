@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from cratous.core.compiled import machine
 from cratous.core.daa_bands import SAMPLE_S
 from cratous.core.daa_grid import Grid, grid, sides_in
 from cratous.core.daa_guide import evaluate
-from cratous.core.daa_machine import machine
 from cratous.core.daa_state import ALT, Aircraft
 from cratous.core.kernel import driver
 from cratous.spec.daa import Level, Parameters

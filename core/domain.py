@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from cratous.core.kernel import REGISTRY
+from cratous.core.kernel import entry_of
 from cratous.spec.errors import BadInput
 
 
 def nonnegative(function: Callable[..., Any]) -> tuple[str, ...]:
     """The arguments of a kernel that must not be below 0."""
-    entry = REGISTRY.get(function.__name__)
-    return entry.nonnegative if entry is not None and entry.function is function else ()
+    entry = entry_of(function)
+    return entry.nonnegative if entry is not None else ()
 
 
 def refuse_negative(where: str, names: tuple[str, ...], columns: Iterable[tuple[str, Any]]) -> None:

@@ -1,7 +1,7 @@
 """The Dubins words between two poses, and their cutting into legs: plain loops over arrays.
 
 A word is three pieces: turn right (1), straight on (0), turn left (-1). CPython runs these functions as
-they stand; `core.daa_machine.machine` compiles the same text. What they make is searched, never
+they stand; `core.compiled.machine` compiles the same text. What they make is searched, never
 trusted: legs are put to the zone kernels.
 """
 

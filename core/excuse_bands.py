@@ -14,10 +14,10 @@ from math import sqrt
 
 import numpy as np
 
+from cratous.core.compiled import machine
 from cratous.core.daa_bands import SAMPLE_S, out_of_range
 from cratous.core.daa_climb import climb, height
 from cratous.core.daa_grid import SLACK, Grid, grid
-from cratous.core.daa_machine import machine
 from cratous.core.daa_state import ALT, DIMENSIONS, HDIR, Aircraft
 from cratous.core.daa_volume import conflict_span
 from cratous.core.excuse import after_piece, manoeuvre_judged, piece_lost, way_out

@@ -2,16 +2,21 @@
 
 A *kernel* is a plain typed function in the subset of `core.subset`. A *fold* runs a kernel step
 over data of run-time length. A *driver* is a map, a fold or a search whose output a proved kernel
-re-checks. All three are registered here by name, so that the ledger can be held against them.
-The decorators return the function itself: CPython runs exactly what is written.
+re-checks. All three are registered here under their qualified names, `package.module.function`, so
+that the ledger can be held against them and two of one bare name stand side by side. The
+decorators return the function itself: CPython runs exactly what is written.
 """
 
 from __future__ import annotations
 
 import inspect
+import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Generic, NamedTuple, TypeVar
+
+from cratous.core.names import candidates, near
+from cratous.spec.errors import BadInput
 
 F = TypeVar("F", bound=Callable[..., Any])
 Acc = TypeVar("Acc")
@@ -26,11 +31,12 @@ class Vec2(NamedTuple):
 
 @dataclass(frozen=True)
 class Entry:
-    """One registered function: what it is, what it implements, and the function.
+    """One registered function: its qualified name, what it is, what it implements, the function.
 
-    uses: kernels that a fold is made of or that re-check a driver; nonnegative: arguments for which
-    a number below 0 means nothing; supports: the kernel or fold of which it is a part, which has the
-    definition; restates: what a formula is for that its definition only repeats.
+    uses: kernels that a fold is made of, or that re-check a driver as its author names them (see
+    `checkers`); nonnegative: arguments for which a number below 0 means nothing; supports: the kernel
+    or fold of which it is a part, which has the definition (see `supported`); restates: what a formula
+    is for that its definition only repeats.
     """
 
     name: str
@@ -46,18 +52,86 @@ class Entry:
 REGISTRY: dict[str, Entry] = {}
 
 
-def _home(function: Callable[..., Any]) -> str:
-    return function.step.__module__ if isinstance(function, Fold) else function.__module__
+def qualified(item: Callable[..., Any] | Fold[Any]) -> str:
+    """The name under which a function or fold is registered: `package.module.function`."""
+    if isinstance(item, Fold):
+        return f"{item.module}.{item.name}"
+    return f"{item.__module__}.{item.__qualname__}"
+
+
+def entry_of(item: Any) -> Entry | None:
+    """The entry of this very function or fold; None for anything else, of whatever name."""
+    if not (isinstance(item, Fold) or inspect.isfunction(item)):
+        return None
+    entry = REGISTRY.get(qualified(item))
+    return entry if entry is not None and entry.function is item else None
+
+
+def named(text: str) -> Entry:
+    """The entry of this name; the end of a name will do where only one ends so. Raises BadInput."""
+    found = [text] if text in REGISTRY else candidates(text, REGISTRY)
+    if len(found) == 1:
+        return REGISTRY[found[0]]
+    raise BadInput(
+        "there is no such kernel" if not found else "several kernels have this name",
+        item=text,
+        expected=" or ".join(found or near(text, REGISTRY)) or "the name of a registered kernel",
+    )
+
+
+def checkers(entry: Entry) -> tuple[str, ...]:
+    """Qualified names of the kernels that re-check a driver.
+
+    A bare name is what the driver's module calls so, else the only kernel of its package that is
+    called so; what is neither stays as it is. Raises BadInput for a name of several.
+    """
+    return tuple(_resolved(name, entry) for name in entry.uses)
+
+
+def supported(entry: Entry) -> str:
+    """Qualified name of the kernel or fold that an entry is a step of; found as `checkers` are."""
+    return _resolved(entry.supports, entry)
+
+
+def _resolved(name: str, entry: Entry) -> str:
+    if name in REGISTRY:
+        return name
+    module = entry.function.__module__
+    here = entry_of(vars(sys.modules[module]).get(name))
+    if here is not None:
+        return here.name
+    package = module.split(".")[0]
+    found = [one for one in candidates(name, REGISTRY) if one.split(".")[0] == package]
+    if len(found) > 1:
+        raise BadInput(
+            "several kernels have this name",
+            where=entry.name,
+            item=name,
+            expected=" or ".join(found),
+        )
+    return found[0] if found else name
 
 
 def _register(entry: Entry) -> None:
     old = REGISTRY.get(entry.name)
-    if old is not None and _home(old.function) != _home(entry.function):
-        raise ValueError(
-            f"two kernels are called {entry.name!r}: in {_home(old.function)} "
-            f"and in {_home(entry.function)}"
+    if old is not None and not _alike(old, entry):
+        raise BadInput(
+            "two functions are registered under one name",
+            item=entry.name,
+            expected="one definition in a module, or another name",
         )
     REGISTRY[entry.name] = entry
+
+
+def _alike(old: Entry, new: Entry) -> bool:
+    """The same text, read again."""
+    said = [(e.kind, e.implements, e.uses, e.supports, e.restates) for e in (old, new)]
+    if said[0] != said[1]:
+        return False
+    one, other = old.function, new.function
+    if isinstance(one, Fold) or isinstance(other, Fold):
+        return isinstance(one, Fold) and isinstance(other, Fold) and one.start == other.start
+    return bool(one.__code__ == other.__code__)
 
 
 def kernel(
@@ -67,7 +141,7 @@ def kernel(
     restates: str = "",
     nonnegative: tuple[str, ...] = (),
 ) -> Callable[[F], F]:
-    """Register a kernel under its function name.
+    """Register a kernel under its qualified name.
 
     implements: its definition in `spec`, as `module.function`; or supports: the kernel or fold that
     it is a step of, which calls it and has a definition. restates: what the formula is for, where
@@ -89,7 +163,18 @@ def kernel(
             )
         if restates and not implements:
             raise ValueError(f"{name}: what restates no definition (implements) has nothing to say")
-        _register(Entry(name, "kernel", implements, function, (), nonnegative, supports, restates))
+        _register(
+            Entry(
+                qualified(function),
+                "kernel",
+                implements,
+                function,
+                (),
+                nonnegative,
+                supports,
+                restates,
+            )
+        )
         return function
 
     return mark
@@ -99,7 +184,7 @@ def driver(*, checked_by: tuple[str, ...]) -> Callable[[F], F]:
     """Register a search or map; `checked_by` names the kernels that re-check its output."""
 
     def mark(function: F) -> F:
-        _register(Entry(function.__name__, "driver", "", function, checked_by))
+        _register(Entry(qualified(function), "driver", "", function, checked_by))
         return function
 
     return mark
@@ -109,8 +194,9 @@ def driver(*, checked_by: tuple[str, ...]) -> Callable[[F], F]:
 class Fold(Generic[Acc]):
     """`finish(step(... step(step(start, item0, *context), item1, *context) ..., *context))`.
 
-    step and finish are kernels; start is a tuple of integers or booleans. The prover turns each
-    fold into three obligations (base, step, use), so its theorem holds for every number of items.
+    step and finish are kernels; start is a tuple of integers or booleans; module: where it is made.
+    The prover turns each fold into three obligations (base, step, use), so its theorem holds for
+    every number of items.
     """
 
     name: str
@@ -118,6 +204,7 @@ class Fold(Generic[Acc]):
     step: Callable[..., Acc]
     start: Acc
     finish: Callable[..., Any]
+    module: str = ""
 
     @property
     def __name__(self) -> str:
@@ -134,6 +221,8 @@ def fold(
     *, name: str, implements: str, step: Callable[..., Acc], start: Acc, finish: Callable[..., Any]
 ) -> Fold[Acc]:
     """Make and register a fold over a proved step."""
-    made = Fold(name, implements, step, start, finish)
-    _register(Entry(name, "fold", implements, made, (step.__name__, finish.__name__)))
+    made = Fold(name, implements, step, start, finish, sys._getframe(1).f_globals["__name__"])
+    _register(
+        Entry(qualified(made), "fold", implements, made, (qualified(step), qualified(finish)))
+    )
     return made

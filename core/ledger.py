@@ -23,7 +23,8 @@ from pathlib import Path
 from typing import Any
 
 from cratous.core.compiled import FLAGS
-from cratous.core.kernel import REGISTRY, Entry, Fold
+from cratous.core.kernel import REGISTRY, Entry, checkers, named
+from cratous.core.names import short
 from cratous.core.sources import (
     ROOT,
     add_package,
@@ -144,9 +145,7 @@ class Standing:
 
 
 def _top(entry: Entry) -> str:
-    function = entry.function
-    module = function.step.__module__ if isinstance(function, Fold) else function.__module__
-    return module.split(".")[0]
+    return entry.name.split(".")[0]
 
 
 def load_all(home: Home = PRODUCT) -> dict[str, Entry]:
@@ -228,24 +227,33 @@ def _source(entry: Entry) -> str:
     if entry.kind == "driver":
         module = sys.modules[entry.function.__module__]
         return digest(
-            [files_digest(closure(Path(str(module.__file__)).resolve())), repr(entry.uses)]
+            [files_digest(closure(Path(str(module.__file__)).resolve())), repr(checkers(entry))]
         )
     return digest(function_parts(entry.function))
 
 
 def theorem_file(name: str, home: Home) -> Path | None:
-    """The file of a theorem: in this home, else in the product."""
-    for folder in (home.theorems, PRODUCT.theorems):
-        file = folder / f"{name}.py"
-        if file.is_file():
-            return file
+    """The file of a theorem, called so or `package.name`: of this home, else of the product."""
+    package, _, plain = name.rpartition(".")
+    for one in (home, PRODUCT):
+        if package in ("", one.name) and plain in _theorems(one):
+            return _theorems(one)[plain]
     return None
 
 
+def _theorems(home: Home) -> dict[str, Path]:
+    """What could be a theorem of this home: the files by name."""
+    found: dict[str, Path] = {}
+    for folder, _, names in os.walk(home.theorems):
+        found |= {name[:-3]: Path(folder, name) for name in names if name.endswith(".py")}
+    return found
+
+
 def theorem_names(home: Home) -> set[str]:
-    """What could be a theorem of this home or of the product: the names of the files."""
-    folders = [folder for folder in {home.theorems, PRODUCT.theorems} if folder.is_dir()]
-    return {name[:-3] for each in folders for name in os.listdir(each) if name.endswith(".py")}
+    """What could name a theorem of this home or of the product, alone or after its package."""
+    known = {one: _theorems(one) for one in (home, PRODUCT)}
+    whole = {f"{one.name}.{name}" for one, names in known.items() for name in names}
+    return {name for names in known.values() for name in names} | whole
 
 
 @functools.cache
@@ -258,7 +266,7 @@ def mentioned(path: Path) -> frozenset[str]:
     """All texts in a theorem file that could be the name of a lemma."""
     nodes = ast.walk(tree(path))
     texts = {n.value for n in nodes if isinstance(n, ast.Constant) and isinstance(n.value, str)}
-    return frozenset(text for text in texts if text.isidentifier())
+    return frozenset(text for text in texts if text.replace(".", "_").isidentifier())
 
 
 def theorem_digest(names: Iterable[str], theorems: dict[str, Any], home: Home = PRODUCT) -> str:
@@ -355,7 +363,8 @@ def require(*, allow_unproved: bool = False, path: Path | None = None) -> Standi
     """The standing, or `Refused` with the name of each kernel and what changed."""
     standing = check_everything(path)
     if standing.problems and not allow_unproved:
-        shown = "\n".join(f"  {p.name}: {p.what}" for p in standing.problems[:LISTED])
+        names = short([*REGISTRY, *(problem.name for problem in standing.problems)])
+        shown = "\n".join(f"  {names[p.name]}: {p.what}" for p in standing.problems[:LISTED])
         more = len(standing.problems) - LISTED
         if more > 0:
             shown += f"\n  and {more} more"
@@ -369,4 +378,4 @@ def require(*, allow_unproved: bool = False, path: Path | None = None) -> Standi
 
 def place_of(name: str) -> str:
     """Where a registered kernel, fold or driver stands."""
-    return position(REGISTRY[name].function)
+    return position(named(name).function)

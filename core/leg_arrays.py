@@ -2,7 +2,7 @@
 
 The kernels are those of `core.polygon`, step by step as their folds run them; only edges that change
 nothing in the folds are passed over (`core.legs`). CPython runs these functions as they stand;
-`core.daa_machine.machine` compiles the same text.
+`core.compiled.machine` compiles the same text.
 """
 
 from collections.abc import Sequence

@@ -16,9 +16,9 @@ from __future__ import annotations
 
 from cratous.core.bounds import UNIT
 from cratous.core.certainty import product_left_out, sum_left_out, surely_above, surely_below
-from cratous.core.compiled import sources
 from cratous.core.nodes import Node
 from cratous.core.printing import name
+from cratous.core.source_text import SourceText
 
 WIDER = 1.0 + 2.0**-20
 """What is left out is taken this much greater: covers the roundings of its count."""
@@ -72,10 +72,12 @@ def product_of_pairs(ah, al, ar, bh, bl, br):
 
 def arithmetic(flags: str) -> str:
     """The functions of one sum and one product, and the kernels that count what is left out."""
+    rules = SourceText(flags)
     kernels = (sum_left_out, product_left_out, surely_above, surely_below)
-    rules = [text for kernel in kernels for text in sources(kernel)]
+    names = [f"{kernel.__name__} = {rules.add(kernel)}" for kernel in kernels]
     head = f"SHARE = {float(2 * UNIT)!r}"
-    return "\n\n\n".join([head, *rules, ARITHMETIC.strip().replace("@FLAGS", f"@{flags}")]) + "\n"
+    own = ARITHMETIC.strip().replace("@FLAGS", f"@{flags}")
+    return "\n\n\n".join([rules.text, *names, head, own]) + "\n"
 
 
 NAMES = (

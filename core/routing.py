@@ -4,7 +4,7 @@ A route is the direct Dubins path if the zones allow it. Otherwise the shortest 
 (A*), joined by Dubins pieces, and every leg of the result is put to the proved kernels; a piece
 that they refuse is struck from the graph, or tried with other headings, or on a wider ring. All
 loops are bounded. A pose is north, east, altitude, heading. CPython runs these functions as they
-stand; `core.daa_machine.machine` compiles the same text.
+stand; `core.compiled.machine` compiles the same text.
 """
 
 import math

@@ -2,7 +2,7 @@
 
 That a point lies in a footprint is what the kernels of `locate` say, edge by edge; half planes only
 find the footprints to ask about. CPython runs these functions as they stand;
-`core.daa_machine.machine` compiles the same text.
+`core.compiled.machine` compiles the same text.
 """
 
 import math

@@ -22,7 +22,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any, get_type_hints
 
-from cratous.core.kernel import Fold
+from cratous.core.kernel import Fold, qualified
 
 ROOT = Path(__file__).resolve().parent.parent
 """The folder that holds core, spec, proofs (the repository, or the installed package)."""
@@ -195,7 +195,9 @@ def reached(item: Any) -> dict[str, Any]:
     while todo:
         value = todo.pop()
         if isinstance(value, Fold):
-            seen[f"fold {value.name}"] = (value.start, value.step.__name__, value.finish.__name__)
+            seen[f"fold {qualified(value)}"] = (
+                value.start, qualified(value.step), qualified(value.finish),
+            )  # fmt: skip
             todo += [value.step, value.finish]
             continue
         name = f"{value.__module__}.{value.__qualname__}"

@@ -1,6 +1,6 @@
 """Loops over arrays, in CPython until there is much to do, then in machine code: the same results.
 
-`core.daa_machine.machine` compiles the text that CPython runs, so which of the two ran cannot be seen
+`core.compiled.machine` compiles the text that CPython runs, so which of the two ran cannot be seen
 in what comes out (`tests/test_routing.py`); only the time differs. Short jobs start without the
 compiler.
 """
@@ -9,6 +9,8 @@ import contextlib
 from collections import Counter
 from collections.abc import Callable, Iterator
 from typing import Any
+
+from cratous.core.kernel import qualified
 
 MUCH = 300
 _patience = [MUCH]
@@ -21,14 +23,14 @@ def swift(function: Callable[..., Any], work: int = 1) -> Callable[..., Any]:
 
     work: how much this call does; a unit is about what CPython does in a tenth of a millisecond.
     """
-    name = f"{function.__module__}.{function.__name__}"
+    name = qualified(function)
     known = _compiled.get(name)
     if known is not None:
         return known
     _done[name] += work
     if _done[name] <= _patience[-1]:
         return function
-    from cratous.core.daa_machine import machine
+    from cratous.core.compiled import machine
 
     _compiled[name] = machine(function)
     return _compiled[name]

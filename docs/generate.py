@@ -15,6 +15,7 @@ from pathlib import Path
 import services_table
 
 from cratous.core import ledger
+from cratous.core.names import short
 from cratous.core.whole_file import write_atomically
 from cratous.proofs import mutation_record, recheck
 from cratous.proofs.mutation_keys import Keys
@@ -26,6 +27,7 @@ def inventory() -> str:
     """Every theorem with its sentence, then every kernel, fold and driver with what checks it."""
     data, second = ledger.read(), recheck.read()
     theorems, kernels = data["theorems"], data["kernels"]
+    names = short(kernels)
     assumed = sum(len(t["assumptions"]) for t in theorems.values())
     obligations = sum(t["obligations"] for t in theorems.values())
     known = second["theorems"]
@@ -53,7 +55,7 @@ def inventory() -> str:
         "|---|---|---|---|---|---|",
     ]
     for name, theorem in sorted(theorems.items()):
-        about = ", ".join(f"`{kernel}`" for kernel in theorem["kernels"])
+        about = ", ".join(f"`{names[kernel]}`" for kernel in theorem["kernels"])
         spent = f"{known[name]['z3_effort'] / 1000:.0f}" if name in known else "-"
         lines.append(
             f"| `{name}` | {theorem['sentence']} | {about} | {theorem['obligations']} "
@@ -69,13 +71,13 @@ def inventory() -> str:
     lines += ["", "## Kernels, folds and drivers", "| name | kind | definition | stands on |"]
     lines.append("|---|---|---|---|")
     for name, kernel in sorted(kernels.items()):
-        stands = kernel["theorems"] or [f"checked by {k}" for k in kernel["checked_by"]]
+        stands = kernel["theorems"] or [f"checked by {names[k]}" for k in kernel["checked_by"]]
         definition = f"`{kernel['implements']}`" if kernel["implements"] else "search or map"
         if kernel["supports"]:
-            definition = f"a step of `{kernel['supports']}`"
+            definition = f"a step of `{names[kernel['supports']]}`"
         if kernel["restates"]:
             definition += f", restated: {kernel['restates']}"
-        lines.append(f"| `{name}` | {kernel['kind']} | {definition} | {', '.join(stands)} |")
+        lines.append(f"| `{names[name]}` | {kernel['kind']} | {definition} | {', '.join(stands)} |")
     return "\n".join(lines) + "\n"
 
 

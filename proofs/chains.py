@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from cratous.core.kernel import Fold
+from cratous.core.kernel import Fold, qualified
 from cratous.proofs.claim import Claim
 from cratous.proofs.lift import REPLACED
 from cratous.proofs.terms import statement
@@ -47,8 +47,8 @@ def closed_chain(
     readers = [c.use] * len(runs) + [c.define] * len(models)
     c._arbitrary(tuple(accumulators), tuple(contexts))
     for fold in folds[: len(runs)]:
-        if fold.name not in c.kernels:
-            c.kernels.append(fold.name)
+        if qualified(fold) not in c.kernels:
+            c.kernels.append(qualified(fold))
     begin(first)
     starts = [fold.start for fold in folds]
     c._owe("base", f"{text}: a chain without edges", statement(invariant(starts, first, first)))

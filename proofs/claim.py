@@ -16,7 +16,7 @@ from typing import Any
 
 import z3
 
-from cratous.core.kernel import Fold, Vec2
+from cratous.core.kernel import Fold, Vec2, qualified
 from cratous.proofs.lift import OPAQUE, REPLACED, VISITS, Visit, join, lift
 from cratous.proofs.symbolic import RANGE, Sym, SymBool, SymInt, SymMask, SymReal, _raw
 from cratous.proofs.terms import Stub, flatten, free_names, known, leaves, statement
@@ -132,8 +132,8 @@ class Claim:
         """The theorem is about the kernels that it uses, and that it or a lemma looks into."""
         for kernel in self.used:
             seen = kernel not in self.stubs or kernel in self.vouched
-            if seen and kernel.__name__ not in self.kernels:
-                self.kernels.append(kernel.__name__)
+            if seen and qualified(kernel) not in self.kernels:
+                self.kernels.append(qualified(kernel))
 
     def define(self, definition: Callable[..., Any], *args: Any) -> Any:
         """Evaluate a definition of `spec` on these values."""
@@ -150,8 +150,7 @@ class Claim:
             if function in self.stubs:
                 continue
             # two functions of one name, a kernel and its definition, must not share their results
-            name = f"{function.__module__.removeprefix('cratous.')}.{function.__name__}"
-            self.stubs[function] = Stub(self.prefix + name, function)
+            self.stubs[function] = Stub(self.prefix + qualified(function), function)
 
     def calls(self, function: Callable[..., Any]) -> list[tuple[Any, ...]]:
         """The arguments of every call of an opaque function so far."""
@@ -301,8 +300,8 @@ class Claim:
             return  # used as a lemma, a fold has no goals to offer
         kernel_fold = REPLACED.get(kernel_fold, kernel_fold)
         self._arbitrary((acc, model), (item, context))
-        if kernel_fold.name not in self.kernels:
-            self.kernels.append(kernel_fold.name)
+        if qualified(kernel_fold) not in self.kernels:
+            self.kernels.append(qualified(kernel_fold))
         self._owe(
             "base", "relation at the start", statement(relation(kernel_fold.start, model_start))
         )

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from cratous.core.kernel import REGISTRY, Entry, Fold
+from cratous.core.kernel import REGISTRY, Entry, Fold, supported
 from cratous.core.ledger import Home
 from cratous.core.sources import position, reached
 from cratous.proofs.relations import Relations, full_name
@@ -110,7 +110,7 @@ def _of_meaning(entry: Entry, home: Home, proofs: Proofs) -> Iterator[str]:
 
 def _of_step(entry: Entry, proofs: Proofs) -> Iterator[str]:
     """What is wrong with `supports`."""
-    whole = REGISTRY.get(entry.supports)
+    whole = REGISTRY.get(supported(entry))
     if whole is None or whole.kind == "driver":
         yield f"supports {entry.supports!r}, which is no kernel or fold"
     elif not calls(whole, entry):

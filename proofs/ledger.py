@@ -18,8 +18,9 @@ from pathlib import Path
 from typing import Any
 
 from cratous.core import ledger as gate
-from cratous.core.kernel import REGISTRY, Entry, Fold
+from cratous.core.kernel import REGISTRY, Entry, checkers, entry_of, supported
 from cratous.core.ledger import PRODUCT, Home
+from cratous.core.names import short
 from cratous.core.sources import altered, position, reached
 from cratous.proofs import prover
 from cratous.proofs.cache import Cache
@@ -174,13 +175,13 @@ def problems(entries: dict[str, Entry], home: Home = PRODUCT) -> list[str]:
     found = []
     calls = {n: _called(e) | {n} for n, e in entries.items() if e.kind == "driver"}
     for name, entry in entries.items():
-        where = f"{position(entry.function)}: {name}"
+        where = f"{position(entry.function)}: {name.rpartition('.')[2]}"
         if wrong := altered(entry.function):
             found.append(f"{where}: the code that runs is not its file's: {', '.join(wrong)}")
         if entry.kind == "driver":
             if not entry.uses:
                 found.append(f"{where}: no kernel re-checks this driver's output (checked_by)")
-            for checker in entry.uses:
+            for checker in checkers(entry):
                 if checker not in REGISTRY or REGISTRY[checker].kind == "driver":
                     found.append(f"{where}: its checker {checker!r} is no kernel or fold")
                 elif not any({name, checker} <= names for names in calls.values()):
@@ -198,24 +199,24 @@ def dead_paths(theorems: Iterable[prover.Theorem]) -> list[str]:
         for name, seen in theorem.paths:
             reached.setdefault(name, []).append(seen)
     found = []
+    names = short([*REGISTRY, *reached])
     for name, views in sorted(reached.items()):
         most = max(len(view) for view in views)
         whole = [view for view in views if len(view) == most]
         for number, possible in enumerate(zip(*whole, strict=True), 1):
             if not any(possible):
-                found.append(f"{name}: no premises let anything reach path {number} of it")
+                found.append(f"{names[name]}: no premises let anything reach path {number} of it")
     return found
 
 
 def _called(entry: Entry) -> set[str]:
     """Names of the kernels, folds and drivers that a driver calls, directly or not."""
-    by_function = {e.function: n for n, e in REGISTRY.items() if not isinstance(e.function, Fold)}
     found = set()
     for name, value in reached(entry.function).items():
         if name.startswith("fold "):
             found.add(name.removeprefix("fold "))
-        elif callable(value) and value in by_function:
-            found.add(by_function[value])
+        elif (other := entry_of(value)) is not None:
+            found.add(other.name)
     return found
 
 
@@ -243,16 +244,16 @@ def records(inventory: Inventory, home: Home = PRODUCT) -> dict[str, Any]:
     kernels: dict[str, Any] = {}
     for name, entry in entries.items():
         own = sorted(t for t, record in theorems.items() if name in record["kernels"])
-        checkers = [u for u in entry.uses if entry.kind == "driver"]
+        checked_by = list(checkers(entry)) if entry.kind == "driver" else []
         good = proved.get(name, False)
         if entry.kind == "driver":
-            good = bool(checkers) and all(proved.get(u, False) for u in checkers)
+            good = bool(checked_by) and all(proved.get(u, False) for u in checked_by)
         kernels[name] = {
             "kind": entry.kind,
             "implements": entry.implements,
-            "supports": entry.supports,
+            "supports": supported(entry) if entry.supports else "",
             "restates": entry.restates,
-            "checked_by": checkers,
+            "checked_by": checked_by,
             "theorems": own,
             "status": "proved" if good else "not proved",
             "key": gate.key_parts(entry, own, theorems, home),

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from cratous.proofs.claim import Claim
-from cratous.proofs.theorem_files import load_claim
+from cratous.proofs.theorem_files import load_claim, load_lemma
 
 
 @dataclass
@@ -32,7 +32,7 @@ def hangs_on_calls(name: str, folder: Path) -> bool:
     statement = load_claim(name, folder)[0]
 
     def read(**how: Any) -> _Told:
-        claim = _Told(load=lambda other: load_claim(other, folder)[0], **how)
+        claim = _Told(load=lambda other: load_lemma(other, folder), **how)
         statement(claim)
         return claim
 

@@ -16,7 +16,7 @@ from typing import Any
 import z3
 
 from cratous.core import ledger as gate
-from cratous.core.kernel import REGISTRY, Fold
+from cratous.core.kernel import Fold, entry_of, qualified
 from cratous.core.sources import position
 from cratous.proofs import forked
 from cratous.proofs.asking import ask, renew
@@ -59,9 +59,8 @@ class Target:
 
     def __init__(self, key: str, original: Any, users: list[str], effort: Mapping[str, int]):
         self.key, self.original, self.effort = key, original, effort
-        entry = REGISTRY.get(original.__name__)
-        mine = entry is not None and entry.function is original
-        self.kind = (entry.kind if entry is not None else "") if mine else "definition"
+        entry = entry_of(original)
+        self.kind = "definition" if entry is None else entry.kind
         self.visits = {n: [v for v in claim_of(n).visits if v.function is original] for n in users}
         self.users = sorted(users, key=self._promise)
         self.equality = Equality(original, {name: self.visits[name] for name in self.users})
@@ -92,7 +91,7 @@ class Target:
         """Theorems that name the kernel first, those with free arguments, then the cheap ones."""
         calls = [v.args for v in self.visits[name]]
         free = any(all(is_free(leaf) for leaf in flat(args)) for args in calls)
-        named = self.original.__name__ in claim_of(name).kernels
+        named = qualified(self.original) in claim_of(name).kernels
         return not named, not free, self.effort[name], name
 
     def judge(self, mutant: Mutant) -> Result:
@@ -262,7 +261,7 @@ def judge_target(
 ) -> list[Result]:
     """The verdicts on all mutants of one function, or on the starts of one fold.
 
-    key: `module.name` as `targets` gives it; users: the theorems that may notice, which hold as
+    key: the qualified name, as `targets` gives it; users: the theorems that may notice, which hold as
     they stand; effort: the rlimit that each of them took. What `store` knows is not asked again,
     and each verdict is stored when it is reached; each mutant is judged in a process forked from
     the same state, so verdicts do not depend on which were known.

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from cratous.core import ledger as gate
-from cratous.core.kernel import Fold
+from cratous.core.kernel import REGISTRY, Fold
 from cratous.core.ledger import PRODUCT, Home
 from cratous.core.sources import (
     ROOT,
@@ -59,8 +59,8 @@ class Keys:
         self._digest = {n: gate.theorem_digest([n], {}, home) for n in self.theorems}
 
     def target(self, key: str, target: Any) -> str:
-        """The key of a function or fold; key: `module.name`."""
-        names = sorted(n for n in self.theorems if reach_name(target) in self._reach[n])
+        """The key of a function or fold; key: its qualified name."""
+        names = sorted(n for n in self.theorems if key in self._reach[n])
         users = [f"{name}={self._digest[name]}" for name in names]
         return digest(["target", key, *function_parts(target), *users, judging()])
 
@@ -73,22 +73,13 @@ class Keys:
         return digest(["premises", theorem, self._digest[theorem], judging()])
 
 
-def reach_name(target: Any) -> str:
-    """How `reach` names a function or fold."""
-    if isinstance(target, Fold):
-        return f"fold {target.name}"
-    return f"{target.__module__}.{target.__qualname__}"
-
-
 def reach(theorem: str, home: Home = PRODUCT) -> frozenset[str]:
-    """Every function and fold that a theorem or one of its lemmas could look into, by name.
+    """Qualified names of all functions and folds that a theorem or a lemma of it could look into.
 
     Read off the imports, so it is more rather than less than what the theorem really uses.
     """
     found: set[str] = set()
-    known = {
-        file.stem for folder in {home.theorems, PRODUCT.theorems} for file in folder.glob("*.py")
-    }
+    known = gate.theorem_names(home)
     todo, seen = [theorem], set()
     while todo:
         name = todo.pop()
@@ -114,18 +105,20 @@ def _reach_of(file: Path) -> frozenset[str]:
         for value in values:
             function = inspect.isfunction(value) or inspect.isclass(value)
             if isinstance(value, Fold) or (function and ours(value)):
-                found |= set(reached(value))
+                found |= {name.removeprefix("fold ") for name in reached(value)}
     return frozenset(found)
 
 
-def find(key: str, home: Home = PRODUCT) -> Any:
-    """The function or fold called `module.name` now; None if there is none."""
+def find(key: str) -> Any:
+    """The function or fold of this qualified name; None if there is none."""
     module, _, name = key.rpartition(".")
+    entry = REGISTRY.get(key)
+    if entry is not None:
+        return entry.function
     try:
-        loaded = importlib.import_module(f"{home.name}.{module}")
-    except ImportError:
+        return getattr(importlib.import_module(module), name, None)
+    except (ImportError, ValueError):
         return None
-    return getattr(loaded, name, None)
 
 
 class Store:

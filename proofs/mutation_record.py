@@ -16,8 +16,6 @@ from pathlib import Path
 from typing import Any
 
 from cratous.core import ledger as gate
-from cratous.core.kernel import Fold
-from cratous.core.ledger import PRODUCT
 from cratous.core.whole_file import write_atomically
 from cratous.proofs.mutation_judge import faults
 from cratous.proofs.mutation_keys import Keys, find, reach
@@ -77,9 +75,8 @@ def stale(data: dict[str, Any], keys: Keys) -> dict[str, str]:
         elif keys.target(target, function) != row["key"]:
             found[target] = "it, a theorem about it, or the judging code has changed since"
     for name, entry in gate.load_all().items():
-        target = _target(name, entry.function)
-        definition = f"spec.{entry.implements}"
-        wanted = [target] if entry.kind != "driver" else []
+        definition = f"cratous.spec.{entry.implements}"
+        wanted = [name] if entry.kind != "driver" else []
         # some definitions are kept in a file without a function of the name
         wanted += [definition] if entry.implements and find(definition) is not None else []
         for one in wanted:
@@ -94,8 +91,8 @@ def stale(data: dict[str, Any], keys: Keys) -> dict[str, str]:
 @functools.cache
 def _definitions(theorems: tuple[str, ...]) -> frozenset[str]:
     """The functions of `spec` that these theorems could look into and in which there is something to change."""
-    names = {name.removeprefix(f"{PRODUCT.name}.") for one in theorems for name in reach(one)}
-    there = {name: find(name) for name in names if name.startswith("spec.")}
+    names = {name for one in theorems for name in reach(one)}
+    there = {name: find(name) for name in names if name.startswith("cratous.spec.")}
     return frozenset(n for n, f in there.items() if inspect.isfunction(f) and _has_faults(f))
 
 
@@ -118,13 +115,8 @@ def fresh(data: dict[str, Any], keys: Keys) -> set[str]:
     """
     old = {**stale(data, keys), **stale_premises(data, keys)}
     entries = [(n, e.function) for n, e in gate.load_all().items() if e.kind != "driver"]
-    bare = {_target(name, function) for name, function in entries if not _has_faults(function)}
+    bare = {name for name, function in entries if not _has_faults(function)}
     return ({*data["targets"], *data["premises"]} - set(old)) | bare
-
-
-def _target(name: str, function: Any) -> str:
-    module = function.step.__module__ if isinstance(function, Fold) else function.__module__
-    return f"{module.removeprefix(f'{PRODUCT.name}.')}.{name}"
 
 
 def survivors(data: dict[str, Any], names: Container[str]) -> list[tuple[str, str, str]]:

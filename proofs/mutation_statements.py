@@ -11,11 +11,11 @@ from typing import Any
 
 import z3
 
-from cratous.core.kernel import REGISTRY, Fold
+from cratous.core.kernel import REGISTRY, Fold, qualified
 from cratous.core.ledger import PRODUCT, Home
 from cratous.proofs.claim import Claim, Obligation
 from cratous.proofs.lift import REPLACED, LiftError
-from cratous.proofs.theorem_files import FOLDER, load_claim
+from cratous.proofs.theorem_files import FOLDER, load_claim, load_lemma
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ def state(name: str, **how: Any) -> Claim:
     """The claim of a theorem, stated anew; how: see the fields of `Claim`."""
     folder = _FOLDER[0]
     statement = load_claim(name, folder)[0]
-    claim = Claim(load=lambda other: load_claim(other, folder)[0], **how)
+    claim = Claim(load=lambda other: load_lemma(other, folder), **how)
     statement(claim)
     return claim
 
@@ -57,27 +57,25 @@ def stated(name: str) -> _Stated:
 
 
 def targets(names: Iterable[str], home: Home = PRODUCT) -> dict[str, tuple[Any, list[str]]]:
-    """Function or fold of this home by `module.name`, with those theorems that look into it."""
+    """Function or fold of this home by qualified name, with the theorems that look into it."""
     found: dict[str, tuple[Any, list[str]]] = {}
 
-    def add(target: Any, module: str, theorem: str) -> None:
-        if module.split(".")[0] != home.name:
+    def add(target: Any, theorem: str) -> None:
+        if qualified(target).split(".")[0] != home.name:
             return
-        key = f"{module.removeprefix(f'{home.name}.')}.{target.__name__}"
-        users = found.setdefault(key, (target, []))[1]
+        users = found.setdefault(qualified(target), (target, []))[1]
         if theorem not in users:
             users.append(theorem)
 
     for name in names:
         claim = stated(name).claim
         for visit in claim.visits:
-            module = visit.function.__module__
-            if ".proofs" not in module:
-                add(visit.function, module, name)
+            if not {"proofs", "theorems"} & set(visit.function.__module__.split(".")[1:2]):
+                add(visit.function, name)
         for kernel in claim.kernels:
             entry = REGISTRY.get(kernel)
             if entry is not None and isinstance(entry.function, Fold):
-                add(entry.function, entry.function.step.__module__, name)
+                add(entry.function, name)
     return dict(sorted(found.items()))
 
 

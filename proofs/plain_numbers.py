@@ -203,13 +203,16 @@ def _literals(function: types.FunctionType) -> bool:
 def doubtful(visits: Iterable[Visit]) -> bool:
     """Could a double have come up in what was lifted? Never False where one did."""
     seen = [v for v in visits if isinstance(v.function, types.FunctionType)]
-    given = {v.function.__name__ for v in seen if _plain(v.lifted.value)}
+    given = [v.function for v in seen if _plain(v.lifted.value)]
+    names = {function.__name__ for function in given}
 
     def could(visit: Visit) -> bool:
         known = visit.function
         assert isinstance(known, types.FunctionType)
         numbers = _plain(visit.args) or _literals(known)
-        return _could(known) and (numbers or not given.isdisjoint(_names(known)))
+        # by a name of its own, or as an attribute of a module
+        calls = any(value is one for value in _used(known) for one in given)
+        return _could(known) and (numbers or calls or not names.isdisjoint(_names(known)))
 
     return any(_plain(v.args, float | complex) or _owns(v.function) or could(v) for v in seen)
 

@@ -19,7 +19,7 @@ from typing import Any
 
 import z3
 
-from cratous.core.kernel import REGISTRY
+from cratous.core.kernel import entry_of, qualified
 from cratous.core.ledger import Home
 from cratous.core.sources import altered, ours, place
 from cratous.proofs import plain_numbers
@@ -32,7 +32,7 @@ from cratous.proofs.lemma_calls import hangs_on_calls
 from cratous.proofs.lift import LiftError
 from cratous.proofs.merkle import Hasher
 from cratous.proofs.smtlib import logic_of, question, smt2, sorts
-from cratous.proofs.theorem_files import FOLDER, find, load_claim, theorem_files
+from cratous.proofs.theorem_files import FOLDER, find, load_claim, load_lemma, theorem_files
 from cratous.spec.errors import BadInput
 
 RLIMIT = 60_000_000
@@ -259,10 +259,9 @@ def _reached_paths(
     """
     found: dict[str, list[bool]] = {}
     for visit in claim.visits:
-        name, conditions = visit.function.__name__, visit.lifted.branches
-        entry = REGISTRY.get(name)
-        if visit.context or entry is None or entry.function is not visit.function:
+        if visit.context or entry_of(visit.function) is None:
             continue
+        name, conditions = qualified(visit.function), visit.lifted.branches
         # arguments may be literals: the uses with the most paths are the kernel's
         if len(conditions) > len(found.get(name, [])):
             found[name] = [False] * len(conditions)
@@ -289,7 +288,7 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
     statement, sentence = load_claim(name, folder)
 
     def stated(by: Callable[..., Any]) -> Watched:
-        claim = Watched(load=lambda other: load_claim(other, folder)[0])
+        claim = Watched(load=lambda other: load_lemma(other, folder))
         by(claim)
         return claim
 
@@ -331,13 +330,12 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
         )
     used: list[Any] = [run.function for run in claim.runs if run.role == "kernel"]
     for function in [*used, *claim.folds]:
-        entry = REGISTRY.get(function.__name__)
-        if entry is None or entry.function is not function:
+        if entry_of(function) is None:
             raise BadInput(
                 f"the theorem is about {function.__name__!r}, which is not registered",
                 where=where,
                 expected="a function marked with @kernel, or a fold made with fold(...)",
-                got=f"{getattr(function, '__module__', 'a fold')}.{function.__name__}",
+                got=qualified(function),
             )
     if not claim.kernels:
         raise BadInput(

@@ -15,7 +15,7 @@ import textwrap
 from dataclasses import dataclass
 from typing import Any
 
-from cratous.core.kernel import REGISTRY, Fold
+from cratous.core.kernel import REGISTRY, Fold, entry_of, qualified
 
 CALLS = {"abs", "min", "max", "sqrt"}
 FORBIDDEN: dict[type[ast.AST], str] = {
@@ -72,7 +72,7 @@ def _function(function: Any) -> ast.FunctionDef:
 def lint(function: Any) -> list[Finding]:
     """Everything in one kernel that is outside of the subset."""
     node = _function(function)
-    name = function.__name__
+    name = qualified(function)
     found = []
 
     def report(at: ast.AST, message: str) -> None:
@@ -115,8 +115,8 @@ def _check(part: ast.AST, function: Any, local: set[str], report: Any) -> None:
     if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Load) and part.id not in local:
         value = function.__globals__.get(part.id)
         record = inspect.isclass(value) and issubclass(value, tuple)
-        entry = REGISTRY.get(part.id)
-        kernel = entry is not None and entry.kind == "kernel" and entry.function is value
+        entry = entry_of(value)
+        kernel = entry is not None and entry.kind == "kernel"
         if not (part.id in CALLS or record or kernel):
             report(part, f"{part.id!r} is neither a kernel nor a record")
 
@@ -129,6 +129,6 @@ def lint_all() -> list[Finding]:
             found += lint(entry.function)
         if isinstance(entry.function, Fold):
             for part in (entry.function.step, entry.function.finish):
-                if part.__name__ not in REGISTRY:
+                if entry_of(part) is None:
                     found.append(Finding(entry.name, 1, f"{part.__name__} is no kernel"))
     return found

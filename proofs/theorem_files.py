@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from cratous.core.ledger import PRODUCT
+from cratous.core.names import near
 from cratous.core.sources import place
 from cratous.proofs.claim import Claim
 from cratous.spec.errors import BadInput
@@ -17,30 +18,63 @@ FOLDER = PRODUCT.theorems
 
 
 def theorem_files(folder: Path = FOLDER) -> dict[str, Path]:
-    """Name to file of every theorem, in order of name."""
-    return {p.stem: p for p in sorted(folder.glob("*.py")) if not p.stem.startswith("_")}
+    """Name to file of every theorem, in order of name; raises BadInput for two of one name."""
+    found: dict[str, Path] = {}
+    for path in sorted(folder.rglob("*.py"), key=lambda file: (file.stem, file)):
+        if path.stem.startswith("_"):
+            continue
+        if path.stem in found:
+            places = f"{place(found[path.stem])} and {place(path)}"
+            raise BadInput(f"two theorems are called {path.stem!r}", where=places)
+        found[path.stem] = path
+    return found
+
+
+def package_of(folder: Path) -> str:
+    """The package whose theorems lie in this folder."""
+    return PRODUCT.name if folder == FOLDER else folder.parent.name
 
 
 def find(name: str, folder: Path) -> Path:
-    """The file of a theorem: in this folder, else in the product's. One name, one theorem."""
-    found = [files[name] for files in map(theorem_files, {folder, FOLDER}) if name in files]
-    if not found:
+    """The file of a theorem: of this folder, else of the product.
+
+    name: as its file is called, or `package.name`.
+    """
+    package, _, plain = name.rpartition(".")
+    places = [place for place in (folder, FOLDER) if package in ("", package_of(place))]
+    for one in places:
+        found = theorem_files(one).get(plain)
+        if found is not None:
+            return found
+    known = [n for one in {folder, FOLDER} for n in theorem_files(one)]
+    raise BadInput(
+        f"there is no theorem called {name!r}",
+        where=place(folder),
+        expected=" or ".join(near(plain, known))
+        or "the name of a file of this folder, without .py",
+    )
+
+
+def load_lemma(name: str, folder: Path) -> Callable[[Claim], None]:
+    """The claim of a theorem that another one of this folder uses.
+
+    Raises BadInput where the package and the product have one of this name: one of them is meant.
+    """
+    if folder != FOLDER and all(name in theorem_files(one) for one in (folder, FOLDER)):
         raise BadInput(
-            f"there is no theorem called {name!r}",
-            where=place(folder),
-            expected="the name of a file of this folder, without .py",
+            f"two theorems are called {name!r}",
+            where=f"{place(find(name, folder))} and {place(find(name, FOLDER))}",
+            expected=f"{package_of(folder)}.{name} or {PRODUCT.name}.{name}",
         )
-    if len(found) > 1:
-        places = " and ".join(sorted(place(path) for path in found))
-        raise BadInput(f"two theorems are called {name!r}", where=places, expected="one id, one")
-    return found[0]
+    return load_claim(name, folder)[0]
 
 
 def load_claim(name: str, folder: Path = FOLDER) -> tuple[Callable[[Claim], None], str]:
     """The function `claim` of a theorem file, and its sentence."""
     path = find(name, folder)
     text = path.read_text(encoding="utf-8")
-    module_name = f"cratous.proofs.theorems.{name}"
+    inside = "cratous.proofs" if path.is_relative_to(FOLDER) else package_of(folder)
+    module_name = f"{inside}.theorems.{path.stem}"
     module = sys.modules.get(module_name)
     if module is None or getattr(module, "__file__", None) != str(path):
         module = types.ModuleType(module_name)

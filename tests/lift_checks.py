@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import z3
 
-from cratous.core.kernel import REGISTRY, Fold
+from cratous.core.kernel import Fold, named
 from cratous.proofs.claim import Claim
 from cratous.proofs.lift import LiftError
 from cratous.proofs.symbolic import SymInt
@@ -223,7 +223,7 @@ def _opaque_namesakes_are_two():
     def state(c):
         s, v = c.vector("s"), c.vector("v")
         d = c.real("d")
-        kernel = REGISTRY["horizontal_violation"].function
+        kernel = named("horizontal_violation").function
         c.opaque(kernel, well_clear.horizontal_violation)
         ours = c.use(kernel, s, v, d, d)
         c.show(c.same(ours, c.define(well_clear.horizontal_violation, s, v, d, d)))

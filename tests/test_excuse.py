@@ -16,9 +16,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cratous.core import excuse_bands, excuse_check
+from cratous.core.compiled import machine
 from cratous.core.daa_grid import grid
 from cratous.core.daa_guide import evaluate
-from cratous.core.daa_machine import machine
 from cratous.core.daa_state import ALT, DIMENSIONS, Aircraft, Sigma
 from cratous.core.excuse import both_say, is_excused, manoeuvre_judged, way_out
 from cratous.core.excuse_judge import from_state, judged

@@ -11,10 +11,11 @@ from hypothesis import strategies as st
 
 from cratous.core import gate, polygon, timing, well_clear
 from cratous.core.compiled import compiled, exact
-from cratous.core.kernel import REGISTRY, Vec2, kernel
+from cratous.core.kernel import REGISTRY, Vec2, entry_of, kernel, named
 from cratous.core.ledger import load_all
 from cratous.spec import geofence
 from cratous.spec import well_clear as meaning
+from cratous.spec.errors import BadInput
 
 load_all()
 small = st.integers(-6, 6).map(Fraction)
@@ -120,12 +121,48 @@ def test_schedule_checker_needs_every_row():
     assert timing.schedule_holds([])
 
 
-def test_two_kernels_of_one_name_are_refused():
-    assert "later" in REGISTRY
+def test_two_kernels_of_one_qualified_name_are_refused():
+    before = dict(REGISTRY)
+
+    def made(shift: int):
+        def moved(value: int) -> int:
+            """value, moved."""
+            return value + 1 if shift else value - 1
+
+        return moved
+
+    def moved(value: int) -> int:
+        """Another text of the name."""
+        return value
+
+    first = made(0)
+    moved.__qualname__ = first.__qualname__
+    try:
+        kernel(implements="schedule.later_of")(first)
+        kernel(implements="schedule.later_of")(made(0))  # the same text, read again
+        with pytest.raises(BadInput, match="two functions are registered under one name"):
+            kernel(implements="schedule.later_of")(moved)
+    finally:
+        REGISTRY.clear()
+        REGISTRY.update(before)
+
+
+def test_a_kernel_is_found_by_the_end_of_its_name():
+    assert named("later").function is timing.later
+    assert named("timing.later") is named("cratous.core.timing.later") is entry_of(timing.later)
+    with pytest.raises(BadInput, match=r"no such kernel; expected .*cratous.core.timing.later"):
+        named("latter")
 
     def later(best: int, value: int) -> int:
-        """Another kernel of a name that is taken."""
+        """Another kernel of this bare name."""
         return best
 
-    with pytest.raises(ValueError, match="two kernels are called 'later'"):
-        kernel(implements="schedule.later_of")(later)
+    assert entry_of(later) is None
+    before = dict(REGISTRY)
+    try:
+        assert entry_of(kernel(implements="schedule.later_of")(later)) is not None
+        with pytest.raises(BadInput, match="several kernels"):
+            named("later")
+    finally:
+        REGISTRY.clear()
+        REGISTRY.update(before)

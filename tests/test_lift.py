@@ -11,7 +11,7 @@ from lift_checks import CHECKS, LEMMAS, PROBES, _holds, callee
 from lifted import differences
 
 from cratous.core import ledger as gate
-from cratous.core.kernel import REGISTRY
+from cratous.core.kernel import REGISTRY, qualified
 from cratous.proofs.claim import Claim
 from cratous.proofs.lift import LiftError, lift
 from cratous.proofs.symbolic import SymMask, SymReal
@@ -96,7 +96,10 @@ def _looking(c):
 
 
 def test_a_theorem_is_about_what_it_or_a_lemma_looks_into(monkeypatch):
-    for name, statement, about in (("closed", _closed, []), ("looking", _looking, ["callee"])):
+    for name, statement, about in (
+        ("closed", _closed, []),
+        ("looking", _looking, [qualified(callee)]),
+    ):
         monkeypatch.setitem(LEMMAS, name, statement)
         own = Claim()
         statement(own)

@@ -8,7 +8,7 @@ import z3
 from lift_checks import CHECKS, PROBES, length
 from lifted import differences
 
-from cratous.core.kernel import REGISTRY
+from cratous.core.kernel import named
 from cratous.proofs import claim as claim_module
 from cratous.proofs import lift as lifter
 from cratous.proofs import symbolic
@@ -157,7 +157,7 @@ DEFECTS = {
 def _noticed():
     """Comparisons and checks that notice something; a crash of the lifter is noticed as well."""
     found = []
-    for function in [*PROBES, length, REGISTRY["vertical_violation"].function]:
+    for function in [*PROBES, length, named("vertical_violation").function]:
         try:
             wrong = differences(function, 400)
         except Exception as error:

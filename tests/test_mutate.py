@@ -10,7 +10,7 @@ import z3
 
 from cratous.core import gate as gate_module
 from cratous.core import ledger as gate
-from cratous.core.kernel import REGISTRY
+from cratous.core.kernel import REGISTRY, named
 from cratous.proofs import mutate, mutation_judge, prover
 from cratous.proofs.asking import ask
 from cratous.proofs.claim import Claim
@@ -36,7 +36,7 @@ def own_cache(tmp_path, monkeypatch):
 
 
 def diffs(name):
-    return {m.diff for m in mutants(REGISTRY[name].function)}
+    return {m.diff for m in mutants(named(name).function)}
 
 
 # -- the mutants ---------------------------------------------------------------------------------
@@ -78,14 +78,14 @@ def test_mutants_are_distinct_and_in_a_fixed_order():
 
 
 def test_the_line_of_a_mutant_is_that_of_the_file():
-    function = REGISTRY["gives_way"].function
+    function = named("gives_way").function
     lines = Path(gate_module.__file__).read_text(encoding="utf-8").splitlines()
     (mutant,) = [m for m in mutants(function) if m.diff.endswith("+ return own_id >= intruder_id")]
     assert lines[mutant.line - 1].strip() == "return own_id > intruder_id"
 
 
 def test_a_mutant_differs_from_its_original_on_a_boundary():
-    function = REGISTRY["vertical_violation"].function
+    function = named("vertical_violation").function
     rows = inputs(function, frozenset(), 2000)
     assert rows == inputs(function, frozenset(), 2000)
     results = [run(function, row) for row in rows]
@@ -114,13 +114,17 @@ def test_faults_are_killed_by_the_theorem_that_they_break():
     report = mutate.run(
         ["vertical_violation"], theorems=["well_clear_vertical_violation_is_its_definition"]
     )
-    kernel = [r for r in report.results if r.target == "core.well_clear_now.vertical_violation"]
+    kernel = [
+        r for r in report.results if r.target == "cratous.core.well_clear_now.vertical_violation"
+    ]
     assert {r.verdict for r in kernel} <= {"killed", "equivalent"}
     assert {r.by for r in kernel if r.verdict == "killed"} == {
         "well_clear_vertical_violation_is_its_definition"
     }
     assert all(r.note for r in kernel if r.verdict == "equivalent")
-    definition = [r for r in report.results if r.target == "spec.well_clear.vertical_violation"]
+    definition = [
+        r for r in report.results if r.target == "cratous.spec.well_clear.vertical_violation"
+    ]
     assert definition
     assert all(r.kind == "definition" for r in definition)
     assert not REPLACED
@@ -151,7 +155,7 @@ def judged(key, theorems, *ends):
 
 def test_equivalent_is_a_proof_and_says_where():
     everywhere, within, other = judged(
-        "core.gate.gate_accepts",
+        "cratous.core.gate.gate_accepts",
         ["gate_has_exactly_one_commander"],
         "+ if -sender == 0:",
         "+ return gate.owner <= 0 or gate.offered",
@@ -167,7 +171,7 @@ def test_equivalent_is_a_proof_and_says_where():
 def test_a_difference_that_no_grid_shows_is_found_by_the_solver(monkeypatch):
     monkeypatch.setattr(mutation_judge, "inputs", lambda *more: [])
     (survivor,) = judged(
-        "core.gate.gives_way", ["exactly_one_gives_way"], "+ return own_id < intruder_id"
+        "cratous.core.gate.gives_way", ["exactly_one_gives_way"], "+ return own_id < intruder_id"
     )
     assert survivor.verdict == "survived"
     assert survivor.note.startswith("differs at ")
@@ -175,7 +179,7 @@ def test_a_difference_that_no_grid_shows_is_found_by_the_solver(monkeypatch):
 
 def test_a_mask_has_no_order_so_such_a_mutant_is_stillborn():
     ordered, joined = judged(
-        "core.timing.eligible",
+        "cratous.core.timing.eligible",
         ["eligible_is_its_definition"],
         "+ return mask & bit < 0",
         "+ return mask | bit != 0",
@@ -186,7 +190,7 @@ def test_a_mask_has_no_order_so_such_a_mutant_is_stillborn():
 
 def test_a_definition_that_takes_literals_alone_is_judged_where_theorems_give_them():
     (turned,) = judged(
-        "spec.schedule.vehicle_is_eligible",
+        "cratous.spec.schedule.vehicle_is_eligible",
         ["eligible_is_its_definition"],
         "+ return mask >> k & 1 == 1 and bit >> k & 1 == 2",
     )
@@ -212,7 +216,11 @@ def test_an_error_of_the_judge_is_not_taken_for_a_stillborn_mutant(monkeypatch):
 
     monkeypatch.setattr(mutation_judge, "equal", broken)
     with pytest.raises(TypeError, match="a defect"):
-        judged("core.gate.gives_way", ["exactly_one_gives_way"], "+ return own_id < intruder_id")
+        judged(
+            "cratous.core.gate.gives_way",
+            ["exactly_one_gives_way"],
+            "+ return own_id < intruder_id",
+        )
 
 
 @pytest.mark.long
@@ -260,7 +268,7 @@ def test_what_is_skipped_is_not_judged():
     whole = mutate.run(["gives_way"], theorems=theorems, store=NOWHERE)
     assert whole.judged == tuple(theorems)
     premises = mutate.run(
-        ["gives_way"], theorems=theorems, store=NOWHERE, skip={"core.gate.gives_way"}
+        ["gives_way"], theorems=theorems, store=NOWHERE, skip={"cratous.core.gate.gives_way"}
     )
     assert premises.judged == tuple(theorems)
     assert premises.premises == whole.premises
@@ -268,7 +276,7 @@ def test_what_is_skipped_is_not_judged():
     mutants = mutate.run(["gives_way"], theorems=theorems, store=NOWHERE, skip=set(theorems))
     assert mutants.results == whole.results
     assert not mutants.judged
-    everything = {"core.gate.gives_way", *theorems}
+    everything = {"cratous.core.gate.gives_way", *theorems}
     nothing = mutate.run(["gives_way"], theorems=theorems, store=NOWHERE, skip=everything)
     assert nothing == MutationReport((), ())
 
@@ -287,7 +295,9 @@ def test_a_mutant_that_python_cannot_compute_is_told(monkeypatch):
         raise ZeroDivisionError("Fraction(1, 0)")
 
     monkeypatch.setattr(mutate, "judge_target", divides)
-    with pytest.raises(BadInput, match=r"core.gate.gives_way: its mutants .* symbolic numbers"):
+    with pytest.raises(
+        BadInput, match=r"cratous.core.gate.gives_way: its mutants .* symbolic numbers"
+    ):
         mutate.run(["gives_way"], theorems=["exactly_one_gives_way"], premises=False, store=NOWHERE)
 
 
@@ -318,18 +328,18 @@ def test_a_run_that_was_stopped_goes_on_where_it_was(monkeypatch, tmp_path):
 
 
 def test_a_verdict_depends_on_function_theorems_judge_and_solver(monkeypatch):
-    function = REGISTRY["gives_way"].function
-    key = KEYS.target("core.gate.gives_way", function)
-    assert Keys().target("core.gate.gives_way", function) == key
-    other = REGISTRY["gate_offer"].function
-    assert key != KEYS.target("core.gate.gives_way", other)
+    function = named("gives_way").function
+    key = KEYS.target("cratous.core.gate.gives_way", function)
+    assert Keys().target("cratous.core.gate.gives_way", function) == key
+    other = named("gate_offer").function
+    assert key != KEYS.target("cratous.core.gate.gives_way", other)
     fewer = Keys(theorems=["exactly_one_gives_way"])
-    assert fewer.target("core.gate.gives_way", function) != key
+    assert fewer.target("cratous.core.gate.gives_way", function) != key
     unrelated = [name for name in KEYS.theorems if name != "geofence_orient_is_the_turn"]
-    assert Keys(theorems=unrelated).target("core.gate.gives_way", function) == key
+    assert Keys(theorems=unrelated).target("cratous.core.gate.gives_way", function) == key
     assert KEYS.mutant(key, "a") != KEYS.mutant(key, "b")
     monkeypatch.setattr("cratous.proofs.mutation_keys.judging", lambda: "another")
-    assert KEYS.target("core.gate.gives_way", function) != key
+    assert KEYS.target("cratous.core.gate.gives_way", function) != key
 
 
 def test_what_a_theorem_meets_is_within_what_its_imports_reach():

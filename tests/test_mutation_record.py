@@ -19,7 +19,7 @@ FAULTLESS = mutation_record.fresh(mutation_record.EMPTY, KEYS)
 
 def result(verdict, kind="kernel"):
     """Some mutant with this verdict."""
-    return Result("core.m.f", kind, "sign", "core/m.py:3", "- a + -a", verdict, note="why")
+    return Result("cratous.core.m.f", kind, "sign", "core/m.py:3", "- a + -a", verdict, note="why")
 
 
 def test_the_score_counts_the_undecided_as_not_killed():
@@ -39,7 +39,7 @@ def test_the_document_lists_what_was_not_killed():
         PremiseResult("t", "x >= 0", "unused", "-"),
         PremiseResult("t", "y >= 0", "matters", "unused"),
     )
-    name, theorem = "core.gate.gives_way", "exactly_one_gives_way"
+    name, theorem = "cratous.core.gate.gives_way", "exactly_one_gives_way"
     results = tuple(replace(result(v), target=name) for v in ("survived", "killed"))
     premises = tuple(replace(p, theorem=theorem) for p in premises)
     data = mutation_record.merged(mutation_record.EMPTY, MutationReport(results, premises), KEYS)
@@ -48,11 +48,15 @@ def test_the_document_lists_what_was_not_killed():
     assert f"| `{name}` | kernel | 2 | 1 | 1 | 0 | 0 | 0 |  |" in text
     assert f"`{theorem}`: `x >= 0`" in text
     assert "slightly weaker" in text
-    assert "- `core.gate.gate_offer`: it was never mutated" in text
+    assert "- `cratous.core.gate.gate_offer`: it was never mutated" in text
 
 
 def test_the_record_tells_what_holds_for_the_code_as_it_is():
-    name, bare, theorem = "core.gate.gives_way", "daa_climb_in_numbers", "exactly_one_gives_way"
+    name, bare, theorem = (
+        "cratous.core.gate.gives_way",
+        "daa_climb_in_numbers",
+        "exactly_one_gives_way",
+    )
     survivor = replace(result("survived"), target=name)
     premise = PremiseResult(theorem, "x >= 0", "unused", "-")
     report = MutationReport((survivor,), (premise,), (theorem, bare))
@@ -67,32 +71,36 @@ def test_the_record_tells_what_holds_for_the_code_as_it_is():
     data["premises"][theorem]["key"] = "of other code"
     assert theorem in mutation_record.stale_premises(data, KEYS)
     assert mutation_record.fresh(data, KEYS) - FAULTLESS == {name, bare}
-    assert "core.geofence_distance.distance_result" in FAULTLESS, "it hands on what it is given"
+    assert "cratous.core.geofence_distance.distance_result" in FAULTLESS, (
+        "it hands on what it is given"
+    )
     text = mutation_record.document(data, KEYS)
     assert f"- `{theorem}`: it, what it is about, or the judging code has changed since" in text
     assert f"`{theorem}`: `x >= 0`" not in text, "what is stale counts for nothing"
 
 
 def test_a_stale_result_is_listed_as_stale():
-    name = "core.gate.gives_way"
+    name = "cratous.core.gate.gives_way"
     report = MutationReport((replace(result("killed"), target=name),), ())
     data = mutation_record.merged(mutation_record.EMPTY, report, KEYS)
     bare = mutation_record.stale(mutation_record.EMPTY, KEYS)
-    assert bare["core.polygon.orient"] == "it was never mutated"
-    assert "core.geofence_distance.distance_result" not in bare, "it hands on what it is given"
+    assert bare["cratous.core.polygon.orient"] == "it was never mutated"
+    assert "cratous.core.geofence_distance.distance_result" not in bare, (
+        "it hands on what it is given"
+    )
     assert name not in mutation_record.stale(data, KEYS)
     fewer = Keys(theorems=["exactly_one_gives_way"])
     assert "changed since" in mutation_record.stale(data, fewer)[name]
     assert f"| `{name}` | kernel | 1 | 1 | 0 | 0 | 0 | 0 | stale |" in mutation_record.document(
         data, fewer
     )
-    gone = {"targets": {"core.gate.gone": data["targets"][name]}, "premises": {}}
-    assert "no longer there" in mutation_record.stale(gone, KEYS)["core.gate.gone"]
+    gone = {"targets": {"cratous.core.gate.gone": data["targets"][name]}, "premises": {}}
+    assert "no longer there" in mutation_record.stale(gone, KEYS)["cratous.core.gate.gone"]
 
 
 def test_a_report_replaces_its_own_targets_in_the_record_alone(tmp_path):
     file = tmp_path / "mutation.json"
-    one, other = "core.gate.gives_way", "core.timing.later"
+    one, other = "cratous.core.gate.gives_way", "cratous.core.timing.later"
     for name in (one, other):
         report = MutationReport((replace(result("killed"), target=name),), ())
         mutation_record.write(report, KEYS, file)

@@ -54,7 +54,7 @@ def test_the_page_is_true(package: Path, root: Path) -> None:
         wanted = re.sub(r"z3 [\d.]+", ledger.solver_version(), printed)
         assert done.stdout.strip() == wanted.strip()
     record = json.loads((package / "my_pkg" / "ledger.json").read_text())
-    assert record["kernels"]["reaches_home"]["status"] == "proved"
+    assert record["kernels"]["my_pkg.reserve.reaches_home"]["status"] == "proved"
     again = _run(package, root, "cratous prove --package my_pkg --check")
     assert again.returncode == 0, again.stderr
 
@@ -62,7 +62,7 @@ def test_the_page_is_true(package: Path, root: Path) -> None:
 GATE = """
 from cratous.core import ledger
 import my_pkg.reserve
-print([f"{p.name}: {p.what}" for p in ledger.check_everything().problems if p.name == "reaches_home"])
+print([f"{p.name}: {p.what}" for p in ledger.check_everything().problems if p.name.endswith("my_pkg.reserve.reaches_home")])
 """
 
 
@@ -128,7 +128,6 @@ def claim(c):
             "'reaches_home', which is not registered",
         ),
         ("of_a_missing_kernel", "from my_pkg.reserve import nowhere", "    pass", "is not there"),
-        ("well_clear_violation_is_symmetric", "", "    pass", "two theorems are called"),
         ("broken", "from", "    pass", "no Python"),
     ],
 )
@@ -159,14 +158,34 @@ def test_a_kernel_without_theorem_or_definition_is_refused_with_its_place(
     assert not (package / "my_pkg" / "ledger.json").exists()
 
 
-def test_a_name_of_the_product_cannot_be_taken(package: Path, root: Path) -> None:
+def test_a_kernel_and_a_theorem_may_have_names_of_the_product(package: Path, root: Path) -> None:
     file = package / "my_pkg" / "reserve.py"
     file.write_text(file.read_text().replace("def reaches_home", "def violation"))
     theorem = package / "my_pkg" / "theorems" / "reserve_is_kept.py"
-    theorem.write_text(theorem.read_text().replace("reaches_home", "violation"))
+    same = theorem.with_name("well_clear_violation_is_symmetric.py")
+    same.write_text(theorem.read_text().replace("reaches_home", "violation"))
+    theorem.unlink()
     done = _run(package, root, "cratous prove --package my_pkg")
-    assert done.returncode == 2
-    assert "two kernels are called 'violation'" in done.stderr
+    assert done.returncode == 0, done.stderr
+    (package / "gate.py").write_text(GATE.replace("reaches_home", "my_pkg.reserve.violation"))
+    assert _run(package, root, "python gate.py").stdout.strip() == "[]"
+
+
+def test_a_lemma_of_two_theorems_is_named_with_its_package(package: Path, root: Path) -> None:
+    folder = package / "my_pkg" / "theorems"
+    text = (folder / "reserve_is_kept.py").read_text()
+    (folder / "exactly_one_gives_way.py").write_text(text)
+    for name, status, said in (
+        ("exactly_one_gives_way", 2, "two theorems are called"),
+        ("my_pkg.exactly_one_gives_way", 1, "premise of my_pkg.exactly_one_gives_way"),
+        ("cratous.exactly_one_gives_way", 1, "premise of cratous.exactly_one_gives_way"),
+        ("my_pkg.violation_is_symmetric", 2, "there is no theorem called"),
+    ):
+        lemma = f'    c.lemma("{name}")\n    c.show'
+        (folder / "user.py").write_text(text.replace("    c.show", lemma))
+        done = _run(package, root, "cratous prove --package my_pkg --only user")
+        assert done.returncode == status, done.stdout + done.stderr
+        assert said in done.stdout + done.stderr
 
 
 def test_a_package_that_is_none_is_bad_input(tmp_path: Path, root: Path) -> None:

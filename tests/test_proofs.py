@@ -9,7 +9,7 @@ import z3
 
 from cratous.core import ledger as gate
 from cratous.core import well_clear
-from cratous.core.kernel import REGISTRY, Fold, Vec2
+from cratous.core.kernel import Fold, Vec2, named
 from cratous.proofs import prover
 from cratous.proofs.claim import Claim
 from cratous.proofs.ledger import Inventory, records
@@ -117,7 +117,7 @@ def test_a_claim_without_kernel_or_goal_is_refused():
     with pytest.raises(ValueError, match="names no kernel"):
         _prove(lambda c: c.show(c.real("x") >= 0))
     with pytest.raises(ValueError, match="shows nothing"):
-        _prove(lambda c: c.kernels.append("later"))
+        _prove(lambda c: c.kernels.append("cratous.core.timing.later"))
 
 
 def test_a_lemma_owes_its_premises():
@@ -165,7 +165,7 @@ def test_assumptions_stay_visible():
 
 
 def test_a_wrong_fold_is_refuted():
-    locate = REGISTRY["meets_boundary"].function
+    locate = named("meets_boundary").function
     assert isinstance(locate, Fold)
     broken = Fold(locate.name, locate.implements, locate.step, True, locate.finish)
 

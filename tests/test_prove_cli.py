@@ -72,7 +72,7 @@ def test_changed_proves_what_differs_from_the_ledger(
     names = ["geofence_straddles_is_its_definition", "exactly_one_gives_way"]
     inventory = ledger.prove_all(names)
     data = ledger.records(inventory)
-    data["kernels"]["gives_way"]["key"]["source"] = "another"
+    data["kernels"]["cratous.core.gate.gives_way"]["key"]["source"] = "another"
     data["seal"] = gate.seal(data)
     file = tmp_path / "ledger.json"
     file.write_text(json.dumps(data))
@@ -121,7 +121,7 @@ def test_mutation_is_reported(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Ca
     def run(names, tell, jobs, *, about, home, skip):
         asked.append((names, about))
         assert not skip
-        tell("core.m.f", [result])
+        tell("cratous.core.m.f", [result])
         tell("a_theorem", [])
         return mutate.MutationReport((result,), ())
 
@@ -204,7 +204,7 @@ def test_only_what_the_record_does_not_know_is_mutated(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """With --new; what is recorded of the rest still counts."""
-    kernel, theorem = "core.gate.gives_way", "the_greater_id_gives_way"
+    kernel, theorem = "cratous.core.gate.gives_way", "the_greater_id_gives_way"
     survivor = {"verdict": "survived", "operator": "sign", "diff": "a -> b", "note": "why"}
     counts = {v: int(v == "survived") for v in mutate.VERDICTS}
     row = {"key": "", "kind": "kernel", "counts": counts, "listed": [survivor]}

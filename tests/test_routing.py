@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cratous.core import coverage_arrays, leg_arrays, routing, sight
-from cratous.core.daa_machine import machine
+from cratous.core.compiled import machine
 from cratous.core.kernel import Vec2
 from cratous.core.legs import first_bad_leg
 from cratous.core.polygon import edges_of, locate

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from uxas_tools import write_cfg
 
-from cratous.core import daa_machine, swift
+from cratous.core import compiled, swift
 from cratous.services import warm
 from cratous.services.cli import main
 
@@ -79,7 +79,7 @@ def test_only_a_configuration_that_plans_has_to_be_warm(
 
 
 def test_inside_at_once_the_first_call_is_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(daa_machine, "machine", lambda function: "machine code")
+    monkeypatch.setattr(compiled, "machine", lambda function: "machine code")
     monkeypatch.setattr(swift, "_compiled", {})
     assert swift.swift(write_cfg) is write_cfg
     with swift.at_once():

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 from cratous.core import ledger
+from cratous.core.names import short
 
 
 def inventory(standing: ledger.Standing) -> dict[str, Any]:
@@ -13,19 +15,24 @@ def inventory(standing: ledger.Standing) -> dict[str, Any]:
     standing: from `core.ledger.require`, taken before the flight.
     """
     data = ledger.read()
+    names = short([*data["kernels"], *(problem.name for problem in standing.problems)])
+
+    def shown(kernels: Iterable[str]) -> list[str]:
+        return [names.get(kernel, kernel) for kernel in kernels]
+
     return {
         "line": standing.line,
         "solver": ledger.solver_version(),
         "seal": data.get("seal", ""),
-        "problems": [{"kernel": p.name, "what": p.what} for p in standing.problems],
+        "problems": [{"kernel": names[p.name], "what": p.what} for p in standing.problems],
         "kernels": [
             {
-                "name": name,
+                "name": names[name],
                 "kind": record["kind"],
                 "implements": record["implements"],
                 "status": record["status"],
                 "theorems": record["theorems"],
-                "checked_by": record["checked_by"],
+                "checked_by": shown(record["checked_by"]),
                 "source": record["key"]["source"],
             }
             for name, record in sorted(data["kernels"].items())
@@ -35,7 +42,7 @@ def inventory(standing: ledger.Standing) -> dict[str, Any]:
                 "name": name,
                 "sentence": record["sentence"],
                 "status": record["status"],
-                "kernels": record["kernels"],
+                "kernels": shown(record["kernels"]),
                 "obligations": record["obligations"],
                 "premises": record["premises"],
                 "assumptions": [_text(entry) for entry in record["assumptions"]],

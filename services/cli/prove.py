@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fnmatch
 import gc
 import json
 import sys
@@ -69,6 +68,11 @@ def _meaning(theorems: list[Any], home: Any, cache: Path | None) -> list[str]:
         Kept(cache and cache / "relations", home).all(theorem.name for theorem in theorems),
     )
     return definitions.problems(gate.load_all(home), home, proofs)
+
+
+def _end(name: str) -> str:
+    """A qualified name beside its place, which says the rest."""
+    return name.rpartition(".")[2]
 
 
 def _refuse(problems: list[str]) -> None:
@@ -142,6 +146,7 @@ def prove(
     a theorem or kernel that no proof could be bound to.
     """
     from cratous.core import ledger as gate
+    from cratous.core.names import fits, matching
     from cratous.core.private import private_cache
     from cratous.proofs import cache, decisions, formats, ledger, prover
     from cratous.proofs.recall import Recall
@@ -160,11 +165,9 @@ def prove(
     gate.load_all()
     gate.load_all(home)
     folder = prover.home_folder(home)
-    names = [
-        n
-        for n in prover.theorem_files(folder)
-        if any(fnmatch.fnmatch(n, p) for p in only or ("*",))
-    ]
+    every = list(prover.theorem_files(folder))
+    patterns = only or ("*",)
+    names = [name for name in every if any(fits(name, pattern) for pattern in patterns)]
     if changed:
         names = ledger.changed_theorems(home)
     whole = not only and not changed
@@ -172,15 +175,16 @@ def prove(
     if mutate and only:
         from cratous.proofs.mutate import Keys, chosen
 
-        for name in prover.theorem_files(folder):
+        for name in every:
             prover.load_claim(name, folder)  # says what is wrong with a file, and where
         # the theorems that meet a function of this name are proved too
         met = chosen(only, Keys(home), about)
+        matching(only, [*every, *met], "theorem or function", "--only", gate.REGISTRY)
         names = sorted({*names, *(name for users in met.values() for name in users)})
-    if not changed and not names:
-        raise BadInput(
-            "no theorem matches", item="--only", got=" or ".join(only), expected="a file name"
-        )
+    elif only:
+        matching(only, every, "theorem", "--only")
+    if not every:
+        raise BadInput("the package has no theorems", where=home.name, expected="one file a claim")
     workers = jobs or ledger.jobs_default()
     store = cache.standard()
     memory = Recall(private_cache() / "theorems", home)
@@ -206,7 +210,7 @@ def prove(
     structural = list(inventory.problems) if whole else []
     if whole:
         structural += [
-            f"{gate.place_of(name)}: {name}: no theorem is about this kernel"
+            f"{gate.place_of(name)}: {_end(name)}: no theorem is about this kernel"
             for name in inventory.bare
         ]
     problems = [*structural, *(str(finding) for finding in inventory.findings)]
@@ -220,9 +224,9 @@ def prove(
         keep = home.product and not check
         data["recheck"] = second_solver(theorems, folder, workers, as_json, keep, whole, new)
     if mutate:
-        patterns = only or (("*",) if whole else ())
+        functions = only or (("*",) if whole else ())
         keep = home.product and not check
-        data["mutation"] = mutation(patterns, about, home, workers, as_json, keep, new)
+        data["mutation"] = mutation(functions, about, home, workers, as_json, keep, new)
     if smt2_folder is not None:
         count = _export(theorems, smt2_folder, folder)
         if not as_json:

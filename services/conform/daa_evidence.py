@@ -16,13 +16,12 @@ from typing import Any
 
 import numpy as np
 
-from cratous.core.compiled import exact
+from cratous.core.compiled import exact, machine
 from cratous.core.daa_bands import SAMPLE_S, Traffic, last_free
 from cratous.core.daa_climb import altitude_conflict, safe_altitudes
 from cratous.core.daa_frame import RADIUS_M, project
 from cratous.core.daa_grid import grid
 from cratous.core.daa_guide import evaluate
-from cratous.core.daa_machine import machine
 from cratous.core.daa_state import Aircraft
 from cratous.core.daa_steps import safe_steps
 from cratous.core.daa_uncertain import lost
