@@ -10,7 +10,7 @@ import pytest
 
 from cratous.core import kernel as kernels
 from cratous.core import ledger
-from cratous.core.kernel import REGISTRY, Entry
+from cratous.core.kernel import REGISTRY, Entry, named, supported
 from cratous.core.ledger import PRODUCT
 from cratous.proofs import prover
 from cratous.proofs.definitions import Proofs, definition, definition_name, is_restated, problems
@@ -26,7 +26,7 @@ def test_every_kernel_of_the_product_has_a_definition_or_is_a_step_of_one_that_h
         if entry.kind == "driver":
             continue
         if entry.supports:
-            assert REGISTRY[entry.supports].implements, name
+            assert REGISTRY[supported(entry)].implements, name
         else:
             assert definition(entry, PRODUCT) is not None, f"{name}: {entry.implements}"
             assert bool(entry.restates) == bool(is_restated(entry, PRODUCT)), name
@@ -54,11 +54,12 @@ def _proofs(name: str, uses: str = "", *, proved: bool = True, lemma: str = "") 
     """One theorem about a kernel; it, or its lemma, uses a definition."""
     using = replace(NOTHING, definitions=frozenset([uses]))
     said = {"one": using} if not lemma else {"one": replace(NOTHING, lemmas=(lemma,)), lemma: using}
-    return Proofs({"one": (name,)}, frozenset(["one"] if proved else []), said)
+    full = "nobody" if name == "nobody" else named(name).name
+    return Proofs({"one": (full,)}, frozenset(["one"] if proved else []), said)
 
 
 def test_a_definition_that_is_not_there() -> None:
-    later = REGISTRY["later"]
+    later = named("later")
     proofs = _proofs("later", definition_name(later, PRODUCT))
     assert problems({"later": later}, PRODUCT, proofs) == []
     said = _said(replace(later, implements="schedule.latest_of"), proofs)
@@ -71,7 +72,7 @@ def test_a_definition_that_is_not_there() -> None:
 
 
 def test_a_definition_that_no_theorem_uses() -> None:
-    later = REGISTRY["later"]
+    later = named("later")
     used = definition_name(later, PRODUCT)
     for idle in (_proofs("later", "cratous.spec.schedule.earlier_of"), _proofs("earlier", used)):
         assert "which none of its theorems uses" in _said(later, idle)
@@ -79,23 +80,23 @@ def test_a_definition_that_no_theorem_uses() -> None:
 
 
 def test_a_definition_with_the_kernels_own_formula() -> None:
-    enough = REGISTRY["enough"]
+    enough = named("enough")
     proofs = _proofs("enough", definition_name(enough, PRODUCT))
     assert problems({"enough": enough}, PRODUCT, proofs) == []
     assert "has its own formula" in _said(replace(enough, restates=""), proofs)
-    later = replace(REGISTRY["later"], restates="the later of two")
+    later = replace(named("later"), restates="the later of two")
     proofs = _proofs("later", definition_name(later, PRODUCT))
     assert "has another formula: it restates nothing" in _said(later, proofs)
 
 
 def test_a_fold_restates_with_its_step() -> None:
-    fold = replace(REGISTRY["way_conflicts"], implements="geofence.any_step")
+    fold = replace(named("way_conflicts"), implements="geofence.any_step")
     assert is_restated(fold, PRODUCT)
-    assert not is_restated(REGISTRY["way_conflicts"], PRODUCT)
+    assert not is_restated(named("way_conflicts"), PRODUCT)
 
 
 def test_a_step_of_what_does_not_carry_it() -> None:
-    step = REGISTRY["location_step"]
+    step = named("location_step")
     assert problems({step.name: step}, PRODUCT, _proofs("locate")) == []
     for whole, wanted in {
         "nobody": "which is no kernel or fold",
@@ -104,7 +105,7 @@ def test_a_step_of_what_does_not_carry_it() -> None:
     }.items():
         said = _said(replace(step, supports=whole), _proofs(whole))
         assert f"location_step: supports {whole!r}, {wanted}" in said
-    cross = replace(REGISTRY["orient"], implements="", supports="location_step")
+    cross = replace(named("orient"), implements="", supports="location_step")
     assert "which has no definition itself" in _said(cross, _proofs("location_step"))
     assert "which is not proved" in _said(step, _proofs("locate", proved=False))
     assert "which is not proved" in _said(step, _proofs("covers"))
@@ -239,7 +240,7 @@ def test_what_is_no_formula_is_not_compared() -> None:
     ],
 )  # fmt: skip
 def test_what_is_related(theorem: str, kernel: str, meant: str, how: str) -> None:
-    pair = (full_name(REGISTRY[kernel].function), f"cratous.spec.{meant}")
+    pair = (full_name(named(kernel).function), f"cratous.spec.{meant}")
     found = relations(theorem)
     assert pair in getattr(found, how)
     assert pair[1] in found.definitions
@@ -247,7 +248,7 @@ def test_what_is_related(theorem: str, kernel: str, meant: str, how: str) -> Non
 
 def test_what_is_used_is_not_yet_related() -> None:
     found = relations("exactly_one_gives_way")
-    gives = full_name(REGISTRY["gives_way"].function)
+    gives = full_name(named("gives_way").function)
     assert found.together == {(gives, "cratous.spec.authority.one_gives_way")}
     assert not found.follows
     assert not found.leads
