@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,7 @@ from cratous.judge import (
 from cratous.judge.compare import DISAGREE, Difference
 from cratous.judge.mission import Mission, from_log
 from cratous.judge.tracks import tracks
-from cratous.judge.verdict import GUARANTEES, HOLDS, VIOLATED, Row, doubted, worst
+from cratous.judge.verdict import GUARANTEES, HOLDS, UNKNOWN, VIOLATED, Row, doubted, worst
 from cratous.judge.work import Flight
 
 
@@ -98,7 +98,16 @@ def judged(mission: Mission, found: log.Log) -> list[Row]:
     doubts = list(found.doubts)
     if found.end_ms is None:
         doubts.append("the log stops before the mission ends")
-    return [doubted(row, doubts[0] if doubts else "") for row in sorted(rows, key=_place)]
+    rows = [doubted(_not_missed(row, found.lossy), doubts[0] if doubts else "") for row in rows]
+    return sorted(rows, key=_place)
+
+
+def _not_missed(row: Row, lossy: str) -> Row:
+    """What is violated because something was not said is unknown where messages are missing."""
+    by_presence = row.guarantee == "G2" or row.subject[0] in ("zone", "eligible")
+    if not lossy or by_presence or row.verdict != VIOLATED:
+        return row
+    return replace(row, verdict=UNKNOWN, note=f"{lossy}; else: {row.note}")
 
 
 def _place(row: Row) -> tuple[str, bool]:

@@ -87,7 +87,8 @@ class Bridge(NamedTuple):
 
 @dataclass
 class Log:
-    """What the judge takes from a log. doubts: why nothing in it can be said to hold."""
+    """What the judge takes from a log. doubts: why nothing in it can be said to hold; lossy: why
+    nothing can be said to be missing from it."""
 
     path: Path
     meta: dict[str, Any] = field(default_factory=dict)
@@ -100,6 +101,7 @@ class Log:
     bridges: dict[int, list[Bridge]] = field(default_factory=dict)
     ends: list[tuple[int, str]] = field(default_factory=list)
     doubts: list[str] = field(default_factory=list)
+    lossy: str = ""
     digest: str = ""
 
     @property
@@ -207,7 +209,7 @@ def _closing(log: Log, database: sqlite3.Connection, count: int) -> None:
     if "closing" in names:
         rows = database.execute("SELECT messages, digest FROM closing").fetchall()
     if not rows:
-        _doubt(log, "the log has no end: its writer was stopped, or still writes")
+        log.doubts.append("the log has no end: its writer was stopped, or still writes")
         return
     if rows[-1][0] != count:
         raise BadInput(
@@ -222,6 +224,7 @@ def _closing(log: Log, database: sqlite3.Connection, count: int) -> None:
 
 
 def _doubt(log: Log, text: str) -> None:
+    log.lossy = log.lossy or text
     if len(log.doubts) < 20:
         log.doubts.append(text)
 

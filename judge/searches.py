@@ -93,6 +93,7 @@ def _resolves(flight: Flight, task: Task) -> bool:
 
 
 def _by_share(sure: float, may: float, what: str) -> tuple[str, str]:
+    sure, may = max(0.0, sure), min(1.0, may)
     note = f"footprints covered {100 * sure:.3f} % of its {what}"
     if sure >= SHARE:
         return HOLDS, note
@@ -111,7 +112,7 @@ def _line(flight: Flight, task: Task) -> tuple[str, str]:
     if whole - sure <= close:
         sure = whole
     half = SPACING_M / 2 if sure < whole else 0.0
-    return _by_share((sure - half) / whole, min(1.0, (may + half) / whole), "line")
+    return _by_share((sure - half) / whole, (may + half) / whole, "line")
 
 
 def _area(flight: Flight, task: Task) -> tuple[str, str]:

@@ -166,11 +166,21 @@ def _watch(one: Track, two: Track, volume: Volume) -> Pair:
         pair.covered_ms += a[i + 1].time_ms - a[i].time_ms
         legs = a[i], a[i + 1], b[j], b[j + 1]
         _measure(pair, a[i + 1], b[j + 1], volume)
-        if not clear_by_far(*legs, volume) and lost_on_leg(*legs, volume):
+        if a[i].time_ms in one.unknown or a[i].time_ms in two.unknown:
+            lost = _lost_at(a[i], b[j], volume) or _lost_at(a[i + 1], b[j + 1], volume)
+        else:
+            lost = not clear_by_far(*legs, volume) and lost_on_leg(*legs, volume)
+        if lost:
             pair.last_ms = a[i].time_ms
             if pair.lost_ms is None:
                 pair.lost_ms = a[i].time_ms
     return pair
+
+
+def _lost_at(a: State, b: State, volume: Volume) -> bool:
+    """Lost by the two positions alone, whatever the velocities."""
+    s = [Fraction(a[k]) - Fraction(b[k]) for k in (1, 2, 3)]
+    return lost_within(s, [Fraction(0)] * 3, Fraction(0), volume)
 
 
 def _unmatched(one: Track, two: Track, pair: Pair) -> str:

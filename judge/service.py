@@ -74,6 +74,9 @@ def _served(flight: Flight, task: Task) -> Service:
         return VIOLATED, "said to be complete, but never begun", deed.complete_ms
     judge = {"must_fly": _flown, "loiter": _loitered}.get(task.kind, searched)
     verdict, note = judge(flight, task)
+    way_doubt = flight.way_doubt(task.id)
+    if way_doubt and verdict == VIOLATED and task.kind in ("must_fly", "loiter"):
+        return UNKNOWN, f"{way_doubt}; else: {note}", deed.complete_ms
     return verdict, note, deed.complete_ms
 
 

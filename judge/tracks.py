@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_left
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import NamedTuple
 
 from cratous.judge.log import Log, State
 from cratous.judge.mission import Mission
@@ -18,18 +21,42 @@ APART_M = 1e-3
 """A leg may end this far from where its velocity leads to [m]."""
 
 
+class Flaw(NamedTuple):
+    """From when to when the way is not known, and why."""
+
+    first_ms: int
+    last_ms: int
+    why: str
+
+
 @dataclass
 class Track:
-    """States in the order of time; flaws: instant and reason, where the way is not known."""
+    """States in the order of time, and where the way is not known.
+
+    unknown: when the legs begin of which only the ends are known.
+    """
 
     states: list[State]
     times: list[int]
-    flaws: list[tuple[int, str]] = field(default_factory=list)
+    flaws: list[Flaw] = field(default_factory=list)
+    unknown: set[int] = field(default_factory=set)
+
+    def legs(self, first: int = 0) -> Iterator[tuple[State, State]]:
+        """All legs from this state on; where only its ends are known, each end as a leg to itself."""
+        states = self.states[first:]
+        if len(states) == 1:
+            yield states[0], states[0]
+        for before, after in pairwise(states):
+            if before.time_ms in self.unknown:
+                yield before, before
+                yield after, after
+            else:
+                yield before, after
 
     @property
     def doubt(self) -> str:
         """Why the way is not known throughout; empty if it is."""
-        return self.flaws[0][1] if self.flaws else ""
+        return self.flaws[0].why if self.flaws else ""
 
     def from_index(self, time_ms: int) -> int:
         """Index of the first state at or after an instant."""
@@ -47,26 +74,29 @@ def _track(name: int, mission: Mission, log: Log) -> Track:
     for state in log.states.get(name, []):
         if found.times and state.time_ms <= found.times[-1]:
             text = f"the positions of {name} are not in the order of time"
-            found.flaws.append((state.time_ms, text))
+            found.flaws.append(Flaw(state.time_ms, state.time_ms, text))
             continue
         found.states.append(state)
         found.times.append(state.time_ms)
     begin, end = _span(name, mission, log)
     if not found.states:
         if begin is not None and (end is None or begin <= end):
-            found.flaws.append((begin, f"no position of {name} was logged"))
+            last = begin if end is None else end
+            found.flaws.append(Flaw(begin, last, f"no position of {name} was logged"))
         return found
     _ends(found, name, begin, end, mission.step_ms)
-    for before, after in zip(found.states, found.states[1:], strict=False):
+    for before, after in pairwise(found.states):
         gap = after.time_ms - before.time_ms
         if gap > mission.step_ms:
             text = f"no position of {name} from {seconds(before.time_ms)} for {gap} ms"
-            found.flaws.append((before.time_ms, text))
+            found.flaws.append(Flaw(before.time_ms, after.time_ms, text))
+            found.unknown.add(before.time_ms)
         elif not _led(before, after):
             text = (
                 f"the position of {name} at {seconds(after.time_ms)} is not where its velocity led"
             )
-            found.flaws.append((before.time_ms, text))
+            found.flaws.append(Flaw(before.time_ms, after.time_ms, text))
+            found.unknown.add(before.time_ms)
     return found
 
 
@@ -86,11 +116,11 @@ def _span(name: int, mission: Mission, log: Log) -> tuple[int | None, int | None
 def _ends(track: Track, name: int, begin: int | None, end: int | None, step_ms: int) -> None:
     # an aircraft that comes or goes between two steps is first and last seen at a step
     if begin is not None and track.times[0] - begin >= max(1, step_ms if begin else 1):
-        track.flaws.append((begin, f"no position of {name} before {seconds(track.times[0])}"))
+        text = f"no position of {name} before {seconds(track.times[0])}"
+        track.flaws.append(Flaw(begin, track.times[0], text))
     if end is not None and end - track.times[-1] >= step_ms:
-        track.flaws.append(
-            (track.times[-1], f"no position of {name} after {seconds(track.times[-1])}")
-        )
+        text = f"no position of {name} after {seconds(track.times[-1])}"
+        track.flaws.append(Flaw(track.times[-1], end, text))
 
 
 def _led(before: State, after: State) -> bool:

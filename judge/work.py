@@ -49,6 +49,12 @@ class Flight:
                 first, last = max(a.time_ms, start), min(b.time_ms, stop)
                 if first > last:
                     continue
+                if a.time_ms in track.unknown:
+                    for state in (a, b):
+                        if start <= state.time_ms <= stop:
+                            here = (state.north_m, state.east_m)
+                            yield here, here, 0
+                    continue
                 gap = b.time_ms - a.time_ms
                 ends = []
                 for at in (first, last):
@@ -61,20 +67,24 @@ class Flight:
 
     def doubt(self, task: int) -> str:
         """Why what was done about the task is not known; empty if it is."""
+        deed = self.done.get(task)
+        return self.way_doubt(task) or (deed.fault if deed else "")
+
+    def way_doubt(self, task: int) -> str:
+        """Why the way of those who did it is not known; empty if it is."""
         for vehicle, start, stop in self.spans(task):
             track = self.tracks.get(vehicle)
             if track is None or not track.states:
                 return f"no position of {vehicle} was logged"
-            for at, why in track.flaws:
-                if start - self.mission.step_ms <= at <= stop:
-                    return why
+            for flaw in track.flaws:
+                if flaw.first_ms <= stop and flaw.last_ms >= start:
+                    return flaw.why
             for time_ms in track.times[track.from_index(start) :]:
                 if time_ms > stop:
                     break
                 if not self._where_it_says(vehicle, time_ms):
                     return f"{vehicle} says at {seconds(time_ms)} that it is elsewhere than it is"
-        deed = self.done.get(task)
-        return deed.fault if deed else ""
+        return ""
 
     def _where_it_says(self, vehicle: int, time_ms: int) -> bool:
         """Whether what it says of its place with a footprint is where it is: the frames agree."""

@@ -127,14 +127,14 @@ def _row(vehicle: int, zone: Zone, track: Track) -> Row:
     subject = ("zone", str(zone.id), str(vehicle))
     item = f"zone: {kind} {zone.id}, flight of vehicle {vehicle}"
     # what becomes known between two states is known at the second
-    states = track.states[track.from_index(zone.from_ms) :]
-    if not states:
+    first = track.from_index(zone.from_ms)
+    if first == len(track.states):
         if track.states and not track.doubt:
             return Row("G1", subject, item, HOLDS, "the zone did not become known in flight")
         return Row("G1", subject, item, UNKNOWN, track.doubt or "no position was logged")
     fence = Fence(zone)
     checks = 0
-    for before, after in zip(states, states[1:] or states, strict=False):
+    for before, after in track.legs(first):
         checks += 1
         if fence.breaks(before, after):
             note = f"broken on the leg from {seconds(before.time_ms)}"

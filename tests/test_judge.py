@@ -85,6 +85,45 @@ def test_what_is_not_known_of_a_flight_does_not_hold(tmp_path: Path) -> None:
     assert verdicts(scene().judged(tmp_path, seal=False))[item] == "unknown"
 
 
+def test_a_gap_is_no_violation_either(tmp_path: Path) -> None:
+    """What lies between two positions that a gap parts is not known; the positions are."""
+
+    def found(vehicles: int, **more) -> dict[str, str]:
+        scene = Scene(vehicles=[vehicle(k + 1) for k in range(vehicles)], **more)
+        scene.straight(1, (0, 0, 300), NORTH).does(1, 1, 4000, 6000)
+        scene.straight(2, (100, -500, 300), (0.0, 100.0, 0.0))
+        gone = range(3000, 8000, 1000)
+        scene.messages = [
+            m for m in scene.messages if m.kind != "TruthState" or m.body["Time"] not in gone
+        ]
+        return verdicts(scene.judged(tmp_path))
+
+    asked = [task(1, "must_fly", (100, 60))]
+    inside = zone(7, "keep_out", (90, -5), (90, 5), (110, 5), (110, -5))
+    at_sample = zone(8, "keep_out", (30, -5), (30, 5), (41, 5), (41, -5))
+    now = {"dthr_m": 150.0, "zthr_m": 30.0, "tthr_s": 0.0, "tcoa_s": 0.0}
+    rows = found(2, tasks=asked, zones=[inside, at_sample], daa={"well_clear": now})
+    assert rows["zone: keep_out 7, flight of vehicle 1"] == "unknown"
+    assert rows["zone: keep_out 8, flight of vehicle 1"] == "violated"
+    assert rows["well clear of 1 and 2"] == "unknown"
+    assert rows["task 1 served"] == "unknown"
+
+
+def test_what_is_missing_may_be_among_what_was_lost(tmp_path: Path) -> None:
+    there = zone(7, "keep_out", (90, -5), (90, 5), (110, 5), (110, -5))
+    scene = Scene(zones=[there], tasks=[task(1, "must_fly", (100, 0))], instances=[1])
+    scene.straight(1, (0, 0, 300), NORTH).commands(1, *TAKEN[:7]).beats(1, range(5, 9))
+    log = scene.write(tmp_path / "log.sqlite")
+    before = verdicts(judge(log))
+    with sqlite3.connect(log) as database:
+        database.execute("INSERT INTO gaps VALUES(5, 3, 2000, 3000, 'disk full')")
+    after = verdicts(judge(log))
+    lost = {"task 1 served", "authority over vehicle 1", *(k for k in before if "heartbeat" in k)}
+    assert {before[k] for k in lost} == {"violated"}
+    assert {after[k] for k in lost} == {"unknown"}
+    assert after["zone: keep_out 7, flight of vehicle 1"] == "violated"
+
+
 def test_unprotected_vehicles_are_not_covered(tmp_path: Path) -> None:
     there = zone(7, "keep_out", (90, -5), (90, 5), (110, 5), (110, -5))
     scene = Scene(zones=[there], vehicles=[vehicle(1), vehicle(2, protected=False)])
