@@ -29,6 +29,7 @@ from cratous.services.logs.store import LogStore, cannot_write
 from cratous.services.logs.text_files import TextFiles
 from cratous.services.records import canonical
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import integer_of
 
 STEM = "messageLog"
 SERVICE_TYPE = "MessageLoggerDataService"
@@ -224,8 +225,9 @@ def _free(folder: Path) -> tuple[Path, int]:
 
 def _whole(element: Any, name: str, where: str) -> int:
     text = element.get(name, "0").strip()
-    if not text.isascii() or not text.isdigit() or int(text) >= 2**32:
+    number = integer_of(text, 0, 2**32 - 1)
+    if number is None:
         raise BadInput(
             "wrong attribute", where=where, item=name, expected="a whole number from 0", got=text
         )
-    return int(text)
+    return number

@@ -17,6 +17,7 @@ from typing import Any, TypeVar, Union, cast, get_args, get_origin, get_type_hin
 from cratous.spec.errors import BadInput
 
 T = TypeVar("T")
+_WORDS = {bool: "true or false", int: "a whole number", float: "a number", str: "a text"}
 
 
 def to_data(value: Any) -> Any:
@@ -78,7 +79,7 @@ def _read(hint: Any, data: Any, item: str) -> Any:
         return float(data)
     if hint in (bool, int, float, str) and type(data) is hint:
         return data
-    raise _misfit(item, getattr(hint, "__name__", str(hint)), data)
+    raise _misfit(item, _WORDS.get(hint, str(hint)), data)
 
 
 def _read_optional(hint: Any, data: Any, item: str) -> Any:
@@ -92,7 +93,7 @@ def _read_optional(hint: Any, data: Any, item: str) -> Any:
 
 
 def _read_tuple(hints: tuple[Any, ...], data: Any, item: str) -> tuple[Any, ...]:
-    if not isinstance(data, list):
+    if not isinstance(data, (list, tuple)):
         raise _misfit(item, "a list", data)
     if len(hints) == 2 and hints[1] is Ellipsis:
         return tuple(_read(hints[0], part, f"{item}[{k}]") for k, part in enumerate(data))

@@ -34,6 +34,7 @@ from cratous.spec.daa import (
 )
 from cratous.spec.daa_check import check
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import CONFIG_BYTES
 from cratous.spec.text_file import text_of
 
 SPREADS = {"hdir": ("rad", "deg"), "hs": ("m_s", "knot"), "vs": ("m_s", "fpm"), "alt": ("m", "ft")}
@@ -44,6 +45,8 @@ THRESHOLDS = {
 }  # fmt: skip
 
 
+AMOUNT_MAX = 1e9
+"""The largest threshold, time or spread in SI."""
 TCAS_COLUMNS = {
     "TAU": ("tau_s", "s"), "TCOA": ("tau_s", "s"), "DMOD": ("dmod_m", "m"), "ZTHR": ("zthr_m", "m"),
     "HMD": ("hmd_m", "m"),
@@ -167,7 +170,7 @@ class _Reader:
         entry = self.take(key)
         if entry is None:
             return default
-        value, unit = _number(entry, dimension, low, math.inf)
+        value, unit = _number(entry, dimension, low, AMOUNT_MAX)
         self.units[key] = unit
         return value
 
@@ -302,7 +305,7 @@ def parse(text: str, file: str = "configuration", base: Parameters | None = None
 
 def read(file: Path, base: Parameters | None = None) -> Configuration:
     """The configuration in a file; raises BadInput."""
-    return parse(text_of(file), str(file), base)
+    return parse(text_of(file, CONFIG_BYTES), str(file), base)
 
 
 def _text(value: float, unit: str) -> str:

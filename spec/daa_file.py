@@ -9,6 +9,7 @@ expected and what was got.
 
 from __future__ import annotations
 
+import io
 import math
 import re
 from collections.abc import Sequence
@@ -20,6 +21,7 @@ from typing import Any
 from cratous.spec.daa import KEYS, OLD_NAMES, UNITS
 from cratous.spec.daa_conf import Entry, value_of
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import ENCOUNTER_ROWS, at_most
 from cratous.spec.text_file import text_of
 
 COLUMNS: dict[str, tuple[tuple[str, ...], str, str]] = {
@@ -48,6 +50,13 @@ COLUMNS: dict[str, tuple[tuple[str, ...], str, str]] = {
     "v_z": (("vz_std",), "m_s", "fpm"),
 }
 """Columns: their names in files, what they measure, and the unit if the file gives none."""
+MOST = {
+    "time": 1e10, "lat": math.pi / 2, "lon": 2 * math.pi, "x": 1e8, "y": 1e8, "alt": 1e5,
+    "vx": 1e4, "vy": 1e4, "vs": 1e4, "trk": 4 * math.pi, "gs": 1e4, "heading": 4 * math.pi,
+    "airspeed": 1e4, "alerter": 1e3, "s_ew": 1e6, "s_ns": 1e6, "s_en": 1e6, "s_z": 1e6,
+    "v_ew": 1e4, "v_ns": 1e4, "v_en": 1e4, "v_z": 1e4,
+}  # fmt: skip
+"""The largest size of a value in SI: beyond what flies, and far below what overflows when squared."""
 NAMES = {name: column for column, (names, _, _) in COLUMNS.items() for name in names}
 _SPLIT = re.compile(r"\s*,\s*|\s+")
 _SETTING = re.compile(r"^([A-Za-z]\w*)\s*=\s*(.+)$")
@@ -168,9 +177,6 @@ class _Table:
             if values.get(column, 0.0) < 0:
                 raise BadInput("a value out of range", where=where, item=column,
                                expected="0 or more", got=str(values[column]))  # fmt: skip
-        if abs(values.get("lat", 0.0)) > math.pi / 2:
-            raise BadInput("a value out of range", where=where, item="lat",
-                           expected="-90 to 90 deg", got=f"{math.degrees(values['lat']):g} deg")  # fmt: skip
         if "trk" in values and "vx" not in values:
             values["vx"] = values["gs"] * math.sin(values["trk"])
             values["vy"] = values["gs"] * math.cos(values["trk"])
@@ -181,14 +187,21 @@ class _Table:
         try:
             if column == "time" and ":" in part:
                 hours, minutes, seconds = part.split(":")
-                return float(hours) * 3600 + float(minutes) * 60 + float(seconds)
-            value = float(part)
+                value = float(hours) * 3600 + float(minutes) * 60 + float(seconds)
+            else:
+                value = float(part)
         except ValueError:
             value = math.nan
         if not math.isfinite(value):
             raise BadInput("not a number", where=where, item=column,
                            expected="a finite number", got=part)  # fmt: skip
-        return value * (UNITS[unit][1] if unit else 1.0)
+        size = UNITS[unit][1] if unit else 1.0
+        most = MOST[column]
+        if abs(value * size) > most * (1 + 1e-12):
+            raise BadInput("a value out of range", where=where, item=column,
+                           expected=f"{-most / size:g} to {most / size:g} {unit}".strip(),
+                           got=f"{part[:40]} {unit}".strip())  # fmt: skip
+        return value * size
 
 
 def parse(text: str, file: str = "encounters", ownship: str = "") -> Encounters:
@@ -198,7 +211,7 @@ def parse(text: str, file: str = "encounters", ownship: str = "") -> Encounters:
     settings: dict[str, Any] = {}
     before: dict[str, Row] = {}
     units_open = False
-    for number, raw in enumerate(text.splitlines(), 1):
+    for number, raw in enumerate(io.StringIO(text, newline=None), 1):
         line = raw.split("#", 1)[0].strip()
         if not line:
             continue
@@ -226,6 +239,7 @@ def parse(text: str, file: str = "encounters", ownship: str = "") -> Encounters:
                            got=f"{row.time_s:g} s")  # fmt: skip
         before[row.id] = row
         rows.append(row)
+        at_most(len(rows), ENCOUNTER_ROWS, "too many states", f"{file}:{number}", "rows")
     if not rows:
         raise BadInput("the file has no states", where=file, expected="a header, units and rows")
     own = ownship or rows[0].id

@@ -83,7 +83,7 @@ def test_reads_a_file(tmp_path):
     path.write_bytes(b"\xff\xfe\x00")
     result = run("check", "-f", str(path))
     assert result.exit_code == 2
-    assert "cannot be read" in result.stderr
+    assert "not a text file" in result.stderr
 
 
 @pytest.mark.parametrize(
@@ -94,7 +94,7 @@ def test_reads_a_file(tmp_path):
         (["|(p1 p9)", "--tasks", ""], "--tasks: this is not a list of task ids"),
         ([], "expected TEXT, or -f FILE; got neither"),
         (["p1", "-f", "somewhere"], "expected TEXT, or -f FILE; got both"),
-        (["-f", "no such file"], "no such file: the file cannot be read"),
+        (["-f", "no such file"], "no such file: there is no such file"),
         ([""], "the text is empty"),
         (["|(p1 P2)"], "with a small p"),
     ],

@@ -192,6 +192,22 @@ def test_plan(run: Run) -> None:
     assert {row["verdict"] for row in data["constraints"]} == {"holds"}
 
 
+def test_plan_tells_the_notes_of_a_mission(run: Run, tmp_path: Path) -> None:
+    zone = """zones:
+  - id: 7
+    kind: keep_out
+    padding_m: 10
+    vertices: [[9000, 9000], [9500, 9000], [9500, 9500]]
+"""
+    file = tmp_path / "m.yaml"
+    file.write_text(CROSSING.read_text(encoding="utf-8") + zone)
+    code, out, _ = run("plan", file)
+    assert code == 0
+    assert "note: zone 7 is widened by its padding of 10 m" in out
+    data = json.loads(run("plan", file, "--json")[1])
+    assert data["notes"] == ["zone 7 is widened by its padding of 10 m"]
+
+
 def test_the_ledger_is_a_gate(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from cratous.core import ledger
 

@@ -170,7 +170,7 @@ def test_bad_polygons_are_refused(change: dict):
 
 @pytest.mark.parametrize(
     ("text", "wanted"),
-    [("", "no cases"), ("{", "no JSON"), ("[1]", "JSON object"), ("\xff", "cannot be read")],
+    [("", "no cases"), ("{", "not JSON"), ("[1]", "JSON object"), ("\xff", "not a text file")],
 )
 def test_files_that_are_none(
     text: str, wanted: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -17,10 +17,9 @@ is found as the error that it is.
 
 from __future__ import annotations
 
-import json
+import io
 import re
-import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,10 +27,10 @@ from cratous.bridge import envelope, sentinel
 from cratous.bridge.lmcp import binary, jsonform, xml
 from cratous.bridge.lmcp.objects import LmcpObject, full_names
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import MESSAGES_BYTES, inflated, json_of
 
 FORMS = ("binary", "envelope", "frames", "hex", "xml", "json")
 OUTPUTS = ("json", "xml", "binary", "envelope", "frames", "hex")
-MAX_UNPACKED = 1 << 30  # bytes that a gzipped input may become
 _LOGS = (b"SQLite format 3\0", b"\x89MCAP0")
 _HEX = re.compile(rb"[0-9a-fA-F\s]+\Z")
 _ENVELOPE = re.compile(rb"[^$\0]{1,4096}\$[^$\0]{1,4096}\$LMCP")
@@ -106,15 +105,7 @@ def read(data: bytes, where: str = "input", form: str = "auto") -> Iterator[Foun
 def _unzipped(data: bytes, where: str) -> bytes:
     if not data.startswith(b"\x1f\x8b"):
         return data
-    unpacker = zlib.decompressobj(31)
-    try:
-        result = unpacker.decompress(data, MAX_UNPACKED)
-    except zlib.error as err:
-        raise BadInput("not gzip", where=where, got=str(err)) from None
-    if not unpacker.eof:
-        what = "gzip ends too early" if not unpacker.unconsumed_tail else "too long unpacked"
-        raise BadInput(what, where=where, expected=f"at most {MAX_UNPACKED} bytes, whole")
-    return result
+    return inflated(data, where, MESSAGES_BYTES)
 
 
 def _message(raw: bytes, where: str, around: envelope.AddressedMessage | None) -> Found:
@@ -157,22 +148,22 @@ def _json(data: bytes, where: str) -> Iterator[Found]:
     except UnicodeDecodeError as err:
         raise BadInput("not UTF-8", where=f"{where}: byte {err.start}", got=err.reason) from None
     try:
-        whole = json.loads(text)
-    except (ValueError, RecursionError):
+        whole = json_of(text, where)
+    except BadInput:
         whole = None  # one object a line, or wrong: the lines say which
     if whole is not None:
         parts = whole if isinstance(whole, list) else [whole]
         for number, part in enumerate(parts, 1):
-            yield _from_json(json.dumps(part), f"{where}: object {number}")
+            yield _found(jsonform.from_dict, part, f"{where}: object {number}")
         return
-    for number, line in enumerate(text.splitlines(), 1):
+    for number, line in enumerate(io.StringIO(text), 1):
         if line.strip():
-            yield _from_json(line, f"{where}:{number}")
+            yield _found(jsonform.from_json, line, f"{where}:{number}")
 
 
-def _from_json(text: str, where: str) -> Found:
+def _found(read_one: Callable[[Any, str], Any], part: Any, where: str) -> Found:
     try:
-        return Found(where, jsonform.from_json(text, where))
+        return Found(where, read_one(part, where))
     except BadInput as err:
         return Found(where, None, err)
 

@@ -21,6 +21,7 @@ from cratous.bridge.lmcp.objects import (
     within,
 )
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import json_of
 
 _encode = json.JSONEncoder(
     separators=(",", ":"), ensure_ascii=False, allow_nan=False, check_circular=False
@@ -87,15 +88,7 @@ def to_json(obj: LmcpObject) -> str:
 
 def from_json(text: str | bytes, where: str = "") -> Any:
     """The object of a JSON text; BadInput (with `where`) for anything that is not one."""
-    try:
-        data = json.loads(text, parse_constant=_refuse_constant)
-    except (ValueError, RecursionError) as err:
-        raise BadInput("not JSON", where=where, got=str(err)) from None
-    return from_dict(data, where)
-
-
-def _refuse_constant(text: str) -> float:
-    raise ValueError(f"{text} is not a JSON number")
+    return from_dict(json_of(text, where), where)
 
 
 def from_dict(data: Any, where: str = "") -> Any:

@@ -22,6 +22,7 @@ from typing import Any
 
 from cratous.bridge.lmcp import model, xml
 from cratous.spec.errors import BadInput
+from cratous.spec.text_file import bytes_of
 
 PRIMITIVES = ("bool", "char", "string", "real32", "real64", *model.INTEGER_RANGES)
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
@@ -52,17 +53,7 @@ def load(*paths: str | Path) -> tuple[str, ...]:
 
 def read_all(paths: Iterable[str | Path]) -> list[model.Series]:
     """The models of several files that may refer to each other; nothing is made known."""
-    files = []
-    for path in paths:
-        try:
-            files.append((Path(path).read_bytes(), str(path)))
-        except OSError as err:
-            raise BadInput(
-                "file cannot be read",
-                where=str(path),
-                expected="an MDM file",
-                got=err.strerror or "",
-            ) from None
+    files = [(bytes_of(Path(path), expected="an MDM file"), str(path)) for path in paths]
     drafts = [_Draft(data, where) for data, where in files]
     names = {draft.name: draft for draft in drafts}
     return [model.from_dict(draft.data(names)) for draft in drafts]

@@ -20,6 +20,8 @@ from cratous.bridge.lmcp import model
 from cratous.bridge.lmcp.objects import LmcpObject, enums, types, unknown_field
 from cratous.bridge.lmcp.xml_writing import dumps
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import DOCUMENT_BYTES, TAGS, at_most, integer_of
+from cratous.spec.text_file import bytes_of
 
 __all__ = ["LmcpNote", "dumps", "loads", "parse", "read_element", "read_file", "read_messages"]
 
@@ -66,13 +68,7 @@ def read_file(
     also for NaN and the infinities, unless `finite` is False.
     """
     where = str(path)
-    try:
-        data = Path(path).read_bytes()
-    except OSError as err:
-        raise BadInput(
-            "file cannot be read", where=where, expected="a file", got=err.strerror or str(err)
-        ) from None
-    return loads(data, where, notes, strict=strict, finite=finite)
+    return loads(bytes_of(Path(path)), where, notes, strict=strict, finite=finite)
 
 
 def read_messages(path: str | Path, notes: list[str]) -> list[Any]:
@@ -82,10 +78,7 @@ def read_messages(path: str | Path, notes: list[str]) -> list[Any]:
     enumeration, and a file may hold one object after the other; each case is noted. Lines that
     begin with `#` say nothing. All else is refused as in `read_file`.
     """
-    try:
-        data = Path(path).read_bytes()
-    except OSError:
-        return read_file(path, notes)
+    data = bytes_of(Path(path))
     data = _HASH_LINE.sub(b"", data)  # the line's end stays: places keep their line numbers
     head = re.match(rb"\s*(?:<\?xml[^>]*\?>)?", data)
     body = data[head.end() :] if head else data
@@ -142,6 +135,8 @@ def parse(text: str | bytes, where: str = "text") -> Any:
     data = text.encode("utf-8") if isinstance(text, str) else text
     if isinstance(text, str):  # a declared encoding no longer holds for text that is decoded
         data = re.sub(rb"\A(<\?xml[^>]*?)\s+encoding=(\"[^\"]*\"|'[^']*')", rb"\1", data)
+    at_most(len(data), DOCUMENT_BYTES, "the XML is too long", where)
+    at_most(data.count(b"<"), TAGS, "too many elements", where, "tags")
     try:
         root = etree.fromstring(data, parser)
     except etree.XMLSyntaxError as err:
@@ -347,6 +342,7 @@ def _primitive(field: model.Field, element: Any, source: _Source) -> Any:
     if not _INTEGER.match(text):
         raise wrong(field.kind)
     low, high = model.INTEGER_RANGES[field.kind]
-    if not low <= int(text) <= high:
+    number = integer_of(text, low, high)
+    if number is None:
         raise wrong(f"{field.kind} from {low} to {high}")
-    return int(text)
+    return number

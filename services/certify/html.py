@@ -9,6 +9,7 @@ from typing import Any
 from cratous.services.certify.gantt import gantt, plan_bars, plan_rows, tree
 from cratous.services.certify.picture import map_view, separation_view, time_view
 from cratous.spec.algebra import parse
+from cratous.spec.printable import printable
 
 MAP = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {{ map.width }} {{ map.height }}" \
 width="{{ map.width }}" height="{{ map.height }}" role="img" aria-label="Map of the flight">
@@ -27,12 +28,17 @@ def _environment() -> Any:
 
     folder = files("cratous.services.certify")
     environment = Environment(
-        autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
+        autoescape=True, finalize=_shown, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
         loader=FunctionLoader(lambda name: folder.joinpath(name).read_text("utf-8")),
     )  # fmt: skip
     environment.filters["seconds"] = seconds
     environment.filters["margin"] = margin
     return environment
+
+
+def _shown(value: Any) -> Any:
+    """What a page shows of a value; what is a page already stays as it is."""
+    return printable(value, keep="\n\t") if type(value) is str else value
 
 
 def seconds(time_ms: float | None) -> str:

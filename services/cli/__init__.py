@@ -9,6 +9,7 @@ more say which signal ended it.
 from __future__ import annotations
 
 import importlib
+import io
 import json
 import sys
 import traceback
@@ -19,6 +20,7 @@ import click
 
 from cratous.services.cli.stopping import Stopped, stoppable
 from cratous.spec.errors import BadInput, CratousError, NoPlan
+from cratous.spec.printable import json_text, printable
 
 INTERNAL_ERROR = 70
 PACKAGE = f"{Path(__file__).parents[2]}/"
@@ -102,7 +104,8 @@ def main(argv: list[str] | None = None) -> int:
         if debug:
             raise
         name = type(error).__name__
-        click.echo(f"cratous: internal error ({name}: {error}){_place(error)}", err=True)
+        said = printable(f"{name}: {error}")
+        click.echo(f"cratous: internal error ({said}){_place(error)}", err=True)
         click.echo("This is a defect of CRATOUS. Add --debug to see where it is.", err=True)
         if as_json:
             click.echo(json.dumps({"error": f"internal error: {name}", "exit_code": 70}))
@@ -120,22 +123,26 @@ def _usage(error: click.ClickException, as_json: bool) -> int:
     if as_json:
         click.echo(json.dumps({"error": error.format_message(), "exit_code": 2}))
     else:
-        error.show()
+        said = io.StringIO()
+        error.show(said)
+        click.echo(printable(said.getvalue(), keep="\n"), err=True, nl=False)
     return 2
 
 
 def report_error(error: CratousError, as_json: bool) -> int:
     """Print an error once, for people or as JSON; returns its exit code."""
     if as_json:
-        click.echo(json.dumps({**_data(error), "exit_code": error.exit_code}, ensure_ascii=False))
+        click.echo(json_text({**_data(error), "exit_code": error.exit_code}))
         return error.exit_code
     notes = "".join(f" {note}" for note in getattr(error, "__notes__", ()))
-    click.echo(f"cratous: {error}{notes}", err=True)
+    # lines of our own stand only in what is refused for reasons of our own
+    keep = "" if isinstance(error, (BadInput, NoPlan)) else "\n"
+    click.echo(printable(f"cratous: {error}{notes}", keep), err=True)
     caret = getattr(error, "caret", None)
     if caret is not None:
         click.echo(caret(), err=True)
     for other in getattr(error, "problems", ())[1:]:
-        click.echo(f"  also: {other}", err=True)
+        click.echo(printable(f"  also: {other}"), err=True)
     return error.exit_code
 
 

@@ -12,6 +12,9 @@ import click
 from cratous.spec import algebra as pa
 from cratous.spec import algebra_meaning as meaning
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import CONFIG_BYTES
+from cratous.spec.printable import json_text, printable
+from cratous.spec.text_file import text_of
 
 EXAMPLES = """
 \b
@@ -123,13 +126,7 @@ def _term(text: str | None, file: str | None, tasks: str | None, as_json: bool) 
 
 
 def _read(file: str) -> str:
-    try:
-        return Path(file).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        got = "other bytes" if isinstance(error, UnicodeDecodeError) else str(error.strerror)
-        raise BadInput(
-            "the file cannot be read", where=file, expected="a UTF-8 text", got=got
-        ) from None
+    return text_of(Path(file), CONFIG_BYTES, "a UTF-8 text")
 
 
 def _ids(tasks: str) -> frozenset[int]:
@@ -144,8 +141,8 @@ def _ids(tasks: str) -> frozenset[int]:
 
 def _refuse(error: BadInput, as_json: bool) -> NoReturn:
     if as_json:
-        click.echo(json.dumps(error.data(), ensure_ascii=False))
-    click.echo(f"Error: {error}", err=True)
+        click.echo(json_text(error.data()))
+    click.echo(printable(f"Error: {error}"), err=True)
     if isinstance(error, pa.AlgebraError):
         click.echo(error.caret(), err=True)
     raise SystemExit(error.exit_code)

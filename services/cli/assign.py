@@ -8,8 +8,11 @@ from pathlib import Path
 import click
 
 from cratous.core.whole_file import write_atomically
+from cratous.services.cli.show import say
 from cratous.spec.assignment import CUMULATIVE, MINMAX, AssignmentProblem, Cost, Solution
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import json_of
+from cratous.spec.text_file import bytes_of
 
 
 @click.command()
@@ -49,11 +52,12 @@ def assign(
     from cratous.services.standing import require
 
     require()
+    data = json_of(bytes_of(file, expected="an assignment problem"), str(file))
     try:
-        data = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise BadInput(f"this is no problem: {error}", where=str(file)) from error
-    problem = read(data, semantics, _weights(cost), file.name)
+        problem = read(data, semantics, _weights(cost), file.name)
+    except BadInput as error:
+        error.where = error.where or str(file)
+        raise
 
     def tell(count: int, best: int | None, bound: int) -> None:
         shown = "-" if best is None else f"{100 * max(0, best - bound) / best:.1f} %"
@@ -90,7 +94,7 @@ def assign(
         if reasons:
             click.echo("these contradict each other:" if sure else "these seem to clash:")
         for reason in reasons:
-            click.echo(f"  {reason}")
+            say(f"  {reason}")
     return code
 
 

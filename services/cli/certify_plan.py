@@ -7,6 +7,8 @@ from pathlib import Path
 
 import click
 
+from cratous.services.cli.show import say
+
 
 @click.command("certify-plan")
 @click.argument("file", type=click.Path(path_type=Path))
@@ -36,10 +38,10 @@ def certify_plan(file: Path, as_json: bool) -> int:
         click.echo(json.dumps(data, indent=1))
         return code
     if verdict.wrong:
-        click.echo(f"cratous: {file}: refused: {verdict.wrong}", err=True)
+        say(f"cratous: {file}: refused: {verdict.wrong}", err=True)
         return code
     if verdict.cost is None:
-        click.echo(f"confirmed: {verdict.status}")
+        say(f"confirmed: {verdict.status}")
         return code
     gap = (verdict.cost - verdict.bound) / verdict.cost if verdict.cost > verdict.bound else 0.0
     click.echo(

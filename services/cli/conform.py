@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from cratous.services import conform as suites
+from cratous.services.cli.show import say
 from cratous.spec.errors import BadInput
 
 LIST = "\n".join(f"  {name}: {text}" for name, text in suites.SUITES.items())
@@ -51,17 +52,17 @@ def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> in
         reports.append(report)
         if as_json:
             continue
-        click.echo(report.line)
+        say(report.line)
         for line in report.summary:
-            click.echo(line)
+            say(line)
         for label, count in sorted(report.differences.items()):
-            click.echo(f"  {count} x {label}")
+            say(f"  {count} x {label}")
         for result in report.shown:
-            click.echo(f"    {result.case}: {result.text}")
+            say(f"    {result.case}: {result.text}")
         for label, count in sorted(report.edges.items()):
-            click.echo(f"  {count} x knife edge: {label}")
+            say(f"  {count} x knife edge: {label}")
         for result in report.edge_cases[:show]:
-            click.echo(f"    {result.case}: {result.text}")
+            say(f"    {result.case}: {result.text}")
     good, bad = sum(r.passed for r in reports), sum(r.failed for r in reports)
     skipped: Counter[str] = sum((r.skipped for r in reports), Counter())
     edges = sum(r.edges.total() for r in reports)
@@ -96,7 +97,7 @@ def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> in
         return code
     if skipped:
         kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(skipped.items()))
-        click.echo(f"not covered: {kinds}")
+        say(f"not covered: {kinds}")
     tail = f", {edges} on a knife edge" if edges else ""
     click.echo(f"{good} passed, {bad} failed{tail}")
     return code

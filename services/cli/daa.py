@@ -11,7 +11,9 @@ from typing import Any
 import click
 
 from cratous.core.whole_file import write_atomically
+from cratous.services.cli.show import say
 from cratous.spec.errors import BadInput
+from cratous.spec.printable import printable
 
 CONFIG = click.option(
     "--config", "-c", default="do_365b", show_default=True,
@@ -61,7 +63,7 @@ def _steps(
 
 def _put(text: str, out: Path | None) -> None:
     if out is None:
-        click.echo(text, nl=not text.endswith("\n"))
+        click.echo(printable(text, keep="\n\t"), nl=not text.endswith("\n"))
         return
     write_atomically(out, text)
 
@@ -108,7 +110,7 @@ def plot(
 
     target = out or Path(file.stem + ".svg")
     draw(list(_steps(file, config, ownship, (0, 1, 2, 3), urgency, urgent)), target)
-    click.echo(f"{target} written")
+    say(f"{target} written")
     return 0
 
 

@@ -16,7 +16,11 @@ from cratous.bridge.lmcp import describe as words
 from cratous.bridge.lmcp import differences, enums, forms, mdm, model, stubs, types
 from cratous.bridge.lmcp import schema as schemas
 from cratous.core.whole_file import write_atomically
+from cratous.services.cli.show import say
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import MESSAGES_BYTES, at_most
+from cratous.spec.printable import printable
+from cratous.spec.text_file import bytes_of
 
 EXAMPLES = """
 \b
@@ -43,13 +47,10 @@ def lmcp(files: tuple[str, ...]) -> None:
 
 def _bytes(file: str) -> bytes:
     if file == "-":
-        return sys.stdin.buffer.read()
-    try:
-        return Path(file).read_bytes()
-    except OSError as err:
-        raise BadInput(
-            "file cannot be read", where=file, expected="a file", got=err.strerror or ""
-        ) from None
+        data = sys.stdin.buffer.read(MESSAGES_BYTES + 1)
+        at_most(len(data), MESSAGES_BYTES, "the input is too long", "stdin")
+        return data
+    return bytes_of(Path(file), MESSAGES_BYTES)
 
 
 def _form(command: Any) -> Any:
@@ -97,10 +98,10 @@ def decode(file: tuple[str, ...], form: str, to: str, around: bool) -> int:
                 text = _text(found, to, around)
             except BadInput as err:  # an object that XML cannot hold
                 wrong += 1
-                click.echo(f"cratous: {found.where}: {err}", err=True)
+                say(f"cratous: {found.where}: {err}", err=True)
                 continue
             good += 1
-            click.echo(text)
+            click.echo(printable(text, keep="\n\t"))
     if wrong or not good:
         click.echo(f"cratous: {good} messages right, {wrong} wrong", err=True)
     return 2 if wrong or not good else 0
@@ -276,7 +277,7 @@ def diff(first: str, second: str, as_json: bool) -> int:
         click.echo(json.dumps({"differences": rows, "exit_code": int(bool(found))}, indent=1))
     else:
         for difference in found:
-            click.echo(str(difference))
+            say(str(difference))
         click.echo(f"{len(found)} differences" if len(found) != 1 else "1 difference")
     return int(bool(found))
 

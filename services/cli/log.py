@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from cratous.services.cli.show import say
 from cratous.spec.errors import BadInput
 
 if TYPE_CHECKING:
@@ -168,7 +169,7 @@ def list_(source: Source, chosen: Selection, verify: bool, as_json: bool) -> int
     if end := source.end():
         click.echo(end + (" (verified)" if verify and closing is not None else ""))
     for line in missing:
-        click.echo(f"MISSING: {line}")
+        say(f"MISSING: {line}")
     return 3 if missing else 0
 
 
@@ -198,7 +199,7 @@ def _printer(as_json: bool) -> tuple[Callable[[Entry], None], list[str]]:
 
     def show(entry: Entry) -> None:
         line, error = json_line(entry)
-        click.echo(line if as_json else text_form(entry))
+        say(line if as_json else text_form(entry))
         if error is not None:
             undecoded.append(f"{entry.place}: {error}")
 
@@ -209,7 +210,7 @@ def _told(what: str, problems: list[str]) -> int:
     if problems:
         click.echo(f"cratous: {len(problems)} messages {what}", err=True)
         for line in problems[:_SHOWN]:
-            click.echo(f"  {line}", err=True)
+            say(f"  {line}", err=True)
     return 3 if problems else 0
 
 
@@ -243,9 +244,9 @@ def follow(path: Path, new: bool, seconds: float | None, as_json: bool, **choice
     try:
         chosen.check_types(())
     except BadInput as error:  # the log may still get messages of that name
-        click.echo(f"cratous: note: no type of ours: {error.item}", err=True)
+        say(f"cratous: note: no type of ours: {error.item}", err=True)
     if not path.exists():
-        click.echo(f"cratous: note: {path} is not there yet; waiting for it", err=True)
+        say(f"cratous: note: {path} is not there yet; waiting for it", err=True)
     deadline = None if seconds is None else time.monotonic() + seconds
     closed = False
     for entry in follow_log(path, chosen, new=new, deadline=deadline):
@@ -301,7 +302,7 @@ def _export(
             "no format", item=target.name, expected=f"--format, or one of {', '.join(SUFFIXES)}"
         )
     done = write(source, target, form, chosen, with_bytes=with_bytes, salvage=salvage)
-    click.echo(f"{done.count} messages written to {target} ({form})")
+    say(f"{done.count} messages written to {target} ({form})")
     code = _told("kept as bytes", done.undecoded)
     code = max(code, _told("left out", done.left_out))
     if done.damage is not None:

@@ -40,7 +40,7 @@ def plan(
         plan_line,
         write_certificate,
     )
-    from cratous.services.cli.show import margin_text, table
+    from cratous.services.cli.show import margin_text, say, table
     from cratous.services.loading import load
     from cratous.services.records import to_data
 
@@ -58,6 +58,7 @@ def plan(
         data = {
             "plan": to_data(made),
             "constraints": rows,
+            "notes": list(loaded.notes),
             "proofs": standing.line,
             "exit_code": code,
         }
@@ -90,6 +91,8 @@ def plan(
         verdict_column=1,
     )
     click.echo()
+    for note in loaded.notes:
+        say(f"note: {note}")
     for line in (plan_line(made, checks), *absent_lines(loaded)):
         click.echo(line)
     click.echo(f"proofs: {standing.line}")

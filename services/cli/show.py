@@ -9,6 +9,8 @@ from typing import Any
 
 import click
 
+from cratous.spec.printable import printable
+
 COLOURS = {"holds": "green", "violated": "red", "unknown": "yellow", "excused": "yellow"}
 
 
@@ -25,8 +27,14 @@ def place_text(row: dict[str, Any]) -> str:
     return text
 
 
+def say(text: str, err: bool = False) -> None:
+    """One line for people of which parts may come from outside."""
+    click.echo(printable(text), err=err)
+
+
 def table(head: list[str], rows: list[list[str]], verdict_column: int | None = None) -> None:
     """Print a table: drawn for a terminal, plain columns for a file or a pipe."""
+    rows = [[printable(cell) for cell in row] for row in rows]
     if sys.stdout.isatty():
         from rich.console import Console
         from rich.markup import escape
@@ -76,17 +84,18 @@ def progress(quiet: bool) -> Iterator[Callable[[str], None]]:
         yield lambda _text: None
         return
     if not sys.stderr.isatty():
-        yield lambda text: None if text.startswith("\r") else click.echo(text, err=True)
+        yield lambda text: None if text.startswith("\r") else say(text, err=True)
         return
     from rich.console import Console
+    from rich.markup import escape
 
     console = Console(stderr=True, highlight=False)
     with console.status("working") as status:
 
         def tell(text: str) -> None:
             if text.startswith("\r"):
-                status.update(text[1:])
+                status.update(escape(printable(text[1:])))
             else:
-                console.print(text, markup=False)
+                console.print(printable(text), markup=False)
 
         yield tell

@@ -9,6 +9,8 @@ from typing import Any
 
 import click
 
+from cratous.services.cli.show import say
+
 _COMPILING = (
     "TaskManagerService",
     "RoutePlannerVisibilityService",
@@ -65,7 +67,7 @@ def uxas(
         from cratous.services.uxas.manager import check as check_all
 
         count = len(check_all(config, frozenset(without)))
-        click.echo(f"{cfg_path}: {count} services and bridges")
+        say(f"{cfg_path}: {count} services and bridges")
         return 0
     log = Logs(
         root["ConsoleLoggerSeverityLevel"],
@@ -84,7 +86,7 @@ def uxas(
             log,
             without=frozenset(without),
             virtual=virtual_time,
-            say=click.echo,
+            say=say,
             data=data,
         ) as process:
             for number in (signal.SIGINT, signal.SIGTERM):

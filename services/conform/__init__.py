@@ -9,9 +9,7 @@ never as passed. Suites are imported when they are asked for.
 
 from __future__ import annotations
 
-import gzip
 import importlib
-import json
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -19,6 +17,8 @@ from pathlib import Path
 from typing import Any
 
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import DOCUMENT_BYTES, at_most, json_of
+from cratous.spec.text_file import lines_of
 
 SUITES = {
     "well-clear": "Well-clear violation now and over a span: tau_mod, tcpa, tep, cylinder.",
@@ -127,23 +127,13 @@ def cases(file: Path) -> Iterator[tuple[int, dict[str, Any]]]:
 
     Raises BadInput with the line.
     """
-    opener = gzip.open if file.suffix == ".gz" else open
-    number = 0
-    try:
-        with opener(file, "rt", encoding="utf-8") as lines:
-            for number, line in enumerate(lines, 1):
-                if number == 1 and line.lstrip().startswith("["):
-                    yield from _listed(file, line + lines.read())
-                    return
-                if not line.strip():
-                    continue
-                yield number, _case(json.loads(line), f"{file}:{number}")
-    except FileNotFoundError as error:
-        raise BadInput("there is no such file", where=str(file)) from error
-    except (OSError, EOFError, UnicodeDecodeError) as error:
-        raise BadInput(f"the file cannot be read: {error}", where=str(file)) from error
-    except json.JSONDecodeError as error:
-        raise BadInput(f"this is no JSON: {error.msg}", where=f"{file}:{number}") from error
+    lines = lines_of(file)
+    for number, line in lines:
+        if number == 1 and line.lstrip().startswith("["):
+            yield from _listed(file, line, lines)
+            return
+        if line.strip():
+            yield number, _case(json_of(line, f"{file}:{number}"), f"{file}:{number}")
 
 
 def _case(value: Any, where: str) -> dict[str, Any]:
@@ -152,9 +142,16 @@ def _case(value: Any, where: str) -> dict[str, Any]:
     return value
 
 
-def _listed(file: Path, text: str) -> Iterator[tuple[int, dict[str, Any]]]:
+def _listed(
+    file: Path, first: str, rest: Iterator[tuple[int, str]]
+) -> Iterator[tuple[int, dict[str, Any]]]:
     """The cases of a file that is one JSON list, numbered from 1."""
-    for number, value in enumerate(json.loads(text), 1):
+    parts, size = [first], len(first)
+    for _, line in rest:
+        parts.append(line)
+        size += len(line)
+        at_most(size, DOCUMENT_BYTES, "the JSON is too long", str(file))
+    for number, value in enumerate(json_of("".join(parts), str(file)), 1):
         yield number, _case(value, f"{file}, case {number}")
 
 

@@ -9,7 +9,6 @@ Every solution is replayed by the proved kernels, whatever is recorded.
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +16,9 @@ from cratous.services.conform import Beside, Result, failed, not_covered, passed
 from cratous.services.planning.assign import Limits, solve
 from cratous.services.planning.assign_vectors import read
 from cratous.spec.assignment import ORDER, TIME, Solution
+from cratous.spec.errors import BadInput
+from cratous.spec.limits import json_of
+from cratous.spec.text_file import bytes_of
 
 SECONDS = 30.0
 WORDS = {"A": TIME, "B": ORDER}
@@ -68,9 +70,16 @@ def _recorded(file: Path) -> dict[tuple[str, str], int]:
     """Optima of the files beside it: by file name and semantics."""
     known: dict[tuple[str, str], int] = {}
     for other in sorted(file.parent.glob("optimum*.json")):
-        for row in json.loads(other.read_text(encoding="utf-8")).get("results", ()):
-            if row.get("status") == "OPTIMAL":
-                known[row["problem"], row["semantics"]] = int(row["minmax_ms"])
+        data = json_of(bytes_of(other), str(other))
+        try:
+            for row in data.get("results", ()):
+                if row.get("status") == "OPTIMAL":
+                    known[row["problem"], row["semantics"]] = int(row["minmax_ms"])
+        except (AttributeError, KeyError, TypeError, ValueError):
+            raise BadInput(
+                "these are no optima", where=str(other),
+                expected="results with problem, semantics, status and minmax_ms",
+            ) from None  # fmt: skip
     return known
 
 

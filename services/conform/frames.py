@@ -13,8 +13,6 @@ every segmentation.
 
 from __future__ import annotations
 
-import gzip
-import json
 import random
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -24,20 +22,17 @@ from cratous.bridge import envelope, lmcp
 from cratous.bridge.sentinel import BODY, END, HEAD, TAIL, FrameStream, frame
 from cratous.services.conform import Result, failed, not_covered, passed
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import inflated, json_of
+from cratous.spec.text_file import bytes_of
 
 SINGLE_BYTES = 200_000  # streams up to this length are also fed byte by byte
 
 
 def cases(file: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     """(number, case) of one file; raises BadInput for one that is none of the kinds."""
-    try:
-        raw = file.read_bytes()
-        if file.suffix == ".gz":
-            raw = gzip.decompress(raw)
-    except FileNotFoundError as error:
-        raise BadInput("there is no such file", where=str(file)) from error
-    except (OSError, EOFError) as error:
-        raise BadInput(f"the file cannot be read: {error}", where=str(file)) from error
+    raw = bytes_of(file)
+    if file.suffix == ".gz":
+        raw = inflated(raw, str(file))
     name = file.name.removesuffix(".gz")
     if name.endswith(".zmq.bin"):
         yield 1, {"id": file.name, "kind": "message", "data": raw}
@@ -60,10 +55,7 @@ def cases(file: Path) -> Iterator[tuple[int, dict[str, Any]]]:
 
 
 def _json_cases(file: Path, raw: bytes) -> Iterator[tuple[int, dict[str, Any]]]:
-    try:
-        data = json.loads(raw)
-    except (ValueError, RecursionError) as error:
-        raise BadInput(f"this is no JSON: {error}", where=str(file)) from error
+    data = json_of(raw, str(file))
     if isinstance(data, list) and all(isinstance(case, dict) for case in data):
         for number, case in enumerate(data, 1):
             yield number, {**case, "kind": "robustness", "id": case.get("label", f"case {number}")}
@@ -75,7 +67,7 @@ def _json_cases(file: Path, raw: bytes) -> Iterator[tuple[int, dict[str, Any]]]:
     parts = {}
     for part in ("zmq", "tcp"):
         other = file.with_name(file.name.removesuffix(".json") + f".{part}.bin")
-        parts[part] = other.read_bytes() if other.is_file() else None
+        parts[part] = bytes_of(other) if other.is_file() else None
     yield 1, {**data, "kind": "parts", "id": file.name, **parts}
 
 

@@ -12,6 +12,7 @@ from cratous.core.daa_session import Instant
 from cratous.core.daa_zones import contours, hazard_zone
 from cratous.services.daa.explain import region_text
 from cratous.spec.daa import Parameters
+from cratous.spec.printable import cell
 
 ALERTS = (
     "time_s", "id", "alerter", "level", "level_without_history", "region", "first_s", "last_s",
@@ -99,7 +100,7 @@ def as_csv(rows: Iterable[dict[str, Any]]) -> str:
         if writer is None:
             writer = csv.DictWriter(out, list(row), lineterminator="\n")
             writer.writeheader()
-        writer.writerow({k: repr(v) if isinstance(v, float) else v for k, v in row.items()})
+        writer.writerow({k: repr(v) if isinstance(v, float) else cell(v) for k, v in row.items()})
     return out.getvalue()
 
 

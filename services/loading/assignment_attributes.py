@@ -17,6 +17,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import integer_of
 
 NODES_PER_MS = 100
 """Nodes that the search of missions makes in a millisecond, on a slow core."""
@@ -57,10 +58,10 @@ def _whole(attributes: Mapping[str, str], name: str, where: str) -> int | None:
     text = attributes.get(name)
     if text is None:
         return None
-    try:
-        return int(text)
-    except ValueError:
-        raise _bad(name, "a whole number", text, where) from None
+    number = integer_of(text, -(2**53), 2**53)
+    if number is None:
+        raise _bad(name, "a whole number", text[:40], where)
+    return number
 
 
 def _bad(name: str, expected: str, got: str | None, where: str) -> BadInput:

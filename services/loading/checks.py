@@ -62,15 +62,22 @@ def _ids(mission: Mission, where: Where) -> Iterator[BadInput]:
 
 def _vehicles(mission: Mission, where: Where) -> Iterator[BadInput]:
     for k, vehicle in enumerate(mission.vehicles):
+        low, high = vehicle.min_speed_m_s, vehicle.max_speed_m_s
         item = f"vehicles[{k}].speed_m_s"
-        if not vehicle.min_speed_m_s <= vehicle.speed_m_s <= vehicle.max_speed_m_s:
-            yield BadInput(
-                f"vehicle {vehicle.id} cannot fly at its cruise speed",
-                where=where(item),
-                item=item,
-                expected=f"{vehicle.min_speed_m_s:g} to {vehicle.max_speed_m_s:g} m/s",
-                got=f"{vehicle.speed_m_s:g} m/s",
-            )
+        if low <= vehicle.speed_m_s <= high:
+            continue
+        # a speed that is not given is the cruise speed: only what was written is named
+        if low > high and vehicle.speed_m_s not in (low, high):
+            item = f"vehicles[{k}].max_speed_m_s"
+            what = f"vehicle {vehicle.id} has a max_speed_m_s below its min_speed_m_s"
+            expected, got = f"at least {low:g} m/s", high
+        else:
+            what, got = f"vehicle {vehicle.id} cannot fly at its cruise speed", vehicle.speed_m_s
+            expected = f"{low:g} to {high:g} m/s"
+            if low > high:
+                most = vehicle.speed_m_s == low
+                expected = f"at most {high:g} m/s" if most else f"at least {low:g} m/s"
+        yield BadInput(what, where=where(item), item=item, expected=expected, got=f"{got:g} m/s")
 
 
 def _tasks(mission: Mission, where: Where) -> Iterator[BadInput]:

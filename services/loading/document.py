@@ -12,9 +12,13 @@ from pathlib import Path
 from typing import Any
 
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import DIGITS, MISSION_BYTES, MISSION_DEPTH, MISSION_NODES, at_most
+from cratous.spec.text_file import text_of
 
-MAX_BYTES = 5_000_000
+INTEGER_MAX = 2**53
+"""Every whole number up to this is a double, so that none is changed where it becomes one."""
 _SURPRISING = re.compile(r"^[-+]?(0[0-9_]+|[0-9][0-9_]*(:[0-5]?[0-9])+(\.[0-9_]*)?)$")
+_CONTROL = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff]")
 _FLOAT = re.compile(r"^[-+]?[0-9]+(\.[0-9]*)?[eE][-+]?[0-9]+$")
 
 Key = tuple[str | int, ...]
@@ -51,27 +55,7 @@ def item_key(item: str) -> Key:
 
 def read_document(path: Path) -> Document:
     """Read a YAML file; BadInput with the line if it is missing, unreadable or ambiguous."""
-    where = str(path)
-    if not path.exists():
-        raise BadInput("there is no such file", where=where, expected="a mission file")
-    try:
-        raw = path.read_bytes()
-    except OSError as error:
-        raise BadInput(f"the file cannot be read ({error.strerror})", where=where) from None
-    if len(raw) > MAX_BYTES:
-        raise BadInput(
-            "the file is too large",
-            where=where,
-            expected=f"at most {MAX_BYTES} bytes",
-            got=f"{len(raw)}",
-        )
-    try:
-        text = raw.decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise BadInput(
-            "not a text file", where=where, expected="UTF-8", got=f"byte {error.start} is not"
-        ) from None
-    return parse_document(text, where)
+    return parse_document(text_of(path, MISSION_BYTES, "a mission file"), str(path))
 
 
 def parse_document(text: str, where: str) -> Document:
@@ -79,15 +63,8 @@ def parse_document(text: str, where: str) -> Document:
     import yaml
 
     try:
-        for event in yaml.parse(text, Loader=yaml.SafeLoader):
-            if isinstance(event, yaml.AliasEvent):
-                raise BadInput(
-                    "aliases are not allowed",
-                    where=f"{where}:{event.start_mark.line + 1 if event.start_mark else 1}",
-                    expected="the value written out",
-                    got=f"*{event.anchor}",
-                )
-        root = yaml.compose(text, Loader=yaml.SafeLoader)
+        _refuse_costly(text, where)
+        root = yaml.compose(text, Loader=_loader())
         if root is None:
             raise BadInput("the file is empty", where=where, expected="a mission")
         lines: dict[Key, int] = {}
@@ -98,9 +75,35 @@ def parse_document(text: str, where: str) -> Document:
         raise BadInput(f"not valid YAML: {error.problem or error.context}", where=place) from None
     except yaml.YAMLError as error:
         raise BadInput(f"not valid YAML: {error}", where=where) from None
-    except RecursionError:
-        raise BadInput("nested too deeply", where=where) from None
     return Document(where, data, lines)
+
+
+def _loader() -> Any:
+    import yaml
+
+    return getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the first is libyaml: ten times faster
+
+
+def _refuse_costly(text: str, where: str) -> None:
+    """Refuse aliases, depth and size while events are read, before anything is built of them."""
+    import yaml
+
+    depth = 0
+    for count, event in enumerate(yaml.parse(text, Loader=_loader())):
+        place = f"{where}:{event.start_mark.line + 1 if event.start_mark else 1}"
+        if isinstance(event, yaml.AliasEvent):
+            raise BadInput(
+                "aliases are not allowed",
+                where=place,
+                expected="the value written out",
+                got=f"*{event.anchor}",
+            )
+        if isinstance(event, (yaml.SequenceStartEvent, yaml.MappingStartEvent)):
+            depth += 1
+        elif isinstance(event, (yaml.SequenceEndEvent, yaml.MappingEndEvent)):
+            depth -= 1
+        at_most(depth, MISSION_DEPTH, "nested too deeply", place, "levels")
+        at_most(count, MISSION_NODES, "too many values", place, "of them")
 
 
 def _plain(node: Any, key: Key, lines: dict[Key, int], where: str) -> Any:
@@ -123,6 +126,7 @@ def _mapping(node: Any, key: Key, lines: dict[Key, int], where: str) -> dict[str
         place = f"{where}:{name.start_mark.line + 1}"
         if not isinstance(name, yaml.ScalarNode):
             raise BadInput("a key must be a plain word", where=place, item=item_name(key))
+        _scalar(name, place, item_name(key))
         if name.value in found:
             raise BadInput("given twice", where=place, item=item_name((*key, name.value)))
         lines[(*key, name.value)] = name.start_mark.line + 1
@@ -132,6 +136,14 @@ def _mapping(node: Any, key: Key, lines: dict[Key, int], where: str) -> dict[str
 
 def _scalar(node: Any, where: str, item: str) -> Any:
     text, kind = node.value, node.tag.rpartition(":")[2]
+    if not text.isprintable() and _CONTROL.search(text):
+        raise BadInput(
+            "a control character or half a character",
+            where=where,
+            item=item,
+            expected="a text that can be shown",
+            got=text[:60],
+        )
     if kind in ("int", "float") and _SURPRISING.match(text):
         raise BadInput(
             "a number that can be read in two ways",
@@ -152,11 +164,28 @@ def _scalar(node: Any, where: str, item: str) -> Any:
         return None
     if kind == "bool":
         return text.lower() in ("true", "yes", "on")
+    if kind in ("int", "float") and len(text) > DIGITS:
+        raise BadInput(
+            "a number with too many digits",
+            where=where,
+            item=item,
+            expected=f"at most {DIGITS}",
+            got=f"{text[:37]}...",
+        )
     if kind == "int":
-        return int(text.replace("_", ""), 0)
+        value = int(text.replace("_", ""), 0)
+        if abs(value) > INTEGER_MAX:
+            raise BadInput(
+                "a number out of range",
+                where=where,
+                item=item,
+                expected=f"a whole number up to {INTEGER_MAX}",
+                got=text,
+            )
+        return value
     if kind == "float":
         return _number(text, where, item)
-    if kind == "str" and node.style is None and _FLOAT.match(text):
+    if kind == "str" and node.style in (None, "") and len(text) <= DIGITS and _FLOAT.match(text):
         return _number(text, where, item)
     return text
 

@@ -22,6 +22,7 @@ from cratous.services.loading.uxas_tasks import Interests
 from cratous.services.loading.uxas_tasks import task as read_task
 from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR, finish
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import integer_of
 from cratous.spec.mission import Daa, Frame, Mission, Simulation, Task, Vehicle, Zone, ZoneKind
 
 LIMIT_MS = 86_400_000
@@ -357,11 +358,12 @@ def _instances(
     attributes, where = found
     text = attributes.get("NumberOfUAVs", "")
     item = "IcarousCommunicationService.NumberOfUAVs"
-    if not text.isdigit():
+    number = integer_of(text, 0, 2**31)
+    if number is None:
         raise BadInput("not a number", where=where, item=item, expected="a whole number", got=text)
-    if int(text) > len(ids):
-        raise too_many_instances(int(text), len(ids), where, item)
-    return tuple(sorted(ids)[: int(text)]), []
+    if number > len(ids):
+        raise too_many_instances(number, len(ids), where, item)
+    return tuple(sorted(ids)[:number]), []
 
 
 def _compatible(cfg: Configuration) -> bool:

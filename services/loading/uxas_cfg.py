@@ -12,6 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import integer_of
+from cratous.spec.schedule import TIME_LIMIT_MS
+from cratous.spec.text_file import bytes_of
 
 PLAYED = frozenset(
     {
@@ -130,8 +133,8 @@ def _is_uxas(path: Path) -> bool:
     from cratous.bridge.lmcp import xml
 
     try:
-        return bool(xml.parse(path.read_bytes(), str(path)).tag == "UxAS")
-    except (OSError, BadInput):
+        return bool(xml.parse(bytes_of(path), str(path)).tag == "UxAS")
+    except BadInput:
         return False
 
 
@@ -139,11 +142,7 @@ def read_cfg(path: Path) -> Configuration:
     """Read a configuration and all messages that it sends, in the order of sending."""
     from cratous.bridge.lmcp import xml
 
-    try:
-        text = path.read_bytes()
-    except OSError as error:
-        raise BadInput(f"the file cannot be read ({error.strerror})", where=str(path)) from None
-    root = xml.parse(text, str(path))
+    root = xml.parse(bytes_of(path), str(path))
     if root.tag != "UxAS":
         raise BadInput(
             "not a UxAS configuration", where=str(path), expected="<UxAS>", got=f"<{root.tag}>"
@@ -205,12 +204,13 @@ def _messages(cfg: Path, service: Any, notes: list[str]) -> list[Sent]:
         if found == _join(bases[2], name):
             notes.append(f"{cfg.name}: message files are read from inputs/, not from {declared}")
         time = element.get("SendTime_ms", "0")
-        if not time.isdigit():
+        time_ms = integer_of(time, 0, TIME_LIMIT_MS - 1)
+        if time_ms is None:
             raise BadInput(
                 "not a time", where=place, item="SendTime_ms", expected="whole ms", got=time
             )
         for body in xml.read_messages(found, notes):
-            sent.append(Sent(body, str(found), int(time)))
+            sent.append(Sent(body, str(found), time_ms))
     return sent
 
 
@@ -225,8 +225,8 @@ def scenario_states(cfg: Configuration) -> tuple[list[Sent], list[str]]:
     notes: list[str] = []
     for path in sorted(cfg.path.parent.glob("*.xml")):
         try:
-            root = xml.parse(path.read_bytes(), str(path))
-        except (OSError, BadInput):
+            root = xml.parse(bytes_of(path), str(path))
+        except BadInput:
             continue
         if root.tag != "AMASE":
             continue

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import base64
 import binascii
-import json
 from typing import Any, NamedTuple
 
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import json_of
 
 RAW = "$lmcp"
 
@@ -74,10 +74,7 @@ def to_text(entry: Entry) -> str:
 
 def to_data(entry: Entry) -> Any:
     """The JSON form as plain data; BadInput for what cannot be decoded or is no JSON."""
-    try:
-        return json.loads(to_text(entry))
-    except ValueError as error:
-        raise BadInput("not JSON", where=entry.place, got=str(error)) from None
+    return json_of(to_text(entry), entry.place)
 
 
 def to_raw_data(body: bytes) -> dict[str, str]:
@@ -99,7 +96,7 @@ def raw_bytes(entry: Entry) -> bytes | None:
     """The bytes in a body `{"$lmcp": ...}`; None for any other body."""
     if isinstance(entry.body, bytes) or not entry.body.startswith(f'{{"{RAW}"'):
         return None
-    return from_raw_data(json.loads(entry.body), entry.place)
+    return from_raw_data(json_of(entry.body, entry.place), entry.place)
 
 
 def from_raw_data(data: Any, where: str) -> bytes:

@@ -21,6 +21,7 @@ from cratous.services.logs.selection import Selection
 from cratous.services.logs.source import Source
 from cratous.services.logs.store import LogStore, cannot_write
 from cratous.spec.errors import BadInput
+from cratous.spec.printable import cell
 
 FORMATS = ("mcap", "jsonl", "csv", "xml", "lmcp", "frames", "sqlite", "uxas")
 _HEAD = ("seq", "time_ms", "source", "topic")
@@ -182,11 +183,11 @@ def _csv(job: _Job) -> None:
         columns.update(dict.fromkeys(flat(any_data(entry)[0])))
     with job.part.open("w", encoding="utf-8", newline="") as out:
         writer = csv.DictWriter(out, list(columns))
-        writer.writeheader()
+        writer.writerow({name: cell(name) for name in columns})
         for entry in job.entries():
             data, error = any_data(entry)
             row = dict(zip(_HEAD, entry[:4], strict=True))
-            writer.writerow({**row, **flat(data)})
+            writer.writerow({k: cell(v) for k, v in {**row, **flat(data)}.items()})
             job.wrote(entry, error)
 
 

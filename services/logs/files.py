@@ -26,6 +26,9 @@ from cratous.services.logs.entry import (
 )
 from cratous.services.records import canonical
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import json_of
+from cratous.spec.printable import json_text, printable
+from cratous.spec.text_file import bytes_of, lines_of
 
 _OPTIONAL = ("address", "group", "entity_id", "service_id", "content_type")
 _XML_NAMES = ("Address", "Group", "EntityID", "ServiceID", "ContentType")
@@ -47,25 +50,23 @@ def json_line(entry: Entry) -> tuple[str, BadInput | None]:
     if isinstance(entry.body, bytes) and error is None:
         head["form"] = "lmcp"  # the body was logged as bytes
     head["body"] = data
-    return json.dumps(head, ensure_ascii=False, separators=(",", ":")), error
+    return json_text(head), error
 
 
 def read_json_lines(path: Path) -> Iterator[Entry]:
     """The messages of JSON lines; BadInput with the line for what is no entry."""
-    try:
-        with path.open("r", encoding="utf-8") as lines:
-            for number, line in enumerate(lines, 1):
-                if line.strip():
-                    yield _from_line(line, f"{path}:{number}")
-    except UnicodeDecodeError as error:
-        raise BadInput("not UTF-8", where=str(path), got=str(error.reason)) from None
+    for number, line in lines_of(path):
+        if line.strip():
+            yield _from_line(line, f"{path}:{number}")
 
 
 def _from_line(line: str, where: str) -> Entry:
     try:
-        data = json.loads(line)
-    except (ValueError, RecursionError) as error:
-        raise BadInput("not JSON (is the file truncated?)", where=where, got=str(error)) from None
+        data = json_of(line, where)
+    except BadInput as error:
+        if error.what == "not JSON":
+            error = BadInput("not JSON (is the file truncated?)", where=where, got=error.got)
+        raise error from None
     wanted: tuple[tuple[str, type], ...] = (
         ("seq", int),
         ("time_ms", int),
@@ -110,10 +111,7 @@ def xml_event(entry: Entry) -> str:
 
 def read_xml(path: Path) -> Iterator[Entry]:
     """The messages of an AMASE scenario or playback file, or of a file of LMCP objects."""
-    try:
-        root = lmcp.xml.parse(path.read_bytes(), str(path))
-    except OSError as error:
-        raise BadInput("the file cannot be read", where=str(path), got=str(error)) from None
+    root = lmcp.xml.parse(bytes_of(path), str(path))
     events: Any = root
     if root.tag == "AMASE":
         events = root.find("ScenarioEventList")
@@ -216,4 +214,5 @@ def text_form(entry: Entry) -> str:
     data, error = any_data(entry)
     body = canonical(data) if error is None else f"({error})"
     to = f" to {entry.address}" if entry.address else ""
-    return f"{entry.seq:>7} {entry.time_ms / 1000:10.3f} {entry.source}{to} {entry.topic} {body}"
+    line = f"{entry.seq:>7} {entry.time_ms / 1000:10.3f} {entry.source}{to} {entry.topic} {body}"
+    return printable(line)

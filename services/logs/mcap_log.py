@@ -10,9 +10,11 @@ gaps and the number of messages stand in metadata records: a file without them i
 from __future__ import annotations
 
 import json
+import zlib
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from functools import cache
+from io import BytesIO
 from pathlib import Path
 from typing import IO, Any
 
@@ -21,6 +23,7 @@ from cratous.services.logs.foxglove import schema_of, without_null
 from cratous.services.logs.views import SCHEMAS, View, Views
 from cratous.services.records import canonical
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import CELL_BYTES, integer_of, json_of
 
 PROFILE = "cratous"
 MAGIC = b"\x89MCAP0\r\n"
@@ -153,8 +156,8 @@ def read_meta(path: Path) -> tuple[dict[str, Any], list[list[Any]]]:
     gaps: list[list[Any]] = []
     for record in found:
         try:
-            values = {key: json.loads(value) for key, value in record.metadata.items()}
-        except ValueError as error:
+            values = {key: json_of(value, str(path)) for key, value in record.metadata.items()}
+        except BadInput as error:
             raise _damaged(path, 0, error) from None
         if record.name == "meta":
             meta = values
@@ -170,8 +173,10 @@ def _records(path: Path) -> Iterator[Any]:
     from mcap.stream_reader import StreamReader
 
     with path.open("rb") as stream:
-        reader = StreamReader(stream, validate_crcs=True, record_size_limit=2**30)
-        records, read = iter(reader.records), 0
+        reader = StreamReader(
+            stream, validate_crcs=True, emit_chunks=True, record_size_limit=CELL_BYTES
+        )
+        records, read = _unpacked(reader.records), 0
         while True:
             try:
                 record = next(records)
@@ -181,6 +186,60 @@ def _records(path: Path) -> Iterator[Any]:
                 raise _damaged(path, read, error) from None
             read += 1
             yield record
+
+
+def _unpacked(records: Iterable[Any]) -> Iterator[Any]:
+    """The records, with those of chunks, which are inflated within their bound and their word."""
+    for record in records:
+        if type(record).__name__ != "Chunk":
+            yield record
+            continue
+        data, size = _chunk_data(record), record.uncompressed_size
+        if len(data) != size:
+            raise ValueError(f"a chunk of {size} bytes unpacks to another length")
+        if record.uncompressed_crc not in (0, zlib.crc32(data)):
+            raise ValueError("a chunk has a wrong checksum")
+        yield from _of_chunk(data)
+
+
+def _of_chunk(data: bytes) -> Iterator[Any]:
+    """The records of a chunk one by one: a list of them takes many times the chunk's memory."""
+    from mcap.data_stream import ReadDataStream
+    from mcap.opcode import Opcode
+    from mcap.records import Channel, Message
+
+    stream = ReadDataStream(BytesIO(data))
+    while stream.count < len(data):
+        opcode, length = stream.read1(), stream.read8()
+        if length > len(data):
+            raise ValueError(f"a record of {length} bytes in a chunk of {len(data)}")
+        end = stream.count + length
+        if opcode == Opcode.CHANNEL:
+            yield Channel.read(stream)
+        elif opcode == Opcode.MESSAGE:
+            yield Message.read(stream, length)
+        else:
+            stream.read(length)
+        if stream.count != end:
+            raise ValueError("a record has a wrong length")
+
+
+def _chunk_data(chunk: Any) -> bytes:
+    if chunk.uncompressed_size > CELL_BYTES:
+        raise ValueError(f"a chunk of {chunk.uncompressed_size} bytes; at most {CELL_BYTES}")
+    if chunk.compression == "zstd":
+        import zstandard
+
+        reader = zstandard.ZstdDecompressor().stream_reader(chunk.data)
+        return bytes(reader.read(chunk.uncompressed_size + 1))
+    if chunk.compression == "lz4":
+        import lz4.frame  # type: ignore[import-untyped]
+
+        unpacker = lz4.frame.LZ4FrameDecompressor()
+        return bytes(unpacker.decompress(chunk.data, chunk.uncompressed_size + 1))
+    if chunk.compression:
+        raise ValueError(f"unknown compression {chunk.compression[:20]!r}")
+    return bytes(chunk.data)
 
 
 def _damaged(path: Path, read: int, error: Exception) -> BadInput:
@@ -209,7 +268,7 @@ def read_mcap(path: Path) -> Iterator[Entry]:
             channels[record.id] = record
         elif name == "Metadata" and record.name == "closing":
             text = record.metadata.get("count", "")
-            count = int(text) if text.isascii() and text.isdigit() else None
+            count = integer_of(text, 0, 2**63)
         elif name == "Message":
             try:
                 entry = _entry(record, channels.get(record.channel_id), path)

@@ -16,6 +16,7 @@ from typing import Protocol
 
 from cratous.services.logs.entry import Entry
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import integer_of
 
 STALL_S = 10.0
 _BLOCK = 1 << 16
@@ -93,9 +94,10 @@ class TcpOut:
 def parse_address(text: str) -> tuple[str, int]:
     """Host and port of `tcp://host:port`; `*` is every interface."""
     host, colon, port = text.removeprefix("tcp://").rpartition(":")
-    if not colon or not host or not port.isdigit() or int(port) > 65535:
+    number = integer_of(port, 0, 65535)
+    if not colon or not host or number is None:
         raise BadInput("not an address", expected="tcp://host:port", got=text)
-    return ("" if host == "*" else host.strip("[]")), int(port)
+    return ("" if host == "*" else host.strip("[]")), number
 
 
 def connect(address: str, timeout_s: float = 10.0) -> socket.socket:

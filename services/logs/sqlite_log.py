@@ -6,7 +6,6 @@ typed error that says how far the log could be read.
 
 from __future__ import annotations
 
-import json
 import sqlite3
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,9 +15,12 @@ from cratous.services.logs.entry import Entry
 from cratous.services.logs.schema import COLUMNS, COLUMNS_1, Digest
 from cratous.services.logs.store import Gap
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import CELL_BYTES, json_of
 
 # the second is what the library raises where a damaged name stands in its message
 ERRORS = (sqlite3.DatabaseError, UnicodeDecodeError)
+TABLE_NAMES = "SELECT name FROM sqlite_master WHERE type = 'table'"
+"""Names of tables alone: the rows of a view have no end that could be foreseen."""
 
 
 class Closing(NamedTuple):
@@ -53,7 +55,7 @@ class SqliteLog:
         self.path = path
         self._db = connect(path)
         try:
-            self._tables = set(self._column("SELECT name FROM sqlite_master"))
+            self._tables = set(self._column(TABLE_NAMES))
             self._columns = set(self._column("SELECT name FROM pragma_table_info('messages')"))
         except BadInput:
             self.close()
@@ -92,7 +94,7 @@ class SqliteLog:
         """All meta entries as plain data."""
         try:
             rows = self._rows("SELECT key, value FROM meta ORDER BY key")
-            return {key: json.loads(value) for key, value in rows}
+            return {key: json_of(value, f"{self.path}: {key}") for key, value in rows}
         except (ValueError, TypeError) as error:
             raise damaged(self.path, error) from None
 
@@ -207,6 +209,8 @@ def _connect(path: Path, mode: str) -> sqlite3.Connection:
     )
     try:
         database.text_factory = _text
+        database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, CELL_BYTES)
+        database.execute("PRAGMA trusted_schema = OFF")
         database.execute("PRAGMA query_only = ON")
         database.execute("SELECT name FROM sqlite_master").fetchall()
     except (sqlite3.Error, UnicodeDecodeError):
@@ -226,7 +230,7 @@ def tables_of(path: Path) -> set[str]:
     """Names of the tables; BadInput if the file is no database."""
     database = connect(path)
     try:
-        return {name for (name,) in database.execute("SELECT name FROM sqlite_master")}
+        return {name for (name,) in database.execute(TABLE_NAMES)}
     except ERRORS as error:
         raise damaged(path, error) from None
     finally:

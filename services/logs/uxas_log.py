@@ -15,6 +15,7 @@ from cratous.services.logs.sqlite_log import ERRORS, connect, damaged, entry_of
 from cratous.services.logs.store import cannot_write
 from cratous.services.records import canonical
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import integer_of
 
 TABLE = """CREATE TABLE msg(id INTEGER PRIMARY KEY, time_ms INTEGER NOT NULL,
 descriptor TEXT NOT NULL, groupID TEXT NOT NULL, entityID INTEGER NOT NULL,
@@ -89,7 +90,4 @@ class UxasWriter:
 
 
 def _number(text: str | None) -> int:
-    try:
-        return int(text or 0)
-    except ValueError:
-        return 0
+    return integer_of(text or "0", -(2**63), 2**63 - 1) or 0

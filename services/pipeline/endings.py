@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any, TypeVar
 
+from cratous.spec.limits import integer_of
+
 RESPONSE = "uxas.messages.task.UniqueAutomationResponse"
 STATUS = "afrl.cmasi.ServiceStatus"
 ENDINGS = (RESPONSE, STATUS)
@@ -20,7 +22,7 @@ def request_ended(topic: str, body: Any) -> int:
     if topic != STATUS or body.StatusType.name != "Error":
         return 0
     number = next((pair.Value for pair in body.Info if pair.Key == "RequestID"), "")
-    return int(number) if number.removeprefix("-").isdecimal() else 0
+    return integer_of(number, -(2**63), 2**63 - 1) or 0
 
 
 def newest(kept: dict[int, V]) -> dict[int, V]:

@@ -14,10 +14,10 @@ import base64
 import hashlib
 import json
 import zlib
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
-from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,8 +29,12 @@ from cratous.core.whole_file import write_atomically
 from cratous.services.planning.assign_problem import Part, arrays, check, parts, settler
 from cratous.services.planning.assign_replay import replayed
 from cratous.services.planning.assign_solvers import none_below, schedule_holds
-from cratous.spec.assignment import AssignmentProblem, Choice, Cost, Solution, Step
+from cratous.services.planning.assign_vectors import rows_of
+from cratous.services.records import from_data
+from cratous.spec.assignment import AssignmentProblem, Solution, Step
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import STATES, json_of
+from cratous.spec.text_file import bytes_of
 
 FORMAT = "cratous-assignment-certificate/1"
 BYTES_MAX = 50_000_000
@@ -83,7 +87,7 @@ def certified(
         "proofs": written,
     }
     text = json.dumps(body, sort_keys=True)
-    if len(text) > BYTES_MAX:
+    if len(text) > BYTES_MAX or any(max(w.get("sizes", ()), default=0) > STATES for w in written):
         less = [w if w["kind"] != "layers" else {"kind": "estimate", "bound": 0} for w in written]
         body["proofs"] = less
         checked = _bounds(problem, less)
@@ -129,12 +133,7 @@ def write(file: Path, certificate: dict[str, Any]) -> None:
 
 def read(file: Path) -> dict[str, Any]:
     """A certificate from a file; BadInput for one that is none."""
-    try:
-        body = json.loads(file.read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
-        raise BadInput("there is no such file", where=str(file)) from error
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
-        raise BadInput(f"this is no certificate: {error}", where=str(file)) from error
+    body = json_of(bytes_of(file, BYTES_MAX + 1_000, "a certificate"), str(file))
     if not isinstance(body, dict) or body.get("format") != FORMAT:
         raise BadInput("this is no certificate", where=str(file), expected=FORMAT)
     return body
@@ -142,10 +141,10 @@ def read(file: Path) -> dict[str, Any]:
 
 def verify(body: dict[str, Any]) -> Verdict:
     """Check a certificate from the problem on: digest, schedule by kernels and z3, bounds, claim."""
-    claim = body.get("claim") or {}
+    status, cost, bound = "", None, 0
     try:
-        status, cost, bound = claim["status"], claim["cost"], int(claim["bound"])
-        problem, steps = _problem(body["problem"]), [Step(**step) for step in body["steps"]]
+        status, cost, bound = from_data(_Claim, body.get("claim"), "claim")
+        problem, steps, proofs = _problem(body.get("problem")), *_evidence(body)
         if body.get("sha256") != _digest(body):
             return Verdict(status, cost, bound, "the digest is not that of the content")
         check(problem)
@@ -156,14 +155,47 @@ def verify(body: dict[str, Any]) -> Verdict:
             right, text = schedule_holds(problem, steps)
             if not right:
                 return Verdict(status, cost, bound, f"z3 finds that it does not hold: {text}")
-        low, wrong = _bounds(problem, body["proofs"], cost)
+        low, wrong = _bounds(problem, proofs, cost)
     except BadInput as error:
-        return Verdict(str(claim.get("status")), claim.get("cost"), 0, str(error))
-    except (KeyError, TypeError, ValueError, zlib.error) as error:
-        return Verdict(str(claim.get("status")), claim.get("cost"), 0, f"not readable: {error}")
+        return Verdict(status, cost, bound, str(error))
+    except (ValueError, OverflowError, zlib.error) as error:
+        return Verdict(status, cost, bound, f"a proof is not readable: {error}")
     if wrong:
         return Verdict(status, cost, bound, wrong)
     return Verdict(status, cost, bound, _claims(status, cost, bound, low))
+
+
+class _Claim(NamedTuple):
+    status: str
+    cost: int | None
+    bound: int
+
+
+class _Unable(NamedTuple):
+    unable: tuple[int, ...]
+
+
+class _Proof(NamedTuple):
+    """What a proof of any kind may hold."""
+
+    kind: str
+    bound: int = 0
+    limit: int = 0
+    nodes: int = 0
+    sizes: tuple[int, ...] = ()
+    origins: str = ""
+
+
+def _evidence(body: dict[str, Any]) -> tuple[list[Step], list[dict[str, Any]]]:
+    """Steps and proofs; BadInput with the field that is of another kind."""
+    found = []
+    for name in ("steps", "proofs"):
+        if not isinstance(body.get(name), list):
+            raise BadInput("does not fit", item=name, expected="a list")
+        found.append(body[name])
+    steps = [from_data(Step, step, f"steps[{k}]") for k, step in enumerate(found[0])]
+    proofs = [from_data(_Proof, proof, f"proofs[{k}]") for k, proof in enumerate(found[1])]
+    return steps, [proof._asdict() for proof in proofs]
 
 
 def _claims(status: str, cost: int | None, bound: int, low: int) -> str:
@@ -208,7 +240,7 @@ def _shown(problem: AssignmentProblem, branch: Part, proof: dict[str, Any]) -> t
     """(what the proof of one branch shows, what is wrong with it)."""
     instance = arrays(problem, branch)
     if proof["kind"] == "layers":
-        return least_cost(instance, int(proof["limit"]), _origins(proof))
+        return least_cost(instance, int(proof["limit"]), _Origins(proof))
     if proof["kind"] == "tables":
         return (by_sets(instance)[0], "") if is_sets(instance) else (0, "no tables here")
     if proof["kind"] == "estimate":
@@ -236,30 +268,47 @@ def _no_chain_below(
     return bound, ""
 
 
-def _origins(proof: dict[str, Any]) -> list[np.ndarray]:
-    raw = np.frombuffer(zlib.decompress(base64.b64decode(proof["origins"])), np.int32)
-    if raw.size != 3 * sum(proof["sizes"]):
-        raise ValueError("the origins have a wrong length")
-    ends = np.cumsum([0, *proof["sizes"]])
-    table = raw.reshape(-1, 3)
-    return [table[a:b] for a, b in pairwise(ends)]
+class _Origins(Sequence[np.ndarray]):
+    """The origins layer by layer: a layer is unpacked when the checker comes to it, in order."""
+
+    def __init__(self, proof: dict[str, Any]) -> None:
+        self._sizes = [int(size) for size in proof["sizes"]]
+        if not all(0 <= size <= STATES for size in self._sizes):
+            raise ValueError(f"a layer has more than {STATES} states, or fewer than none")
+        self._left = base64.b64decode(proof["origins"], validate=True)
+        self._unpacker, self._next = zlib.decompressobj(), 0
+
+    def __len__(self) -> int:
+        return len(self._sizes)
+
+    def __getitem__(self, depth: Any) -> Any:
+        if depth != self._next:
+            raise IndexError(f"layer {depth} out of order")
+        self._next += 1
+        parts, wanted = [], 12 * self._sizes[depth]
+        while wanted > 0:
+            part = self._unpacker.decompress(self._left, wanted)
+            self._left = self._unpacker.unconsumed_tail
+            wanted -= len(part)
+            parts.append(part)
+            if not part:
+                raise ValueError("the origins have a wrong length")
+        return np.frombuffer(b"".join(parts), np.int32).reshape(-1, 3)
 
 
-def _problem(data: dict[str, Any]) -> AssignmentProblem:
-    def table(rows: Any) -> Any:
-        return tuple(tuple(tuple(row) for row in part) for part in rows)
-
-    fields = dict(data)
-    fields["choices"] = tuple(
-        Choice(**{**c, "vehicles": tuple(c["vehicles"])}) for c in data["choices"]
+def _problem(data: Any) -> AssignmentProblem:
+    """The problem of a certificate; BadInput with the field that is of another kind."""
+    if not isinstance(data, dict):
+        raise BadInput("does not fit", item="problem", expected="an object")
+    tables = ("travel_ms", "distance_mm", "energy_mj")
+    fields = {name: part for name, part in data.items() if name not in ("unable", *tables)}
+    problem = from_data(AssignmentProblem, {**fields, "travel_ms": []}, "problem")
+    unable = from_data(_Unable, {"unable": data.get("unable", [])}, "problem").unable
+    travel, distance, energy = (rows_of(data.get(name, []), name) for name in tables)
+    return replace(
+        problem,
+        unable=frozenset(unable),
+        travel_ms=travel,
+        distance_mm=distance,
+        energy_mj=energy,
     )
-    fields["cost"] = Cost(**data["cost"])
-    fields["done"] = tuple(tuple(one) for one in data.get("done", ()))
-    fields["unable"] = frozenset(data.get("unable", ()))
-    for name in ("vehicles", "ready_ms"):
-        fields[name] = tuple(data[name])
-    for name in ("release_ms", "due_ms"):
-        fields[name] = tuple((task, at) for task, at in data[name])
-    for name in ("travel_ms", "distance_mm", "energy_mj"):
-        fields[name] = table(data[name])
-    return AssignmentProblem(**fields)

@@ -7,73 +7,166 @@ as the message AssignmentCostMatrix has them; from task 0, option 0 means from t
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple, TypeVar
 
 from cratous.services.planning.assign_problem import check
+from cratous.services.records import from_data
 from cratous.spec import algebra
-from cratous.spec.assignment import MINMAX, AssignmentProblem, Choice, Cost
+from cratous.spec.assignment import MINMAX, AssignmentProblem, Choice, Cost, Rows
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import TRAVEL_CELLS, at_most
+
+T = TypeVar("T")
 
 
-def read(
-    data: dict[str, Any], semantics: str, cost: Cost = MINMAX, name: str = ""
-) -> AssignmentProblem:
+class _Chains(NamedTuple):
+    vehicles: tuple[Any, ...]
+    tasks: tuple[Any, ...]
+    travel_ms: Any
+    start_cost_ms: tuple[Any, ...]
+    process_algebra: str
+
+
+class _Matrix(NamedTuple):
+    vehicles: tuple[int, ...]
+    tasks: tuple[Any, ...]
+    cost_matrix: tuple[Any, ...]
+    task_relationships: str
+
+
+class _Vehicle(NamedTuple):
+    id: int
+
+
+class _Task(NamedTuple):
+    id: int
+    duration_ms: int
+    eligible: tuple[int, ...]
+
+
+class _Choices(NamedTuple):
+    task: int
+    composition: str
+    options: tuple[Any, ...]
+
+
+class _Option(NamedTuple):
+    option: int
+    cost_ms: int
+    eligible: tuple[int, ...]
+
+
+class _Leg(NamedTuple):
+    vehicle: int
+    task: int
+    option: int
+    to_task: int
+    to_option: int
+    time_ms: int
+
+
+def read(data: Any, semantics: str, cost: Cost = MINMAX, name: str = "") -> AssignmentProblem:
     """The problem of one JSON object; BadInput for one that is none, with the item."""
-    try:
-        if "cost_matrix" in data:
-            problem = _matrix(data, semantics, cost, name)
-        else:
-            problem = _chains(data, semantics, cost, name)
-    except KeyError as error:
-        raise BadInput("a field is missing", item=str(error.args[0]), expected="it") from error
-    except (TypeError, IndexError, AttributeError) as error:
-        raise BadInput(f"this is no assignment problem: {error}") from error
-    check(problem)
-    return problem
+    given = data if isinstance(data, dict) else {}
+    form = _matrix if "cost_matrix" in given else _chains
+    found = form(data, semantics, cost, name or str(given.get("name", "")))
+    check(found)
+    return found
 
 
-def _chains(data: dict[str, Any], semantics: str, cost: Cost, name: str) -> AssignmentProblem:
-    vehicles = tuple(v["id"] for v in data["vehicles"])
-    choices = tuple(
-        Choice(t["id"], 1, t["duration_ms"], tuple(t["eligible"])) for t in data["tasks"]
+def rows_of(value: Any, item: str) -> tuple[Rows, ...]:
+    """Tables of numbers, one for each vehicle; what the numbers are is left to `check`."""
+    return tuple(
+        tuple(tuple(_listed(row, f"{item}[{v}][{a}]")) for a, row in enumerate(table))
+        for v, table in (
+            (v, _listed(part, f"{item}[{v}]")) for v, part in enumerate(_listed(value, item))
+        )
     )
-    between = tuple(tuple(row) for row in data["travel_ms"])
-    travel = tuple((*between, tuple(start)) for start in data["start_cost_ms"])
+
+
+def _listed(value: Any, item: str) -> Sequence[Any]:
+    if not isinstance(value, (list, tuple)):
+        raise BadInput("not a list", item=item, expected="a list", got=repr(value)[:60])
+    return value
+
+
+def _taken(kind: type[T], data: Any, item: str = "") -> T:
+    """The fields of a kind; others are of no concern. BadInput for one that is missing or wrong."""
+    wanted = kind._fields  # type: ignore[attr-defined]
+    shown = ", ".join(wanted)
+    if not isinstance(data, dict):
+        raise BadInput(
+            "not an object", item=item, expected=f"an object with {shown}", got=repr(data)[:60]
+        )
+    for name in wanted:
+        if name not in data:
+            place = f"{item}.{name}" if item else name
+            raise BadInput(
+                "a field is missing", item=place, expected=shown, got=", ".join(data)[:80]
+            )
+    return from_data(kind, {name: data[name] for name in wanted}, item or "problem")
+
+
+def _fits(vehicles: int, choices: int) -> None:
+    cells = vehicles * choices * (choices + 1)
+    at_most(cells, TRAVEL_CELLS, "too many ways between options", "", "of all vehicles")
+
+
+def _chains(data: Any, semantics: str, cost: Cost, name: str) -> AssignmentProblem:
+    form = _taken(_Chains, data)
+    vehicles = tuple(_taken(_Vehicle, v, f"vehicles[{k}]").id for k, v in enumerate(form.vehicles))
+    tasks = [_taken(_Task, t, f"tasks[{k}]") for k, t in enumerate(form.tasks)]
+    choices = tuple(Choice(t.id, 1, t.duration_ms, t.eligible) for t in tasks)
+    _fits(len(vehicles), len(choices))
+    (between,) = rows_of([form.travel_ms], "travel_ms")
+    travel = tuple(
+        (*between, tuple(_listed(start, f"start_cost_ms[{k}]")))
+        for k, start in enumerate(form.start_cost_ms)
+    )
     return AssignmentProblem(
-        name or str(data.get("name", "")), vehicles, (0,) * len(vehicles), choices, travel,
-        data["process_algebra"], cost=cost, semantics=semantics,
+        name, vehicles, (0,) * len(vehicles), choices, travel, form.process_algebra, cost=cost,
+        semantics=semantics,
     )  # fmt: skip
 
 
-def _matrix(data: dict[str, Any], semantics: str, cost: Cost, name: str) -> AssignmentProblem:
-    vehicles = tuple(data["vehicles"])
-    choices = []
-    for task in data["tasks"]:
-        listed = {o["option"] for o in task["options"]}
-        _composition(task["task"], task["composition"], listed)
-        for o in task["options"]:
-            able = tuple(v for v in o["eligible"] if v in vehicles) or ()
-            choices.append(Choice(task["task"], o["option"], o["cost_ms"], able))
+def _matrix(data: Any, semantics: str, cost: Cost, name: str) -> AssignmentProblem:
+    form = _taken(_Matrix, data)
+    vehicles, choices = form.vehicles, list[Choice]()
+    for k, part in enumerate(form.tasks):
+        task = _taken(_Choices, part, f"tasks[{k}]")
+        options = [
+            _taken(_Option, o, f"tasks[{k}].options[{j}]") for j, o in enumerate(task.options)
+        ]
+        _composition(task.task, task.composition, {o.option for o in options})
+        for o in options:
+            able = tuple(v for v in o.eligible if v in vehicles)
+            choices.append(Choice(task.task, o.option, o.cost_ms, able))
+    _fits(len(vehicles), len(choices))
     number = {(c.task_id, c.option_id): k for k, c in enumerate(choices)}
     number[0, 0] = len(choices)
     rows: list[list[list[int | None]]] = [
         [[None] * len(choices) for _ in range(len(choices) + 1)] for _ in vehicles
     ]
-    for vehicle, task, option, to_task, to_option, time in data["cost_matrix"]:
-        if vehicle not in vehicles:
-            raise BadInput("no such vehicle", item="cost_matrix", got=str(vehicle))
-        a, b = number.get((task, option)), number.get((to_task, to_option))
-        if a is None or b is None or b == len(choices):
+    for k, entry in enumerate(form.cost_matrix):
+        item = f"cost_matrix[{k}]"
+        cells = _listed(entry, item)
+        if len(cells) != len(_Leg._fields) or any(type(c) is not int for c in cells):
             raise BadInput(
-                "no such task option",
-                item="cost_matrix",
-                got=str((task, option, to_task, to_option)),
-            )
-        rows[vehicles.index(vehicle)][a][b] = time
+                "not a row of the cost matrix", item=item,
+                expected=f"whole numbers: {', '.join(_Leg._fields)}", got=repr(cells)[:60],
+            )  # fmt: skip
+        leg = _Leg(*cells)
+        if leg.vehicle not in vehicles:
+            raise BadInput("no such vehicle", item=item, got=str(leg.vehicle))
+        a, b = number.get((leg.task, leg.option)), number.get((leg.to_task, leg.to_option))
+        if a is None or b is None or b == len(choices):
+            raise BadInput("no such task option", item=item, got=str(leg[1:5]))
+        rows[vehicles.index(leg.vehicle)][a][b] = leg.time_ms
     travel = tuple(tuple(tuple(row) for row in table) for table in rows)
     return AssignmentProblem(
-        name or str(data.get("name", "")), vehicles, (0,) * len(vehicles), tuple(choices), travel,
-        data["task_relationships"], cost=cost, semantics=semantics,
+        name, vehicles, (0,) * len(vehicles), tuple(choices), travel, form.task_relationships,
+        cost=cost, semantics=semantics,
     )  # fmt: skip
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import IO
 
 from cratous.spec.errors import BadInput
+from cratous.spec.printable import printable
 
 SEVERITIES = ("DEBUG", "INFO", "WARN", "ERROR")
 
@@ -53,15 +54,15 @@ class Logs:
         """Log one sentence."""
         level = self._levels[severity]
         self.counts[severity] += 1
+        text = printable(text)  # a peer could forge lines, or move the cursor
         if level >= self._console:
             self._echo(f"{severity} {text}")
         if self._out is not None and level >= self._file:
             stamp = time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime())
             milli = time.time_ns() // 1_000_000 % 1000
             thread = f" [{threading.get_ident()}]" if self._thread_id else ""
-            line = text.replace("\n", "\\n")
             try:
-                self._out.write(f"{stamp}.{milli:03d}Z{thread} {severity} {line}\n")
+                self._out.write(f"{stamp}.{milli:03d}Z{thread} {severity} {text}\n")
             except OSError as error:  # a full disk must not stop the flight
                 self._echo(f"ERROR the log file cannot be written any more ({error.strerror})")
                 self._out = None

@@ -19,6 +19,8 @@ from typing import Any, NamedTuple
 from cratous.services.loading.problems import refuse
 from cratous.services.uxas.logs import SEVERITIES
 from cratous.spec.errors import BadInput
+from cratous.spec.limits import DIGITS
+from cratous.spec.text_file import bytes_of
 
 DEFAULT_FILE = "cfg.xml"
 
@@ -107,14 +109,7 @@ def read(path: Path) -> Configuration:
     """Read a configuration; BadInput (with all problems that were found) if it is none."""
     from cratous.bridge.lmcp import xml
 
-    try:
-        text = path.read_bytes()
-    except OSError as error:
-        raise BadInput(
-            f"the configuration cannot be read ({error.strerror})",
-            where=str(path),
-            expected="a UxAS configuration (-cfgPath FILE; cfg.xml by default)",
-        ) from None
+    text = bytes_of(path, expected="a UxAS configuration (-cfgPath FILE; cfg.xml by default)")
     root = xml.parse(text, str(path))
     if root.tag != "UxAS":
         raise BadInput(
@@ -222,7 +217,7 @@ def _value(attr: Attr, text: str) -> Any:
     if attr.low is not None:
         span += f" from {attr.low:g}" + ("" if attr.high is None else f" to {attr.high:g}")
     try:
-        value: float = int(text) if attr.kind == "int" else float(text)
+        value: float = int(text[: DIGITS + 1]) if attr.kind == "int" else float(text)
     except ValueError:
         raise ValueError(span) from None
     small = attr.low is not None and value < attr.low

@@ -1,0 +1,150 @@
+"""Bounds on what is read from outside, in one place, each checked before its cost is paid.
+
+A bound stands well above what the formats are used for and low enough that a file can cost no more
+than some hundred megabytes and a few seconds. What is beyond one is refused with the bound.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import zlib
+from typing import Any
+
+from cratous.spec.errors import BadInput
+
+CONFIG_BYTES = 1_000_000
+"""A configuration or a text of the process algebra."""
+MISSION_BYTES, MISSION_NODES, MISSION_DEPTH = 5_000_000, 100_000, 32
+"""A mission file: its size, its values, and how deep they are nested."""
+DOCUMENT_BYTES = 64_000_000
+"""A file that is held in memory as a whole: JSON, XML, encounters, captured bytes; inflated too."""
+CONTAINERS, VALUES, DEPTH = 1_000_000, 16_000_000, 100
+"""Lists and objects of a JSON text, its values, and how deep they are nested."""
+TAGS = 2_000_000
+"""Begins and ends of elements in an XML file."""
+LINE_BYTES, LINES, STREAM_BYTES = 64_000_000, 1_000_000, 1_000_000_000
+"""A file that is read line by line: one line; and of a gzipped one how many, and all of them."""
+MESSAGES_BYTES = 256_000_000
+"""Messages of LMCP in one input, inflated."""
+ENCOUNTER_ROWS = 500_000
+"""States in an encounter file."""
+CELL_BYTES = 64_000_000
+"""A value in a database, and a record or an inflated chunk of an MCAP file."""
+STATES = 500_000
+"""States of one layer in a certificate; the search keeps at most 200 000."""
+TRAVEL_CELLS = 10_000_000
+"""Entries of an assignment problem's travel times: vehicles times options squared."""
+DIGITS = 300
+"""Digits of a number: so many fit a double, so it can be compared and shown."""
+
+_SUSPECT = re.compile(rb"[0-9]{%d}|[0-9][eE][+-]?[0-9]{3}|\\u[dD][89a-fA-F]" % DIGITS)
+
+
+def at_most(size: int, most: int, what: str, where: str, unit: str = "bytes") -> None:
+    """BadInput unless a size is within its bound."""
+    if size > most:
+        raise BadInput(what, where=where, expected=f"at most {most} {unit}", got=f"{size}")
+
+
+def json_of(text: str | bytes, where: str, most: int = DOCUMENT_BYTES) -> Any:
+    """The data of a JSON text; BadInput for what is none or is beyond a bound.
+
+    Numbers are finite and texts are Unicode, which Python's own reader does not ask for.
+    """
+    raw = text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass")
+    at_most(len(raw), most, "the JSON is too long", where)
+    nested = raw.count(b"[") + raw.count(b"{")
+    at_most(nested, CONTAINERS, "too many lists and objects", where, "of them")
+    at_most(raw.count(b","), VALUES, "too many values", where, "of them")
+    suspect = _SUSPECT.search(raw) is not None
+    numbers: Any = {"parse_int": _integer, "parse_float": _real} if suspect else {}
+    try:
+        found = json.loads(raw, parse_constant=_no_constant, **numbers)
+        if suspect:
+            json.dumps(found, ensure_ascii=False).encode("utf-8")
+    except json.JSONDecodeError as error:
+        place = f"line {error.lineno}, column {error.colno}"
+        raise BadInput(
+            "not JSON", where=where, expected="JSON", got=f"{error.msg} ({place})"
+        ) from None
+    except UnicodeEncodeError:
+        raise _wrong("half a character in a text", where, "Unicode", "a lone surrogate") from None
+    except UnicodeDecodeError as error:
+        raise _wrong("not a text file", where, "UTF-8", f"byte {error.start} is not") from None
+    except _WrongNumber as error:
+        raise _wrong(str(error), where, error.expected, error.got) from None
+    except RecursionError:
+        raise _wrong("nested too deeply", where, f"at most {DEPTH} levels", "more") from None
+    if nested > DEPTH:
+        _not_deep(found, where)
+    return found
+
+
+def integer_of(text: str, low: int, high: int) -> int | None:
+    """The integer of a decimal text within a range; None for any other text, however long."""
+    digits = text.strip().removeprefix("-").removeprefix("+")
+    if not (digits.isascii() and digits.isdecimal() and len(digits) <= DIGITS):
+        return None
+    value = int(text)
+    return value if low <= value <= high else None
+
+
+def inflated(data: bytes, where: str, most: int = DOCUMENT_BYTES) -> bytes:
+    """The bytes of gzipped data; BadInput if they are too many, cut short or none."""
+    parts: list[bytes] = []
+    left = most
+    while data:
+        unpacker = zlib.decompressobj(31)
+        try:
+            parts.append(unpacker.decompress(data, left + 1))
+        except zlib.error as error:
+            raise BadInput("not gzip", where=where, got=str(error)) from None
+        left -= len(parts[-1])
+        if left < 0:
+            at_most(most - left, most, "too long unpacked", where)
+        if not unpacker.eof:
+            raise BadInput("gzip ends too early", where=where, expected="the whole file")
+        data = unpacker.unused_data.lstrip(b"\0")  # members may follow each other, and padding
+    return b"".join(parts)
+
+
+class _WrongNumber(Exception):
+    def __init__(self, what: str, expected: str, got: str) -> None:
+        super().__init__(what)
+        self.expected, self.got = expected, got if len(got) <= 40 else f"{got[:37]}..."
+
+
+def _integer(text: str) -> int:
+    if len(text.removeprefix("-")) > DIGITS:
+        raise _WrongNumber("a number with too many digits", f"at most {DIGITS}", text)
+    return int(text)
+
+
+def _real(text: str) -> float:
+    value = float(text) if len(text) <= 2 * DIGITS else float("inf")
+    if value - value != 0:
+        raise _WrongNumber("not a number that a double holds", "a finite number", text)
+    return value
+
+
+def _no_constant(text: str) -> float:
+    raise _WrongNumber(f"{text} is not a JSON number", "a finite number", text)
+
+
+def _not_deep(found: Any, where: str) -> None:
+    layer = [found] if isinstance(found, (list, dict)) else []
+    for _ in range(DEPTH):
+        layer = [
+            part
+            for whole in layer
+            for part in (whole.values() if isinstance(whole, dict) else whole)
+            if isinstance(part, (list, dict))
+        ]
+        if not layer:
+            return
+    raise _wrong("nested too deeply", where, f"at most {DEPTH} levels", "more")
+
+
+def _wrong(what: str, where: str, expected: str, got: str) -> BadInput:
+    return BadInput(what, where=where, expected=expected, got=got)
