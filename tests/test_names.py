@@ -144,6 +144,8 @@ def test_records_of_one_name_keep_their_fields_in_every_reading(package) -> None
 
 
 def test_both_are_registered_and_only_the_exact_text_tells_them_apart(package) -> None:
+    for module in ("timing", "well_clear"):
+        importlib.import_module(f"cratous.core.{module}")
     assert {f"{PACKAGE}.near.share", f"{PACKAGE}.far.share"} <= set(REGISTRY)
     mine = [name for name in REGISTRY if name.endswith(".violation")]
     assert len(mine) == 3
