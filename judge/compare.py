@@ -2,7 +2,7 @@
 
 - *disagree*: one says that something holds and the other that it is violated; or a violation that the
   monitor has no row for, or calls unknown; or something it excuses that holds; or a row that the
-  judge does not expect.
+  judge does not expect and that is not unknown.
 - *claimed excused*: violated here, excused there. The judge knows no excuses.
 - *undecided*: one of the two cannot say.
 """
@@ -159,7 +159,7 @@ def _compare(
     if not here:
         if _met_nobody(key, all_mine):
             return None
-        kind = DISAGREE
+        kind = UNDECIDED if there == UNKNOWN else DISAGREE
     elif not there:
         if here == HOLDS:
             return None

@@ -38,7 +38,8 @@ TRAVEL_CELLS = 10_000_000
 DIGITS = 300
 """Digits of a number: so many fit a double, so it can be compared and shown."""
 
-_SUSPECT = re.compile(rb"[0-9]{%d}|[0-9][eE][+-]?[0-9]{3}|\\u[dD][89a-fA-F]" % DIGITS)
+_EXPONENT = re.compile(r"[eE][+-]?[0-9]{3}")
+_SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
 
 
 def at_most(size: int, most: int, what: str, where: str, unit: str = "bytes") -> None:
@@ -52,15 +53,18 @@ def json_of(text: str | bytes, where: str, most: int = DOCUMENT_BYTES) -> Any:
 
     Numbers are finite and texts are Unicode, which Python's own reader does not ask for.
     """
-    raw = text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass")
-    at_most(len(raw), most, "the JSON is too long", where)
-    nested = raw.count(b"[") + raw.count(b"{")
+    at_most(len(text), most, "the JSON is too long", where)
+    if isinstance(text, bytes):
+        try:
+            text = text.decode("utf-8-sig")
+        except UnicodeDecodeError as error:
+            raise _wrong("not a text file", where, "UTF-8", f"byte {error.start} is not") from None
+    nested = text.count("[") + text.count("{")
     at_most(nested, CONTAINERS, "too many lists and objects", where, "of them")
-    at_most(raw.count(b","), VALUES, "too many values", where, "of them")
-    suspect = _SUSPECT.search(raw) is not None
-    numbers: Any = {"parse_int": _integer, "parse_float": _real} if suspect else {}
+    at_most(text.count(","), VALUES, "too many values", where, "of them")
+    suspect = _is_suspect(text)
     try:
-        found = json.loads(raw, parse_constant=_no_constant, **numbers)
+        found = (_CAREFUL if suspect else _PLAIN).decode(text)
         if suspect:
             json.dumps(found, ensure_ascii=False).encode("utf-8")
     except json.JSONDecodeError as error:
@@ -70,8 +74,6 @@ def json_of(text: str | bytes, where: str, most: int = DOCUMENT_BYTES) -> Any:
         ) from None
     except UnicodeEncodeError:
         raise _wrong("half a character in a text", where, "Unicode", "a lone surrogate") from None
-    except UnicodeDecodeError as error:
-        raise _wrong("not a text file", where, "UTF-8", f"byte {error.start} is not") from None
     except _WrongNumber as error:
         raise _wrong(str(error), where, error.expected, error.got) from None
     except RecursionError:
@@ -79,6 +81,14 @@ def json_of(text: str | bytes, where: str, most: int = DOCUMENT_BYTES) -> Any:
     if nested > DEPTH:
         _not_deep(found, where)
     return found
+
+
+def _is_suspect(text: str) -> bool:
+    """Whether numbers or texts of a JSON text need a closer look; seldom, as the look costs time."""
+    if _EXPONENT.search(text) or ("\\u" in text and _SURROGATE.search(text)):
+        return True
+    step = DIGITS // 2  # more than DIGITS digits in a row fill one such block
+    return any(text[k : k + step].isdigit() for k in range(0, len(text) - step, step))
 
 
 def integer_of(text: str, low: int, high: int) -> int | None:
@@ -130,6 +140,10 @@ def _real(text: str) -> float:
 
 def _no_constant(text: str) -> float:
     raise _WrongNumber(f"{text} is not a JSON number", "a finite number", text)
+
+
+_PLAIN = json.JSONDecoder(parse_constant=_no_constant)
+_CAREFUL = json.JSONDecoder(parse_int=_integer, parse_float=_real, parse_constant=_no_constant)
 
 
 def _not_deep(found: Any, where: str) -> None:

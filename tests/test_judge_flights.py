@@ -60,13 +60,11 @@ def test_without_avoidance_both_see_the_loss(tmp_path: Path) -> None:
 
 
 def test_the_task_of_a_lost_vehicle_is_asked_for(tmp_path: Path) -> None:
-    """Whatever the monitor makes of it: either it says so too, or it is told to be wrong."""
+    """The monitor says so too."""
     found = judge(fly(MISSIONS / "lost_vehicle.yaml", tmp_path))
     assert verdicts(found)["task 2 served"] == "violated"
     assert found.of("G3") == "violated"
-    wrong = [d for d in found.disagreements if d.item == "task 2 served"]
-    assert all(d.monitor == "no row" for d in wrong)
-    assert len(found.disagreements) == len(wrong)
+    assert found.disagreements == []
 
 
 # ---- faults ---------------------------------------------------------------------------------------

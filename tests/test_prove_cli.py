@@ -229,3 +229,14 @@ def test_only_what_the_record_does_not_know_is_mutated(
     assert main(["prove", "--only", "gives_way", "--mutate", "--new"]) == 0
     assert main(["prove", "--only", "gives_way", "--new"]) == 2
     assert "--new is of --recheck or --mutate" in capsys.readouterr().err
+
+
+def test_a_pattern_that_names_nothing_is_told_what_names_there_are(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    from cratous.services.cli import main
+
+    assert main(["prove", "--only", "wel_clear*"]) == 2
+    said = capsys.readouterr().err
+    assert "no theorem matches" in said
+    assert "such as well_clear_" in said
