@@ -183,7 +183,8 @@ class PlanBuilderService:
 
     def _finished(self, points: tuple[Any, ...]) -> list[Any]:
         """A vehicle's waypoints: turned as asked, the last one leads to itself or is loitered at."""
-        turned = [w.copy(TurnType=self._options.turn_type) for w in points]
+        turn = self._options.turn_type
+        turned = [w if w.TurnType.name == turn else w.copy(TurnType=turn) for w in points]
         last = turned[-1].copy(NextWaypoint=turned[-1].Number)
         if self._options.loiter_m:
             place = lmcp.new(

@@ -90,10 +90,12 @@ def _way(places: RequestPlaces, constraint: Any, cruise_m: float) -> Way:
         start = start._replace(alt_m=cruise_m)
     if end.alt_m == 0 and places.exact(asked.EndLocation, asked.EndHeading) is None:
         end = end._replace(alt_m=start.alt_m)
+    if asked.UseStartHeading and asked.UseEndHeading:
+        return Way(start, end)
     straight = atan2(end.east_m - start.east_m, end.north_m - start.north_m)
-    if not constraint.UseStartHeading:
+    if not asked.UseStartHeading:
         start = start._replace(heading_rad=straight)
-    if not constraint.UseEndHeading:
+    if not asked.UseEndHeading:
         end = end._replace(heading_rad=straight)
     return Way(start, end)
 
