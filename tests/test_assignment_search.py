@@ -200,7 +200,8 @@ def test_tampered_certificates_are_refused(shared: Path, tmp_path: Path) -> None
     assert body["proofs"][0]["kind"] == "layers"
     wrong = tampered(body)
     # a whole entry left out, with the rest in place
-    origins = certificates._origins(body["proofs"][0])
+    layers = certificates._Origins(body["proofs"][0])
+    origins = [layers[k] for k in range(len(layers))]
     short = copy.deepcopy(body)
     less = [o if k != 4 else o[:-1] for k, o in enumerate(origins)]
     proof = certificates.Proof("layers", found.cost, body["proofs"][0]["limit"], tuple(less))

@@ -37,8 +37,11 @@ def flown(tmp_path_factory: pytest.TempPathFactory) -> Flown:
     return get
 
 
+MARKS = {"popup": pytest.mark.slow, "relations": pytest.mark.slow, "search": pytest.mark.long}
+
+
 @pytest.mark.parametrize(
-    "name", ["crossing", *(pytest.param(n, marks=pytest.mark.slow) for n in list(EXAMPLES)[1:])]
+    "name", ["crossing", *(pytest.param(n, marks=MARKS.get(n, ())) for n in list(EXAMPLES)[1:])]
 )
 def test_judge_and_monitor_agree_on_the_examples(flown: Flown, name: str) -> None:
     found = judge(flown(name))
@@ -243,9 +246,15 @@ def moved(task: int, phase: str, by_ms: int) -> Edit:
     ("edit", "item"),
     [
         (moved(2, "Active", -100), "order: .(p1 p2)"),  # before the survey has ended
-        (moved(6, "Active", -186_400), "order: ~(p5 p6)-[20000-600000]"),
-        (moved(6, "Active", -180_000), "timing: ~(p5 p6)-[20000-600000]"),
-        (moved(3, "Active", -120_000), "timing: |(p3)_[240000-1200000]"),
+        pytest.param(
+            moved(6, "Active", -186_400), "order: ~(p5 p6)-[20000-600000]", marks=pytest.mark.long
+        ),
+        pytest.param(
+            moved(6, "Active", -180_000), "timing: ~(p5 p6)-[20000-600000]", marks=pytest.mark.long
+        ),
+        pytest.param(
+            moved(3, "Active", -120_000), "timing: |(p3)_[240000-1200000]", marks=pytest.mark.long
+        ),
     ],
 )
 def test_a_task_at_another_time_is_noticed(
@@ -270,7 +279,7 @@ def test_both_branches_of_an_alternative_are_noticed(flown: Flown, tmp_path: Pat
     assert verdicts(found)["choice: +(p3 p4)_[240000-1200000]"] == "violated"
 
 
-@pytest.mark.slow
+@pytest.mark.long  # each judges the search flight again, and lets the monitor do so
 @pytest.mark.parametrize("task", [1, 4, 8, 9, 10])
 def test_a_search_without_its_second_half_is_noticed(
     flown: Flown, tmp_path: Path, task: int

@@ -80,7 +80,7 @@ ATTACKS = {
         "horizontal_violation: changed since the proof: its source"),
     "a callee": (
         "core/well_clear_during.py", "return b < 0 and 0 - b", "return b <= 0 and 0 - b",
-        "violation_within: changed since the proof: its source"),
+        "in_conflict: changed since the proof: its source"),
     "a record's order of fields": (
         "core/well_clear_during.py", "    first: float\n    last: float", "    last: float\n    first: float",
         "layer_window: changed since the proof: its source"),
@@ -284,7 +284,7 @@ path.write_text(json.dumps(data, indent=1, sort_keys=True) + chr(10))
         ),
         (
             'del data["theorems"]["well_clear_violation_is_symmetric"]\n'
-            'data["kernels"]["violation"]["theorems"].remove("well_clear_violation_is_symmetric")',
+            'data["kernels"]["cratous.core.well_clear_now.violation"]["theorems"].remove("well_clear_violation_is_symmetric")',
             "", "", "", "differs from these proofs",
         ),
     ],
@@ -322,7 +322,9 @@ def test_a_driver_that_no_longer_calls_its_checker_is_refused_by_the_prover(prod
     finally:
         file.write_text(original)
     assert done.returncode == 2, done.stdout + done.stderr
-    assert "nothing calls its checker 'violation_within'" in done.stderr
+    assert (
+        "nothing calls its checker 'cratous.core.well_clear_during.violation_within'" in done.stderr
+    )
 
 
 def test_comments_and_layout_change_nothing(product: Path) -> None:

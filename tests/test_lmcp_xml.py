@@ -149,7 +149,7 @@ def test_every_file_of_the_examples_reads() -> None:
     files = sorted(EXAMPLES.glob("*/inputs/**/*.xml"))
     assert len(files) > 15
     for path in files:
-        (obj,) = lmcp.xml.read_file(path, [])
+        (obj,) = lmcp.xml.read_messages(path, [])
         assert read(lmcp.xml.dumps(obj)) == [obj]
 
 

@@ -344,11 +344,12 @@ def test_a_verdict_depends_on_function_theorems_judge_and_solver(monkeypatch):
 
 def test_what_a_theorem_meets_is_within_what_its_imports_reach():
     """A key must cover every theorem that can judge, also those that meet a function indirectly."""
-    from cratous.proofs.mutation_keys import reach, reach_name
+    from cratous.core.kernel import qualified
+    from cratous.proofs.mutation_keys import reach
 
     for target, users in targets(KEYS.theorems).values():
         for name in users:
-            assert reach_name(target) in reach(name), (name, target)
+            assert qualified(target) in reach(name), (name, target)
 
 
 # -- asking ----------------------------------------------------------------------------------

@@ -12,7 +12,7 @@ import z3
 from cratous.core import ledger as gate
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import vertical_violation, violation
-from cratous.proofs import counterexample, formats, ledger, prover
+from cratous.proofs import counterexample, formats, ledger, prover, theorem_files
 from cratous.proofs.cache import Answer, Cache
 from cratous.proofs.claim import Claim
 from cratous.proofs.counterexample import Watched, meanings, number_text
@@ -287,7 +287,7 @@ def test_two_theorems_of_one_name_are_refused_with_both_places(tmp_path: Path):
         '"""Mine."""\n\n\ndef claim(c):\n    pass\n'
     )
     with pytest.raises(BadInput, match="two theorems are called") as caught:
-        prover.load_claim("geofence_orient_is_the_turn", tmp_path)
+        theorem_files.load_lemma("geofence_orient_is_the_turn", tmp_path)
     assert "proofs/theorems/geofence_orient_is_the_turn.py" in caught.value.where
 
 
@@ -320,7 +320,8 @@ def test_a_path_that_no_premise_allows_is_named():
     narrow = prover.prove("narrow", claim(False), "N.")
     wide = prover.prove("wide", claim(True), "W.")
     reached = [(name, sum(seen)) for t in (narrow, wide) for name, seen in t.paths]
-    assert reached == [("vertical_violation", 1), ("vertical_violation", 3)]
+    name = "cratous.core.well_clear_now.vertical_violation"
+    assert reached == [(name, 1), (name, 3)]
     found = ledger.dead_paths([narrow])
     assert len(found) == 2
     assert all("vertical_violation" in line for line in found)

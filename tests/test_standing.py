@@ -65,9 +65,8 @@ def test_whatever_changes_goes_through_the_whole_gate(
     elif what == "solver":
         monkeypatch.setattr(ledger, "solver_version", lambda: "another")
     elif what == "code":
-        name, function = next(
-            (n, v) for n, v in vars(gate).items() if n in ledger.load_all() and callable(v)
-        )
+        known = [entry.function for entry in ledger.load_all().values()]
+        name, function = next((n, v) for n, v in vars(gate).items() if v in known)
         code = (lambda *_: True).__code__
         monkeypatch.setattr(function, "__code__", code)
         assert name

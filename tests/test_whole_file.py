@@ -172,6 +172,7 @@ KEPT = {
     "proofs/cache.py": "solver answers, renamed when whole, in the private cache",
     "proofs/mutation_keys.py": "verdicts, renamed when whole, in the private cache",
     "proofs/recall.py": "theorems, renamed when whole, in the private cache",
+    "proofs/relations.py": "what statements relate, renamed when whole, in the private cache",
     "proofs/remembered.py": "texts, renamed when whole, in the private cache",
     "services/standing.py": "the gate's answer, renamed when whole, in the private cache",
     "services/warm.py": "a mission in a temporary folder",
