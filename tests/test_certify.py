@@ -162,7 +162,7 @@ def same(one: Any, other: Any) -> bool:
     return json.dumps(one, sort_keys=True) == json.dumps(other, sort_keys=True)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_every_edit_of_every_entry_is_found(
     flown: Path, judged: None, tmp_path: Path, capsys: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,

@@ -162,7 +162,10 @@ def answers(case: Case, relations: str, folder: Path) -> dict[str, Any]:
     }
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(n, marks=pytest.mark.long if k % 2 else ()) for k, n in enumerate(CASES)],
+)
 def test_both_forms_give_the_same_answers_and_judge_every_task(name: str, tmp_path: Path) -> None:
     case = CASES[name]
     empty, explicit = (answers(case, text, tmp_path) for text in ("", "|(p1 p2 p3)"))

@@ -277,7 +277,7 @@ def killed(target: Path, stop: int, how: str) -> subprocess.CompletedProcess[str
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("how", ["exchange", "renames"])
+@pytest.mark.parametrize("how", ["exchange", pytest.param("renames", marks=pytest.mark.long)])
 def test_killed_at_every_step(tmp_path: Path, how: str) -> None:
     """Before each call that changes the disk: old or new is there, or the next run restores it."""
     for stop in range(200):
