@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from itertools import pairwise
+from itertools import islice, pairwise
 
 from cratous.core.timing import eligible, row_holds
-from cratous.services.times import all_hold, row_verdict
+from cratous.services.times import Times, all_hold, row_verdict
 from cratous.services.zones import distance_m, exact_leg_ok
 from cratous.spec.algebra_meaning import branches, rows, tasks
 from cratous.spec.asked import term_of
@@ -22,6 +22,8 @@ from cratous.spec.schedule import AFTER_END
 
 Path = tuple[Position, ...]
 
+CHOICES_MAX = 4096
+"""So many branches of the same tasks are looked at for one whose rows hold."""
 SPEED_TOLERANCE_MS = 2
 """Rounding of a route's flight time to whole milliseconds, at both of its ends."""
 
@@ -36,15 +38,36 @@ def check_plan(mission: Mission, plan: Plan) -> list[Verdict]:
     return found
 
 
-def term_rows(mission: Mission, chosen: frozenset[int]) -> tuple[Row, ...] | None:
-    """The constraint rows of the branch that consists of the chosen tasks; None if there is none."""
+def row_choices(mission: Mission, chosen: frozenset[int]) -> Iterator[tuple[Row, ...]]:
+    """The constraint rows of each branch that consists of the chosen tasks, in the order of the text.
+
+    Several branches may have the same tasks, as in `+(.(p1 p2) .(p2 p1))`; no more than CHOICES_MAX
+    of them are looked at. Nothing comes where no branch has these tasks.
+    """
     term = term_of(mission)
     if term is None:
-        return None if chosen else ()
-    for branch in branches(term):
-        if frozenset(tasks(branch)) == chosen:
-            return rows(branch)
-    return None
+        yield from () if chosen else ((),)
+        return
+    alike = (branch for branch in branches(term) if frozenset(tasks(branch)) == chosen)
+    yield from (rows(branch) for branch in islice(alike, CHOICES_MAX))
+
+
+def term_rows(mission: Mission, chosen: frozenset[int], times: Times) -> tuple[Row, ...] | None:
+    """The constraint rows of the chosen tasks; None if no branch consists of them.
+
+    Of several branches with these tasks it is the first whose rows hold of the times (ms), as far
+    as their tasks have times; else the first of those with the fewest broken rows.
+    """
+    best: tuple[Row, ...] | None = None
+    least = math.inf
+    for choice in row_choices(mission, chosen):
+        known = [row for row in choice if all(t in times for t in (row.i, *row.group))]
+        broken = sum(row_verdict(row, times, "").outcome is not Outcome.HOLDS for row in known)
+        if broken < least:
+            best, least = choice, broken
+        if broken == 0:
+            break
+    return best
 
 
 def _verdict(item: str, good: bool, note: str, method: str, **more: object) -> Verdict:
@@ -56,7 +79,7 @@ def _complete(mission: Mission, plan: Plan) -> Verdict:
     """Every task of one branch is planned exactly once, and no other."""
     planned = sorted(item.task_id for item in plan.items)
     twice = sorted({task for task in planned if planned.count(task) > 1})
-    branch = term_rows(mission, frozenset(planned))
+    branch = next(row_choices(mission, frozenset(planned)), None)
     good = branch is not None and not twice
     note = f"tasks planned: {', '.join(map(str, planned)) or 'none'}"
     if twice:
@@ -139,7 +162,7 @@ def _chains(mission: Mission, plan: Plan) -> Iterator[Verdict]:
 
 def _relations(mission: Mission, plan: Plan) -> Iterator[Verdict]:
     times = {item.task_id: (item.start_ms, item.end_ms) for item in plan.items}
-    wanted = term_rows(mission, frozenset(times))
+    wanted = term_rows(mission, frozenset(times), times)
     if wanted is None:
         return
     for row in wanted:

@@ -171,6 +171,16 @@ def test_order_is_judged_by_real_times():
     assert "p2" in verdict.note
 
 
+@pytest.mark.parametrize("relations", ["+(.(p1 p2) .(p2 p1))", "+(.(p2 p1) .(p1 p2))"])
+def test_of_branches_with_the_same_tasks_the_one_that_was_flown_is_judged(relations: str):
+    seen = watch(mission(relations=relations), [*apart(), *beats(3000), *done()])
+    assert seen["G1"].outcome is Outcome.HOLDS
+    assert seen["G1:flight: `.(p1 p2)`: p2 starts no earlier than p1 ends"].outcome is Outcome.HOLDS
+    early = [progress(2, 2, 900, "Active") if m[0] == 2000 else m for m in done()]
+    seen = watch(mission(relations=relations), [*apart(), *beats(3000), *early])
+    assert seen["G1"].outcome is Outcome.VIOLATED
+
+
 def test_a_task_that_was_not_flown_is_not_complete_and_its_order_is_unknown():
     short = [m for m in done() if m[0] != 3000] + [done()[-1]]
     seen = watch(mission(), [*apart(), *beats(3000), *short])

@@ -67,6 +67,17 @@ def tampered(**changes: Any) -> Plan:
     return replace(PLAN, items=(FIRST, replace(SECOND, **changes)))
 
 
+@pytest.mark.parametrize("relations", ["+(.(p1 p2) .(p2 p1))", "+(.(p2 p1) .(p1 p2))"])
+def test_of_branches_with_the_same_tasks_the_one_that_is_kept_counts(relations: str):
+    mission = replace(MISSION, relations=relations)
+    assert bad(PLAN, mission) == []
+    assert "plan: `.(p1 p2)`: p2 starts no earlier than p1 ends" in {
+        v.item for v in check_plan(mission, PLAN)
+    }
+    together = tampered(depart_ms=0, arrive_ms=45_000, start_ms=45_000, end_ms=50_000)
+    assert "plan: all order and timing rows at once" in bad(together, mission)
+
+
 def test_order_is_recomputed_from_the_mission():
     early = tampered(start_ms=49_999, arrive_ms=49_999, end_ms=54_999)
     found = bad(early)

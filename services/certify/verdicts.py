@@ -37,7 +37,11 @@ def constraint_rows(verdicts: Iterable[Verdict], source: str) -> list[dict[str, 
 
 def with_promised(rows: list[dict[str, Any]], seen: Watched) -> list[dict[str, Any]]:
     """The rows, and an unknown one for each that is promised and not among them."""
-    wanted = {"plan": [Row("G1", item) for item in PLAN_ROWS], "flight": list(promised(seen))}
+    flown = {row["item"] for row in rows if (row["requirement"], row["source"]) == ("G1", "flight")}
+    wanted = {
+        "plan": [Row("G1", item) for item in PLAN_ROWS],
+        "flight": list(promised(seen, flown)),
+    }
     found = list(rows)
     for source, expected in wanted.items():
         there = [(row["requirement"], row["item"]) for row in rows if row["source"] == source]

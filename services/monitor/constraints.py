@@ -113,7 +113,7 @@ class ConstraintWatch:
         outcome = Outcome.VIOLATED if beside else outcome
         yield Verdict("G1", CHOICE, outcome, Kind.EXACT, note, checks=1)
         times = {t: (self._starts[t], self._ends[t]) for t in self._starts if t in self._ends}
-        for row in term_rows(seen.asked, frozenset(seen.tasks)) or ():
+        for row in term_rows(seen.asked, frozenset(seen.tasks), times) or ():
             missing = [t for t in (row.i, *row.group) if t not in times]
             if not missing:
                 yield row_verdict(row, times, "flight")

@@ -6,12 +6,12 @@ accepted or a log happens to show. A row that nobody wrote is unknown: not obser
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Set
+from collections.abc import Collection, Iterable, Iterator, Set
 from typing import NamedTuple
 
 from cratous.core.timing import runs_forward
 from cratous.services.monitor.presence import Span, in_the_air
-from cratous.services.plan_check import term_rows
+from cratous.services.plan_check import row_choices
 from cratous.spec.asked import asked
 from cratous.spec.changes import asked_by
 from cratous.spec.guarantees import Kind, Outcome, Verdict
@@ -112,14 +112,24 @@ def pairs_of(mission: Mission, end_ms: int) -> dict[tuple[int, int], Span]:
     }
 
 
-def promised(seen: Watched) -> Iterator[Row]:
-    """Every row that a judged flight must have."""
+def relation_items(seen: Watched, present: Collection[str]) -> list[str]:
+    """The rows on order and timing: those of one branch of the tasks asked for.
+
+    Where several branches have these tasks, it is the one of which the fewest rows are missing among
+    the present items.
+    """
+    choices = row_choices(seen.asked, frozenset(seen.tasks))
+    items = ([f"flight: {row.text}" for row in rows] for rows in choices)
+    return min(items, key=lambda found: len(set(found) - set(present)), default=[])
+
+
+def promised(seen: Watched, present: Collection[str] = ()) -> Iterator[Row]:
+    """Every row that a judged flight must have; present: items of G1 that it has."""
     mission, guarded = seen.mission, [v.id for v in seen.mission.vehicles if v.protected]
     for zone, _ in zones_of(mission, seen.end_ms):
         yield from (Row("G1", fence_item(zone, vehicle), (vehicle,)) for vehicle in guarded)
     yield Row("G1", CHOICE)
-    for row in term_rows(seen.asked, frozenset(seen.tasks)) or ():
-        yield Row("G1", f"flight: {row.text}")
+    yield from (Row("G1", item) for item in relation_items(seen, present))
     for task in seen.tasks:
         yield Row("G1", eligible_item(task))
     pairs = pairs_of(mission, seen.end_ms)
