@@ -109,6 +109,18 @@ def test_a_turn_that_would_lead_through_a_zone_is_routed_around_it() -> None:
             vehicle(),
             "wider than the loiter's 30 m",
         ),
+        (
+            Task(
+                1,
+                TaskKind.LOITER,
+                "",
+                (Position(0.0, 0.0, 400.0),),
+                duration_ms=10**12,
+                loiter=Loiter(Position(0.0, 0.0, 400.0), 200.0),
+            ),
+            vehicle(),
+            "laps, and no more than 10000 are planned",
+        ),
     ],
 )
 def test_why_no_vehicle_can(task: Task, who: Vehicle, words: str) -> None:

@@ -24,6 +24,8 @@ from cratous.spec.mission import Camera, Loiter, Position, Task, View
 from cratous.spec.plan import Pose
 
 LOITER_ENTRIES = 8
+LAPS_MAX = 10_000
+"""A day on the narrowest lap; each lap is planned point by point."""
 TILT = 0.95
 """Looks that are not straight down are tilted by this share of the gimbal's reach."""
 STRAIGHT_DOWN_RAD = math.radians(-85)
@@ -218,6 +220,13 @@ def _rounds(loiter: Loiter, duration_ms: int, flyer: Flyer) -> Iterator[Way]:
         )
         return
     length = flyer.speed_m_s * duration_ms / 1000
+    once = lap_length_m(lap_of(loiter, radius, True))
+    if length > LAPS_MAX * once:
+        yield no_way(
+            loiter.shape,
+            f"{duration_ms / 1000:g} s are {length / once:.3g} laps, and no more than {LAPS_MAX} are planned",
+        )
+        return
     for k in range(LOITER_ENTRIES):
         for side in SIDES[loiter.direction]:
             lap = lap_of(loiter, radius, side == RIGHT)
