@@ -31,7 +31,7 @@ def certify(folder: Path, rewrite: bool, as_json: bool) -> int:
     differences named; 2 bad input.
     """
     from cratous.services.certify.again import certify_again
-    from cratous.services.cli.show import requirement_table
+    from cratous.services.cli.show import requirement_table, say
 
     done = certify_again(folder, rewrite=rewrite)
     report, found = done.report, done.found
@@ -49,18 +49,18 @@ def certify(folder: Path, rewrite: bool, as_json: bool) -> int:
         click.echo(json.dumps(data, indent=1))
         return code
     if found:
-        click.echo(f"cratous: {folder}: not what the log of the flight gives", err=True)
+        say(f"cratous: {folder}: not what the log of the flight gives", err=True)
         for difference in found[:SHOWN]:
-            click.echo(f"  {difference}", err=True)
+            say(f"  {difference}", err=True)
         if len(found) > SHOWN:
-            click.echo(f"  and {len(found) - SHOWN} more (--json lists all)", err=True)
+            say(f"  and {len(found) - SHOWN} more (--json lists all)", err=True)
     else:
         requirement_table(report["requirements"])
-        click.echo(f"confirmed from the log with the digest {report['log']['digest']}")
+        say(f"confirmed from the log with the digest {report['log']['digest']}")
     for text in done.unchecked:
-        click.echo(f"not checked: {text}", err=bool(found))
+        say(f"not checked: {text}", err=bool(found))
     for name in done.rewritten:
-        click.echo(f"rewritten: {name}")
+        say(f"rewritten: {name}")
     if not found:
-        click.echo(f"report: {folder / 'report.html'}")
+        say(f"report: {folder / 'report.html'}")
     return code

@@ -13,7 +13,7 @@ from typing import Any
 import click
 
 from cratous.services.cli.job import Settings, folder_name, run_mission
-from cratous.services.cli.show import progress, requirement_table, table
+from cratous.services.cli.show import progress, requirement_table, say, table
 from cratous.spec.errors import CratousError, NoPlan
 from cratous.spec.guarantees import Outcome, exit_code
 
@@ -119,17 +119,17 @@ def _show(report: dict[str, Any], folder: Path) -> None:
     for served in flight["served"]:
         note = f" ({served['note']})" if served["note"] else ""
         who = f"vehicle {served['vehicle']}" if served["vehicle"] else "no vehicle"
-        click.echo(
+        say(
             f"p{served['task']}: {served['phase'].lower()} by {who} "
             f"at {served['time_ms'] / 1000:.1f} s, {100 * served['served']:.1f} % served{note}"
         )
     count = len(flight["takeovers"])
-    click.echo(
+    say(
         f"{report['verdict'].upper()}: {flight['outcome']}, {flight['end_ms'] / 1000:.1f} s of "
         f"flight, {count} takeover{'' if count == 1 else 's'}; exit code {report['exit_code']}"
     )
-    click.echo(f"log digest {report['log']['digest']}")
-    click.echo(f"report: {folder / 'report.html'}")
+    say(f"log digest {report['log']['digest']}")
+    say(f"report: {folder / 'report.html'}")
 
 
 def _many(
