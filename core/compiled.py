@@ -18,6 +18,7 @@ import math
 import os
 import sys
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, get_type_hints
 
 import numpy as np
@@ -36,6 +37,24 @@ FLAGS = "njit(cache=True, fastmath=False, error_model='python')"
 QUIET = FLAGS.replace("'python'", "'numpy'")
 """For straight-line code that divides: it carries out both branches and keeps the chosen one."""
 KINDS: dict[Any, Any] = {bool: np.bool_, int: np.int64, float: np.float64}
+MACHINE, EXACT, ENCLOSED = "machine code", "exact", "enclosed"
+"""How a function is read where CPython does not run it as written."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Reading:
+    """A kernel, fold or loop in another reading than CPython's; called as `run` is.
+
+    function: what is read; how: MACHINE, EXACT or ENCLOSED. Every such reading is entered through
+    here, so that what was read can be told (`services/evidence.py`).
+    """
+
+    function: Callable[..., Any] | Fold[Any]
+    how: str
+    run: Callable[..., Any]
+
+    def __call__(self, *given: Any, **named: Any) -> Any:
+        return self.run(*given, **named)
 
 
 def load(text: str) -> Any:
@@ -139,8 +158,7 @@ def machine(function: Callable[..., Any]) -> Callable[..., Any]:
     """
     made = SourceText(FLAGS)
     name = made.add(function)
-    compiled_one: Callable[..., Any] = getattr(load(made.text), name)
-    return compiled_one
+    return Reading(function, MACHINE, getattr(load(made.text), name))
 
 
 def _flat(hint: Any) -> int:
@@ -265,7 +283,7 @@ def compiled(kernel: Callable[..., Any]) -> Callable[..., Any]:
     """
     returns = get_type_hints(kernel)["return"]
     if returns not in KINDS:
-        return functools.partial(_records, program(kernel))
+        return Reading(kernel, MACHINE, functools.partial(_records, program(kernel)))
     kind = KINDS[returns]
     try:
         source: Program | None = program(kernel)
@@ -287,7 +305,7 @@ def compiled(kernel: Callable[..., Any]) -> Callable[..., Any]:
         _straight_map(source, single(source, flat))(found, *flat)
         return found.reshape(shape)
 
-    return run
+    return Reading(kernel, MACHINE, run)
 
 
 def exact(function: Callable[..., Any] | Fold[Any], *args: Any) -> Any:

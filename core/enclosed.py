@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from cratous.core.certainty import outward_margin
-from cratous.core.compiled import checked
+from cratous.core.compiled import ENCLOSED, Reading, checked
 from cratous.core.domain import nonnegative, refuse_negative
 from cratous.core.graph import program
 from cratous.core.nodes import Node, Program, Record, Value, leaves
@@ -262,7 +262,7 @@ def enclosed(kernel: Callable[..., Any]) -> Callable[..., Any]:
             _refuse(source, done, leaf, size)
         return _built(source.result, done, size, shape)
 
-    return run
+    return Reading(kernel, ENCLOSED, run)
 
 
 def _refuse(source: Program, done: _Evaluation, leaf: Node, size: int) -> None:

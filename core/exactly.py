@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from cratous.core import expansions, integers, pairs, residues
-from cratous.core.compiled import FLAGS, checked, load, loop_text, outcome, single
+from cratous.core.compiled import EXACT, FLAGS, Reading, checked, load, loop_text, outcome, single
 from cratous.core.domain import nonnegative, refuse_negative
 from cratous.core.expansion_arithmetic import primitives
 from cratous.core.filtering import TRUE, UNDECIDED, Certain, Filter, filtered
@@ -100,7 +100,7 @@ def exactly(kernel: Callable[..., Any], made: Filter | None = None) -> Callable[
             _resolve(found, scalars, flat, values, code)
         return result.reshape(shape)
 
-    return run
+    return Reading(kernel, EXACT, run)
 
 
 @functools.cache

@@ -16,7 +16,7 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
-from cratous.core.compiled import FLAGS, aligned, load
+from cratous.core.compiled import EXACT, FLAGS, Reading, aligned, load
 from cratous.core.exactly import exact_scalar
 from cratous.core.filtering import Certain, Filter, filtered
 from cratous.core.graph import Node, NotInSubset
@@ -152,7 +152,7 @@ def folded(fold: Fold[Any], arguments: int = 2, rest: Rest | None = None) -> Cal
             out[index] = (rest or functools.partial(_one_by_one, fold, shape))(edges, left)
         return out.reshape(result_shape)
 
-    return run
+    return Reading(fold, EXACT, run)
 
 
 def _refuse_not_finite(

@@ -72,14 +72,15 @@ class SourceText:
     # -- functions ------------------------------------------------------------------------
     def _function(self, function: Callable[..., Any], name: str) -> str:
         node = _definition(function)
+        code = inspect.unwrap(function).__code__  # while its calls are counted it stands behind
         own = f"{function.__module__}.{function.__qualname__}"
         renamed: dict[str, str] = {}
-        for used in sorted(_globals(function.__code__)):
+        for used in sorted(_globals(code)):
             if used in function.__globals__:
                 renamed[used] = self._reference(function, used, own)
             elif not hasattr(builtins, used):
                 raise BadInput(f"{used!r} is not defined", where=own)
-        both = {*renamed, *renamed.values()} & _locals(function.__code__)
+        both = {*renamed, *renamed.values()} & _locals(code)
         if both:
             raise BadInput(
                 f"{min(both)!r} is a name of the module and of the function too",

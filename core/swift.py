@@ -36,6 +36,12 @@ def swift(function: Callable[..., Any], work: int = 1) -> Callable[..., Any]:
     return _compiled[name]
 
 
+def begin_anew() -> None:
+    """Forget what has been done: when the compiler takes over depends on what comes now alone."""
+    _done.clear()
+    _compiled.clear()
+
+
 @contextlib.contextmanager
 def at_once() -> Iterator[None]:
     """Inside, everything is compiled at its first call: for a cache that is to be complete."""
