@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import islice, pairwise
 
 from cratous.core.timing import eligible, row_holds
 from cratous.services.times import Times, all_hold, row_verdict
 from cratous.services.zones import distance_m, exact_leg_ok
+from cratous.spec.algebra import ALTERNATIVE, Atom, Term
 from cratous.spec.algebra_meaning import branches, rows, tasks
 from cratous.spec.asked import term_of
 from cratous.spec.guarantees import Kind, Outcome, Verdict
@@ -48,8 +50,25 @@ def row_choices(mission: Mission, chosen: frozenset[int]) -> Iterator[tuple[Row,
     if term is None:
         yield from () if chosen else ((),)
         return
-    alike = (branch for branch in branches(term) if frozenset(tasks(branch)) == chosen)
+    within = _within(term, chosen)
+    made = branches(within) if within is not None else iter(())
+    alike = (branch for branch in made if frozenset(tasks(branch)) == chosen)
     yield from (rows(branch) for branch in islice(alike, CHOICES_MAX))
+
+
+def _within(term: Term, chosen: frozenset[int]) -> Term | None:
+    """The term without the operands of `+` that need another task; None if nothing is left.
+
+    So no branch is made that cannot consist of the chosen tasks: of twenty choices between two tasks
+    one branch is left of a million.
+    """
+    if isinstance(term, Atom):
+        return term if term.task in chosen else None
+    inside = [_within(operand, chosen) for operand in term.operands]
+    kept = tuple(operand for operand in inside if operand is not None)
+    if not kept or (term.op != ALTERNATIVE and len(kept) < len(inside)):
+        return None
+    return replace(term, operands=kept)
 
 
 def term_rows(mission: Mission, chosen: frozenset[int], times: Times) -> tuple[Row, ...] | None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from cratous.services.plan_check import check_plan
+from cratous.services.plan_check import check_plan, row_choices
 from cratous.spec.guarantees import Outcome
 from cratous.spec.mission import (
     Daa,
@@ -76,6 +76,16 @@ def test_of_branches_with_the_same_tasks_the_one_that_is_kept_counts(relations: 
     }
     together = tampered(depart_ms=0, arrive_ms=45_000, start_ms=45_000, end_ms=50_000)
     assert "plan: all order and timing rows at once" in bad(together, mission)
+
+
+def test_of_many_choices_only_the_branches_of_the_chosen_tasks_are_made():
+    """2^40 branches, one of which has these tasks: whoever makes them all never ends."""
+    ids = range(1, 81)
+    tasks = tuple(replace(TASKS[1], id=n) for n in ids)
+    pairs = " ".join(f"+(p{n} p{n + 1})" for n in ids if n % 2)
+    mission = replace(MISSION, tasks=tasks, relations=f".({pairs})")
+    (rows,) = row_choices(mission, frozenset(n for n in ids if n % 2))
+    assert {row.i for row in rows} == {n for n in ids if n % 2} - {1}
 
 
 def test_order_is_recomputed_from_the_mission():

@@ -118,9 +118,15 @@ def relation_items(seen: Watched, present: Collection[str]) -> list[str]:
     Where several branches have these tasks, it is the one of which the fewest rows are missing among
     the present items.
     """
-    choices = row_choices(seen.asked, frozenset(seen.tasks))
-    items = ([f"flight: {row.text}" for row in rows] for rows in choices)
-    return min(items, key=lambda found: len(set(found) - set(present)), default=[])
+    best: list[str] | None = None
+    for rows in row_choices(seen.asked, frozenset(seen.tasks)):
+        items = [f"flight: {row.text}" for row in rows]
+        lacking = set(items) - set(present)
+        if not lacking:
+            return items
+        if best is None or len(lacking) < len(set(best) - set(present)):
+            best = items
+    return best or []
 
 
 def promised(seen: Watched, present: Collection[str] = ()) -> Iterator[Row]:

@@ -25,7 +25,7 @@ from cratous.spec.plan import Pose
 
 LOITER_ENTRIES = 8
 LAPS_MAX = 10_000
-"""A day on the narrowest lap; each lap is planned point by point."""
+"""Laps of a loiter: each is planned point by point, so their number costs memory."""
 TILT = 0.95
 """Looks that are not straight down are tilted by this share of the gimbal's reach."""
 STRAIGHT_DOWN_RAD = math.radians(-85)
