@@ -11,6 +11,7 @@ from click.testing import CliRunner
 
 from cratous.services.certify.html import _environment
 from cratous.services.cli import main
+from cratous.services.cli.run import _show
 from cratous.services.daa.tables import as_csv
 from cratous.services.logs.entry import Entry
 from cratous.services.logs.files import json_line, text_form
@@ -156,3 +157,15 @@ def test_messages_of_a_peer_are_shown_without_what_hides(tmp_path: Path) -> None
         result = CliRunner().invoke(command, ["filter", str(log), *options])
         assert result.stdout.count("\n") == 1
         assert _clean(result.stdout)
+
+
+def test_the_summary_of_a_run_shows_no_hidden_characters(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    served = {"task": 1, "vehicle": 2, "phase": "Failed", "time_ms": 0, "served": 0.0, "note": BAD}
+    flight = {"served": [served], "takeovers": [], "outcome": "failed", "end_ms": 0}
+    report = {"requirements": [], "flight": flight, "verdict": "violated", "exit_code": 1}
+    _show({**report, "log": {"digest": "0"}}, tmp_path / "a\x1b[2J")
+    shown = capsys.readouterr().out
+    assert "forged" in shown
+    assert not any(c in shown for c in HIDDEN if c != "\n")
