@@ -27,7 +27,7 @@ $(STAMP): requirements.lock pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement requirements.lock
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
-	$(BIN)/python -m cratous.services.warm
+	$(BIN)/python -m cratous.services.startup.warm
 	@touch $(STAMP)
 
 demo: venv
@@ -72,7 +72,7 @@ bench: venv
 	$(BIN)/python bench/run.py
 
 docs: venv
-	$(BIN)/python docs/generate.py
+	$(BIN)/python docs/tools/generate.py
 	$(BIN)/python -m cratous.bridge.lmcp.generate
 
 lock:

@@ -14,7 +14,7 @@ import resource
 import time
 
 from cratous.services.planning.assign import Limits, solve, warm
-from cratous.spec.assignment import AssignmentProblem, Choice
+from cratous.spec.assignment.search import AssignmentProblem, Choice
 
 SIDE_M, SPEED_M_S = 30_000.0, 25.0
 

@@ -17,8 +17,8 @@ import shapely
 from table import alone
 
 from cratous.core import geofence
+from cratous.core.geofence.planar import locate
 from cratous.core.kernel import Vec2
-from cratous.core.polygon import locate
 
 N = 1_000_000
 BOUNDARY = 20_000

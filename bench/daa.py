@@ -12,12 +12,12 @@ import time
 import numpy as np
 from table import on_one_core
 
-from cratous.core.compiled import machine
-from cratous.core.daa_alerting import raw_levels
-from cratous.core.daa_engine import tables_at
-from cratous.core.daa_session import Session
-from cratous.core.daa_state import Aircraft
-from cratous.spec.daa_presets import preset
+from cratous.core.daa.alerting import raw_levels
+from cratous.core.daa.engine import tables_at
+from cratous.core.daa.session import Session
+from cratous.core.daa.state import Aircraft
+from cratous.core.readings.machine.compiled import machine
+from cratous.spec.daa.presets import preset
 
 PEER_MS = {1: 4.5, 5: 26.0, 20: 158.0, 100: 667.0}
 SAMPLES = {1: 60, 5: 30, 20: 10, 100: 4}

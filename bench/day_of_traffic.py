@@ -21,8 +21,8 @@ from typing import Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus
 from cratous.services.logs.entry import to_object
+from cratous.services.logs.message_logger import MessageLogger
 from cratous.services.logs.sqlite_log import SqliteLog
-from cratous.services.message_logger import MessageLogger
 
 STEP_MS = 500
 PAGE_KB = resource.getpagesize() / 1024

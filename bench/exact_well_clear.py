@@ -21,9 +21,9 @@ from pathlib import Path
 import numpy as np
 from table import alone
 
-from cratous.core.compiled import compiled
-from cratous.core.exactly import exactly
 from cratous.core.kernel import Vec2
+from cratous.core.readings.exact import exactly
+from cratous.core.readings.machine.compiled import compiled
 from cratous.core.well_clear import horizontal_violation
 
 N = 1_000_000

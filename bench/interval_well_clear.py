@@ -18,8 +18,8 @@ from pathlib import Path
 
 import numpy as np
 
-from cratous.core.compiled import compiled
-from cratous.core.exactly import exactly
+from cratous.core.readings.exact import exactly
+from cratous.core.readings.machine.compiled import compiled
 from cratous.core.well_clear import violation_during_taumod, violation_interval_taumod
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))

@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 from table import alone
 
-from cratous.core import routing
-from cratous.core.compiled import machine
-from cratous.core.leg_arrays import table
-from cratous.core.visibility import Roadmap
+from cratous.core.geofence.mission_leg_arrays import table
+from cratous.core.readings.machine.compiled import machine
+from cratous.core.routing import bulk as routing
+from cratous.core.routing.visibility import Roadmap
 from cratous.services.loading import load
 from cratous.services.pipeline.plan import make_plan
 from cratous.services.planning.zones import roadmaps

@@ -17,12 +17,12 @@ from pathlib import Path
 
 import numpy as np
 
-from cratous.core.compiled import compiled, exact
-from cratous.core.exactly import exactly
+from cratous.core.files.whole_file import write_atomically
+from cratous.core.geofence.planar import edges_of, locate
 from cratous.core.kernel import Vec2
-from cratous.core.polygon import edges_of, locate
+from cratous.core.readings.exact import exact, exactly
+from cratous.core.readings.machine.compiled import compiled
 from cratous.core.well_clear import horizontal_violation, violation_within
-from cratous.core.whole_file import write_atomically
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 

@@ -2,7 +2,7 @@
 
 It shares no code with planner, pilot, monitor, kernels or definitions: it reads the SQLite file and
 the mission in it (or a mission file), and decides by its own geometry, its own reading of the process
-algebra, and its own definitions. Of ours it imports `cratous.spec.errors` alone. See docs/judge.md.
+algebra, and its own definitions. Of ours it imports `cratous.spec.errors` alone. See docs/guides/judge.md.
 """
 
 if __name__ != "cratous.judge":

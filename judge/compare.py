@@ -19,7 +19,8 @@ from cratous.judge.verdict import GUARANTEES, HOLDS, UNKNOWN, VIOLATED, Row, wor
 from cratous.spec.errors import BadInput
 
 NAME = "report.json"
-FORMAT = "cratous-report/1"
+FORMATS = ("cratous-report/2", "cratous-report/1")
+"""What is compared stands in both alike."""
 EXCUSED = "excused"
 DISAGREE, CLAIMED, UNDECIDED = "disagree", "claimed excused", "undecided"
 NUMBER = r"(-?\d+)"
@@ -74,7 +75,7 @@ def read(path: Path) -> Node:
     except (OSError, ValueError, RecursionError) as error:
         raise BadInput(f"not a report ({str(error)[:100]})", where=str(path)) from None
     report = Node(data, str(path), "report")
-    report["format"].one_of(FORMAT)
+    report["format"].one_of(*FORMATS)
     return report
 
 

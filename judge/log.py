@@ -1,4 +1,4 @@
-"""Reads a message log, raw: SQLite and the JSON in it. Documented in docs/logs.md.
+"""Reads a message log, raw: SQLite and the JSON in it. Documented in docs/reference/logs.md.
 
 What is missing of it (gaps, holes, no end) is a doubt that no verdict `holds` survives.
 """

@@ -23,11 +23,11 @@ from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any
 
-from cratous.core.sources import ROOT, digest
-from cratous.core.whole_file import write_atomically
-from cratous.proofs import forked, prover
-from cratous.proofs.mutation_keys import Store
-from cratous.proofs.smtlib import Seen
+from cratous.core.files.whole_file import write_atomically
+from cratous.core.kernel.sources import ROOT, digest
+from cratous.proofs.engine import forked, prover
+from cratous.proofs.engine.smtlib import Seen
+from cratous.proofs.mutation.keys import Store
 from cratous.spec.errors import BadInput
 
 FILE = ROOT / "proofs" / "recheck.json"

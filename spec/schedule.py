@@ -1,7 +1,7 @@
 """What it means that times of tasks satisfy a constraint. Milliseconds after mission start.
 
 A task runs at every instant from its start to its end, both included. The definitions speak of
-instants; the kernels (`core.timing`) of starts and ends. A definition takes the instants that it
+instants; the kernels (`core.schedule.rows`) of starts and ends. A definition takes the instants that it
 quantifies over as its first arguments, and its docstring says how they are quantified; instants
 are integers. All of them use comparisons, `and`, `or`, `not` and `if` alone, so they can be run
 on numbers and on symbolic values alike.
@@ -12,7 +12,7 @@ the kernels are proved, where the sum of two stays in 64 bits.
 
 from __future__ import annotations
 
-from cratous.spec.plan import (
+from cratous.spec.constraint_rows import (
     AFTER_END,
     AFTER_START,
     NOT_AFTER,
@@ -20,16 +20,6 @@ from cratous.spec.plan import (
     WITHIN_END,
     WITHIN_START,
 )
-
-__all__ = [
-    "AFTER_END",
-    "AFTER_START",
-    "NOT_AFTER",
-    "NOT_BEFORE",
-    "TIME_LIMIT_MS",
-    "WITHIN_END",
-    "WITHIN_START",
-]
 
 TIME_LIMIT_MS = 2**61
 """No time and no bound reaches this: 73 million years. It is the premise of the proofs."""

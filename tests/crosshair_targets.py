@@ -2,7 +2,7 @@
 
 `make crosshair` runs each on symbolic arguments for some seconds. The asserts that stand first are
 what may be assumed, the later ones what must hold. No answer is no proof: these functions decide
-nothing that a kernel does not decide again. `tests/test_crosshair.py` runs them on plain values.
+nothing that a kernel does not decide again. `tests/proofs/test_crosshair.py` runs them on plain values.
 """
 
 from __future__ import annotations
@@ -12,18 +12,18 @@ from fractions import Fraction
 
 from cratous.bridge.text_protocol.messages import Direction
 from cratous.bridge.text_protocol.parser import StreamParser
-from cratous.core.earliest import next_wait_ms
-from cratous.core.earliest import reference_ms as planned_reference_ms
-from cratous.core.timing import row_holds
-from cratous.proofs.counterexample import number_text
+from cratous.core.assignment.earliest_times import next_wait_ms
+from cratous.core.assignment.earliest_times import reference_ms as planned_reference_ms
+from cratous.core.schedule.rows import row_holds
+from cratous.proofs.engine.counterexample import number_text
 from cratous.services.conform.values import finite
-from cratous.services.frames import compass
 from cratous.services.icarous.return_to_path import persistence_ms
-from cratous.services.times import margin_ms, reference_ms
+from cratous.services.mission.frames import compass
+from cratous.services.mission.times import margin_ms, reference_ms
 from cratous.spec.algebra import _number, _refuse_blank_or_deep
-from cratous.spec.algebra_errors import Refusal, clip
+from cratous.spec.algebra.errors import Refusal, clip
+from cratous.spec.constraint_rows import Row
 from cratous.spec.errors import BadInput
-from cratous.spec.plan import Row
 
 
 def clipped_text_is_short_and_printable(text: str) -> None:

@@ -8,9 +8,9 @@ import random
 
 from hypothesis import strategies as st
 
-from cratous.core.daa_state import Aircraft
+from cratous.core.daa.state import Aircraft
 from cratous.core.kernel import Vec2
-from cratous.spec.daa import FIXED, Parameters
+from cratous.spec.daa.parameters import FIXED, Parameters
 
 # small whole numbers meet ties, equal altitudes and standing still; the others do not
 NUMBERS = st.one_of(st.integers(-3, 3).map(float), st.floats(-9000, 9000, allow_subnormal=False))

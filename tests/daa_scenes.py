@@ -12,11 +12,11 @@ import sys
 import time
 from collections.abc import Iterator
 
-from cratous.core.daa_frame import project
-from cratous.core.daa_session import Instant, Session
-from cratous.core.daa_state import UNKNOWN, Aircraft, Sigma
-from cratous.spec.daa import DCPA, FIXED
-from cratous.spec.daa_presets import names, preset
+from cratous.core.daa.frame import project
+from cratous.core.daa.session import Instant, Session
+from cratous.core.daa.state import UNKNOWN, Aircraft, Sigma
+from cratous.spec.daa.parameters import DCPA, FIXED
+from cratous.spec.daa.presets import names, preset
 from cratous.spec.errors import BadInput
 
 POLES = (math.pi / 2, -math.pi / 2, 0.0, 1.55, -1.2)

@@ -13,7 +13,7 @@ from uxas_tools import process, write_cfg
 from cratous.bridge import lmcp
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import violation
-from cratous.services.frames import Projection
+from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Frame, Position
 
 DETECTION, RESPONSE = "DAIDALUS_WCV_Detection", "DAIDALUS_WCV_Response"

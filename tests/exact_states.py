@@ -7,12 +7,12 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
-from cratous.core import exactly as reading
-from cratous.core.domain import nonnegative
-from cratous.core.filtering import UNDECIDED
-from cratous.core.graph import program
-from cratous.core.nodes import leaves
-from cratous.proofs import rounding
+from cratous.core.readings import exact as reading
+from cratous.core.readings.exact.float_filter import UNDECIDED
+from cratous.core.readings.graph import program
+from cratous.core.readings.graph.nodes import leaves
+from cratous.core.readings.machine.domain import nonnegative
+from cratous.proofs.methods import rounding
 
 KERNELS = {
     name: kernel

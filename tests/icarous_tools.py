@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cratous.core.manoeuvre import Ability, Motion
-from cratous.core.prediction import Intruder, buffered
-from cratous.services.frames import Projection
+from cratous.core.avoidance.manoeuvre import Ability, Motion
+from cratous.core.avoidance.prediction import Intruder, buffered
+from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Frame, Position, Velocity, WellClear
 
 VOLUME = WellClear(150.0, 30.0, 15.0, 0.0)

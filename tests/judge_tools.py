@@ -1,6 +1,6 @@
 """Message logs made by hand, and logs of flights that are edited, for tests of the judge.
 
-Nothing here uses the log writer or the message models: what stands in docs/logs.md, written once more.
+Nothing here uses the log writer or the message models: what stands in docs/reference/logs.md, written once more.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def with_report(log: Path, rows: list[dict[str, Any]]) -> Path:
     database = sqlite3.connect(log)
     ((digest,),) = database.execute("SELECT digest FROM closing").fetchall()
     database.close()
-    report = {"format": "cratous-report/1", "constraints": rows, "log": {"digest": digest}}
+    report = {"format": "cratous-report/2", "constraints": rows, "log": {"digest": digest}}
     (log.parent / "report.json").write_text(json.dumps(report))
     return log.parent
 
@@ -223,3 +223,17 @@ class Scene:
 
     def judged(self, folder: Path, end: str = "complete", seal: bool = True) -> Judgement:
         return judge(self.write(folder / "log.sqlite", end, seal))
+
+
+def changed(at_ms: int, kind: str, task_id: int) -> dict:
+    return {"at_ms": at_ms, "kind": kind, "vehicle": 0, "task": task_id, "zone": None}
+
+
+TAKEN = [
+    (0, "command", "UxAS", 0), (2000, "state", "ICAROUS", 1), (2000, "change", "ICAROUS", 1),
+    (2000, "command", "ICAROUS", 1), (3000, "command", "UxAS", 0), (3000, "drop", "UxAS", 0),
+    (5000, "state", "ICAROUS", 2, True), (5000, "command", "ICAROUS", 2),
+    (5500, "command", "UxAS", 2), (5500, "state", "UxAS", 2), (5500, "change", "UxAS", 2),
+    (6000, "command", "UxAS", 2),
+]  # fmt: skip
+"""The messages of a takeover that is handed back."""

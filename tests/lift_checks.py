@@ -7,8 +7,8 @@ import z3
 
 from cratous.core.kernel import Fold, named
 from cratous.proofs.claim import Claim
-from cratous.proofs.lift import LiftError
-from cratous.proofs.symbolic import SymInt
+from cratous.proofs.engine.lift import LiftError
+from cratous.proofs.engine.symbolic import SymInt
 from cratous.spec import well_clear
 
 

@@ -8,11 +8,11 @@ from typing import get_type_hints
 
 import z3
 
-from cratous.core import well_clear_interval as interval
-from cratous.proofs import symbolic
-from cratous.proofs.lift import lift
-from cratous.proofs.mutation_inputs import inputs, run
-from cratous.proofs.symbolic import SymBool, SymInt, SymMask, SymReal
+from cratous.core.well_clear import interval
+from cratous.proofs.engine import symbolic
+from cratous.proofs.engine.lift import lift
+from cratous.proofs.engine.symbolic import SymBool, SymInt, SymMask, SymReal
+from cratous.proofs.mutation.inputs import inputs, run
 from cratous.spec import well_clear
 
 SAMPLES = 2000

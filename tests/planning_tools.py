@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from cratous.core.dubins import polyline_length_m
-from cratous.core.earliest import rows_hold
-from cratous.core.legs import first_bad_leg
+from cratous.core.assignment.earliest_times import rows_hold
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.routing.dubins import polyline_length_m
 from cratous.services.planning.options import flyer_of
 from cratous.spec.mission import (
     Camera,

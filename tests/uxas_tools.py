@@ -13,9 +13,9 @@ from typing import Any
 
 from cratous.bridge import envelope as wire
 from cratous.bridge import lmcp, sentinel
+from cratous.services.loading.uxas_settings import read
 from cratous.services.uxas.logs import Logs
 from cratous.services.uxas.process import Process
-from cratous.services.uxas.settings import read
 
 HEAD = '<UxAS FormatVersion="1.0" EntityID="100" EntityType="Aircraft" {}>\n'
 LIMIT_S = 120.0

@@ -39,6 +39,7 @@ class LmcpObject:
     values_of: ClassVar[Any] = staticmethod(lambda _obj: ())  # all values, in that order
     _makers: ClassVar[tuple[tuple[str, Callable[[], Any] | None, Any], ...]] = ()
     _checks: ClassVar[dict[str, Check]] = {}
+    _restore: ClassVar[Any] = None  # `objects.again`: it knows the classes by their names
 
     def __init__(self, **given: Any) -> None:
         for name, make, constant in self._makers:
@@ -77,9 +78,7 @@ class LmcpObject:
             yield name, getattr(self, name), getattr(plain, name)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        from cratous.bridge.lmcp.objects import again
-
-        return again, (self.type_name, self.values_of(self))
+        return self._restore, (self.type_name, self.values_of(self))
 
     def raw_message(self) -> bytes | None:
         """The bytes of the whole message, if it was read lazily and not looked into; else None."""

@@ -4,7 +4,7 @@ A generated function takes neighbouring fields of fixed size in one `struct` cal
 booleans and the classes of nested objects in dictionaries, and checks the type of every value that
 it writes. It judges nothing itself: whatever it does not take raises, and the message goes through
 `lmcp.careful`, which says what is wrong (or converts it, as the constructor would). So both accept
-the same messages; `tests/test_lmcp_compiled.py` holds them together.
+the same messages; `tests/bridge/test_lmcp_compiled.py` holds them together.
 """
 
 from __future__ import annotations

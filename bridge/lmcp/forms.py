@@ -27,7 +27,7 @@ from cratous.bridge import envelope, sentinel
 from cratous.bridge.lmcp import binary, jsonform, xml
 from cratous.bridge.lmcp.objects import LmcpObject, full_names
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import MESSAGES_BYTES, inflated, json_of
+from cratous.spec.files.limits import MESSAGES_BYTES, inflated, json_of
 
 FORMS = ("binary", "envelope", "frames", "hex", "xml", "json")
 OUTPUTS = ("json", "xml", "binary", "envelope", "frames", "hex")

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import cratous.spec
 from cratous.bridge.lmcp import model, schema, stubs
-from cratous.core.whole_file import write_atomically
+from cratous.core.files.whole_file import write_atomically
 
 MESSAGES = Path(__file__).resolve().parent / "messages"
 SCHEMA = Path(cratous.spec.__path__[0]).resolve() / "lmcp" / "lmcp.schema.json"

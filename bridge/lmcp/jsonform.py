@@ -21,7 +21,7 @@ from cratous.bridge.lmcp.objects import (
     within,
 )
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import json_of
+from cratous.spec.files.limits import json_of
 
 _encode = json.JSONEncoder(
     separators=(",", ":"), ensure_ascii=False, allow_nan=False, check_circular=False

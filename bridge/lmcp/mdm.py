@@ -22,7 +22,7 @@ from typing import Any
 
 from cratous.bridge.lmcp import model, xml
 from cratous.spec.errors import BadInput
-from cratous.spec.text_file import bytes_of
+from cratous.spec.files.text_file import bytes_of
 
 PRIMITIVES = ("bool", "char", "string", "real32", "real64", *model.INTEGER_RANGES)
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")

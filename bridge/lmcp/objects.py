@@ -194,6 +194,7 @@ def _make_class(series: str, name: str) -> type[LmcpObject]:
         "__slots__": tuple(f.name for f in own),
         "__module__": f"cratous.bridge.lmcp.messages.{series.lower()}",
         "__doc__": describe.docstring(loaded, struct, fields),
+        "_restore": staticmethod(again),
         "series": series,
         "type_name": f"{series}/{name}",
         "type_id": struct.id,

@@ -20,8 +20,8 @@ from cratous.bridge.lmcp import model
 from cratous.bridge.lmcp.objects import LmcpObject, enums, types, unknown_field
 from cratous.bridge.lmcp.xml_writing import dumps
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import DOCUMENT_BYTES, TAGS, at_most, integer_of
-from cratous.spec.text_file import bytes_of
+from cratous.spec.files.limits import DOCUMENT_BYTES, TAGS, at_most, integer_of
+from cratous.spec.files.text_file import bytes_of
 
 __all__ = ["LmcpNote", "dumps", "loads", "parse", "read_element", "read_file", "read_messages"]
 

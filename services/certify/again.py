@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Container
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -13,15 +14,15 @@ from cratous.services.certify.recorded import flown_of
 from cratous.services.certify.report import build_report, mission_hash, plan_hash, report_text
 from cratous.services.certify.verdicts import constraint_rows
 from cratous.services.certify.written import Files
-from cratous.services.log import read_envelopes, read_log, read_meta
+from cratous.services.logs.log import read_envelopes, read_log, read_meta
+from cratous.services.logs.records import from_data
 from cratous.services.logs.sqlite_log import SqliteLog
-from cratous.services.records import from_data
-from cratous.services.results.names import CERTIFICATE_NAME, LOG_NAME
-from cratous.services.wind import known_at
+from cratous.services.mission.wind import known_at
+from cratous.services.results.names import CERTIFICATE_NAME, FORMER, LOG_NAME
 from cratous.spec.errors import BadInput
-from cratous.spec.guarantees import Verdict
 from cratous.spec.mission import Mission
-from cratous.spec.plan import Plan
+from cratous.spec.mission.guarantees import Verdict
+from cratous.spec.mission.plan import Plan
 
 ACCEPTED = "cratous.PlanAccepted"
 
@@ -82,10 +83,8 @@ def certify_again(folder: Path, *, rewrite: bool = False) -> Judgement:
         return Judgement({}, wrong, ["all else: the log is not the one of the report"])
     report, silent, found = rebuilt(log, written)
     left = {key: value for key, value in silent.items() if "." not in key}
-    found += differences(
-        {key: value for key, value in written.items() if key not in left},
-        {key: value for key, value in report.items() if key not in left},
-    )
+    former = written["format"] == FORMER
+    found += differences(_compared(written, left, former), _compared(report, left, former))
     _, plan = subject(log)
     files = Files(folder, report, read_meta(log), same=not found)
     found += _certificate(plan, folder) + files.wrong
@@ -93,6 +92,20 @@ def certify_again(folder: Path, *, rewrite: bool = False) -> Judgement:
     if rewrite and files.differing and not found:
         return Judgement(report, [], unchecked, files.rewrite())
     return Judgement(report, found + files.differing, unchecked)
+
+
+def _compared(report: dict[str, Any], left: Container[str], former: bool) -> dict[str, Any]:
+    """What is compared of a report: without some entries, in the former format without kernels."""
+    found = {key: value for key, value in report.items() if key not in left}
+    rows = found.get("constraints")
+    if former and isinstance(rows, list):
+        found["constraints"] = [
+            {key: value for key, value in row.items() if key != "kernels"}
+            if isinstance(row, dict)
+            else row
+            for row in rows
+        ]
+    return found
 
 
 def log_faults(log: Path, written: dict[str, Any]) -> list[str]:
@@ -126,7 +139,7 @@ def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[st
     The proof inventory is made anew if the ledger is still the one of the flight, else held against
     the digest in the log.
     """
-    from cratous.services.plan_check import check_plan
+    from cratous.services.monitor.plan_check import check_plan
 
     mission, plan = subject(log)
     flown, silent, wrong = flown_of(read_meta(log), written, str(log))

@@ -6,7 +6,7 @@ import json
 import re
 from typing import Any
 
-from cratous.services.records import canonical
+from cratous.services.logs.records import canonical
 
 BEFORE, AFTER = 25, 45
 SHORT = 70

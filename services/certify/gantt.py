@@ -12,8 +12,8 @@ from html import escape
 from typing import Any
 
 from cratous.spec import algebra
-from cratous.spec.assignment import AssignmentProblem, Step
-from cratous.spec.plan import NOT_AFTER, NOT_BEFORE, Row
+from cratous.spec.assignment.search import AssignmentProblem, Step
+from cratous.spec.constraint_rows import NOT_AFTER, NOT_BEFORE, Row
 
 LEFT, WIDTH, LANE, TOP = 96, 880, 52, 30
 FONT = 'font-family="sans-serif" font-size="12"'

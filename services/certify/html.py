@@ -6,10 +6,11 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
+from cratous.core.kernel.names import short
 from cratous.services.certify.gantt import gantt, plan_bars, plan_rows, tree
 from cratous.services.certify.picture import map_view, separation_view, time_view
 from cratous.spec.algebra import parse
-from cratous.spec.printable import printable
+from cratous.spec.files.printable import printable
 
 MAP = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {{ map.width }} {{ map.height }}" \
 width="{{ map.width }}" height="{{ map.height }}" role="img" aria-label="Map of the flight">
@@ -63,7 +64,7 @@ def render(report: dict[str, Any]) -> str:
     """The page; every text from the report is escaped."""
     text: str = _environment().get_template("report.html").render(
         r=report, map=map_view(report), time=time_view(report), near=separation_view(report),
-        gantt=_gantt(report), tree=_tree(report), losses=losses(report),
+        gantt=_gantt(report), tree=_tree(report), losses=losses(report), names=_names(report),
     )  # fmt: skip
     return text
 
@@ -72,6 +73,14 @@ def map_svg(report: dict[str, Any]) -> str:
     """The map of the flight as a picture of its own, with its style."""
     text: str = _environment().from_string(MAP).render(map=map_view(report))
     return text
+
+
+def _names(report: dict[str, Any]) -> dict[str, str]:
+    """How the kernels of the page are called in its tables: the shortest names that tell them apart."""
+    kernels = report["proofs"]["kernels"]
+    named = {name for row in report["constraints"] for name in row["kernels"]}
+    parts = {part for one in kernels.values() for part in (*one["within"], *one["checked_by"])}
+    return short({*kernels, *named, *parts, *(one["step_of"] for one in kernels.values())})
 
 
 def losses(report: dict[str, Any]) -> list[dict[str, Any]]:

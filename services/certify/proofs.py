@@ -1,55 +1,105 @@
-"""The proof inventory of a report: what the ledger says of the kernels that flew."""
+"""The evidence of a report: the kernels that were called, and what the ledger says of just these."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any
 
 from cratous.core import ledger
-from cratous.core.names import short
+from cratous.core.kernel.names import short
+from cratous.core.kernel.sources import place
+
+RECORDED, NOT_RECORDED = "recorded", "not recorded"
+USES = "uses proved kernels"
+"""What a driver is called that the ledger vouches for: no theorem is about itself."""
 
 
-def inventory(standing: ledger.Standing) -> dict[str, Any]:
-    """Kernels and theorems of the ledger, and what it does not vouch for.
+def inventory(standing: ledger.Standing, calls: dict[str, Any] | None) -> dict[str, Any]:
+    """What was called, with its theorems and definitions, and what the ledger does not vouch for.
 
-    standing: from `core.ledger.require`, taken before the flight.
+    standing: from `core.ledger.require`, taken before anything ran; calls: of `evidence.Calls.data`,
+    None where nothing was recorded: then no kernel is listed.
     """
     data = ledger.read()
     names = short([*data["kernels"], *(problem.name for problem in standing.problems)])
-
-    def shown(kernels: Iterable[str]) -> list[str]:
-        return [names.get(kernel, kernel) for kernel in kernels]
-
+    kernels = _kernels(calls or {}, data["kernels"])
     return {
         "line": standing.line,
         "solver": ledger.solver_version(),
         "seal": data.get("seal", ""),
         "problems": [{"kernel": names[p.name], "what": p.what} for p in standing.problems],
-        "kernels": [
-            {
-                "name": names[name],
-                "kind": record["kind"],
-                "implements": record["implements"],
-                "status": record["status"],
-                "theorems": record["theorems"],
-                "checked_by": shown(record["checked_by"]),
-                "source": record["key"]["source"],
-            }
-            for name, record in sorted(data["kernels"].items())
-        ],
-        "theorems": [
-            {
-                "name": name,
+        "calls": NOT_RECORDED if calls is None else RECORDED,
+        "kernels": kernels,
+        "loops": dict((calls or {}).get("loops", {})),
+        "uncounted": list((calls or {}).get("uncounted", [])),
+        "theorems": _theorems(kernels, data["theorems"]),
+        "definitions": _definitions(kernels),
+    }
+
+
+def _kernels(calls: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:
+    """By qualified name: how often each was called and in which way, and the ledger's word on it."""
+    called, within = calls.get("called", {}), calls.get("within", {})
+    found = {}
+    for name in sorted({*called, *within}):
+        record, ways = known.get(name, {}), called.get(name, {})
+        whole = record.get("supports", "")
+        status = record.get("status", "not in the ledger")
+        found[name] = {
+            "kind": record.get("kind", ""),
+            "count": sum(ways.values()),
+            "how": dict(ways),
+            "within": list(within.get(name, [])),
+            "status": USES if (record.get("kind"), status) == ("driver", "proved") else status,
+            "theorems": list(record.get("theorems", [])),
+            "definition": known.get(whole, record).get("implements", ""),
+            "step_of": whole,
+            "restates": record.get("restates", ""),
+            "checked_by": list(record.get("checked_by", [])),
+            "source": record.get("key", {}).get("source", ""),
+        }
+    return found
+
+
+def _theorems(kernels: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:
+    """The theorems about some kernels, and the lemmas that they rest on."""
+    todo, found = [t for one in kernels.values() for t in one["theorems"]], {}
+    while todo:
+        name = todo.pop()
+        if name not in found and name in known:
+            record = known[name]
+            found[name] = {
                 "sentence": record["sentence"],
                 "status": record["status"],
-                "kernels": shown(record["kernels"]),
+                "kernels": list(record["kernels"]),
+                "lemmas": list(record.get("lemmas", [])),
                 "obligations": record["obligations"],
                 "premises": record["premises"],
                 "assumptions": [_text(entry) for entry in record["assumptions"]],
             }
-            for name, record in sorted(data["theorems"].items())
-        ],
-    }
+            todo += record.get("lemmas", [])
+    return dict(sorted(found.items()))
+
+
+def _definitions(kernels: dict[str, Any]) -> dict[str, str]:
+    """The file of each definition of some kernels."""
+    found = {}
+    for name, one in kernels.items():
+        if one["definition"]:
+            file = ledger.package(name.split(".")[0]).definition(one["definition"])
+            found[one["definition"]] = place(file)
+    return dict(sorted(found.items()))
+
+
+def summary(proofs: dict[str, Any]) -> str:
+    """One line on what was called."""
+    if proofs["calls"] == NOT_RECORDED:
+        return "what was called was not recorded"
+    kernels = proofs["kernels"].values()
+    entered, inside = sum(k["count"] > 0 for k in kernels), sum(not k["count"] for k in kernels)
+    return (
+        f"{entered} kernels, folds and drivers were called {sum(k['count'] for k in kernels)} times, "
+        f"{inside} more as parts of them; {len(proofs['theorems'])} theorems are about these"
+    )
 
 
 def _text(entry: Any) -> str:

@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from cratous.services.results.names import FORMAT, REPORT_NAME
+from cratous.services.results.names import FORMAT, FORMER, REPORT_NAME
 from cratous.services.results.ownership import is_plain
 from cratous.spec.errors import BadInput
 
@@ -41,7 +41,7 @@ def read_report(folder: Path) -> dict[str, Any]:
         raise BadInput("nested too deeply", where=str(path), expected="a report") from None
     except ValueError as error:
         raise BadInput(f"not JSON ({error})", where=str(path)) from None
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
+    if not isinstance(data, dict) or data.get("format") not in (FORMAT, FORMER):
         got = data.get("format", "none") if isinstance(data, dict) else "no mapping"
         raise BadInput("another format", where=str(path), expected=FORMAT, got=repr(got)[:80])
     if _depth(data) > DEEPEST:

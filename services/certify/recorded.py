@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from cratous.core import ledger
+from cratous.services.certify.evidence import is_data
 from cratous.services.certify.proofs import inventory
 from cratous.services.certify.report import PROOFS_KEPT, Flown, environment
-from cratous.services.records import fingerprint
+from cratous.services.logs.records import fingerprint
+from cratous.services.results.names import FORMER
 from cratous.spec.errors import BadInput
 
 SILENT = "the log does not say (it was made before this was recorded)"
@@ -35,7 +37,17 @@ def flown_of(
     command = entry("command", lambda value: isinstance(value, str), "")
     avoidance = entry("avoidance", lambda value: isinstance(value, bool), True)
     around = entry("environment", _is_environment, environment())
-    proofs, wrong = _proofs(meta.get("proofs", {}), written.get("proofs"), where, unchecked)
+    calls = meta.get("calls")
+    if calls is None:
+        unchecked["proofs.calls"] = SILENT
+    elif not is_data(calls):
+        raise _misfit(where, "calls")
+    former = written.get("format") == FORMER
+    stated = None if former else written.get("proofs")
+    proofs, wrong = _proofs(meta.get("proofs", {}), calls, stated, where, unchecked)
+    if former:
+        unchecked["format"] = unchecked["proofs"] = f"the report is one of {FORMER}"
+        wrong = []
     return Flown(command, avoidance, proofs, around), unchecked, wrong
 
 
@@ -51,7 +63,7 @@ def _is_environment(data: Any) -> bool:
 
 
 def _proofs(
-    kept: Any, written: Any, where: str, unchecked: dict[str, str]
+    kept: Any, calls: dict[str, Any] | None, written: Any, where: str, unchecked: dict[str, str]
 ) -> tuple[dict[str, Any], list[str]]:
     """The inventory of proofs of the flight, as far as the log or today's ledger tells it."""
     if not isinstance(kept, dict) or not isinstance(kept.get("problems", []), list):
@@ -61,12 +73,17 @@ def _proofs(
     ):
         raise _misfit(where, "proofs.problems")
     standing = ledger.require(allow_unproved=bool(kept.get("problems")))
-    today = {**inventory(standing), **{key: kept[key] for key in PROOFS_KEPT if key in kept}}
-    if inventory(standing)["seal"] == kept.get("seal"):
+    made = inventory(standing, calls)
+    today = {**made, **{key: kept[key] for key in PROOFS_KEPT if key in kept}}
+    if made["seal"] == kept.get("seal"):
         for key in PROOFS_KEPT:
             if key not in kept and isinstance(written, dict) and isinstance(written.get(key), str):
                 today[key] = written[key]
                 unchecked[f"proofs.{key}"] = SILENT
+        found = fingerprint(today)
+        if calls is not None and kept.get("sha256", found) != found:
+            text = f"SHA-256 of the log {kept['sha256']}, of what it recorded {found}"
+            return today, [f"proofs: not those of the flight ({text})"]
         return today, []
     if "sha256" in kept:
         found = fingerprint(written)
@@ -74,7 +91,7 @@ def _proofs(
             return written, []
         text = f"SHA-256 of the log {kept['sha256']}, of what is written {found}"
         return today, [f"proofs: not the inventory of the flight ({text})"]
-    if not _has_form(written, inventory(standing)):
+    if not _has_form(written, made):
         return today, ["proofs: not of the form of an inventory"]
     unchecked["proofs"] = "the ledger is another than at the flight, and " + SILENT
     return {**written, "problems": kept.get("problems", [])}, []

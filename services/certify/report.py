@@ -15,16 +15,16 @@ from pathlib import Path
 from typing import Any
 
 from cratous import __version__
-from cratous.core.whole_file import write_atomically
+from cratous.core.files.whole_file import write_atomically
 from cratous.services.certify.timeline import bars, read_flight
 from cratous.services.certify.verdicts import requirement_rows, with_promised
-from cratous.services.log import read_digest, read_log
+from cratous.services.logs.log import read_digest, read_log
+from cratous.services.logs.records import fingerprint, to_data
 from cratous.services.monitor.promises import watched
-from cratous.services.records import fingerprint, to_data
 from cratous.services.results.names import FORMAT, HTML_NAME, LOG_NAME, MAP_NAME, REPORT_NAME
-from cratous.spec.guarantees import Outcome, exit_code, worst
 from cratous.spec.mission import Mission
-from cratous.spec.plan import Plan
+from cratous.spec.mission.guarantees import Outcome, exit_code, worst
+from cratous.spec.mission.plan import Plan
 
 PROOFS_KEPT = ("line", "problems", "seal", "solver")
 LIMITS = (
@@ -137,7 +137,7 @@ def build_report(
 
 def _seen(footprints: dict[int, list[dict[str, Any]]], mission: Mission) -> list[dict[str, Any]]:
     """Some of the footprints of each search that was flown, in the mission frame [m]."""
-    from cratous.services.frames import Projection
+    from cratous.services.mission.frames import Projection
 
     local = Projection(mission.frame).to_local
     return [
@@ -164,7 +164,7 @@ def _shown(source: str) -> str:
 def _scale(mission: Mission) -> str:
     from math import hypot
 
-    from cratous.services.frames import scale_error
+    from cratous.services.mission.frames import scale_error
 
     places = [vehicle.position[:2] for vehicle in mission.vehicles]
     places += [point[:2] for task in mission.tasks for point in task.points]

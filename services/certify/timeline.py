@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from cratous.services.log import Row
+from cratous.services.logs.log import Row
 
 TRACK_PERIOD_MS = 1000
 FOOTPRINT_PERIOD_MS = 2000

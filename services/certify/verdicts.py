@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from cratous.services.monitor.promises import PLAN_ROWS, Row, Watched, missing, promised
-from cratous.spec.guarantees import REQUIREMENTS, Outcome, Verdict, worst
+from cratous.spec.mission.guarantees import REQUIREMENTS, Outcome, Verdict, worst
 
 
 def constraint_rows(verdicts: Iterable[Verdict], source: str) -> list[dict[str, Any]]:
@@ -27,6 +27,7 @@ def constraint_rows(verdicts: Iterable[Verdict], source: str) -> list[dict[str, 
             "vehicles": list(verdict.vehicles),
             "note": verdict.note,
             "method": verdict.method,
+            "kernels": list(verdict.kernels),
             "checks": verdict.checks,
             **({"evidence": verdict.evidence} if verdict.evidence is not None else {}),
         }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from cratous.core.whole_file import write_atomically
+from cratous.core.files.whole_file import write_atomically
 from cratous.services.certify.comparing import text_difference
 from cratous.services.certify.report import pages, report_text
 from cratous.services.results.names import CERTIFICATE_NAME, MANIFEST_NAME, NAMES, REPORT_NAME

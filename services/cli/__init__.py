@@ -20,7 +20,7 @@ import click
 
 from cratous.services.cli.stopping import Stopped, stoppable
 from cratous.spec.errors import BadInput, CratousError, NoPlan
-from cratous.spec.printable import json_text, printable
+from cratous.spec.files.printable import json_text, printable
 
 INTERNAL_ERROR = 70
 PACKAGE = f"{Path(__file__).parents[2]}/"

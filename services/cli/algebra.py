@@ -10,11 +10,11 @@ from typing import Any, NoReturn
 import click
 
 from cratous.spec import algebra as pa
-from cratous.spec import algebra_meaning as meaning
+from cratous.spec.algebra import meaning
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import CONFIG_BYTES
-from cratous.spec.printable import json_text, printable
-from cratous.spec.text_file import text_of
+from cratous.spec.files.limits import CONFIG_BYTES
+from cratous.spec.files.printable import json_text, printable
+from cratous.spec.files.text_file import text_of
 
 EXAMPLES = """
 \b

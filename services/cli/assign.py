@@ -7,12 +7,12 @@ from pathlib import Path
 
 import click
 
-from cratous.core.whole_file import write_atomically
+from cratous.core.files.whole_file import write_atomically
 from cratous.services.cli.show import say
-from cratous.spec.assignment import CUMULATIVE, MINMAX, AssignmentProblem, Cost, Solution
+from cratous.spec.assignment.search import CUMULATIVE, MINMAX, AssignmentProblem, Cost, Solution
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import json_of
-from cratous.spec.text_file import bytes_of
+from cratous.spec.files.limits import json_of
+from cratous.spec.files.text_file import bytes_of
 
 
 @click.command()
@@ -38,7 +38,7 @@ def assign(
 ) -> int:  # fmt: skip
     """Solve an assignment problem.
 
-    FILE is JSON as docs/assignment.md says. `optimal` is said only with a certificate that was
+    FILE is JSON as docs/guides/assignment.md says. `optimal` is said only with a certificate that was
     checked. If nothing can be planned, a smallest set of constraints that clash is named.
 
     Example:  cratous assign problem.json --certificate plan.json
@@ -49,7 +49,7 @@ def assign(
     from cratous.services.planning.assign_certificate import certified, verify, write
     from cratous.services.planning.assign_solvers import why_infeasible
     from cratous.services.planning.assign_vectors import read
-    from cratous.services.standing import require
+    from cratous.services.startup.standing import require
 
     require()
     data = json_of(bytes_of(file, expected="an assignment problem"), str(file))

@@ -16,7 +16,7 @@ from cratous.services.cli.show import say
 def certify_plan(file: Path, as_json: bool) -> int:
     """Check the certificate of an assignment.
 
-    FILE holds a problem, a schedule and what proves its bound (docs/assignment.md). The schedule is
+    FILE holds a problem, a schedule and what proves its bound (docs/guides/assignment.md). The schedule is
     replayed by the proved kernels and by z3; the bound is proved anew from the file. Nothing of
     the search that wrote the file is trusted.
 
@@ -25,7 +25,7 @@ def certify_plan(file: Path, as_json: bool) -> int:
     Exit codes: 0 the claim holds, 1 it does not (with the reason), 2 bad input.
     """
     from cratous.services.planning.assign_certificate import read, verify
-    from cratous.services.standing import require
+    from cratous.services.startup.standing import require
 
     require()
     verdict = verify(read(file))

@@ -23,7 +23,7 @@ def _in_folders(given: tuple[Path, ...]) -> list[Path]:
     return found
 
 
-@click.command(epilog="Vectors of your own: docs/conformance.md")
+@click.command(epilog="Vectors of your own: docs/reference/conformance.md")
 @click.argument("suite")
 @click.argument("files", nargs=-1, type=click.Path(path_type=Path))
 @click.option("--show", default=5, type=click.IntRange(0), help="Differences shown for each file.")

@@ -10,10 +10,10 @@ from typing import Any
 
 import click
 
-from cratous.core.whole_file import write_atomically
+from cratous.core.files.whole_file import write_atomically
 from cratous.services.cli.show import say
 from cratous.spec.errors import BadInput
-from cratous.spec.printable import printable
+from cratous.spec.files.printable import printable
 
 CONFIG = click.option(
     "--config", "-c", default="do_365b", show_default=True,
@@ -39,7 +39,7 @@ JSON = click.option("--json", "as_json", is_flag=True, help="JSON instead of CSV
 def daa() -> None:
     """Detect and avoid: what alerting and guidance say about an encounter.
 
-    FILE is an encounter file (.daa, .xyz); see docs/detect-and-avoid.md.
+    FILE is an encounter file (.daa, .xyz); see docs/guides/detect-and-avoid.md.
 
     Example:  cratous daa bands encounter.daa --config do_365b
     """
@@ -50,8 +50,8 @@ def _steps(
     urgency: str | None = None, urgent: str = "",
 ) -> Iterator[Any]:  # fmt: skip
     from cratous.services.daa import named_or_file, run
-    from cratous.services.standing import require
-    from cratous.spec.daa import URGENCIES
+    from cratous.services.startup.standing import require
+    from cratous.spec.daa.parameters import URGENCIES
 
     require()
     changes: dict[str, Any] = {}
@@ -216,8 +216,8 @@ def zones(file: Path, config: str, ownship: str, out: Path | None, sweep: bool) 
 @click.argument("config", default="")
 def presets(config: str) -> int:
     """List the presets, or print one (or a .conf file) with all its keys."""
-    from cratous.spec.daa_conf import write
-    from cratous.spec.daa_presets import named_or_file, names
+    from cratous.spec.daa.conf_files import write
+    from cratous.spec.daa.presets import named_or_file, names
 
     _put(write(named_or_file(config)) if config else "\n".join(names()), None)
     return 0

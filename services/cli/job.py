@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from cratous.services.taking_part import absent
-from cratous.services.wind import known_at
+from cratous.services.mission.taking_part import absent
+from cratous.services.mission.wind import known_at
 from cratous.spec.errors import NoPlan
-from cratous.spec.guarantees import Outcome, Verdict, worst
 from cratous.spec.mission import Mission
-from cratous.spec.plan import Plan
+from cratous.spec.mission.guarantees import Outcome, Verdict, worst
+from cratous.spec.mission.plan import Plan
 
 Tell = Callable[[str], None]
 
@@ -40,8 +40,8 @@ def new_bus() -> Any:
 
 def plan_and_check(mission: Mission, bus: Any) -> tuple[Plan, list[Verdict]]:
     """The plan, and the verdicts of the kernels on it. NoPlan with reasons if there is none."""
+    from cratous.services.monitor.plan_check import check_plan
     from cratous.services.pipeline.plan import make_plan
-    from cratous.services.plan_check import check_plan
 
     known = known_at(mission, 0)
     plan = make_plan(known, bus, absent=absent(mission, 0))
@@ -76,7 +76,8 @@ def run_mission(
     """Fly one mission and write log and report into `folder`; returns the report as data."""
     from cratous import __version__
     from cratous.core import ledger
-    from cratous.services.certify.proofs import inventory
+    from cratous.services.certify.evidence import counted
+    from cratous.services.certify.proofs import inventory, summary
     from cratous.services.certify.report import (
         Flown,
         build_report,
@@ -86,19 +87,18 @@ def run_mission(
     )
     from cratous.services.certify.verdicts import constraint_rows
     from cratous.services.flight.loop import fly
-    from cratous.services.log import LogWriter
+    from cratous.services.logs.log import LogWriter
+    from cratous.services.logs.records import to_data
     from cratous.services.monitor import Monitor
-    from cratous.services.records import to_data
     from cratous.services.results.names import CERTIFICATE_NAME, LOG_NAME
 
     standing = ledger.require(allow_unproved=settings.allow_unproved)
-    proofs = inventory(standing)
     tell(f"proofs: {standing.line}")
     if not settings.daa:
         mission = replace(mission, instances=())
     bus = new_bus()
     log = folder / LOG_NAME
-    flown = Flown(settings.command, settings.daa, proofs, environment())
+    flown = Flown(settings.command, settings.daa, inventory(standing, None), environment())
     meta = {
         "mission": to_data(mission),
         "version": __version__,
@@ -108,16 +108,22 @@ def run_mission(
     }
     with LogWriter(log, **meta) as writer:
         bus.tap(writer.tap)
-        plan, checks = plan_and_check(mission, bus)
-        tell("\n".join((plan_line(plan, checks), *absent_lines(mission))))
-        refuse_bad_plan(checks)
-        if plan.certificate:
-            write_certificate(bus, folder / CERTIFICATE_NAME)
-        writer.note("plan", to_data(plan))
-        monitor = Monitor(mission, plan, on_violation=lambda v: tell(f"VIOLATION {sentence(v)}"))
-        bus.tap(monitor.tap)
-        fly(mission, plan, bus, daa=settings.daa, progress=_progress(tell))
-        verdicts = monitor.verdicts()
+        with counted() as calls:
+            plan, checks = plan_and_check(mission, bus)
+            tell("\n".join((plan_line(plan, checks), *absent_lines(mission))))
+            refuse_bad_plan(checks)
+            if plan.certificate:
+                write_certificate(bus, folder / CERTIFICATE_NAME)
+            writer.note("plan", to_data(plan))
+            monitor = Monitor(mission, plan, lambda v: tell(f"VIOLATION {sentence(v)}"))
+            bus.tap(monitor.tap)
+            fly(mission, plan, bus, daa=settings.daa, progress=_progress(tell))
+            verdicts = monitor.verdicts()
+        counts = calls.data()
+        flown = replace(flown, proofs=inventory(standing, counts))
+        writer.note("calls", counts)
+        writer.note("proofs", flown.meta()["proofs"])
+    tell(f"evidence: {summary(flown.proofs)}")
     rows = constraint_rows(checks, "plan") + constraint_rows(verdicts, "flight")
     report = build_report(mission, plan, rows, log, flown)
     write_report(report, folder)

@@ -15,12 +15,12 @@ from cratous.bridge import envelope
 from cratous.bridge.lmcp import describe as words
 from cratous.bridge.lmcp import differences, enums, forms, mdm, model, stubs, types
 from cratous.bridge.lmcp import schema as schemas
-from cratous.core.whole_file import write_atomically
+from cratous.core.files.whole_file import write_atomically
 from cratous.services.cli.show import say
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import MESSAGES_BYTES, at_most
-from cratous.spec.printable import printable
-from cratous.spec.text_file import bytes_of
+from cratous.spec.files.limits import MESSAGES_BYTES, at_most
+from cratous.spec.files.printable import printable
+from cratous.spec.files.text_file import bytes_of
 
 EXAMPLES = """
 \b

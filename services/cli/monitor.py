@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from cratous.spec.guarantees import exit_code
+from cratous.spec.mission.guarantees import exit_code
 
 
 @click.command()
@@ -24,12 +24,16 @@ def monitor(log: Path, as_json: bool, allow_unproved: bool) -> int:
     """
     from cratous.core import ledger
     from cratous.services.certify.again import watch
+    from cratous.services.certify.evidence import counted
+    from cratous.services.certify.proofs import inventory, summary
     from cratous.services.certify.verdicts import constraint_rows, requirement_rows
     from cratous.services.cli.show import requirement_table
     from cratous.services.results.names import LOG_NAME
 
     standing = ledger.require(allow_unproved=allow_unproved)
-    verdicts = watch(log / LOG_NAME if log.is_dir() else log)
+    with counted() as calls:
+        verdicts = watch(log / LOG_NAME if log.is_dir() else log)
+    evidence = inventory(standing, calls.data())
     rows = constraint_rows(verdicts, "flight")
     code = exit_code([v.outcome for v in verdicts])
     if standing.problems and code == 0:
@@ -39,10 +43,12 @@ def monitor(log: Path, as_json: bool, allow_unproved: bool) -> int:
             "requirements": requirement_rows(rows),
             "constraints": rows,
             "proofs": standing.line,
+            "evidence": evidence,
             "exit_code": code,
         }
         click.echo(json.dumps(data, indent=1))
     else:
         requirement_table(requirement_rows(rows))
         click.echo(f"proofs: {standing.line}")
+        click.echo(f"evidence: {summary(evidence)}")
     return code

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from cratous.spec.guarantees import exit_code
+from cratous.spec.mission.guarantees import exit_code
 
 
 @click.command()
@@ -32,6 +32,8 @@ def plan(
     input, 3 something is unknown.
     """
     from cratous.core import ledger
+    from cratous.services.certify.evidence import counted
+    from cratous.services.certify.proofs import inventory, summary
     from cratous.services.certify.verdicts import constraint_rows
     from cratous.services.cli.job import (
         absent_lines,
@@ -42,12 +44,14 @@ def plan(
     )
     from cratous.services.cli.show import margin_text, say, table
     from cratous.services.loading import load
-    from cratous.services.records import to_data
+    from cratous.services.logs.records import to_data
 
     standing = ledger.require(allow_unproved=allow_unproved)
     loaded = load(mission, seed)
     bus = new_bus()
-    made, checks = plan_and_check(loaded, bus)
+    with counted() as calls:
+        made, checks = plan_and_check(loaded, bus)
+    evidence = inventory(standing, calls.data())
     if certificate is not None:
         write_certificate(bus, certificate)
     code = exit_code([check.outcome for check in checks])
@@ -60,6 +64,7 @@ def plan(
             "constraints": rows,
             "notes": list(loaded.notes),
             "proofs": standing.line,
+            "evidence": evidence,
             "exit_code": code,
         }
         click.echo(json.dumps(data, indent=1))
@@ -96,4 +101,5 @@ def plan(
     for line in (plan_line(made, checks), *absent_lines(loaded)):
         click.echo(line)
     click.echo(f"proofs: {standing.line}")
+    click.echo(f"evidence: {summary(evidence)}")
     return code

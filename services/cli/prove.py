@@ -12,14 +12,14 @@ from typing import Any
 
 import click
 
-from cratous.core.whole_file import write_atomically
+from cratous.core.files.whole_file import write_atomically
 from cratous.services.cli.progress import Bar
 from cratous.services.cli.prove_checks import mutation, second_solver
 from cratous.spec.errors import BadInput
 
 
 def _show(theorem: Any, verbose: bool) -> None:
-    from cratous.proofs.formats import failure_text
+    from cratous.proofs.ledger.formats import failure_text
 
     mark = (
         click.style("proved    ", fg="green")
@@ -40,7 +40,7 @@ def _export(theorems: list[Any], folder: Path, theorem_folder: Path) -> int:
     """Write each obligation as SMT-LIB; returns how many files."""
     from functools import partial
 
-    from cratous.proofs import forked, prover
+    from cratous.proofs.engine import forked, prover
 
     def texts(name: str) -> list[str]:
         claim, sentence = prover.state(name, theorem_folder)
@@ -59,8 +59,8 @@ def _export(theorems: list[Any], folder: Path, theorem_folder: Path) -> int:
 def _meaning(theorems: list[Any], home: Any, cache: Path | None) -> list[str]:
     """What is wrong with the definitions that kernels name."""
     from cratous.core import ledger as gate
-    from cratous.proofs import definitions
-    from cratous.proofs.relations import Kept
+    from cratous.proofs.statements import definitions
+    from cratous.proofs.statements.relations import Kept
 
     proofs = definitions.Proofs(
         {theorem.name: theorem.kernels for theorem in theorems},
@@ -146,11 +146,14 @@ def prove(
     a theorem or kernel that no proof could be bound to.
     """
     from cratous.core import ledger as gate
-    from cratous.core.names import fits, matching
-    from cratous.core.private import private_cache
-    from cratous.proofs import cache, decisions, formats, ledger, prover
-    from cratous.proofs.recall import Recall
-    from cratous.proofs.remembered import Remembered
+    from cratous.core.files.private_cache import private_cache
+    from cratous.core.kernel.names import fits, matching
+    from cratous.proofs import ledger
+    from cratous.proofs.engine import cache, prover
+    from cratous.proofs.ledger import formats
+    from cratous.proofs.ledger.recall import Recall
+    from cratous.proofs.ledger.remembered import Remembered
+    from cratous.proofs.lint import decisions
 
     # thousands of syntax trees live to the end: looking for garbage in them is a third of a warm run
     gc.set_threshold(200_000, 20, 100)
@@ -173,7 +176,7 @@ def prove(
     whole = not only and not changed
     about = [] if whole else names
     if mutate and only:
-        from cratous.proofs.mutate import Keys, chosen
+        from cratous.proofs.mutation.mutate import Keys, chosen
 
         for name in every:
             prover.load_claim(name, folder)  # says what is wrong with a file, and where

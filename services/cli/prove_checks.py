@@ -25,9 +25,9 @@ def second_solver(
 
     keep: write the record. whole: these are all theorems.
     """
-    from cratous.core.private import private_cache
+    from cratous.core.files.private_cache import private_cache
     from cratous.proofs import recheck
-    from cratous.proofs.mutation_keys import Store
+    from cratous.proofs.mutation.keys import Store
 
     begun = time.monotonic()
     bar = Bar("cvc5", 1, not as_json and sys.stderr.isatty())
@@ -83,9 +83,10 @@ def mutation(
 
     new: what the record has is not judged again; its survivors are told and count.
     """
-    from cratous.proofs import mutate, mutation_record
-    from cratous.proofs.mutation_keys import Keys
-    from cratous.proofs.mutation_report import ENOUGH
+    from cratous.proofs.mutation import mutate
+    from cratous.proofs.mutation import record as mutation_record
+    from cratous.proofs.mutation.keys import Keys
+    from cratous.proofs.mutation.report import ENOUGH
 
     keys = Keys(home)
 

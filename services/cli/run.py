@@ -15,7 +15,7 @@ import click
 from cratous.services.cli.job import Settings, folder_name, run_mission
 from cratous.services.cli.show import progress, requirement_table, say, table
 from cratous.spec.errors import CratousError, NoPlan
-from cratous.spec.guarantees import Outcome, exit_code
+from cratous.spec.mission.guarantees import Outcome, exit_code
 
 Tell = Callable[[str], None]
 

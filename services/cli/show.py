@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from cratous.spec.printable import printable
+from cratous.spec.files.printable import printable
 
 COLOURS = {"holds": "green", "violated": "red", "unknown": "yellow", "excused": "yellow"}
 

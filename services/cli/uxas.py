@@ -55,9 +55,9 @@ def uxas(
 
     Exit codes: 0 it ran to its end, 2 the configuration is refused.
     """
+    from cratous.services.loading.uxas_settings import read
     from cratous.services.uxas.logs import Logs
     from cratous.services.uxas.process import Process, data_folder
-    from cratous.services.uxas.settings import read
 
     if version:
         _versions()
@@ -111,7 +111,7 @@ def _require_proofs(config: Any, log: Any, allow_unproved: bool) -> None:
     from cratous.services.uxas.registry import KINDS
 
     if any(KINDS[e.type].plans for e in config.entries if e.type in KINDS):
-        from cratous.services.standing import require
+        from cratous.services.startup.standing import require
 
         standing = require(allow_unproved=allow_unproved)
         log("WARN" if standing.problems else "INFO", f"proofs: {standing.line}")
@@ -120,7 +120,7 @@ def _require_proofs(config: Any, log: Any, allow_unproved: bool) -> None:
 def _compile_ahead(config: Any, without: tuple[str, ...], log: Any) -> None:
     """What plans has to answer in time, so the compiler is not to begin at the first request."""
     if {e.type for e in config.entries if e.type not in without} & {*_COMPILING}:
-        from cratous.services.warm import ensure_planning
+        from cratous.services.startup.warm import ensure_planning
 
         ensure_planning(lambda text: log("WARN", text))
 

@@ -17,8 +17,8 @@ from pathlib import Path
 from typing import Any
 
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import DOCUMENT_BYTES, at_most, json_of
-from cratous.spec.text_file import lines_of
+from cratous.spec.files.limits import DOCUMENT_BYTES, at_most, json_of
+from cratous.spec.files.text_file import lines_of
 
 SUITES = {
     "well-clear": "Well-clear violation now and over a span: tau_mod, tcpa, tep, cylinder.",

@@ -15,10 +15,10 @@ from typing import Any
 from cratous.services.conform import Beside, Result, failed, not_covered, passed
 from cratous.services.planning.assign import Limits, solve
 from cratous.services.planning.assign_vectors import read
-from cratous.spec.assignment import ORDER, TIME, Solution
+from cratous.spec.assignment.search import ORDER, TIME, Solution
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import json_of
-from cratous.spec.text_file import bytes_of
+from cratous.spec.files.limits import json_of
+from cratous.spec.files.text_file import bytes_of
 
 SECONDS = 30.0
 WORDS = {"A": TIME, "B": ORDER}

@@ -16,19 +16,20 @@ from typing import Any
 
 import numpy as np
 
-from cratous.core.compiled import exact, machine
-from cratous.core.daa_bands import SAMPLE_S, Traffic, last_free
-from cratous.core.daa_climb import altitude_conflict, safe_altitudes
-from cratous.core.daa_frame import RADIUS_M, project
-from cratous.core.daa_grid import grid
-from cratous.core.daa_guide import evaluate
-from cratous.core.daa_state import Aircraft
-from cratous.core.daa_steps import safe_steps
-from cratous.core.daa_uncertain import lost
-from cratous.core.daa_volume import in_conflict
+from cratous.core.daa.bands import SAMPLE_S, Traffic, last_free
+from cratous.core.daa.climb import altitude_conflict, safe_altitudes
+from cratous.core.daa.frame import RADIUS_M, project
+from cratous.core.daa.grid import grid
+from cratous.core.daa.guidance import evaluate
+from cratous.core.daa.state import Aircraft
+from cratous.core.daa.steps import safe_steps
+from cratous.core.daa.uncertainty import lost
+from cratous.core.daa.volume import in_conflict
 from cratous.core.kernel import Vec2
+from cratous.core.readings.exact import exact
+from cratous.core.readings.machine.compiled import machine
 from cratous.services.conform.values import finite, numbers
-from cratous.spec.daa import Parameters
+from cratous.spec.daa.parameters import Parameters
 
 
 def _with(driver: Any, **kernels: Any) -> Any:

@@ -21,15 +21,15 @@ from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
-from cratous.core.daa_bands import out_of_range
-from cratous.core.daa_engine import look
-from cratous.core.daa_session import Instant, Session
-from cratous.core.daa_state import DIMENSIONS, HDIR, Aircraft, Guidance, Sigma
+from cratous.core.daa.bands import out_of_range
+from cratous.core.daa.engine import look
+from cratous.core.daa.session import Instant, Session
+from cratous.core.daa.state import DIMENSIONS, HDIR, Aircraft, Guidance, Sigma
 from cratous.services.conform import Result, edge, failed, not_covered, passed
 from cratous.services.conform.daa_evidence import explained
 from cratous.services.conform.values import finite, identity, numbers
-from cratous.spec.daa import REGIONS, Parameters
-from cratous.spec.daa_presets import preset
+from cratous.spec.daa.parameters import REGIONS, Parameters
+from cratous.spec.daa.presets import preset
 from cratous.spec.errors import BadInput
 
 PRESETS = {

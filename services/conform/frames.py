@@ -22,8 +22,8 @@ from cratous.bridge import envelope, lmcp
 from cratous.bridge.sentinel import BODY, END, HEAD, TAIL, FrameStream, frame
 from cratous.services.conform import Result, failed, not_covered, passed
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import inflated, json_of
-from cratous.spec.text_file import bytes_of
+from cratous.spec.files.limits import inflated, json_of
+from cratous.spec.files.text_file import bytes_of
 
 SINGLE_BYTES = 200_000  # streams up to this length are also fed byte by byte
 

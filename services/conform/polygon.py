@@ -15,11 +15,11 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
-from cratous.core.compiled import exact
-from cratous.core.geofence_distance import boundary_against, boundary_distance
-from cratous.core.geofence_regions import both_places, layer_place
+from cratous.core.geofence.distance import boundary_against, boundary_distance
+from cratous.core.geofence.planar import edges_of, locate
+from cratous.core.geofence.regions import both_places, layer_place
 from cratous.core.kernel import Vec2
-from cratous.core.polygon import edges_of, locate
+from cratous.core.readings.exact import exact
 from cratous.services.conform import Result, failed, not_covered, passed
 from cratous.services.conform.values import (
     identity,

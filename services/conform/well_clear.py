@@ -17,8 +17,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from cratous.core.compiled import exact
 from cratous.core.kernel import Vec2
+from cratous.core.readings.exact import exact
 from cratous.core.well_clear import (
     Loss,
     Volume,

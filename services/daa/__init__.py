@@ -1,6 +1,6 @@
 """Detect and avoid for users: files in, alerts, bands, metrics, pictures and reasons out.
 
-`run` gives one `Instant` for each step of an encounter file. All in SI; see docs/detect-and-avoid.md.
+`run` gives one `Instant` for each step of an encounter file. All in SI; see docs/guides/detect-and-avoid.md.
 
     from pathlib import Path
     from cratous.services.daa import named_or_file, run
@@ -19,15 +19,15 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from cratous.core.daa_frame import Local, project
-from cratous.core.daa_session import Instant, Session
-from cratous.core.daa_state import Aircraft, Sigma
-from cratous.core.daa_terminal import in_terminal_area
-from cratous.core.excuse_judge import from_state as judge_way_out
-from cratous.spec.daa import Parameters
-from cratous.spec.daa_check import check
-from cratous.spec.daa_file import Row, read
-from cratous.spec.daa_presets import named_or_file, names, preset
+from cratous.core.daa.frame import Local, project
+from cratous.core.daa.session import Instant, Session
+from cratous.core.daa.state import Aircraft, Sigma
+from cratous.core.daa.terminal_area import in_terminal_area
+from cratous.core.excuse.judgement import from_state as judge_way_out
+from cratous.spec.daa.consistency import check
+from cratous.spec.daa.encounter_files import Row, read
+from cratous.spec.daa.parameters import Parameters
+from cratous.spec.daa.presets import named_or_file, names, preset
 from cratous.spec.errors import BadInput
 
 __all__ = [

@@ -1,6 +1,6 @@
 """Whether a way out existed: the judgement of a step of an encounter in words and as data.
 
-`core.excuse_judge` judges; here it is put for people: how many manoeuvres are free, and by whom, when
+`core.excuse.judgement` judges; here it is put for people: how many manoeuvres are free, and by whom, when
 and how near the others are refused.
 """
 
@@ -10,8 +10,8 @@ import math
 from collections import Counter
 from typing import Any
 
-from cratous.core.excuse_judge import from_state
-from cratous.core.excuse_state import ANSWERS, FREE, REFUSED, Judgement, Tried
+from cratous.core.excuse.judgement import from_state
+from cratous.core.excuse.state import ANSWERS, FREE, REFUSED, Judgement, Tried
 from cratous.services.daa import Step, aircraft
 from cratous.services.daa.explain import value_text
 

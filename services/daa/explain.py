@@ -1,7 +1,7 @@
 """Reasons in words and as data: for alerts, for band edges, for resolutions.
 
 Every statement names the intruder, the volume, when it is violated and by how much. Values are
-computed again by the kernels that made the bands (`core.daa_reason`).
+computed again by the kernels that made the bands (`core.daa.reasons`).
 """
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from cratous.core.daa_bands import Raw
-from cratous.core.daa_reason import Reason, reasons_at
-from cratous.core.daa_session import Instant
-from cratous.core.daa_state import DIMENSIONS, Alert, Guidance
-from cratous.spec.daa import DETECTORS, NONE, RECOVERY, REGIONS, URGENCIES, Parameters
+from cratous.core.daa.bands import Raw
+from cratous.core.daa.reasons import Reason, reasons_at
+from cratous.core.daa.session import Instant
+from cratous.core.daa.state import DIMENSIONS, Alert, Guidance
+from cratous.spec.daa.parameters import DETECTORS, NONE, RECOVERY, REGIONS, URGENCIES, Parameters
 
 SHOW = {"hdir": ("deg", 180 / math.pi), "hs": ("m/s", 1.0), "vs": ("m/s", 1.0), "alt": ("m", 1.0)}
 

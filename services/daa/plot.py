@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from cratous.core.whole_file import replacing
+from cratous.core.files.whole_file import replacing
 from cratous.services.daa import Step
 from cratous.spec.errors import BadInput
 
@@ -103,7 +103,7 @@ def _near(steps: Sequence[Step], whole: tuple[float, float]) -> tuple[float, flo
 
 def _plan(axis: object, steps: Sequence[Step]) -> None:
     """The tracks from above, in the plane at the ownship's first position."""
-    from cratous.core.daa_frame import project
+    from cratous.core.daa.frame import project
 
     first = steps[0].rows[0].values
     tracks: dict[str, list[tuple[float, float]]] = {}

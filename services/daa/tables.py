@@ -7,12 +7,12 @@ import io
 from collections.abc import Iterable
 from typing import Any
 
-from cratous.core.daa_engine import region_level, thresholds
-from cratous.core.daa_session import Instant
-from cratous.core.daa_zones import contours, hazard_zone
+from cratous.core.daa.engine import region_level, thresholds
+from cratous.core.daa.session import Instant
+from cratous.core.daa.zones import contours, hazard_zone
 from cratous.services.daa.explain import region_text
-from cratous.spec.daa import Parameters
-from cratous.spec.printable import cell
+from cratous.spec.daa.parameters import Parameters
+from cratous.spec.files.printable import cell
 
 ALERTS = (
     "time_s", "id", "alerter", "level", "level_without_history", "region", "first_s", "last_s",

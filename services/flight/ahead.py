@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from cratous.core.manoeuvre import Motion
+from cratous.core.avoidance.manoeuvre import Motion
 from cratous.services.flight import chain as chains
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState, turn_radius_m

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from cratous.core.following import Track
+from cratous.core.routing.polylines import Track
 from cratous.services.flight.dynamics import (
     AirState,
     Limits,
@@ -22,7 +22,7 @@ from cratous.services.flight.dynamics import (
     wrap,
 )
 from cratous.spec.mission import Velocity
-from cratous.spec.plan import Hold
+from cratous.spec.mission.plan import Hold
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,12 @@ import math
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
-from cratous.core.dubins import polyline_length_m
-from cratous.core.following import Track, circle_points
-from cratous.core.legs import first_bad_leg
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.routing.dubins import polyline_length_m
+from cratous.core.routing.polylines import Track, circle_points
 from cratous.services.flight.dynamics import AirState
 from cratous.spec.mission import Position, Vehicle, Zone
-from cratous.spec.plan import Hold, PlanItem, Pose
+from cratous.spec.mission.plan import Hold, PlanItem, Pose
 
 ROUTE_MARGIN = 1.1
 """Ways made in flight turn with the tightest radius times this."""
@@ -40,7 +40,8 @@ class Chain:
 
     join_m: arc length on `track` at which the planned path begins again after an interruption;
     base_m: arc length of the task's path that `track` stands for beyond join_m; away: the path
-    of the task has been left and is not reached again yet.
+    of the task has been left and is not reached again yet; told_version: the route_version that
+    ICAROUS was told, -1 for none.
     """
 
     vehicle: Vehicle
@@ -56,6 +57,7 @@ class Chain:
     base_m: float = 0.0
     version: int = 0
     route_version: int = 0
+    told_version: int = -1
     suspended: bool = False
     away: bool = False
     task_started_ms: int = -1

@@ -11,14 +11,14 @@ import math
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.core.following import Track
-from cratous.core.gate import ICAROUS, UXAS
-from cratous.core.manoeuvre import velocity_of
+from cratous.core.authority.gate import ICAROUS, UXAS
+from cratous.core.avoidance.manoeuvre import velocity_of
+from cratous.core.routing.polylines import Track
 from cratous.services.flight.autopilot import Circle, Command, Fly, Follow
-from cratous.services.frames import Projection, compass
+from cratous.services.mission.frames import Projection, compass
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Position, Velocity
-from cratous.spec.plan import Hold
+from cratous.spec.mission.plan import Hold
 
 SENDERS = {UXAS: "UxAS", ICAROUS: "ICAROUS"}
 

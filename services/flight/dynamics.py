@@ -12,7 +12,7 @@ import math
 from typing import NamedTuple
 
 from cratous.spec.mission import Position, Traffic, Vehicle, Velocity
-from cratous.spec.plan import Pose
+from cratous.spec.mission.plan import Pose
 
 GRAVITY_M_S2 = 9.80665
 MAX_ACCELERATION_M_S2 = 1.0

@@ -14,22 +14,27 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from cratous.core.following import Track
-from cratous.core.gate import UXAS
-from cratous.core.timeliness import too_early
+from cratous.core.authority.gate import UXAS
+from cratous.core.authority.link_end import suspended_after, track_is_told
+from cratous.core.authority.timeliness import too_early
+from cratous.core.routing.polylines import Track
 from cratous.services.flight import chain as chains
 from cratous.services.flight.ahead import last_lap, leaving_m, points_ahead, points_left
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import gated, path_command, task_progress
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.expectation import expected_times
+from cratous.services.flight.messages import Flown, Route
 from cratous.services.flight.pace import FASTEST, broken_rows, trimmed_speed_m_s
 from cratous.services.flight.timing import closed_by, opens_ms
 from cratous.services.flight.ways import Ways
-from cratous.services.frames import Projection
+from cratous.services.mission.frames import Projection
+from cratous.spec.constraint_rows import Row
 from cratous.spec.mission import Mission, Position, Zone
-from cratous.spec.plan import Plan, PlanItem, Row
+from cratous.spec.mission.plan import Plan, PlanItem
 
+AHEAD_S = 30
+"""Waypoints are told at least this much farther than the look-ahead [s]."""
 EARLY_MS = 500
 """A planned wait may end this much early; the rows themselves are never bent."""
 NOBODY = 0
@@ -103,7 +108,7 @@ class Executive:
                 chain.away = False
                 note = "back on the path"
                 out.append(self._progress(chain, now_ms, "Active", chain.served(), note))
-            if not chain.suspended and chain.version != before[vid]:
+            if track_is_told(chain.suspended, chain.version != before[vid]):
                 out.append(self.command(vid, epochs[vid]))
         return out
 
@@ -189,12 +194,12 @@ class Executive:
 
     # interruption ---------------------------------------------------------------------------
 
-    def suspend(self, vehicle_id: int, now_ms: int) -> tuple[list[Any], Position | None]:
+    def suspend(self, vehicle_id: int, now_ms: int, act: int) -> tuple[list[Any], Position | None]:
         """ICAROUS has taken over: messages, and the resume point if a task was active."""
         chain = self.chains[vehicle_id]
         if chain.suspended:
             return [], self.resume_point(vehicle_id)
-        chain.suspended = True
+        chain.suspended = suspended_after(chain.suspended, act)
         if chain.phase is not Phase.TASK:
             return [], None
         if chain.away:
@@ -211,10 +216,10 @@ class Executive:
             return None
         return chain.track.at(leaving_m(chain))
 
-    def resume(self, vehicle_id: int, state: AirState, now_ms: int) -> None:
+    def resume(self, vehicle_id: int, state: AirState, now_ms: int, act: int) -> None:
         """ICAROUS hands back: route to the resume point, then along the rest of the path."""
         chain = self.chains[vehicle_id]
-        chain.suspended = False
+        chain.suspended = suspended_after(chain.suspended, act)
         back = self.ways.back(chain, state)
         chain.enter(chain.phase, back.track, now_ms)
         if chain.phase is Phase.TASK:
@@ -282,6 +287,8 @@ class Executive:
     def know(self, zones: tuple[Zone, ...]) -> None:
         """These zones bind from now on."""
         self.zones, self.ways = zones, Ways(zones, self.dt_s)
+        for chain in self.chains.values():
+            chain.told_version = -1
 
     def commands_now(self, epochs: dict[int, int]) -> list[Any]:
         """The present tracks, for all that UxAS commands."""
@@ -336,11 +343,21 @@ class Executive:
         """True iff every chain is flown to its end."""
         return all(chain.item is None for chain in self.chains.values())
 
-    def waypoints(self, vehicle_id: int, ahead_m: float) -> tuple[Position, ...]:
-        """The present track and, beyond it, at least ahead_m of what follows if all goes well."""
+    def report(self, vehicle_id: int) -> list[Route | Flown]:
+        """How far a vehicle is on the way that UxAS flies it, and the way if it has not been told."""
         chain = self.chains[vehicle_id]
+        new = track_is_told(chain.suspended, chain.route_version != chain.told_version)
+        out: list[Route | Flown] = [self.route(vehicle_id)] if new else []
+        return out if chain.suspended else [*out, Flown(vehicle_id, chain.s_m)]
+
+    def route(self, vehicle_id: int) -> Route:
+        """The way ahead: the present track, and what follows for as far as ICAROUS looks."""
+        chain = self.chains[vehicle_id]
+        chain.told_version = chain.route_version
         opens = self._opens_ms(chain.item, chain.since_ms) if chain.item is not None else 0
-        return points_ahead(chain, opens, ahead_m)
+        ahead_m = chain.vehicle.max_speed_m_s * (self.mission.daa.lookahead_s + AHEAD_S)
+        speed = chain.item.speed_m_s if chain.item else chain.speed_m_s
+        return Route(vehicle_id, points_ahead(chain, opens, ahead_m), speed, chain.s_m)
 
     def _opens_ms(self, item: PlanItem, now_ms: int, margin_ms: int = 0) -> int:
         """When an item's task is expected to be allowed to begin, and a margin if it must wait."""

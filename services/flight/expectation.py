@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping
 
-from cratous.core.dubins import polyline_length_m
+from cratous.core.routing.dubins import polyline_length_m
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.timing import opens_ms
-from cratous.spec.plan import PlanItem, Row
+from cratous.spec.constraint_rows import Row
+from cratous.spec.mission.plan import PlanItem
 
 
 def expected_times(

@@ -9,51 +9,50 @@ aircraft is at its Time and with which constant velocity it flies until the next
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.bridge.link import LinkEvent
-from cratous.bridge.loopback import Bridge, Delivered
-from cratous.bridge.text_protocol import Direction, Message, WireError
-from cratous.core.gate import ICAROUS, UXAS, Gate
+from cratous.bridge.loopback import Bridge
+from cratous.bridge.text_protocol import Message
+from cratous.core.authority.gate import ICAROUS, UXAS, Gate
 from cratous.services.bus import Bus
+from cratous.services.flight import link_end
+from cratous.services.flight.arrivals import arrivals
 from cratous.services.flight.commands import gated, velocity_command
-from cratous.services.flight.communication import Communication
 from cratous.services.flight.dynamics import AirState, limits_of, traffic_state
 from cratous.services.flight.executive import Executive
+from cratous.services.flight.link_end import UxasEnd
+from cratous.services.flight.messages import (
+    Beat,
+    Connected,
+    Down,
+    Left,
+    Say,
+    Suspend,
+    TakeBack,
+    ToLinkEnd,
+    Watch,
+    ZonesKnown,
+)
 from cratous.services.flight.notices import authority_change, conflict, gate_state, plan_accepted
-from cratous.services.flight.sensing import camera_states, target_of
+from cratous.services.flight.result import FlightResult
+from cratous.services.flight.sensing import looks
 from cratous.services.flight.touched import handed_over, left_by, nobody_may, touched_by
 from cratous.services.flight.vehicle import VehicleNode, traffic_picture, truth
-from cratous.services.frames import Projection
 from cratous.services.icarous import instance
+from cratous.services.mission.frames import Projection
+from cratous.services.mission.taking_part import absent
+from cratous.services.mission.wind import CALM, all_in_wind, in_wind, known_at, told, wind_at
 from cratous.services.planning.zones import hard_zones
-from cratous.services.taking_part import absent
-from cratous.services.wind import CALM, all_in_wind, in_wind, known_at, told, wind_at
-from cratous.spec.asked import asked
-from cratous.spec.changes import TASK_ADDED, VEHICLE_JOINS, split, words
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Change, Mission
-from cratous.spec.plan import Plan
+from cratous.spec.mission.asked import asked
+from cratous.spec.mission.changes import TASK_ADDED, VEHICLE_JOINS, split, words
+from cratous.spec.mission.plan import Plan
 
 Segmenter = Callable[[bytes], Iterable[bytes]]
 GROUND_MARGIN = 2.0
 """No manoeuvre goes nearer to the ground than this many vertical thresholds."""
-
-
-@dataclass(frozen=True)
-class FlightResult:
-    """How a flight ended. outcome: "complete", "failed" or "limit"; times in ms."""
-
-    outcome: str
-    end_ms: int
-    starts: dict[int, int]
-    ends: dict[int, int]
-    failed: dict[int, str]
-    takeovers: int
-    replans: int
-    steps: int
 
 
 def fly(
@@ -89,7 +88,8 @@ class _Flight:
         self.mission, self.bus, self.bridge = mission, bus, bridge
         self.plan, self.instances = plan, instances
         self.projection = Projection(mission.frame)
-        self.zones = hard_zones(mission.zones)
+        self.known = known_at(mission, 0)
+        self.zones = hard_zones(self.known.zones)
         self.step_ms = mission.simulation.step_ms
         dt_s = self.step_ms / 1000
         well_clear = mission.daa.well_clear
@@ -102,16 +102,16 @@ class _Flight:
         self.executive = Executive(
             mission, self.zones, plan, self.projection, dt_s, replan=self._replan
         )
-        self.ics = Communication(mission, self.zones, self.projection, bridge, self.executive)
+        self.link, self.link_state = UxasEnd(self.projection), link_end.State()
         self.brains = {vid: instance.State() for vid in instances}
         self.configs = {
             vid: instance.Config(vid, mission.daa, self.projection, mission.simulation.heartbeat_ms)
             for vid in instances
         }
+        self.told: dict[int, list[Message]] = {vid: [] for vid in instances}
         self.takeovers = 0
         self.commands = 0
         self.now_ms = 0
-        self.known = known_at(mission, 0)
         self.wind = CALM
         self.blown = self._blow(0)
         self.no_plan = ""
@@ -158,7 +158,10 @@ class _Flight:
         self._accept(self.plan, frozenset())
         states = self._own_states()
         self._say(self.executive.begin(states), "uxas/executive")
-        self._say(self.ics.begin(0), "uxas/ics")
+        self._link(ZonesKnown(self.zones))
+        self._link(Connected(0, self.instances))
+        for vid in self.instances:
+            self._link(self.executive.route(vid))
         first = (self.executive.command(vid, self.nodes[vid].gate.epoch) for vid in self.nodes)
         self._say(first, "uxas/executive")
         steps = 0
@@ -193,6 +196,12 @@ class _Flight:
     def _accept(self, plan: Plan, done: frozenset[int]) -> None:
         """Say by which plan is flown from now on; `done` are the tasks already flown."""
         self._say([plan_accepted(self.now_ms, plan, done)], "uxas")
+
+    def _accept_anew(self) -> None:
+        """The same of a plan that was made since the last time."""
+        if self._accepted is not None:
+            self._accept(*self._accepted)
+            self._accepted = None
 
     def _outcome(self, limit_ms: int) -> str:
         back = all(node.gate.owner == UXAS for node in self.nodes.values())
@@ -229,9 +238,7 @@ class _Flight:
         if due:
             self._change(due)
         commands = self.executive.step(self._own_states(), self._epochs(), now)
-        if self._accepted is not None:
-            self._accept(*self._accepted)
-            self._accepted = None
+        self._accept_anew()
         self._say(commands, "uxas/executive")
         if now % self.mission.simulation.heartbeat_ms == 0:
             self._heartbeat()
@@ -245,49 +252,49 @@ class _Flight:
         now = self.now_ms
         for vid, node in self.nodes.items():
             chain = self.executive.chains[vid]
-            item = chain.item
-            task = self.mission.task(item.task_id) if item is not None else None
-            terrain_m = self.mission.frame.terrain_m
-            target = None if chain.suspended else target_of(chain, task, node.state, terrain_m)
-            payloads = camera_states(
-                node.vehicle, node.state, target, self.projection, self.mission.frame, task
-            )
-            tasks = [task.id] if task is not None and target is not None else []
-            state = node.air_vehicle_state(now, payloads, tasks)
+            sees = looks(node.vehicle, chain, node.state, self.mission, self.projection)
+            state = node.air_vehicle_state(now, sees.payloads, sees.tasks)
             self._say([state], f"vehicle/{vid}")
         if not self.instances:
             return
-        self._say(self.ics.heartbeat(self._everyone(), now), "uxas/ics")
-        down: dict[int, list[Message]] = {vid: [] for vid in self.instances}
-        for delivered in self._exchange():
-            if delivered.direction is Direction.DOWN and isinstance(delivered.record, Message):
-                down[delivered.vehicle_id].append(delivered.record)
         for vid in self.instances:
-            self._think(vid, tuple(down[vid]))
-        for delivered in self._exchange():
-            if delivered.direction is Direction.UP and isinstance(delivered.record, Message):
-                vid = delivered.vehicle_id
-                answer = self.ics.hear(vid, delivered.record, self.nodes[vid].state, now)
-                self._say(answer, "uxas/ics")
-        self._say(self.ics.watch(now), "uxas/ics")
+            for report in self.executive.report(vid):
+                self._link(report)
+        self._link(Beat(now, tuple(sorted(self._everyone().items()))))
+        self._exchange()
+        for vid in self.instances:
+            lines, self.told[vid] = tuple(self.told[vid]), []
+            self._think(vid, lines)
+        self._exchange()
+        self._link(Watch(now))
 
-    def _exchange(self) -> list[Delivered]:
-        delivered = self.bridge.exchange()
-        for one in delivered:
-            if isinstance(one.record, LinkEvent) and one.direction is Direction.UP:
-                lost = self.ics.lost(one.vehicle_id, one.record, self.now_ms)
-                self._say(lost, "uxas/ics")
-            elif isinstance(one.record, WireError):
-                text = f"unreadable line from {one.direction.value}: {one.record}"
-                note = lmcp.new(
-                    "BridgeStatus",
-                    VehicleID=one.vehicle_id,
-                    Time=self.now_ms,
-                    Alive=self.bridge.alive(one.vehicle_id),
-                    Note=text,
-                )
-                self._say([note], "uxas/ics")
-        return delivered
+    def _exchange(self) -> None:
+        """Let the bridge deliver: what came up is heard, what came down waits for its ICAROUS."""
+        came = arrivals(self.bridge.exchange(), self.now_ms)
+        for message in came.up:
+            self._link(message)
+        for vid, line in came.down:
+            self.told[vid].append(line)
+
+    def _link(self, message: ToLinkEnd) -> None:
+        """A message to the UxAS end of the bridge, and what follows from it."""
+        self.link_state, out = self.link.handle(self.link_state, message)
+        for answer in out:
+            match answer:
+                case Say(body, source):
+                    self._say([body], source)
+                case Down(vid, lines):
+                    for line in lines:
+                        self.bridge.to_icarous(vid, line)
+                case Suspend(vid, now_ms, act):
+                    said, left = self.executive.suspend(vid, now_ms, act)
+                    if left is not None:
+                        self._link(Left(vid, left))
+                    self._say(said, "uxas/ics")
+                case TakeBack(vid, now_ms, act, epoch):
+                    self.executive.resume(vid, self.nodes[vid].state, now_ms, act)
+                    self._link(self.executive.route(vid))
+                    self._say([self.executive.command(vid, epoch)], "uxas/ics")
 
     def _think(self, vid: int, messages: tuple[Message, ...]) -> None:
         """One heartbeat of a vehicle's ICAROUS: its wishes reach the gate here, on board."""
@@ -330,7 +337,7 @@ class _Flight:
         self.zones = (*self.zones, *zones)
         what = "; ".join(words(change) for change in due)
         self.executive.know(self.zones)
-        self.ics.know(self.zones)
+        self._link(ZonesKnown(self.zones))
         touched = touched_by(due, zones, self.executive.chains, self.executive.ends, states)
         why = "; ".join(text for text in (blown, touched) if text)
         before, out = left_by(self.executive.chains), list[Any]()
@@ -349,9 +356,7 @@ class _Flight:
             out += self.executive.commands_now(self._epochs())
         # the change is known before anything is done about it
         self._tell_change(what, answer)
-        if self._accepted is not None:
-            self._accept(*self._accepted)
-            self._accepted = None
+        self._accept_anew()
         self._say(out, "uxas/executive")
 
     def _blow(self, now_ms: int) -> str:

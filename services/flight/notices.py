@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.core.gate import Gate
+from cratous.core.authority.gate import Gate
 from cratous.services.flight.commands import SENDERS
 from cratous.services.icarous.instance import Outputs
-from cratous.services.records import fingerprint, to_data
-from cratous.spec.plan import Plan
+from cratous.services.logs.records import fingerprint, to_data
+from cratous.spec.mission.plan import Plan
 
 
 def gate_state(vehicle_id: int, now_ms: int, gate: Gate) -> Any:

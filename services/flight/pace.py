@@ -10,8 +10,9 @@ import math
 from collections.abc import Collection, Iterable, Mapping
 
 from cratous.services.flight.timing import broken_by
+from cratous.spec.constraint_rows import Row
 from cratous.spec.mission import Vehicle
-from cratous.spec.plan import PlanItem, Row
+from cratous.spec.mission.plan import PlanItem
 
 SLOWEST, FASTEST = 0.8, 1.06
 """How far the speed may be adapted in order to be on time, as factors of the planned one."""

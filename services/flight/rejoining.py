@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
-from cratous.core.dubins import cut, dubins
-from cratous.core.visibility import Roadmap, route
+from cratous.core.routing.dubins import cut, dubins
+from cratous.core.routing.visibility import Roadmap, route
 from cratous.services.flight.dynamics import AirState
 from cratous.services.planning.zones import roadmaps
 from cratous.spec.mission import Position, Zone
-from cratous.spec.plan import Pose
+from cratous.spec.mission.plan import Pose
 
 
 class Router:

@@ -4,18 +4,36 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import location
 from cratous.services.flight.dynamics import AirState, clamp, wrap
-from cratous.services.frames import Projection
+from cratous.services.mission.frames import Projection
+from cratous.services.mission.sensor import aim, footprint, look_on_line, zoomed
 from cratous.services.planning.flyers import camera_for
 from cratous.services.planning.point_ways import tilted
-from cratous.services.sensor import aim, footprint, look_on_line, zoomed
-from cratous.spec.mission import AREAS, Frame, Position, Task, TaskKind, Vehicle, View
-from cratous.spec.plan import PlanItem
+from cratous.spec.mission import AREAS, Frame, Mission, Position, Task, TaskKind, Vehicle, View
+from cratous.spec.mission.plan import PlanItem
+
+
+class Looks(NamedTuple):
+    """payloads: a `CameraState` per camera; tasks: the ids of those that they look at something for."""
+
+    payloads: list[Any]
+    tasks: list[int]
+
+
+def looks(
+    vehicle: Vehicle, chain: Chain, state: AirState, mission: Mission, projection: Projection
+) -> Looks:
+    """Where a vehicle's cameras look now; at nothing while ICAROUS has the vehicle."""
+    task = mission.task(chain.item.task_id) if chain.item is not None else None
+    frame = mission.frame
+    target = None if chain.suspended else target_of(chain, task, state, frame.terrain_m)
+    payloads = camera_states(vehicle, state, target, projection, frame, task)
+    return Looks(payloads, [task.id] if task is not None and target is not None else [])
 
 
 def target_of(

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from cratous.core.timing import row_holds
-from cratous.spec.plan import Row
-from cratous.spec.schedule import (
+from cratous.core.schedule.rows import row_holds
+from cratous.spec.constraint_rows import (
     AFTER_END,
     AFTER_START,
     NOT_AFTER,
     NOT_BEFORE,
     WITHIN_END,
+    Row,
 )
 
 Times = Mapping[int, tuple[int, int]]

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 
-from cratous.core.legs import first_bad_leg
-from cratous.core.visibility import name_of
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.routing.visibility import name_of
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState
-from cratous.spec.changes import TASK_ADDED, TASK_REMOVED, VEHICLE_JOINS, VEHICLE_LOST
 from cratous.spec.mission import Change, Mission, Zone
-from cratous.spec.plan import Plan
+from cratous.spec.mission.changes import TASK_ADDED, TASK_REMOVED, VEHICLE_JOINS, VEHICLE_LOST
+from cratous.spec.mission.plan import Plan
 
 
 def tasks_text(tasks: Sequence[int]) -> str:

@@ -11,7 +11,7 @@ import math
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.core.gate import (
+from cratous.core.authority.gate import (
     ICAROUS,
     UXAS,
     Gate,
@@ -20,8 +20,8 @@ from cratous.core.gate import (
     gate_offer,
     gate_takeover,
 )
-from cratous.core.manoeuvre import Ability, Motion
-from cratous.core.prediction import Intruder
+from cratous.core.avoidance.manoeuvre import Ability, Motion
+from cratous.core.avoidance.prediction import Intruder
 from cratous.services.flight.autopilot import Circle, Command, Follow, decide, track_progress
 from cratous.services.flight.commands import SENDERS, decode
 from cratous.services.flight.dynamics import (
@@ -34,9 +34,9 @@ from cratous.services.flight.dynamics import (
     turn_radius_m,
     turn_rate_rad_s,
 )
-from cratous.services.frames import Projection, compass
+from cratous.services.mission.frames import Projection, compass
 from cratous.spec.mission import Vehicle
-from cratous.spec.plan import Hold
+from cratous.spec.mission.plan import Hold
 
 OVERRUN_S = 5.0
 """Flying on past the end of a path for this long [s] without a new command starts a loiter."""

@@ -9,14 +9,14 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from cratous.core.following import Track
+from cratous.core.routing.polylines import Track
 from cratous.services.flight import chain as chains
 from cratous.services.flight.ahead import join_in_transit, leaving_m
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.rejoining import Router
 from cratous.spec.mission import Position, Zone
-from cratous.spec.plan import PlanItem, Pose
+from cratous.spec.mission.plan import PlanItem, Pose
 
 
 class Back(NamedTuple):

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from cratous.core.manoeuvre import Ability, Motion
-from cratous.core.prediction import Piece
-from cratous.core.resolution import first_zone_s, turn_back_s
+from cratous.core.avoidance.manoeuvre import Ability, Motion
+from cratous.core.avoidance.prediction import Piece
+from cratous.core.avoidance.resolution import first_zone_s, turn_back_s
 from cratous.spec.mission import Zone
 
 

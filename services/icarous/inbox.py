@@ -15,7 +15,7 @@ from cratous.bridge.text_protocol import (
     Waypoint,
     WaypointReached,
 )
-from cratous.services.frames import Projection
+from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Position, Zone, ZoneKind
 
 

@@ -16,12 +16,18 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from cratous.bridge.text_protocol import Heartbeat, Message, SetMode, SetVelocity
-from cratous.core.gate import ICAROUS, Gate, gate_accepts, gate_offer, gate_takeover, handback
-from cratous.core.manoeuvre import Ability, Motion, along, velocity_of
-from cratous.core.prediction import Intruder, Piece, buffered
-from cratous.core.resolution import Choice, Scene, first_conflict_s, first_zone_s, resolve
-from cratous.core.timeliness import in_time, lasted
-from cratous.services.frames import Projection
+from cratous.core.authority.gate import (
+    ICAROUS,
+    Gate,
+    gate_accepts,
+    gate_offer,
+    gate_takeover,
+    handback,
+)
+from cratous.core.authority.timeliness import in_time, lasted
+from cratous.core.avoidance.manoeuvre import Ability, Motion, along, velocity_of
+from cratous.core.avoidance.prediction import Intruder, Piece, buffered
+from cratous.core.avoidance.resolution import Choice, Scene, first_conflict_s, first_zone_s, resolve
 from cratous.services.icarous.geofence_monitor import zone_ahead_s
 from cratous.services.icarous.inbox import Told, hear
 from cratous.services.icarous.return_to_path import (
@@ -41,7 +47,8 @@ from cratous.services.icarous.traffic_monitor import (
     threats,
     turning,
 )
-from cratous.spec.authority import OFFER, WITHDRAW
+from cratous.services.mission.frames import Projection
+from cratous.spec.authority.gate import OFFER, WITHDRAW
 from cratous.spec.mission import Daa, Position, Velocity
 
 LINK_LOST_MS = 2000

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import math
 
-from cratous.core.dubins import cut, dubins
-from cratous.core.manoeuvre import Motion, along
-from cratous.core.prediction import Piece
+from cratous.core.avoidance.manoeuvre import Motion, along
+from cratous.core.avoidance.prediction import Piece
+from cratous.core.routing.dubins import cut, dubins
 from cratous.spec.mission import Position
-from cratous.spec.plan import Pose
+from cratous.spec.mission.plan import Pose
 
 PERSIST_MS = 1500
 """The way back must have been free for this long [ms]: three heartbeats."""

@@ -11,11 +11,11 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from cratous.core.gate import gives_way
-from cratous.core.manoeuvre import Ability, smallest_turn
-from cratous.core.prediction import Intruder, Piece, first_violation_s
-from cratous.core.right_of_way import must_act
-from cratous.core.timeliness import lasted
+from cratous.core.authority.gate import gives_way
+from cratous.core.authority.right_of_way import must_act
+from cratous.core.authority.timeliness import lasted
+from cratous.core.avoidance.manoeuvre import Ability, smallest_turn
+from cratous.core.avoidance.prediction import Intruder, Piece, first_violation_s
 from cratous.spec.mission import WellClear
 
 PERSIST_MS = 2000

@@ -17,7 +17,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import integer_of
+from cratous.spec.files.limits import integer_of
 
 NODES_PER_MS = 100
 """Nodes that the search of missions makes in a millisecond, on a slow core."""

@@ -12,12 +12,11 @@ from collections.abc import Callable, Iterator
 from fractions import Fraction
 from math import hypot, isfinite
 
+from cratous.core.geofence.planar import edges_of, keep_in_leg_ok, keep_out_leg_ok, locate
 from cratous.core.kernel import Vec2
-from cratous.core.polygon import edges_of, keep_in_leg_ok, keep_out_leg_ok, locate
 from cratous.services.loading.polygons import polygon_problem
-from cratous.spec import changes
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Mission, Pattern, Position, TaskKind, Zone, ZoneKind
+from cratous.spec.mission import Mission, Pattern, Position, TaskKind, Zone, ZoneKind, changes
 
 Where = Callable[[str], str]
 MAX_REACH_M = 100_000.0

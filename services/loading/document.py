@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import DIGITS, MISSION_BYTES, MISSION_DEPTH, MISSION_NODES, at_most
-from cratous.spec.text_file import text_of
+from cratous.spec.files.limits import DIGITS, MISSION_BYTES, MISSION_DEPTH, MISSION_NODES, at_most
+from cratous.spec.files.text_file import text_of
 
 INTEGER_MAX = 2**53
 """Every whole number up to this is a double, so that none is changed where it becomes one."""

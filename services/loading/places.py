@@ -19,7 +19,7 @@ class Places:
     def local(self, latitude_deg: float, longitude_deg: float) -> tuple[float, float]:
         """North and east [m] of a place in WGS-84 degrees."""
         if self._projection is None:
-            from cratous.services.frames import Projection
+            from cratous.services.mission.frames import Projection
 
             self._projection = Projection(self._frame)
         north_m, east_m = self._projection.to_local(latitude_deg, longitude_deg)

@@ -1,6 +1,6 @@
 """Polygons of zones: is it one, what does its padding make of it, and circles as polygons.
 
-Whether they are one is decided by the proved kernels (`core.geofence_validity`). The padded outline
+Whether they are one is decided by the proved kernels (`core.geofence.validity`). The padded outline
 itself is computed (with mitred corners, by shapely) and then held against the rules like any other.
 """
 
@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import cos, pi, sin
 
-from cratous.core.geofence_validity import fault_of
+from cratous.core.geofence.validity import fault_of
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Zone, ZoneKind
 

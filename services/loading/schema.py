@@ -1,4 +1,4 @@
-"""A mission document against `spec/mission.schema.json`, in words that a user can act on."""
+"""A mission document against `spec/mission/mission.schema.json`, in words that a user can act on."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _KINDS = {
 @cache
 def mission_schema() -> dict[str, Any]:
     """The published JSON Schema (draft 2020-12)."""
-    text = files("cratous.spec").joinpath("mission.schema.json").read_text("utf-8")
+    text = files("cratous.spec.mission").joinpath("mission.schema.json").read_text("utf-8")
     schema: dict[str, Any] = json.loads(text)
     return schema
 

@@ -22,7 +22,7 @@ from cratous.services.loading.uxas_tasks import Interests
 from cratous.services.loading.uxas_tasks import task as read_task
 from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR, finish
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import integer_of
+from cratous.spec.files.limits import integer_of
 from cratous.spec.mission import Daa, Frame, Mission, Simulation, Task, Vehicle, Zone, ZoneKind
 
 LIMIT_MS = 86_400_000

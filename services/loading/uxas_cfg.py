@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import integer_of
+from cratous.spec.files.limits import integer_of
+from cratous.spec.files.text_file import bytes_of
 from cratous.spec.schedule import TIME_LIMIT_MS
-from cratous.spec.text_file import bytes_of
 
 PLAYED = frozenset(
     {

@@ -1,4 +1,4 @@
-"""A mission file (YAML, schema `spec/mission.schema.json`) as a `Mission`.
+"""A mission file (YAML, schema `spec/mission/mission.schema.json`) as a `Mission`.
 
 Order: the text must mean one thing, then it must fit the schema, then the checks of `checks.py`
 on what it says, then zones are padded and starts are held against them. Each stage reports all
@@ -25,7 +25,6 @@ from cratous.services.loading.polygons import padded
 from cratous.services.loading.problems import refuse
 from cratous.services.loading.schema import schema_problems
 from cratous.services.loading.yaml_task import yaml_task
-from cratous.spec import changes
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import (
     Camera,
@@ -40,8 +39,9 @@ from cratous.spec.mission import (
     WellClear,
     Zone,
     ZoneKind,
+    changes,
 )
-from cratous.spec.wind import WIND, WindChange
+from cratous.spec.mission.changes import WIND, WindChange
 
 DEFAULT_WELL_CLEAR = WellClear(dthr_m=150.0, zthr_m=30.0, tthr_s=15.0, tcoa_s=0.0)
 

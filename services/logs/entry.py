@@ -12,7 +12,7 @@ import binascii
 from typing import Any, NamedTuple
 
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import json_of
+from cratous.spec.files.limits import json_of
 
 RAW = "$lmcp"
 

@@ -14,14 +14,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from cratous.core.whole_file import replacing
+from cratous.core.files.whole_file import replacing
 from cratous.services.logs import files
 from cratous.services.logs.entry import Entry, any_data
 from cratous.services.logs.selection import Selection
 from cratous.services.logs.source import Source
 from cratous.services.logs.store import LogStore, cannot_write
 from cratous.spec.errors import BadInput
-from cratous.spec.printable import cell
+from cratous.spec.files.printable import cell
 
 FORMATS = ("mcap", "jsonl", "csv", "xml", "lmcp", "frames", "sqlite", "uxas")
 _HEAD = ("seq", "time_ms", "source", "topic")

@@ -24,11 +24,11 @@ from cratous.services.logs.entry import (
     to_object,
     topic_of,
 )
-from cratous.services.records import canonical
+from cratous.services.logs.records import canonical
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import json_of
-from cratous.spec.printable import json_text, printable
-from cratous.spec.text_file import bytes_of, lines_of
+from cratous.spec.files.limits import json_of
+from cratous.spec.files.printable import json_text, printable
+from cratous.spec.files.text_file import bytes_of, lines_of
 
 _OPTIONAL = ("address", "group", "entity_id", "service_id", "content_type")
 _XML_NAMES = ("Address", "Group", "EntityID", "ServiceID", "ContentType")

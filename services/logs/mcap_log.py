@@ -20,10 +20,10 @@ from typing import IO, Any
 
 from cratous.services.logs.entry import Entry, any_data, to_bytes
 from cratous.services.logs.foxglove import schema_of, without_null
+from cratous.services.logs.records import canonical
 from cratous.services.logs.views import SCHEMAS, View, Views
-from cratous.services.records import canonical
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import CELL_BYTES, integer_of, json_of
+from cratous.spec.files.limits import CELL_BYTES, integer_of, json_of
 
 PROFILE = "cratous"
 MAGIC = b"\x89MCAP0\r\n"

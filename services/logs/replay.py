@@ -16,7 +16,7 @@ from typing import Protocol
 
 from cratous.services.logs.entry import Entry
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import integer_of
+from cratous.spec.files.limits import integer_of
 
 STALL_S = 10.0
 _BLOCK = 1 << 16

@@ -12,7 +12,7 @@ import hashlib
 from typing import Any
 
 from cratous.services.logs.entry import Entry
-from cratous.services.records import canonical
+from cratous.services.logs.records import canonical
 
 APPLICATION_ID = 0x43524154  # "CRAT", so that `file` can name a log
 VERSION = 2

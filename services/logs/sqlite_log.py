@@ -15,7 +15,7 @@ from cratous.services.logs.entry import Entry
 from cratous.services.logs.schema import COLUMNS, COLUMNS_1, Digest
 from cratous.services.logs.store import Gap
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import CELL_BYTES, json_of
+from cratous.spec.files.limits import CELL_BYTES, json_of
 
 # the second is what the library raises where a damaged name stands in its message
 ERRORS = (sqlite3.DatabaseError, UnicodeDecodeError)

@@ -18,10 +18,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple
 
-from cratous.core import whole_file
+from cratous.core.files import whole_file
 from cratous.services.logs.entry import Entry
+from cratous.services.logs.records import canonical
 from cratous.services.logs.schema import INSERT, TABLES, Digest
-from cratous.services.records import canonical
 from cratous.spec.errors import BadInput
 
 BATCH = 500

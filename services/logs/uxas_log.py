@@ -11,11 +11,11 @@ from contextlib import suppress
 from pathlib import Path
 
 from cratous.services.logs.entry import Entry, to_object
+from cratous.services.logs.records import canonical
 from cratous.services.logs.sqlite_log import ERRORS, connect, damaged, entry_of
 from cratous.services.logs.store import cannot_write
-from cratous.services.records import canonical
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import integer_of
+from cratous.spec.files.limits import integer_of
 
 TABLE = """CREATE TABLE msg(id INTEGER PRIMARY KEY, time_ms INTEGER NOT NULL,
 descriptor TEXT NOT NULL, groupID TEXT NOT NULL, entityID INTEGER NOT NULL,

@@ -15,8 +15,8 @@ import math
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from cratous.services.frames import Projection
 from cratous.services.logs.entry import RAW
+from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Frame
 
 STATE, COMMAND = "afrl.cmasi.EntityState", "afrl.cmasi.MissionCommand"

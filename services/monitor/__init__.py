@@ -19,9 +19,9 @@ from cratous.services.monitor.presence import Ending, Presence
 from cratous.services.monitor.promises import missing, promised, watched
 from cratous.services.monitor.samples import Sample, Sampler
 from cratous.services.monitor.separation import SeparationWatch
-from cratous.spec.guarantees import REQUIREMENTS, Kind, Verdict, worst
 from cratous.spec.mission import Mission
-from cratous.spec.plan import Plan
+from cratous.spec.mission.guarantees import REQUIREMENTS, Kind, Verdict, worst
+from cratous.spec.mission.plan import Plan
 
 __all__ = ["Monitor"]
 
@@ -134,4 +134,5 @@ def _whole(requirement: str, parts: list[Verdict]) -> Verdict:
         unit=chosen.unit,
         checks=sum(v.checks for v in parts),
         method=", ".join(sorted({v.method for v in parts if v.method})),
+        kernels=tuple(sorted({kernel for v in parts for kernel in v.kernels})),
     )

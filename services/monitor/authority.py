@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from cratous.core.gate import (
+from cratous.core.authority.gate import (
     ICAROUS,
     UXAS,
     Gate,
@@ -19,11 +19,16 @@ from cratous.core.gate import (
     gate_offer,
     gate_takeover,
 )
+from cratous.core.kernel import qualified
 from cratous.services.monitor.promises import authority_item
-from cratous.spec.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission import Mission
+from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
 NAMES = {UXAS: "UxAS", ICAROUS: "ICAROUS"}
+ON_COMMAND = {qualified(gate_accepts), qualified(gate_after)}
+ON_STATE = {qualified(gate_after)}
+ON_CHANGE = {qualified(gate_takeover), qualified(gate_offer)}
+"""What is asked about a command, a state of the gate, and one that no command led to."""
 
 
 @dataclass
@@ -39,6 +44,7 @@ class Command:
     commands: int = 0
     dropped: int = 0
     faults: list[tuple[int, str]] = field(default_factory=list)
+    kernels: set[str] = field(default_factory=set)
 
 
 class AuthorityWatch:
@@ -68,6 +74,7 @@ class AuthorityWatch:
     def _command(self, seen: Command, body: Any) -> None:
         sender = ICAROUS if body.Sender.name == "ICAROUS" else UXAS
         seen.commands += 1
+        seen.kernels |= ON_COMMAND
         accepted = gate_accepts(seen.gate, sender, body.Epoch)
         after = gate_after(seen.gate, sender, body.Epoch)
         seen.due = "state" if after != seen.gate else "" if accepted else "drop"
@@ -84,10 +91,12 @@ class AuthorityWatch:
     def _state(self, seen: Command, body: Any, time_ms: int) -> None:
         owner = ICAROUS if body.Owner.name == "ICAROUS" else UXAS
         now, before = Gate(owner, body.Epoch, body.Offered), seen.gate
+        seen.kernels |= ON_STATE
         handback = gate_after(before, UXAS, before.epoch)
         allowed: tuple[Gate, ...] = (handback,)
         if seen.due != "state":
             self._missing(seen, time_ms)
+            seen.kernels |= ON_CHANGE
             allowed = (gate_takeover(before), gate_offer(before))
         if now not in allowed:
             text = f"the gate went from {_said(before)} to {_said(now)}"
@@ -137,6 +146,7 @@ class AuthorityWatch:
                     vehicles=(vehicle,),
                     checks=seen.changes + seen.commands,
                     method="gate_accepts, gate_after, gate_offer, gate_takeover",
+                    kernels=tuple(sorted(seen.kernels)),
                 )
             )
         return found

@@ -8,13 +8,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from cratous.core.timeliness import Beats, beats_in_time
+from cratous.core.authority.timeliness import Beats, beats_in_time
+from cratous.core.kernel import qualified
 from cratous.services.monitor.promises import WAYS, beat_item
-from cratous.spec.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission import Mission
+from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
 PERIODS = 2
 """A heartbeat is late when it has not come after this many periods."""
+
+
+NONE: tuple[str, ...] = ()
 
 
 @dataclass
@@ -89,14 +93,15 @@ class BridgeWatch:
         margin: float | None = (self._bound_ms - beat.longest_ms) / 1000
         note = f"{beat.count} heartbeats, longest gap {beat.longest_ms / 1000:.2f} s"
         outcome = Outcome.HOLDS if beat.in_time else Outcome.VIOLATED
+        kernels: tuple[str, ...] = (qualified(beats_in_time.step), qualified(beats_in_time.finish))
         if vehicle not in self._instances:
-            outcome, margin = Outcome.UNKNOWN, None
+            outcome, margin, kernels = Outcome.UNKNOWN, None, NONE
             note = "the vehicle has no ICAROUS instance: there is no bridge to judge"
         elif not beat.count or self._end_ms is None:
-            outcome, margin = Outcome.UNKNOWN, None
+            outcome, margin, kernels = Outcome.UNKNOWN, None, NONE
             note = "no heartbeat seen" if not beat.count else "the messages stop too early"
         elif vehicle in self._downs:
-            outcome = Outcome.VIOLATED
+            outcome, kernels = Outcome.VIOLATED, NONE
             note = self._downs[vehicle]
         return Verdict(
             "G5",
@@ -109,4 +114,5 @@ class BridgeWatch:
             margin=margin,
             unit="s" if margin is not None else "",
             checks=beat.count,
+            kernels=kernels,
         )

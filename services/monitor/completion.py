@@ -6,16 +6,17 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
-from cratous.core.dubins import turn_radius_m
+from cratous.core.kernel import qualified
+from cratous.core.routing.dubins import turn_radius_m
 from cratous.core.well_clear import dips_to_zero
 from cratous.services.monitor.coverage import CoverageWatch
 from cratous.services.monitor.presence import Ending, Presence
 from cratous.services.monitor.promises import END, Watched, served_item
 from cratous.services.monitor.prospects import prospects
 from cratous.services.monitor.samples import Sample
-from cratous.spec.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission import AREAS, SEARCHES, Loiter, Mission, Position, Task, TaskKind
-from cratous.spec.plan import Plan
+from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
+from cratous.spec.mission.plan import Plan
 
 SERVED = 0.99
 """A search is served when the footprints covered at least this fraction of its line or point."""
@@ -41,6 +42,7 @@ class Doing:
     near_ms: int = 0
     touched: bool = False
     too_near: bool = False
+    judged_near: bool = False
 
 
 class CompletionWatch:
@@ -93,6 +95,8 @@ class CompletionWatch:
             task, who = self._kinds[number], doing.vehicle
             if not doing.active or who not in before or who not in after:
                 continue
+            if task.standoff_m or task.kind in (TaskKind.MUST_FLY, TaskKind.LOITER):
+                doing.judged_near = True
             if task.standoff_m:
                 leg = before[who], after[who]
                 doing.too_near |= comes_near(*leg, task.points[0], task.standoff_m)
@@ -164,8 +168,15 @@ class CompletionWatch:
             unit="% of the search" if margin is not None else "",
             checks=1,
             method=_method(self._kinds[task]),
+            kernels=self._kernels(task),
             evidence=evidence,
         )
+
+    def _kernels(self, task: int) -> tuple[str, ...]:
+        """The kernels that were asked about a task; none where messages alone say what became of it."""
+        seen = self._coverage.kernels.get(task)
+        near = qualified(dips_to_zero) if self._tasks[task].judged_near else None
+        return tuple(name for name in (seen, near) if name is not None)
 
     def _unseen(self, number: int) -> str:
         """What was not seen of the flight of a complete task that is judged by places; empty if nothing."""

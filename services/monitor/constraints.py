@@ -6,15 +6,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from cratous.core.timing import eligible, runs_forward
+from cratous.core.kernel import qualified
+from cratous.core.schedule.rows import eligible, runs_forward
+from cratous.services.mission.times import row_verdict
+from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok
+from cratous.services.monitor.plan_check import term_rows
 from cratous.services.monitor.presence import Ending, Presence
 from cratous.services.monitor.promises import CHOICE, Watched, eligible_item, fence_item, zones_of
 from cratous.services.monitor.samples import Sample
-from cratous.services.plan_check import term_rows
-from cratous.services.times import row_verdict
-from cratous.services.zones import distance_m, exact_leg_ok
-from cratous.spec.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission import Mission, Position, Zone
+from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
 ACTIVE, COMPLETE = "Active", "Complete"
 
@@ -86,6 +87,7 @@ class ConstraintWatch:
             unit="m",
             checks=fence.checks,
             method="leg_ok: locate, meets_boundary",
+            kernels=deciding(zone),
         )
 
     def verdicts(self, seen: Watched, ending: Ending) -> list[Verdict]:
@@ -142,4 +144,5 @@ class ConstraintWatch:
                 vehicles=tuple(flown_by),
                 checks=len(flown_by),
                 method="eligible",
+                kernels=(qualified(eligible),),
             )

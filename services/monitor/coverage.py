@@ -12,7 +12,9 @@ import math
 from itertools import pairwise
 from typing import Any
 
-from cratous.core.coverage import (
+from cratous.core.geofence.planar import edges_of, locate
+from cratous.core.kernel import Vec2, qualified
+from cratous.core.tasks.coverage import (
     area_m2,
     look,
     outline,
@@ -20,9 +22,8 @@ from cratous.core.coverage import (
     square_array,
     square_side_m,
 )
-from cratous.core.kernel import Vec2
-from cratous.core.polygon import edges_of, locate
-from cratous.services.frames import Projection
+from cratous.core.tasks.coverage_arrays import mark_seen
+from cratous.services.mission.frames import Projection
 from cratous.spec.mission import AREAS, SEARCHES, Mission, Task
 
 SAMPLE_M = 10.0
@@ -71,6 +72,8 @@ class CoverageWatch:
         searches = [t for t in mission.tasks if t.kind in SEARCHES]
         self._areas = {t.id: _Area(t) for t in searches if t.kind in AREAS}
         self._unseen = {t.id: sample(t) for t in searches if t.kind not in AREAS}
+        self.kernels: dict[int, str] = {}
+        """Who decided what was seen of a task, for those of which anything may have been."""
         self._total = {task: len(points) for task, points in self._unseen.items()}
 
     def state(self, body: Any, active: list[int]) -> None:
@@ -86,6 +89,7 @@ class CoverageWatch:
     def _look(self, task: int, corners: list[tuple[float, float]]) -> None:
         quad = [self._projection.to_local(*corner) for corner in corners]
         if task in self._areas:
+            self.kernels[task] = qualified(mark_seen)
             self._areas[task].look(quad)
             return
         low = [min(p[k] for p in quad) for k in (0, 1)]
@@ -94,7 +98,10 @@ class CoverageWatch:
 
         def seen(point: tuple[float, float]) -> bool:
             inside_box = all(low[k] <= point[k] <= high[k] for k in (0, 1))
-            return inside_box and locate(edges, Vec2(*point)) >= 0
+            if not inside_box:
+                return False
+            self.kernels[task] = qualified(locate)
+            return bool(locate(edges, Vec2(*point)) >= 0)
 
         self._unseen[task] = [p for p in self._unseen[task] if not seen(p)]
 

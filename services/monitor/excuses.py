@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from cratous.core.excuse_record import Loss, Moment
-from cratous.core.excuse_state import ANSWERS, FREE, NO_WAY, REFUSED, WAY_OUT, Tried
+from cratous.core.excuse.record import Loss, Moment
+from cratous.core.excuse.state import ANSWERS, FREE, NO_WAY, REFUSED, WAY_OUT, Tried
 
 SHOW = {"hdir": ("deg", 180 / math.pi), "hs": ("m/s", 1.0), "vs": ("m/s", 1.0), "alt": ("m", 1.0)}
 COLUMNS = (

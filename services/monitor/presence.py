@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from cratous.core.timeliness import in_time
+from cratous.core.authority.timeliness import in_time
 from cratous.services.monitor.samples import Sample
 from cratous.spec.mission import Traffic
 

@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Set
 from typing import NamedTuple
 
-from cratous.core.timing import runs_forward
+from cratous.core.schedule.rows import runs_forward
+from cratous.services.monitor.plan_check import row_choices
 from cratous.services.monitor.presence import Span, in_the_air
-from cratous.services.plan_check import row_choices
-from cratous.spec.asked import asked
-from cratous.spec.changes import asked_by
-from cratous.spec.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission import Mission, Zone
+from cratous.spec.mission.asked import asked
+from cratous.spec.mission.changes import asked_by
+from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
 CHOICE = "flight: no task of another choice of the relations"
 END = "end of mission"

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from cratous.core.timing import runs_forward
-from cratous.services.taking_part import absent
-from cratous.spec.changes import TASK_ADDED, split
+from cratous.core.schedule.rows import runs_forward
+from cratous.services.mission.taking_part import absent
 from cratous.spec.mission import Mission, Task
+from cratous.spec.mission.changes import TASK_ADDED, split
 
 OPEN = "not determined"
 

@@ -1,6 +1,6 @@
 """G2: well clear between every protected vehicle and every other aircraft, at every instant.
 
-A loss is a violation unless `core.excuse_watch` says that there was no way out; then it is excused,
+A loss is a violation unless `core.excuse.watch` says that there was no way out; then it is excused,
 with the manoeuvres that were refused as evidence.
 
 Each pair and step is one question to the kernel `violation_within`: is well clear lost at any
@@ -15,16 +15,17 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from cratous.core.excuse_record import Scene
-from cratous.core.excuse_watch import LossWatch, pair_excused
-from cratous.core.kernel import Vec2
+from cratous.core.excuse.record import Scene
+from cratous.core.excuse.watch import LossWatch, pair_excused
+from cratous.core.excuse.way_out import is_excused, way_out
+from cratous.core.kernel import Vec2, qualified
 from cratous.core.well_clear import violation_within
 from cratous.services.monitor.excuses import evidence, sentence
 from cratous.services.monitor.presence import Ending, Presence
 from cratous.services.monitor.promises import Watched, alone_item, pair_item, pairs_of
 from cratous.services.monitor.samples import Sample
-from cratous.spec.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission import Mission
+from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
 
 @dataclass
@@ -139,6 +140,7 @@ class SeparationWatch:
                 f"{pair.miss_m:.1f} m; {note}; "
                 f"{sentence(losses)}"
             )
+        asked = [violation_within, *((way_out, is_excused) if losses else ())]
         outcome = Outcome.HOLDS
         if lost:
             outcome = Outcome.EXCUSED if excused else Outcome.VIOLATED
@@ -156,6 +158,7 @@ class SeparationWatch:
             unit="m" if margin is not None else "",
             checks=pair.checks,
             method="violation_within, way_out" if losses else "violation_within",
+            kernels=tuple(map(qualified, asked)),
             evidence=evidence(losses) if losses else None,
         )
 

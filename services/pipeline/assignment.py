@@ -11,13 +11,13 @@ from collections.abc import Iterable
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.core.assignment import Assignment
+from cratous.core.assignment.problem import Assignment
 from cratous.services.bus import Envelope
 from cratous.services.pipeline.contexts import UNIQUE, Contexts
 from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
 from cratous.services.pipeline.offers import OPTIONS, Offered, Told, read, travel_of
 from cratous.services.pipeline.status import status
-from cratous.services.planning import mission_assign, reasons
+from cratous.services.planning import mission_assign, without_vehicles
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 
 NAME = "AssignmentTreeBranchBoundService"
@@ -113,14 +113,14 @@ def _found(inputs: Offered, rows: list[Any], tasks: Iterable[int]) -> mission_as
         )
     except BadInput as error:
         # only what is said of tasks better elsewhere is no mistake of ours
-        why = reasons.why_none(inputs)
+        why = without_vehicles.why_none(inputs)
         if not why:
             raise
         raise NoPlan(why) from error
     if found.assignment is None:
         reached = {row.DestinationTaskID for row in rows}
         missing = [f"the costs have no way to task {task}" for task in tasks if task not in reached]
-        raise NoPlan(reasons.why_none(inputs) or (*found.reasons, *missing))
+        raise NoPlan(without_vehicles.why_none(inputs) or (*found.reasons, *missing))
     return found
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, TypeVar
 
-from cratous.spec.limits import integer_of
+from cratous.spec.files.limits import integer_of
 
 RESPONSE = "uxas.messages.task.UniqueAutomationResponse"
 STATUS = "afrl.cmasi.ServiceStatus"

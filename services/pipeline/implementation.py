@@ -7,15 +7,15 @@ from collections.abc import Sequence
 from typing import Any
 
 from cratous.bridge import lmcp
+from cratous.services.mission.sensor import zoomed
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.places import RequestPlaces
 from cratous.services.planning.flyers import camera_for
 from cratous.services.planning.options import Option
 from cratous.services.planning.stages import hold_of
-from cratous.services.sensor import zoomed
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Camera, Position, Task
-from cratous.spec.plan import Hold
+from cratous.spec.mission.plan import Hold
 
 
 def offer(context: Context, task_id: int, options: Sequence[Option]) -> Any:

@@ -18,7 +18,7 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
-from cratous.core.assignment_steps import chain_holds
+from cratous.core.assignment.steps import chain_holds
 from cratous.services.bus import Envelope, Wake
 from cratous.services.pipeline.contexts import UNIQUE, Context, Contexts
 from cratous.services.pipeline.endings import ENDINGS, RESPONSE, newest, request_ended

@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from cratous.core.assignment import START, Branch
+from cratous.core.assignment.problem import START, Branch
 from cratous.services.pipeline.contexts import Context
 from cratous.services.planning.flyers import flyer_of
 from cratous.services.planning.inputs import Inputs

@@ -11,13 +11,13 @@ from math import radians
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
-from cratous.services.frames import Projection, compass
 from cratous.services.loading.places import Places
 from cratous.services.loading.uxas_cfg import Sent
 from cratous.services.loading.uxas_parts import point
+from cratous.services.mission.frames import Projection, compass
 from cratous.services.planning.routes import Routes
 from cratous.spec.mission import Mission, Position
-from cratous.spec.plan import Pose
+from cratous.spec.mission.plan import Pose
 
 _Spot = tuple[float, float, float, str]
 

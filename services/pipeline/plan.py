@@ -14,7 +14,7 @@ from dataclasses import replace
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.core.assignment import START, Placed
+from cratous.core.assignment.problem import START, Placed
 from cratous.services.bus import Bus, Envelope
 from cratous.services.pipeline.aggregator import RouteAggregatorService
 from cratous.services.pipeline.assignment import AssignmentTreeBranchBoundService
@@ -24,11 +24,11 @@ from cratous.services.pipeline.mission_source import MissionSource
 from cratous.services.pipeline.planner import RoutePlannerVisibilityService
 from cratous.services.pipeline.tasks import TaskService
 from cratous.services.pipeline.validator import AutomationRequestValidatorService
-from cratous.services.planning import reasons, stages
+from cratous.services.planning import stages, without_vehicles
 from cratous.services.planning.inputs import Inputs
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission import Mission
-from cratous.spec.plan import Plan, Pose
+from cratous.spec.mission.plan import Plan, Pose
 
 LIMIT_MS = 5000
 """How long a request may take [ms]; here no time passes while one is planned."""
@@ -101,7 +101,7 @@ def make_plan(
     if not inputs.wanted:
         return stages.nothing_left(mission, inputs.branches, inputs.fixed)
     if not mission.vehicles:
-        raise NoPlan(reasons.without_options(inputs))
+        raise NoPlan(without_vehicles.without_options(inputs))
     requests = requests_on(bus)
     source = MissionSource(inputs)
     with services_on(bus, inputs, Contexts(source), requests) as contexts:

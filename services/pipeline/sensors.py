@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
+from cratous.services.mission.sensor import Look, footprints
 from cratous.services.pipeline.status import status
-from cratous.services.sensor import Look, footprints
 from cratous.spec.mission import Camera
 
 NAME = "SensorManagerService"

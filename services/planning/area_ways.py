@@ -6,12 +6,14 @@ and all beyond a small number, are dropped with that reason. The rest get turns 
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Iterator, Sequence
-from functools import lru_cache
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple
 
-from cratous.core.coverage import (
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.routing.visibility import Roadmap, name_of
+from cratous.core.tasks.coverage import (
     area_m2,
     disc,
     look,
@@ -20,8 +22,7 @@ from cratous.core.coverage import (
     square_array,
     square_side_m,
 )
-from cratous.core.legs import first_bad_leg
-from cratous.core.sweep import (
+from cratous.core.tasks.sweep import (
     LANES_MOST,
     Piece,
     Strip,
@@ -38,13 +39,12 @@ from cratous.core.sweep import (
     sweep,
     unjoined_m,
 )
-from cratous.core.visibility import Roadmap, name_of
+from cratous.services.mission.sensor import elevation_rad, footprints, looks_over, sample_line
 from cratous.services.planning.flyers import HEADING_STEP_DEG, Flyer, Way, flight_ms, no_way
 from cratous.services.planning.smoothing import MARGIN
 from cratous.services.planning.zones import roadmaps
-from cratous.services.sensor import elevation_rad, footprints, looks_over, sample_line
 from cratous.spec.mission import Camera, Pattern, Position, Task, View, Zone
-from cratous.spec.plan import Pose
+from cratous.spec.mission.plan import Pose
 
 OPTIONS_MOST = 4
 """How many ways over an area are offered."""
@@ -78,6 +78,7 @@ class _Site(NamedTuple):
     height_m: float
     vertices: tuple[tuple[float, float], ...]
     side_m: float
+    squares: Callable[[], Any]
 
 
 def area_ways(
@@ -86,7 +87,9 @@ def area_ways(
     """A few ways over the area for each wanted view, shortest first, and those not offered."""
     vertices = outline(task)
     height_m = flyer.alt_m - terrain_m
-    site = _Site(task, flyer, camera, height_m, vertices, square_side_m(vertices))
+    side_m = square_side_m(vertices)
+    squares = functools.cache(functools.partial(square_array, vertices, side_m))
+    site = _Site(task, flyer, camera, height_m, vertices, side_m, squares)
     maps = roadmaps(zones, flyer.radius_m)
     views = (task.view, *task.views)
     for view in views[:VIEWS_MOST]:
@@ -157,9 +160,6 @@ def _broken_lane(candidate: Candidate, zones: Sequence[Zone]) -> str:
     return ""
 
 
-_squares = lru_cache(maxsize=8)(square_array)
-
-
 def _share(
     site: _Site,
     view: View | None,
@@ -175,7 +175,7 @@ def _share(
     if len(places) > MEASURED_MOST:
         return None
     looks = looks_over(places, view, site.height_m)
-    centres = _squares(site.vertices, site.side_m)
+    centres = site.squares()
     seen = np.zeros(len(centres), np.bool_)
     quads = footprints(looks, site.height_m, site.camera, (1 + MARGIN) / 2)
     look(centres, site.side_m, quads, seen)

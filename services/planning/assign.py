@@ -2,7 +2,7 @@
 
 The arrays of a branch go to the compiled search. Where they do not say all of it (upper limits
 between tasks, laps), each solution gets its times from a `Settler`, bounds of the arrays hold all
-the same, and what is left between is listed chain by chain (`core.assignment_chains`). A solution
+the same, and what is left between is listed chain by chain (`core.assignment.chains`). A solution
 is returned only if the proved checker accepts its schedule (`replayed`). `optimal` is said only of
 what `assign_certificate` can show; that is done by `certified` there, so here a status is
 `feasible` until then.
@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
-from cratous.core.assignment_anytime import (
+from cratous.core.assignment.anytime import (
     NONE,
     Moves,
     Proof,
@@ -26,12 +26,12 @@ from cratous.core.assignment_anytime import (
     settle_bound,
     timed,
 )
-from cratous.core.assignment_chains import chains_below
-from cratous.core.assignment_instance import TASKS_MAX, Instance
-from cratous.core.assignment_order import by_sets
-from cratous.core.assignment_refute import DEALS_TASKS, look_ahead, refute
-from cratous.core.assignment_repair import repaired
-from cratous.core.assignment_settle import Settler
+from cratous.core.assignment.by_sets import by_sets
+from cratous.core.assignment.chains import chains_below
+from cratous.core.assignment.instance import TASKS_MAX, Instance
+from cratous.core.assignment.layers import DEALS_TASKS, look_ahead, refute
+from cratous.core.assignment.repair import repaired
+from cratous.core.assignment.settlement import Settler
 from cratous.services.planning.assign_problem import (
     Part,
     arrays,
@@ -41,7 +41,7 @@ from cratous.services.planning.assign_problem import (
     settler,
 )
 from cratous.services.planning.assign_replay import replayed
-from cratous.spec.assignment import ORDER, TIME, AssignmentProblem, Choice, Solution, Step
+from cratous.spec.assignment.search import ORDER, TIME, AssignmentProblem, Choice, Solution, Step
 
 WORK = 16_000_000
 """Tasks that are decoded in one annealing: steps times tasks."""

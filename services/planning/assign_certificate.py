@@ -21,20 +21,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cratous.core.assignment_anytime import NONE, Proof, estimate
-from cratous.core.assignment_chains import chains_below
-from cratous.core.assignment_check import least_cost
-from cratous.core.assignment_order import by_sets, is_sets
-from cratous.core.whole_file import write_atomically
+from cratous.core.assignment.anytime import NONE, Proof, estimate
+from cratous.core.assignment.by_sets import by_sets, is_sets
+from cratous.core.assignment.chains import chains_below
+from cratous.core.assignment.refutation_check import least_cost
+from cratous.core.files.whole_file import write_atomically
+from cratous.services.logs.records import from_data
 from cratous.services.planning.assign_problem import Part, arrays, check, parts, settler
 from cratous.services.planning.assign_replay import replayed
 from cratous.services.planning.assign_solvers import none_below, schedule_holds
 from cratous.services.planning.assign_vectors import rows_of
-from cratous.services.records import from_data
-from cratous.spec.assignment import AssignmentProblem, Solution, Step
+from cratous.spec.assignment.search import AssignmentProblem, Solution, Step
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import STATES, json_of
-from cratous.spec.text_file import bytes_of
+from cratous.spec.files.limits import STATES, json_of
+from cratous.spec.files.text_file import bytes_of
 
 FORMAT = "cratous-assignment-certificate/1"
 BYTES_MAX = 50_000_000

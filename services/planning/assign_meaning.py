@@ -17,8 +17,8 @@ import z3
 
 from cratous.services.planning.assign_problem import Part, parts
 from cratous.spec import algebra
-from cratous.spec.algebra_meaning import bounds_all, quote, tasks
-from cratous.spec.assignment import TIME, AssignmentProblem
+from cratous.spec.algebra.meaning import bounds_all, quote, tasks
+from cratous.spec.assignment.search import TIME, AssignmentProblem
 
 
 @dataclass(frozen=True)

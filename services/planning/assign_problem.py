@@ -2,7 +2,7 @@
 
 Every mistake is named (BadInput with the item); nothing is repaired. A branch (one choice of every
 `+`) is *plain* if its rows bound starts from below and single ends from above and waits are free;
-then its arrays (`core.assignment_instance`) say all of it. Of any other they say less: what costs
+then its arrays (`core.assignment.instance`) say all of it. Of any other they say less: what costs
 less than a bound of the arrays costs less in the branch.
 """
 
@@ -15,7 +15,7 @@ from itertools import islice
 
 import numpy as np
 
-from cratous.core.assignment_instance import (
+from cratous.core.assignment.instance import (
     FAR,
     TASKS_MAX,
     TIME_MAX_MS,
@@ -23,13 +23,13 @@ from cratous.core.assignment_instance import (
     instance,
     is_plain,
 )
-from cratous.core.assignment_refute import look_ahead
-from cratous.core.assignment_settle import Settler
-from cratous.core.timing import runs_forward
-from cratous.spec import algebra, algebra_meaning
-from cratous.spec.assignment import ORDER, TIME, AssignmentProblem, Rows
-from cratous.spec.errors import BadInput
-from cratous.spec.plan import (
+from cratous.core.assignment.layers import look_ahead
+from cratous.core.assignment.settlement import Settler
+from cratous.core.schedule.rows import runs_forward
+from cratous.spec import algebra
+from cratous.spec.algebra import meaning as algebra_meaning
+from cratous.spec.assignment.search import ORDER, TIME, AssignmentProblem, Rows
+from cratous.spec.constraint_rows import (
     AFTER_END,
     AFTER_START,
     NOT_AFTER,
@@ -38,6 +38,7 @@ from cratous.spec.plan import (
     WITHIN_START,
     Row,
 )
+from cratous.spec.errors import BadInput
 
 BRANCHES_MAX = 4096
 

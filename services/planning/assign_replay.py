@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from cratous.core.assignment_steps import chain_holds, wait_holds, weighted
-from cratous.core.earliest import rows_hold
-from cratous.core.timing import eligible, later
+from cratous.core.assignment.earliest_times import rows_hold
+from cratous.core.assignment.steps import chain_holds, wait_holds, weighted
+from cratous.core.schedule.rows import eligible, later
 from cratous.services.planning.assign_problem import Part, binding, parts
-from cratous.spec import algebra_runs
-from cratous.spec.assignment import ORDER, AssignmentProblem, Choice, Step
+from cratous.spec.algebra import runs as algebra_runs
+from cratous.spec.assignment.search import ORDER, AssignmentProblem, Choice, Step
 from cratous.spec.errors import BadInput
 
 

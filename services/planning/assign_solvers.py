@@ -25,7 +25,7 @@ from cratous.services.planning.assign_meaning import (
 )
 from cratous.services.planning.assign_problem import Part, check, parts
 from cratous.services.planning.assign_replay import branch_of
-from cratous.spec.assignment import AssignmentProblem, Step
+from cratous.spec.assignment.search import AssignmentProblem, Step
 
 EFFORT = 60_000_000
 """z3's resource limit for one question, about 15 s."""

@@ -10,12 +10,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, NamedTuple, TypeVar
 
+from cratous.services.logs.records import from_data
 from cratous.services.planning.assign_problem import check
-from cratous.services.records import from_data
 from cratous.spec import algebra
-from cratous.spec.assignment import MINMAX, AssignmentProblem, Choice, Cost, Rows
+from cratous.spec.assignment.search import MINMAX, AssignmentProblem, Choice, Cost, Rows
 from cratous.spec.errors import BadInput
-from cratous.spec.limits import TRAVEL_CELLS, at_most
+from cratous.spec.files.limits import TRAVEL_CELLS, at_most
 
 T = TypeVar("T")
 

@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from cratous.core.dubins import pose_after, turn_radius_m
-from cratous.core.visibility import start_point
+from cratous.core.routing.dubins import pose_after, turn_radius_m
+from cratous.core.routing.visibility import start_point
 from cratous.spec.mission import Camera, Position, Task, Vehicle
-from cratous.spec.plan import Pose
+from cratous.spec.mission.plan import Pose
 
 BANK_RESERVE = 1.1
 """Planned turns are this much wider than the tightest ones, so that the autopilot can correct."""

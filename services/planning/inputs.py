@@ -9,18 +9,18 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from cratous.core.assignment import Branch, Fixed
+from cratous.core.assignment.problem import Branch, Fixed
 from cratous.services.planning import stages
 from cratous.services.planning.mission_assign import problem_of
 from cratous.services.planning.options import Dropped, Option, expand
 from cratous.services.planning.routes import Routes
 from cratous.services.planning.zones import hard_zones
 from cratous.spec.algebra import Term
-from cratous.spec.algebra_meaning import tasks
-from cratous.spec.assignment import AssignmentProblem
+from cratous.spec.algebra.meaning import tasks
+from cratous.spec.assignment.search import AssignmentProblem
+from cratous.spec.constraint_rows import AFTER_END
 from cratous.spec.mission import Mission, Zone
-from cratous.spec.plan import Pose
-from cratous.spec.schedule import AFTER_END
+from cratous.spec.mission.plan import Pose
 
 
 @dataclass

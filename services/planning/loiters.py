@@ -1,7 +1,7 @@
 """The loiters of an assignment: where each vehicle waits, from when to when, so that all relations hold.
 
 Who does what in which order is given, with an instant before which each task does not start. The
-times are the best schedule of these chains under the relations (`core.earliest`, by the proved
+times are the best schedule of these chains under the relations (`core.assignment.earliest_times`, by the proved
 kernel `raised`); it is taken only if the proved checker accepts it (`replayed`: legs, laps, order,
 timing). Before a task a vehicle waits none or whole laps of a circle at its start. Times in ms after
 mission start.
@@ -12,18 +12,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from cratous.core.assignment_instance import TIME_MAX_MS
-from cratous.core.assignment_settle import Settler
-from cratous.core.earliest import earliest
-from cratous.core.timing import runs_forward
+from cratous.core.assignment.earliest_times import earliest
+from cratous.core.assignment.instance import TIME_MAX_MS
+from cratous.core.assignment.settlement import Settler
+from cratous.core.schedule.rows import runs_forward
 from cratous.services.planning.assign_problem import Part, arrays, binding, parts
 from cratous.services.planning.assign_replay import replayed
 from cratous.services.planning.options import Option
 from cratous.services.planning.stages import hold_of
-from cratous.spec.assignment import AssignmentProblem, Step
+from cratous.spec.assignment.search import AssignmentProblem, Step
+from cratous.spec.constraint_rows import NOT_BEFORE, Row
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission import Zone
-from cratous.spec.plan import NOT_BEFORE, Hold, Row
+from cratous.spec.mission.plan import Hold
 
 
 class Given(NamedTuple):

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from cratous.core.assignment import START, Assignment, Branch, Fixed, Placed
+from cratous.core.assignment.problem import START, Assignment, Branch, Fixed, Placed
 from cratous.services.planning import reasons
 from cratous.services.planning.assign import Limits, solve
 from cratous.services.planning.assign_certificate import certified, verify
@@ -20,8 +20,8 @@ from cratous.services.planning.assign_problem import binding
 from cratous.services.planning.assign_replay import branch_of
 from cratous.services.planning.options import Option
 from cratous.spec.algebra import Term, format_term
-from cratous.spec.algebra_meaning import tasks as tasks_of
-from cratous.spec.assignment import CUMULATIVE, MINMAX, AssignmentProblem, Choice, Solution
+from cratous.spec.algebra.meaning import tasks as tasks_of
+from cratous.spec.assignment.search import CUMULATIVE, MINMAX, AssignmentProblem, Choice, Solution
 from cratous.spec.mission import Mission
 
 NODES = 1_000_000

@@ -12,8 +12,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from cratous.core.legs import first_bad_leg
-from cratous.core.visibility import circle, name_of
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.routing.visibility import circle, name_of
+from cratous.services.mission.sensor import sample_distance_m, zoomed
 from cratous.services.planning.area_ways import area_ways
 from cratous.services.planning.flyers import Flyer as Flyer
 from cratous.services.planning.flyers import Way, camera_for
@@ -26,7 +27,6 @@ from cratous.services.planning.point_ways import (
     point_ways,
 )
 from cratous.services.planning.smoothing import ENOUGH
-from cratous.services.sensor import sample_distance_m, zoomed
 from cratous.spec.mission import (
     AREAS,
     SEARCHES,
@@ -37,7 +37,7 @@ from cratous.spec.mission import (
     TaskKind,
     Zone,
 )
-from cratous.spec.plan import Pose
+from cratous.spec.mission.plan import Pose
 
 SEEN = {
     TaskKind.LINE_SEARCH: "the line",

@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 
-from cratous.core.dubins import LEFT, RIGHT
-from cratous.core.laps import flown, lap_length_m, lap_of
+from cratous.core.routing.dubins import LEFT, RIGHT
+from cratous.core.routing.laps import flown, lap_length_m, lap_of
+from cratous.services.mission.sensor import coverage, elevation_rad, share_seen, view_distance_m
 from cratous.services.planning.flyers import (
     HEADING_STEP_DEG,
     MOMENT_MS,
@@ -19,9 +20,8 @@ from cratous.services.planning.flyers import (
     straight,
 )
 from cratous.services.planning.smoothing import ENOUGH, line_path
-from cratous.services.sensor import coverage, elevation_rad, share_seen, view_distance_m
 from cratous.spec.mission import Camera, Loiter, Position, Task, View
-from cratous.spec.plan import Pose
+from cratous.spec.mission.plan import Pose
 
 LOITER_ENTRIES = 8
 LAPS_MAX = 10_000

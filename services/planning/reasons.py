@@ -1,6 +1,6 @@
-"""Why no plan exists, in the user's terms: missing options, missing routes, rows that clash.
+"""Why no plan exists, in the user's terms: rows that clash.
 
-Of the rows a smallest set is sought that contradict each other (deletion filter: without any one
+What has no vehicle at all is said by `without_vehicles`. Of the rows a smallest set is sought that contradict each other (deletion filter: without any one
 of them there is a plan). A latest end is reported with the earliest end that the task can reach.
 """
 
@@ -8,17 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
-from cratous.core.assignment_anytime import NONE
+from cratous.core.assignment.anytime import NONE
 from cratous.services.planning.assign import Limits, search
 from cratous.services.planning.assign_problem import Part, parts
-from cratous.spec.assignment import MINMAX, AssignmentProblem, Solution
-from cratous.spec.plan import Row
-from cratous.spec.schedule import NOT_AFTER, NOT_BEFORE, WITHIN_END, WITHIN_START
-
-if TYPE_CHECKING:
-    from cratous.services.planning.inputs import Inputs
+from cratous.spec.assignment.search import MINMAX, AssignmentProblem, Solution
+from cratous.spec.constraint_rows import NOT_AFTER, NOT_BEFORE, WITHIN_END, WITHIN_START, Row
 
 PROBES = 20_000
 """Nodes per question asked of the search while looking for reasons."""
@@ -32,66 +27,6 @@ Places = Callable[[str], str]
 def nowhere(_text: str) -> str:
     """Nothing is known of files."""
     return ""
-
-
-def why_none(inputs: Inputs) -> tuple[str, ...]:
-    """What no vehicle can do or reach."""
-    return without_options(inputs) or without_routes(inputs)
-
-
-def without_options(inputs: Inputs) -> tuple[str, ...]:
-    """A reason for each wanted task that no vehicle can fly."""
-    reasons = []
-    for task_id in inputs.wanted:
-        if any(option.task_id == task_id for option in inputs.options):
-            continue
-        causes: dict[str, None] = {}
-        for drop in inputs.dropped:
-            if drop.task_id == task_id:
-                causes.update((f"vehicle {v}: {drop.reason}", None) for v in drop.vehicles)
-        said = "; ".join((*causes, *_absent(inputs, task_id)))
-        label = inputs.mission.task(task_id).label
-        named = f"task {task_id}" + (f" ({label})" if label else "")
-        reasons.append(f"no vehicle can do {named}: {said or 'no vehicle is eligible'}")
-    return tuple(reasons)
-
-
-def without_routes(inputs: Inputs) -> tuple[str, ...]:
-    """A reason for each wanted task that no vehicle can reach, from its start or another task."""
-    reasons = []
-    options, routes = inputs.options, inputs.routes
-    for task_id in inputs.wanted:
-        mine = [k for k, option in enumerate(options) if option.task_id == task_id]
-        causes: dict[str, None] = {}
-        reached = False
-        for k in mine:
-            for v, vehicle in enumerate(inputs.mission.vehicles):
-                if vehicle.id not in options[k].vehicles:
-                    continue
-                before = [-1, *(j for j, other in enumerate(options) if other.task_id != task_id)]
-                for j in before:
-                    if routes.travel_ms(v, j, k) is not None:
-                        reached = True
-                        break
-                if reached:
-                    break
-                causes[f"vehicle {vehicle.id}: {routes.route(v, -1, k).reason}"] = None
-            if reached:
-                break
-        if mine and not reached:
-            said = "; ".join((*causes, *_absent(inputs, task_id)))
-            reasons.append(f"no vehicle can reach task {task_id}: {said}")
-    return tuple(reasons)
-
-
-def _absent(inputs: Inputs, task_id: int) -> list[str]:
-    """The eligible vehicles that take no part, and why."""
-    eligible = inputs.mission.task(task_id).eligible
-    return [
-        f"vehicle {vehicle}: {why}"
-        for vehicle, why in inputs.absent.items()
-        if not eligible or vehicle in eligible
-    ]
 
 
 Question = tuple[bool | None, int | None]

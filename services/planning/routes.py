@@ -9,13 +9,13 @@ from typing import Protocol
 
 import numpy as np
 
-from cratous.core.assignment import START
-from cratous.core.routing import FOUND
-from cratous.core.visibility import Roadmap, Route, route, routes
+from cratous.core.assignment.problem import START
+from cratous.core.routing.bulk import FOUND
+from cratous.core.routing.visibility import Roadmap, Route, route, routes
 from cratous.services.planning.options import Flyer, flight_ms, flyer_of
 from cratous.services.planning.zones import roadmaps
 from cratous.spec.mission import Mission, Zone
-from cratous.spec.plan import Pose
+from cratous.spec.mission.plan import Pose
 
 Ends = tuple[Pose, Flyer, Pose]
 """What a route depends on: where it begins, the class of the vehicle, where it ends."""

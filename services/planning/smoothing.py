@@ -11,10 +11,10 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
-from cratous.core.dubins import cut, dubins, polyline_length_m
-from cratous.services.sensor import SAMPLE_M, covered_by, sample_line, view_distance_m
+from cratous.core.routing.dubins import cut, dubins, polyline_length_m
+from cratous.services.mission.sensor import SAMPLE_M, covered_by, sample_line, view_distance_m
 from cratous.spec.mission import Camera, Position, Task, View
-from cratous.spec.plan import Pose
+from cratous.spec.mission.plan import Pose
 
 if TYPE_CHECKING:
     import numpy as np

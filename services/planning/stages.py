@@ -10,15 +10,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
 from typing import Any
 
-from cratous.core.assignment import START, Assignment, Branch, Fixed, without_order
-from cratous.core.legs import first_bad_leg
-from cratous.core.visibility import circle, name_of, start_point
+from cratous.core.assignment.problem import START, Assignment, Branch, Fixed, without_order
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.routing.visibility import circle, name_of, start_point
 from cratous.services.planning.options import Option
 from cratous.services.planning.routes import Routes
-from cratous.spec import algebra, algebra_meaning, asked
+from cratous.spec import algebra
+from cratous.spec.algebra import meaning as algebra_meaning
 from cratous.spec.errors import BadInput, NoPlan
-from cratous.spec.mission import Mission, Zone
-from cratous.spec.plan import Hold, Plan, PlanItem, Pose
+from cratous.spec.mission import Mission, Zone, asked
+from cratous.spec.mission.plan import Hold, Plan, PlanItem, Pose
 
 BRANCH_LIMIT = 64
 """So many ways to resolve `+` are looked at for which ways between tasks are needed at all."""

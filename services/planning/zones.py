@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from cratous.core.visibility import Roadmap
+from cratous.core.routing.visibility import Roadmap
 from cratous.services.loading.polygons import padded
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Zone, ZoneKind

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from cratous.core.whole_file import NO_ROOM, Workspace, cannot_write, in_turn, sync
+from cratous.core.files.whole_file import NO_ROOM, Workspace, cannot_write, in_turn, sync
 from cratous.services.results.names import MANIFEST_NAME
 from cratous.services.results.ownership import manifest_text
 from cratous.services.results.swap import (

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-FORMAT = "cratous-report/1"
+FORMAT = "cratous-report/2"
+FORMER = "cratous-report/1"
+"""It listed the whole ledger as proofs, and no kernels of a verdict."""
 REPORT_NAME, HTML_NAME, MAP_NAME = "report.json", "report.html", "map.svg"
 LOG_NAME, CERTIFICATE_NAME = "log.sqlite", "certificate.json"
 MANIFEST_NAME = "manifest.json"

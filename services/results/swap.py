@@ -18,7 +18,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from cratous.core.whole_file import LOCK, dead, sync
+from cratous.core.files.whole_file import LOCK, dead, sync
 from cratous.services.results.names import MANIFEST_NAME, REPORT_NAME
 from cratous.services.results.ownership import is_plain, look
 from cratous.spec.errors import BadInput

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.core.contracts.checklists import free_after, list_complete, owns
-from cratous.core.legs import first_bad_leg
+from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.services.bus import Envelope
 from cratous.services.planning.zones import hard_zones
 from cratous.services.uxas.message_source import MessageSource

@@ -11,11 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from cratous.bridge.port import FULL_POLICIES, Address, Limits, Port, address
-from cratous.services.bus import Identity
-from cratous.services.uxas.bridges import Bridge, Rules
-from cratous.services.uxas.frame import Host
-from cratous.services.uxas.settings import (
+from cratous.bridge.port import FULL_POLICIES, Limits, Port
+from cratous.services.loading.uxas_settings import (
     Attr,
     Entry,
     choice,
@@ -25,6 +22,9 @@ from cratous.services.uxas.settings import (
     values_of,
     whole,
 )
+from cratous.services.uxas.bridge_entry import Children, Given
+from cratous.services.uxas.bridges import Bridge
+from cratous.services.uxas.zyre import zyre_bridge
 from cratous.spec.errors import BadInput
 
 ZMQ_SCHEMES = ("tcp", "ipc", "inproc", "udp")
@@ -49,55 +49,6 @@ EXTERNAL = {"SubscribeToExternalMessage": {"MessageType": Attr(needed=True)}}
 TRANSFORM = {
     "TransformReceivedMessage": {"MessageType": Attr(needed=True), "Alias": Attr(needed=True)}
 }
-
-Children = dict[str, list[dict[str, Any]]]
-
-
-@dataclass(frozen=True)
-class Given:
-    """An entry of a configuration after its check: values, children by tag, and the context."""
-
-    host: Host
-    entry: Entry
-    values: dict[str, Any]
-    children: Children
-    identity: Identity
-    name: str
-    context: Any
-
-    def prefixes(self, tag: str = "SubscribeToMessage") -> tuple[str, ...]:
-        """The subscribed prefixes, without doubles."""
-        return tuple(dict.fromkeys(c["MessageType"] for c in self.children.get(tag, ())))
-
-    def limits(self) -> Limits:
-        """The limits that it states."""
-        v = self.values
-        return Limits(
-            payload_bytes=v["MaxMessageSize_bytes"],
-            waiting_bytes=v["MaxWaiting_bytes"],
-            when_full=v["WhenFull"],
-            frame_s=v["FrameTimeout_s"],
-            connections=v["MaxConnections"],
-            high_water=v["HighWaterMark"],
-        )
-
-    def address(self, name: str, schemes: tuple[str, ...]) -> Address:
-        """An attribute as an address; one with `*` is said to listen everywhere."""
-        found = address(self.values[name], schemes, where=self.entry.where, item=name, free=True)
-        if found.everywhere:
-            self.host.log(
-                "WARN", f"{self.entry.where}: {name}={found.text} listens on all interfaces"
-            )
-        return found
-
-    def bridge(self, port: Port, **rules: Any) -> Bridge:
-        """The bridge of a port."""
-        made = Rules(
-            prefixes=self.prefixes(),
-            self_generated=self.values["ConsiderSelfGenerated"],
-            **rules,
-        )
-        return Bridge(self.name, self.host, self.identity, port, made)
 
 
 @dataclass(frozen=True)
@@ -227,8 +178,6 @@ def _impact(given: Given) -> Bridge:
 
 
 def _zyre(given: Given) -> Bridge:
-    from cratous.services.uxas.zyre import zyre_bridge
-
     return zyre_bridge(given)
 
 

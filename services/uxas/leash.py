@@ -13,8 +13,8 @@ from math import radians, tan
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
-from cratous.core.circling import broken_by
-from cratous.core.visibility import name_of
+from cratous.core.routing.loiter_discs import broken_by
+from cratous.core.routing.visibility import name_of
 from cratous.services.bus import Envelope
 from cratous.services.pipeline.contexts import Contexts, reasons_of
 from cratous.services.pipeline.status import status

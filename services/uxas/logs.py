@@ -12,10 +12,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO
 
+from cratous.services.loading.uxas_settings import SEVERITIES
 from cratous.spec.errors import BadInput
-from cratous.spec.printable import printable
-
-SEVERITIES = ("DEBUG", "INFO", "WARN", "ERROR")
+from cratous.spec.files.printable import printable
 
 
 class Logs:

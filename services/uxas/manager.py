@@ -16,13 +16,21 @@ from typing import Any
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus, Envelope
 from cratous.services.loading.problems import refuse
+from cratous.services.loading.uxas_settings import (
+    Attr,
+    Configuration,
+    Entry,
+    entry,
+    nearest,
+    values_of,
+)
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import TASKS, TaskService
 from cratous.services.pipeline.world import World
 from cratous.services.uxas import bridge_kinds, own, registry
+from cratous.services.uxas.bridge_entry import Given
 from cratous.services.uxas.bridges import CREATE, KILL, Bridge
 from cratous.services.uxas.frame import Host
-from cratous.services.uxas.settings import Attr, Configuration, Entry, entry, nearest, values_of
 from cratous.spec.errors import BadInput, CratousError
 
 FIRST_ID = 50
@@ -155,9 +163,7 @@ class ServiceManager:
         identity = self._host.identity(number)
         try:
             bridge = kind.make(
-                bridge_kinds.Given(
-                    self._host, item, values, children, identity, name, self._context
-                )
+                Given(self._host, item, values, children, identity, name, self._context)
             )
         except BadInput as error:
             if error.where == item.where:

@@ -2,7 +2,7 @@
 
 The module lies beside the configuration, or is importable. Only the configuration's own file can
 name one; CreateNewService makes those that it names, and no others. How to write one:
-docs/own-service.md.
+docs/guides/own-service.md.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ import importlib.util
 from pathlib import Path
 from typing import Any
 
+from cratous.services.loading.uxas_settings import Configuration
 from cratous.services.uxas.registry import KINDS, Kind
-from cratous.services.uxas.settings import Configuration
 from cratous.spec.errors import BadInput
 
 _loaded: dict[str, Kind] = {}

@@ -21,13 +21,13 @@ import zmq
 from cratous.bridge import lmcp
 from cratous.bridge.port import is_due, often
 from cratous.services.bus import Bus, Envelope
+from cratous.services.loading.uxas_settings import Configuration
 from cratous.services.pipeline.status import status
 from cratous.services.uxas.bridge_kinds import curve_of
 from cratous.services.uxas.frame import Clock, Host
 from cratous.services.uxas.hub import Hub, RemoteBus, Satellite
 from cratous.services.uxas.logs import Logs
 from cratous.services.uxas.manager import ServiceManager, startup
-from cratous.services.uxas.settings import Configuration
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 
 _LONGEST_POLL_MS = 200  # so that a signal or a discrete clock is seen

@@ -9,7 +9,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from cratous.services.message_logger import MessageLogger
+from cratous.services.loading.uxas_settings import Attr, Entry, choice, flag, number, whole
+from cratous.services.logs.message_logger import MessageLogger
 from cratous.services.pipeline import (
     aggregator,
     assignment,
@@ -27,7 +28,6 @@ from cratous.services.uxas.daidalus import detection, response
 from cratous.services.uxas.daidalus import parameters as daidalus
 from cratous.services.uxas.frame import Host
 from cratous.services.uxas.message_source import MessageSource
-from cratous.services.uxas.settings import Attr, Entry, choice, flag, number, whole
 from cratous.spec.errors import BadInput
 
 Make = Callable[["Host", Entry, dict[str, Any], str, int], Any]

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope, Send, Wake
+from cratous.services.loading.uxas_settings import Attr, Entry, values_of, whole
 from cratous.services.uxas.frame import Clock, Host
-from cratous.services.uxas.settings import Attr, Entry, values_of, whole
 from cratous.spec.errors import BadInput
 
 STARTUP = "uxas.messages.uxnative.StartupComplete"

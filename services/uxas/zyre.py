@@ -15,7 +15,7 @@ from cratous.bridge.port import Incoming
 from cratous.bridge.zre import ZreNode
 from cratous.bridge.zre_peer import Event
 from cratous.services.bus import Envelope
-from cratous.services.uxas.bridge_kinds import Given
+from cratous.services.uxas.bridge_entry import Given
 from cratous.services.uxas.bridges import Bridge, Rules, number, pack
 from cratous.spec.errors import BadInput
 

@@ -1,7 +1,7 @@
 """DAIDALUS_WCV_Detection: who will take well clear from a vehicle, when, and which manoeuvres keep it.
 
 AirVehicleState of the ownship and of others -> WellClearViolationIntervals at each state of the
-ownship, from the proved engine (`core.daa_session`); DAIDALUSConfiguration once, before the first.
+ownship, from the proved engine (`core.daa.session`); DAIDALUSConfiguration once, before the first.
 Intervals are of headings (true) and of airspeeds, as DAIDALUS has them with wind; without wind these
 are courses and ground speeds. A dimension of which nothing can be said (the own value is out of its
 range) is one NEAR interval over the whole range, and a ServiceStatus says why.
@@ -14,13 +14,13 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
-from cratous.core.daa_session import Instant, Session
-from cratous.core.daa_state import UNKNOWN, Guidance
-from cratous.core.timeliness import in_time
+from cratous.core.authority.timeliness import in_time
+from cratous.core.daa.session import Instant, Session
+from cratous.core.daa.state import UNKNOWN, Guidance
 from cratous.services.bus import Envelope
 from cratous.services.uxas.daidalus.parameters import configuration_message
 from cratous.services.uxas.daidalus.states import Wind, air_vector, aircraft, comparable, wind_of
-from cratous.spec.daa import FAR, NEAR, RECOVERY, REGIONS, Parameters
+from cratous.spec.daa.parameters import FAR, NEAR, RECOVERY, REGIONS, Parameters
 from cratous.spec.errors import BadInput
 
 STATE, STARTED = "afrl.cmasi.AirVehicleState", "uxas.messages.uxnative.StartupComplete"

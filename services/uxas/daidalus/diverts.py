@@ -13,11 +13,11 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
+from cratous.core.avoidance.manoeuvre import Ability, Motion, fly_to
+from cratous.core.avoidance.prediction import after
+from cratous.core.avoidance.resolution import turn_back_s
 from cratous.core.contracts.responses import heading_blocked, value_blocked
-from cratous.core.legs import first_bad_leg
-from cratous.core.manoeuvre import Ability, Motion, fly_to
-from cratous.core.prediction import after
-from cratous.core.resolution import turn_back_s
+from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.services.uxas.daidalus.detection import SERIES
 from cratous.services.uxas.daidalus.states import Wind
 from cratous.spec.mission import Position, Zone

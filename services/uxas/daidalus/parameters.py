@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
-from cratous.services.uxas.settings import Attr, Entry, choice, flag, number, whole
-from cratous.spec.daa import (
+from cratous.services.loading.uxas_settings import Attr, Entry, choice, flag, number, whole
+from cratous.spec.daa.parameters import (
     DEG,
     DETECTORS,
     FAR,
@@ -27,7 +27,7 @@ from cratous.spec.daa import (
     Parameters,
     Volume,
 )
-from cratous.spec.daa_presets import named_or_file
+from cratous.spec.daa.presets import named_or_file
 from cratous.spec.errors import BadInput
 
 CONFIGURATION = "Configuration"
@@ -177,7 +177,7 @@ def _changed(entry: Entry, values: Mapping[str, Any]) -> Parameters:
         if name in entry.attributes
     }
     made = replace(found, **changes)
-    from cratous.spec.daa_check import check
+    from cratous.spec.daa.consistency import check
 
     check(made, entry.where)
     if not made.alerters or not made.alerters[0].levels:

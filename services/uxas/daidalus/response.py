@@ -17,12 +17,12 @@ from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
+from cratous.core.authority.gate import gives_way
+from cratous.core.authority.right_of_way import must_act
+from cratous.core.authority.timeliness import in_time, lasted
+from cratous.core.avoidance.manoeuvre import Ability
 from cratous.core.contracts.responses import Response, loss_is_soon, response_step
-from cratous.core.gate import gives_way
-from cratous.core.legs import first_bad_leg
-from cratous.core.manoeuvre import Ability
-from cratous.core.right_of_way import must_act
-from cratous.core.timeliness import in_time, lasted
+from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.services.bus import Envelope
 from cratous.services.uxas.daidalus.diverts import (
     RESUME_REGIONS,
@@ -48,7 +48,7 @@ from cratous.spec.contracts.responses import (
     SEND_BACK,
     STATES,
 )
-from cratous.spec.daa import G_M_S2
+from cratous.spec.daa.parameters import G_M_S2
 
 PLAN, COMMAND = "afrl.cmasi.AutomationResponse", "afrl.cmasi.MissionCommand"
 STATE, CONFIGURED = "afrl.cmasi.AirVehicleState", "afrl.cmasi.AirVehicleConfiguration"

@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from cratous.core.daa_frame import project
-from cratous.core.daa_state import Aircraft
+from cratous.core.daa.frame import project
+from cratous.core.daa.state import Aircraft
 
 
 class Wind(NamedTuple):

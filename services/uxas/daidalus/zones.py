@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-from cratous.core.legs import first_bad_leg
+from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.services.loading.places import Places
 from cratous.services.loading.polygons import padded, polygon_problem
 from cratous.services.loading.uxas_cfg import Sent

@@ -1,0 +1,205 @@
+"""All chains of an instance that could still cost less than a limit, one after the other.
+
+For problems with upper limits between tasks or with whole laps: there earlier is not always better,
+so nothing is left out for being covered. Depth first, the least bound first. The instance is the
+problem without those limits, so its bounds hold for the problem; whoever asks (`chains_below`) is
+given each complete list of moves, says what it costs, and from which of its moves on nothing can
+come of it (a schedule of the first moves alone that breaks, breaks with more behind it as well).
+
+Chains are listed in one order only: by start where tasks start in the order of assignment; else a
+move may not follow one of a later vehicle that did not make it possible.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from cratous.core.assignment.compiled import machine_for
+from cratous.core.assignment.instance import Instance
+from cratous.core.assignment.layers import EFFORT, Ahead, first_state, look_ahead, tables
+from cratous.core.assignment.refutation import bound, place
+from cratous.core.assignment.steps import opened
+from cratous.core.assignment.tables import deals
+from cratous.core.kernel import driver
+
+Moves = tuple[tuple[int, int], ...]
+Judge = Callable[[Moves, int], tuple[int, int]]
+"""(moves, limit) -> (their cost, or the limit if it is not below it; how many of the first moves
+are enough for that)."""
+LEAF, EMPTY, TIRED = 1, 0, 2
+
+
+def descend(
+    stack: np.ndarray, kids: np.ndarray, count: np.ndarray, turn: np.ndarray, control: np.ndarray,
+    limit: int, budget: int, use_deals: int, effort: int, able: np.ndarray, kind_of: np.ndarray,
+    latest: np.ndarray, start: np.ndarray, to_task: np.ndarray, to_task_added: np.ndarray,
+    apart: np.ndarray, apart_added: np.ndarray, least: np.ndarray, head: np.ndarray,
+    tail: np.ndarray,
+    travel: np.ndarray, added: np.ndarray, duration: np.ndarray, task: np.ndarray,
+    may: np.ndarray, release: np.ndarray, due: np.ndarray, need: np.ndarray,
+    ref_kind: np.ndarray, ref_group: np.ndarray, ref_user: np.ndarray, row_first: np.ndarray,
+    row_ref: np.ndarray, row_lo: np.ndarray, twin: np.ndarray, weight: np.ndarray, waits: int,
+) -> int:  # fmt: skip
+    """Go on to the next complete list of moves: 1 found, 0 there is none, 2 the budget is spent.
+
+    stack [n + 1, S]: states; kids [n, V K, 3]: per depth (bound, vehicle, option), sorted; count,
+    turn [n]: how many, and which is next; control: depth, nodes, and whether the children of this
+    depth are made.
+    """
+    vehicles, options = may.shape
+    n = release.size
+    child = np.zeros(stack.shape[1], np.int64)
+    line, tight = np.zeros(64, np.int64), np.zeros(64, np.int64)
+    parts, turns = np.zeros(64, np.int64), np.zeros(64, np.int64)
+    everything = (1 << n) - 1
+    spent = 0
+    while control[0] >= 0:
+        d = control[0]
+        state = stack[d]
+        if control[2] == 0:
+            many = 0
+            for o in range(options):
+                j = task[o]
+                if (state[0] >> j) & 1:
+                    continue
+                for v in range(vehicles):
+                    if may[v, o] == 0:
+                        continue
+                    u = twin[v]
+                    if waits and u != v and state[1 + v] == options and state[1 + u] == options:
+                        continue
+                    if waits == 0 and d > 0:
+                        # this move was possible before the last one: then it stood before it
+                        w = kids[d - 1, turn[d - 1] - 1, 1]
+                        if v < w:
+                            done = stack[d - 1][0]
+                            before = opened(done, need[j])
+                            for p in range(row_first[j], row_first[j + 1]):
+                                r = row_ref[p]
+                                if ref_kind[r] == 2 and (ref_group[r] & done) == 0:
+                                    before = False
+                            if before:
+                                continue
+                    if not place(
+                        state, child, v, o, waits, travel, added, duration, task, release, due,
+                        need, ref_kind, ref_group, ref_user, row_first, row_ref, row_lo, waits,
+                    ):  # fmt: skip
+                        continue
+                    spent += 1
+                    low = bound(
+                        child, n, vehicles, options, to_task, to_task_added, apart, apart_added,
+                        least, head, tail, due, weight,
+                    )  # fmt: skip
+                    if low >= limit:
+                        continue
+                    if d + 1 < n and use_deals and not deals(
+                        everything & ~child[0], child[1 : 1 + vehicles],
+                        child[1 + vehicles : 1 + 2 * vehicles], able, kind_of, latest, start,
+                        options, effort, line, tight, turns, parts,
+                    ):  # fmt: skip
+                        continue
+                    p = many
+                    while p > 0 and kids[d, p - 1, 0] > low:
+                        for c in range(3):
+                            kids[d, p, c] = kids[d, p - 1, c]
+                        p -= 1
+                    kids[d, p, 0], kids[d, p, 1], kids[d, p, 2] = low, v, o
+                    many += 1
+            count[d] = many
+            turn[d] = 0
+            control[2] = 1
+            if spent >= budget:
+                control[1] += spent
+                return 2
+        if turn[d] >= count[d] or kids[d, turn[d], 0] >= limit:
+            control[0] = d - 1
+            continue
+        v, o = kids[d, turn[d], 1], kids[d, turn[d], 2]
+        turn[d] += 1
+        place(
+            state, stack[d + 1], v, o, waits, travel, added, duration, task, release, due, need,
+            ref_kind, ref_group, ref_user, row_first, row_ref, row_lo, waits,
+        )  # fmt: skip
+        if d + 1 == n:
+            control[1] += spent
+            return 1
+        control[0] = d + 1
+        control[2] = 0
+    control[1] += spent
+    return 0
+
+
+@dataclass(frozen=True)
+class Listed:
+    """What came of it. moves: the best below the limit, or None; complete: all were looked at."""
+
+    cost: int
+    moves: Moves | None
+    complete: bool
+    nodes: int
+    leaves: int
+
+
+@driver(
+    checked_by=(
+        "earliest_start", "latest_departure", "keeps_step", "weighted", "opened",
+        "raised", "least_of", "add_least", "no_shortcut", "tail_step", "soonest_end", "room_step",
+        "lacks_room", "later",
+    )
+)  # fmt: skip
+def chains_below(
+    instance: Instance,
+    limit: int,
+    judge: Judge,
+    nodes: int,
+    stop: Callable[[int], bool] | None = None,
+    ahead: Ahead | None = None,
+) -> Listed:
+    """The best moves that cost less than `limit` by `judge`, within so many nodes.
+
+    stop: asked now and then, with the nodes so far; True ends the search.
+    """
+    i, n = instance, instance.tasks
+    ahead = look_ahead(i) if ahead is None else ahead
+    looked = tables(i, ahead, limit)
+    first = first_state(i)
+    stack = np.zeros((n + 1, first.size), np.int64)
+    stack[0] = first
+    kids = np.zeros((n, i.vehicles * i.duration.size, 3), np.int64)
+    count, turn, control = np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(3, np.int64)
+    run, best, leaves = machine_for(i, descend), None, 0
+    while True:
+        left = nodes - int(control[1])
+        if left <= 0 or (stop is not None and stop(int(control[1]))):
+            return Listed(limit, best, False, int(control[1]), leaves)
+        found = run(
+            stack, kids, count, turn, control, limit, min(left, 20_000), looked.used, EFFORT,
+            ahead.able, ahead.kind_of, looked.latest, looked.start, ahead.to_task,
+            ahead.to_task_added, ahead.apart, ahead.apart_added, ahead.least, ahead.head,
+            ahead.tail, i.travel, i.added, i.duration, i.task, i.may, i.release, looked.due,
+            i.need, i.ref_kind, i.ref_group, i.ref_user, i.row_first, i.row_ref, i.row_lo, i.twin,
+            i.weight, i.waits,
+        )  # fmt: skip
+        if found == EMPTY:
+            return Listed(limit, best, True, int(control[1]), leaves)
+        if found == TIRED:
+            continue
+        leaves += 1
+        moves = tuple(
+            (int(kids[d, turn[d] - 1, 1]), int(kids[d, turn[d] - 1, 2])) for d in range(n)
+        )
+        # a judged list costs as much as many nodes
+        control[1] += LEAF_NODES
+        cost, enough = judge(moves, limit)
+        if cost < limit:
+            limit, best = cost, moves
+        elif 0 < enough <= n:
+            # the children beside the last of these moves are still to do
+            control[0], control[2] = enough - 1, 1
+
+
+LEAF_NODES = 200
+"""What a list of moves that is judged counts as, in nodes."""

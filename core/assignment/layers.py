@@ -1,0 +1,255 @@
+"""Refuting a cost for a plain instance, layer by layer; and finding what is below it on the way.
+
+`refute(instance, limit)` ends in one of three ways: a solution below the limit is found (the best
+there is, if nothing was left out), or none exists, or states had to be left out for want of room;
+then the least of their bounds is what is still known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from cratous.core.assignment.compiled import machine_for
+from cratous.core.assignment.instance import FAR, TABLE_MAX_MS, Instance, horizon
+from cratous.core.assignment.lower_bounds import (
+    heads,
+    nearest_ways,
+    shortest_ways,
+    ways_between_tasks,
+    ways_hold,
+    ways_to_tasks,
+)
+from cratous.core.assignment.refutation import cost_now, expand, place, rehash
+from cratous.core.assignment.tables import CELLS_MAX, latest_tables
+from cratous.core.kernel import driver
+
+EFFORT = 2_000_000
+"""Steps spent on one question to `deals`."""
+DEALS_TASKS = 20
+LATEST = (1 << 30) - 1
+"""No task of an instance with tables ends as late as this [ms] (`TABLE_MAX_MS`); tables hold 32 bits."""
+CHUNK = 32
+"""Rows of a layer that are expanded before anybody is asked whether to stop."""
+ROOM_BYTES = 50_000_000
+"""What the states of one layer may take."""
+
+
+class Ahead(NamedTuple):
+    """What the search looks ahead with; the same for every limit, but for the tables."""
+
+    to_task: np.ndarray
+    to_task_added: np.ndarray
+    apart: np.ndarray
+    apart_added: np.ndarray
+    least: np.ndarray
+    head: np.ndarray
+    tail: np.ndarray
+    able: np.ndarray
+    kind_of: np.ndarray
+    leader: np.ndarray
+
+
+class Tables(NamedTuple):
+    """Latest departures for one limit, or empty arrays."""
+
+    used: int
+    due: np.ndarray
+    latest: np.ndarray
+    start: np.ndarray
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a refutation gave.
+
+    moves: (vehicle, option) in order of the best completion found, or None; cost: of it; known: no
+    completion that is not listed costs less than this (the limit, if nothing was left out);
+    layers: states kept, and the origins of the states of each layer; counts: nodes, pruned by
+    bound, by dealing, covered.
+    """
+
+    cost: int
+    moves: tuple[tuple[int, int], ...] | None
+    known: int
+    nodes: int
+    states: int
+    origins: tuple[np.ndarray, ...]
+    counts: tuple[int, ...]
+
+
+def look_ahead(instance: Instance) -> Ahead:
+    """Shortest ways, heads and tails, and which vehicles share a table."""
+    i = instance
+    reach = shortest(i, i.may)
+    head, least, tail = machine_for(i, heads)(
+        i.travel, i.duration, i.task, i.may, i.ready, i.release, i.ref_kind, i.member_first,
+        i.member, i.row_first, i.row_ref, i.row_lo, i.waits, reach,
+    )  # fmt: skip
+    able = np.zeros(i.vehicles, np.int64)
+    for v in range(i.vehicles):
+        for o in range(i.duration.size):
+            if i.may[v, o]:
+                able[v] |= 1 << int(i.task[o])
+    kinds: dict[bytes, int] = {}
+    kind_of, leader = np.zeros(i.vehicles, np.int64), []
+    many = np.bincount(i.task, minlength=i.tasks).max() > 1
+    for v in range(i.vehicles):
+        key = i.travel[v, :-1].tobytes() + (i.may[v].tobytes() if many else b"")
+        if key not in kinds:
+            kinds[key] = len(kinds)
+            leader.append(v)
+        kind_of[v] = kinds[key]
+    least_over = machine_for(i, nearest_ways)
+    nearest, cheapest = least_over(reach, i.may), least_over(i.added, i.may)
+    return Ahead(  # type: ignore[call-arg]  # numba's results have no types
+        *machine_for(i, ways_to_tasks)(reach, cheapest, i.duration, i.task, i.may, i.tasks),
+        *machine_for(i, ways_between_tasks)(nearest, cheapest, i.duration, i.task, i.tasks),
+        least, head, tail, able, kind_of, np.array(leader, np.int64),
+    )  # fmt: skip
+
+
+def shortest(instance: Instance, may: np.ndarray) -> np.ndarray:
+    """The shortest ways with any stops at options that `may` allows, asked of every stop."""
+    i = instance
+    reach: np.ndarray = machine_for(i, shortest_ways)(i.travel, i.duration, may)
+    if not machine_for(i, ways_hold)(reach, i.travel, i.duration, may):
+        raise RuntimeError("a way with stops is shorter than the shortest way that was found")
+    return reach
+
+
+def tables(instance: Instance, ahead: Ahead, limit: int) -> Tables:
+    """Latest departures if everything is to end so that the cost is below the limit."""
+    i, due = instance, instance.due.copy()
+    if i.weight[0] > 0:
+        due = np.minimum(due, (limit - 1) // int(i.weight[0]) - ahead.tail)
+    full = due
+    due = np.minimum(due, LATEST)
+    kinds, n = len(ahead.leader), i.tasks
+    if i.weight[0] == 0 and (i.due >= FAR).all():
+        return Tables(0, i.due, np.zeros((1, 1, 1), np.int32), np.zeros((1, 1), np.int32))
+    too_long = horizon(i) >= TABLE_MAX_MS
+    if n > DEALS_TASKS or too_long or (kinds * i.duration.size + i.vehicles) << n > CELLS_MAX:
+        return Tables(0, full, np.zeros((1, 1, 1), np.int32), np.zeros((1, 1), np.int32))
+    latest = np.empty((kinds, i.duration.size, 1 << n), np.int32)
+    start = np.empty((i.vehicles, 1 << n), np.int32)
+    anywhere = shortest(i, np.ones_like(i.may))
+    machine_for(i, latest_tables)(
+        anywhere, i.duration, i.task, i.may, i.need if i.waits else i.need * 0, ahead.head, due,
+        ahead.kind_of, kinds, ahead.leader, latest, start,
+    )  # fmt: skip
+    return Tables(1, due, latest, start)
+
+
+def first_state(instance: Instance) -> np.ndarray:
+    """The state in which nothing is done."""
+    v, options = instance.vehicles, instance.duration.size
+    refs = [-1 if kind == 2 else 0 for kind in instance.ref_kind]
+    return np.array([0, *[options] * v, *instance.ready, 0, 0, *refs], np.int64)
+
+
+@driver(
+    checked_by=(
+        "earliest_start", "latest_departure", "covers_step", "keeps_step", "weighted", "opened",
+        "raised", "least_of", "add_least", "no_shortcut", "tail_step", "soonest_end", "room_step",
+        "lacks_room", "later",
+    )
+)  # fmt: skip
+def refute(
+    instance: Instance,
+    limit: int,
+    width: int,
+    ahead: Ahead | None = None,
+    stop: Callable[[int], bool] | None = None,
+) -> Outcome:
+    """Whether anything costs less than `limit`; at most `width` states are kept of a layer.
+
+    stop: asked now and then, with the nodes so far; True ends the search.
+    """
+    i = instance
+    ahead = look_ahead(i) if ahead is None else ahead
+    looked = tables(i, ahead, limit)
+    run, again = machine_for(i, expand), machine_for(i, rehash)
+    layer, ranks = first_state(i)[None, :], np.zeros(1, np.int64)
+    counts, known = np.zeros(4, np.int64), limit
+    origins: list[np.ndarray] = []
+    states, fan = 1, i.vehicles * i.duration.size
+    most = max(4 * fan, min(4 * width, ROOM_BYTES // (8 * (layer.shape[1] + 6))))
+    for depth in range(i.tasks):
+        room, first, kept, halted = min(most, 1024 + 2 * fan), 0, 0, False
+        into, origin = np.empty((room, layer.shape[1]), np.int64), np.empty((room, 3), np.int64)
+        rank, chain = np.empty(room, np.int64), np.empty(room, np.int64)
+        table = np.full(2048, -1, np.int64)
+        while first < len(layer) and not halted:
+            kept, first = run(
+                layer, first, min(len(layer), first + CHUNK), kept, into, origin, rank, table,
+                chain, limit, i.waits, looked.used if depth + 1 < i.tasks else 0, EFFORT,
+                ahead.able, ahead.kind_of, looked.latest, looked.start, ahead.to_task,
+                ahead.to_task_added, ahead.apart, ahead.apart_added, ahead.least, ahead.head,
+                ahead.tail, i.travel, i.added, i.duration, i.task, i.may, i.release, looked.due,
+                i.need, i.ref_kind, i.ref_group, i.ref_user, i.row_first, i.row_ref, i.row_lo,
+                i.twin, i.weight, i.waits, counts,
+            )  # fmt: skip
+            halted = stop is not None and stop(int(counts[0]))
+            if kept + fan > room and first < len(layer):
+                if room >= most:
+                    break
+                room = min(most, 4 * room)
+                into, origin = _longer(into, room), _longer(origin, room)
+                rank, chain = _longer(rank, room), np.empty(room, np.int64)
+                table = np.empty(1 << (2 * room - 1).bit_length(), np.int64)
+                again(into, kept, table, chain, i.vehicles)
+        if first < len(layer) or halted:
+            # children of the states from here on are lost
+            known = min(known, int(ranks[min(first, len(layer) - 1) :].min()))
+        alive = np.flatnonzero(rank[:kept] >= 0)
+        if len(alive) > width:
+            by_rank = alive[np.argsort(rank[alive], kind="stable")]
+            known = min(known, int(rank[by_rank[width]]))
+            alive = np.sort(by_rank[:width])
+        layer, ranks = into[alive], rank[alive]
+        states += len(layer)
+        origins.append(origin[alive].astype(np.int32))
+        if halted or len(layer) == 0:
+            if len(layer):
+                known = min(known, int(ranks.min()))
+            return Outcome(
+                limit, None, known, int(counts[0]), states, tuple(origins), tuple(counts)
+            )
+    costs = [cost_now(s, i.vehicles, i.duration.size, i.weight) for s in layer]
+    best = int(np.argmin(costs))
+    moves: list[tuple[int, int]] = []
+    row = best
+    for found in reversed(origins):
+        row, v, o = (int(x) for x in found[row])
+        moves.append((v, o))
+    cost = int(costs[best])
+    return Outcome(
+        cost, tuple(reversed(moves)), min(known, limit), int(counts[0]), states, tuple(origins),
+        tuple(counts),
+    )  # fmt: skip
+
+
+def _longer(array: np.ndarray, room: int) -> np.ndarray:
+    longer = np.empty((room, *array.shape[1:]), array.dtype)
+    longer[: len(array)] = array
+    return longer
+
+
+def replay(instance: Instance, moves: tuple[tuple[int, int], ...]) -> list[np.ndarray]:
+    """The states along a list of moves, the first one included; ValueError for one that cannot be."""
+    i, state = instance, first_state(instance)
+    states = [state]
+    for v, o in moves:
+        child = np.zeros_like(state)
+        if not i.may[v, o] or not place(
+            state, child, v, o, i.waits, i.travel, i.added, i.duration, i.task, i.release, i.due,
+            i.need, i.ref_kind, i.ref_group, i.ref_user, i.row_first, i.row_ref, i.row_lo, i.waits,
+        ):  # fmt: skip
+            raise ValueError("the moves are not possible in this order")
+        state = child
+        states.append(state)
+    return states

@@ -1,0 +1,55 @@
+"""Checking a refutation from its origins alone: the states are made anew and every gap is asked for.
+
+What is trusted is not the search but this: from the first state on, every child of every state is
+listed, covered by a listed state, or ruled out by a bound; so whatever costs less than the limit
+ends in a listed last state. The steps are the proved kernels of `core.assignment.steps`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from cratous.core.assignment.compiled import machine_for
+from cratous.core.assignment.instance import Instance
+from cratous.core.assignment.layers import EFFORT, first_state, look_ahead, tables
+from cratous.core.assignment.refutation import closed, cost_now
+from cratous.core.kernel import driver
+
+
+@driver(
+    checked_by=(
+        "earliest_start", "latest_departure", "covers_step", "keeps_step", "weighted", "opened",
+        "raised", "least_of", "add_least", "no_shortcut", "tail_step", "soonest_end", "room_step",
+        "lacks_room", "later",
+    )
+)  # fmt: skip
+def least_cost(instance: Instance, limit: int, origins: Sequence[np.ndarray]) -> tuple[int, str]:
+    """(no completion costs less than this, what is wrong): the first counts if the second is ""."""
+    i, ahead = instance, look_ahead(instance)
+    looked = tables(i, ahead, limit)
+    layer = first_state(i)[None, :]
+    for depth in range(i.tasks):
+        if len(layer) == 0:
+            return limit, ""
+        if depth >= len(origins):
+            return 0, f"the states after {depth} tasks are not listed"
+        origin = np.ascontiguousarray(origins[depth], np.int64).reshape(-1, 3)
+        into = np.empty((len(origin), layer.shape[1]), np.int64)
+        table = np.empty(1 << max(4, (2 * len(origin)).bit_length()), np.int64)
+        found = machine_for(i, closed)(
+            layer, origin, into, table, np.empty(len(origin), np.int64), limit, i.waits,
+            looked.used if depth + 1 < i.tasks else 0, EFFORT, ahead.able, ahead.kind_of,
+            looked.latest, looked.start, ahead.to_task, ahead.to_task_added, ahead.apart,
+            ahead.apart_added, ahead.least, ahead.head, ahead.tail, i.travel, i.added, i.duration,
+            i.task, i.may, i.release, looked.due, i.need, i.ref_kind, i.ref_group, i.ref_user,
+            i.row_first, i.row_ref, i.row_lo, i.twin, i.weight, i.waits,
+        )  # fmt: skip
+        if found >= 0:
+            return 0, f"layer {depth + 1}: a child of state {found} is missing"
+        if found < -1:
+            return 0, f"layer {depth + 1}: entry {-2 - found} is no possible move"
+        layer = into
+    costs = [int(cost_now(s, i.vehicles, i.duration.size, i.weight)) for s in layer]
+    return min([limit, *costs]), ""

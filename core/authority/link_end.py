@@ -1,0 +1,83 @@
+"""The UxAS end of the bridge to one vehicle's ICAROUS, as transition kernels.
+
+This end knows of the vehicle's gate only what SETMOD lines say, each with the epoch that it began.
+The service keeps one `LinkEnd` for each vehicle, tells the kernels what came, and does what they
+answer. Definitions: `spec.authority.link_end`.
+"""
+
+from typing import NamedTuple
+
+from cratous.core.authority.timeliness import in_time
+from cratous.core.kernel import kernel
+
+
+class LinkEnd(NamedTuple):
+    """active: by the last accepted mode ICAROUS commands; epoch: the one of that mode; alive: the
+    instance is being heard."""
+
+    active: bool
+    epoch: int
+    alive: bool
+
+
+class Linked(NamedTuple):
+    """The end afterwards, and what to do: see the kernels."""
+
+    end: LinkEnd
+    act: int
+
+
+@kernel(implements="authority.link_end.is_after_mode")
+def link_mode(end: LinkEnd, active: bool, epoch: int) -> Linked:
+    """A SETMOD has come.
+
+    active: it says that ICAROUS commands, else that it offers control; epoch: the one that began with
+    it. act: 0 nothing, 1 suspend what UxAS flies, 2 take the vehicle back, 3 report a mode that is
+    overtaken.
+    """
+    if epoch <= end.epoch:
+        return Linked(end, 3)
+    after = LinkEnd(active, epoch, end.alive)
+    if active:
+        return Linked(after, 1)
+    if end.active:
+        return Linked(after, 2)
+    return Linked(after, 0)
+
+
+@kernel(implements="authority.link_end.is_after_sign", nonnegative=("bound",))
+def link_sign(end: LinkEnd, event: int, heard: int, now: int, bound: int) -> Linked:
+    """A sign of life, or none.
+
+    event: 1 a message has come, 2 the connection has ended, 3 time has passed; heard: when the last
+    message came [ms]; now: the present [ms]; bound: how old it may be [ms]. act: 0 nothing, 1 say that
+    it is heard again, 2 say that the link is lost, 3 say that it has fallen silent.
+    """
+    if event == 1:
+        if end.alive:
+            return Linked(end, 0)
+        return Linked(LinkEnd(end.active, end.epoch, True), 1)
+    if event == 2:
+        return Linked(LinkEnd(end.active, end.epoch, False), 2)
+    if event == 3 and end.alive and not in_time(heard, now, bound):
+        return Linked(LinkEnd(end.active, end.epoch, False), 3)
+    return Linked(end, 0)
+
+
+@kernel(implements="authority.link_end.is_after_answer")
+def suspended_after(suspended: bool, act: int) -> bool:
+    """Whether UxAS's own flying of the vehicle is suspended after an answer of `link_mode`."""
+    if act == 1:
+        return True
+    if act == 2:
+        return False
+    return suspended
+
+
+@kernel(
+    implements="authority.link_end.may_tell",
+    restates="the rule of telling; that UxAS commands only what it believes to command is proved of it",
+)
+def track_is_told(suspended: bool, changed: bool) -> bool:
+    """True iff UxAS commands its track now: it flies the vehicle, and the track is another one."""
+    return changed and not suspended

@@ -1,0 +1,1 @@
+"""Avoidance in flight: trajectories that can be flown, prediction, and resolution."""

@@ -1,0 +1,117 @@
+"""Trajectories that an aircraft can really fly, as pieces of constant velocity."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from cratous.core.avoidance.prediction import Piece, after
+from cratous.spec.mission import Position, Velocity
+
+PIECE_S = 0.5
+"""Turns, climbs and changes of speed are cut into pieces of this length [s]."""
+
+
+class Ability(NamedTuple):
+    """What an airframe can do: turn rate [rad/s] at its present speed, speeds [m/s], climb [m/s],
+    acceleration [m/s2], and the lowest altitude that a manoeuvre may use [m MSL]."""
+
+    turn_rate_rad_s: float
+    min_speed_m_s: float
+    max_speed_m_s: float
+    max_climb_m_s: float
+    acceleration_m_s2: float
+    floor_m: float
+
+
+class Motion(NamedTuple):
+    """Position, heading [rad], ground speed [m/s], climb [m/s, up]."""
+
+    position: Position
+    heading_rad: float
+    speed_m_s: float
+    climb_m_s: float
+
+
+def velocity_of(heading_rad: float, speed_m_s: float, climb_m_s: float) -> Velocity:
+    """North, east, down from heading, ground speed and climb."""
+    return Velocity(
+        speed_m_s * math.cos(heading_rad), speed_m_s * math.sin(heading_rad), -climb_m_s
+    )
+
+
+def smallest_turn(from_rad: float, to_rad: float) -> float:
+    """The turn from one heading to another, in (-pi, pi]; positive is right."""
+    turn = math.fmod(to_rad - from_rad, 2 * math.pi)
+    if turn > math.pi:
+        return turn - 2 * math.pi
+    if turn <= -math.pi:
+        return turn + 2 * math.pi
+    return turn
+
+
+def fly_to(
+    now: Motion,
+    ability: Ability,
+    heading_rad: float,
+    speed_m_s: float,
+    climb_m_s: float,
+    climb_for_s: float,
+    horizon_s: float,
+) -> tuple[Piece, ...]:
+    """Turn to a heading and change speed as fast as possible, climb for a while, then straight on.
+
+    A turning piece flies its mean heading with the chord's speed, so the ends of the pieces lie
+    on the arc.
+    """
+    pieces: list[Piece] = []
+    p, heading, speed, t = now.position, now.heading_rad, now.speed_m_s, 0.0
+    while t < horizon_s:
+        turn = smallest_turn(heading, heading_rad)
+        gap = speed_m_s - speed
+        climbing = t < climb_for_s
+        steady = abs(turn) < 1e-9 and abs(gap) < 1e-9
+        if steady:
+            duration = (climb_for_s if climbing else horizon_s) - t
+            duration = min(duration, horizon_s - t)
+        else:
+            duration = min(PIECE_S, horizon_s - t)
+        most = ability.turn_rate_rad_s * duration
+        turn = min(max(turn, -most), most)
+        gain = min(
+            max(gap, -ability.acceleration_m_s2 * duration), ability.acceleration_m_s2 * duration
+        )
+        mean_speed = speed + gain / 2
+        half = turn / 2
+        chord = mean_speed if abs(half) < 1e-9 else mean_speed * math.sin(half) / half
+        climb = climb_m_s if climbing else 0.0
+        piece = Piece(t, duration, p, velocity_of(heading + turn / 2, chord, climb))
+        pieces.append(piece)
+        p, heading, speed, t = after(piece, duration), heading + turn, speed + gain, t + duration
+    return tuple(pieces)
+
+
+def along(
+    now: Motion, points: Sequence[Position], horizon_s: float, start_s: float = 0.0
+) -> tuple[Piece, ...]:
+    """Fly from the present position through points at the present speed, then straight on."""
+    pieces: list[Piece] = []
+    p, t = now.position, start_s
+    last = velocity_of(now.heading_rad, now.speed_m_s, 0.0)
+    for q in points:
+        north, east = q.north_m - p.north_m, q.east_m - p.east_m
+        length = math.hypot(north, east)
+        if length < 1.0:
+            continue
+        duration = length / now.speed_m_s
+        up = (q.alt_m - p.alt_m) / duration
+        v = Velocity(north / duration, east / duration, -up)
+        pieces.append(Piece(t, min(duration, horizon_s - t), p, v))
+        t += duration
+        last = v._replace(down_m_s=0.0)
+        p = q
+        if t >= horizon_s:
+            return tuple(pieces)
+    pieces.append(Piece(t, horizon_s - t, p, last))
+    return tuple(pieces)

@@ -1,0 +1,180 @@
+"""Which manoeuvre to fly: candidates are searched, the kernels decide each of them.
+
+Candidates: headings to the left and right of the course in steps of 5 degrees, flown with the
+real turn rate; if none is free of conflict, level changes (climb or descend past the intruder's
+layer) and changes of speed, also together with turns. Each piece of each candidate is checked
+against every intruder by `violation_within` and against every zone by `leg_ok`. The one that
+deviates least from the course wins (ties to the right); a manoeuvre already begun is kept as long
+as it holds, unless one that is nearer to the course by more than 10 degrees has become free.
+When none holds, the one whose first violation is latest is flown, and the choice says so.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from cratous.core.avoidance.manoeuvre import Ability, Motion, fly_to, smallest_turn
+from cratous.core.avoidance.prediction import Intruder, Piece, after, first_violation_s, violated_s
+from cratous.core.geofence.mission_legs import leg_ok
+from cratous.core.kernel import driver
+from cratous.spec.mission import WellClear, Zone
+
+STEP_DEG = 5
+KEEP_RAD = math.radians(10)
+
+
+class Choice(NamedTuple):
+    """A manoeuvre: heading [rad], speed [m/s], climb [m/s] for climb_for_s [s].
+
+    clear: free of conflict over the look-ahead; if not, first_violation_s says when it loses well
+    clear or meets a zone.
+    """
+
+    kind: str
+    heading_rad: float
+    speed_m_s: float
+    climb_m_s: float
+    climb_for_s: float
+    clear: bool
+    first_violation_s: float | None
+
+
+class Scene(NamedTuple):
+    """What a manoeuvre is judged against: traffic, zones, the buffered volume, and how far."""
+
+    intruders: tuple[Intruder, ...]
+    zones: tuple[Zone, ...]
+    volume: WellClear
+    lookahead_s: float
+
+
+@driver(checked_by=("keep_out_leg_ok", "keep_in_leg_ok"))
+def first_zone_s(pieces: Sequence[Piece], zones: Sequence[Zone], chunk_s: float) -> float | None:
+    """When the first zone is broken [s], or None; early by at most chunk_s on a long piece."""
+    for piece in pieces:
+        t = 0.0
+        while t < piece.duration_s:
+            step = min(chunk_s, piece.duration_s - t)
+            p, q = after(piece, t), after(piece, t + step)
+            for zone in zones:
+                if not leg_ok(p, q, zone):
+                    return piece.start_s + t
+            t += step
+    return None
+
+
+@driver(checked_by=("violation_within",))
+def first_conflict_s(pieces: Sequence[Piece], scene: Scene) -> float | None:
+    """When a trajectory first loses well clear of any intruder [s], or None."""
+    times = (first_violation_s(pieces, other, scene.volume) for other in scene.intruders)
+    return min((t for t in times if t is not None), default=None)
+
+
+def turn_back_s(now: Motion, ability: Ability) -> float:
+    """How far ahead a zone matters at least [s]: time to fly a half circle, plus one radius."""
+    return (math.pi + 1) / ability.turn_rate_rad_s
+
+
+@driver(checked_by=("violation_within", "violation", "keep_out_leg_ok", "keep_in_leg_ok"))
+def resolve(
+    now: Motion,
+    ability: Ability,
+    scene: Scene,
+    course_rad: float,
+    speed_m_s: float,
+    held: Choice | None,
+) -> Choice:
+    """The manoeuvre to fly now, at speed_m_s if it can be; `held` is the one flown until now.
+
+    A heading that is free of traffic over the whole look-ahead but meets a zone in it is used
+    when no heading is free of both and the zone is farther than a half circle takes to fly:
+    the choice is renewed long before.
+    """
+    near_s = turn_back_s(now, ability)
+    fallback: tuple[tuple[float, float], Choice] | None = None
+    later: Choice | None = None
+    for candidate in _candidates(now, ability, scene, course_rad, speed_m_s, held):
+        pieces = _pieces(now, ability, candidate, scene.lookahead_s)
+        traffic_s = first_conflict_s(pieces, scene)
+        zone_s = first_zone_s(pieces, scene.zones, near_s) if scene.zones else None
+        if traffic_s is None and zone_s is None:
+            return candidate._replace(clear=True)
+        if traffic_s is None and zone_s is not None and zone_s >= near_s:
+            later = later or candidate._replace(clear=True, first_violation_s=None)
+            continue
+        first = min(t for t in (traffic_s, zone_s) if t is not None)
+        lost = 0.0
+        if first <= 1.0:
+            lost = sum(violated_s(pieces, other, scene.volume) for other in scene.intruders)
+        # a zone met before a turn back could avoid it counts as the worst case
+        rank = (-1.0 if zone_s is not None and zone_s < near_s else first, -lost)
+        if fallback is None or rank > fallback[0]:
+            fallback = (rank, candidate._replace(first_violation_s=first))
+    if later is not None:
+        return later
+    assert fallback is not None, "there is always a candidate"
+    return fallback[1]
+
+
+@driver(checked_by=("violation_within", "keep_out_leg_ok", "keep_in_leg_ok"))
+def is_clear(now: Motion, ability: Ability, scene: Scene, choice: Choice) -> bool:
+    """True iff a manoeuvre, flown from now on, is free of conflict over the look-ahead."""
+    pieces = _pieces(now, ability, choice, scene.lookahead_s)
+    if first_conflict_s(pieces, scene) is not None:
+        return False
+    zone_s = first_zone_s(pieces, scene.zones, turn_back_s(now, ability))
+    return zone_s is None or zone_s >= turn_back_s(now, ability)
+
+
+def _pieces(now: Motion, ability: Ability, choice: Choice, horizon_s: float) -> tuple[Piece, ...]:
+    return fly_to(
+        now,
+        ability,
+        choice.heading_rad,
+        choice.speed_m_s,
+        choice.climb_m_s,
+        choice.climb_for_s,
+        horizon_s,
+    )
+
+
+def _headings(course_rad: float, held: Choice | None) -> Iterator[float]:
+    """Course, then 5 degrees right, left, 10 right ...; the held one before its own neighbours."""
+    kept = False
+    for k in range(180 // STEP_DEG + 1):
+        off = math.radians(k * STEP_DEG)
+        if held is not None and not kept:
+            away = abs(smallest_turn(course_rad, held.heading_rad))
+            if away <= off + KEEP_RAD:
+                kept = True
+                yield held.heading_rad
+        yield course_rad + off
+        if 0 < k < 180 // STEP_DEG:
+            yield course_rad - off
+
+
+def _candidates(
+    now: Motion,
+    ability: Ability,
+    scene: Scene,
+    course_rad: float,
+    speed: float,
+    held: Choice | None,
+) -> Iterator[Choice]:
+    level = Choice("heading", course_rad, speed, 0.0, 0.0, False, None)
+    for heading in _headings(course_rad, held):
+        yield level._replace(heading_rad=heading)
+    # past the layer of the volume, twice, so that the climb itself does not end at its edge
+    climb_for_s = 2 * scene.volume.zthr_m / ability.max_climb_m_s if ability.max_climb_m_s else 0
+    climbs = [ability.max_climb_m_s, -ability.max_climb_m_s] if climb_for_s else []
+    if now.position.alt_m - ability.max_climb_m_s * climb_for_s < ability.floor_m:
+        climbs = climbs[:1]
+    turns = [math.radians(d) for d in (0, 30, -30, 60, -60, 90, -90, 135, -135, 180)]
+    for turn in turns:
+        for climb in climbs:
+            yield Choice("altitude", course_rad + turn, speed, climb, climb_for_s, False, None)
+        for other in (ability.min_speed_m_s, ability.max_speed_m_s):
+            if abs(other - speed) > 0.5:
+                yield Choice("speed", course_rad + turn, other, 0.0, 0.0, False, None)

@@ -1,0 +1,1 @@
+"""Detect and avoid: alerts, bands, recovery and coordination, from kernels."""

@@ -1,0 +1,166 @@
+"""The steps of a manoeuvre in direction, speed or climb, and whether one conflicts.
+
+Definitions: `spec.daa.meaning`. A manoeuvre goes through grid steps k = 0..K, one each step_s
+seconds, and from any of them straight on. Step k conflicts with an intruder if the volume is
+violated on a piece of the way to it, pieces flown straight from step j for one step time, or on
+the straight flight from step k on within the horizon. Recovery asks for another volume (a
+cylinder) before the instant begin_s, and for the volume itself only from then on.
+"""
+
+from cratous.core.daa.coordination import step_is_repulsive
+from cratous.core.daa.uncertainty import lost
+from cratous.core.daa.volume import in_conflict
+from cratous.core.kernel import Vec2, driver, fold, kernel
+
+
+@kernel(implements="daa.meaning.lost_on_piece")
+def piece_counts(at_s: float, from_s: float, until_s: float) -> bool:
+    """True iff a piece begun at at_s is looked at: not before from_s, not after until_s [s]."""
+    return at_s >= from_s and at_s <= until_s
+
+
+@kernel(implements="daa.meaning.lost_from_step")
+def straight_from(at_s: float, from_s: float) -> float:
+    """How long after a step at at_s the straight flight from it is looked at: from from_s on [s]."""
+    return max(from_s - at_s, 0)
+
+
+@kernel(supports="way_conflicts")
+def lost_before(before: bool, piece: bool) -> bool:
+    """Whether the way to a step loses a volume: it did before, or the piece from here does."""
+    return before or piece
+
+
+@kernel(supports="way_conflicts")
+def lost_on_way(lost: bool) -> bool:
+    """Whether the way loses a volume, after all of its pieces."""
+    return lost
+
+
+way_conflicts = fold(
+    name="way_conflicts",
+    implements="daa.meaning.lost_somewhere",
+    step=lost_before,
+    start=False,
+    finish=lost_on_way,
+)
+"""Whether any of the pieces (lost,) of a way loses a volume."""
+
+
+@kernel(implements="daa.meaning.horizon")
+def until(lookahead_s: float, horizon_s: float, manoeuvre_s: float, counted: bool) -> float:
+    """Until when a volume is looked for [s]: horizon_s after a manoeuvre that takes manoeuvre_s, or
+    in all if the manoeuvre is counted; never beyond the look-ahead."""
+    if counted:
+        return min(lookahead_s, horizon_s)
+    return min(lookahead_s, horizon_s + manoeuvre_s)
+
+
+@driver(
+    checked_by=(
+        "in_conflict", "piece_counts", "straight_from", "lost_before", "until", "repels",
+        "repels_vertically",
+    )
+)  # fmt: skip
+def safe_steps(
+    own, step_s, piece_s, others, chosen, kinds, volumes, horizons, sides, begin_s, radius_m, half_m,
+    recovering, lookahead_s, counted, project_s, early, single, safe,
+):  # fmt: skip
+    """Which steps of one side are free of conflict with all chosen intruders, into `safe`.
+
+    own: (K + 1, 11) positions [m] and velocities [m/s] at the steps, the velocity east and north before
+    the manoeuvre, and the mean velocity from the step to the next one; piece_s: how long a piece is
+    looked at, step_s, or 0 to sample the way at the steps; others: (n, 6) states now; chosen: indices;
+    kinds: (n), volumes: (n, 11) as in `lost`, horizons: (n) [s] of each; sides: (n, 2) that the
+    manoeuvre has to keep to, horizontal and vertical, 0: none; recovering: the cylinder (radius_m,
+    half_m) is to be avoided before begin_s; project_s: the manoeuvre begins after so much straight
+    flight; early: stop as soon as two neighbours are safe.
+    Returns whether two neighbouring steps are safe.
+    """
+    last = own.shape[0] - 1
+    found = False
+    first = 0
+    for k in range(last + 1):
+        safe[k] = True
+    for k in range(last + 1):
+        at_s = k * step_s
+        sx0 = own[k, 0] + own[0, 6] * project_s
+        sy0 = own[k, 1] + own[0, 7] * project_s
+        sz0 = own[k, 2] + own[0, 5] * project_s
+        blocked = False
+        red = False
+        lead = first
+        for c in range(chosen.size):
+            # the intruder that was in the way last is asked first
+            q = c
+            if c == 0:
+                q = lead
+            elif c <= lead:
+                q = c - 1
+            i = chosen[q]
+            if sides[i, 0] != 0 or sides[i, 1] != 0:
+                repulsive = step_is_repulsive(own, k, step_s, others[i], sides[i, 0], sides[i, 1])
+                if step_s == 0:
+                    red = red or not repulsive
+                else:
+                    blocked = lost_before(blocked, not repulsive)
+                if blocked or (red and step_s == 0):
+                    first = q
+                    break
+            t = at_s + project_s
+            s = Vec2(sx0 - others[i, 0] - others[i, 3] * t, sy0 - others[i, 1] - others[i, 4] * t)
+            v = Vec2(own[k, 3] - others[i, 3], own[k, 4] - others[i, 4])
+            sz = sz0 - others[i, 2] - others[i, 5] * t
+            vz = own[k, 5] - others[i, 5]
+            clear = True
+            end_s = until(lookahead_s, horizons[i], at_s, counted)
+            if begin_s <= horizons[i] and (not red or step_s > 0):
+                clear = not lost(
+                    kinds[i], s, v, sz, vz, volumes[i], at_s, straight_from(at_s, begin_s),
+                    end_s - at_s,
+                )  # fmt: skip
+            # a piece within a clear straight flight is clear
+            covered = clear and begin_s <= min(at_s, horizons[i]) and at_s + step_s <= end_s
+            if step_s > 0 and not covered:
+                final_s = lookahead_s
+                if counted:
+                    final_s = horizons[i]
+                # recovery later than the horizon: until there only the cylinder counts
+                looked = begin_s <= horizons[i] and piece_counts(at_s, begin_s, final_s)
+                on_piece = looked and lost(
+                    kinds[i], s, v, sz, vz, volumes[i], at_s, 0.0, piece_s
+                )  # fmt: skip
+                blocked = lost_before(blocked, on_piece)
+            if recovering and not blocked:
+                # kept clear until begin_s, or to the horizon as any volume where that is sooner
+                held_s, final_s = begin_s, begin_s
+                if begin_s > horizons[i]:
+                    held_s = until(lookahead_s, horizons[i], at_s, counted)
+                    final_s = lookahead_s
+                    if counted:
+                        final_s = horizons[i]
+                if in_conflict(
+                    3, s, v, sz, vz, radius_m, half_m, 0.0, 0.0, 0.0,
+                    straight_from(at_s, 0.0), held_s - at_s,
+                ):  # fmt: skip
+                    clear = False
+                if step_s > 0:
+                    blocked = piece_counts(at_s, 0.0, final_s) and in_conflict(
+                        3, s, v, sz, vz, radius_m, half_m, 0.0, 0.0, 0.0, 0.0, piece_s,
+                    )  # fmt: skip
+            if not clear:
+                red = True
+                first = q
+            if blocked or (red and step_s == 0):
+                break
+        if blocked:
+            for j in range(k, last + 1):
+                safe[j] = False
+            break
+        if red:
+            safe[k] = False
+        elif single or (k > 0 and safe[k - 1]):
+            found = True
+            if early:
+                break
+    return found

@@ -1,0 +1,1 @@
+"""Whether a loss of well clear could have been avoided."""

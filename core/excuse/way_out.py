@@ -1,0 +1,103 @@
+"""Whether a way out existed: judging manoeuvres piece by piece, and all of them together.
+
+Definitions: `spec.excuse`. Answers are 1 (free; a way out), 0 (open; undecided) and -1 (refused; no
+way out). Which pieces there are, and what is known of the other aircraft, is the caller's:
+`core.excuse.bands` flies the manoeuvres of the bands, `core.excuse.exhaustive_check` integrates its own.
+"""
+
+from cratous.core.daa.volume import in_conflict
+from cratous.core.kernel import Vec2, fold, kernel
+
+
+@kernel(implements="excuse.lost_at")
+def piece_lost(
+    kind: int, s: Vec2, v: Vec2, sz: float, vz: float, dthr_m: float, zthr_m: float, tthr_s: float,
+    tcoa_s: float, vmod_s: float, piece_s: float,
+) -> bool:  # fmt: skip
+    """True iff the volume is violated at some instant of a straight piece of piece_s seconds.
+
+    Relative state at its begin, ownship minus other; kind and thresholds as for `in_conflict`.
+    """
+    return in_conflict(
+        kind, s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, 0, piece_s
+    )  # fmt: skip
+
+
+@kernel(implements="excuse.flown_step")
+def after_piece(so_far: int, known: bool, lost: bool, surely: bool) -> int:
+    """A manoeuvre after a piece more: -1 refused, 0 open, 1 free.
+
+    known: whether where the other aircraft is then is known; lost: the volume is violated at some
+    instant; surely: a slightly smaller volume is, too.
+    """
+    if so_far < 0:
+        return so_far
+    if known and not lost:
+        return so_far
+    if known and surely:
+        return -1
+    return 0
+
+
+@kernel(implements="excuse.judged")
+def manoeuvre_result(so_far: int) -> int:
+    """-1 refused, 0 open, 1 free."""
+    return so_far
+
+
+manoeuvre_judged = fold(
+    name="manoeuvre_judged",
+    implements="excuse.flown_step",
+    step=after_piece,
+    start=1,
+    finish=manoeuvre_result,
+)
+"""A manoeuvre from its pieces (known, lost, surely)."""
+
+
+@kernel(implements="excuse.tried_step")
+def after_manoeuvre(so_far: int, manoeuvre: int) -> int:
+    """The answer after a manoeuvre more: 1, 0, -1, or 2 before the first.
+
+    What is neither 1 (free) nor -1 (refused) is open.
+    """
+    if so_far == 1 or manoeuvre == 1:
+        return 1
+    if so_far == 0 or manoeuvre != -1:
+        return 0
+    return -1
+
+
+@kernel(implements="excuse.answer")
+def answer_result(so_far: int) -> int:
+    """1 a way out, -1 none, 0 undecided; nothing tried is undecided."""
+    if so_far == 1 or so_far == -1:
+        return so_far
+    return 0
+
+
+way_out = fold(
+    name="way_out",
+    implements="excuse.tried_step",
+    step=after_manoeuvre,
+    start=2,
+    finish=answer_result,
+)
+"""Whether there is a way out among manoeuvres (answer,), or at any of several instants."""
+
+
+@kernel(implements="excuse.agreed")
+def both_say(one: int, other: int) -> int:
+    """What two independent judges answer alike; 0 where they differ."""
+    if one == other and (one == 1 or one == -1):
+        return one
+    return 0
+
+
+@kernel(
+    implements="excuse.excuses",
+    restates="which answer excuses a loss: the code that stands for `no way out`",
+)
+def is_excused(answer: int) -> bool:
+    """True iff the answer excuses a loss: only -1, that there was no way out, does."""
+    return answer == -1

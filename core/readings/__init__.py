@@ -1,0 +1,1 @@
+"""How one kernel is read: compiled, enclosed in intervals, exactly, or tiered."""

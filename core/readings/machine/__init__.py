@@ -1,0 +1,1 @@
+"""Kernels in machine code: over arrays, and functions with loops as they are written."""

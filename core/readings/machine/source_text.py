@@ -1,0 +1,231 @@
+"""The text for the compiler of a function with all that it uses, as written.
+
+Everything that is collected (functions, records, constants, modules) stands in the text under a
+unique name made of its qualified one, and the references of each function are renamed by what they
+mean in its own module. So two helpers, records or constants of one bare name keep each its meaning.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import dis
+import inspect
+import math
+import textwrap
+import types
+from collections.abc import Callable
+from typing import Any, get_type_hints
+
+from cratous.core.kernel import Fold, entry_of
+from cratous.spec.errors import BadInput
+
+NUMBERS = (bool, int, float)
+LIBRARIES = ("math", "numpy")
+"""What the compiler knows by itself."""
+
+
+class SourceText:
+    """A text under construction, callees first. flags: the compiler's, put before each function."""
+
+    def __init__(self, flags: str) -> None:
+        self.flags = flags
+        self.parts: list[str] = ["from typing import NamedTuple", "from numba import njit"]
+        self._names: dict[str, str] = {}
+        self._values: dict[str, Any] = {}
+
+    @property
+    def text(self) -> str:
+        """All that was collected so far."""
+        return "\n\n".join([*self.parts, ""])
+
+    def add(self, item: Any) -> str:
+        """Collect a function or record with all that it uses; its name in the text."""
+        where = f"{item.__module__}.{item.__qualname__}"
+        if "<locals>" in where and inspect.isfunction(item) and item.__closure__:
+            raise BadInput("a function within another one cannot be compiled", item=where)
+        name, new = self._name(where, item)
+        if new:
+            make = self._record if inspect.isclass(item) else self._function
+            self.parts.append(make(item, name))
+        return name
+
+    def _name(self, where: str, value: Any) -> tuple[str, bool]:
+        """The unique name of what is called so, and whether it is new; two values are an error."""
+        if where in self._names:
+            old = self._values[where]
+            if old is not value and (type(old) is not type(value) or repr(old) != repr(value)):
+                raise BadInput(
+                    "two values have one name",
+                    item=where,
+                    expected="one",
+                    got=f"{old!r}, {value!r}",
+                )
+            return self._names[where], False
+        plain = "__".join(where.replace("<locals>", "locals").split("."))
+        name, taken = plain, set(self._names.values())
+        while name in taken:
+            name += "_"
+        self._names[where], self._values[where] = name, value
+        return name, True
+
+    # -- functions ------------------------------------------------------------------------
+    def _function(self, function: Callable[..., Any], name: str) -> str:
+        node = _definition(function)
+        code = inspect.unwrap(function).__code__  # while its calls are counted it stands behind
+        own = f"{function.__module__}.{function.__qualname__}"
+        renamed: dict[str, str] = {}
+        for used in sorted(_globals(code)):
+            if used in function.__globals__:
+                renamed[used] = self._reference(function, used, own)
+            elif not hasattr(builtins, used):
+                raise BadInput(f"{used!r} is not defined", where=own)
+        both = {*renamed, *renamed.values()} & _locals(code)
+        if both:
+            raise BadInput(
+                f"{min(both)!r} is a name of the module and of the function too",
+                where=own,
+                expected="two names, so that it can be compiled",
+            )
+        made = ast.fix_missing_locations(_Renaming(self, function, renamed).visit(node))
+        made.name = name
+        return f"@{self.flags}\n{ast.unparse(made)}"
+
+    def _reference(self, function: Callable[..., Any], used: str, own: str) -> str:
+        """The name in the text of what a function's module calls `used`."""
+        value = function.__globals__[used]
+        return self.reference(value, f"{function.__module__}.{used}", own)
+
+    def reference(self, value: Any, where: str, user: str) -> str:
+        """The name in the text of a value; where: its qualified name; user: who uses it."""
+        if isinstance(value, types.ModuleType):
+            if value.__name__.split(".")[0] not in LIBRARIES:
+                return where  # an attribute of it is meant (`_Renaming`)
+            name, new = self._name(f"module.{value.__name__}", value)
+            if new:
+                self.parts.insert(0, f"import {value.__name__} as {name}")
+            return name
+        if _number(value):
+            name, new = self._name(where, value)
+            if new:
+                self.parts.append(f"{name} = {_literal(value)}")
+            return name
+        code = inspect.isfunction(value) or (inspect.isclass(value) and hasattr(value, "_fields"))
+        if code and _ours(value, user):
+            return self.add(value)
+        home = str(getattr(value, "__module__", "") or "").split(".")[0]
+        if home in LIBRARIES and hasattr(value, "__name__"):
+            name, new = self._name(f"{value.__module__}.{value.__name__}", value)
+            if new:
+                line = f"from {value.__module__} import {value.__name__} as {name}"
+                self.parts.insert(0, line)
+            return name
+        plain = str(getattr(value, "__name__", ""))
+        if getattr(builtins, plain, None) is value:
+            return plain
+        raise BadInput(
+            f"{where.rpartition('.')[2]!r} cannot be compiled",
+            where=user,
+            expected="functions, NamedTuples and numbers of this package, kernels, numpy and math",
+            got=f"a {'fold' if isinstance(value, Fold) else type(value).__name__}",
+        )
+
+    # -- records --------------------------------------------------------------------------
+    def _record(self, record: Any, name: str) -> str:
+        """A NamedTuple, and a function of the name that fixes the types of its fields.
+
+        Kernels may write the integer literal 0 for a real field; machine code needs one type.
+        """
+        fields = get_type_hints(record)
+        lines, casts = [f"class {name}_(NamedTuple):"], []
+        for field, kind in fields.items():
+            if hasattr(kind, "_fields"):
+                self.add(kind)
+            plain = kind in NUMBERS
+            lines.append(f"    {field}: {kind.__name__ if plain else 'object'}")
+            casts.append(f"{kind.__name__}({field})" if plain else field)
+        lines += ["", "", f"@{self.flags}", f"def {name}({', '.join(fields)}):"]
+        return "\n".join([*lines, f"    return {name}_({', '.join(casts)})"])
+
+
+class _Renaming(ast.NodeTransformer):
+    """A function's references as the text calls them, without annotations."""
+
+    def __init__(self, text: SourceText, function: Any, renamed: dict[str, str]) -> None:
+        self.text, self.function, self.renamed = text, function, renamed
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.stmt:
+        node.returns = None
+        return self.generic_visit(node)  # type: ignore[return-value]
+
+    def visit_arg(self, node: ast.arg) -> ast.arg:
+        return ast.arg(node.arg)
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        return ast.Name(self.renamed.get(node.id, node.id), node.ctx)
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
+        if isinstance(node.value, ast.Name) and node.value.id in self.renamed:
+            module = self.function.__globals__[node.value.id]
+            library = isinstance(module, types.ModuleType) and module.__name__.split(".")[0]
+            if library and library not in LIBRARIES:
+                where = f"{module.__name__}.{node.attr}"
+                user = f"{self.function.__module__}.{self.function.__qualname__}"
+                found = self.text.reference(getattr(module, node.attr), where, user)
+                return ast.Name(found, ast.Load())
+        return self.generic_visit(node)  # type: ignore[return-value]
+
+    def visit_AnnAssign(self, node: ast.AnnAssign) -> ast.stmt | None:
+        if node.value is None:
+            return None
+        return self.generic_visit(ast.Assign([node.target], node.value))  # type: ignore[return-value]
+
+
+def _definition(function: Callable[..., Any]) -> ast.FunctionDef:
+    """The function's syntax without decorators and docstring."""
+    node = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+    if not isinstance(node, ast.FunctionDef):
+        raise BadInput("this is no function definition", item=function.__qualname__)
+    node.decorator_list = []
+    if ast.get_docstring(node) is not None:
+        node.body = node.body[1:] or [ast.Pass()]
+    return node
+
+
+def _codes(code: types.CodeType) -> list[types.CodeType]:
+    inner = [part for part in code.co_consts if isinstance(part, types.CodeType)]
+    return [code, *[one for part in inner for one in _codes(part)]]
+
+
+def _globals(code: types.CodeType) -> set[str]:
+    """The names that a function looks up in its module, in inner code too."""
+    return {
+        str(step.argval)
+        for one in _codes(code)
+        for step in dis.get_instructions(one)
+        if step.opname in ("LOAD_GLOBAL", "LOAD_NAME")
+    }
+
+
+def _locals(code: types.CodeType) -> set[str]:
+    return {
+        n for one in _codes(code) for n in (*one.co_varnames, *one.co_cellvars, *one.co_freevars)
+    }
+
+
+def _number(value: Any) -> bool:
+    if isinstance(value, tuple):
+        return type(value) is tuple and all(_number(part) for part in value)
+    return type(value) in NUMBERS
+
+
+def _literal(value: Any) -> str:
+    if isinstance(value, tuple):
+        return f"({', '.join(map(_literal, value))}{',' if len(value) == 1 else ''})"
+    return repr(value) if math.isfinite(value) else f"float({str(value)!r})"
+
+
+def _ours(value: Any, user: str) -> bool:
+    """Of the product, of the user's own package, or a registered kernel."""
+    home = value.__module__.split(".")[0]
+    return home in ("cratous", user.split(".")[0]) or entry_of(value) is not None

@@ -1,0 +1,157 @@
+"""Flyable routes around zones: visibility graph, shortest path, turns, and a check of every leg.
+
+A `Roadmap` holds the zones of one altitude regime and rings of via points around them, from the
+tightest ring to the widest (made by offsetting outside `core`). How a route is searched, and that
+every leg of it is put to the proved kernels: `core.routing.bulk`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from cratous.core.geofence.mission_leg_arrays import table
+from cratous.core.readings.tiered import swift
+from cratous.core.routing.bulk import BAD_START, FOUND, LINKS_MOST, NO_WAY, route_many, route_points
+from cratous.core.routing.dubins import RIGHT, pose_after
+from cratous.spec.mission import Position, Zone
+from cratous.spec.mission.plan import Pose
+
+
+class Route(NamedTuple):
+    """A flyable polyline and its length [m], or no points and the reason."""
+
+    points: tuple[Position, ...]
+    length_m: float
+    reason: str = ""
+
+
+@dataclass(eq=False)
+class Roadmap:
+    """Zones, and via points (north, east) per ring; remembers which of those see each other."""
+
+    zones: tuple[Zone, ...]
+    rings: tuple[tuple[tuple[float, float], ...], ...] = ()
+    chord_error_m: float = 0.5
+    _seen: dict[float, np.ndarray] = field(default_factory=dict)
+
+    def seen(self, alt_m: float) -> np.ndarray:
+        """Which via points see each other at an altitude: to be filled while routes are searched."""
+        if alt_m not in self._seen:
+            widest = self.ring_arrays[0].shape[1]
+            self._seen[alt_m] = np.zeros((len(self.rings), widest, widest), np.int8)
+        return self._seen[alt_m]
+
+    @cached_property
+    def ring_arrays(self) -> tuple[np.ndarray, np.ndarray]:
+        """The rings, filled up to one length, and their sizes."""
+        sizes = np.array([len(ring) for ring in self.rings], np.int64)
+        rings = np.zeros((len(self.rings), max([*sizes, 1]), 2))
+        for g, ring in enumerate(self.rings):
+            rings[g, : len(ring)] = np.array(ring, float).reshape(-1, 2)
+        return rings, sizes
+
+
+class Routed(NamedTuple):
+    """Routes in bulk: FOUND or why not, lengths [m], links or the zone, the poses between links."""
+
+    codes: np.ndarray
+    metres: np.ndarray
+    links: np.ndarray
+    poses: np.ndarray
+
+
+def routes(
+    starts: np.ndarray,
+    ends: np.ndarray,
+    radius_m: float,
+    roadmap: Roadmap,
+    max_slope: float = math.inf,
+    *,
+    ways: bool = False,
+) -> Routed:
+    """Routes for pairs of poses, arrays (n, 4) of north, east, altitude, heading, as `route` says.
+
+    ways: keep the poses, for the polylines; else only the lengths.
+    """
+    n = len(starts)
+    found = Routed(
+        np.empty(n, np.int64), np.empty(n), np.empty(n, np.int64),
+        np.empty((n if ways else 1, LINKS_MOST + 2, 4)),
+    )  # fmt: skip
+    run = swift(route_many, n * (1 + 20 * bool(roadmap.zones)))
+    rings, sizes = roadmap.ring_arrays
+    zones = table(roadmap.zones)
+    altitudes = np.unique(starts[:, 2])
+    for alt in altitudes:
+        at = np.arange(n) if len(altitudes) == 1 else np.flatnonzero(starts[:, 2] == alt)
+        some = Routed(*(part[at] if len(part) == n else part for part in found))
+        run(
+            np.ascontiguousarray(starts[at]), np.ascontiguousarray(ends[at]), float(radius_m),
+            float(max_slope), float(roadmap.chord_error_m), zones, rings, sizes,
+            roadmap.seen(float(alt)), *some,
+        )  # fmt: skip
+        for part, filled in zip(found, some, strict=True):
+            if len(part) == n:
+                part[at] = filled
+    return found
+
+
+def start_point(pose: Pose) -> Position:
+    """The position of a pose."""
+    return Position(pose.north_m, pose.east_m, pose.alt_m)
+
+
+def why_not(code: int, zone: Zone) -> str:
+    """Why there is no route, from its code and zone."""
+    if code == NO_WAY:
+        return f"no way around {name_of(zone)} was found"
+    return f"its {'start' if code == BAD_START else 'end'} breaks {name_of(zone)}"
+
+
+def route(
+    start: Pose,
+    end: Pose,
+    radius_m: float,
+    roadmap: Roadmap,
+    max_slope: float = math.inf,
+) -> Route:
+    """A short flyable route from start to end whose every leg obeys the roadmap's zones.
+
+    radius_m: turn radius [m]; max_slope: steepest climb or descent (metres per metre flown).
+    The route is the shortest that was found, not the shortest that exists.
+    """
+    ends = np.array([start], float), np.array([end], float)
+    found = routes(*ends, radius_m, roadmap, max_slope, ways=True)
+    links = int(found.links[0])
+    if found.codes[0] != FOUND:
+        return Route((), 0.0, why_not(int(found.codes[0]), roadmap.zones[links]))
+    points = swift(route_points, 1 + 20 * bool(roadmap.zones))(
+        found.poses[0], links, float(radius_m), float(max_slope), float(roadmap.chord_error_m),
+        table(roadmap.zones),
+    )  # fmt: skip
+    inner = [Position(*point) for point in points[1:-1].tolist()]
+    way = (start_point(start), *inner, start_point(end))
+    return Route(way, float(found.metres[0]))
+
+
+def name_of(zone: Zone) -> str:
+    """A zone in words: kind, id and label."""
+    kind = "keep-in" if zone.kind.value == "keep_in" else "keep-out"
+    return f"{kind} zone {zone.id}" + (f" ({zone.label})" if zone.label else "")
+
+
+def circle(
+    at: Pose, radius_m: float, clockwise: bool, chord_error_m: float = 0.5
+) -> tuple[Position, ...]:
+    """One full turn from a pose back to it, as a polyline."""
+    kind = RIGHT if clockwise else -RIGHT
+    step = 2 * math.acos(max(0.0, 1 - chord_error_m / radius_m)) * radius_m
+    count = max(8, math.ceil(2 * math.pi * radius_m / step))
+    around = 2 * math.pi * radius_m
+    points = [start_point(pose_after(at, kind, around * k / count, radius_m)) for k in range(count)]
+    return (*points, points[0])

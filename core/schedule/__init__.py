@@ -1,0 +1,1 @@
+"""Order and timing of tasks: constraint rows and the earliest schedule under them."""

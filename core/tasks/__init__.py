@@ -1,0 +1,1 @@
+"""What tasks fly and see: lanes over areas, footprints, coverage."""

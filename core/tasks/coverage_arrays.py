@@ -1,0 +1,113 @@
+"""The squares of an area, and which of them footprints contain: loops over arrays.
+
+The kernels are those of `core.geofence.planar` and `core.tasks.coverage_steps`, step by step as their folds run
+them. CPython runs these functions as they stand; `core.readings.machine.compiled.machine` compiles the same text.
+"""
+
+import numpy as np
+
+from cratous.core.geofence.planar import (
+    Seen,
+    contact_result,
+    contact_step,
+    location_result,
+    location_step,
+)
+from cratous.core.kernel import Vec2, driver
+from cratous.core.tasks.coverage_steps import within_result, within_step
+
+
+def place_of(edges: np.ndarray, n: float, e: float) -> int:
+    """Where a point lies: 1 inside, 0 on the boundary, -1 outside. edges: (k, 4)."""
+    seen, p = Seen(False, False), Vec2(n, e)
+    for k in range(len(edges)):
+        if min(edges[k, 1], edges[k, 3]) <= e and e <= max(edges[k, 1], edges[k, 3]):
+            seen = location_step(
+                seen, Vec2(edges[k, 0], edges[k, 1]), Vec2(edges[k, 2], edges[k, 3]), p
+            )
+    return location_result(seen)
+
+
+@driver(checked_by=("location_step", "contact_step"))
+def grid_squares(
+    edges: np.ndarray, north: float, east: float, rows: int, columns: int, side: float,
+    found: np.ndarray,
+) -> int:  # fmt: skip
+    """Fill `found` (rows * columns, 2) with the centres of the squares that share a point with a polygon.
+
+    edges (k, 4): north, east, north, east of each edge; north, east: the grid's corner; side [m].
+    From south to north, and within a row from west to east. How many there are.
+    """
+    half, count, m = side / 2, 0, len(edges)
+    near = np.empty(m, np.int64)
+    sides = np.empty((4, 4))
+    for i in range(rows):
+        x = north + (i + 0.5) * side
+        known, inside = False, False
+        for j in range(columns):
+            y = east + (j + 0.5) * side
+            close = 0
+            for k in range(m):
+                a, b, c, d = edges[k, 0], edges[k, 1], edges[k, 2], edges[k, 3]
+                beside = min(a, c) > x + half or max(a, c) < x - half
+                if not (beside or min(b, d) > y + half or max(b, d) < y - half):
+                    near[close] = k
+                    close += 1
+            if close == 0:
+                # no edge comes near: the square is where its middle is, and so are those beside it
+                if not known:
+                    known, inside = True, place_of(edges, x, y) >= 0
+                shares = inside
+            else:
+                known, met = False, False
+                for s in range(4):
+                    # corners in turn: south-west, south-east, north-east, north-west
+                    p = Vec2(x + (half if s == 2 or s == 3 else -half),
+                             y + (half if s == 1 or s == 2 else -half))  # fmt: skip
+                    q = Vec2(x + (half if s == 1 or s == 2 else -half),
+                             y + (half if s == 0 or s == 1 else -half))  # fmt: skip
+                    sides[s, 0], sides[s, 1], sides[s, 2], sides[s, 3] = p.x, p.y, q.x, q.y
+                    for k in range(close):
+                        e = edges[near[k]]
+                        met = contact_step(met, Vec2(e[0], e[1]), Vec2(e[2], e[3]), p, q)
+                shares = contact_result(met) or place_of(edges, x, y) >= 0
+                if not shares:
+                    for k in range(close):
+                        e = edges[near[k]]
+                        shares = shares or place_of(sides, e[0], e[1]) >= 0
+            if shares:
+                found[count, 0], found[count, 1] = x, y
+                count += 1
+    return count
+
+
+@driver(checked_by=("within_step", "within_result"))
+def mark_seen(centres: np.ndarray, half: float, quads: np.ndarray, seen: np.ndarray) -> None:
+    """Set `seen` (n, bool) for every square of which each point lies in one of the convex footprints.
+
+    centres (n, 2): from south to north; half: of a square's side [m]; quads (m, k, 2): corners of
+    footprints, counter-clockwise (north to east), without NaN. Boxes only leave squares out.
+    """
+    total = len(centres)
+    for f in range(len(quads)):
+        quad = quads[f]
+        south, north = np.min(quad[:, 0]) + half, np.max(quad[:, 0]) - half
+        west, east = np.min(quad[:, 1]) + half, np.max(quad[:, 1]) - half
+        low, high = 0, total
+        while low < high:
+            middle = (low + high) // 2
+            if centres[middle, 0] < south:
+                low = middle + 1
+            else:
+                high = middle
+        k = low
+        while k < total and centres[k, 0] <= north:
+            n, e = centres[k, 0], centres[k, 1]
+            if not seen[k] and west <= e and e <= east:
+                within, centre = True, Vec2(n, e)
+                for j in range(len(quad)):
+                    b = j + 1 if j + 1 < len(quad) else 0
+                    p, q = Vec2(quad[j, 0], quad[j, 1]), Vec2(quad[b, 0], quad[b, 1])
+                    within = within_step(within, p, q, centre, half)
+                seen[k] = within_result(within)
+            k += 1

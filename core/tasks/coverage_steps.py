@@ -1,0 +1,34 @@
+"""Whether a small square lies in a convex polygon: left of all its edges. Definition: `spec.geofence`."""
+
+from cratous.core.geofence.planar import orient
+from cratous.core.kernel import Vec2, fold, kernel
+
+
+@kernel(implements="geofence.square_point_left_of")
+def square_left_of(a: Vec2, b: Vec2, centre: Vec2, half: float) -> bool:
+    """True iff every point of the square lies left of the line a-b, or on it.
+
+    centre, half: the square's middle and half of its side [m], >= 0; sides along the axes.
+    """
+    return orient(a, b, centre) >= half * (abs(b.x - a.x) + abs(b.y - a.y))
+
+
+@kernel(implements="geofence.every_step")
+def within_step(so_far: bool, a: Vec2, b: Vec2, centre: Vec2, half: float) -> bool:
+    """Add the edge a-b to whether the square is left of all edges."""
+    return so_far and square_left_of(a, b, centre, half)
+
+
+@kernel(supports="square_within")
+def within_result(so_far: bool) -> bool:
+    """Whether the square is left of all edges."""
+    return so_far
+
+
+square_within = fold(
+    name="square_within",
+    implements="geofence.every_step",
+    step=within_step,
+    start=True,
+    finish=within_result,
+)

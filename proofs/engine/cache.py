@@ -1,0 +1,79 @@
+"""What the solver said before, by the hash of what it was asked.
+
+A private folder below the product's cache (`CRATOUS_CACHE`), one small file for each question.
+The name holds the structural hash of the question, the solver's version, the budget and the
+strategy; a file that is damaged, or is about another question, counts as absent. Only answers
+without a model are kept: a counterexample is always found anew.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from cratous.core.files.private_cache import private_cache
+from cratous.core.kernel.sources import digest, files_digest
+from cratous.core.ledger import engine, solver_version
+
+
+@dataclass(frozen=True)
+class Answer:
+    """sat, unsat or unknown; effort in solver resources, CPU seconds, the logic that answered."""
+
+    result: str
+    rlimit: int
+    seconds: float
+    logic: str
+
+
+class Cache:
+    """Answers by question; without a folder nothing is kept."""
+
+    def __init__(self, folder: Path | None) -> None:
+        self.folder = folder
+        self.hits = 0
+        strategy = sorted(file for file in engine() if file.stem in ("prover", "ladder", "smtlib"))
+        self._salt = (solver_version(), files_digest(strategy))
+
+    def name(self, key: str, rlimit: int) -> str:
+        """The file name of a question."""
+        return digest([key, str(rlimit), *self._salt])
+
+    def get(self, key: str, rlimit: int) -> Answer | None:
+        """The kept answer, if there is one."""
+        if self.folder is None:
+            return None
+        name = self.name(key, rlimit)
+        try:
+            data = json.loads((self.folder / name[:2] / name).read_text(encoding="utf-8"))
+            if data.pop("question") != [key, rlimit, *self._salt]:
+                return None
+            answer = Answer(**data)
+        except (OSError, ValueError, KeyError, TypeError, AttributeError):
+            return None
+        if answer.result not in ("sat", "unsat", "unknown"):
+            return None
+        self.hits += 1
+        return answer
+
+    def put(self, key: str, rlimit: int, answer: Answer) -> None:
+        """Keep an answer; a folder that cannot be written is no error."""
+        if self.folder is None:
+            return
+        name = self.name(key, rlimit)
+        file = self.folder / name[:2] / name
+        data = {"question": [key, rlimit, *self._salt], **asdict(answer)}
+        try:
+            file.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+            part = file.with_name(f"{name}.{os.getpid()}")
+            part.write_text(json.dumps(data), encoding="utf-8")
+            part.replace(file)
+        except OSError:
+            return
+
+
+def standard() -> Cache:
+    """The cache of this user and machine."""
+    return Cache(private_cache() / "proofs")

@@ -1,0 +1,343 @@
+"""Writing a theorem: any input of this kind, these premises, one use of the kernel, this holds.
+
+A theorem is a file in `proofs/theorems/` whose docstring is the sentence that reports print and
+whose function `claim(c: Claim)` states it. `c.real`, `c.integer`, ... introduce arbitrary values;
+`c.premise` restricts them; `c.use` runs a kernel and `c.define` a definition of `spec`;
+`c.show` states what must follow. `c.lemma` uses a theorem proved elsewhere: its premises become
+obligations here. `c.fold` proves a fold for every number of items by induction. Names are given
+once, lemmas may not go in a circle: a slip there would weaken a theorem without a word.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import z3
+
+from cratous.core.kernel import Fold, Vec2, qualified
+from cratous.proofs.engine.lift import OPAQUE, REPLACED, VISITS, Visit, join, lift
+from cratous.proofs.engine.symbolic import RANGE, Sym, SymBool, SymInt, SymMask, SymReal, _raw
+from cratous.proofs.engine.terms import Stub, flatten, free_names, known, leaves, statement
+
+
+@dataclass(frozen=True)
+class Obligation:
+    """Something to prove: under `given`, `goal`. kind: goal, defined, base, step, use, lemma."""
+
+    kind: str
+    text: str
+    given: tuple[z3.BoolRef, ...]
+    goal: z3.BoolRef
+
+
+@dataclass
+class Claim:
+    """The theorem under construction.
+
+    asked: whether it asked for the calls of an opaque function; asking: its lemmas that did.
+    """
+
+    prefix: str = ""
+    circle: tuple[str, ...] = ()
+    fixed: dict[str, Any] = field(default_factory=dict)
+    load: Callable[[str], Callable[[Claim], None]] | None = None
+    premises: list[z3.BoolRef] = field(default_factory=list)
+    facts: list[z3.BoolRef] = field(default_factory=list)
+    obligations: list[Obligation] = field(default_factory=list)
+    kernels: list[str] = field(default_factory=list)
+    lemmas: list[str] = field(default_factory=list)
+    asking: set[str] = field(default_factory=set)
+    asked: bool = False
+    assumptions: list[tuple[str, str, str]] = field(default_factory=list)
+    goals: list[z3.BoolRef] = field(default_factory=list)
+    stubs: dict[Callable[..., Any], Stub] = field(default_factory=dict)
+    roots: list[z3.BoolRef] = field(default_factory=list)
+    visits: list[Visit] = field(default_factory=list)
+    granted: tuple[z3.BoolRef, ...] = ()
+    used: list[Callable[..., Any]] = field(default_factory=list)
+    closed: set[Callable[..., Any]] = field(default_factory=set)
+    vouched: set[Callable[..., Any]] = field(default_factory=set)
+    names: set[str] = field(default_factory=set)
+    dropped: frozenset[int] = frozenset()
+    weakened: Callable[[int, z3.BoolRef], z3.BoolRef] | None = None
+    stated: int = 0
+
+    # -- arbitrary values ---------------------------------------------------------------
+    def _value(self, name: str, make: Callable[[str], Any]) -> Any:
+        if name in self.names:
+            raise ValueError(f"the value {name!r} is introduced twice")
+        self.names.add(name)
+        return self.fixed[name] if name in self.fixed else make(self.prefix + name)
+
+    def real(self, name: str) -> Any:
+        """An arbitrary real number."""
+        return self._value(name, lambda n: SymReal(z3.Real(n)))
+
+    def reals(self, names: str) -> list[Any]:
+        """Several, from names separated by blanks."""
+        return [self.real(name) for name in names.split()]
+
+    def integer(self, name: str) -> Any:
+        """An arbitrary integer of at most 62 bits (a premise that the run time checks)."""
+        value = self._value(name, lambda n: SymInt(z3.Int(n)))
+        self._restrict(z3.And(value.term >= -(2**61), value.term <= 2**61))
+        return value
+
+    def whole(self, name: str) -> Any:
+        """An arbitrary integer of any size: for definitions, which are never compiled."""
+        return self._value(name, lambda n: SymInt(z3.Int(n)))
+
+    def boolean(self, name: str) -> Any:
+        """An arbitrary truth value."""
+        return self._value(name, lambda n: SymBool(z3.Bool(n)))
+
+    def mask(self, name: str) -> Any:
+        """An arbitrary mask of 64 bits."""
+        return self._value(name, lambda n: SymMask(z3.BitVec(n, 64)))
+
+    def bits(self, value: int) -> Any:
+        """A known mask."""
+        return SymMask(z3.BitVecVal(value, 64))
+
+    def vector(self, name: str) -> Vec2:
+        """An arbitrary vector in the plane."""
+        return Vec2(self.real(name + ".x"), self.real(name + ".y"))
+
+    # -- statements ---------------------------------------------------------------------
+    def premise(self, condition: Any) -> None:
+        """Restrict the theorem to values that satisfy `condition`."""
+        self._restrict(statement(condition))
+
+    def _restrict(self, premise: z3.BoolRef) -> None:
+        """Add a premise, unless this reading of the claim is to do without it (`proofs.mutation.mutate`)."""
+        number, self.stated = self.stated, self.stated + 1
+        if number in self.dropped:
+            return
+        self.premises.append(premise if self.weakened is None else self.weakened(number, premise))
+
+    def assume(self, condition: Any, *, owner: str, reason: str) -> None:
+        """Take something for granted; it stays in the ledger, with owner and reason, for ever."""
+        self.facts.append(statement(condition))
+        self.assumptions.append((str(condition), owner, reason))
+
+    def use(self, kernel: Callable[..., Any], *args: Any) -> Any:
+        """Run a kernel of `core` on these values; the theorem is about it."""
+        self.used.append(kernel)
+        self._name()
+        return self._lift(kernel, args)
+
+    def _name(self) -> None:
+        """The theorem is about the kernels that it uses, and that it or a lemma looks into."""
+        for kernel in self.used:
+            seen = kernel not in self.stubs or kernel in self.vouched
+            if seen and qualified(kernel) not in self.kernels:
+                self.kernels.append(qualified(kernel))
+
+    def define(self, definition: Callable[..., Any], *args: Any) -> Any:
+        """Evaluate a definition of `spec` on these values."""
+        return self._lift(definition, args, machine=False)
+
+    def opaque(self, *functions: Callable[..., Any]) -> None:
+        """Do not look into these functions: equal arguments give equal, otherwise unknown results.
+
+        What is known about them then comes from `lemma` alone, whose premises are owed for the
+        very arguments of the call, so a contract cannot ignore them.
+        """
+        for function in functions:
+            self.closed.add(function)
+            if function in self.stubs:
+                continue
+            # two functions of one name, a kernel and its definition, must not share their results
+            self.stubs[function] = Stub(self.prefix + qualified(function), function)
+
+    def calls(self, function: Callable[..., Any]) -> list[tuple[Any, ...]]:
+        """The arguments of every call of an opaque function so far."""
+        self.asked = True
+        return list(self.stubs[function].calls)
+
+    def congruence(
+        self, function: Callable[..., Any], one: tuple[Any, ...], other: tuple[Any, ...]
+    ) -> None:
+        """For an opaque function: where the two argument lists are equal, so are the results."""
+        stub = self.stubs[function]
+        equal = self.all_of(*[self.same(a, b) for a, b in zip(one, other, strict=True)])
+        self.facts.append(z3.Implies(equal.term, statement(self.same(stub(*one), stub(*other)))))
+
+    def _lift(
+        self, function: Callable[..., Any], args: tuple[Any, ...], machine: bool = True
+    ) -> Any:
+        """The function's value; `machine`: its integers are those of compiled code."""
+        before = dict(OPAQUE)
+        OPAQUE.update(self.stubs)
+        VISITS.append([])
+        try:
+            lifted = lift(function, *args)
+        finally:
+            self.visits += [replace(v, granted=self.granted) for v in VISITS.pop()]
+            OPAQUE.clear()
+            OPAQUE.update(before)
+        self.facts += lifted.roots
+        self.roots += lifted.roots
+        for text, condition in lifted.obligations:
+            if machine or not text.endswith(RANGE):
+                self._owe("defined", f"{function.__name__}: {text}", condition)
+        return lifted.value
+
+    def _owe(self, kind: str, text: str, goal: z3.BoolRef) -> None:
+        given = (*self.premises, *self.facts)
+        self.obligations.append(Obligation(kind, text, given, goal))
+
+    def show(self, goal: Any, text: str = "the claim") -> None:
+        """What must follow; later statements may use it."""
+        term = statement(goal)
+        self._owe("goal", text, term)
+        self.goals.append(term)
+        self.facts.append(term)
+
+    def step(self, goal: Any, text: str) -> None:
+        """Show something on the way: it may be used here, but a lemma's user does not see it."""
+        term = statement(goal)
+        self._owe("goal", text, term)
+        self.facts.append(term)
+
+    def cases(self, *conditions: Any, goal: Any, text: str = "the claim") -> None:
+        """Show the goal case by case; that the cases cover everything is shown as well."""
+        terms = [statement(c) for c in conditions]
+        self._owe("goal", f"{text}: the cases cover everything", z3.Or(*terms))
+        for number, term in enumerate(terms, 1):
+            self._owe("goal", f"{text}: case {number}", z3.Implies(term, statement(goal)))
+        self.goals.append(statement(goal))
+        self.facts.append(statement(goal))
+
+    def lemma(self, name: str, *, when: Any = True, **values: Any) -> None:
+        """Use the theorem `name` for these values where `when` holds.
+
+        Its premises are owed there, and its goals are known there. What is opaque here is opaque
+        in the lemma too.
+        """
+        if self.load is None:
+            raise RuntimeError("lemmas need a loader")
+        if name in self.circle:
+            way = " -> ".join([*self.circle[self.circle.index(name) :], name])
+            raise ValueError(f"the lemmas go in a circle: {way}")
+        number = sum(other == name for other in self.lemmas)
+        prefix = f"{self.prefix}{name}!{number}!"
+        inner = Claim(
+            prefix=prefix,
+            circle=(*self.circle, name),
+            fixed=flatten(values),
+            load=self.load,
+            stubs=dict(self.stubs),
+        )
+        self.load(name)(inner)
+        self.asking |= {name} if inner.asked else set()
+        strangers = sorted(set(inner.fixed) - inner.names)
+        if strangers:
+            raise ValueError(f"the lemma {name} has no value called {', '.join(strangers)}")
+        self.vouched |= inner.vouched | (set(inner.used) - inner.closed)
+        self._name()
+        given = statement(when)
+        self.lemmas.append(name)
+        for premise in inner.premises:
+            self._owe("lemma", f"premise of {name}", z3.Implies(given, premise))
+        self.facts += [z3.Implies(given, goal) for goal in inner.goals]
+        self.facts += inner.roots
+
+    def implies(self, if_: Any, then: Any) -> Any:
+        """If the one then the other."""
+        return SymBool(z3.Implies(statement(if_), statement(then)))
+
+    def all_of(self, *conditions: Any) -> Any:
+        """All of them."""
+        return SymBool(z3.And(*[statement(c) for c in conditions]))
+
+    def any_of(self, *conditions: Any) -> Any:
+        """At least one of them."""
+        return SymBool(z3.Or(*[statement(c) for c in conditions]))
+
+    def negation(self, condition: Any) -> Any:
+        """Not."""
+        return SymBool(z3.Not(statement(condition)))
+
+    def when(self, condition: Any, yes: Any, no: Any) -> Any:
+        """One value or the other."""
+        term = statement(condition)
+        return join([(term, yes), (z3.Not(term), no)])
+
+    def same(self, a: Any, b: Any) -> Any:
+        """Equality of two values; of tuples, field by field."""
+        if isinstance(a, tuple):
+            return self.all_of(*[self.same(x, y) for x, y in zip(a, b, strict=True)])
+        if not isinstance(a, Sym) and not isinstance(b, Sym):
+            return a == b
+        return SymBool(_raw(a) == _raw(b))
+
+    def fold(
+        self,
+        kernel_fold: Fold[Any],
+        *,
+        acc: Any,
+        model: Any,
+        item: tuple[Any, ...],
+        context: tuple[Any, ...],
+        model_start: Any,
+        model_step: Callable[..., Any],
+        model_finish: Callable[..., Any],
+        relation: Callable[[Any, Any], Any],
+    ) -> None:
+        """The fold equals its definition for every number of items, by induction on it.
+
+        acc and model are arbitrary accumulators of kernel and definition. Base: `relation` holds
+        at the start. Step: if it holds before any item it holds after it. Use: where it holds the
+        results are equal. The three together are the induction over the number of items, provided
+        that the accumulators are arbitrary: that they are distinct free values which no premise
+        restricts, and on which the item does not depend, is checked here. What is to be known of
+        them belongs into `relation`. A premise on the item is one on every item.
+        """
+        if self.prefix:
+            return  # used as a lemma, a fold has no goals to offer
+        kernel_fold = REPLACED.get(kernel_fold, kernel_fold)
+        self._arbitrary((acc, model), (item, context))
+        if qualified(kernel_fold) not in self.kernels:
+            self.kernels.append(qualified(kernel_fold))
+        self._owe(
+            "base", "relation at the start", statement(relation(kernel_fold.start, model_start))
+        )
+        before = statement(relation(acc, model))
+        # both are run only where the relation holds, so what they owe is owed there
+        self._grant(before)
+        after = self.use(kernel_fold.step, acc, *item, *context)
+        model_after = self.define(model_step, model, *item, *context)
+        self._owe("step", "relation is kept", statement(relation(after, model_after)))
+        result = self.use(kernel_fold.finish, acc)
+        wanted = self.define(model_finish, model)
+        self._owe("use", "results are equal", statement(self.same(result, wanted)))
+        self.facts = [fact for fact in self.facts if not fact.eq(before)]
+        self.granted = ()
+
+    def _grant(self, condition: z3.BoolRef) -> None:
+        """Take it for granted in what follows, as an induction does."""
+        self.facts.append(condition)
+        self.granted = (condition,)
+
+    def _arbitrary(self, accumulators: Any, others: Any) -> None:
+        """Refuse accumulators over which no induction runs."""
+        own = [known(leaf) for leaf in leaves(accumulators)]
+        if any(not z3.is_const(t) or t.decl().kind() != z3.Z3_OP_UNINTERPRETED for t in own):
+            raise ValueError("a fold's accumulators are arbitrary values, not terms or literals")
+        names = {str(term) for term in own}
+        if len(names) < len(own):
+            raise ValueError("a fold's accumulators are distinct values")
+        for leaf in leaves(others):
+            shared = sorted(names & free_names(known(leaf)))
+            if shared:
+                raise ValueError(f"an item or context depends on the accumulator {shared[0]}")
+        for premise in self.premises:
+            shared = sorted(names & free_names(premise))
+            if shared:
+                raise ValueError(
+                    f"a premise restricts the accumulator {shared[0]}: no step keeps to it; "
+                    "put it into the relation (an unbounded integer is `c.whole`)"
+                )

@@ -1,0 +1,391 @@
+"""The prover: the only place that makes a `Theorem`.
+
+A claim is proved if its premises are satisfiable and z3 finds the negation of every obligation
+unsatisfiable, within a budget of solver resources (rlimit, never wall time). `unknown` is not
+proved. Every question is put to a solver in a context of its own, so the answer and the effort
+depend on the question alone, not on what was asked before or on how the work is spread. Each
+obligation can be written out as SMT-LIB for solvers that stand alone.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+import traceback
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import z3
+
+from cratous.core.kernel import entry_of, qualified
+from cratous.core.kernel.sources import altered, ours, place
+from cratous.core.ledger import Home
+from cratous.proofs.engine import plain_numbers
+from cratous.proofs.engine.cache import Answer, Cache
+from cratous.proofs.engine.claim import Claim, Obligation
+from cratous.proofs.engine.counterexample import Model, Watched, story, telling
+from cratous.proofs.engine.cpu_limit import OutOfTime, cpu_limit
+from cratous.proofs.engine.ladder import check, solvers
+from cratous.proofs.engine.lemma_calls import hangs_on_calls
+from cratous.proofs.engine.lift import LiftError
+from cratous.proofs.engine.merkle import Hasher
+from cratous.proofs.engine.smtlib import logic_of, question, smt2, sorts
+from cratous.proofs.engine.theorem_files import FOLDER, find, load_claim, load_lemma, theorem_files
+from cratous.spec.errors import BadInput
+
+RLIMIT = 60_000_000
+FACTS_RLIMIT = 3_000_000
+PATH_RLIMIT = 1_000_000
+STATE_CPU_S = 300
+"""CPU seconds after which a statement is ended: many times what any takes."""
+_KEY = object()
+_NO_CACHE = Cache(None)
+
+
+@dataclass(frozen=True)
+class Owed:
+    """What was owed: its kind (goal, defined, base, step, use, lemma) and its text."""
+
+    kind: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What the solver said of one obligation: proved, refuted, unknown; the effort it took.
+
+    key: structural hash of the obligation; counterexample: the values of a refutation by name;
+    story: the same in the user's terms; seconds: CPU, not in the ledger.
+    """
+
+    obligation: Owed
+    status: str
+    rlimit: int
+    logic: str
+    counterexample: tuple[tuple[str, str], ...] = ()
+    key: str = ""
+    story: tuple[str, ...] = ()
+    seconds: float = 0.0
+
+
+@dataclass(frozen=True)
+class Theorem:
+    """A claim with its outcomes. Only `prove` can make one.
+
+    paths: of every kernel that it is about, which paths some values reach under the premises.
+    """
+
+    name: str
+    sentence: str
+    kernels: tuple[str, ...]
+    lemmas: tuple[str, ...]
+    premises: str
+    outcomes: tuple[Outcome, ...]
+    assumptions: tuple[tuple[str, str, str], ...]
+    _key: Any = field(default=None, compare=False, repr=False)
+    paths: tuple[tuple[str, tuple[bool, ...]], ...] = ()
+
+    def __post_init__(self) -> None:
+        if self._key is not _KEY:
+            raise TypeError("only the prover makes theorems")
+
+    @property
+    def proved(self) -> bool:
+        """True iff the premises are satisfiable and every obligation is proved."""
+        return self.premises == "satisfiable" and all(o.status == "proved" for o in self.outcomes)
+
+    @property
+    def rlimit(self) -> int:
+        """Solver effort over all obligations."""
+        return sum(o.rlimit for o in self.outcomes)
+
+    @property
+    def seconds(self) -> float:
+        """CPU seconds of the solver over all obligations, when they were last really solved."""
+        return sum(o.seconds for o in self.outcomes)
+
+
+def restore(data: dict[str, Any]) -> Theorem:
+    """A theorem from its fields as they were kept (`proofs.ledger.recall`).
+
+    Raises KeyError, TypeError or ValueError for data that are not a theorem's.
+    """
+    outcomes = []
+    for row in data["outcomes"]:
+        owed = Owed(**row["obligation"])
+        example = tuple((str(n), str(v)) for n, v in row["counterexample"])
+        rest = {k: row[k] for k in ("status", "rlimit", "logic", "key", "seconds")}
+        outcomes.append(Outcome(owed, counterexample=example, story=tuple(row["story"]), **rest))
+    return Theorem(
+        data["name"],
+        data["sentence"],
+        tuple(data["kernels"]),
+        tuple(data["lemmas"]),
+        data["premises"],
+        tuple(outcomes),
+        tuple((str(a), str(b), str(c)) for a, b, c in data["assumptions"]),
+        _KEY,
+        tuple((str(name), tuple(map(bool, seen))) for name, seen in data["paths"]),
+    )
+
+
+def _solvers(
+    terms: list[z3.ExprRef], context: z3.Context, rlimit: int
+) -> Iterator[tuple[str, z3.Solver, int]]:
+    kinds = sorts(terms) & {"Real", "Int", "BitVec", "quantifier", "function"}
+    return solvers(context, rlimit, polynomials=kinds == {"Real"})
+
+
+def _maker(logic: str, context: z3.Context) -> z3.Solver:
+    return z3.Solver(ctx=context) if logic == "ALL" else z3.SolverFor(logic, ctx=context)
+
+
+def _ask(given: list[z3.BoolRef], rlimit: int) -> tuple[Answer, z3.ModelRef | None, z3.Context]:
+    """The answer of the first solver that decides, and a model if it is sat."""
+    context = z3.Context()
+    # translated in order into an empty context, terms get the same numbers wherever this runs
+    terms = [term.translate(context) for term in given]
+    begun = time.process_time()
+    spent, result, logic, model = 0, "unknown", "ALL", None
+    for name, solver, effort in _solvers(terms, context, rlimit):
+        solver.add(*terms)
+        before = _rlimit_count(solver)
+        result, logic = check(solver, context, effort), name
+        spent += max(0, _rlimit_count(solver) - before)
+        if result != "unknown":
+            model = solver.model() if result == "sat" else None
+            break
+    answer = Answer(result, spent, round(time.process_time() - begun, 3), logic)
+    return answer, model, context
+
+
+def _rlimit_count(solver: z3.Solver) -> int:
+    statistics = solver.statistics()
+    for key, value in statistics:
+        if key == "rlimit count":
+            return int(value)
+    return 0
+
+
+def _decide(
+    claim: Claim, obligation: Obligation, rlimit: int, cache: Cache, hasher: Hasher
+) -> Outcome:
+    asked = question(obligation)
+    key = hasher.key("unsat?", asked)
+    answer = cache.get(key, rlimit)
+    example: tuple[tuple[str, str], ...] = ()
+    lines: list[str] = []
+    if answer is None or answer.result == "sat":
+        answer, found, context = _ask(asked, rlimit)
+        if found is None:
+            cache.put(key, rlimit, answer)
+        else:
+            terms = [term.translate(context) for term in asked]
+            first = next(_solvers(terms, context, rlimit))[0]
+            found = telling(terms, found, lambda: _maker(first, context))
+            model = Model(found, context)
+            values = [(str(d.name()), str(found[d])) for d in found.decls() if d.arity() == 0]
+            example = tuple(sorted(values))
+            lines = story(claim, model)
+    status = {"unsat": "proved", "sat": "refuted"}.get(answer.result, "unknown")
+    owed = Owed(obligation.kind, obligation.text)
+    return Outcome(
+        owed, status, answer.rlimit, answer.logic, example, key, tuple(lines), answer.seconds
+    )
+
+
+def _premises(claim: Claim, rlimit: int, cache: Cache, hasher: Hasher) -> str:
+    """Whether some values satisfy the premises, and with them all that is taken as known.
+
+    A contradiction among premises, assumptions and what lemmas say would prove anything. Where
+    the solver cannot judge all together, the premises alone must be satisfiable.
+    """
+    for terms, budget in (
+        ([*claim.premises, *claim.facts], min(rlimit, FACTS_RLIMIT)),
+        (list(claim.premises), rlimit),
+    ):
+        result = _satisfiable(terms, budget, cache, hasher)
+        if result != "unknown":
+            break
+    return {"sat": "satisfiable", "unsat": "contradictory"}.get(result, "unknown")
+
+
+def prove(
+    name: str,
+    claim: Claim,
+    sentence: str,
+    *,
+    rlimit: int = RLIMIT,
+    cache: Cache = _NO_CACHE,
+    tell: Callable[[int, int], None] | None = None,
+) -> Theorem:
+    """Decide a stated claim; the returned theorem says what was proved and what was not.
+
+    tell: called with (done, all) after each obligation. Raises ValueError for a claim that names
+    no kernel or shows nothing.
+    """
+    if not claim.kernels:
+        raise ValueError(f"theorem {name}: it names no kernel (state it with c.use)")
+    if not claim.obligations:
+        raise ValueError(f"theorem {name}: it shows nothing (state it with c.show)")
+    hasher = Hasher()
+    premises = _premises(claim, rlimit, cache, hasher)
+    outcomes = []
+    for obligation in claim.obligations:
+        outcomes.append(_decide(claim, obligation, rlimit, cache, hasher))
+        if tell is not None:
+            tell(len(outcomes), len(claim.obligations))
+    return Theorem(
+        name,
+        sentence,
+        tuple(claim.kernels),
+        tuple(claim.lemmas),
+        premises,
+        tuple(outcomes),
+        tuple(claim.assumptions),
+        _KEY,
+        _reached_paths(claim, min(rlimit, PATH_RLIMIT), cache, hasher),
+    )
+
+
+def _reached_paths(
+    claim: Claim, rlimit: int, cache: Cache, hasher: Hasher
+) -> tuple[tuple[str, tuple[bool, ...]], ...]:
+    """For each kernel that is looked into: is each of its paths possible under the premises?
+
+    A path that the solver cannot judge counts as possible: only a proof makes it dead.
+    """
+    found: dict[str, list[bool]] = {}
+    for visit in claim.visits:
+        if visit.context or entry_of(visit.function) is None:
+            continue
+        name, conditions = qualified(visit.function), visit.lifted.branches
+        # arguments may be literals: the uses with the most paths are the kernel's
+        if len(conditions) > len(found.get(name, [])):
+            found[name] = [False] * len(conditions)
+        seen = found[name]
+        for number, condition in enumerate(conditions):
+            if len(conditions) == len(seen) and not seen[number]:
+                terms = [*claim.premises, *visit.lifted.roots, condition]
+                seen[number] = _satisfiable(terms, rlimit, cache, hasher) != "unsat"
+    return tuple((name, tuple(seen)) for name, seen in sorted(found.items()) if len(seen) > 1)
+
+
+def _satisfiable(terms: list[z3.BoolRef], rlimit: int, cache: Cache, hasher: Hasher) -> str:
+    key = hasher.key("sat?", terms)
+    answer = cache.get(key, rlimit)
+    if answer is None:
+        answer, *_ = _ask(terms, rlimit)
+        cache.put(key, rlimit, answer)
+    return answer.result
+
+
+# -- theorem files ----------------------------------------------------------------------
+def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
+    """The claim of a theorem file, stated, and its sentence; the kernels must be registered."""
+    statement, sentence = load_claim(name, folder)
+
+    def stated(by: Callable[..., Any]) -> Watched:
+        claim = Watched(load=lambda other: load_lemma(other, folder))
+        by(claim)
+        return claim
+
+    where = place(find(name, folder))
+    try:
+        with cpu_limit(STATE_CPU_S, z3.main_ctx()):
+            claim = stated(statement)
+            plain_numbers.hold(stated, statement, claim.visits)
+            hanging = sorted(n for n in claim.asking if hangs_on_calls(n, folder))
+    except OutOfTime as error:
+        raise BadInput(
+            "the theorem cannot be stated: its paths take too long to find",
+            where=where,
+            expected="less in one kernel: split it, and do not look into the part (c.opaque)",
+            got=f"more than {STATE_CPU_S} s of CPU",
+        ) from error
+    except plain_numbers.Inexact as error:
+        what = f"the theorem cannot be stated: {error.where}: {error.what}"
+        raise BadInput(what, where=where, expected=error.expected, got=error.got) from error
+    except Exception as error:
+        # ctypes, which z3 is called through, gives it another type
+        if isinstance(error, RecursionError) or "RecursionError" in str(error):
+            raise BadInput(
+                "the theorem cannot be stated: a term in it is nested too deeply to be read",
+                where=where,
+                expected="less in one kernel: split it, and do not look into the part (c.opaque)",
+                got=f"more than {sys.getrecursionlimit()} levels",
+            ) from error
+        slip = _slip(error, folder)
+        if not slip and not isinstance(error, ValueError | TypeError | LiftError):
+            raise  # not the theorem's doing
+        raise BadInput(f"the theorem cannot be stated: {error}", where=slip or where) from error
+    wrong = {n for f in {v.function for v in claim.visits} if ours(f) for n in altered(f)}
+    if wrong:
+        raise BadInput(
+            f"the code that runs is not its file's: {', '.join(sorted(wrong))}",
+            where=where,
+            expected="functions as their files say (remove __pycache__)",
+        )
+    used: list[Any] = [run.function for run in claim.runs if run.role == "kernel"]
+    for function in [*used, *claim.folds]:
+        if entry_of(function) is None:
+            raise BadInput(
+                f"the theorem is about {function.__name__!r}, which is not registered",
+                where=where,
+                expected="a function marked with @kernel, or a fold made with fold(...)",
+                got=qualified(function),
+            )
+    if not claim.kernels:
+        raise BadInput(
+            "the theorem names no kernel", where=where, expected="at least one c.use(kernel, ...)"
+        )
+    if not claim.obligations:
+        raise BadInput(
+            "the theorem shows nothing", where=where, expected="at least one c.show(...)"
+        )
+    if hanging:
+        raise BadInput(
+            f"{hanging[0]} is no lemma: what it shows is made of the calls of a function",
+            where=where,
+            expected="goals that are the same where c.calls(...) is empty",
+        )
+    return claim, sentence
+
+
+def _slip(error: BaseException, folder: Path) -> str:
+    """Where in the theorem's file, or in a lemma's, the error came up itself; nothing if elsewhere."""
+    frames = [] if error.__traceback__ is None else traceback.extract_tb(error.__traceback__)
+    file = Path(frames[-1].filename) if frames else Path()
+    if file.parent not in (folder, FOLDER):
+        return ""
+    return f"{place(file).partition(':')[0]}:{frames[-1].lineno}"
+
+
+def prove_file(
+    name: str,
+    *,
+    folder: Path = FOLDER,
+    rlimit: int = RLIMIT,
+    cache: Cache = _NO_CACHE,
+    tell: Callable[[int, int], None] | None = None,
+) -> Theorem:
+    """State and prove the theorem of one file."""
+    claim, sentence = state(name, folder)
+    return prove(name, claim, sentence, rlimit=rlimit, cache=cache, tell=tell)
+
+
+def home_folder(home: Home) -> Path:
+    """Where the theorems of a home lie; raises BadInput if there is no such folder."""
+    if not home.theorems.is_dir():
+        raise BadInput(
+            "the package has no theorems", where=home.name, expected="a folder `theorems`"
+        )
+    return home.theorems
+
+
+__all__ = [
+    "FOLDER", "RLIMIT", "Outcome", "Owed", "Theorem", "home_folder", "load_claim", "logic_of",
+    "prove", "prove_file", "question", "smt2", "sorts", "state", "theorem_files",
+]  # fmt: skip

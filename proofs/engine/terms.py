@@ -1,0 +1,119 @@
+"""Values of the kernel subset as solver terms, and values that stand for the unknown.
+
+Small tools of `claim` and of mutation: arbitrary values of a type, the names in a term, and a stub
+that stands for a function which is not looked into.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterable
+from typing import Any, get_type_hints
+
+import z3
+
+from cratous.core.kernel import Vec2
+from cratous.proofs.engine.canonical import canonical
+from cratous.proofs.engine.symbolic import PATHS, Sym, SymBool, SymInt, SymReal, _raw, as_real, wrap
+
+
+class Stub:
+    """Stands for a function that is not looked into: same arguments, same unknown result."""
+
+    def __init__(self, name: str, function: Callable[..., Any]) -> None:
+        self.name = name
+        hints = get_type_hints(function)
+        self.result = hints["return"]
+        self.kinds = [hints[n] for n in inspect.signature(function).parameters]
+        self.calls: list[tuple[Any, ...]] = []
+        self.results: dict[str, Any] = {}
+
+    def __call__(self, *args: Any) -> Any:
+        key = "; ".join(normal(arg, kind) for arg, kind in zip(args, self.kinds, strict=True))
+        if key not in self.results:
+            self.results[key] = fresh(f"{self.name}#{len(self.calls)}", self.result)
+            self.calls.append(args)
+        return self.results[key]
+
+
+def normal(value: Any, kind: Any) -> str:
+    """A name that equal arguments of this type share: polynomials are expanded and sorted."""
+    if isinstance(value, tuple):
+        kinds = get_type_hints(kind)
+        fields = [kinds[part] for part in kind._fields]
+        return ", ".join(normal(part, one) for part, one in zip(value, fields, strict=True))
+    # an integer literal where a real is wanted is one
+    return canonical(as_real(known(value)) if kind is float else known(value))
+
+
+def fresh(name: str, kind: Any) -> Any:
+    """An arbitrary value of this type."""
+    if kind is bool:
+        return SymBool(z3.Bool(name))
+    if kind is int:
+        return SymInt(z3.Int(name))
+    if kind is float:
+        return SymReal(z3.Real(name))
+    fields = get_type_hints(kind)
+    return kind(*[fresh(f"{name}.{part}", fields[part]) for part in fields])
+
+
+def leaves(value: Any) -> list[Any]:
+    """The scalars of a value, in order."""
+    if isinstance(value, tuple):
+        return [leaf for part in value for leaf in leaves(part)]
+    return [value]
+
+
+def free_names(term: z3.ExprRef) -> set[str]:
+    """The names of the values in a term."""
+    return {str(value) for value in free_values([term])}
+
+
+def free_values(terms: Iterable[z3.ExprRef]) -> list[z3.ExprRef]:
+    """The arbitrary values in these terms, by name."""
+    seen: set[int] = set()
+    found: dict[str, z3.ExprRef] = {}
+    todo = list(terms)
+    while todo:
+        part = todo.pop()
+        if part.get_id() in seen:
+            continue
+        seen.add(part.get_id())
+        if z3.is_const(part) and part.decl().kind() == z3.Z3_OP_UNINTERPRETED:
+            found[str(part)] = part
+        todo += part.children()
+    return [found[name] for name in sorted(found)]
+
+
+def flatten(values: dict[str, Any]) -> dict[str, Any]:
+    """Values by name with the fields of vectors as values of their own."""
+    flat: dict[str, Any] = {}
+    for name, value in values.items():
+        if isinstance(value, Vec2):
+            flat[name + ".x"], flat[name + ".y"] = value.x, value.y
+        else:
+            flat[name] = value
+    # a literal is as good as a term
+    return {k: v if isinstance(v, Sym) else wrap(known(v)) for k, v in flat.items()}
+
+
+def known(value: Any) -> z3.ExprRef:
+    """The term of a value or literal; TypeError for anything else."""
+    term = _raw(value)
+    if term is None:
+        raise TypeError(f"{value!r} is no value of the kernel subset")
+    return term
+
+
+def statement(value: Any) -> z3.BoolRef:
+    """The term of a condition that a theorem states; TypeError for anything else."""
+    if PATHS:
+        raise RuntimeError("a theorem's statement was evaluated inside a lifted function")
+    if isinstance(value, bool):
+        return z3.BoolVal(value)
+    if isinstance(value, SymBool):
+        return value.term
+    if z3.is_expr(value) and z3.is_bool(value):
+        return value
+    raise TypeError(f"{value!r} is no statement")

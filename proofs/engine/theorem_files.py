@@ -1,0 +1,102 @@
+"""The files of theorems: one file a claim, named by it, its docstring the sentence it proves."""
+
+from __future__ import annotations
+
+import ast
+import sys
+import types
+from collections.abc import Callable
+from pathlib import Path
+
+from cratous.core.kernel.names import near
+from cratous.core.kernel.sources import place
+from cratous.core.ledger import PRODUCT, theorem_name
+from cratous.proofs.engine.claim import Claim
+from cratous.spec.errors import BadInput
+
+FOLDER = PRODUCT.theorems
+
+
+def theorem_files(folder: Path = FOLDER) -> dict[str, Path]:
+    """Name to file of every theorem, in order of name; raises BadInput for two of one name."""
+    found: dict[str, Path] = {}
+    for path in sorted(folder.rglob("*.py")):
+        if path.stem.startswith("_"):
+            continue
+        name = theorem_name(path, folder)
+        if name in found:
+            places = f"{place(found[name])} and {place(path)}"
+            raise BadInput(f"two theorems are called {name!r}", where=places)
+        found[name] = path
+    return dict(sorted(found.items()))
+
+
+def package_of(folder: Path) -> str:
+    """The package whose theorems lie in this folder."""
+    return PRODUCT.name if folder == FOLDER else folder.parent.name
+
+
+def find(name: str, folder: Path) -> Path:
+    """The file of a theorem: of this folder, else of the product.
+
+    name: as its file is called, or `package.name`.
+    """
+    package, _, plain = name.rpartition(".")
+    places = [place for place in (folder, FOLDER) if package in ("", package_of(place))]
+    for one in places:
+        found = theorem_files(one).get(plain)
+        if found is not None:
+            return found
+    known = [n for one in {folder, FOLDER} for n in theorem_files(one)]
+    raise BadInput(
+        f"there is no theorem called {name!r}",
+        where=place(folder),
+        expected=" or ".join(near(plain, known))
+        or "the name of a file of this folder, without .py",
+    )
+
+
+def load_lemma(name: str, folder: Path) -> Callable[[Claim], None]:
+    """The claim of a theorem that another one of this folder uses.
+
+    Raises BadInput where the package and the product have one of this name: one of them is meant.
+    """
+    if folder != FOLDER and all(name in theorem_files(one) for one in (folder, FOLDER)):
+        raise BadInput(
+            f"two theorems are called {name!r}",
+            where=f"{place(find(name, folder))} and {place(find(name, FOLDER))}",
+            expected=f"{package_of(folder)}.{name} or {PRODUCT.name}.{name}",
+        )
+    return load_claim(name, folder)[0]
+
+
+def load_claim(name: str, folder: Path = FOLDER) -> tuple[Callable[[Claim], None], str]:
+    """The function `claim` of a theorem file, and its sentence."""
+    path = find(name, folder)
+    text = path.read_text(encoding="utf-8")
+    inside = "cratous.proofs" if path.is_relative_to(FOLDER) else package_of(folder)
+    home = FOLDER if path.is_relative_to(FOLDER) else folder
+    module_name = ".".join((inside, "theorems", *path.relative_to(home).with_suffix("").parts))
+    module = sys.modules.get(module_name)
+    if module is None or getattr(module, "__file__", None) != str(path):
+        module = types.ModuleType(module_name)
+        module.__file__ = str(path)
+        try:
+            # from the text, never from byte code: what is proved is what is written
+            exec(compile(text, str(path), "exec", dont_inherit=True), module.__dict__)
+        except ImportError as error:
+            raise BadInput(
+                f"the theorem imports what is not there: {error}", where=place(path)
+            ) from error
+        except SyntaxError as error:
+            line = f"{place(path)}:{error.lineno}"
+            raise BadInput(f"the theorem is no Python: {error.msg}", where=line) from error
+        sys.modules[module_name] = module
+    sentence = " ".join((ast.get_docstring(ast.parse(text)) or "").split())
+    if not sentence:
+        raise BadInput(
+            "the theorem has no docstring", where=place(path), expected="the sentence it proves"
+        )
+    if not callable(getattr(module, "claim", None)):
+        raise BadInput("the theorem states nothing", where=place(path), expected="def claim(c)")
+    return module.claim, sentence

@@ -1,0 +1,307 @@
+"""Proves all theorems and writes what came of it into the ledger.
+
+The file holds facts only (no times, no machine): it is the same on every machine that proves the
+same code with the same solver, so CI can compare it byte by byte. Theorems are proved on all
+cores, each in a process forked from the same state, so that the result does not depend on how
+they are spread.
+"""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import os
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from multiprocessing.connection import Connection, wait
+from pathlib import Path
+from typing import Any
+
+from cratous.core import ledger as gate
+from cratous.core.kernel import REGISTRY, Entry, checkers, entry_of, supported
+from cratous.core.kernel.names import short
+from cratous.core.kernel.sources import altered, position, reached
+from cratous.core.ledger import PRODUCT, Home
+from cratous.proofs.engine import prover
+from cratous.proofs.engine.cache import Cache
+from cratous.proofs.engine.subset import Finding, lint_all
+from cratous.proofs.ledger.recall import Recall
+from cratous.proofs.ledger.remembered import Remembered
+
+
+@dataclass(frozen=True)
+class Inventory:
+    """What a run of the prover found: theorems, lint findings, kernels without a theorem.
+
+    problems: whatever else forbids a ledger, each with its place.
+    """
+
+    theorems: tuple[prover.Theorem, ...]
+    findings: tuple[Finding, ...]
+    bare: tuple[str, ...]
+    problems: tuple[str, ...] = ()
+
+    @property
+    def holds(self) -> bool:
+        """True iff everything is proved and nothing is missing."""
+        whole = not (self.findings or self.bare or self.problems)
+        return whole and all(t.proved for t in self.theorems)
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a theorem is: obligations done, of how many; at the end the theorem itself."""
+
+    name: str
+    done: int
+    of: int
+    theorem: prover.Theorem | None = None
+
+
+Listener = Callable[[Progress], None]
+
+
+def jobs_default() -> int:
+    """One worker for each core that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _work(name: str, folder: Path, cache: Cache, out: Connection) -> None:
+    try:
+        theorem = prover.prove_file(
+            name,
+            folder=folder,
+            cache=cache,
+            tell=lambda done, of: out.send(Progress(name, done, of)),
+        )
+        out.send(Progress(name, 1, 1, theorem))
+    except Exception as error:
+        out.send(error)
+    finally:
+        out.close()
+
+
+def prove_theorems(
+    names: Iterable[str],
+    *,
+    folder: Path = prover.FOLDER,
+    jobs: int | None = None,
+    cache: Cache | None = None,
+    tell: Listener | None = None,
+) -> list[prover.Theorem]:
+    """Prove these theorems on several cores; the result is in the order of the names.
+
+    Raises whatever a theorem file raises, for the first such file in that order.
+    """
+    wanted = list(names)
+    store = cache or Cache(None)
+    fork = multiprocessing.get_context("fork")
+    results: dict[str, prover.Theorem | Exception] = {}
+    running: dict[Connection, tuple[str, Any]] = {}
+    queue = list(reversed(wanted))
+    while queue or running:
+        while queue and len(running) < (jobs or jobs_default()):
+            name = queue.pop()
+            here, there = fork.Pipe(duplex=False)
+            process = fork.Process(target=_work, args=(name, folder, store, there), daemon=True)
+            process.start()
+            there.close()
+            running[here] = (name, process)
+        for ready in wait(list(running)):
+            assert isinstance(ready, Connection)
+            name, process = running[ready]
+            try:
+                message = ready.recv()
+            except EOFError:
+                process.join()
+                message = RuntimeError(
+                    f"the prover of {name} ended without an answer (exit code {process.exitcode})"
+                )
+            if isinstance(message, Progress):
+                if message.theorem is not None:
+                    results[name] = message.theorem
+                if tell is not None:
+                    tell(message)
+                if message.theorem is None:
+                    continue
+            else:
+                results[name] = message
+            process.join()
+            ready.close()
+            del running[ready]
+    proved = []
+    for name in wanted:
+        result = results[name]
+        if isinstance(result, Exception):
+            raise result
+        proved.append(result)
+    return proved
+
+
+def prove_all(
+    names: Iterable[str],
+    tell: Listener | None = None,
+    *,
+    home: Home = PRODUCT,
+    jobs: int | None = None,
+    cache: Cache | None = None,
+    recall: Recall | None = None,
+) -> Inventory:
+    """Prove these theorems, and look for whatever the ledger could not vouch for.
+
+    cache: solver answers; recall: theorems proved before, whose files are the same.
+    """
+    entries = gate.load_all(home)
+    folder = prover.home_folder(home)
+    wanted = list(names)
+    memory = recall or Recall(None)
+    kept = {name: theorem for name in wanted if (theorem := memory.get(name)) is not None}
+    for name, theorem in kept.items():
+        if tell is not None:
+            tell(Progress(name, 1, 1, theorem))
+    rest = [name for name in wanted if name not in kept]
+    anew = prove_theorems(rest, folder=folder, jobs=jobs, cache=cache, tell=tell)
+    memory.put(anew)
+    kept |= {theorem.name: theorem for theorem in anew}
+    theorems = [kept[name] for name in wanted]
+    named = {kernel for theorem in theorems for kernel in theorem.kernels}
+    bare = [n for n, e in entries.items() if e.kind != "driver" and n not in named]
+    findings = [f for f in lint_all() if f.kernel in entries]
+    return Inventory(tuple(theorems), tuple(findings), tuple(bare), tuple(problems(entries, home)))
+
+
+def problems(entries: dict[str, Entry], home: Home = PRODUCT) -> list[str]:
+    """Kernels and drivers that no proof could be bound to, each with its place and the reason."""
+    found = []
+    calls = {n: _called(e) | {n} for n, e in entries.items() if e.kind == "driver"}
+    for name, entry in entries.items():
+        where = f"{position(entry.function)}: {name.rpartition('.')[2]}"
+        if wrong := altered(entry.function):
+            found.append(f"{where}: the code that runs is not its file's: {', '.join(wrong)}")
+        if entry.kind == "driver":
+            if not entry.uses:
+                found.append(f"{where}: no kernel re-checks this driver's output (checked_by)")
+            for checker in checkers(entry):
+                if checker not in REGISTRY or REGISTRY[checker].kind == "driver":
+                    found.append(f"{where}: its checker {checker!r} is no kernel or fold")
+                elif not any({name, checker} <= names for names in calls.values()):
+                    found.append(
+                        f"{where}: nothing calls its checker {checker!r} on its output: neither "
+                        "itself nor a driver that uses it"
+                    )
+    return found
+
+
+def dead_paths(theorems: Iterable[prover.Theorem]) -> list[str]:
+    """Paths of kernels that no theorem's premises let anything reach: dead code, or a hole."""
+    reached: dict[str, list[tuple[bool, ...]]] = {}
+    for theorem in theorems:
+        for name, seen in theorem.paths:
+            reached.setdefault(name, []).append(seen)
+    found = []
+    names = short([*REGISTRY, *reached])
+    for name, views in sorted(reached.items()):
+        most = max(len(view) for view in views)
+        whole = [view for view in views if len(view) == most]
+        for number, possible in enumerate(zip(*whole, strict=True), 1):
+            if not any(possible):
+                found.append(f"{names[name]}: no premises let anything reach path {number} of it")
+    return found
+
+
+def _called(entry: Entry) -> set[str]:
+    """Names of the kernels, folds and drivers that a driver calls, directly or not."""
+    found = set()
+    for name, value in reached(entry.function).items():
+        if name.startswith("fold "):
+            found.add(name.removeprefix("fold "))
+        elif (other := entry_of(value)) is not None:
+            found.add(other.name)
+    return found
+
+
+def _theorem_record(theorem: prover.Theorem) -> dict[str, Any]:
+    return {
+        "sentence": theorem.sentence,
+        "kernels": sorted(theorem.kernels),
+        "lemmas": sorted(set(theorem.lemmas)),
+        "status": "proved" if theorem.proved else "not proved",
+        "premises": theorem.premises,
+        "obligations": len(theorem.outcomes),
+        "assumptions": [list(a) for a in theorem.assumptions],
+    }
+
+
+def records(inventory: Inventory, home: Home = PRODUCT) -> dict[str, Any]:
+    """The ledger as data."""
+    theorems = {t.name: _theorem_record(t) for t in inventory.theorems}
+    entries = gate.load_all(home)
+    proved = {
+        kernel: all(r["status"] == "proved" for r in theorems.values() if kernel in r["kernels"])
+        for record in theorems.values()
+        for kernel in record["kernels"]
+    }
+    kernels: dict[str, Any] = {}
+    for name, entry in entries.items():
+        own = sorted(t for t, record in theorems.items() if name in record["kernels"])
+        checked_by = list(checkers(entry)) if entry.kind == "driver" else []
+        good = proved.get(name, False)
+        if entry.kind == "driver":
+            good = bool(checked_by) and all(proved.get(u, False) for u in checked_by)
+        kernels[name] = {
+            "kind": entry.kind,
+            "implements": entry.implements,
+            "supports": supported(entry) if entry.supports else "",
+            "restates": entry.restates,
+            "checked_by": checked_by,
+            "theorems": own,
+            "status": "proved" if good else "not proved",
+            "key": gate.key_parts(entry, own, theorems, home),
+        }
+    for record in theorems.values():
+        for lemma in record["lemmas"]:
+            if lemma not in theorems and gate.theorem_file(lemma, home) is None:
+                record["status"] = "not proved"
+    data = {"solver": gate.solver_version(), "kernels": kernels, "theorems": theorems}
+    return {**data, "seal": gate.seal(data)}
+
+
+def changed_theorems(home: Home = PRODUCT) -> list[str]:
+    """Theorems that are new, or about a kernel whose key differs from the ledger's."""
+    data = gate.read(home.ledger)
+    entries = gate.load_all(home)
+    stale = set()
+    for name, entry in entries.items():
+        record = data["kernels"].get(name)
+        now = gate.key_parts(entry, record["theorems"], data["theorems"], home) if record else None
+        if record is None or record["status"] != "proved" or now != record["key"]:
+            stale.add(name)
+    found = []
+    for name in prover.theorem_files(prover.home_folder(home)):
+        record = data["theorems"].get(name)
+        if record is None or record["status"] != "proved" or stale & set(record["kernels"]):
+            found.append(name)
+    return found
+
+
+def text(inventory: Inventory, home: Home = PRODUCT, remembered: Remembered | None = None) -> str:
+    """The ledger as it is written; remembered: where it is kept from run to run."""
+
+    def make() -> str:
+        return json.dumps(records(inventory, home), indent=1, sort_keys=True) + "\n"
+
+    if remembered is None:
+        return make()
+    said = {t.name: _theorem_record(t) for t in inventory.theorems}
+    return remembered.text("ledger", json.dumps(said, sort_keys=True), make)
+
+
+def write(new: str, path: Path = gate.LEDGER) -> bool:
+    """Write the ledger's text; True iff it differs from what was there."""
+    old = path.read_text(encoding="utf-8") if path.is_file() else ""
+    if new == old:
+        return False
+    part = path.with_suffix(".part")
+    part.write_text(new, encoding="utf-8")
+    part.replace(path)
+    return True

@@ -1,0 +1,1 @@
+"""Lints of code outside of kernels."""

@@ -1,0 +1,1 @@
+"""Ways of proving that several theorems share: induction over chains, crossings, rounding."""

@@ -1,0 +1,70 @@
+"""Induction over a closed chain of edges, for folds whose items share their vertices.
+
+`Claim.fold` knows nothing of how items hang together. Here the items are the edges of a chain:
+each begins where the one before it ended, and the last ends where the first began. The induction
+is over their number, and the invariant may speak of the chain's first vertex and of the present
+one. Base: no edge yet, both are the same vertex. Step: any further edge from the present vertex to
+any other. Use: back at the first vertex, the goal follows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from cratous.core.kernel import Fold, qualified
+from cratous.proofs.claim import Claim
+from cratous.proofs.engine.lift import REPLACED
+from cratous.proofs.engine.terms import statement
+
+Run = tuple[Fold[Any], Any, tuple[Any, ...]]
+"""A fold, an arbitrary accumulator of it, and its context."""
+
+
+def closed_chain(
+    c: Claim,
+    runs: Sequence[Run],
+    *,
+    invariant: Callable[[list[Any], Any, Any], Any],
+    edge: Callable[[Any, Any], None],
+    goal: Callable[[list[Any]], Any],
+    text: str,
+    models: Sequence[Run] = (),
+    begin: Callable[[Any], None] = lambda first: None,
+) -> None:
+    """Show `goal(results)` of folds that run over the edges of one closed chain, of any length.
+
+    invariant(accumulators, first, last): what holds after any number of edges; edge(a, b): uses
+    lemmas and premises on one more edge; begin(first): premises on the first vertex; goal(results): what follows for the folds' results. models: folds
+    over definitions, which run along; their accumulators and results come after the others.
+    """
+    if c.prefix:
+        return  # used as a lemma, an induction has no goals to offer, as with `Claim.fold`
+    first, last, to = c.vector("first"), c.vector("last"), c.vector("to")
+    folds = [REPLACED.get(fold, fold) for fold, _, _ in (*runs, *models)]
+    accumulators = [acc for _, acc, _ in (*runs, *models)]
+    contexts = [context for _, _, context in (*runs, *models)]
+    readers = [c.use] * len(runs) + [c.define] * len(models)
+    c._arbitrary(tuple(accumulators), tuple(contexts))
+    for fold in folds[: len(runs)]:
+        if qualified(fold) not in c.kernels:
+            c.kernels.append(qualified(fold))
+    begin(first)
+    starts = [fold.start for fold in folds]
+    c._owe("base", f"{text}: a chain without edges", statement(invariant(starts, first, first)))
+    # the folds are run only where the invariant holds, so what they owe is owed there
+    before = len(c.facts)
+    c._grant(statement(invariant(accumulators, first, last)))
+    edge(last, to)
+    after = [
+        read(fold.step, acc, last, to, *context)
+        for read, fold, acc, context in zip(readers, folds, accumulators, contexts, strict=True)
+    ]
+    c._owe("step", f"{text}: one more edge", statement(invariant(after, first, to)))
+    c.facts = c.facts[:before]
+    c._grant(statement(invariant(accumulators, first, first)))
+    results = [
+        read(fold.finish, acc) for read, fold, acc in zip(readers, folds, accumulators, strict=True)
+    ]
+    c._owe("use", f"{text}: the chain is closed", statement(goal(results)))
+    c.facts, c.granted = c.facts[:before], ()

@@ -1,0 +1,1 @@
+"""Mutation of kernels, definitions and premises: does a theorem notice?"""

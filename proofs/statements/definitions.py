@@ -1,0 +1,126 @@
+"""Whether what a kernel names as its definition is one: there, used by its theorems, and not itself.
+
+A kernel or fold names a function of `spec` (implements), which one of its theorems, or a lemma of
+one, must use; where the definition has the kernel's own formula the kernel says so (restates). A
+step of another kernel or fold names that one instead (supports), which must call it, and must have
+a definition and be proved itself.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from cratous.core.kernel import REGISTRY, Entry, Fold, supported
+from cratous.core.kernel.sources import position, reached
+from cratous.core.ledger import Home
+from cratous.proofs.statements.relations import Relations, full_name
+from cratous.proofs.statements.restated import restates
+
+
+@dataclass(frozen=True)
+class Proofs:
+    """What was proved of a home: its theorems by name, and what their statements relate.
+
+    kernels: those that each theorem is about; proved: the theorems that are.
+    """
+
+    kernels: Mapping[str, tuple[str, ...]]
+    proved: frozenset[str]
+    relations: Mapping[str, Relations]
+
+    def about(self, name: str) -> list[str]:
+        """The theorems about a kernel, in order."""
+        return sorted(theorem for theorem, named in self.kernels.items() if name in named)
+
+    def resting(self, theorems: list[str]) -> list[str]:
+        """These theorems and all lemmas that they rest on."""
+        found: list[str] = []
+        todo = list(theorems)
+        while todo:
+            one = todo.pop()
+            if one in self.relations and one not in found:
+                found.append(one)
+                todo += self.relations[one].lemmas
+        return sorted(found)
+
+    def holds(self, name: str) -> bool:
+        """A kernel is proved: theorems are about it, and all of them hold."""
+        about = self.about(name)
+        return bool(about) and all(theorem in self.proved for theorem in about)
+
+
+def definition_name(entry: Entry, home: Home) -> str:
+    """The full name of what an entry implements."""
+    return f"{home.name}.spec.{entry.implements}"
+
+
+def definition(entry: Entry, home: Home) -> Callable[..., Any] | None:
+    """The function that an entry implements; None if there is no such function."""
+    module, _, name = definition_name(entry, home).rpartition(".")
+    if not home.definition(entry.implements).is_file():
+        return None
+    found = getattr(importlib.import_module(module), name, None)
+    return found if callable(found) and getattr(found, "__module__", "") == module else None
+
+
+def is_restated(entry: Entry, home: Home) -> bool | None:
+    """The definition has the formula of the kernel, or of the fold's step; None if that cannot be told."""
+    meant = definition(entry, home)
+    function = entry.function.step if isinstance(entry.function, Fold) else entry.function
+    return None if meant is None else restates(function, meant)
+
+
+def problems(entries: Mapping[str, Entry], home: Home, proofs: Proofs) -> list[str]:
+    """What is wrong with the definitions that kernels and folds name, each with its place.
+
+    proofs: of all theorems of the home.
+    """
+    found = []
+    for name, entry in entries.items():
+        if entry.kind != "driver":
+            texts = _of_step(entry, proofs) if entry.supports else _of_meaning(entry, home, proofs)
+            found += [f"{position(entry.function)}: {name}: {text}" for text in texts]
+    return found
+
+
+def _of_meaning(entry: Entry, home: Home, proofs: Proofs) -> Iterator[str]:
+    """What is wrong with `implements`."""
+    named = repr(entry.implements)
+    if not home.definition(entry.implements).is_file():
+        yield f"implements {named}, but there is no spec/{home.definition(entry.implements).name}"
+    elif definition(entry, home) is None:
+        yield f"implements {named}, but spec has no such function"
+    else:
+        full = definition_name(entry, home)
+        theorems = proofs.resting(proofs.about(entry.name))
+        if not any(full in proofs.relations[theorem].definitions for theorem in theorems):
+            yield f"implements {named}, which none of its theorems uses (c.define)"
+        same = is_restated(entry, home)
+        if same and not entry.restates:
+            yield (
+                f"implements {named}, which has its own formula: define what is meant, or say with "
+                "restates=... what the formula is for"
+            )
+        if same is False and entry.restates:
+            yield f"implements {named}, which has another formula: it restates nothing"
+
+
+def _of_step(entry: Entry, proofs: Proofs) -> Iterator[str]:
+    """What is wrong with `supports`."""
+    whole = REGISTRY.get(supported(entry))
+    if whole is None or whole.kind == "driver":
+        yield f"supports {entry.supports!r}, which is no kernel or fold"
+    elif not calls(whole, entry):
+        yield f"supports {entry.supports!r}, which does not call it"
+    elif not whole.implements:
+        yield f"supports {entry.supports!r}, which has no definition itself"
+    elif not proofs.holds(whole.name):
+        yield f"supports {entry.supports!r}, which is not proved"
+
+
+def calls(whole: Entry, part: Entry) -> bool:
+    """The one calls the other, directly or not."""
+    return full_name(part.function) in reached(whole.function)

@@ -1,0 +1,328 @@
+"""Which functions of `spec` a theorem speaks of, and which of them it holds a kernel against.
+
+The statement is read once more with every kernel and definition left closed: each use becomes an
+unknown value that remembers its function and those of its arguments. So a goal shows what it is
+made of, with whatever loops and helpers it was written. Nothing is proved here: a theorem that is
+not proved holds nothing against anything.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import types
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, get_args, get_origin, get_type_hints
+
+import z3
+
+from cratous.core.kernel import REGISTRY, Fold
+from cratous.core.kernel.sources import digest, ours
+from cratous.core.ledger import Home
+from cratous.proofs.engine.claim import Claim
+from cratous.proofs.engine.lift import LiftError
+from cratous.proofs.engine.symbolic import _raw
+from cratous.proofs.engine.terms import free_names, fresh, known, leaves
+from cratous.proofs.engine.theorem_files import FOLDER, load_claim
+from cratous.proofs.ledger import recall
+from cratous.proofs.statements.sides import sides, signs
+
+Function = Callable[..., Any]
+
+
+@dataclass(frozen=True)
+class Relations:
+    """Definitions that a statement uses, by `module.name`; the pairs (function of core, definition).
+
+    together: both in what is concluded, as in an equality, or the definition asked of the kernel's
+    result; follows: the kernel from the definition; leads: the definition from the kernel. lemmas:
+    what the theorem rests on.
+    """
+
+    definitions: frozenset[str]
+    together: frozenset[tuple[str, str]]
+    follows: frozenset[tuple[str, str]]
+    leads: frozenset[tuple[str, str]]
+    lemmas: tuple[str, ...]
+
+
+def full_name(function: Any) -> str:
+    """`package.folder.module.name` of a function or fold."""
+    home = function.step if isinstance(function, Fold) else function
+    return f"{home.__module__}.{function.__name__}"
+
+
+def in_spec(function: Any) -> bool:
+    """True iff it is a definition: a function of the product's `spec`, or of a package's."""
+    return ours(function) and _part(function) == "spec"
+
+
+def _part(function: Any) -> str:
+    return (*function.__module__.split("."), "")[1]
+
+
+@dataclass(frozen=True)
+class _Closed:
+    """A definition as a statement sees it: whether it is called or handed on, it stays closed."""
+
+    function: Function
+    claim: _Outline = field(compare=False, repr=False)
+
+    def __call__(self, *args: Any) -> Any:
+        return self.claim.closed_value(self.function, args)
+
+
+class _ClosedModule:
+    """A module of `spec` whose functions stay closed."""
+
+    def __init__(self, module: types.ModuleType, claim: _Outline) -> None:
+        self._module, self._claim = module, claim
+
+    def __getattr__(self, name: str) -> Any:
+        return _closed(getattr(self._module, name), self._claim)
+
+
+def _plain(function: Any) -> Function:
+    return function.function if isinstance(function, _Closed) else function
+
+
+def _unknown(name: str, kind: Any) -> Any:
+    """An arbitrary value of this type; TypeError if there is none."""
+    if get_origin(kind) is tuple:
+        return tuple(_unknown(f"{name}.{i}", part) for i, part in enumerate(get_args(kind)))
+    if kind in (bool, int, float) or hasattr(kind, "_fields"):
+        return fresh(name, kind)
+    raise TypeError(f"{name} gives {kind}, of which there is no arbitrary value")
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float | Fraction)
+
+
+def _closed(value: Any, claim: Any) -> Any:
+    if isinstance(value, types.FunctionType) and in_spec(value):
+        return _Closed(value, claim)
+    if isinstance(value, types.ModuleType) and value.__name__.split(".")[1:2] == ["spec"]:
+        return _ClosedModule(value, claim)
+    return value
+
+
+@dataclass
+class _Outline(Claim):
+    """A claim in which nothing is looked into but the statement itself."""
+
+    met: dict[Any, Any] = field(default_factory=dict)
+    kept: list[z3.ExprRef] = field(default_factory=list)
+    arguments: dict[Function, list[tuple[Any, ...]]] = field(default_factory=dict)
+    made_of: dict[str, frozenset[Function]] = field(default_factory=dict)
+    evaluated: frozenset[Function] = frozenset()
+    known_then: dict[int, frozenset[Function]] = field(default_factory=dict)
+
+    def closed_value(self, function: Function, args: tuple[Any, ...]) -> Any:
+        """An unknown value of the function's type, which remembers what it is made of.
+
+        Equal arguments give the same value. Of known numbers it has a known value: what the
+        statement shows from there on is made of it. Raises TypeError for a type without values.
+        """
+        terms = [known(leaf) for leaf in leaves(args)]
+        self.arguments.setdefault(function, []).append(args)
+        if args and all(map(_is_number, leaves(args))):
+            self.evaluated |= {function}
+            return function(*args)
+        key = (function, tuple(term.get_id() for term in terms))
+        if key not in self.met:
+            name = f"{full_name(function)}#{len(self.met)}"
+            value = self.met[key] = _unknown(name, get_type_hints(function).get("return"))
+            self.kept += terms
+            inner = frozenset([function]).union(*[self.functions_in(term) for term in terms])
+            self.made_of |= {str(known(leaf)): inner for leaf in leaves(value)}
+        return self.met[key]
+
+    def functions_in(self, value: Any) -> frozenset[Function]:
+        """All functions that a value is made of."""
+        term = value if z3.is_expr(value) else _raw(value)
+        names = free_names(term) if term is not None else ()
+        return frozenset().union(*[self.made_of.get(name, frozenset()) for name in names])
+
+    def names_of(self, kernel: str) -> frozenset[str]:
+        """The unknown values that a kernel's result is part of."""
+        return frozenset(
+            name for name, made in self.made_of.items() if kernel in {full_name(f) for f in made}
+        )
+
+    def _lift(self, function: Any, args: tuple[Any, ...], machine: bool = True) -> Any:
+        function = _plain(function)
+        if _part(function) in ("proofs", "theorems"):
+            # the statement's own helper is looked into, what it calls is not
+            stubs: dict[Any, Any] = self.stubs
+            for value in function.__globals__.values():
+                if isinstance(value, types.FunctionType) and _part(value) == "core":
+                    stubs.setdefault(value, _Closed(value, self))
+            return super()._lift(function, args, machine)
+        return self.closed_value(function, args)
+
+    def opaque(self, *functions: Function) -> None:
+        """Everything is closed already."""
+
+    def calls(self, function: Function) -> list[tuple[Any, ...]]:
+        """The arguments with which it was used."""
+        return list(self.arguments.get(_plain(function), []))
+
+    def congruence(self, function: Function, one: tuple[Any, ...], other: tuple[Any, ...]) -> None:
+        """Equal arguments give the same value already."""
+
+    def _owe(self, kind: str, text: str, goal: z3.BoolRef) -> None:
+        self.known_then[len(self.obligations)] = self.evaluated
+        super()._owe(kind, text, goal)
+
+    def lemma(self, name: str, *, when: Any = True, **values: Any) -> None:
+        """What a lemma says is not asked for."""
+        self.lemmas.append(name)
+
+
+def _speaks_of_spec(value: Any) -> bool:
+    """A helper of theorems: a function of proofs in whose reach definitions are."""
+    if not isinstance(value, types.FunctionType) or _part(value) != "proofs":
+        return False
+    return any(_closed(each, None) is not each for each in value.__globals__.values())
+
+
+def _reopened(statement: Function, claim: _Outline) -> Function:
+    """The statement with its helpers, in whose globals the definitions are closed."""
+    scopes: dict[int, dict[str, Any]] = {}
+
+    def copy(function: Function) -> Function:
+        assert isinstance(function, types.FunctionType)
+        key = id(function.__globals__)
+        if key not in scopes:
+            scope = scopes[key] = dict(function.__globals__)
+            for name, value in function.__globals__.items():
+                scope[name] = copy(value) if _speaks_of_spec(value) else _closed(value, claim)
+        made = types.FunctionType(
+            function.__code__, scopes[key], function.__name__, function.__defaults__,
+            function.__closure__,
+        )  # fmt: skip
+        made.__kwdefaults__ = function.__kwdefaults__
+        made.__annotations__ = dict(function.__annotations__)
+        made.__module__ = function.__module__
+        return made
+
+    return copy(statement)
+
+
+def relations(name: str, folder: Path = FOLDER) -> Relations:
+    """What the statement of a theorem relates; its kernels must be registered."""
+    statement = load_claim(name, folder)[0]
+    claim = _Outline(load=lambda other: load_claim(other, folder)[0])
+    try:
+        _reopened(statement, claim)(claim)
+    except (LiftError, TypeError, ValueError, RuntimeError, IndexError, KeyError, AttributeError):
+        # it asks for more than what a closed function tells: only that it names them is known
+        return Relations(_named_in(statement), NONE, NONE, NONE, tuple(sorted(set(claim.lemmas))))
+    found: dict[str, set[tuple[str, str]]] = {"together": set(), "follows": set(), "leads": set()}
+    for number, owed in enumerate(claim.obligations):
+        if owed.kind in ("goal", "base", "step", "use"):
+            evaluated = claim.known_then.get(number, frozenset())
+            for how, pair in _pairs(claim, owed.goal, evaluated, induction=owed.kind != "goal"):
+                found[how].add(pair)
+    used = frozenset(full_name(f) for f in claim.arguments if in_spec(f))
+    pairs = {how: frozenset(some) for how, some in found.items()}
+    return Relations(used, lemmas=tuple(sorted(set(claim.lemmas))), **pairs)
+
+
+def _pairs(
+    claim: _Outline, goal: z3.BoolRef, evaluated: frozenset[Function], *, induction: bool
+) -> Iterator[tuple[str, tuple[str, str]]]:
+    """The pairs of kernel and definition that a goal relates, and how."""
+    for given, conclusion in sides(goal):
+        spoken = claim.functions_in(conclusion) | evaluated
+        kernels = _kernels(spoken) | (_folds(claim, spoken) if induction else set())
+        meant = _definitions(spoken)
+        yield from (("together", (kernel, other)) for kernel in kernels for other in meant)
+        for condition in (*claim.premises, *given):
+            before = claim.functions_in(condition)
+            for kernel in _kernels(before) - kernels:
+                for sign in signs(condition, claim.names_of(kernel)):
+                    how = "leads" if sign else "follows"
+                    yield from ((how, (kernel, other)) for other in meant)
+            for kernel in kernels:
+                for sign in signs(conclusion, claim.names_of(kernel)) or {True}:
+                    how = "follows" if sign else "leads"
+                    yield from ((how, (kernel, other)) for other in _definitions(before) - meant)
+
+
+class Kept:
+    """The relations of theorems, in a folder from one run to the next; without one they are read anew.
+
+    They are kept as proved theorems are, under a hash of all that the statement depends on.
+    """
+
+    def __init__(self, folder: Path | None, home: Home) -> None:
+        self.folder, self.home = folder, home
+
+    def all(self, names: Iterable[str]) -> dict[str, Relations]:
+        """The relations of these theorems, whose statements can be read."""
+        return {name: self.get(name) for name in names}
+
+    def get(self, name: str) -> Relations:
+        """The relations of one theorem."""
+        if self.folder is None:
+            return relations(name, self.home.theorems)
+        wanted = digest([recall.key(name, self.home), recall.named(Path(__file__).resolve())])
+        file = self.folder / wanted[:2] / wanted
+        try:
+            return _restored(json.loads(file.read_text(encoding="utf-8")))
+        except (OSError, ValueError, KeyError, TypeError):
+            found = relations(name, self.home.theorems)
+        text = json.dumps({part: sorted(getattr(found, part)) for part in PARTS})
+        try:
+            file.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+            part = file.with_name(f"{wanted}.{os.getpid()}")
+            part.write_text(text, encoding="utf-8")
+            part.replace(file)
+        except OSError:
+            pass  # a folder that cannot be written is no error
+        return found
+
+
+PARTS = ("definitions", "together", "follows", "leads", "lemmas")
+
+
+def _restored(data: dict[str, Any]) -> Relations:
+    together, follows, leads = (
+        frozenset((str(a), str(b)) for a, b in data[part]) for part in PARTS[1:4]
+    )
+    lemmas = tuple(map(str, data["lemmas"]))
+    return Relations(frozenset(map(str, data["definitions"])), together, follows, leads, lemmas)
+
+
+NONE: frozenset[tuple[str, str]] = frozenset()
+
+
+def _named_in(statement: Function) -> frozenset[str]:
+    """The definitions whose names stand in a statement."""
+    assert isinstance(statement, types.FunctionType)
+    scope, names = statement.__globals__, set(statement.__code__.co_names)
+    places = [scope, *(vars(scope[n]) for n in names if isinstance(scope.get(n), types.ModuleType))]
+    found = [place[name] for place in places for name in names if name in place]
+    return frozenset(
+        full_name(f) for f in found if isinstance(f, types.FunctionType) and in_spec(f)
+    )
+
+
+def _kernels(functions: Iterable[Function]) -> set[str]:
+    return {full_name(f) for f in functions if not in_spec(f)}
+
+
+def _folds(claim: Claim, spoken: Iterable[Function]) -> set[str]:
+    """The folds that an induction runs over, of those that the theorem is about."""
+    entries = [REGISTRY[name] for name in claim.kernels if name in REGISTRY]
+    folds = [entry.function for entry in entries if isinstance(entry.function, Fold)]
+    return {full_name(fold) for fold in folds if {fold.step, fold.finish} & set(spoken)}
+
+
+def _definitions(functions: Iterable[Function]) -> set[str]:
+    return {full_name(f) for f in functions if in_spec(f)}

@@ -1,0 +1,36 @@
+"""The two sides of what a theorem shows: what is given, and what follows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import z3
+
+from cratous.proofs.engine.terms import free_names
+
+
+def sides(goal: z3.BoolRef) -> Iterator[tuple[list[z3.BoolRef], z3.BoolRef]]:
+    """(given, conclusion) for each conjunct of a goal."""
+    if z3.is_and(goal):
+        for part in goal.children():
+            yield from sides(part)
+    elif z3.is_implies(goal):
+        condition, rest = goal.children()
+        for given, conclusion in sides(rest):
+            yield [condition, *given], conclusion
+    else:
+        yield [], goal
+
+
+def signs(term: z3.BoolRef, names: frozenset[str], sign: bool = True) -> set[bool]:
+    """How the values of these names stand in a condition: as they are (True), denied (False)."""
+    if not names & free_names(term):
+        return set()
+    if z3.is_not(term):
+        return signs(term.children()[0], names, not sign)
+    if z3.is_and(term) or z3.is_or(term):
+        return set().union(*[signs(part, names, sign) for part in term.children()])
+    if z3.is_implies(term):
+        first, second = term.children()
+        return signs(first, names, not sign) | signs(second, names, sign)
+    return {sign}

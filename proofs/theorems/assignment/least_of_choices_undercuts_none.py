@@ -1,0 +1,17 @@
+"""What the search takes for the least of many choices is no more than any of them: whatever vehicle,
+option and place before a completion chooses, it takes at least as long (by induction over the choices)."""
+
+from cratous.core.assignment.lower_bounds import least_of
+from cratous.proofs.claim import Claim
+from cratous.spec.assignment import bounds as assignment_bounds
+
+
+def claim(c: Claim) -> None:
+    x, best, value, chosen = (c.integer(name) for name in ["x", "best", "value", "chosen"])
+    counts = c.boolean("counts")
+    result = c.use(least_of, best, counts, value)
+    wanted = c.define(assignment_bounds.undercuts_none, x, best, counts, value)
+    c.show(c.same(wanted, x <= result), "it is the most that no choice undercuts")
+    # the choice of a completion is among those so far, or it is this one
+    c.premise(c.any_of(best <= chosen, c.all_of(counts, chosen == value)))
+    c.show(result <= chosen, "the completion's choice is no less")

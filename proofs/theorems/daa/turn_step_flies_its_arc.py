@@ -1,0 +1,22 @@
+"""At a turn rate the velocity of the steps is the rate of change of their offset: the offset turned a
+little further changes by the velocity there, to first order in the sine of the little turn."""
+
+from cratous.core.daa.turn import turn_offset, turned
+from cratous.proofs.claim import Claim
+
+
+def claim(c: Claim) -> None:
+    v = c.vector("v")
+    cos, sin, small_cos, small_sin = c.reals("cos sin small_cos small_sin")
+    c.premise(cos * cos + sin * sin == 1)
+    c.premise(small_cos * small_cos + small_sin * small_sin == 1)
+    w = c.use(turned, v, cos, sin)
+    x = c.use(turned, w, small_cos, small_sin)
+    d, e = c.use(turn_offset, v, w), c.use(turn_offset, v, x)
+    # the rest is (1 - small_cos) times the velocity turned by a right angle: of second order
+    rest = 1 - small_cos
+    c.show(
+        c.all_of(
+            e.x - d.x == small_sin * w.x + rest * w.y, e.y - d.y == small_sin * w.y - rest * w.x
+        )
+    )

@@ -1,0 +1,63 @@
+"""The span for uncertain states is the least that holds the volume's own and every instant of [B, T] that
+the spans of altitude and circle share; and a conflict is found exactly if the volume itself is violated,
+or nothing is known exactly and that span holds an instant: where nothing is, exactly if there is an
+instant of the volume's own or one that the spans of altitude and circle share."""
+
+from cratous.core.daa.uncertainty import circle_span, layer_span, uncertain_conflict, uncertain_span
+from cratous.core.kernel import Vec2
+from cratous.core.well_clear.during import layer_window, violation_during_taumod
+from cratous.core.well_clear.interval import (
+    horizontal_interval_taumod,
+    violation_interval_taumod,
+)
+from cratous.proofs.claim import Claim
+from cratous.spec import well_clear
+from cratous.spec.daa import meaning as daa_meaning
+
+
+def claim(c: Claim) -> None:
+    s, v = c.vector("s"), c.vector("v")
+    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    es, ez, ev, ew, begin, end, t = c.reals("es ez ev ew begin end t")
+    c.opaque(violation_during_taumod, violation_interval_taumod, circle_span, layer_span)
+    c.opaque(horizontal_interval_taumod, layer_window)
+    limits = (dthr, zthr, tthr, tcoa, vmod)
+    state = (s, v, sz, vz, es, ez, ev, ew, *limits, begin, end)
+    span = c.use(uncertain_span, *state)
+    own = c.use(violation_interval_taumod, s, v, sz, vz, *limits, begin, end)
+    layer = c.use(layer_span, sz, vz, ez, ew, zthr, tcoa, vmod, end)
+    circle = c.use(circle_span, s, v, es, ev, dthr, tthr, end)
+    every = c.define(daa_meaning.in_own_or_both, *own, *layer, *circle, begin, end, t)
+    c.show(c.implies(every, c.define(well_clear.in_span, *span, t)), "holds them")
+    for instant in span:
+        at = c.define(daa_meaning.in_own_or_both, *own, *layer, *circle, begin, end, instant)
+        c.show(c.implies(span.first_s <= span.last_s, at), "is the least")
+    plain = c.use(violation_during_taumod, s, v, sz, vz, *limits, begin, end)
+    unknown = c.all_of(es > 0, ez > 0, ev > 0, ew > 0, span.first_s <= span.last_s)
+    c.show(c.same(c.use(uncertain_conflict, *state), c.any_of(plain, unknown)), "a conflict")
+    sizes = c.all_of(*[threshold >= 0 for threshold in limits])
+    k, low, high = c.use(layer_window, sz + begin * vz, vz, zthr, tcoa, vmod, end - begin)
+    at_low = Vec2((s.x + begin * v.x) * k + low * v.x, (s.y + begin * v.y) * k + low * v.y)
+    scaled, _ = c.use(
+        horizontal_interval_taumod, at_low, v, dthr * k, tthr * k, low - low, high - low
+    )
+    # the instant that stands for a detection, named by the equation that defines it
+    witness = c.real("witness")
+    c.premise(c.implies(k > 0, k * (witness - begin) == low + scaled))
+    c.lemma(
+        "well_clear_detection_taumod_is_the_interval", when=sizes, witness=witness,
+        s=s, v=v, sz=sz, vz=vz, begin=begin, end=end,
+        dthr=dthr, zthr=zthr, tthr=tthr, tcoa=tcoa, vmod=vmod,
+    )  # fmt: skip
+    found = c.use(uncertain_conflict, *state)
+    inexact = c.all_of(sizes, es > 0, ez > 0, ev > 0, ew > 0)
+    c.show(c.implies(c.all_of(inexact, every), found), "a conflict misses no instant")
+    at_first = c.define(daa_meaning.in_own_or_both, *own, *layer, *circle, begin, end, span.first_s)
+    c.show(c.implies(c.all_of(inexact, found), at_first), "and has one")
+    c.lemma(
+        "well_clear_interval_taumod_first_and_last_violate", when=sizes,
+        s=s, v=v, sz=sz, vz=vz, begin=begin, end=end,
+        dthr=dthr, zthr=zthr, tthr=tthr, tcoa=tcoa, vmod=vmod,
+    )  # fmt: skip
+    empty = c.all_of(span.first_s == 1, span.last_s == 0)
+    c.show(c.implies(c.all_of(sizes, span.first_s > span.last_s), empty), "one empty span")

@@ -1,0 +1,235 @@
+"""Which kernels, folds and drivers are entered while something runs, and how often.
+
+For that time every registered function, and what enters any other reading of one (`Reading`, a fold's
+call, the exact reading of one state), has an entry that counts and hands on to the code that was there
+before: that runs unchanged, and calls between kernels are counted as any others. The function objects
+stay, so no call is missed however the function is held; threads count, other processes do not.
+
+The ledger's gate compares code with files, so it is asked before: inside, it vouches for nothing.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import threading
+from collections.abc import Callable, Iterator
+from functools import cache
+from types import CodeType, FunctionType
+from typing import Any
+
+from cratous.core import ledger
+from cratous.core.kernel import REGISTRY, Fold, entry_of, qualified
+from cratous.core.kernel.sources import reached
+from cratous.core.readings import exact, tiered
+from cratous.core.readings.machine.compiled import EXACT, Reading
+from cratous.spec.errors import BadInput
+
+PYTHON = "CPython"
+"""How a function is entered that CPython runs as written; the other ways are `Reading.how`."""
+_counting = threading.Lock()
+
+
+class Calls:
+    """What was entered: per qualified name how often, by way of entry."""
+
+    def __init__(self) -> None:
+        self._functions: dict[str, Any] = {}
+        self._counts: dict[tuple[str, str], Iterator[int]] = {}
+        self._done: dict[tuple[str, str], int] = {}
+        self._known = frozenset(REGISTRY)
+        self._late: list[str] = []
+
+    def entry(self, name: str) -> Callable[[], int]:
+        """What counts one call of a registered function as it is written."""
+        return self._count(name, PYTHON)
+
+    def folded(self, fold: Fold[Any]) -> None:
+        """A fold was called."""
+        self._add(fold, PYTHON)
+
+    def read(self, reading: Reading) -> None:
+        """Machine code, or another reading, was called."""
+        self._add(reading.function, reading.how)
+
+    def exact(self, function: Any) -> None:
+        """A kernel or fold was read exactly for one state."""
+        self._add(function, EXACT)
+
+    def _add(self, function: Any, how: str) -> None:
+        name = qualified(function)
+        self._functions[name] = function
+        self._count(name, how)()
+
+    def _count(self, name: str, how: str) -> Callable[[], int]:
+        # a count's next is one step of the interpreter: threads lose none
+        made = self._counts.setdefault((name, how), itertools.count())
+        return made.__next__
+
+    def close(self) -> None:
+        """No more is counted."""
+        found = {key: next(count) for key, count in list(self._counts.items())}
+        self._done = {key: number for key, number in found.items() if number}
+        self._late = sorted(REGISTRY.keys() - self._known)
+
+    def data(self) -> dict[str, Any]:
+        """The counts as plain data, once counting is over.
+
+        called: registered functions, with the number of entries by way; loops: the same for other
+        functions that stand in machine code with kernels in them; within: for a registered function
+        the names of what it is a part of and was entered in another way than by CPython; uncounted:
+        what was registered while counting, of which CPython's entries are not known.
+        """
+        called: dict[str, dict[str, int]] = {}
+        within: dict[str, set[str]] = {}
+        for (name, how), number in sorted(self._done.items()):
+            called.setdefault(name, {})[how] = number
+            if how != PYTHON:
+                for part in _parts(self._functions[name]) - {name}:
+                    within.setdefault(part, set()).add(name)
+        containing = {name for names in within.values() for name in names}
+        return {
+            "called": {name: ways for name, ways in called.items() if name in REGISTRY},
+            "loops": {
+                name: ways
+                for name, ways in called.items()
+                if name not in REGISTRY and name in containing
+            },
+            "within": {part: sorted(names) for part, names in sorted(within.items())},
+            "uncounted": self._late,
+        }
+
+
+def _parts(function: Any) -> set[str]:
+    """The registered functions that one rests on."""
+    found = reached(function)
+    names = {entry.name for entry in map(entry_of, found.values()) if entry is not None}
+    return names | {
+        name for name, entry in REGISTRY.items() if entry.kind == "fold" and f"fold {name}" in found
+    }
+
+
+@contextlib.contextmanager
+def counted() -> Iterator[Calls]:
+    """Count all entries inside; ask for the result (`Calls.data`) after it.
+
+    How much has been done with a loop is forgotten at the beginning: whether it is compiled follows
+    from this work alone. Raises BadInput where entries are being counted already.
+    """
+    if not _counting.acquire(blocking=False):
+        raise BadInput(
+            "entries are being counted already", expected="one count at a time", got="two"
+        )
+    try:
+        ledger.load_all()  # what is registered later has no entry that counts
+        calls = Calls()
+        tiered.begin_anew()
+        with contextlib.ExitStack() as stack:
+            stack.callback(calls.close)
+            for name, entry in REGISTRY.items():
+                if not isinstance(entry.function, Fold):
+                    stack.enter_context(_entered(entry.function, calls.entry(name), subject=False))
+            for function, count in (
+                (Fold.__call__, calls.folded),
+                (Reading.__call__, calls.read),
+                (exact.exact, calls.exact),
+            ):
+                stack.enter_context(_entered(function, count, subject=True))
+            yield calls
+    finally:
+        _counting.release()
+
+
+@contextlib.contextmanager
+def _entered(function: Any, count: Callable[..., Any], *, subject: bool) -> Iterator[None]:
+    """Inside, a function's entry counts and hands on to the code that it has now.
+
+    subject: whether `count` is told the first argument.
+    """
+    code, before = function.__code__, vars(function).get("__wrapped__")
+    original = FunctionType(
+        code, function.__globals__, function.__name__, function.__defaults__, function.__closure__
+    )
+    original.__kwdefaults__ = function.__kwdefaults__
+    original.__annotations__ = function.__annotations__
+    original.__qualname__, original.__module__ = function.__qualname__, function.__module__
+    try:
+        function.__wrapped__ = original  # signature and source are found there
+        function.__code__ = _filled(_template(*_parameters(code), subject), count, original)
+        yield
+    finally:
+        function.__code__ = code
+        if before is None:
+            vars(function).pop("__wrapped__", None)
+        else:
+            function.__wrapped__ = before
+
+
+Names = tuple[str, ...]
+
+
+def _parameters(code: CodeType) -> tuple[Names, Names, Names, str, str]:
+    """Names of the parameters: by position alone, by either, by name alone, `*`, `**`."""
+    if code.co_freevars:
+        raise BadInput(
+            "a function within another one cannot be counted", item=code.co_qualname,
+            expected="kernels and drivers at the top of their modules",
+        )  # fmt: skip
+    only, both = code.co_posonlyargcount, code.co_argcount
+    named = both + code.co_kwonlyargcount
+    left = list(code.co_varnames[named:])
+    star = left.pop(0) if code.co_flags & 0x04 else ""
+    stars = left.pop(0) if code.co_flags & 0x08 else ""
+    names = code.co_varnames
+    return names[:only], names[only:both], names[both:named], star, stars
+
+
+@cache
+def _template(
+    only: Names, either: Names, named: Names, star: str, stars: str, subject: bool
+) -> CodeType:
+    """The code of an entry with these parameters; two texts stand for what it calls."""
+    head = [*only, *["/"][: len(only)], *either]
+    head += [f"*{star}"] if star else ["*"] if named else []
+    head += [*named, *[f"**{stars}"][: bool(stars)]]
+    hand = [*only, *either, *[f"*{star}"][: bool(star)], *[f"{n}={n}" for n in named]]
+    hand += [f"**{stars}"] if stars else []
+    count, original = "count__", "original__"
+    while {count, original} & {*only, *either, *named, star, stars}:
+        count, original = f"{count}_", f"{original}_"
+    lines = [
+        f"def entry({', '.join(head)}):",
+        f"    {count} = {COUNT!r}",
+        f"    {original} = {ORIGINAL!r}",
+        f"    {count}({(only or either)[0] if subject else ''})",
+        f"    return {original}({', '.join(hand)})",
+    ]
+    module = compile("\n".join(lines), "<entry that is counted>", "exec", dont_inherit=True)
+    return next(part for part in module.co_consts if isinstance(part, CodeType))
+
+
+COUNT, ORIGINAL = "what counts", "what is counted"
+
+
+def _filled(code: CodeType, count: Any, original: Any) -> CodeType:
+    """A template's code with what it calls in the places of the texts."""
+    values = {COUNT: count, ORIGINAL: original}
+    consts = tuple(values.get(c, c) if isinstance(c, str) else c for c in code.co_consts)
+    return code.replace(co_consts=consts)
+
+
+def is_data(value: Any) -> bool:
+    """True iff a value is what `Calls.data` gives."""
+    parts = {"called": dict, "loops": dict, "within": dict, "uncounted": list}
+    if not isinstance(value, dict) or set(value) != set(parts):
+        return False
+    if not all(isinstance(value[key], kind) for key, kind in parts.items()):
+        return False
+    ways = [way for key in ("called", "loops") for way in value[key].values()]
+    return all(
+        isinstance(way, dict) and all(type(n) is int and n > 0 for n in way.values())
+        for way in ways
+    ) and all(
+        isinstance(names, list) and all(isinstance(name, str) for name in names)
+        for names in (*value["within"].values(), value["uncounted"])
+    )

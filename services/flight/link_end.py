@@ -1,0 +1,253 @@
+"""The UxAS end of the bridge, for all vehicles: `handle(state, message) -> (state, messages)`.
+
+Down: zones, waypoints and START_MISSION at the start and whenever the way changes; at each
+heartbeat WPRCH, POSTN, ATTUD and one OBJCT per other aircraft. Up: SETMOD (with the epoch that
+ICAROUS's gate is in), SETVEL, HBEAT. On a takeover the executive suspends the vehicle, and ICAROUS
+is told the resume point by RESET_SFT; on an offer the executive takes the vehicle back in the new
+epoch. Which mode is believed and who counts as alive is decided by the kernels of
+`core.authority.link_end`.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from cratous.bridge import lmcp
+from cratous.bridge.text_protocol import Heartbeat, Message, SetMode, WaypointReached
+from cratous.core.authority.link_end import LinkEnd, link_mode, link_sign
+from cratous.core.routing.polylines import Track
+from cratous.services.flight import lines
+from cratous.services.flight.messages import (
+    Beat,
+    Connected,
+    Down,
+    Flown,
+    FromLinkEnd,
+    Heard,
+    Left,
+    Lost,
+    Route,
+    Say,
+    Suspend,
+    TakeBack,
+    ToLinkEnd,
+    Unreadable,
+    Watch,
+    ZonesKnown,
+)
+from cratous.services.mission.frames import Projection
+from cratous.spec.authority.link_end import (
+    ENDED,
+    HEARD,
+    OVERTAKEN,
+    PASSED,
+    SAY_HEARD,
+    SAY_LOST,
+    SAY_SILENT,
+    SUSPEND,
+    TAKE_BACK,
+)
+from cratous.spec.mission import Zone
+
+LINK_LOST_MS = 2000
+"""A vehicle's ICAROUS counts as silent when nothing came up for this long [ms]."""
+START = LinkEnd(False, 0, True)
+"""UxAS commands and the instance is heard."""
+NAME = "uxas/ics"
+"""The sender of what this end publishes."""
+
+
+@dataclass(frozen=True)
+class Peer:
+    """What this end knows of one instance.
+
+    end: who commands and whether it is heard, as the kernels have it; open: the connection stands;
+    marks_m: arc length of each waypoint told, from from_m of the vehicle's track on; reached: how
+    many of them are told to be reached; down: heartbeats sent; heard_ms: when it was last heard.
+    """
+
+    vehicle_id: int
+    heard_ms: int
+    end: LinkEnd = START
+    open: bool = True
+    marks_m: tuple[float, ...] = ()
+    from_m: float = 0.0
+    reached: int = 0
+    down: int = 0
+
+
+@dataclass(frozen=True)
+class State:
+    """All that this end remembers: the zones in force, and its peers by id."""
+
+    zones: tuple[Zone, ...] = ()
+    peers: tuple[Peer, ...] = ()
+
+    def peer(self, vehicle_id: int) -> Peer | None:
+        """What is known of a vehicle's instance; None if it has none."""
+        return next((p for p in self.peers if p.vehicle_id == vehicle_id), None)
+
+    def with_peer(self, peer: Peer) -> State:
+        """The same with this peer in the place of the one of its vehicle."""
+        peers = (peer if p.vehicle_id == peer.vehicle_id else p for p in self.peers)
+        return replace(self, peers=tuple(peers))
+
+
+Step = tuple[State, tuple[FromLinkEnd, ...]]
+
+
+@dataclass(frozen=True)
+class UxasEnd:
+    """The service; what does not change: the projection of the mission frame."""
+
+    projection: Projection
+
+    def handle(self, state: State, message: ToLinkEnd) -> Step:
+        """One step: the state afterwards, and what to send, in order."""
+        match message:
+            case Connected(now_ms, vehicle_ids):
+                return self._connected(state, vehicle_ids, now_ms)
+            case ZonesKnown(zones):
+                return self._zones(state, zones)
+            case Beat():
+                return self._beat(state, message)
+            case Watch(now_ms):
+                return _watch(state, now_ms)
+        peer = state.peer(message.vehicle_id)
+        if peer is None:
+            return state, ()
+        after, out = self._of_one(peer, message)
+        return state.with_peer(after), out
+
+    def _of_one(self, peer: Peer, message: ToOne) -> tuple[Peer, tuple[FromLinkEnd, ...]]:
+        """A message about one vehicle: nothing else is touched."""
+        match message:
+            case Route():
+                return self._route(peer, message)
+            case Flown(_, s_m):
+                return _flown(peer, s_m)
+            case Left(_, position):
+                return peer, _down(peer, [lines.reset_to(position, self.projection)])
+            case Heard(_, now_ms, line):
+                return _heard(peer, line, now_ms)
+            case Unreadable(_, now_ms, text):
+                return peer, (_status(peer, peer.open, now_ms, text),)
+            case Lost(_, now_ms, event):
+                note = f"link lost: {event.kind} {event.detail}".strip()
+                return _sign(replace(peer, open=False), ENDED, now_ms, note)
+
+    def _connected(self, state: State, vehicle_ids: tuple[int, ...], now_ms: int) -> Step:
+        peers = tuple(Peer(vid, now_ms) for vid in vehicle_ids)
+        out: list[FromLinkEnd] = []
+        for peer in peers:
+            out += _down(peer, self._fences(state.zones, 0))
+            out.append(_status(peer, True, now_ms, "connected"))
+        return replace(state, peers=peers), tuple(out)
+
+    def _zones(self, state: State, zones: tuple[Zone, ...]) -> Step:
+        fences = self._fences(zones, len(state.zones))
+        out = tuple(down for peer in state.peers for down in _down(peer, fences))
+        return replace(state, zones=zones), out
+
+    def _fences(self, zones: tuple[Zone, ...], known: int) -> list[Message]:
+        """The zones after the first `known`, as lines."""
+        fresh = list(enumerate(zones, 1))[known:]
+        return [m for number, zone in fresh for m in lines.fence(zone, number, self.projection)]
+
+    def _route(self, peer: Peer, route: Route) -> tuple[Peer, tuple[FromLinkEnd, ...]]:
+        track = Track(route.points)
+        told = lines.way(track.points, route.speed_m_s, self.projection)
+        after = replace(peer, marks_m=tuple(track.s_m), from_m=route.from_m, reached=0)
+        return after, _down(peer, told)
+
+    def _beat(self, state: State, beat: Beat) -> Step:
+        """POSTN, ATTUD and OBJCT to every instance; what to publish of it."""
+        places = lines.places_of(beat.aircraft, self.projection)
+        peers, out = list[Peer](), list[FromLinkEnd]()
+        for peer in state.peers:
+            told = lines.states(peer.vehicle_id, beat.aircraft, places, beat.now_ms)
+            count = peer.down + peer.open
+            peers.append(replace(peer, down=count))
+            out += _down(peer, told)
+            if peer.open:
+                out.append(_heartbeat(peer, beat.now_ms, "Down", count))
+        return replace(state, peers=tuple(peers)), tuple(out)
+
+
+ToOne = Route | Flown | Left | Heard | Unreadable | Lost
+OfOne = tuple[Peer, tuple[FromLinkEnd, ...]]
+
+
+def _flown(peer: Peer, s_m: float) -> OfOne:
+    """WPRCH for every waypoint that has been passed since the last time."""
+    passed = bisect_right(peer.marks_m, s_m - peer.from_m + 1e-6)
+    reached = [WaypointReached(k) for k in range(peer.reached, passed)]
+    return replace(peer, reached=max(peer.reached, passed)), _down(peer, reached)
+
+
+def _heard(peer: Peer, line: Message, now_ms: int) -> OfOne:
+    """Act on one line from an instance."""
+    peer, out = _sign(replace(peer, heard_ms=now_ms), HEARD, now_ms, "heard again")
+    if isinstance(line, Heartbeat):
+        return peer, (*out, _heartbeat(peer, now_ms, "Up", line.sequence))
+    if isinstance(line, SetMode):
+        peer, more = _mode(peer, line, now_ms)
+        return peer, (*out, *more)
+    return peer, out
+
+
+def _mode(peer: Peer, line: SetMode, now_ms: int) -> OfOne:
+    """A SETMOD line; one without an epoch, as the original sends it, begins the next."""
+    epoch = line.epoch if line.epoch is not None else peer.end.epoch + 1
+    linked = link_mode(peer.end, line.mode == "ACTIVE", epoch)
+    after, vid = replace(peer, end=linked.end), peer.vehicle_id
+    if linked.act == SUSPEND:
+        return after, (Suspend(vid, now_ms, linked.act),)
+    if linked.act == TAKE_BACK:
+        return after, (TakeBack(vid, now_ms, linked.act, epoch),)
+    if linked.act == OVERTAKEN:
+        note = f"a mode of epoch {epoch} is overtaken by one of epoch {peer.end.epoch}"
+        return after, (_status(after, after.end.alive, now_ms, note),)
+    return after, ()
+
+
+def _watch(state: State, now_ms: int) -> Step:
+    """Say so when an instance has fallen silent."""
+    peers, out = list[Peer](), list[FromLinkEnd]()
+    for peer in state.peers:
+        after, said = _sign(peer, PASSED, now_ms, f"silent since {peer.heard_ms} ms")
+        peers.append(after)
+        out += said
+    return replace(state, peers=tuple(peers)), tuple(out)
+
+
+def _sign(peer: Peer, event: int, now_ms: int, note: str) -> OfOne:
+    """A sign of life or none, and the note that tells of a change."""
+    linked = link_sign(peer.end, event, peer.heard_ms, now_ms, LINK_LOST_MS)
+    after = replace(peer, end=linked.end)
+    if linked.act in (SAY_HEARD, SAY_LOST, SAY_SILENT):
+        return after, (_status(after, after.end.alive, now_ms, note),)
+    return after, ()
+
+
+def _down(peer: Peer, told: Sequence[Message]) -> tuple[Down, ...]:
+    """Lines for an instance, if there are any and its connection stands."""
+    return (Down(peer.vehicle_id, tuple(told)),) if told and peer.open else ()
+
+
+def _status(peer: Peer, alive: bool, now_ms: int, note: str) -> Say:
+    body = lmcp.new("BridgeStatus", VehicleID=peer.vehicle_id, Time=now_ms, Alive=alive, Note=note)
+    return Say(body, NAME)
+
+
+def _heartbeat(peer: Peer, now_ms: int, direction: str, sequence: int) -> Say:
+    body = lmcp.new(
+        "Heartbeat",
+        VehicleID=peer.vehicle_id,
+        Time=now_ms,
+        Direction=direction,
+        Sequence=sequence,
+    )
+    return Say(body, NAME)

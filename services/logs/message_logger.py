@@ -1,0 +1,233 @@
+"""The message logger: a service that writes every message it is configured for to a log.
+
+UxAS mounts it as MessageLoggerDataService: `LogMessage MessageType` is a prefix of addresses ("afrl"
+takes all of CMASI), `LogFileMessageCountLimit` turns text files on beside the database, with so
+many messages in a file, `FilesPerSubDirectory` puts so many of them in a folder.
+`NumberMessagesToSkip` logs one message of a type, then skips so many of it, and so on.
+
+    logger = MessageLogger.from_element(element, folder, "cfg.xml")
+    bus.add(logger)            # where the bus knows `prefixes`; else: bus.tap(logger.tap)
+    logger.close()
+
+What it decides is a pure step (`choose`); the log that it hands messages to is the shell. The
+body is logged as its LMCP bytes: those that came in from outside if there are any, so that types
+nobody has a model of are logged too. It goes on when the log cannot be written, says so on the bus
+(ServiceStatus, once when it begins and once when it ends), and counts what is lost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.services.bus import Envelope
+from cratous.services.logs.entry import Entry, to_object
+from cratous.services.logs.records import canonical
+from cratous.services.logs.store import LogStore, cannot_write
+from cratous.services.logs.text_files import TextFiles
+from cratous.spec.errors import BadInput
+from cratous.spec.files.limits import integer_of
+
+STEM = "messageLog"
+SERVICE_TYPE = "MessageLoggerDataService"
+
+
+class LogRule(NamedTuple):
+    """Messages to log: a prefix of their address, and how many to skip after each."""
+
+    prefix: str
+    skip: int = 0
+
+
+class LoggerState(NamedTuple):
+    """What the logger remembers: messages still to skip by type; whether it has complained."""
+
+    to_skip: dict[str, int] = {}  # noqa: RUF012 (never changed, replaced by a new one)
+    complained: bool = False
+
+
+class MessageLogger:
+    """A service with one log; see the module."""
+
+    subscribes: tuple[str, ...] = ()
+
+    def __init__(
+        self,
+        folder: Path,
+        rules: Iterable[LogRule] = (LogRule(""),),
+        *,
+        name: str = SERVICE_TYPE,
+        text_limit: int = 0,
+        files_per_folder: int = 0,
+        path: Path | None = None,
+        **store: Any,
+    ) -> None:
+        """A new log `messageLog_<n>.sqlite` in the folder (or at `path`); BadInput if it cannot be.
+
+        text_limit: messages in each text file, 0 for no such files; store: of `LogStore`, and meta
+        data of the log.
+        """
+        self.name = name
+        self.rules = tuple(rules)
+        self.prefixes = tuple(dict.fromkeys(rule.prefix for rule in self.rules))
+        self._skips = any(rule.skip for rule in self.rules)
+        path, number = (path, 0) if path is not None else _free(folder)
+        store = {"writer": SERVICE_TYPE, **store}
+        self.log = LogStore(path, **store)
+        self._texts: TextFiles | None = None
+        if text_limit > 0:
+            self._texts = TextFiles(folder, f"{STEM}_{number}", text_limit, files_per_folder)
+        self._tap_state = self.start()
+
+    @classmethod
+    def from_element(cls, element: Any, folder: Path, where: str, **store: Any) -> MessageLogger:
+        """The logger of an element `Service` of a configuration; BadInput with file and line."""
+        place = f"{where}:{element.sourceline}"
+        return cls.from_parts(element.attrib, tuple(element), folder, place, **store)
+
+    @classmethod
+    def from_parts(
+        cls,
+        attributes: Mapping[str, str],
+        children: Iterable[Any],
+        folder: Path,
+        where: str,
+        **store: Any,
+    ) -> MessageLogger:
+        """The same of an element's attributes and children; where: its `file:line`."""
+        file, rules = where.rpartition(":")[0], []
+        for child in children:
+            place = f"{file}:{child.sourceline}"
+            if child.tag != "LogMessage":
+                raise BadInput(
+                    "unknown element", where=place, expected="LogMessage", got=str(child.tag)
+                )
+            prefix = child.get("MessageType", "")
+            if not prefix:
+                raise BadInput("no message type", where=place, item="LogMessage.MessageType")
+            rules.append(LogRule(prefix, _whole(child, "NumberMessagesToSkip", place)))
+        return cls(
+            folder,
+            rules,
+            text_limit=_whole(attributes, "LogFileMessageCountLimit", where),
+            files_per_folder=_whole(attributes, "FilesPerSubDirectory", where),
+            **store,
+        )
+
+    def start(self) -> LoggerState:
+        """Nothing is skipped yet."""
+        return LoggerState()
+
+    def choose(self, state: LoggerState, envelope: Envelope) -> tuple[LoggerState, bool]:
+        """The pure step: whether this message is logged."""
+        address = getattr(envelope, "address", "") or envelope.topic
+        if not address.startswith(self.prefixes):
+            return state, False
+        if not self._skips:
+            return state, True
+        left = state.to_skip.get(envelope.topic, 0)
+        skip = min(rule.skip for rule in self.rules if address.startswith(rule.prefix))
+        to_skip = {**state.to_skip, envelope.topic: left - 1 if left else skip}
+        return state._replace(to_skip=to_skip), not left
+
+    def handle(
+        self, state: LoggerState, envelope: Envelope, now_ms: int
+    ) -> tuple[LoggerState, Iterable[Any]]:
+        """Log one message if it is chosen; says on the bus when the log fails and when it is back."""
+        state, chosen = self.choose(state, envelope)
+        if not chosen:
+            return state, ()
+        entry, problem = entry_of(envelope)
+        self.log.write(entry)
+        said: list[Any] = [] if problem is None else [_status("Error", str(problem))]
+        if self._texts is not None:
+            self._texts.write(entry, _xml(entry))
+        trouble = self.log.trouble or (self._texts.trouble if self._texts is not None else "")
+        if bool(trouble) != state.complained:
+            state = state._replace(complained=bool(trouble))
+            said.append(self._report(trouble))
+        return state, said
+
+    def _report(self, trouble: str) -> Any:
+        if trouble:
+            return _status("Error", f"{self.log.path}: cannot be written ({trouble})")
+        return _status("Warning", f"{self.log.path}: written again; {self.log.lost} messages lost")
+
+    def tap(self, envelope: Envelope) -> None:
+        """The same for `Bus.tap`: every message, in order; trouble shows in `log.trouble`."""
+        self._tap_state, _ = self.handle(self._tap_state, envelope, envelope.time_ms)
+
+    def stop(self, state: LoggerState) -> None:
+        """The service leaves the bus."""
+        self.close()
+
+    def close(self) -> None:
+        """Write the rest and close the log; BadInput if something is not on disk."""
+        if self._texts is not None:
+            self._texts.close()
+        self.log.close()
+        if self._texts is not None and self._texts.lost:
+            raise BadInput(
+                f"the text files are not whole: {self._texts.lost} messages are lost",
+                where=str(self.log.path.parent),
+            )
+
+
+def entry_of(envelope: Envelope) -> tuple[Entry, BadInput | None]:
+    """What is logged of a message, and the error if its body has no LMCP form (then as text)."""
+    problem: BadInput | None = None
+    body: str | bytes | None = getattr(envelope, "raw", None)
+    if body is None:
+        try:
+            body = lmcp.binary.pack(envelope.body)
+        except BadInput as error:
+            problem = error
+            body = canonical({"$text": repr(envelope.body)[:10_000]})
+            with suppress(BadInput):
+                body = lmcp.to_json(envelope.body)
+    entity, service = (getattr(envelope, name, 0) for name in ("entity_id", "service_id"))
+    outside = (
+        getattr(envelope, "address", "") or None,
+        getattr(envelope, "group", "") or None,
+        str(entity) if entity or service else None,
+        str(service) if entity or service else None,
+    )
+    head = (envelope.seq, envelope.time_ms, envelope.source, envelope.topic)
+    return Entry(*head, body, *outside), problem
+
+
+def _xml(entry: Entry) -> str:
+    try:
+        return lmcp.xml.dumps(to_object(entry))
+    except BadInput as error:
+        body = entry.body.hex() if isinstance(entry.body, bytes) else entry.body
+        return f"[no XML: {error}] {body}\n"
+
+
+def _status(kind: str, text: str) -> Any:
+    pair = lmcp.new("KeyValuePair", Key=SERVICE_TYPE, Value=text[:1000])
+    return lmcp.new("ServiceStatus", StatusType=kind, Info=[pair])
+
+
+def _free(folder: Path) -> tuple[Path, int]:
+    """The first log name that is free in the folder, and its number."""
+    number = 0
+    try:
+        while (path := folder / f"{STEM}_{number}.sqlite").exists():
+            number += 1
+    except OSError as error:
+        raise cannot_write(folder, error) from None
+    return path, number
+
+
+def _whole(element: Any, name: str, where: str) -> int:
+    text = element.get(name, "0").strip()
+    number = integer_of(text, 0, 2**32 - 1)
+    if number is None:
+        raise BadInput(
+            "wrong attribute", where=where, item=name, expected="a whole number from 0", got=text
+        )
+    return number

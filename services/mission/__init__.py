@@ -1,0 +1,1 @@
+"""What planning, flight and monitor share of a mission: frames, zones, wind, times, cameras."""

@@ -1,0 +1,68 @@
+"""Why a wanted task has no vehicle: nobody can fly it, or nobody can reach it.
+
+Said of all that planning begins with, before any search.
+"""
+
+from __future__ import annotations
+
+from cratous.services.planning.inputs import Inputs
+
+
+def why_none(inputs: Inputs) -> tuple[str, ...]:
+    """What no vehicle can do or reach."""
+    return without_options(inputs) or without_routes(inputs)
+
+
+def without_options(inputs: Inputs) -> tuple[str, ...]:
+    """A reason for each wanted task that no vehicle can fly."""
+    reasons = []
+    for task_id in inputs.wanted:
+        if any(option.task_id == task_id for option in inputs.options):
+            continue
+        causes: dict[str, None] = {}
+        for drop in inputs.dropped:
+            if drop.task_id == task_id:
+                causes.update((f"vehicle {v}: {drop.reason}", None) for v in drop.vehicles)
+        said = "; ".join((*causes, *_absent(inputs, task_id)))
+        label = inputs.mission.task(task_id).label
+        named = f"task {task_id}" + (f" ({label})" if label else "")
+        reasons.append(f"no vehicle can do {named}: {said or 'no vehicle is eligible'}")
+    return tuple(reasons)
+
+
+def without_routes(inputs: Inputs) -> tuple[str, ...]:
+    """A reason for each wanted task that no vehicle can reach, from its start or another task."""
+    reasons = []
+    options, routes = inputs.options, inputs.routes
+    for task_id in inputs.wanted:
+        mine = [k for k, option in enumerate(options) if option.task_id == task_id]
+        causes: dict[str, None] = {}
+        reached = False
+        for k in mine:
+            for v, vehicle in enumerate(inputs.mission.vehicles):
+                if vehicle.id not in options[k].vehicles:
+                    continue
+                before = [-1, *(j for j, other in enumerate(options) if other.task_id != task_id)]
+                for j in before:
+                    if routes.travel_ms(v, j, k) is not None:
+                        reached = True
+                        break
+                if reached:
+                    break
+                causes[f"vehicle {vehicle.id}: {routes.route(v, -1, k).reason}"] = None
+            if reached:
+                break
+        if mine and not reached:
+            said = "; ".join((*causes, *_absent(inputs, task_id)))
+            reasons.append(f"no vehicle can reach task {task_id}: {said}")
+    return tuple(reasons)
+
+
+def _absent(inputs: Inputs, task_id: int) -> list[str]:
+    """The eligible vehicles that take no part, and why."""
+    eligible = inputs.mission.task(task_id).eligible
+    return [
+        f"vehicle {vehicle}: {why}"
+        for vehicle, why in inputs.absent.items()
+        if not eligible or vehicle in eligible
+    ]

@@ -1,0 +1,1 @@
+"""Before anything runs: the ledger gate, quickly, and the compilation of kernels."""

@@ -1,0 +1,111 @@
+"""`python -m cratous.services.startup.warm`: compile the kernels that the runtime uses on arrays.
+
+Part of the set-up, so that the first mission does not wait for the compiler. `ensure_planning` asks for
+it where a service that has to answer in time begins in a cache that has not been filled: in a
+process of its own, because the compiler takes a minute and more memory than planning itself.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from cratous.core import ledger
+from cratous.core.files.private_cache import private_cache
+from cratous.core.geofence.planar import orient
+from cratous.core.kernel.sources import ROOT
+from cratous.core.readings.machine.compiled import compiled
+from cratous.core.readings.tiered import at_once
+from cratous.core.well_clear import horizontal_violation, violation, violation_within
+from cratous.services.loading import load
+from cratous.services.pipeline.plan import make_plan
+from cratous.services.planning import assign
+from cratous.services.startup.standing import require
+
+MISSION = """
+name: warm
+frame: {latitude_deg: 45, longitude_deg: -120}
+vehicles:
+  - id: 1
+    position: {north_m: 0, east_m: 0, alt_m: 300}
+    heading_deg: 0
+    speed_m_s: 20
+    min_speed_m_s: 15
+    max_speed_m_s: 30
+    max_bank_deg: 30
+    max_climb_m_s: 3
+    cameras: [{payload_id: 1, hfov_deg: 45, pixels: 1000}]
+tasks:
+  - id: 1
+    kind: area_search
+    rectangle: {centre: {north_m: 2000, east_m: 0}, width_m: 600, height_m: 500}
+  - id: 2
+    kind: line_search
+    points: [{north_m: 3000, east_m: 0}, {north_m: 3500, east_m: 300}, {north_m: 4000, east_m: 0}]
+  - id: 3
+    kind: point_search
+    points: [{north_m: 4500, east_m: 0}]
+  - id: 4
+    kind: must_fly
+    points: [{north_m: 5000, east_m: 0, alt_m: 300}]
+zones:
+  - id: 1
+    kind: keep_out
+    vertices: [[1000, -200], [1000, 200], [1200, 200], [1200, -200]]
+"""
+"""A way around a zone, lanes with turns, footprints along a line: every loop that planning compiles."""
+
+
+def warm() -> None:
+    """Compile, and run once."""
+    zero = 0.0
+    state = (100.0, zero, -10.0, zero)
+    compiled(horizontal_violation)(*state, 50.0, 10.0)
+    compiled(violation)(*state, zero, zero, 50.0, 30.0, 10.0, zero)
+    compiled(violation_within)(*state, zero, zero, 50.0, 30.0, 10.0, zero, 60.0)
+    compiled(orient)(*state, zero, zero)
+    warm_planning()
+    require(allow_unproved=True)  # what is clean is remembered
+
+
+def warm_planning() -> None:
+    """Compile what planning a mission calls, and remember that it is done."""
+    assign.warm()
+    with tempfile.TemporaryDirectory() as folder, at_once():
+        file = Path(folder) / "mission.yaml"
+        file.write_text(MISSION, encoding="utf-8")
+        make_plan(load(file))
+    _mark().parent.mkdir(exist_ok=True, mode=0o700)
+    _mark().touch()
+
+
+def ensure_planning(say: Callable[[str], None]) -> None:
+    """Have planning's loops compiled, unless they are; `say` is told when that takes time."""
+    if _mark().is_file():
+        return
+    say("the planning loops are compiled, once for this version and machine; this takes a minute")
+    done = subprocess.run(
+        [sys.executable, "-m", "cratous.services.startup.warm"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if done.returncode:
+        say(f"compiling ahead failed, so it is done when needed: {done.stderr.strip()[-300:]}")
+
+
+def _mark() -> Path:
+    """A file that exists once planning is compiled; named by the loops' sources and the compiler."""
+    sha = hashlib.sha256(f"{sys.version} {ledger.compiler()}".encode())
+    for file in sorted((ROOT / "core").rglob("*.py")):
+        sha.update(file.read_bytes())
+    return private_cache() / "warm" / sha.hexdigest()
+
+
+if __name__ == "__main__":
+    warm()
+    print("what the runtime uses is compiled")

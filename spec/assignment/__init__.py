@@ -1,0 +1,1 @@
+"""What an assignment problem, its search steps and its lower bounds mean."""

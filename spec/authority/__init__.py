@@ -1,0 +1,1 @@
+"""What authority over a vehicle means: gate, times of messages, right of way."""

@@ -1,0 +1,1 @@
+"""What detect and avoid means, its parameters, and the files they come in."""

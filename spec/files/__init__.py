@@ -1,0 +1,1 @@
+"""Reading what comes from outside: bounds, text, and text made safe to show."""

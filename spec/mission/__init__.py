@@ -1,0 +1,294 @@
+"""What a mission is: vehicles, tasks, zones, relations and traffic, as plain frozen data.
+
+Everything inside is SI in ONE local tangent frame per mission: north and east in metres from the
+frame's origin, altitude in metres above mean sea level (MSL), headings in radians clockwise from
+north, times in integer milliseconds after mission start (the instant at which the automation
+response is accepted). Degrees, feet and AGL altitudes exist only in the loaders.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import NamedTuple
+
+
+class Position(NamedTuple):
+    """A point in the mission frame: north and east [m], altitude MSL [m]."""
+
+    north_m: float
+    east_m: float
+    alt_m: float
+
+
+class Velocity(NamedTuple):
+    """Ground velocity: north, east, down [m/s]; down is positive towards the ground."""
+
+    north_m_s: float
+    east_m_s: float
+    down_m_s: float
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Origin of the local tangent frame (WGS-84 degrees) and the height of the flat terrain."""
+
+    latitude_deg: float
+    longitude_deg: float
+    terrain_m: float = 0.0
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A camera on a gimbal. Angles in radians; azimuth clockwise from the nose, elevation up."""
+
+    payload_id: int = 1
+    hfov_rad: float = 0.785398
+    aspect: float = 4 / 3
+    min_elevation_rad: float = -1.5708
+    max_elevation_rad: float = 0.0
+    min_azimuth_rad: float = -3.14159265
+    max_azimuth_rad: float = 3.14159265
+    wavelength: str = "AllAny"
+    pixels: int = 0
+    """How many pixels an image is wide; 0: not known."""
+    zoom_rad: tuple[float, ...] = ()
+    """Narrower fields of view that it has [rad]; with `zooms`, also all between the narrowest and hfov."""
+    zooms: bool = False
+    camera_id: int = 0
+    """The payload id of the camera itself; `payload_id` is its gimbal's."""
+
+
+@dataclass(frozen=True)
+class Vehicle:
+    """One aircraft. `protected` vehicles get an ICAROUS instance and the guarantees G1 to G5."""
+
+    id: int
+    label: str
+    position: Position
+    heading_rad: float
+    speed_m_s: float
+    min_speed_m_s: float
+    max_speed_m_s: float
+    max_bank_rad: float
+    max_climb_m_s: float
+    protected: bool
+    cameras: tuple[Camera, ...] = ()
+    cruise_m: float | None = None
+
+    @property
+    def cruise_alt_m(self) -> float:
+        """The altitude at which it flies its tasks [m MSL]: that of its start unless said otherwise."""
+        return self.position.alt_m if self.cruise_m is None else self.cruise_m
+
+
+class TaskKind(StrEnum):
+    LINE_SEARCH = "line_search"
+    POINT_SEARCH = "point_search"
+    MUST_FLY = "must_fly"
+    LOITER = "loiter"
+    AREA_SEARCH = "area_search"
+    PATTERN_SEARCH = "pattern_search"
+
+
+SEARCHES = (
+    TaskKind.LINE_SEARCH,
+    TaskKind.POINT_SEARCH,
+    TaskKind.AREA_SEARCH,
+    TaskKind.PATTERN_SEARCH,
+)
+"""The kinds that are served by what cameras see."""
+AREAS = (TaskKind.AREA_SEARCH, TaskKind.PATTERN_SEARCH)
+"""The kinds of which a whole area has to be seen."""
+
+
+class Pattern(StrEnum):
+    """How a pattern search covers the surroundings of its point."""
+
+    SPIRAL = "spiral"
+    SQUARE = "square"
+    SECTOR = "sector"
+    SWEEP = "sweep"
+
+
+@dataclass(frozen=True)
+class View:
+    """From where the sensor looks at the target: boresight azimuth and elevation [rad].
+
+    azimuth is clockwise from the direction of flight, or from north if `inertial`;
+    elevation is negative downwards. None as a view means: any. azimuth_extent_rad: width of the
+    wedge of directions that will do, centred on azimuth; 0: that direction alone.
+    """
+
+    azimuth_rad: float
+    elevation_rad: float
+    inertial: bool = False
+    azimuth_extent_rad: float = 0.0
+
+
+@dataclass(frozen=True)
+class Loiter:
+    """A closed way around `centre`: `circular`, `racetrack` or `figure_eight`.
+
+    radius_m: of the turns (0: the vehicle's own); axis_rad: direction of the long axis, from
+    north; length_m: of a racetrack's straights, or between a figure-eight's turn centres (which
+    is at least 2 radius_m); direction: `clockwise`, `counter_clockwise` or `any`.
+    """
+
+    centre: Position
+    radius_m: float
+    shape: str = "circular"
+    axis_rad: float = 0.0
+    length_m: float = 0.0
+    direction: str = "any"
+
+
+@dataclass(frozen=True)
+class Task:
+    """One task. `eligible` empty means: every vehicle.
+
+    points: the line (line_search), the target (point_search), the point to fly through
+    (must_fly), the centre (loiter, pattern_search) or the corners of a polygon (area_search).
+    duration_ms: loiter or dwell time. radius_m: loiter radius. views: what else will do besides
+    `view`. standoff_m: how near the aircraft may come to a point that it searches. loiter: the
+    way to fly in a loiter, or while looking at a point. gsd_m: coarsest ground sample distance
+    that will do [m a pixel], 0: any. sweep_rad: direction of an area's lanes, None: any;
+    start_point: where the search of an area has to begin. extent_m: a pattern reaches so far from
+    its centre: over a disc (spiral, sector), or a square (square, sweep).
+    """
+
+    id: int
+    kind: TaskKind
+    label: str
+    points: tuple[Position, ...]
+    eligible: tuple[int, ...] = ()
+    duration_ms: int = 0
+    radius_m: float = 0.0
+    view: View | None = None
+    wavelength: str = "AllAny"
+    views: tuple[View, ...] = ()
+    standoff_m: float = 0.0
+    loiter: Loiter | None = None
+    gsd_m: float = 0.0
+    sweep_rad: float | None = None
+    start_point: Position | None = None
+    pattern: Pattern | None = None
+    extent_m: float = 0.0
+
+
+class ZoneKind(StrEnum):
+    KEEP_IN = "keep_in"
+    KEEP_OUT = "keep_out"
+
+
+@dataclass(frozen=True)
+class Zone:
+    """A polygon in the horizontal plane, between floor and ceiling (MSL), for all vehicles.
+
+    vertices: (north, east) [m], simple, at least three, either orientation, not repeated at the
+    end. A keep-out contains its own boundary, a keep-in does not. padding_m widens a keep-out and
+    narrows a keep-in.
+    """
+
+    id: int
+    kind: ZoneKind
+    vertices: tuple[tuple[float, float], ...]
+    floor_m: float
+    ceiling_m: float
+    padding_m: float = 0.0
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class Traffic:
+    """An aircraft that nobody of ours commands: straight flight, or along `waypoints`."""
+
+    id: int
+    position: Position
+    velocity: Velocity
+    appears_ms: int = 0
+    vanishes_ms: int | None = None
+
+
+@dataclass(frozen=True)
+class WellClear:
+    """Well-clear volume (modified tau): DTHR and ZTHR [m], TTHR and TCOA [s]."""
+
+    dthr_m: float
+    zthr_m: float
+    tthr_s: float
+    tcoa_s: float
+
+
+@dataclass(frozen=True)
+class Daa:
+    """How ICAROUS detects and avoids: the volume it keeps and how far it looks ahead."""
+
+    well_clear: WellClear
+    lookahead_s: float = 60.0
+    buffer: float = 1.25
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """Virtual time: length of a physics step, heartbeat period, and the end of patience."""
+
+    step_ms: int = 250
+    heartbeat_ms: int = 500
+    limit_ms: int = 7_200_000
+
+
+@dataclass(frozen=True)
+class Change:
+    """Something that becomes known in flight; `kind` is one of those of `spec.mission.changes`."""
+
+    at_ms: int
+    kind: str
+    zone: Zone | None = None
+    vehicle: int = 0
+    task: int = 0
+
+
+@dataclass(frozen=True)
+class Mission:
+    """A whole mission. `relations` is the process-algebra text; empty means all tasks, any order.
+
+    instances: ids of the vehicles with an ICAROUS instance (all protected ones unless avoidance
+    is switched off). cost: "MINMAX" (makespan) or "CUMULATIVE". order: "time" (precedence holds
+    in time, design decision 1) or "order" (as UxAS: order of assignment only). node_limit: nodes of
+    the assignment search (0: its first leaf); None: as many as usual; gap: the search may stop once
+    (cost - bound) / cost is at most this.
+    """
+
+    name: str
+    source: str
+    frame: Frame
+    vehicles: tuple[Vehicle, ...]
+    tasks: tuple[Task, ...]
+    daa: Daa
+    zones: tuple[Zone, ...] = ()
+    traffic: tuple[Traffic, ...] = ()
+    relations: str = ""
+    cost: str = "MINMAX"
+    order: str = "time"
+    instances: tuple[int, ...] = ()
+    simulation: Simulation = field(default_factory=Simulation)
+    seed: int = 0
+    notes: tuple[str, ...] = ()
+    node_limit: int | None = None
+    gap: float = 0.0
+    changes: tuple[Change, ...] = ()
+
+    def vehicle(self, vehicle_id: int) -> Vehicle:
+        """The vehicle with this id; KeyError if there is none."""
+        for vehicle in self.vehicles:
+            if vehicle.id == vehicle_id:
+                return vehicle
+        raise KeyError(vehicle_id)
+
+    def task(self, task_id: int) -> Task:
+        """The task with this id; KeyError if there is none."""
+        for task in self.tasks:
+            if task.id == task_id:
+                return task
+        raise KeyError(task_id)

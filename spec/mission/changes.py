@@ -1,0 +1,122 @@
+"""What becomes known while a mission is flown, and the mission as it is known at an instant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Set
+from dataclasses import dataclass, replace
+
+from cratous.spec import algebra
+from cratous.spec.algebra import Atom, Term
+from cratous.spec.mission import Change, Mission
+
+VEHICLE_LOST, VEHICLE_JOINS = "vehicle_lost", "vehicle_joins"
+TASK_ADDED, TASK_REMOVED = "task_added", "task_removed"
+ZONE = "zone"
+WIND = "wind"
+
+
+@dataclass(frozen=True)
+class WindChange(Change):
+    """From now on this wind blows, in place of any before; the air stands still at the start."""
+
+    north_m_s: float = 0.0
+    east_m_s: float = 0.0
+
+
+def words(change: Change) -> str:
+    """A change in words."""
+    if change.kind == ZONE and change.zone is not None:
+        kind = change.zone.kind.value.replace("_", "-")
+        label = f" ({change.zone.label})" if change.zone.label else ""
+        return f"{kind} zone {change.zone.id}{label} appears"
+    if isinstance(change, WindChange):
+        return f"wind to {change.north_m_s:g} m/s north, {change.east_m_s:g} m/s east"
+    return {
+        VEHICLE_LOST: f"vehicle {change.vehicle} is lost",
+        VEHICLE_JOINS: f"vehicle {change.vehicle} joins",
+        TASK_ADDED: f"task {change.task} is requested",
+        TASK_REMOVED: f"task {change.task} is removed",
+    }[change.kind]
+
+
+def split(changes: Iterable[Change], now_ms: int) -> tuple[list[Change], list[Change]]:
+    """The changes that are known at an instant, and those to come, each in the order of time."""
+    row = sorted(changes, key=lambda change: change.at_ms)
+    return [c for c in row if c.at_ms <= now_ms], [c for c in row if c.at_ms > now_ms]
+
+
+def known_at(mission: Mission, now_ms: int, done: Iterable[int] = ()) -> Mission:
+    """The mission as it is known at an instant: its zones, and who and what takes part.
+
+    A vehicle takes part until it is lost, and from when it joins; a task from when it is requested until it
+    is removed, unless it is among those `done`. What was said last counts, and what is first said to
+    join or to be requested was not there before. Relations lose the tasks that do not take part.
+    """
+    if not mission.changes:
+        return mission
+    happened, _ = split(mission.changes, now_ms)
+    zones = [c.zone for c in happened if c.kind == ZONE and c.zone is not None]
+    away = without_vehicles(mission, now_ms)
+    known = _without_tasks(mission, _gone(mission, now_ms).keys() - set(done))
+    return replace(
+        known,
+        zones=(*mission.zones, *zones),
+        vehicles=tuple(v for v in mission.vehicles if v.id not in away),
+        changes=(),
+    )
+
+
+def asked_by(mission: Mission, now_ms: int, done: Iterable[int] = ()) -> Mission:
+    """The mission with all tasks that it asks for, those too that are requested only after an instant:
+    without those that were removed by then, unless they are among those `done`."""
+    later = {c.task for c in mission.changes if c.kind == TASK_ADDED and c.at_ms > now_ms}
+    return _without_tasks(mission, _gone(mission, now_ms).keys() - set(done) - later)
+
+
+def without_vehicles(mission: Mission, now_ms: int) -> dict[int, Change]:
+    """The vehicles that do not take part at an instant, each with the change that says why."""
+    return _out(mission, now_ms, "vehicle", VEHICLE_JOINS, VEHICLE_LOST)
+
+
+def _gone(mission: Mission, now_ms: int) -> dict[int, Change]:
+    return _out(mission, now_ms, "task", TASK_ADDED, TASK_REMOVED)
+
+
+def _out(mission: Mission, now_ms: int, what: str, enters: str, leaves: str) -> dict[int, Change]:
+    """Who or what is not there, by the last change that has happened, else by the first to come."""
+    found: dict[int, Change] = {}
+    happened, to_come = split((c for c in mission.changes if c.kind in (enters, leaves)), now_ms)
+    for change in reversed(to_come):
+        found[getattr(change, what)] = change
+    for change in happened:
+        found[getattr(change, what)] = change
+    return {
+        number: change
+        for number, change in found.items()
+        if change.kind == (leaves if change.at_ms <= now_ms else enters)
+    }
+
+
+def _without_tasks(mission: Mission, gone: Set[int]) -> Mission:
+    return replace(
+        mission,
+        tasks=tuple(t for t in mission.tasks if t.id not in gone),
+        relations=_relations(mission, gone),
+    )
+
+
+def _relations(mission: Mission, gone: Set[int]) -> str:
+    if not mission.relations.strip():
+        return ""
+    ids = [task.id for task in mission.tasks]
+    term = algebra.parse(mission.relations, frozenset(ids), where=mission.source)
+    left = _without(term, gone)
+    return "" if left is None else algebra.format_term(left)
+
+
+def _without(term: Term, gone: Set[int]) -> Term | None:
+    """The term without these tasks; None if nothing is left. An operator with one operand stays."""
+    if isinstance(term, Atom):
+        return None if term.task in gone else term
+    parts = tuple(part for part in (_without(a, gone) for a in term.operands) if part is not None)
+    return replace(term, operands=parts) if parts else None

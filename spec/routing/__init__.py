@@ -1,0 +1,1 @@
+"""What flying a route means: speeds in the wind."""

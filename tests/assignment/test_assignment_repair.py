@@ -1,0 +1,99 @@
+"""Neighbourhoods repaired by the exact search: nothing gets dearer, and what comes out is a schedule."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from cratous.core.assignment.anytime import greedy, timed
+from cratous.core.assignment.instance import Instance
+from cratous.core.assignment.lower_bounds import least_until, shortest_ways, ways_hold
+from cratous.core.assignment.repair import repaired
+from cratous.services.planning import assign
+from cratous.services.planning.assign import Limits, solve
+from cratous.services.planning.assign_problem import arrays, parts
+from cratous.spec.assignment.search import CUMULATIVE, MINMAX, AssignmentProblem, Choice, Cost
+
+
+def problem(tasks: int, vehicles: int, relations: str = "", seed: int = 1) -> AssignmentProblem:
+    """Tasks and vehicles at random places of a line, one way each."""
+    rng = random.Random(seed)
+    at = [rng.randrange(1, 1000) for _ in range(tasks)]
+    ids = tuple(range(1, vehicles + 1))
+    choices = tuple(Choice(t + 1, 1, rng.randrange(5, 50), ids) for t in range(tasks))
+    travel = tuple(
+        tuple(tuple(abs(a - b) + 1 for b in at) for a in (*at, start))
+        for start in (rng.randrange(1000) for _ in ids)
+    )
+    return AssignmentProblem("line", ids, (0,) * vehicles, choices, travel, relations)
+
+
+def arrays_of(p: AssignmentProblem) -> Instance:
+    return arrays(p, parts(p)[0][0])
+
+
+def cost_of(i: Instance, moves: tuple[tuple[int, int], ...]) -> int:
+    """The weighted latest end and last ends, by other code than that which found them."""
+    last = {v: end for v, _, _, _, end in timed(i, moves)}
+    return int(max(last.values()) * i.weight[0] + sum(last.values()) * i.weight[1])
+
+
+@pytest.mark.parametrize("relations", ["", "|(.(p1 p2 p3) .(p4 p5 p6) .(p7 p8) p9 p10 p11 p12)"])
+@pytest.mark.parametrize("cost", [MINMAX, CUMULATIVE])
+def test_a_repair_is_a_schedule_that_is_no_dearer(relations: str, cost: Cost) -> None:
+    i = arrays_of(replace(problem(12, 3, relations), cost=cost))
+    _, moves = greedy(i)
+    assert moves is not None
+    least, better, nodes = repaired(i, moves, 60, 1)
+    assert nodes > 0
+    assert least == cost_of(i, better) < cost_of(i, moves)
+    assert sorted(i.task[o] for _, o in better) == list(range(12))
+    assert repaired(i, moves, 60, 1) == (least, better, nodes)
+
+
+def test_a_neighbourhood_of_everything_gives_the_optimum() -> None:
+    p = problem(8, 2, seed=3)
+    best, i = solve(p), arrays_of(p)
+    _, moves = greedy(i)
+    assert moves is not None
+    assert best.cost == best.bound < cost_of(i, moves)
+    assert repaired(i, moves, 40, 1)[0] == best.cost
+
+
+def test_moves_that_block_each_other_are_left_alone() -> None:
+    p = problem(4, 1, ".(p1 p2 p3 p4)")
+    i = arrays_of(p)
+    wrong = ((0, 3), (0, 2), (0, 1), (0, 0))
+    assert repaired(i, wrong, 5, 1) == (1 << 60, wrong, 0)
+
+
+def test_a_way_with_a_stop_that_is_shorter_is_noticed() -> None:
+    i = arrays_of(problem(5, 2))
+    reach = shortest_ways(i.travel, i.duration, i.may)
+    assert ways_hold(reach, i.travel, i.duration, i.may)
+    longer = reach.copy()
+    longer[1, 2, 3] += 10_000
+    assert not ways_hold(longer, i.travel, i.duration, i.may)
+
+
+def test_vehicles_without_work_are_no_bound() -> None:
+    i = arrays_of(problem(4, 2))
+    assert least_until(0, i.ready) == -1
+    assert least_until(11, i.ready) == 6
+
+
+def test_a_problem_of_many_tasks_is_repaired_on_the_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def spy(*given: Any) -> Any:
+        asked.append(repaired(*given))
+        return asked[-1]
+
+    monkeypatch.setattr(assign, "repaired", spy)
+    found = solve(problem(64, 3), Limits(nodes=1_200_000))
+    assert found.cost is not None
+    assert asked
+    assert 0 < found.bound <= found.cost <= min(cost for cost, _, _ in asked)

@@ -1,0 +1,465 @@
+"""`cratous certify`: whatever is edited in a results folder is found, or said not to be checked."""
+
+from __future__ import annotations
+
+import copy
+import functools
+import json
+import re
+import shutil
+import sqlite3
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from cratous.services.certify import again, recorded, report, written
+from cratous.services.cli import main
+from cratous.services.logs.sqlite_log import SqliteLog
+from cratous.services.results.ownership import manifest_text
+
+ROOT = Path(__file__).resolve().parents[2]
+Run = Callable[..., tuple[int, str, str]]
+FEW = 2
+
+
+@pytest.fixture(scope="module")
+def flown(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("flown")
+    mission = ROOT / "examples" / "crossing" / "mission.yaml"
+    assert main(["run", str(mission), "--out", str(out), "--allow-unproved", "--quiet"]) in (0, 3)
+    return out / "crossing"
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str]) -> Run:
+    def call(*arguments: object) -> tuple[int, str, str]:
+        code = main([str(part) for part in arguments])
+        printed = capsys.readouterr()
+        return code, printed.out, printed.err
+
+    return call
+
+
+@pytest.fixture(scope="module")
+def judged(flown: Path) -> Iterator[None]:
+    """What takes long is done once for the log: its digest, the monitor, the plan check, z3, the ledger.
+
+    All that compares, and all that reads the report and the folder, is the product's own.
+    """
+    patch = pytest.MonkeyPatch()
+
+    def once(place: Any, name: str, key: Callable[..., Any] = lambda *_a, **_k: 0) -> None:
+        real, kept = getattr(place, name), {}
+
+        @functools.wraps(real)
+        def call(*arguments: Any, **named: Any) -> Any:
+            found = key(*arguments, **named)
+            if found not in kept:
+                kept[found] = real(*arguments, **named)
+            return kept[found]
+
+        patch.setattr(place, name, call)
+
+    once(SqliteLog, "digest", lambda log: log.path.stat().st_mtime_ns)
+    once(again, "watch")
+    once(again, "_certificate")
+    once(recorded, "inventory", lambda _standing, calls: json.dumps(calls))
+    once(recorded.ledger, "require")
+    once(report, "read_flight")
+    once(report, "read_digest", lambda path: path.stat().st_mtime_ns)
+    rows = list(again.read_log(flown / "log.sqlite"))
+    patch.setattr(again, "read_log", lambda _path: rows)
+    once(written, "pages", report.report_text)
+    yield
+    patch.undo()
+
+
+def edited(flown: Path, tmp_path: Path) -> Path:
+    folder = tmp_path / "edited"
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(flown, folder)
+    return folder
+
+
+def read(folder: Path) -> dict[str, Any]:
+    return dict(json.loads((folder / "report.json").read_text(encoding="utf-8")))
+
+
+def meta(folder: Path, key: str, value: Any) -> None:
+    """Edit (or, with None, forget) what the log recorded; no digest covers it."""
+    database = sqlite3.connect(folder / "log.sqlite")
+    with database:
+        database.execute("DELETE FROM meta WHERE key = ?", (key,))
+        if value is not None:
+            database.execute("INSERT INTO meta VALUES(?, ?)", (key, json.dumps(value)))
+    database.close()
+
+
+def places(data: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """The path of everything in it, leaves and what holds them; of a list the first and the last."""
+    if path:
+        yield path
+    if isinstance(data, dict):
+        for key, value in data.items():
+            yield from places(value, (*path, key))
+    elif isinstance(data, list):
+        for k in sorted({0, len(data) - 1} if data else set()):
+            yield from places(data[k], (*path, k))
+
+
+def short(data: Any) -> Any:
+    """The same with a few entries of each list."""
+    if isinstance(data, dict):
+        return {key: short(value) for key, value in data.items()}
+    if isinstance(data, list):
+        return [short(part) for part in [*data[: FEW - 1], *data[FEW - 1 :][-1:]]]
+    return data
+
+
+OTHER: tuple[Any, ...] = (
+    None,
+    True,
+    7,
+    -0.5,
+    "other",
+    [],
+    {},
+    [None],
+    {"a": [1]},
+    10**400,
+    "\x1b[2J",
+)
+
+
+def edits(value: Any) -> Iterator[Any]:
+    """Another value of the same type, and values of other types."""
+    if isinstance(value, bool):
+        yield not value
+    elif isinstance(value, int):
+        yield from (value + 1, -value - 1, float(value))
+    elif isinstance(value, float):
+        yield from (value + 1e-9 * max(1.0, abs(value)), -value - 1.0)
+    elif isinstance(value, str):
+        yield from (value + " ", value[:-1] if value else "x", value.upper() + "!")
+    elif isinstance(value, list):
+        yield [*value, *value[:1]] if value else [0]
+        yield value[1:] if value else [[]]
+    elif isinstance(value, dict):
+        yield {**value, "added": 1}
+    yield from OTHER
+
+
+def at(data: Any, path: tuple[Any, ...]) -> Any:
+    for part in path:
+        data = data[part]
+    return data
+
+
+def same(one: Any, other: Any) -> bool:
+    return json.dumps(one, sort_keys=True) == json.dumps(other, sort_keys=True)
+
+
+@pytest.mark.long
+def test_every_edit_of_every_entry_is_found(
+    flown: Path, judged: None, tmp_path: Path, capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    """Of lists of many the first and last; each kind of place gets every edit, and is then deleted."""
+    folder = edited(flown, tmp_path)
+    file, whole = folder / "report.json", read(folder)
+    full, silent, wrong = again.rebuilt(folder / "log.sqlite", whole)
+    assert same(full, whole)
+    # judged once, and short of the many entries of long lists: what follows only compares
+    whole = short(whole)
+    rebuilt = (copy.deepcopy(whole), silent, wrong)
+    texts = report.pages(full)
+    monkeypatch.setattr(again, "rebuilt", lambda *_log: copy.deepcopy(rebuilt))
+    monkeypatch.setattr(written, "pages", lambda _report: dict(texts))
+    monkeypatch.setattr(again, "subject", functools.cache(again.subject))
+    tried = 0
+    for path in list(places(whole)):
+        holder, value = at(whole, path[:-1]), at(whole, path)
+        for new in [*edits(value), KeyError]:
+            if isinstance(holder, list) if new is KeyError else same(value, new):
+                continue
+            if new is KeyError:
+                del holder[path[-1]]
+            else:
+                holder[path[-1]] = new
+            tried += 1
+            found = again.differences(whole, rebuilt[0])
+            holder[path[-1]] = value
+            assert found, (path, new)
+            assert all(len(line) < 400 for line in found)
+            assert not any("\x1b" in line for line in found)
+    assert tried > 3000
+    # and through the whole command, what stands at the top and one level below
+    tops = [path for path in places(whole) if len(path) <= 2 and path[-1] != 0]
+    capsys.readouterr()
+    for path in tops:
+        holder, value = at(whole, path[:-1]), at(whole, path)
+        for new in (*list(edits(value))[:1], None, "other", [1], KeyError):
+            if new is KeyError and isinstance(holder, dict):
+                del holder[path[-1]]
+            elif new is KeyError or same(value, new):
+                continue
+            else:
+                holder[path[-1]] = new
+            file.write_text(json.dumps(whole), encoding="utf-8")
+            holder[path[-1]] = value
+            code = main(["certify", str(folder)])
+            printed = capsys.readouterr()
+            assert code in (1, 2), (path, new, printed)
+            assert code == 2 or str(path[0]) in printed.err, (path, new)
+            assert "internal error" not in printed.err
+            assert "confirmed" not in printed.out
+
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(max_size=9),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
+    max_leaves=6,
+)  # fmt: skip
+
+
+@settings(
+    max_examples=30,
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
+)
+@given(data=st.data())
+def test_whatever_stands_in_an_entry(
+    flown: Path, judged: None, tmp_path: Path, capsys: pytest.CaptureFixture[str], data: st.DataObject
+) -> None:  # fmt: skip
+    """Any JSON in any entry, judged by the whole command: never confirmed, never an internal error."""
+    folder = tmp_path / "edited"
+    if not folder.exists():
+        edited(flown, tmp_path)
+    whole = read(flown)
+    path = data.draw(st.sampled_from(_places(flown)))
+    new = data.draw(JSON)
+    if same(at(whole, path), new):
+        return
+    at(whole, path[:-1])[path[-1]] = new
+    (folder / "report.json").write_text(json.dumps(whole), encoding="utf-8")
+    code = main(["certify", str(folder)])
+    printed = capsys.readouterr()
+    assert code in (1, 2), (path, new, printed)
+    assert "internal error" not in printed.err
+
+
+@functools.cache
+def _places(folder: Path) -> list[tuple[Any, ...]]:
+    return list(places(read(folder)))
+
+
+def test_what_is_not_edited_is_confirmed_and_nothing_written(
+    run: Run, flown: Path, judged: None
+) -> None:
+    before = {file.name: file.stat().st_mtime_ns for file in flown.iterdir()}
+    code, out, err = run("certify", flown)
+    assert (code, err) == (read(flown)["exit_code"], "")
+    assert "confirmed" in out
+    assert "not checked" not in out, "of a log of this version everything is"
+    assert run("certify", flown, "--rewrite")[0] == code
+    assert {file.name: file.stat().st_mtime_ns for file in flown.iterdir()} == before
+
+
+def test_an_edited_environment(run: Run, flown: Path, judged: None, tmp_path: Path) -> None:
+    for new in ({}, [], "x", None, {"python": "9", "system": "", "packages": {}}):
+        folder = edited(flown, tmp_path)
+        whole = read(folder)
+        whole["environment"] = new
+        (folder / "report.json").write_text(json.dumps(whole), encoding="utf-8")
+        code, out, err = run("certify", folder)
+        assert (code, out) == (1, "")
+        assert "environment" in err
+
+
+@pytest.mark.parametrize("name", ["report.html", "map.svg", "manifest.json"])
+def test_an_edited_page_is_a_finding(
+    run: Run, flown: Path, judged: None, tmp_path: Path, name: str
+) -> None:
+    folder = edited(flown, tmp_path)
+    file, good = folder / name, (flown / name).read_bytes()
+    for bad in (good[:900] + b"!" + good[901:], good + b" ", b"", b"\xff\x00", None):
+        file.unlink() if bad is None else file.write_bytes(bad)
+        code, out, err = run("certify", folder)
+        assert (code, out) == (1, ""), bad
+        assert name in err
+        assert (file.read_bytes() if bad is not None else None) == bad, "nothing is written"
+        assert not file.exists() or bad is not None
+    code, out, err = run("certify", folder, "--rewrite")
+    assert (code, err) == (read(flown)["exit_code"], "")
+    assert f"rewritten: {name}" in out
+    assert file.read_bytes() == good
+    assert run("certify", folder)[0] == code
+
+
+def test_rewrite_touches_nothing_that_is_not_confirmed(
+    run: Run, flown: Path, judged: None, tmp_path: Path
+) -> None:
+    folder = edited(flown, tmp_path)
+    whole = read(folder)
+    whole["verdict"] = "violated"
+    (folder / "report.json").write_text(json.dumps(whole), encoding="utf-8")
+    (folder / "report.html").write_text("mine")
+    before = {file.name: file.read_bytes() for file in folder.iterdir()}
+    code, out, err = run("certify", folder, "--rewrite")
+    assert (code, out) == (1, "")
+    assert "verdict: written" in err
+    assert "report.html, line 1" in err
+    assert {file.name: file.read_bytes() for file in folder.iterdir()} == before
+
+
+def test_bytes_count_too(run: Run, flown: Path, judged: None, tmp_path: Path) -> None:
+    folder = edited(flown, tmp_path)
+    (folder / "report.json").write_text(json.dumps(read(folder)), encoding="utf-8")
+    code, _, err = run("certify", folder)
+    assert (code, "report.json, line 1" in err) == (1, True)
+    folder = edited(flown, tmp_path)
+    certificate = json.loads((folder / "certificate.json").read_text())
+    (folder / "certificate.json").write_text(json.dumps(certificate, indent=2))
+    code, _, err = run("certify", folder)
+    assert (code, "certificate.json: SHA-256" in err) == (1, True)
+
+
+def test_other_files_are_said_not_to_be_checked(
+    run: Run, flown: Path, judged: None, tmp_path: Path
+) -> None:
+    folder = edited(flown, tmp_path)
+    (folder / "notes.txt").write_text("mine")
+    code, out, _ = run("certify", folder)
+    assert code == read(flown)["exit_code"]
+    assert "not checked: notes.txt" in out
+    assert json.loads(run("certify", folder, "--json")[1])["not_checked"] == [
+        "notes.txt: no file of the results"
+    ]
+
+
+def test_a_log_that_says_less(run: Run, flown: Path, judged: None, tmp_path: Path) -> None:
+    """Results of the version before: confirmed, and what nothing vouches for is listed."""
+    folder = edited(flown, tmp_path)
+    kept = json.loads(
+        json.dumps(report.Flown("", True, read(folder)["proofs"], {}).meta()["proofs"])
+    )
+    for key in ("environment", "command", "avoidance"):
+        meta(folder, key, None)
+    meta(folder, "proofs", {key: kept[key] for key in ("seal", "problems")})
+    (folder / "manifest.json").unlink()
+    code, out, err = run("certify", folder)
+    assert (code, err) == (read(flown)["exit_code"], "")
+    for name in ("environment", "command", "avoidance", "proofs.line", "proofs.solver", "manifest"):
+        assert f"not checked: {name}" in out
+    whole = read(folder)
+    whole["command"] = 7
+    (folder / "report.json").write_text(json.dumps(whole), encoding="utf-8")
+    code, _, err = run("certify", folder)
+    assert (code, "command: written 7" in err) == (1, True)
+
+
+def test_the_report_lists_what_the_log_recorded(flown: Path) -> None:
+    whole, calls = read(flown), SqliteLog(flown / "log.sqlite").meta()["calls"]
+    kernels = whole["proofs"]["kernels"]
+    assert set(kernels) == {*calls["called"], *calls["within"]}
+    assert {name: one["how"] for name, one in kernels.items() if one["how"]} == calls["called"]
+    named = {name for row in whole["constraints"] for name in row["kernels"]}
+    assert named <= set(calls["called"])
+    gate = "cratous.core.authority.gate.gate_accepts"
+    assert gate in named
+    for kernel in kernels.values():
+        assert kernel["kind"] == "driver" or (kernel["theorems"] and kernel["definition"])
+        assert set(kernel["theorems"]) <= set(whole["proofs"]["theorems"])
+    page = (flown / "report.html").read_text(encoding="utf-8")
+    links = set(re.findall(r'href="#([^"]*)"', page))
+    assert links <= set(re.findall(r'id="([^"]*)"', page))
+    assert f"kernel-{gate}" in links
+
+
+def test_counts_that_are_not_those_of_the_flight(
+    run: Run, flown: Path, judged: None, tmp_path: Path
+) -> None:
+    folder = edited(flown, tmp_path)
+    calls = SqliteLog(folder / "log.sqlite").meta()["calls"]
+    calls["called"]["cratous.core.authority.gate.gate_accepts"]["CPython"] += 1
+    meta(folder, "calls", calls)
+    code, _, err = run("certify", folder)
+    assert (code, "proofs: not those of the flight" in err) == (1, True)
+
+
+def test_a_log_from_before_calls_were_counted(
+    run: Run, flown: Path, judged: None, tmp_path: Path
+) -> None:
+    """Such a log vouches for no call; the report of then is held against all else and made anew."""
+    folder = edited(flown, tmp_path)
+    meta(folder, "calls", None)
+    code, _, err = run("certify", folder)
+    assert (code, "proofs.calls: written" in err) == (1, True)  # calls that nothing recorded
+    (folder / "manifest.json").unlink()
+    whole = read(folder)
+    whole["format"] = "cratous-report/1"
+    whole["proofs"] = {"kernels": [], "theorems": []}
+    for row in whole["constraints"]:
+        del row["kernels"]
+    text = json.dumps(whole, indent=1, sort_keys=True)
+    (folder / "report.json").write_text(text, encoding="utf-8")
+    code, _, err = run("certify", folder)
+    assert code == 1
+    assert "not checked: format" in err
+    assert "constraints" not in err.replace("report.json, line", "")
+    code, out, err = run("certify", folder, "--rewrite")
+    assert (code, err) == (read(flown)["exit_code"], "")
+    assert "rewritten: report.json" in out
+    anew = read(folder)
+    assert anew["format"] == "cratous-report/2"
+    assert (anew["proofs"]["calls"], anew["proofs"]["kernels"]) == ("not recorded", {})
+    assert "was not recorded" in (folder / "report.html").read_text(encoding="utf-8")
+    code, out, _ = run("certify", folder)
+    assert code == read(flown)["exit_code"]
+    assert "not checked: proofs.calls" in out
+    damaged = read(folder)
+    damaged["constraints"][0]["verdict"] = "violated"
+    (folder / "report.json").write_text(json.dumps(damaged), encoding="utf-8")
+    assert run("certify", folder)[0] == 1
+
+
+def test_another_ledger_than_at_the_flight(
+    run: Run, flown: Path, judged: None, tmp_path: Path
+) -> None:
+    """The inventory is then held against the digest in the log."""
+    folder = edited(flown, tmp_path)
+    whole = read(folder)
+    whole["proofs"]["seal"] = "0" * 64
+    kept = report.Flown("", True, whole["proofs"], {}).meta()["proofs"]
+    meta(folder, "proofs", kept)
+    files = {**whole}
+    (folder / "report.json").write_text(report.report_text(files), encoding="utf-8")
+    for name, text in report.pages(files).items():
+        (folder / name).write_text(text, encoding="utf-8")
+    names = ("certificate.json", "log.sqlite", "map.svg", "report.html", "report.json")
+    (folder / "manifest.json").write_text(manifest_text(folder, names))
+    assert run("certify", folder)[0] == whole["exit_code"]
+    next(iter(whole["proofs"]["theorems"].values()))["status"] = "refuted"
+    (folder / "report.json").write_text(json.dumps(whole), encoding="utf-8")
+    code, _, err = run("certify", folder)
+    assert (code, "proofs: not the inventory of the flight" in err) == (1, True)
+    meta(folder, "proofs", {"seal": "1" * 64, "problems": []})  # of the version before
+    code, _, err = run("certify", folder)
+    assert (code, "not checked: proofs: the ledger is another" in err) == (1, True)
+
+
+@pytest.mark.parametrize(
+    "key", ["environment", "command", "avoidance", "proofs", "calls", "mission", "plan"]
+)
+def test_what_a_log_cannot_say(
+    run: Run, flown: Path, judged: None, tmp_path: Path, key: str
+) -> None:
+    for value in (7, [], "text", {"a": 1}, {"problems": [3]}):
+        folder = edited(flown, tmp_path)
+        meta(folder, key, value)
+        code, out, err = run("certify", folder)
+        assert code in (1, 2), (value, out, err)
+        assert "internal error" not in err

@@ -1,0 +1,328 @@
+"""The report: worst verdicts, text that cannot break out, and a page that stands alone."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cratous.services.certify.comparing import differences, text_difference
+from cratous.services.certify.html import margin, render, seconds
+from cratous.services.certify.picture import map_view, separation_view, time_view
+from cratous.services.certify.reading import read_report
+from cratous.services.certify.timeline import bars, read_flight
+from cratous.services.certify.verdicts import constraint_rows, requirement_rows
+from cratous.services.logs.log import Row
+from cratous.spec.errors import BadInput
+from cratous.spec.mission.guarantees import REQUIREMENTS, Kind, Outcome, Verdict
+
+
+def row(requirement: str, outcome: Outcome, margin_value: float | None = None) -> dict[str, Any]:
+    verdict = Verdict(requirement, "x", outcome, Kind.EXACT, "n", margin=margin_value, unit="m")
+    return constraint_rows([verdict], "plan")[0]
+
+
+def test_a_requirement_without_evidence_is_unknown() -> None:
+    rows = requirement_rows([row("G1", Outcome.HOLDS, 5.0)])
+    assert [r["verdict"] for r in rows] == ["holds"] + ["unknown"] * 4
+
+
+@given(st.lists(st.sampled_from(list(Outcome)), min_size=1, max_size=6))
+def test_the_worst_counts(outcomes: list[Outcome]) -> None:
+    (found, *_) = requirement_rows([row("G1", outcome, 1.0) for outcome in outcomes])
+    for worse in (Outcome.VIOLATED, Outcome.UNKNOWN, Outcome.EXCUSED, Outcome.HOLDS):
+        if worse in outcomes:
+            assert found["verdict"] == worse
+            break
+
+
+def test_the_least_margin_is_shown() -> None:
+    rows = [row("G2", Outcome.HOLDS, value) for value in (7.0, 3.0, 9.0)]
+    assert requirement_rows(rows)[1]["margin"] == 3.0
+
+
+def test_whole_verdicts_are_made_again() -> None:
+    whole = Verdict("G1", "", Outcome.HOLDS, Kind.EXACT, "n")
+    assert constraint_rows([whole], "flight") == []
+
+
+def message(seq: int, name: str, **body: Any) -> Row:
+    return Row(seq, body["Time"], "test", f"cratous.{name}", json.dumps(body))
+
+
+def truth(seq: int, vehicle: int, time: int, north: float, east: float) -> Row:
+    return message(seq, "TruthState", VehicleID=vehicle, Time=time, North=north, East=east,
+                   Altitude=300.0)  # fmt: skip
+
+
+def authority(seq: int, time: int, owner: str, epoch: int) -> Row:
+    return message(seq, "AuthorityChange", VehicleID=1, Time=time, Owner=owner, Epoch=epoch,
+                   Reason="<b>near</b>", IntruderID=2)  # fmt: skip
+
+
+def phase(seq: int, time: int, name: str) -> Row:
+    return message(seq, "TaskProgress", VehicleID=1, TaskID=5, Time=time, Phase=name, Served=1.0,
+                   Note="")  # fmt: skip
+
+
+LOG = [
+    message(0, "PlanAccepted", Time=0, Makespan=9000, PlanHash="ab"),
+    phase(1, 0, "Transit"),
+    *[truth(2 + k, 1, 250 * k, 5.0 * k, 0.0) for k in range(9)],
+    *[truth(20 + k, 2, 250 * k, 0.0, 100.0 + k) for k in range(9)],
+    authority(40, 2250, "ICAROUS", 1),
+    phase(41, 2500, "Active"),
+    truth(42, 1, 2750, 60.0, 0.0),
+    truth(43, 2, 2750, 0.0, 110.0),
+    authority(44, 3000, "UxAS", 3),
+    phase(45, 4000, "Complete"),
+    message(46, "MissionEnd", Time=4000, Outcome="complete"),
+]
+
+
+def test_the_flight_is_read_from_the_log() -> None:
+    flight = read_flight(LOG, [1])
+    assert (flight.outcome, flight.end_ms, flight.plan_hash) == ("complete", 4000, "ab")
+    (takeover,) = flight.takeovers
+    assert (takeover["from_ms"], takeover["to_ms"], takeover["intruder"]) == (2250, 3000, 2)
+    assert flight.served[5]["time_ms"] == 4000
+    assert [point[0] for point in flight.tracks[1]] == [0, 1000, 2000, 2750]
+    assert [point[4] for point in flight.tracks[1]] == [0, 0, 0, 1]
+    assert {point[0] for point in flight.tracks[2]} >= {0, 1000, 2000}
+    shown = [(bar["what"], bar["from_ms"], bar["to_ms"]) for bar in bars(flight)]
+    assert shown == [("transit", 0, 2500), ("icarous", 2250, 3000), ("task", 2500, 4000)]
+
+
+def test_an_open_takeover_stays_open() -> None:
+    flight = read_flight([r for r in LOG if r.seq != 44], [1])
+    assert flight.takeovers[0]["to_ms"] is None
+
+
+def test_a_log_without_an_end_says_so() -> None:
+    assert "no end" in read_flight(LOG[:5], [1]).outcome
+
+
+def report() -> dict[str, Any]:
+    """A report with all its parts, small, with a name that would like to be markup."""
+    flight = read_flight(LOG, [1])
+    place = {"north_m": 0.0, "east_m": 0.0, "alt_m": 300.0}
+    far = {"north_m": 400.0, "east_m": 200.0, "alt_m": 300.0}
+    vehicles = [
+        {"id": k, "label": f"<script>{k}</script>", "position": place, "heading_rad": 0.3}
+        for k in (1, 2)
+    ]
+    rows = [row(r.id, Outcome.HOLDS, 1.0) for r in REQUIREMENTS]
+    rows[0]["kernels"], rows[1]["kernels"] = ["a.k"], ["b.k"]
+    manoeuvre = ["hs", 20.0, "m/s", "<9>", 1.5, 140.0, 3.0, 1.5]
+    loss = {
+        "own": 1, "other": 9, "lost_ms": 2000, "answer": "no way out", "why": "",
+        "instants": [[1000, 1, 1, 1, 1]], "manoeuvres": [manoeuvre],
+    }  # fmt: skip
+    rows[1]["evidence"] = {"losses": [loss]}
+    return {
+        "verdict": "holds", "exit_code": 0, "product": {"version": "0"},
+        "counts": {"holds": 5, "violated": 0, "unknown": 0, "excused": 0},
+        "mission": {
+            "name": "a<b>", "seed": 0, "vehicles": vehicles, "traffic": [], "relations": "|(p5)",
+            "notes": ["note & more"], "daa": {"well_clear": {"dthr_m": 150.0}},
+            "tasks": [{"id": 5, "label": "t", "points": [place, far], "radius_m": 0.0}],
+            "zones": [{"id": 1, "kind": "keep_out", "vertices": [[9, 9], [99, 9], [9, 99]]}],
+        },
+        "mission_hash": "0" * 64, "command": "cratous run 'a<b>'", "avoidance": False,
+        "not_covered": [2], "requirements": requirement_rows(rows), "constraints": rows,
+        "plan": {
+            "items": [
+                {"task_id": 5, "vehicle_id": 1, "transit": [place], "path": [place, far],
+                 "hold": {"north_m": 50.0, "east_m": 0.0, "radius_m": 30.0}, "depart_ms": 0,
+                 "arrive_ms": 2500, "wait_ms": 0, "start_ms": 2500, "end_ms": 4000}
+            ],
+            "makespan_ms": 4000, "cost": "MINMAX", "nodes": 1, "exhausted": True, "hash": "1" * 64,
+        },
+        "flight": {
+            "outcome": flight.outcome, "end_ms": flight.end_ms, "bars": bars(flight),
+            "tracks": {str(k): track for k, track in flight.tracks.items()},
+            "takeovers": flight.takeovers, "events": flight.events,
+            "served": list(flight.served.values()), "unserved": [6],
+        },
+        "log": {"digest": "2" * 64, "messages": len(LOG)},
+        "proofs": {
+            "line": "1 kernel", "solver": "z3", "problems": [{"kernel": "k", "what": "changed"}],
+            "calls": "recorded", "loops": {"c.loop": {"machine code": 4}}, "uncounted": [],
+            "kernels": {
+                "a.k": {"kind": "kernel", "count": 3, "how": {"CPython": 3}, "within": ["c.loop"],
+                        "status": "proved", "theorems": ["t"], "definition": "s.d", "step_of": "",
+                        "restates": "", "checked_by": [], "source": "3" * 64},
+            },
+            "theorems": {"t": {"sentence": "It holds.", "status": "proved", "kernels": ["a.k"],
+                               "lemmas": [], "obligations": 2, "assumptions": ["a"]}},
+            "definitions": {"s.d": "spec/s.py"},
+        },
+        "limits": ["limit"],
+        "environment": {"python": "3.11", "system": "S", "packages": {"numpy": "2"}},
+    }  # fmt: skip
+
+
+def test_the_page_is_whole_and_escaped() -> None:
+    page = render(report())
+    assert "<script" not in page
+    assert "&lt;script&gt;" in page
+    assert "a&lt;b&gt;" in page
+    for words in ("Flown with --allow-unproved", "Avoidance was switched off", "never ended",
+                  "Not covered", "It holds.", "ICAROUS in command", "2" * 64,
+                  "Losses of well clear", "no way out", "&lt;9&gt;"):  # fmt: skip
+        assert words in page
+
+
+def test_the_page_loads_nothing() -> None:
+    page = render(report())
+    assert not re.search(r"""src\s*=|href\s*=(?!"#)|url\(|@import|https?://""", page)
+    assert "default-src 'none'" in page
+
+
+def test_the_page_is_well_formed() -> None:
+    from lxml import html
+
+    page = html.document_fromstring(render(report()))
+    assert len(page.findall(".//svg")) > 3
+    assert page.find(".//title").text == "a<b>: holds"
+
+
+def test_a_row_leads_to_its_kernel_and_on_to_theorem_and_definition() -> None:
+    from lxml import html
+
+    page = html.document_fromstring(render(report()))
+    targets = {node.get("id") for node in page.xpath("//*[@id]")}
+    links = {node.get("href") for node in page.xpath("//a")}
+    assert links == {"#kernel-a.k", "#theorem-t", "#definition-s.d"}
+    assert {link[1:] for link in links} == targets
+    decided = [
+        node.text_content()
+        for node in page.xpath("//h2[.='Constraints']/following::table[1]//td[6]")
+    ]
+    assert decided[0].startswith("a.k")
+    assert decided[1].startswith("b.k (not called)")
+    assert decided[2].startswith("no kernel: the messages say it")
+    (kernel,) = page.xpath("//tr[@id='kernel-a.k']")
+    assert "compiled into c.loop (4 calls)" in kernel.text_content()
+    assert "3 CPython" in kernel.text_content()
+
+
+def test_nothing_is_evidence_where_calls_were_not_recorded() -> None:
+    whole = report()
+    whole["proofs"] |= {
+        "calls": "not recorded", "kernels": {}, "loops": {}, "theorems": {}, "definitions": {},
+    }  # fmt: skip
+    page = render(whole)
+    assert "was not recorded" in page
+    assert 'b.k</span> <span class="soft">(calls not recorded)' in page
+    assert "<a " not in page
+
+
+def test_the_map_keeps_one_scale_and_north_up() -> None:
+    view = map_view(report())
+    (task,) = view["tasks"]
+    (x0, y0), (x1, y1) = (map(float, pair.split(",")) for pair in task["points"].split())
+    assert x1 > x0, "east is right"
+    assert y1 < y0, "north is up"
+    assert abs((x1 - x0) / 200 - (y0 - y1) / 400) < 1e-3
+    assert [piece["icarous"] for piece in view["tracks"][0]["pieces"]] == [False, True]
+    kilometres = re.fullmatch(r"(\d+) (k?)m", view["bar"]["text"])
+    assert kilometres
+    metres = int(kilometres[1]) * (1000 if kilometres[2] else 1)
+    assert abs(view["bar"]["length"] / metres - (x1 - x0) / 200) < 1e-2
+
+
+def test_time_line_and_separation() -> None:
+    view = time_view(report())
+    assert all(bar["x"] >= 110 and bar["x"] + bar["width"] <= 970.2 for bar in view["bars"])
+    assert separation_view(report())["curves"][0]["least_m"] == pytest.approx(100.0)  # type: ignore[index]
+
+
+def test_words_for_times_and_margins() -> None:
+    assert (seconds(0), seconds(61_240), seconds(None)) == ("0:00.0", "1:01.2", "–")
+    assert margin({"margin": None, "unit": ""}) == "–"
+    assert margin({"margin": 12.3456, "unit": "m"}) == "12.35 m"
+
+
+def test_differences_are_named() -> None:
+    one = {"a": {"b": 1, "c": [1, {"d": 2}]}, "environment": 1}
+    assert differences(one, one) == []
+    two = {"a": {"b": 2, "c": [1, {"d": True}, 3]}, "x y": []}
+    assert differences(one, two) == [
+        "a.b: written 1, found 2",
+        "a.c[1].d: written 2, found true",
+        "a.c: written 2 entries, found 3",
+        "environment: written 1, found nothing",
+        '["x y"]: written nothing, found []',
+    ]
+    assert len(differences({str(k): 1 for k in range(30)}, {})) == 30, "none is left out"
+
+
+@pytest.mark.parametrize("pair", [(1, 1.0), (1, True), (0.0, -0.0), (None, 0), ("1", 1), ([], {})])
+def test_what_only_python_takes_for_equal(pair: tuple[Any, Any]) -> None:
+    assert len(differences(*pair)) == 1
+
+
+def test_a_difference_shows_where_it_is() -> None:
+    before, after = "a" * 500, "b" * 500
+    (line,) = differences(before + "X\x1b[31m" + after, before + "Y" + after, "note")
+    assert "aaa" + "X\\u001b[31mbbb" in line
+    assert "aaaYbbb" in line
+    assert len(line) < 300
+    assert "\x1b" not in line, "nothing of it acts on a terminal"
+    page = "\n" * 7 + "one two\n"
+    shown = text_difference("page", page.replace("two", "2").encode() + b"\xff", page)
+    assert shown.startswith("page, line 8: written ")
+    assert "one 2" in shown
+
+
+BAD = {
+    "cut": "{",
+    "empty": "",
+    "list": "[]",
+    "other": '{"format": "other"}',
+    "format": '{"format": ["cratous-report/1"]}',
+    "nan": '{"format": "cratous-report/1", "exit_code": NaN}',
+    "infinite": '{"format": "cratous-report/1", "exit_code": 1e999}',
+    "digits": '{"format": "cratous-report/1", "exit_code": ' + "9" * 5000 + "}",
+    "deep": '{"format": "cratous-report/1", "x": ' + "[" * 200_000 + "]" * 200_000 + "}",
+    "nested": '{"format": "cratous-report/1", "x": ' + "[" * 300 + "]" * 300 + "}",
+    "twice": '{"format": "cratous-report/1", "a": 1, "a": 2}',
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_what_is_no_report(tmp_path: Path, case: str) -> None:
+    (tmp_path / "report.json").write_text(BAD[case])
+    with pytest.raises(BadInput) as caught:
+        read_report(tmp_path)
+    assert str(tmp_path / "report.json") in str(caught.value)
+    assert len(str(caught.value)) < 500
+
+
+def test_reports_that_cannot_be_read(tmp_path: Path) -> None:
+    file = tmp_path / "report.json"
+    with pytest.raises(BadInput, match="no such file"):
+        read_report(tmp_path)
+    file.write_bytes(b"\xff\xfe{")
+    with pytest.raises(BadInput, match="not JSON"):
+        read_report(tmp_path)
+    file.unlink()
+    file.mkdir()
+    with pytest.raises(BadInput, match="not a file"):
+        read_report(tmp_path)
+    file.rmdir()
+    os.mkfifo(file)
+    with pytest.raises(BadInput, match="not a file"):
+        read_report(tmp_path)
+    file.unlink()
+    with file.open("wb") as stream:
+        stream.truncate(1 << 29)
+    with pytest.raises(BadInput, match="too large"):
+        read_report(tmp_path)

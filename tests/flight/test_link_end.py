@@ -1,0 +1,217 @@
+"""The UxAS end of the bridge as a step: pure, each vehicle by itself, decided by its kernels."""
+
+from __future__ import annotations
+
+import itertools
+import pickle
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from flight_tools import flown, meeting, of_type, plain_steps, with_deadline
+
+from cratous.bridge.link import LinkEvent
+from cratous.bridge.loopback import Bridge
+from cratous.bridge.text_protocol import (
+    FenceDone,
+    Heartbeat,
+    Message,
+    SetMode,
+    SoftReset,
+    StartMission,
+    WaypointReached,
+)
+from cratous.core.authority.link_end import Linked
+from cratous.services.flight import link_end
+from cratous.services.flight.dynamics import AirState
+from cratous.services.flight.link_end import State, UxasEnd
+from cratous.services.flight.messages import (
+    Beat,
+    Connected,
+    Down,
+    Flown,
+    Heard,
+    Left,
+    Lost,
+    Route,
+    Say,
+    Suspend,
+    TakeBack,
+    ToLinkEnd,
+    Unreadable,
+    Watch,
+    ZonesKnown,
+)
+from cratous.services.logs.records import from_data, to_data
+from cratous.services.mission.frames import Projection
+from cratous.spec.authority.link_end import SUSPEND, TAKE_BACK
+from cratous.spec.mission import Change, Frame, Position, Simulation, Zone, ZoneKind
+from cratous.spec.mission.changes import ZONE as ZONE_APPEARS
+
+END = UxasEnd(Projection(Frame(45.0, -121.0, 0.0)))
+ZONE = Zone(4, ZoneKind.KEEP_OUT, ((0.0, 0.0), (0.0, 90.0), (90.0, 90.0)), 0.0, 500.0)
+WAY = (Position(0.0, 0.0, 300.0), Position(100.0, 0.0, 300.0), Position(300.0, 0.0, 300.0))
+AIRCRAFT = tuple((k, AirState(Position(10.0 * k, 0.0, 300.0), 0.0, 20.0, 1.0)) for k in (1, 2, 90))
+ALL: tuple[ToLinkEnd, ...] = (
+    ZonesKnown((ZONE,)),
+    Connected(0, (1, 2)),
+    Route(1, WAY, 22.0, 5.0),
+    Flown(1, 110.0),
+    Beat(0, AIRCRAFT),
+    Heard(1, 500, SetMode("ACTIVE", 1)),
+    Left(1, WAY[1]),
+    Heard(1, 500, Heartbeat(sequence=1, time_s=0.5)),
+    Heard(1, 900, SetMode("PASSIVE", 2)),
+    Unreadable(2, 900, "what?"),
+    ZonesKnown((ZONE, replace(ZONE, id=5))),
+    Watch(2500),
+    Lost(1, 3000, LinkEvent("eof")),
+    Beat(3000, AIRCRAFT),
+    Watch(3000),
+)
+
+
+def after(*messages: ToLinkEnd, state: State = State()) -> tuple[State, list[Any]]:
+    """The state after some messages, and what the last one led to."""
+    out: tuple[Any, ...] = ()
+    for message in messages:
+        state, out = END.handle(state, message)
+    return state, list(out)
+
+
+def test_a_step_changes_nothing_but_its_answer() -> None:
+    for state in plain_steps(END, State(), ALL):
+        assert from_data(State, to_data(state)) == state
+
+
+def test_handling_one_vehicle_leaves_the_others_alone() -> None:
+    state, _ = after(*ALL[:3])
+    for message in ALL:
+        if getattr(message, "vehicle_id", 0) == 1:
+            moved, out = END.handle(state, message)
+            assert moved.peer(2) == state.peer(2)
+            assert {m.vehicle_id for m in out if not isinstance(m, Say)} <= {1}
+
+
+def test_a_vehicle_without_an_instance_is_told_nothing() -> None:
+    state, _ = after(*ALL[:2])
+    assert END.handle(state, Route(7, WAY, 22.0, 0.0)) == (state, ())
+
+
+def test_a_takeover_suspends_and_an_offer_is_taken_once() -> None:
+    state, out = after(*ALL[:2], Heard(1, 500, SetMode("ACTIVE", 1)))
+    assert out == [Suspend(1, 500, SUSPEND)]
+    state, out = after(Heard(1, 900, SetMode("PASSIVE", 2)), state=state)
+    assert out == [TakeBack(1, 900, TAKE_BACK, 2)]
+    before = state.peer(1)
+    state, out = after(Heard(1, 900, SetMode("ACTIVE", 1)), state=state)
+    (said,) = out
+    assert "epoch 1 is overtaken by one of epoch 2" in said.body.Note
+    assert state.peer(1) == before
+
+
+def test_a_mode_without_an_epoch_begins_the_next() -> None:
+    state, _ = after(*ALL[:2], Heard(1, 500, SetMode("ACTIVE", None)))
+    _, out = after(Heard(1, 900, SetMode("PASSIVE", None)), state=state)
+    assert out == [TakeBack(1, 900, TAKE_BACK, 2)]
+
+
+def test_waypoints_are_told_and_reached_once() -> None:
+    state, out = after(*ALL[:3])
+    (down,) = out
+    assert isinstance(down.lines[0], SoftReset)
+    assert isinstance(down.lines[-1], StartMission)
+    state, out = after(Flown(1, 110.0), state=state)
+    assert out == [Down(1, (WaypointReached(0), WaypointReached(1)))]
+    assert after(Flown(1, 110.0), state=state) == (state, [])
+    # a place before those that are told to be reached takes nothing back
+    assert after(Flown(1, 20.0), state=state) == (state, [])
+
+
+def test_nothing_goes_down_an_ended_connection() -> None:
+    state, _ = after(*ALL[:2], Lost(1, 500, LinkEvent("eof")))
+    for message in (*ALL[2:5], Left(1, WAY[1]), ZonesKnown((ZONE, ZONE))):
+        state, out = END.handle(state, message)
+        assert not [m for m in out if isinstance(m, Down) and m.vehicle_id == 1]
+
+
+# ---- in flight -----------------------------------------------------------------------------------
+
+
+def test_the_kernel_of_modes_decides_what_is_flown(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a kernel that believes no takeover UxAS never takes the vehicle back in its way."""
+    _, log = flown(meeting())
+    right, states = link_end.link_mode, repr(of_type(log, "TruthState"))
+    monkeypatch.setattr(link_end, "link_mode", lambda end, active, epoch: Linked(end, 0))
+    _, log = flown(meeting())
+    assert repr(of_type(log, "TruthState")) != states
+    monkeypatch.setattr(link_end, "link_mode", lambda end, active, epoch: right(end, active, 0))
+    _, log = flown(meeting())
+    assert "overtaken" in of_type(log, "BridgeStatus")[-1].Note
+
+
+def test_the_kernel_of_signs_decides_who_is_alive(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(link_end, "link_sign", lambda end, *_: Linked(end._replace(alive=False), 3))
+    _, log = flown(meeting())
+    assert not any(s.Alive for s in of_type(log, "BridgeStatus")[1:])
+
+
+@pytest.mark.parametrize("when", [40, 41])
+def test_what_came_before_the_end_of_a_link_is_heard_before_it(
+    monkeypatch: pytest.MonkeyPatch, when: int
+) -> None:
+    """Cut before or after ICAROUS has answered: the last thing said is that the link is lost."""
+    exchange, count = Bridge.exchange, itertools.count()
+
+    def cutting(bridge: Bridge) -> list[Any]:
+        if next(count) == when:
+            bridge.cut(1)
+        return exchange(bridge)
+
+    monkeypatch.setattr(Bridge, "exchange", cutting)
+    _, log = flown(meeting())
+    notes = [s.Note for s in of_type(log, "BridgeStatus")]
+    assert len(notes) == 2
+    assert notes[1].startswith("link lost")
+    up = [b.Time for b in of_type(log, "Heartbeat") if b.Direction.name == "Up"]
+    assert max(up) == 9500 + 500 * (when - 40)
+
+
+def test_icarous_is_told_the_way_of_another_plan(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A plan that is made for a deadline, before anything was flown, is told as any other."""
+    told, send = list[Message](), Bridge.to_icarous
+
+    def listening(bridge: Bridge, vehicle_id: int, message: Message) -> bool:
+        if vehicle_id == 1:
+            told.append(message)
+        return send(bridge, vehicle_id, message)
+
+    monkeypatch.setattr(Bridge, "to_icarous", listening)
+    mission, plan = with_deadline()
+    result, _ = flown(mission, plan)
+    assert result.replans == 1
+    first = next(k for k, m in enumerate(told) if isinstance(m, WaypointReached))
+    assert sum(isinstance(m, StartMission) for m in told[:first]) == 2
+
+
+def test_a_zone_that_is_known_from_the_start_binds_everybody(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A change at 0 ms is told to ICAROUS as the mission's own zones are."""
+    told, send = list[Message](), Bridge.to_icarous
+
+    def listening(bridge: Bridge, vehicle_id: int, message: Message) -> bool:
+        told.append(message)
+        return send(bridge, vehicle_id, message)
+
+    monkeypatch.setattr(Bridge, "to_icarous", listening)
+    far = replace(ZONE, vertices=((0.0, 5000.0), (0.0, 5090.0), (90.0, 5090.0)))
+    later, there = replace(far, id=5), Simulation(limit_ms=2000)
+    both = (Change(0, ZONE_APPEARS, zone=far), Change(1000, ZONE_APPEARS, zone=later))
+    flown(replace(meeting(), traffic=(), changes=both, simulation=there))
+    assert [m.zone for m in told if isinstance(m, FenceDone)] == [1, 2]
+
+
+def test_a_state_survives_a_restart() -> None:
+    state, _ = after(*ALL)
+    assert pickle.loads(pickle.dumps(state)) == state

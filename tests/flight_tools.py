@@ -1,0 +1,94 @@
+"""Missions that are flown in tests, and what every actor of a flight must hold to."""
+
+from __future__ import annotations
+
+import math
+import pickle
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.services.bus import Bus
+from cratous.services.flight.loop import FlightResult, fly
+from cratous.services.pipeline.plan import make_plan
+from cratous.spec.constraint_rows import NOT_AFTER, Row
+from cratous.spec.mission import (
+    Daa,
+    Frame,
+    Mission,
+    Position,
+    Simulation,
+    Task,
+    TaskKind,
+    Traffic,
+    Vehicle,
+    Velocity,
+    WellClear,
+)
+from cratous.spec.mission.plan import Plan
+
+VOLUME = WellClear(150.0, 30.0, 15.0, 0.0)
+
+
+def vehicle(vid: int, north: float, east: float) -> Vehicle:
+    """A vehicle that flies north at 22 m/s, 300 m high."""
+    where = Position(north, east, 300.0)
+    return Vehicle(vid, f"UAV {vid}", where, 0.0, 22.0, 15.0, 32.0, math.radians(35), 3.0, True)
+
+
+def meeting() -> Mission:
+    """One vehicle flies north to a point; traffic crosses its path at the same time and height."""
+    task = Task(1, TaskKind.MUST_FLY, "far", (Position(6000.0, 0.0, 300.0),))
+    other = Traffic(90, Position(2640.0, -2640.0, 300.0), Velocity(0.0, 22.0, 0.0))
+    return Mission(
+        "link",
+        "test",
+        Frame(45.0, -121.0, 0.0),
+        (vehicle(1, 0.0, 0.0),),
+        (task,),
+        Daa(VOLUME),
+        traffic=(other,),
+        instances=(1,),
+        simulation=Simulation(limit_ms=400_000),
+    )
+
+
+def with_deadline() -> tuple[Mission, Plan]:
+    """The same without traffic, and a plan with a row that it cannot keep."""
+    mission = replace(meeting(), traffic=())
+    plan = make_plan(mission)
+    (item,) = plan.items
+    row = Row(NOT_AFTER, 1, (), 0, item.end_ms - 60_000, "p1 ends a minute sooner")
+    return mission, replace(plan, rows=(*plan.rows, row))
+
+
+def flown(mission: Mission, plan: Plan | None = None) -> tuple[FlightResult, list[Any]]:
+    """The result of a flight, and all bodies that were published."""
+    bus, log = Bus(lmcp.full_names), list[Any]()
+    bus.tap(lambda envelope: log.append(envelope.body))
+    return fly(mission, plan or make_plan(mission), bus), log
+
+
+def of_type(log: list[Any], name: str, **fields: Any) -> list[Any]:
+    """The bodies of one type, with these values."""
+    return [
+        body
+        for body in log
+        if type(body).__name__ == name and all(getattr(body, k) == v for k, v in fields.items())
+    ]
+
+
+def plain_steps(actor: Any, state: Any, messages: Iterable[Any]) -> Iterator[Any]:
+    """The state after each message; each step is taken twice and must give the same, and must leave
+    the state that it was given as it was."""
+    for message in messages:
+        before = pickle.dumps(state)
+        after, out = actor.handle(state, message)
+        assert pickle.dumps(state) == before, f"{type(message).__name__} changes the state"
+        again, same = actor.handle(pickle.loads(before), message)
+        assert again == after
+        assert repr(same) == repr(out)
+        assert isinstance(out, tuple)
+        state = after
+        yield state

@@ -1,0 +1,194 @@
+"""The judge on authority, on the bridge, and beside a report: hand-made flights with known verdicts."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import judge_tools as tools
+import pytest
+from judge_tools import TAKEN, Scene, task, vehicle, verdicts, zone
+
+from cratous.judge import judge
+from cratous.services.cli import main
+
+NORTH = (20.0, 0.0, 0.0)
+
+
+def one(folder: Path, scene: Scene, item: str) -> str:
+    """The verdict on one item."""
+    return verdicts(scene.judged(folder))[item]
+
+
+# ---- G4 -----------------------------------------------------------------------------------------
+
+
+def authority(folder: Path, rows: list, **more) -> str:
+    scene = Scene(**more).straight(1, (0, 0, 300), NORTH).commands(1, *rows)
+    return one(folder, scene, "authority over vehicle 1")
+
+
+def test_a_takeover_that_is_handed_back(tmp_path: Path) -> None:
+    assert authority(tmp_path, TAKEN) == "holds"
+    assert authority(tmp_path, TAKEN[:1]) == "holds"
+    assert authority(tmp_path, []) == "unknown"
+    withdrawn = [*TAKEN[:7], (5200, "state", "ICAROUS", 3)]
+    back = [(6000, "state", "ICAROUS", 4, True), (6100, "command", "UxAS", 4),
+            (6100, "state", "UxAS", 4), (6100, "change", "UxAS", 4)]  # fmt: skip
+    assert authority(tmp_path, withdrawn + back) == "holds"
+
+
+@pytest.mark.parametrize("left_out", [1, 2, 3, 5, 6, 8, 9, 10])
+def test_a_story_with_a_hole(tmp_path: Path, left_out: int) -> None:
+    rows = [row for k, row in enumerate(TAKEN) if k != left_out]
+    # that ICAROUS steered is not needed for the story
+    assert authority(tmp_path, rows) == ("holds" if left_out == 3 else "violated")
+
+
+@pytest.mark.parametrize(
+    "rows",
+    [
+        [*TAKEN[:7]],  # never handed back
+        [TAKEN[0], (1000, "command", "ICAROUS", 0)],  # steers without a takeover
+        [TAKEN[0], (1000, "command", "UxAS", 1)],  # of an epoch that is not yet
+        [TAKEN[0], (1000, "drop", "UxAS", 0)],
+        [TAKEN[0], (1000, "state", "UxAS", 1)],
+        [TAKEN[0], (1000, "state", "ICAROUS", 2), (1000, "change", "ICAROUS", 2)],
+        [TAKEN[0], (1000, "change", "ICAROUS", 1)],
+        [*TAKEN[:5], (5000, "state", "UxAS", 2), (5000, "change", "UxAS", 2)],
+        # UxAS takes what was not offered
+        [
+            *TAKEN[:4],
+            (5000, "command", "UxAS", 1),
+            (5000, "state", "UxAS", 1),
+            (5000, "change", "UxAS", 1),
+        ],
+    ],
+)
+def test_stories_that_do_not_fit(tmp_path: Path, rows) -> None:
+    assert authority(tmp_path, rows) == "violated"
+
+
+def test_a_takeover_may_end_in_a_declared_failure(tmp_path: Path) -> None:
+    scene = Scene(tasks=[task(1, "must_fly", (100, 0))]).straight(1, (0, 0, 300), NORTH)
+    scene.commands(1, *TAKEN[:4])
+    scene.say(7000, "TaskProgress", TaskID=1, VehicleID=1, Time=7000, Phase="Failed")
+    assert one(tmp_path, scene, "authority over vehicle 1") == "holds"
+
+
+# ---- G5 -----------------------------------------------------------------------------------------
+
+
+def beats(folder: Path, skip=(), status=(), zones=(), instances=(1,)) -> str:
+    scene = Scene(instances=list(instances), zones=list(zones))
+    scene.straight(1, (0, 0, 300), NORTH)
+    scene.beats(1, skip)
+    for at, alive in status:
+        scene.say(at, "BridgeStatus", VehicleID=1, Time=at, Alive=alive)
+    found = verdicts(scene.judged(folder))
+    both = {v for k, v in found.items() if k.startswith("heartbeat")}
+    assert len(both) == 1
+    return both.pop()
+
+
+def test_heartbeats(tmp_path: Path) -> None:
+    assert beats(tmp_path) == "holds"
+    assert beats(tmp_path, skip=[5]) == "holds"  # two periods, not more
+    assert beats(tmp_path, skip=[5, 6]) == "violated"
+    assert beats(tmp_path, skip=range(30)) == "violated"
+    assert beats(tmp_path, skip=[0, 1, 2]) == "violated"
+    assert beats(tmp_path, skip=[18, 19, 20]) == "violated"
+    assert beats(tmp_path, instances=[]) == "unknown"
+
+
+def test_a_declared_silence_is_safe_or_not(tmp_path: Path) -> None:
+    quiet = range(4, 12)
+    assert beats(tmp_path, quiet, [(2500, False), (6000, True)]) == "unknown"
+    assert beats(tmp_path, quiet, [(9000, False)]) == "violated"  # not about this silence
+    there = zone(7, "keep_out", (60, -5), (60, 5), (70, 5), (70, -5))
+    assert beats(tmp_path, quiet, [(2500, False)], [there]) == "violated"
+
+
+# ---- the report beside it -------------------------------------------------------------------------
+
+
+def row(requirement: str, item: str, verdict: str) -> dict[str, str]:
+    return {"requirement": requirement, "item": item, "verdict": verdict, "source": "flight"}
+
+
+def full(folder: Path, *, lost: bool = False) -> tuple[Path, list[dict[str, str]]]:
+    """A log, and a monitor's rows that say what the judge says."""
+    scene = Scene(vehicles=[vehicle(1), vehicle(2)], tasks=[task(1, "must_fly", (100, 0))])
+    scene.straight(1, (0, 0, 300), NORTH).straight(2, (0, 100.0 if lost else 900.0, 300), NORTH)
+    scene.does(1, 1, 4000, 6000).commands(1, TAKEN[0]).commands(2, TAKEN[0])
+    log = scene.write(folder / "log.sqlite")
+    return log, [
+        row(r.guarantee, r.item, r.verdict) for r in judge(log).rows if r.subject[0] != "relations"
+    ]
+
+
+def test_agreement_is_said_and_rows_of_the_plan_are_left_aside(tmp_path: Path) -> None:
+    log, rows = full(tmp_path)
+    rows.append(row("G1", "plan: something", "violated") | {"source": "plan"})
+    found = judge(tools.with_report(log, rows))
+    assert found.report
+    assert not found.differences
+
+
+def test_disagreement_is_the_first_line(tmp_path: Path, capsys) -> None:
+    log, rows = full(tmp_path, lost=True)
+    for there in rows:
+        if there["requirement"] == "G2":
+            there["verdict"] = "holds"
+    folder = tools.with_report(log, rows)
+    assert main(["judge", str(folder)]) == 1
+    out = capsys.readouterr().out
+    assert out.startswith("DISAGREEMENT of judge and monitor in 1 rows\n")
+    assert "G2 well clear of 1 and 2: judge violated, monitor holds" in out.splitlines()[1]
+    assert main(["judge", str(folder / "log.sqlite"), "--json"]) == 1
+    data = json.loads(capsys.readouterr().out)
+    assert data["disagreements"] == 1
+    assert data["differences"][0]["kind"] == "disagree"
+
+
+def test_a_violation_where_the_monitor_holds_back_only_disagreement_counts(tmp_path: Path) -> None:
+    log, rows = full(tmp_path)
+    for there in rows:
+        if there["requirement"] == "G2":
+            there["verdict"] = "violated"
+    found = judge(tools.with_report(log, rows))
+    assert found.of("G2") == "holds"
+    assert found.exit_code == 1
+
+
+def test_excuses_are_listed_and_are_no_disagreement(tmp_path: Path) -> None:
+    log, rows = full(tmp_path, lost=True)
+    for there in rows:
+        if there["requirement"] == "G2":
+            there["verdict"] = "excused"
+    found = judge(tools.with_report(log, rows))
+    assert [d.kind for d in found.differences] == ["claimed excused"]
+    assert found.exit_code == 1
+    assert not found.disagreements
+
+
+@pytest.mark.parametrize("gone", ["task 1 served", "end of mission", "authority over vehicle 2"])
+def test_a_row_that_the_monitor_leaves_out(tmp_path: Path, gone: str) -> None:
+    log, rows = full(tmp_path)
+    found = judge(tools.with_report(log, [r for r in rows if r["item"] != gone]))
+    assert not found.disagreements  # it holds, so that nothing is hidden
+    scene = Scene(tasks=[task(1, "must_fly", (100, 0))]).straight(1, (0, 0, 300), NORTH)
+    log = scene.write(tmp_path / "other" / "log.sqlite", end="failed")
+    (different,) = [
+        d for d in judge(tools.with_report(log, [])).disagreements if d.item == "task 1 served"
+    ]
+    assert (different.judge, different.monitor) == ("violated", "no row")
+
+
+def test_a_report_of_another_log(tmp_path: Path) -> None:
+    log, rows = full(tmp_path)
+    folder = tools.with_report(log, rows)
+    full(tmp_path, lost=True)
+    found = judge(folder)
+    assert found.disagreements
+    assert found.disagreements[0].note == "the report is about another log"

@@ -1,0 +1,182 @@
+"""The message log: complete or absent, one digest for one content, and records as plain data."""
+
+from __future__ import annotations
+
+import math
+import sqlite3
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cratous.services.bus import Envelope
+from cratous.services.logs.log import LogWriter, read_digest, read_envelopes, read_log, read_meta
+from cratous.services.logs.records import canonical, fingerprint, from_data, to_data
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import (
+    Daa,
+    Frame,
+    Mission,
+    Position,
+    Task,
+    TaskKind,
+    Vehicle,
+    WellClear,
+    Zone,
+    ZoneKind,
+)
+
+MESSAGES = [Envelope(k, 250 * k, "sim", "cratous.TruthState", {"k": k}) for k in range(1203)]
+
+
+def write(path: Path, messages: list[Envelope], **meta: object) -> str:
+    with LogWriter(path, encode=canonical, **meta) as writer:
+        for message in messages:
+            writer.tap(message)
+        return writer.digest()
+
+
+def test_what_is_written_is_read(tmp_path: Path) -> None:
+    digest = write(tmp_path / "log.sqlite", MESSAGES, seed=7, mission={"name": "x"})
+    rows = list(read_log(tmp_path / "log.sqlite"))
+    assert [row.seq for row in rows] == list(range(1203))
+    assert rows[3].time_ms == 750
+    assert read_digest(tmp_path / "log.sqlite") == digest
+    assert read_meta(tmp_path / "log.sqlite") == {"mission": {"name": "x"}, "seed": 7}
+
+
+def test_envelopes_come_back(tmp_path: Path) -> None:
+    import json
+
+    write(tmp_path / "log.sqlite", MESSAGES)
+    assert list(read_envelopes(tmp_path / "log.sqlite", decode=json.loads)) == MESSAGES
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        replace(MESSAGES[5], time_ms=1),
+        replace(MESSAGES[5], source="other"),
+        replace(MESSAGES[5], topic="cratous.Other"),
+        replace(MESSAGES[5], body={"k": 6}),
+    ],
+)
+def test_any_change_changes_the_digest(tmp_path: Path, changed: Envelope) -> None:
+    one = write(tmp_path / "one", MESSAGES[:10])
+    other = write(tmp_path / "other", [*MESSAGES[:5], changed, *MESSAGES[6:10]])
+    assert one != other
+
+
+def test_meta_is_no_part_of_the_digest(tmp_path: Path) -> None:
+    assert write(tmp_path / "a", MESSAGES, seed=1) == write(tmp_path / "b", MESSAGES, seed=2)
+
+
+def broken(path: Path) -> None:
+    with LogWriter(path, encode=canonical) as writer:
+        writer.tap(MESSAGES[0])
+        raise ZeroDivisionError
+
+
+def test_an_error_leaves_no_file(tmp_path: Path) -> None:
+    with pytest.raises(ZeroDivisionError):
+        broken(tmp_path / "log")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_file_has_its_name_only_when_whole(tmp_path: Path) -> None:
+    with LogWriter(tmp_path / "log", encode=canonical) as writer:
+        writer.tap(MESSAGES[0])
+        assert not (tmp_path / "log").exists()
+    assert [path.name for path in tmp_path.iterdir()] == ["log"]
+
+
+def test_no_log_and_no_database(tmp_path: Path) -> None:
+    with pytest.raises(BadInput, match="no such file"):
+        list(read_log(tmp_path / "absent"))
+    (tmp_path / "text").write_text("this is no database, and long enough to be looked at" * 20)
+    with pytest.raises(BadInput, match="not a message log"):
+        list(read_log(tmp_path / "text"))
+    sqlite3.connect(tmp_path / "empty").execute("CREATE TABLE x(y)").connection.commit()
+    with pytest.raises(BadInput, match="not a message log"):
+        read_meta(tmp_path / "empty")
+
+
+class Colour(StrEnum):
+    RED = "red"
+
+
+class Pair(NamedTuple):
+    a: int
+    b: float
+
+
+@dataclass(frozen=True)
+class Thing:
+    colour: Colour
+    pair: Pair
+    many: tuple[Pair, ...] = ()
+    maybe: int | None = None
+    two: tuple[float, str] = (0.0, "")
+
+
+@given(
+    st.builds(
+        Thing,
+        colour=st.just(Colour.RED),
+        pair=st.builds(Pair, st.integers(), st.floats(allow_nan=False, allow_infinity=False)),
+        many=st.lists(st.builds(Pair, st.integers(), st.just(0.5)), max_size=3).map(tuple),
+        maybe=st.none() | st.integers(),
+        two=st.tuples(st.just(1.5), st.text()),
+    )
+)
+def test_records_come_back(thing: Thing) -> None:
+    import json
+
+    assert from_data(Thing, to_data(thing)) == thing
+    assert from_data(Thing, json.loads(canonical(to_data(thing)))) == thing
+
+
+@pytest.mark.parametrize(
+    ("data", "item"),
+    [
+        ({"colour": "blue", "pair": {"a": 1, "b": 2.0}}, "Thing.colour"),
+        ({"colour": "red", "pair": {"a": "1", "b": 2.0}}, "Thing.pair.a"),
+        ({"colour": "red", "pair": {"a": True, "b": 2.0}}, "Thing.pair.a"),
+        ({"colour": "red", "pair": {"a": 1}}, "Thing.pair"),
+        ({"colour": "red"}, "Thing"),
+        ({"colour": "red", "pair": {"a": 1, "b": 2.0}, "size": 1}, "Thing.size"),
+        ({"colour": "red", "pair": {"a": 1, "b": 2.0}, "two": [1.0]}, "Thing.two"),
+        ([], "Thing"),
+    ],
+)
+def test_data_that_does_not_fit_is_refused(data: object, item: str) -> None:
+    with pytest.raises(BadInput) as caught:
+        from_data(Thing, data)
+    assert caught.value.item == item
+
+
+def test_not_a_number_has_no_canonical_text() -> None:
+    with pytest.raises(ValueError, match="not JSON compliant"):
+        canonical([math.nan])
+
+
+def test_a_mission_comes_back() -> None:
+    mission = Mission(
+        name="m",
+        source="m.yaml",
+        frame=Frame(45.0, -120.0),
+        vehicles=(
+            Vehicle(1, "one", Position(0.0, 1.0, 2.0), 0.1, 20.0, 15.0, 30.0, 0.5, 5.0, True),
+        ),
+        tasks=(Task(1, TaskKind.MUST_FLY, "t", (Position(1.0, 2.0, 3.0),)),),
+        daa=Daa(WellClear(150.0, 30.0, 15.0, 0.0)),
+        zones=(Zone(3, ZoneKind.KEEP_IN, ((0.0, 0.0), (9.0, 0.0), (0.0, 9.0)), 0.0, 99.0),),
+        instances=(1,),
+    )
+    again = from_data(Mission, to_data(mission))
+    assert again == mission
+    assert fingerprint(to_data(again)) == fingerprint(to_data(mission))

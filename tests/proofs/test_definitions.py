@@ -1,0 +1,269 @@
+"""What kernels name as their definitions: there, used, related by a goal, and not the kernel itself."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import pytest
+
+from cratous.core import kernel as kernels
+from cratous.core import ledger
+from cratous.core.kernel import REGISTRY, Entry, named, supported
+from cratous.core.ledger import PRODUCT
+from cratous.proofs.engine import prover
+from cratous.proofs.statements.definitions import (
+    Proofs,
+    definition,
+    definition_name,
+    is_restated,
+    problems,
+)
+from cratous.proofs.statements.relations import Relations, full_name, relations
+from cratous.proofs.statements.restated import restates
+
+ENTRIES = ledger.load_all()
+NOTHING = Relations(frozenset(), frozenset(), frozenset(), frozenset(), ())
+
+
+def test_every_kernel_of_the_product_has_a_definition_or_is_a_step_of_one_that_has() -> None:
+    for name, entry in ENTRIES.items():
+        if entry.kind == "driver":
+            continue
+        if entry.supports:
+            assert REGISTRY[supported(entry)].implements, name
+        else:
+            assert definition(entry, PRODUCT) is not None, f"{name}: {entry.implements}"
+            assert bool(entry.restates) == bool(is_restated(entry, PRODUCT)), name
+
+
+@pytest.mark.slow  # it reads the statement of each theorem
+def test_each_definition_is_used_and_related_by_a_theorem() -> None:
+    data = ledger.read()["theorems"]
+    proofs = Proofs(
+        {name: tuple(record["kernels"]) for name, record in data.items()},
+        frozenset(name for name, record in data.items() if record["status"] == "proved"),
+        {name: relations(name) for name in prover.theorem_files()},
+    )
+    assert problems(ENTRIES, PRODUCT, proofs) == []
+
+
+# -- what is wrong is said -------------------------------------------------------------------
+def _said(entry: Entry, proofs: Proofs) -> str:
+    found = problems({entry.name: entry}, PRODUCT, proofs)
+    assert len(found) == 1, found
+    return found[0]
+
+
+def _proofs(name: str, uses: str = "", *, proved: bool = True, lemma: str = "") -> Proofs:
+    """One theorem about a kernel; it, or its lemma, uses a definition."""
+    using = replace(NOTHING, definitions=frozenset([uses]))
+    said = {"one": using} if not lemma else {"one": replace(NOTHING, lemmas=(lemma,)), lemma: using}
+    full = "nobody" if name == "nobody" else named(name).name
+    return Proofs({"one": (full,)}, frozenset(["one"] if proved else []), said)
+
+
+def test_a_definition_that_is_not_there() -> None:
+    later = named("later")
+    proofs = _proofs("later", definition_name(later, PRODUCT))
+    assert problems({"later": later}, PRODUCT, proofs) == []
+    said = _said(replace(later, implements="schedule.latest_of"), proofs)
+    assert "core/schedule/rows.py" in said
+    assert "later: implements 'schedule.latest_of', but spec has no such function" in said
+    assert "no spec/times.py" in _said(replace(later, implements="times.later_of"), proofs)
+    # a name that the module only imports, and one that is no function
+    for name in ("schedule.NamedTuple", "schedule.NOT_BEFORE"):
+        assert "no such function" in _said(replace(later, implements=name), proofs)
+
+
+def test_a_definition_that_no_theorem_uses() -> None:
+    later = named("later")
+    used = definition_name(later, PRODUCT)
+    for idle in (_proofs("later", "cratous.spec.schedule.earlier_of"), _proofs("earlier", used)):
+        assert "which none of its theorems uses" in _said(later, idle)
+    assert problems({"later": later}, PRODUCT, _proofs("later", used, lemma="two")) == []
+
+
+def test_a_definition_with_the_kernels_own_formula() -> None:
+    enough = named("enough")
+    proofs = _proofs("enough", definition_name(enough, PRODUCT))
+    assert problems({"enough": enough}, PRODUCT, proofs) == []
+    assert "has its own formula" in _said(replace(enough, restates=""), proofs)
+    later = replace(named("later"), restates="the later of two")
+    proofs = _proofs("later", definition_name(later, PRODUCT))
+    assert "has another formula: it restates nothing" in _said(later, proofs)
+
+
+def test_a_fold_restates_with_its_step() -> None:
+    fold = replace(named("way_conflicts"), implements="geofence.any_step")
+    assert is_restated(fold, PRODUCT)
+    assert not is_restated(named("way_conflicts"), PRODUCT)
+
+
+def test_a_step_of_what_does_not_carry_it() -> None:
+    step = named("location_step")
+    assert problems({step.name: step}, PRODUCT, _proofs("locate")) == []
+    for whole, wanted in {
+        "nobody": "which is no kernel or fold",
+        "resolve": "which is no kernel or fold",
+        "orient": "which does not call it",
+    }.items():
+        said = _said(replace(step, supports=whole), _proofs(whole))
+        assert f"location_step: supports {whole!r}, {wanted}" in said
+    cross = replace(named("orient"), implements="", supports="location_step")
+    assert "which has no definition itself" in _said(cross, _proofs("location_step"))
+    assert "which is not proved" in _said(step, _proofs("locate", proved=False))
+    assert "which is not proved" in _said(step, _proofs("covers"))
+
+
+def test_exactly_one_of_definition_and_whole_is_named() -> None:
+    def half(a: float) -> float:
+        """Half."""
+        return a / 2
+
+    for how in ({}, {"implements": "a.b", "supports": "c"}):
+        with pytest.raises(ValueError, match="one of the two"):
+            kernels.kernel(**how)(half)
+    with pytest.raises(ValueError, match="restates no definition"):
+        kernels.kernel(supports="c", restates="what it is for")(half)
+
+
+# -- the same formula ------------------------------------------------------------------------
+class Point(NamedTuple):
+    x: float
+    y: float
+
+
+class Place(NamedTuple):
+    east: float
+    north: float
+
+
+ONE, LIMIT = 1, 1
+
+
+def within(value: float) -> bool:
+    return value <= ONE
+
+
+def _area(p: Point, q: Point) -> float:
+    return p.x * q.y - p.y * q.x
+
+
+def _swept(a: Place, b: Place) -> float:
+    crossed = b.east * a.north
+    return b.north * a.east - crossed
+
+
+def _both(a: float, b: float) -> bool:
+    if a > ONE:
+        return False
+    return 2 * b + a >= b + 1
+
+
+def _neither_not(x: float, y: float) -> bool:
+    return LIMIT + y <= x + y * 2 and within(x)
+
+
+def _moved(p: Point, far: bool) -> Point:
+    if far:
+        return Point(p.x + 1, p.y)
+    return p
+
+
+def _moved_too(at: Place, far: bool) -> Place:
+    return Place(1 + at.east if far else at.east, at.north)
+
+
+def _least(a: float, b: float) -> float:
+    return min(a, b, 0)
+
+
+def _least_too(a: float, b: float) -> float:
+    return min(0, min(b, a))
+
+
+def _by_root(a: float, b: float) -> float:
+    return math.sqrt(a * a + b * b)
+
+
+def _by_loop(a: float, b: float) -> float:
+    for _ in range(3):
+        a = a + b
+    return a
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [(_area, _swept), (_both, _neither_not), (_moved, _moved_too), (_least, _least_too)],
+)
+def test_one_formula_in_two_ways(one: object, other: object) -> None:
+    assert restates(one, other)
+
+
+def _area_turned(a: Place, b: Place) -> float:
+    return b.east * a.north - a.east * b.north
+
+
+def _strictly(x: float, y: float) -> bool:
+    return LIMIT + y < x + y * 2 and within(x)
+
+
+def _moved_north(at: Place, far: bool) -> Place:
+    return Place(at.east, 1 + at.north if far else at.north)
+
+
+def _largest(a: float, b: float) -> float:
+    return max(0, max(b, a))
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [(_area, _area_turned), (_both, _strictly), (_moved, _moved_north), (_least, _largest)],
+)
+def test_two_formulas(one: object, other: object) -> None:
+    assert restates(one, other) is False
+
+
+def test_what_is_no_formula_is_not_compared() -> None:
+    assert restates(_by_loop, _by_loop) is None
+    assert restates(_by_root, _by_root) is None
+
+
+# -- what a statement relates ----------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("theorem", "kernel", "meant", "how"),
+    [
+        ("authority_gate_changes_begin_epochs", "gate_takeover", "authority.gate.is_takeover", "together"),
+        ("authority_gate_changes_begin_epochs", "gate_takeover", "authority.gate.well_formed", "follows"),
+        # handed to a helper, inside a fold's own step, through folds over a closed chain
+        ("schedule_holds_is_its_definition", "schedule_holds", "schedule.rows_hold_step", "together"),
+        ("geofence_boundary_distance_is_that_of_the_nearest_edge", "boundary_distance",
+         "geofence.least_step", "together"),
+        # a table of numbers, evaluated while it is stated
+        ("contracts_tasks_move_as_the_table_says", "task_step", "contracts.tasks.row", "together"),
+    ],
+)  # fmt: skip
+def test_what_is_related(theorem: str, kernel: str, meant: str, how: str) -> None:
+    pair = (full_name(named(kernel).function), f"cratous.spec.{meant}")
+    found = relations(theorem)
+    assert pair in getattr(found, how)
+    assert pair[1] in found.definitions
+
+
+def test_what_is_used_is_not_yet_related() -> None:
+    found = relations("authority_exactly_one_gives_way")
+    gives = full_name(named("gives_way").function)
+    assert found.together == {(gives, "cratous.spec.authority.gate.one_gives_way")}
+    assert not found.follows
+    assert not found.leads
+    # a theorem that compares kernels speaks of no definition
+    found = relations("well_clear_times_tcpa_are_the_interval")
+    assert found.definitions == frozenset()
+    assert found.together == frozenset()
+
+
+def test_lemmas_are_listed() -> None:
+    found = relations("well_clear_cylinder_times_are_exact")
+    assert "well_clear_times_tep_are_exact" in found.lemmas

@@ -1,0 +1,366 @@
+"""The ledger's gate: whatever could change a kernel's meaning is caught, with its name."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cratous.core import ledger
+
+PARTS = ("spec", "core", "proofs", "bridge", "services")
+CHECK = """
+import sys
+from cratous.core import ledger
+try:
+    print(ledger.require().line)
+except Exception as error:
+    print(type(error).__name__, error)
+    sys.exit(1)
+"""
+
+
+@pytest.fixture(scope="module")
+def product(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the product as it would be installed, with a ledger proved from it."""
+    home = tmp_path_factory.mktemp("product")
+    for part in PARTS:
+        shutil.copytree(
+            root / part, home / "cratous" / part, ignore=shutil.ignore_patterns("__pycache__")
+        )
+    for name in ("__init__.py", "__main__.py"):
+        shutil.copy(root / "src" / "cratous" / name, home / "cratous")
+    done = _prove(home)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return home
+
+
+def _prove(home: Path, *options: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "cratous", "prove", *options],
+        cwd=home,
+        env={**os.environ, "PYTHONPATH": str(home), "PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )
+
+
+def _check(home: Path, first: str = "") -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "PYTHONPATH": str(home), "PYTHONDONTWRITEBYTECODE": "1"}
+    # from another folder and without the checkout's editable install on the path
+    code = f"import sys; sys.path.insert(0, {str(home)!r})\n" + first + CHECK
+    return subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=home,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=900,
+    )
+
+
+def test_the_committed_ledger_vouches_for_the_committed_code():
+    standing = ledger.check()
+    assert [f"{p.name}: {p.what}" for p in standing.problems] == []
+    assert standing.theorems >= 30
+    assert standing.assumptions == 0
+
+
+ATTACKS = {
+    # what is edited: (file, old, new, what the gate says)
+    "a kernel": (
+        "core/well_clear/now.py", "if ss <= dd:", "if ss < dd:",
+        "horizontal_violation: changed since the proof: its source"),
+    "a callee": (
+        "core/well_clear/during.py", "return b < 0 and 0 - b", "return b <= 0 and 0 - b",
+        "in_conflict: changed since the proof: its source"),
+    "a record's order of fields": (
+        "core/well_clear/during.py", "    first: float\n    last: float", "    last: float\n    first: float",
+        "layer_window: changed since the proof: its source"),
+    "a constant": ("core/authority/gate.py", "return Gate(1, gate.epoch + 1, False)",
+                   "return Gate(1, gate.epoch + 0, False)", "gate_takeover: changed"),
+    "a constant of a definition": (
+        "spec/constraint_rows.py", "NOT_BEFORE, NOT_AFTER = 1, 2, 3, 4, 5, 6", "NOT_BEFORE, NOT_AFTER = 2, 1, 3, 4, 5, 6",
+        "row_holds: changed since the proof: its definition in spec"),
+    "a constant of the float filter": ("core/readings/exact/error_bounds.py", "Fraction(1, 2**53)", "Fraction(1, 2**54)",
+                                       "the readings"),
+    "an argument's range": (
+        "core/authority/timeliness.py", ', nonnegative=("least",)', "",
+        "lasted: changed since the proof: its source"),
+    "a fold's start": ("core/schedule/rows.py", "start=True", "start=False",
+                       "schedule_holds: changed since the proof: its source"),
+    "a definition": ("spec/well_clear.py", "return dot(s, v) < 0", "return dot(s, v) <= 0",
+                     "its definition in spec"),
+    "a theorem weakened to true": (
+        "proofs/theorems/well_clear/violation_is_symmetric.py", "c.show(c.same(ours, theirs))",
+        "c.show(c.same(ours, ours))", "violation: changed since the proof: its theorems"),
+    "a lemma weakened": (
+        "proofs/theorems/well_clear/horizontal_violation_scales.py", "c.premise(k > 0)",
+        "c.premise(k == 1)", "violation_within: changed since the proof: its theorems"),
+    "a theorem's sentence": (
+        "proofs/theorems/well_clear/violation_is_symmetric.py", "Well clear is symmetric", "All is well",
+        "its theorems"),
+    "a theorem removed": ("proofs/theorems/well_clear/violation_is_symmetric.py", None, None,
+                          "violation: changed since the proof: its theorems"),
+    "the prover": ("proofs/engine/prover.py", '"unsat": "proved"', '"sat": "proved"', "the prover"),
+    "the lifter": ("proofs/engine/symbolic.py", "lambda x, y: x <= y", "lambda x, y: x < y",
+                   "the prover"),
+    "numba's flags": ("core/readings/machine/compiled.py", "fastmath=False", "fastmath=True",
+                      "the compiler flags"),
+    "how kernels are compiled": ("core/readings/machine/compiled.py", "range(out.size)", "range(out.size - 1)",
+                                 "the readings"),
+    "the exact reading": ("core/readings/exact/__init__.py", "FEW = 64", "FEW = 65", "the readings"),
+    "what a residue may decide": ("core/readings/exact/residues.py", "e + 126", "e + 127", "the readings"),
+    "what a pair leaves out": ("core/readings/exact/double_pairs.py", "abs({gap.low}) + {gap.left}", "abs({gap.low})",
+                               "the readings"),
+    "a driver": ("core/geofence/mission_legs.py", "box[2] <= a.y <= box[3]", "box[2] < a.y <= box[3]", "leg_ok: changed"),
+    "a driver's checker removed": (
+        "core/avoidance/prediction.py", '@driver(checked_by=("violation_within",))',
+        '@driver(checked_by=())', "first_violation_s: changed since the proof: its source"),
+    "a kernel's mark removed": (
+        "core/well_clear/now.py",
+        '@kernel(implements="well_clear.violation", '
+        'nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s"))\n', "",
+        "violation: it was proved but is no longer registered"),
+    "the ledger file": ("core/ledger.json", '"status": "proved"', '"status": "Proved"',
+                        "was edited"),
+    "the ledger file cut short": ("core/ledger.json", '"kernels"', '"kern', "cannot be read"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", sorted(ATTACKS))
+def test_attack_is_caught(name: str, product: Path) -> None:
+    place, old, new, wanted = ATTACKS[name]
+    file = product / "cratous" / place
+    original = file.read_text()
+    if old is None:
+        file.unlink()
+    else:
+        assert old in original, f"{old!r} is not in {place}: this attack needs an update"
+        file.write_text(original.replace(old, new))
+    try:
+        done = _check(product)
+    finally:
+        file.write_text(original)
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert "Refused" in done.stdout
+    assert wanted in done.stdout
+
+
+def test_the_untouched_product_is_vouched_for(product: Path) -> None:
+    done = _check(product)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "NOT VOUCHED" not in done.stdout
+
+
+@pytest.mark.parametrize("name", ["z3-solver", "numba", "llvmlite", "numpy"])
+def test_another_version_of_a_tool_is_noticed(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = ledger._tools.__wrapped__()
+    real = ledger._version.__wrapped__
+    monkeypatch.setattr(ledger, "_version", lambda n: "9.9" if n == name else real(n))
+    after = ledger._tools.__wrapped__()
+    changed = {part for part in before if before[part] != after[part]}
+    assert changed == {"solver" if name == "z3-solver" else "flags"}
+
+
+# -- attacks that leave the source as it is ---------------------------------------------------
+def test_planted_byte_code_is_caught(product: Path) -> None:
+    """A .pyc with the source's date and size, but with another kernel in it."""
+    file = product / "cratous" / "core" / "well_clear" / "now.py"
+    text = file.read_text()
+    wrong = text.replace("if ss <= dd:", "if ss >= dd:")
+    assert len(wrong) == len(text)
+    code = importlib._bootstrap_external._code_to_timestamp_pyc(
+        compile(wrong, str(file), "exec"), int(file.stat().st_mtime), len(text.encode())
+    )
+    cached = Path(importlib.util.cache_from_source(str(file)))
+    cached.parent.mkdir(exist_ok=True)
+    cached.write_bytes(code)
+    try:
+        done = _check(product)
+    finally:
+        cached.unlink()
+    assert done.returncode == 1, done.stdout
+    assert "horizontal_violation: the code that runs is not its file's" in done.stdout
+
+
+def test_a_function_replaced_in_memory_is_caught(product: Path) -> None:
+    code = "import cratous.core.well_clear as w\n"
+    code += "exec(w.__file__ and 'def f(sz, vz, zthr_m, tcoa_s):\\n return False', vars(w))\n"
+    code += "w.vertical_violation.__code__ = w.f.__code__\n"
+    done = _check(product, code)
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert "  vertical_violation: " in done.stdout
+    assert "  violation: " in done.stdout  # it calls the replaced one
+
+
+PLANT = """
+import sys
+from pathlib import Path
+from cratous.core.readings.machine import compiled
+from cratous.core.geofence.planar import straddles
+real = compiled.load
+seen = []
+compiled.load = lambda text: seen.append(text) or real(text)
+right = compiled.compiled(straddles)([1.0, 0.0], [1.0, 1.0]).tolist()
+folder = compiled.private_cache() / ("kernels_" + compiled.digest([seen[-1]])[:32])
+print(folder, right)
+"""
+
+
+def test_machine_code_of_another_text_is_not_used(product: Path, tmp_path: Path) -> None:
+    """Code compiled from another text, planted under the folder name of the right one."""
+    environment = {**os.environ, "PYTHONPATH": str(product), "CRATOUS_CACHE": str(tmp_path)}
+
+    def run() -> tuple[Path, str]:
+        done = subprocess.run(
+            [sys.executable, "-c", PLANT],
+            cwd=product, env=environment, capture_output=True, text=True, timeout=900,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        folder, right = done.stdout.strip().split(" ", 1)
+        return Path(folder), right
+
+    folder, right = run()
+    assert right == "[False, True]"
+    (module,) = folder.glob("kernels_*.py")
+    text = module.read_text()
+    planted = text.replace("<=", "<")
+    assert planted != text
+    # the wrong text is compiled in place, so that its machine code lies where the right one would
+    for old in [*folder.glob("*.nb?"), *folder.glob("__pycache__/*")]:
+        old.unlink()
+    module.write_text(planted)
+    spec = importlib.util.spec_from_file_location(folder.name, module)
+    assert spec is not None
+    assert spec.loader is not None
+    wrong = importlib.util.module_from_spec(spec)
+    sys.modules[folder.name] = wrong
+    try:
+        spec.loader.exec_module(wrong)
+        import numpy as np
+
+        out = np.empty(2, dtype=np.bool_)
+        wrong._map(out, np.array([1.0, 0.0]), np.array([1.0, 1.0]))
+    finally:
+        del sys.modules[folder.name]
+    assert out.tolist() != [False, True]
+    assert list(folder.rglob("*.nbc")), "no machine code was planted"
+    again, right = run()
+    assert again == folder
+    assert right == "[False, True]"
+    assert module.read_text() == text
+
+
+RESEAL = """
+import json
+from cratous.core import ledger
+path = ledger.LEDGER
+data = json.loads(path.read_text())
+{edit}
+for name, entry in ledger.load_all().items():
+    record = data["kernels"][name]
+    record["key"] = ledger.key_parts(entry, record["theorems"], data["theorems"])
+data["seal"] = ledger.seal(data)
+path.write_text(json.dumps(data, indent=1, sort_keys=True) + chr(10))
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("edit", "place", "old", "new", "wanted"),
+    [
+        ("", "core/well_clear/now.py", "if ss <= dd:", "if ss < dd:", "NOT PROVED"),
+        (
+            'data["theorems"]["well_clear_violation_is_symmetric"]["sentence"] = "All is well."',
+            "", "", "", "differs from these proofs",
+        ),
+        (
+            'del data["theorems"]["well_clear_violation_is_symmetric"]\n'
+            'data["kernels"]["cratous.core.well_clear.now.violation"]["theorems"].remove("well_clear_violation_is_symmetric")',
+            "", "", "", "differs from these proofs",
+        ),
+    ],
+)  # fmt: skip
+def test_a_ledger_that_was_sealed_again_is_caught_by_proving(
+    edit: str, place: str, old: str, new: str, wanted: str, product: Path
+) -> None:
+    """The seal is no secret: only a new proof shows that such a ledger lies. CI makes one."""
+    ledger_file = product / "cratous" / "core" / "ledger.json"
+    before = ledger_file.read_text()
+    file = product / "cratous" / place if place else ledger_file
+    original = file.read_text()
+    if place:
+        assert old in original
+        file.write_text(original.replace(old, new))
+    try:
+        assert _check(product, RESEAL.format(edit=edit)).returncode == 0
+        done = _prove(product, "--check")
+    finally:
+        file.write_text(original)
+        ledger_file.write_text(before)
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert wanted in done.stdout + done.stderr
+
+
+@pytest.mark.slow
+def test_a_driver_that_no_longer_calls_its_checker_is_refused_by_the_prover(product: Path) -> None:
+    file = product / "cratous" / "core" / "avoidance" / "prediction.py"
+    original = file.read_text()
+    changed = original.replace("violation_within(", "bool(")
+    assert changed != original
+    file.write_text(changed)
+    try:
+        done = _prove(product)
+    finally:
+        file.write_text(original)
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert (
+        "nothing calls its checker 'cratous.core.well_clear.during.violation_within'" in done.stderr
+    )
+
+
+def test_comments_and_layout_change_nothing(product: Path) -> None:
+    file = product / "cratous" / "core" / "well_clear" / "now.py"
+    original = file.read_text()
+    file.write_text(original.replace("    if ss <= dd:", "    # a remark\n    if  ss<=dd :"))
+    try:
+        done = _check(product)
+    finally:
+        file.write_text(original)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_a_kernel_without_a_proof_is_refused(product: Path) -> None:
+    file = product / "cratous" / "core" / "unproved.py"
+    file.write_text(
+        '"""One more kernel."""\n\nfrom cratous.core.kernel import kernel\n\n\n'
+        '@kernel(implements="schedule.later_of")\ndef unproved(a: int, b: int) -> int:\n'
+        '    """A sum."""\n    return a + b\n'
+    )
+    try:
+        done = _check(product)
+    finally:
+        file.unlink()
+    assert done.returncode == 1
+    assert "unproved: it is not in the ledger" in done.stdout
+
+
+def test_no_ledger_no_flight(tmp_path: Path) -> None:
+    standing = ledger.check(tmp_path / "none.json")
+    assert {problem.name for problem in standing.problems} == set(ledger.load_all())
+    assert standing.kernels == sum(e.kind != "driver" for e in ledger.load_all().values())
+
+
+def test_a_broken_ledger_is_an_error_not_a_crash(tmp_path: Path) -> None:
+    file = tmp_path / "ledger.json"
+    file.write_text(json.dumps({"kernels": {}}))
+    with pytest.raises(ledger.Refused, match="cannot be read"):
+        ledger.read(file)
