@@ -10,6 +10,7 @@ once, lemmas may not go in a circle: a slip there would weaken a theorem without
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -18,8 +19,12 @@ import z3
 
 from cratous.core.kernel import Fold, Vec2, qualified
 from cratous.proofs.engine.lift import OPAQUE, REPLACED, VISITS, Visit, join, lift
-from cratous.proofs.engine.symbolic import RANGE, Sym, SymBool, SymInt, SymMask, SymReal, _raw
-from cratous.proofs.engine.terms import Stub, flatten, free_names, known, leaves, statement
+from cratous.proofs.engine.symbolic import RANGE, SymBool, SymInt, SymMask, SymReal, equality
+from cratous.proofs.engine.terms import Stub, flatten, free_names, known, leaves, of_kind, statement
+
+
+NAME = re.compile(r"[A-Za-z_]\w*(\.\w+)*", re.ASCII)
+"""Names of a claim's values; the prover's own symbols have ! or # in theirs."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +62,7 @@ class Claim:
     visits: list[Visit] = field(default_factory=list)
     granted: tuple[z3.BoolRef, ...] = ()
     used: list[Callable[..., Any]] = field(default_factory=list)
-    closed: set[Callable[..., Any]] = field(default_factory=set)
+    hidden: set[Callable[..., Any]] = field(default_factory=set)
     vouched: set[Callable[..., Any]] = field(default_factory=set)
     names: set[str] = field(default_factory=set)
     dropped: frozenset[int] = frozenset()
@@ -68,8 +73,11 @@ class Claim:
     def _value(self, name: str, make: Callable[[str], Any]) -> Any:
         if name in self.names:
             raise ValueError(f"the value {name!r} is introduced twice")
+        if not NAME.fullmatch(name):
+            raise ValueError(f"{name!r} is no name of a value: letters, digits, _ and . only")
         self.names.add(name)
-        return self.fixed[name] if name in self.fixed else make(self.prefix + name)
+        fresh = make(self.prefix + name)
+        return of_kind(self.fixed[name], fresh, name) if name in self.fixed else fresh
 
     def real(self, name: str) -> Any:
         """An arbitrary real number."""
@@ -146,7 +154,7 @@ class Claim:
         very arguments of the call, so a contract cannot ignore them.
         """
         for function in functions:
-            self.closed.add(function)
+            self.hidden.add(function)
             if function in self.stubs:
                 continue
             # two functions of one name, a kernel and its definition, must not share their results
@@ -236,7 +244,7 @@ class Claim:
         strangers = sorted(set(inner.fixed) - inner.names)
         if strangers:
             raise ValueError(f"the lemma {name} has no value called {', '.join(strangers)}")
-        self.vouched |= inner.vouched | (set(inner.used) - inner.closed)
+        self.vouched |= inner.vouched | (set(inner.used) - inner.hidden)
         self._name()
         given = statement(when)
         self.lemmas.append(name)
@@ -268,11 +276,14 @@ class Claim:
 
     def same(self, a: Any, b: Any) -> Any:
         """Equality of two values; of tuples, field by field."""
-        if isinstance(a, tuple):
+        if isinstance(a, tuple) or isinstance(b, tuple):
+            if not (isinstance(a, tuple) and isinstance(b, tuple)) or len(a) != len(b):
+                raise TypeError("a record is compared with what has other fields")
+            if type(a) is not type(b) and tuple not in (type(a), type(b)):
+                names = f"{type(a).__name__} and {type(b).__name__}"
+                raise TypeError(f"records of two kinds are compared: {names}")
             return self.all_of(*[self.same(x, y) for x, y in zip(a, b, strict=True)])
-        if not isinstance(a, Sym) and not isinstance(b, Sym):
-            return a == b
-        return SymBool(_raw(a) == _raw(b))
+        return equality(a, b)
 
     def fold(
         self,

@@ -1,51 +1,47 @@
-"""The lint of the kernel subset: what a kernel may contain, with messages that teach.
+"""The kernel subset, by permission: what is not on this list is refused, with what to write instead.
 
-Allowed: typed arguments and result; `if`, `return`, assignment to local names; arithmetic + - *,
-division of reals, comparisons, `and or not`, & and | on masks; calls to other kernels, records
-(NamedTuples) and `abs min max sqrt`; field access; integer, boolean literals. A float literal
-would break the exact reading; // % ** differ between Python, numba and the prover; loops over
-data are `fold`s; globals other than kernels and records would escape the ledger's key.
+A kernel is one typed function of a module, marked with `@kernel(...)` alone: arguments and result are
+`float`, `int`, `bool` or records (`NamedTuple`s with such fields and no behaviour). Its body: a
+docstring, assignments to names (a record may be taken apart), `if`, `return` on every way. Its
+expressions: names of arguments and locals, integers, `True` and `False`, `+ - *` of numbers of one kind,
+`/` of reals, `& |` of masks, comparisons of numbers of one kind, `==` of truth values,
+`and or not` of truth values, fields, calls of kernels, of records and of Python's own
+`abs min max sqrt`. An integer that is written down may stand beside reals up to 2**53, where it is
+the same number in every reading. Each expression has one kind on every way (see `expressions`).
 """
 
 from __future__ import annotations
 
 import ast
 import inspect
+import sys
 import textwrap
+import types
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, get_type_hints
 
-from cratous.core.kernel import REGISTRY, Fold, entry_of, qualified
+from cratous.core.kernel import REGISTRY, Fold, entry_of, kernel, qualified
+from cratous.proofs.engine.expressions import Kinds, Refused
+from cratous.proofs.engine.kinds import Kind, Literal, fits, is_kind, merged, shown
 
-CALLS = {"abs", "min", "max", "sqrt"}
-FORBIDDEN: dict[type[ast.AST], str] = {
+STATEMENTS = "a kernel has assignments to names, `if` and `return`"
+INSTEAD: dict[type[ast.AST], str] = {
     ast.While: "loops over data are `fold`s over a kernel step",
     ast.For: "loops over data are `fold`s over a kernel step",
     ast.Try: "kernels are total: decide with `if` instead of catching",
     ast.Raise: "kernels are total: return a value for every input",
+    ast.Assert: "kernels are total: put the premise into the theorem",
     ast.Global: "kernels see nothing but their arguments",
     ast.Nonlocal: "kernels see nothing but their arguments",
-    ast.Lambda: "name a kernel instead of a lambda",
-    ast.ListComp: "no collections in kernels; use a `fold`",
-    ast.GeneratorExp: "no collections in kernels; use a `fold`",
-    ast.DictComp: "no collections in kernels; use a `fold`",
-    ast.SetComp: "no collections in kernels; use a `fold`",
-    ast.Subscript: "no indexing in kernels; pass the item (see `fold`)",
-    ast.JoinedStr: "no text in kernels",
+    ast.AugAssign: "write `x = x + y`: one assignment, one meaning",
+    ast.AnnAssign: "write `x = y`: the kind of a local follows from its value",
+    ast.Match: "write `if`: its conditions are truth values",
+    ast.FunctionDef: "write it as a kernel of the module",
     ast.Import: "no imports in kernels",
     ast.ImportFrom: "no imports in kernels",
-    ast.AugAssign: "write `x = x + y`: one assignment, one meaning",
-    ast.FloorDiv: "// differs between the readings; multiply out instead",
-    ast.Mod: "% differs between the readings; multiply out instead",
-    ast.Pow: "** differs between the readings; write the product",
-    ast.LShift: "no shifts in kernels: pass the mask",
-    ast.RShift: "no shifts in kernels: pass the mask",
-    ast.IfExp: "write `if` as a statement: the lifter forks there",
-    ast.NamedExpr: "assign first, then use",
-    ast.Delete: "nothing to delete in a kernel",
-    ast.With: "no contexts in kernels",
-    ast.Starred: "write the arguments out",
-    ast.Assert: "kernels are total: put the premise into the theorem",
+    ast.Expr: "a value that nobody uses",
+    ast.Pass: "write the branch that does something, turned round",
 }
 
 
@@ -61,7 +57,8 @@ class Finding:
         return f"{self.kernel}, line {self.line} of it: {self.message}"
 
 
-def _function(function: Any) -> ast.FunctionDef:
+def syntax(function: Any) -> ast.FunctionDef:
+    """The definition of a function as its file has it; TypeError for anything else."""
     tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
     node = tree.body[0]
     if not isinstance(node, ast.FunctionDef):
@@ -69,56 +66,165 @@ def _function(function: Any) -> ast.FunctionDef:
     return node
 
 
+def identity(function: Any) -> str:
+    """What is wrong with how a function is named and made; nothing for a plain one of its module."""
+    if not isinstance(function, types.FunctionType) or hasattr(function, "__wrapped__"):
+        return "it is no plain function: nothing may stand around the `def`"
+    module = sys.modules.get(function.__module__)
+    if function.__closure__ or "." in function.__qualname__ or "<" in function.__qualname__:
+        return "it is made inside of another function: write it at the top of a module"
+    if module is None or function.__globals__ is not vars(module):
+        return "it is not of the module that it names"
+    if vars(module).get(function.__name__) is not function:
+        return f"its module has another thing of the name {function.__name__!r}: give each its own"
+    return ""
+
+
 def lint(function: Any) -> list[Finding]:
     """Everything in one kernel that is outside of the subset."""
-    node = _function(function)
     name = qualified(function)
-    found = []
+    found: list[Finding] = []
 
-    def report(at: ast.AST, message: str) -> None:
+    def report(at: ast.AST | None, message: str) -> None:
         found.append(Finding(name, getattr(at, "lineno", 1), message))
 
-    for argument in node.args.args:
+    if wrong := identity(function):
+        report(None, wrong)
+        return found
+    node = syntax(function)
+    _head(node, function, report)
+    if not ast.get_docstring(node):
+        report(node, "it has no docstring: meaning and units of every argument")
+    if not found:
+        local = {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and _stored(n)}
+        kinds = Kinds(function.__globals__, local | {a.arg for a in node.args.args})
+        Body(function, kinds, report).check(node)
+    return found
+
+
+Report = Callable[[ast.AST | None, str], None]
+
+
+def _head(node: ast.FunctionDef, function: types.FunctionType, report: Report) -> None:
+    """Its mark, arguments and types."""
+    scope, marks = function.__globals__, node.decorator_list
+    called = [mark.func for mark in marks if isinstance(mark, ast.Call)]
+    if [isinstance(f, ast.Name) and scope.get(f.id) is kernel for f in called] != [True] * len(
+        marks
+    ) or len(marks) > 1:
+        report(node, "nothing but `@kernel(...)` stands over a kernel")
+    given = node.args
+    if given.vararg or given.kwarg or given.defaults or given.kwonlyargs or given.posonlyargs:
+        report(node, "arguments are written out, without defaults")
+    for argument in given.args:
         if argument.annotation is None:
             report(argument, f"argument {argument.arg!r} has no type")
     if node.returns is None:
         report(node, "the result has no type")
-    if node.args.vararg or node.args.kwarg or node.args.defaults:
-        report(node, "arguments are written out, without defaults")
-    local = {argument.arg for argument in node.args.args}
-    local |= {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and _stored(n)}
-    body = node.body[1:] if ast.get_docstring(node) else node.body
-    if not ast.get_docstring(node):
-        report(node, "it has no docstring: meaning and units of every argument")
-    for statement in body:
-        for part in ast.walk(statement):
-            _check(part, function, local, report)
-    return found
+    if getattr(node, "type_params", None):
+        report(node, "no type parameters: a kernel has one kind of each argument")
+    for part, kind in get_type_hints(function).items():
+        if not is_kind(kind):
+            said = "the result" if part == "return" else f"argument {part!r}"
+            report(node, f"{said} is float, int, bool or a record of these without behaviour")
+
+
+class Body:
+    """The statements of a function, with the kinds of its locals on the way."""
+
+    def __init__(self, function: types.FunctionType, kinds: Kinds, report: Report) -> None:
+        hints = get_type_hints(function)
+        self.result = hints.pop("return")
+        self.arguments: dict[str, Kind] = hints
+        self.kinds = kinds
+        self.report = report
+
+    def check(self, node: ast.FunctionDef) -> None:
+        """Report every statement that is outside of the subset."""
+        body = node.body[1:] if ast.get_docstring(node) else node.body
+        if self._block(body, dict(self.arguments)) is not None:
+            self.report(node, "a way through it ends without `return`")
+
+    def _block(self, body: list[ast.stmt], names: dict[str, Kind]) -> dict[str, Kind] | None:
+        """The locals after these statements; None if every way has returned."""
+        for number, statement in enumerate(body):
+            try:
+                after = self._statement(statement, names)
+            except Refused as refused:
+                self.report(refused.node, refused.message)
+                after = names
+            if after is None:
+                if number + 1 < len(body):
+                    self.report(body[number + 1], "nothing reaches this")
+                return None
+            names = after
+        return names
+
+    def _statement(self, node: ast.stmt, names: dict[str, Kind]) -> dict[str, Kind] | None:
+        if isinstance(node, ast.Return):
+            if node.value is None:
+                raise Refused(node, "return a value")
+            kind = self.kinds.of(node.value, names)
+            if not fits(kind, self.result):
+                raise Refused(node, f"returns {shown(kind)}, its type says {shown(self.result)}")
+            return None
+        if isinstance(node, ast.If):
+            self.kinds.truth(node.test, names)
+            ways = [self._block(b, dict(names)) for b in (node.body, node.orelse)]
+            return self._joined(node, [way for way in ways if way is not None])
+        if isinstance(node, ast.Assign):
+            return {**names, **self._assigned(node, names)}
+        raise Refused(node, INSTEAD.get(type(node), STATEMENTS))
+
+    def _joined(self, node: ast.If, ways: list[dict[str, Kind]]) -> dict[str, Kind] | None:
+        if len(ways) < 2:
+            return ways[0] if ways else None
+        joined = {}
+        for name in ways[0].keys() & ways[1].keys():
+            both = merged(ways[0][name], ways[1][name])
+            if both is None:
+                what = f"{shown(ways[0][name])} here and {shown(ways[1][name])} there"
+                raise Refused(node, f"{name!r} is {what}: give each a name of its own")
+            joined[name] = both
+        return joined
+
+    def _assigned(self, node: ast.Assign, names: dict[str, Kind]) -> dict[str, Kind]:
+        if len(node.targets) != 1:
+            raise Refused(node, "assign one name at a time")
+        target = node.targets[0]
+        parts = target.elts if isinstance(target, ast.Tuple) else []
+        if parts and isinstance(node.value, ast.Tuple) and self.kinds.several:
+            given = [self.kinds.of(value, names) for value in node.value.elts]
+            return self._taken_apart(node, parts, given, names)
+        kind = self.kinds.of(node.value, names)
+        if isinstance(target, ast.Name):
+            self._keeps(node, target.id, names.get(target.id), kind)
+            return {target.id: kind}
+        if isinstance(target, ast.Attribute):
+            raise Refused(node, "records are not changed: make a new one")
+        fields = list(get_type_hints(kind).values()) if hasattr(kind, "_fields") else []
+        return self._taken_apart(node, parts, fields, names)
+
+    def _taken_apart(
+        self, node: ast.Assign, parts: list[ast.expr], kinds: list[Kind], names: dict[str, Kind]
+    ) -> dict[str, Kind]:
+        if not parts or len(parts) != len(kinds):
+            raise Refused(node, "assign to a name, or a record to as many names as it has fields")
+        made: dict[str, Kind] = {}
+        for part, kind in zip(parts, kinds, strict=True):
+            if not isinstance(part, ast.Name) or part.id in made:
+                raise Refused(node, "a record is taken apart into names, each once")
+            self._keeps(node, part.id, names.get(part.id), kind)
+            made[part.id] = kind
+        return made
+
+    def _keeps(self, node: ast.Assign, name: str, old: Kind | None, new: Kind) -> None:
+        if old is not None and merged(old, new) is None:
+            raise Refused(node, f"{name!r} was {shown(old)}: give {shown(new)} another name")
 
 
 def _stored(name: ast.Name) -> bool:
     return isinstance(name.ctx, ast.Store)
-
-
-def _check(part: ast.AST, function: Any, local: set[str], report: Any) -> None:
-    message = FORBIDDEN.get(type(part))
-    if message:
-        report(part, message)
-    if isinstance(part, ast.Constant) and not isinstance(part.value, bool | int):
-        report(part, f"the literal {part.value!r}: only integers and booleans are exact")
-    if isinstance(part, ast.Attribute) and isinstance(part.ctx, ast.Store):
-        report(part, "records are not changed: make a new one")
-    if isinstance(part, ast.Tuple) and isinstance(part.ctx, ast.Load):
-        report(part, "no bare tuples: make a record, or assign one name at a time")
-    if isinstance(part, ast.Call) and not isinstance(part.func, ast.Name):
-        report(part, "call kernels by their name")
-    if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Load) and part.id not in local:
-        value = function.__globals__.get(part.id)
-        record = inspect.isclass(value) and issubclass(value, tuple)
-        entry = entry_of(value)
-        kernel = entry is not None and entry.kind == "kernel"
-        if not (part.id in CALLS or record or kernel):
-            report(part, f"{part.id!r} is neither a kernel nor a record")
 
 
 def lint_all() -> list[Finding]:
@@ -129,6 +235,7 @@ def lint_all() -> list[Finding]:
             found += lint(entry.function)
         if isinstance(entry.function, Fold):
             for part in (entry.function.step, entry.function.finish):
-                if entry_of(part) is None:
+                known = entry_of(part)
+                if known is None or known.kind != "kernel":
                     found.append(Finding(entry.name, 1, f"{part.__name__} is no kernel"))
     return found

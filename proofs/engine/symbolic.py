@@ -51,6 +51,8 @@ PATHS: list[Path] = []
 
 INT64 = 2**63
 BITS = 64
+EXACT = 2**53
+"""Up to here every integer is a double."""
 
 
 def _raw(value: Any) -> z3.ExprRef | None:
@@ -73,6 +75,39 @@ class Sym:
 
     def __init__(self, term: z3.ExprRef) -> None:
         self.term = term
+
+    # what Python would answer of the object, and not of the value that it stands for
+    def __bool__(self) -> bool:
+        raise LiftError("a number is taken for a truth value: compare it with 0")
+
+    def __str__(self) -> str:
+        raise LiftError("a symbolic value is made into text")
+
+    def __format__(self, how: str) -> str:
+        raise LiftError("a symbolic value is made into text")
+
+    def __index__(self) -> int:
+        raise LiftError("a symbolic value is taken for a Python integer")
+
+    def __float__(self) -> float:
+        raise LiftError("a symbolic value is taken for a double")
+
+
+def equality(one: Any, other: Any) -> SymBool:
+    """Whether two numbers, masks or truth values of one kind are equal; LiftError for two kinds."""
+    left, right = _raw(one), _raw(other)
+    if left is None or right is None:
+        strange = one if left is None else other
+        raise LiftError(f"{strange!r} is compared, which is no value of the kernel subset")
+    if z3.is_bv(left) or z3.is_bv(right):
+        mask, value = (one, other) if isinstance(one, SymMask) else (other, one)
+        return SymBool(mask._operand(value) == mask.term)
+    if z3.is_bool(left) and z3.is_bool(right):
+        return SymBool(left == right)
+    pair = _pair(one, other)
+    if pair is None:
+        raise LiftError("a truth value is compared with a number")
+    return SymBool(pair[0] == pair[1])
 
 
 def wrap(term: z3.ExprRef) -> Sym:
@@ -140,6 +175,8 @@ def as_real(term: z3.ExprRef) -> z3.ExprRef:
     value = z3.simplify(term)
     if not z3.is_int_value(value):
         raise LiftError(f"the integer {term} is mixed with reals; only literals may be")
+    if PATHS and abs(value.as_long()) > EXACT:
+        raise LiftError(f"the integer {term} beside reals is no double: at most 2**53 is")
     return z3.RealVal(value.as_long())
 
 

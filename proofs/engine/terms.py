@@ -98,6 +98,17 @@ def flatten(values: dict[str, Any]) -> dict[str, Any]:
     return {k: v if isinstance(v, Sym) else wrap(known(v)) for k, v in flat.items()}
 
 
+def of_kind(value: Sym, fresh: Sym, name: str) -> Sym:
+    """A value that is given for an arbitrary one: of its kind, or an integer literal for a real."""
+    wanted = fresh.term.sort()
+    term = as_real(value.term) if z3.is_real(fresh.term) else value.term
+    if z3.is_bv(fresh.term) and z3.is_int_value(term) and 0 <= term.as_long() < 2**64:
+        term = z3.BitVecVal(term.as_long(), 64)
+    if term.sort() != wanted:
+        raise TypeError(f"the lemma's value {name!r} is of kind {wanted}, given is {term.sort()}")
+    return wrap(term)
+
+
 def known(value: Any) -> z3.ExprRef:
     """The term of a value or literal; TypeError for anything else."""
     term = _raw(value)
@@ -114,6 +125,4 @@ def statement(value: Any) -> z3.BoolRef:
         return z3.BoolVal(value)
     if isinstance(value, SymBool):
         return value.term
-    if z3.is_expr(value) and z3.is_bool(value):
-        return value
     raise TypeError(f"{value!r} is no statement")

@@ -11,6 +11,7 @@ from pathlib import Path
 from cratous.core.kernel.names import near
 from cratous.core.kernel.sources import place
 from cratous.core.ledger import PRODUCT, theorem_name
+from cratous.proofs.engine import theorem_subset
 from cratous.proofs.engine.claim import Claim
 from cratous.spec.errors import BadInput
 
@@ -82,6 +83,8 @@ def load_claim(name: str, folder: Path = FOLDER) -> tuple[Callable[[Claim], None
         module = types.ModuleType(module_name)
         module.__file__ = str(path)
         try:
+            parsed = ast.parse(text)
+            theorem_subset.check(parsed, path)
             # from the text, never from byte code: what is proved is what is written
             exec(compile(text, str(path), "exec", dont_inherit=True), module.__dict__)
         except ImportError as error:
@@ -91,6 +94,7 @@ def load_claim(name: str, folder: Path = FOLDER) -> tuple[Callable[[Claim], None
         except SyntaxError as error:
             line = f"{place(path)}:{error.lineno}"
             raise BadInput(f"the theorem is no Python: {error.msg}", where=line) from error
+        theorem_subset.check_values(module.__dict__, parsed, path)
         sys.modules[module_name] = module
     sentence = " ".join((ast.get_docstring(ast.parse(text)) or "").split())
     if not sentence:

@@ -21,7 +21,6 @@ from cratous.proofs.methods.sweeping import swept
 def claim(c: Claim) -> None:
     p, q = c.vector("p"), c.vector("q")
     c.opaque(segments_meet, on_segment, crosses_ray, swept, orient)
-    passed: list[Any] = []
 
     def edge(a: Any, b: Any) -> None:
         through = c.all_of(
@@ -34,10 +33,11 @@ def claim(c: Claim) -> None:
         c.lemma("geofence_passing_through_an_edge_flips_its_crossing", p=p, q=q, a=a, b=b)
         c.lemma("geofence_an_end_on_an_edge_is_a_contact", p=p, q=q, a=a, b=b)
         c.lemma("geofence_an_end_beside_an_edge_is_not_on_it", p=p, q=q, a=a, b=b)
-        passed.append(through)
 
-    def count(odd: Any, *_: Any) -> Any:
-        return odd != passed[-1]
+    def count(odd: Any, a: Any, b: Any, p: Any, q: Any) -> Any:
+        sides = orient(a, b, p) * orient(a, b, q) < 0
+        across = orient(p, q, a) * orient(p, q, b) < 0
+        return odd != (sides and across)
 
     def invariant(states: list[Any], first: Any, last: Any) -> Any:
         from_p, from_q, odd = states
@@ -57,7 +57,7 @@ def claim(c: Claim) -> None:
             (locate, Seen(c.boolean("p_on"), c.boolean("p_odd")), (p,)),
             (locate, Seen(c.boolean("q_on"), c.boolean("q_odd")), (q,)),
         ],
-        models=[(Fold("passed", "", count, False, lambda odd: odd), c.boolean("passed"), ())],
+        models=[(Fold("passed", "", count, False, lambda odd: odd), c.boolean("passed"), (p, q))],
         invariant=invariant,
         edge=edge,
         goal=flipped,

@@ -1,0 +1,81 @@
+"""The kinds of values in the kernel subset: real, integer, truth value, record, written integer."""
+
+from __future__ import annotations
+
+import inspect
+from dataclasses import dataclass
+from typing import Any, get_type_hints
+
+EXACT = 2**53
+"""Up to here every integer is a double."""
+INT64 = 2**63
+
+
+@dataclass(frozen=True)
+class Literal:
+    """An integer that is written down, or made of such; bound: it is at most this, either sign."""
+
+    bound: int
+
+
+Kind = Any
+"""float, int, bool, a record class, or a Literal."""
+
+GENERATED = {
+    "__annotations__", "__doc__", "__firstlineno__", "__getnewargs__", "__match_args__", "__module__",
+    "__new__", "__orig_bases__", "__replace__", "__repr__", "__slots__", "__static_attributes__",
+    "_asdict", "_field_defaults", "_fields", "_make", "_replace",
+    "__classdictcell__", "__annotate__", "__annotate_func__", "__annotations_cache__",
+}  # fmt: skip
+"""What `NamedTuple` puts into a record by itself."""
+
+
+def is_record(value: Any) -> bool:
+    """A `NamedTuple` of the subset's kinds: no methods, properties, defaults or further bases."""
+    if not (inspect.isclass(value) and value.__bases__ == (tuple,) and type(value) is type):
+        return False
+    fields = vars(value).get("_fields", ())
+    if not fields or vars(value).get("_field_defaults"):
+        return False
+    more = set(vars(value)) - GENERATED - set(fields)
+    plain = all(type(vars(value).get(f)).__name__ == "_tuplegetter" for f in fields)
+    # what NamedTuple makes comes from a scope of its own; a class may not bring another
+    scope = getattr(getattr(value, "__new__"), "__globals__", {})
+    made = scope.get("__name__") == f"namedtuple_{value.__name__}"
+    hints = get_type_hints(value)
+    kinds = set(hints) == set(fields) and all(is_kind(kind) for kind in hints.values())
+    return not more and plain and made and kinds
+
+
+def is_kind(value: Any) -> bool:
+    """True iff an argument of a kernel may be of this type."""
+    return value in (float, int, bool) or is_record(value)
+
+
+def shown(kind: Kind) -> str:
+    """For a message."""
+    if isinstance(kind, Literal):
+        return "a written integer"
+    return {float: "a real", int: "an integer", bool: "a truth value"}.get(
+        kind, f"a record {getattr(kind, '__name__', kind)}"
+    )
+
+
+def fits(given: Kind, wanted: Kind) -> bool:
+    """A value of the one kind may stand where the other is wanted."""
+    if isinstance(given, Literal):
+        return bool(
+            (wanted is float and given.bound <= EXACT) or (wanted is int and given.bound < INT64)
+        )
+    return bool(given is wanted)
+
+
+def merged(one: Kind, other: Kind) -> Kind | None:
+    """The kind of a value that is one or the other; None if there is none."""
+    if isinstance(one, Literal) and isinstance(other, Literal):
+        return Literal(max(one.bound, other.bound))
+    if isinstance(one, Literal):
+        one, other = other, one
+    if one in (float, int) and fits(other, one):
+        return one
+    return one if one is other else None
