@@ -18,10 +18,10 @@ from typing import Any
 import z3
 
 from cratous.core.kernel import Fold, Vec2, qualified
+from cratous.proofs.engine.induction import Induction
 from cratous.proofs.engine.lift import OPAQUE, REPLACED, VISITS, Visit, join, lift
 from cratous.proofs.engine.symbolic import RANGE, SymBool, SymInt, SymMask, SymReal, equality
 from cratous.proofs.engine.terms import Stub, flatten, free_names, known, leaves, of_kind, statement
-
 
 NAME = re.compile(r"[A-Za-z_]\w*(\.\w+)*", re.ASCII)
 """Names of a claim's values; the prover's own symbols have ! or # in theirs."""
@@ -59,10 +59,11 @@ class Claim:
     goals: list[z3.BoolRef] = field(default_factory=list)
     stubs: dict[Callable[..., Any], Stub] = field(default_factory=dict)
     roots: list[z3.BoolRef] = field(default_factory=list)
+    congruences: list[z3.BoolRef] = field(default_factory=list)
     visits: list[Visit] = field(default_factory=list)
     granted: tuple[z3.BoolRef, ...] = ()
     used: list[Callable[..., Any]] = field(default_factory=list)
-    hidden: set[Callable[..., Any]] = field(default_factory=set)
+    unseen: set[Callable[..., Any]] = field(default_factory=set)
     vouched: set[Callable[..., Any]] = field(default_factory=set)
     names: set[str] = field(default_factory=set)
     dropped: frozenset[int] = frozenset()
@@ -154,7 +155,7 @@ class Claim:
         very arguments of the call, so a contract cannot ignore them.
         """
         for function in functions:
-            self.hidden.add(function)
+            self.unseen.add(function)
             if function in self.stubs:
                 continue
             # two functions of one name, a kernel and its definition, must not share their results
@@ -171,7 +172,9 @@ class Claim:
         """For an opaque function: where the two argument lists are equal, so are the results."""
         stub = self.stubs[function]
         equal = self.all_of(*[self.same(a, b) for a, b in zip(one, other, strict=True)])
-        self.facts.append(z3.Implies(equal.term, statement(self.same(stub(*one), stub(*other)))))
+        fact = z3.Implies(equal.term, statement(self.same(stub(*one), stub(*other))))
+        self.congruences.append(fact)
+        self.facts.append(fact)
 
     def _lift(
         self, function: Callable[..., Any], args: tuple[Any, ...], machine: bool = True
@@ -244,7 +247,7 @@ class Claim:
         strangers = sorted(set(inner.fixed) - inner.names)
         if strangers:
             raise ValueError(f"the lemma {name} has no value called {', '.join(strangers)}")
-        self.vouched |= inner.vouched | (set(inner.used) - inner.hidden)
+        self.vouched |= inner.vouched | (set(inner.used) - inner.unseen)
         self._name()
         given = statement(when)
         self.lemmas.append(name)
@@ -279,7 +282,9 @@ class Claim:
         if isinstance(a, tuple) or isinstance(b, tuple):
             if not (isinstance(a, tuple) and isinstance(b, tuple)) or len(a) != len(b):
                 raise TypeError("a record is compared with what has other fields")
-            if type(a) is not type(b) and tuple not in (type(a), type(b)):
+            if getattr(a, "_fields", ()) != getattr(b, "_fields", ()) and all(
+                type(one) is not tuple for one in (a, b)
+            ):
                 names = f"{type(a).__name__} and {type(b).__name__}"
                 raise TypeError(f"records of two kinds are compared: {names}")
             return self.all_of(*[self.same(x, y) for x, y in zip(a, b, strict=True)])
@@ -304,8 +309,10 @@ class Claim:
         at the start. Step: if it holds before any item it holds after it. Use: where it holds the
         results are equal. The three together are the induction over the number of items, provided
         that the accumulators are arbitrary: that they are distinct free values which no premise
-        restricts, and on which the item does not depend, is checked here. What is to be known of
-        them belongs into `relation`. A premise on the item is one on every item.
+        restricts, and on which the item does not depend, is checked here, and that the relation
+        does not depend on the item (see `induction`). What is to be known of the accumulators
+        belongs into `relation`. A premise on the item is one on every item; base and use do not
+        have it, since there may be no item.
         """
         if self.prefix:
             return  # used as a lemma, a fold has no goals to offer
@@ -313,18 +320,22 @@ class Claim:
         self._arbitrary((acc, model), (item, context))
         if qualified(kernel_fold) not in self.kernels:
             self.kernels.append(qualified(kernel_fold))
-        self._owe(
-            "base", "relation at the start", statement(relation(kernel_fold.start, model_start))
-        )
+        induction = Induction(self, acc, model, item)
         before = statement(relation(acc, model))
+        with induction.without_items():
+            base = statement(relation(kernel_fold.start, model_start))
+            induction.relation(before, base, start=model_start, context=context)
+            self._owe("base", "relation at the start", base)
         # both are run only where the relation holds, so what they owe is owed there
         self._grant(before)
         after = self.use(kernel_fold.step, acc, *item, *context)
         model_after = self.define(model_step, model, *item, *context)
         self._owe("step", "relation is kept", statement(relation(after, model_after)))
-        result = self.use(kernel_fold.finish, acc)
-        wanted = self.define(model_finish, model)
-        self._owe("use", "results are equal", statement(self.same(result, wanted)))
+        with induction.without_items():
+            result = self.use(kernel_fold.finish, acc)
+            wanted = self.define(model_finish, model)
+            self._owe("use", "results are equal", statement(self.same(result, wanted)))
+        induction.model_only(model_after, wanted)
         self.facts = [fact for fact in self.facts if not fact.eq(before)]
         self.granted = ()
 

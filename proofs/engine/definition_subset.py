@@ -8,6 +8,7 @@ constants, and call plain functions of `spec` and `core`, also by their module's
 from __future__ import annotations
 
 import ast
+import functools
 import inspect
 import types
 from collections.abc import Callable
@@ -18,7 +19,9 @@ from cratous.core.kernel import entry_of, qualified
 from cratous.core.kernel.sources import ours
 from cratous.proofs.engine.expressions import Kinds, Refused
 from cratous.proofs.engine.kinds import Kind, Literal, is_kind, merged, shown
+from cratous.proofs.engine.lift import Visit
 from cratous.proofs.engine.subset import Body, Finding, identity, lint, syntax
+from cratous.proofs.engine.terms import leaves
 
 MORE = (ast.Mod, ast.LShift, ast.RShift)
 
@@ -88,6 +91,24 @@ class DefinitionKinds(Kinds):
         self._arguments(node, order, hints, names)
         self.callees.append(value)
         return result
+
+
+@functools.cache
+def outside(function: Callable[..., Any]) -> tuple[Finding, ...]:
+    """What is outside of the subset in a function that a theorem uses.
+
+    Functions of a theorem's own file are in the language of theorems (`theorem_subset`).
+    """
+    parts = str(function.__module__).split(".")
+    return () if "theorems" in parts[1:3] else tuple(check(function))
+
+
+def on_numbers(visit: Visit) -> bool:
+    """Plain numbers were given and came out, and do again: a table, say, that Python looks up."""
+    values = [leaf for value in (visit.args, visit.lifted.value) for leaf in leaves(value)]
+    if not all(isinstance(value, bool | int | Fraction) for value in values):
+        return False
+    return bool(visit.function(*visit.args) == visit.lifted.value)
 
 
 def check(function: Callable[..., Any]) -> list[Finding]:

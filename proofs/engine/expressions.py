@@ -105,7 +105,9 @@ class Kinds:
             return bool
         kind = self.of(node.operand, names)
         if not isinstance(node.op, ast.USub) or not (kind in NUMBERS or isinstance(kind, Literal)):
-            raise Refused(node, f"`-` is of numbers and `not` of truth values, this is {shown(kind)}")
+            raise Refused(
+                node, f"`-` is of numbers and `not` of truth values, this is {shown(kind)}"
+            )
         return kind
 
     def _binary(self, node: ast.BinOp, names: dict[str, Kind]) -> Kind:
@@ -156,7 +158,7 @@ class Kinds:
         name = node.func.id
         if name in self.local:
             raise Refused(node, f"{name!r} is a local name: call kernels by their name")
-        value = self.scope.get(name, getattr(builtins, name, None))
+        value: Any = self.scope.get(name, getattr(builtins, name, None))
         if name in OWN or name == "sqrt":
             return self._own(node, name, value, names)
         entry = entry_of(value)

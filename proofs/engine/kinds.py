@@ -40,7 +40,7 @@ def is_record(value: Any) -> bool:
     more = set(vars(value)) - GENERATED - set(fields)
     plain = all(type(vars(value).get(f)).__name__ == "_tuplegetter" for f in fields)
     # what NamedTuple makes comes from a scope of its own; a class may not bring another
-    scope = getattr(getattr(value, "__new__"), "__globals__", {})
+    scope = getattr(value.__new__, "__globals__", {})
     made = scope.get("__name__") == f"namedtuple_{value.__name__}"
     hints = get_type_hints(value)
     kinds = set(hints) == set(fields) and all(is_kind(kind) for kind in hints.values())

@@ -20,9 +20,9 @@ from typing import Any
 import z3
 
 from cratous.core.kernel import entry_of, qualified
-from cratous.core.kernel.sources import altered, ours, place
+from cratous.core.kernel.sources import altered, ours, place, position
 from cratous.core.ledger import Home
-from cratous.proofs.engine import plain_numbers
+from cratous.proofs.engine import definition_subset, plain_numbers
 from cratous.proofs.engine.cache import Answer, Cache
 from cratous.proofs.engine.claim import Claim, Obligation
 from cratous.proofs.engine.counterexample import Model, Watched, story, telling
@@ -321,6 +321,14 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
         if not slip and not isinstance(error, ValueError | TypeError | LiftError):
             raise  # not the theorem's doing
         raise BadInput(f"the theorem cannot be stated: {error}", where=slip or where) from error
+    symbolic = [v.function for v in claim.visits if not definition_subset.on_numbers(v)]
+    for function in dict.fromkeys([*symbolic, *claim.stubs]):
+        if refused := definition_subset.outside(function):
+            raise BadInput(
+                f"the theorem cannot be stated: {refused[0]}",
+                where=position(function),
+                expected="what the subset has (see docs/guides/own-kernel.md)",
+            )
     wrong = {n for f in {v.function for v in claim.visits} if ours(f) for n in altered(f)}
     if wrong:
         raise BadInput(

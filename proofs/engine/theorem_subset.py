@@ -27,15 +27,63 @@ from cratous.proofs.engine.kinds import is_record
 from cratous.spec.errors import BadInput
 
 OFFERED = frozenset(
-    "real reals integer whole boolean mask bits vector premise assume use define opaque calls "
-    "congruence show step cases lemma implies all_of any_of negation when same fold".split()
+    [
+        "real",
+        "reals",
+        "integer",
+        "whole",
+        "boolean",
+        "mask",
+        "bits",
+        "vector",
+        "premise",
+        "assume",
+        "use",
+        "define",
+        "opaque",
+        "calls",
+        "congruence",
+        "show",
+        "step",
+        "cases",
+        "lemma",
+        "implies",
+        "all_of",
+        "any_of",
+        "negation",
+        "when",
+        "same",
+        "fold",
+    ]
 )
 """What a claim has for a theorem."""
 HIDDEN = (frozenset(vars(Claim)) | frozenset(Claim.__dataclass_fields__) | {"term"}) - OFFERED
-METHODS = frozenset("append split join items keys values".split())
+METHODS = frozenset(["append", "split", "join", "items", "keys", "values"])
 BUILTINS = frozenset(
-    "zip list dict object tuple float str map abs enumerate len range min max int bool "
-    "sorted reversed sum True False None".split()
+    [
+        "zip",
+        "list",
+        "dict",
+        "object",
+        "tuple",
+        "float",
+        "str",
+        "map",
+        "abs",
+        "enumerate",
+        "len",
+        "range",
+        "min",
+        "max",
+        "int",
+        "bool",
+        "sorted",
+        "reversed",
+        "sum",
+        "True",
+        "False",
+        "None",
+    ]
 )
 STATEMENTS: tuple[type[ast.stmt], ...] = (
     ast.Assign, ast.AnnAssign, ast.For, ast.If, ast.Return, ast.FunctionDef, ast.Expr,
@@ -46,7 +94,7 @@ EXPRESSIONS: tuple[type[ast.expr], ...] = (
     ast.ListComp, ast.DictComp, ast.GeneratorExp, ast.JoinedStr, ast.FormattedValue, ast.Lambda,
 )  # fmt: skip
 COMPARISONS = (ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Eq, ast.NotEq, ast.In, ast.NotIn)
-ITERATORS = frozenset("map zip enumerate reversed pairwise combinations".split())
+ITERATORS = frozenset(["map", "zip", "enumerate", "reversed", "pairwise", "combinations"])
 MAKERS = (ast.List, ast.Dict, ast.ListComp, ast.DictComp)
 
 
@@ -123,7 +171,9 @@ def _top(tree: ast.Module) -> set[str]:
                 raise _Refused(node, "such an import", "from package.module import names")
             inside = module.split(".")[1:2]
             if inside == ["proofs"] and not _of_proofs(module):
-                raise _Refused(node, f"an import from {module}", "from cratous.proofs.claim import Claim")
+                raise _Refused(
+                    node, f"an import from {module}", "from cratous.proofs.claim import Claim"
+                )
             names |= {alias.asname or alias.name for alias in node.names}
         elif isinstance(node, ast.Assign):
             _Function(None, names, nested=False).expression(node.value)
@@ -199,11 +249,15 @@ class _Function:
     def _target(self, node: ast.expr) -> None:
         if isinstance(node, ast.Subscript):
             if not (isinstance(node.value, ast.Name) and node.value.id in self.made):
-                raise _Refused(node, "a change of what is made elsewhere", "a list of this function")
+                raise _Refused(
+                    node, "a change of what is made elsewhere", "a list of this function"
+                )
             self.expression(node.slice)
             return
         parts = [n for n in ast.walk(node) if isinstance(n, ast.expr)]
-        if not all(isinstance(part, ast.Name | ast.Tuple | ast.Starred | ast.List) for part in parts):
+        if not all(
+            isinstance(part, ast.Name | ast.Tuple | ast.Starred | ast.List) for part in parts
+        ):
             raise _Refused(node, "such an assignment", "names")
 
     def _kept(self, value: ast.expr, targets: list[ast.expr]) -> None:
@@ -223,9 +277,9 @@ class _Function:
             raise _Refused(node, "an iterator that is kept", "a list: [... for ... in ...]")
         if isinstance(node, ast.Attribute):
             self._attribute(node)
-        if isinstance(node, ast.Name) and hasattr(builtins, node.id):
-            if node.id not in BUILTINS | self.imported:
-                raise _Refused(node, f"{node.id}", "the claim's statements")
+        python = isinstance(node, ast.Name) and hasattr(builtins, node.id)
+        if isinstance(node, ast.Name) and python and node.id not in BUILTINS | self.imported:
+            raise _Refused(node, f"{node.id}", "the claim's statements")
         if isinstance(node, ast.Compare) and not all(isinstance(o, COMPARISONS) for o in node.ops):
             raise _Refused(node, "`is`", "==, or c.same of two values")
         if isinstance(called, ast.Attribute):
@@ -242,7 +296,9 @@ class _Function:
         of_module = isinstance(node.value, ast.Name) and node.value.id in self.imported
         hidden = node.attr in HIDDEN and not of_module
         if hidden or (node.attr.startswith("_") and node.attr != "__name__"):
-            raise _Refused(node, f"{node.attr!r} of the claim", "its statements: c.show, c.premise, ...")
+            raise _Refused(
+                node, f"{node.attr!r} of the claim", "its statements: c.show, c.premise, ..."
+            )
         if node.attr == "calls" and self.nested:
             raise _Refused(node, "c.calls in an inner function", "c.calls in `claim`")
 

@@ -98,6 +98,14 @@ def _of_meaning(entry: Entry, home: Home, proofs: Proofs) -> Iterator[str]:
         theorems = proofs.resting(proofs.about(entry.name))
         if not any(full in proofs.relations[theorem].definitions for theorem in theorems):
             yield f"implements {named}, which none of its theorems uses (c.define)"
+        elif not any(
+            (full_name(entry.function), full) in proofs.relations[theorem].pairs
+            for theorem in theorems
+        ):
+            yield (
+                f"implements {named}, which none of its theorems holds it against: a goal relates "
+                "the two, and does not hold of other functions as well"
+            )
         same = is_restated(entry, home)
         if same and not entry.restates:
             yield (

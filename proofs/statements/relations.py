@@ -30,6 +30,7 @@ from cratous.proofs.engine.theorem_files import FOLDER, load_claim
 from cratous.proofs.ledger import recall
 from cratous.proofs.statements.sides import sides, signs
 
+SAYS_RLIMIT = 200_000
 Function = Callable[..., Any]
 
 
@@ -47,6 +48,11 @@ class Relations:
     follows: frozenset[tuple[str, str]]
     leads: frozenset[tuple[str, str]]
     lemmas: tuple[str, ...]
+
+    @property
+    def pairs(self) -> frozenset[tuple[str, str]]:
+        """All pairs, however they are related."""
+        return self.together | self.follows | self.leads
 
 
 def full_name(function: Any) -> str:
@@ -224,13 +230,21 @@ def relations(name: str, folder: Path = FOLDER) -> Relations:
         return Relations(_named_in(statement), NONE, NONE, NONE, tuple(sorted(set(claim.lemmas))))
     found: dict[str, set[tuple[str, str]]] = {"together": set(), "follows": set(), "leads": set()}
     for number, owed in enumerate(claim.obligations):
-        if owed.kind in ("goal", "base", "step", "use"):
+        if owed.kind in ("goal", "base", "step", "use") and _says(claim, owed.goal):
             evaluated = claim.known_then.get(number, frozenset())
             for how, pair in _pairs(claim, owed.goal, evaluated, induction=owed.kind != "goal"):
                 found[how].add(pair)
     used = frozenset(full_name(f) for f in claim.arguments if in_spec(f))
     pairs = {how: frozenset(some) for how, some in found.items()}
     return Relations(used, lemmas=tuple(sorted(set(claim.lemmas))), **pairs)
+
+
+def _says(claim: _Outline, goal: z3.BoolRef) -> bool:
+    """Does it say anything of the kernels and definitions? Not if it holds of any others as well."""
+    solver = z3.Solver()
+    solver.set("rlimit", SAYS_RLIMIT)
+    solver.add(*claim.premises, z3.Not(goal))
+    return bool(solver.check() != z3.unsat)
 
 
 def _pairs(

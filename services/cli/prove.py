@@ -216,9 +216,10 @@ def prove(
             f"{gate.place_of(name)}: {_end(name)}: no theorem is about this kernel"
             for name in inventory.bare
         ]
-    problems = [*structural, *(str(finding) for finding in inventory.findings)]
-    unmeant = _meaning(theorems, home, private_cache()) if whole else []
-    problems += unmeant
+        structural += [str(finding) for finding in inventory.findings]
+    problems = structural or [str(finding) for finding in inventory.findings]
+    unmeant = _meaning(theorems, home, private_cache()) if whole and not structural else []
+    problems = [*problems, *unmeant]
     if whole and home.product:
         lint = remembered.text("decisions", "", lambda: json.dumps(decisions.unexplained()))
         problems += json.loads(lint)
@@ -235,7 +236,7 @@ def prove(
         if not as_json:
             click.echo(f"{count} SMT-LIB files in {smt2_folder}")
     proved = sum(t.proved for t in theorems)
-    if whole and not structural and not unmeant:
+    if whole and not problems:
         if check:
             old = home.ledger.read_text(encoding="utf-8") if home.ledger.is_file() else ""
             if ledger.text(inventory, home, remembered) != old:

@@ -1,0 +1,107 @@
+"""What an induction over the items of a fold may speak of.
+
+The rule. Let the accumulators of kernel and definition be arbitrary, and so the item. If the relation
+holds of both starts (base), if one step keeps it for any item that satisfies the premises (step), and
+if it makes the two results equal (use), then the results are equal for every list of items that
+satisfy the premises: by induction on its length. This needs that the relation is one and the same
+after every item, so it does not depend on the item; that the definition's step and result depend on
+its own accumulator; that the context is the same for all items; and that base and use hold for the
+empty list too, so they may not use that there is an item which satisfies the premises.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import z3
+
+from cratous.proofs.engine.terms import Stub, free_names, known, leaves
+
+if TYPE_CHECKING:
+    from cratous.proofs.engine.claim import Claim
+
+
+def names_in(value: Any) -> set[str]:
+    """The names of the arbitrary values in a value."""
+    return set().union(*[free_names(known(leaf)) for leaf in leaves(value)])
+
+
+def spread(names: set[str], claim: Claim) -> set[str]:
+    """These names and those of all that depends on them: results of opaque functions, and roots."""
+    found = set(names)
+    while True:
+        more: set[str] = set()
+        for stub in claim.stubs.values():
+            if not isinstance(stub, Stub):
+                continue  # an outline of the statement, in which nothing is proved
+            for args, result in zip(stub.calls, stub.results.values(), strict=True):
+                if names_in(args) & found:
+                    more |= names_in(result)
+        for fact in claim.facts:
+            inside = free_names(fact)
+            if inside & found:
+                more |= {name for name in inside if name.startswith("sqrt!")}
+        if more <= found:
+            return found
+        found |= more
+
+
+def _apart(what: str, value: Any, others: set[str]) -> None:
+    shared = sorted(names_in(value) & others)
+    if shared:
+        raise ValueError(f"{what} depends on {shared[0]}")
+
+
+class Induction:
+    """Checks one induction of a claim; acc, model: the accumulators."""
+
+    def __init__(self, claim: Claim, acc: Any, model: Any, item: Any) -> None:
+        self.claim, self.acc, self.model, self.item = claim, acc, model, item
+        own = [known(leaf) for leaf in leaves(item)]
+        plain = all(z3.is_const(t) and t.decl().kind() == z3.Z3_OP_UNINTERPRETED for t in own)
+        if not plain or len(names_in(item)) < len(own):
+            raise ValueError(
+                "a fold's item is made of distinct arbitrary values: any item may come"
+            )
+        self.premises = list(claim.premises)
+
+    def relation(self, *terms: z3.BoolRef, start: Any, context: Any) -> None:
+        """The relation, before an item and at the start, and the context do not know the item."""
+        item = spread(names_in(self.item), self.claim)
+        for term in terms:
+            shared = sorted(free_names(term) & item)
+            if shared:
+                raise ValueError(
+                    f"the relation depends on the item's {shared[0]}: it has to hold after every "
+                    "item, so it speaks of the accumulators"
+                )
+        _apart("the definition's start", start, item | spread(names_in(self.acc), self.claim))
+        _apart("the fold's context", context, item)
+
+    def model_only(self, after: Any, result: Any) -> None:
+        """The definition's step and result depend on its own accumulator, not on the kernel's."""
+        acc = spread(names_in(self.acc), self.claim)
+        _apart("the definition's step", after, acc)
+        _apart("the definition's result", result, acc | spread(names_in(self.item), self.claim))
+        if len(self.claim.premises) != len(self.premises):
+            raise ValueError("an induction's relation and steps state no premises")
+
+    @contextmanager
+    def without_items(self) -> Iterator[None]:
+        """What is owed in here is owed for the empty list too: no premise on an item is given."""
+        claim = self.claim
+        item = spread(names_in(self.item), claim)
+        free = [p for p in claim.premises if not free_names(p) & item]
+        if len(free) == len(claim.premises):
+            yield
+            return
+        premises, facts = claim.premises, claim.facts
+        # what was shown before may rest on the premises that are left out
+        claim.premises, claim.facts = free, [*claim.roots, *claim.congruences, *claim.granted]
+        kept = len(claim.facts)
+        try:
+            yield
+        finally:
+            claim.premises, claim.facts = premises, [*facts, *claim.facts[kept:]]
