@@ -21,7 +21,7 @@ import z3
 
 from cratous.core.kernel import REGISTRY, Fold
 from cratous.core.kernel.sources import digest, ours
-from cratous.core.ledger import Home
+from cratous.core.ledger.home import Home
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.lift import LiftError
 from cratous.proofs.engine.symbolic import _raw
