@@ -137,6 +137,12 @@ class Keys:
         """The walk over the prover, up to the readings and what only remembers."""
         return self.deciding(PROVER)
 
+    def asking(self, roots: Iterable[str]) -> Walk:
+        """The walk over code that puts questions, up to what only remembers."""
+        left_out = {p: f"remembers {k}" for k, p in enumerate(self._roots(REMEMBERS))}
+        border = Border(frozenset(left_out), left_out.__getitem__)
+        return walk(self.tree, self._roots(roots), border, excused=EXCUSED)
+
     def deciding(self, roots: Iterable[str]) -> Walk:
         """The walk over code that decides, up to the readings and what only remembers."""
         left_out = {p: str(k) for k, p in enumerate(self._roots(REMEMBERS))}

@@ -19,16 +19,16 @@ from cratous.core.kernel.sources import digest
 from cratous.core.ledger.keys import Keys, solver_version
 
 ASKING = (
-    "proofs.engine.prover._decide",
-    "proofs.engine.prover._satisfiable",
-    "proofs.engine.merkle.Hasher",
+    "proofs.engine.prover._ask",
+    "proofs.engine.smtlib.question",
+    "proofs.engine.merkle.Hasher.key",
 )
 """What decides how a question is put, and what its answer is."""
 
 
 @functools.cache
 def _strategy() -> str:
-    return Keys().deciding(ASKING).digest
+    return Keys().asking(ASKING).digest
 
 
 @dataclass(frozen=True)
