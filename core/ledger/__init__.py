@@ -19,7 +19,7 @@ from typing import Any
 from cratous.core.kernel import REGISTRY, Entry, named
 from cratous.core.kernel.names import short
 from cratous.core.kernel.sources import altered, position
-from cratous.core.ledger.home import PRODUCT, Home, package, theorem_file, theorem_name
+from cratous.core.ledger.home import PRODUCT, Home, package, theorem_file, theorem_home, theorem_name
 from cratous.core.ledger.keys import MISSING, PARTS, Keys, compiler, solver_version
 from cratous.core.ledger.records import read
 from cratous.spec.errors import BadInput, Refused
@@ -78,6 +78,20 @@ def load_all(home: Home = PRODUCT) -> dict[str, Entry]:
     return {n: entry for n, entry in sorted(REGISTRY.items()) if _top(entry) == home.name}
 
 
+def _not_proved(names: list[str], theorems: dict[str, Any], home: Home) -> str:
+    """The first of these theorems, or of this home's lemmas that they rest on, without a proof."""
+    todo, seen = list(names), set(names)
+    for name in todo:
+        record = theorems.get(name.removeprefix(f"{home.name}."))
+        if record is None and name not in names and theorem_home(name, home) != home:
+            continue  # another ledger's
+        if record is None or record["status"] != "proved":
+            return name
+        todo += [lemma for lemma in record["lemmas"] if lemma not in seen]
+        seen.update(record["lemmas"])
+    return ""
+
+
 def _problems(home: Home, entries: dict[str, Entry], data: dict[str, Any]) -> Iterator[Problem]:
     theorems, keys = data["theorems"], Keys(home)
     for name, entry in entries.items():
@@ -87,6 +101,9 @@ def _problems(home: Home, entries: dict[str, Entry], data: dict[str, Any]) -> It
             continue
         if record["status"] != "proved":
             yield Problem(name, f"it is {record['status']}")
+            continue
+        if lacking := _not_proved(record["theorems"], theorems, home):
+            yield Problem(name, f"it rests on what is not in the ledger as proved: {lacking}")
             continue
         now, then = keys.of(entry, record["theorems"], theorems), record["key"]
         changed = [PARTS[p] for p in PARTS if now[p] != then.get(p) or now[p] == MISSING]

@@ -271,6 +271,10 @@ class Keys:
         """A theorem, or a lemma of it, asks for whatever is registered."""
         return any(found.registry for found in self._statements(name))
 
+    def lemmas(self, name: str) -> frozenset[str]:
+        """The names by which a theorem, and the lemmas that it rests on, call others."""
+        return frozenset(other for found in self._statements(name) for other in found.strings)
+
     def functions(self, name: str) -> frozenset[str]:
         """Qualified names of all functions, folds and classes that a theorem or a lemma could meet."""
         found: set[str] = set()

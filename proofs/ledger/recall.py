@@ -51,10 +51,12 @@ class Recall:
         meaning = self.keys.theorem(name)
         if meaning == MISSING:
             return None
+        # what is kept names kernels and lemmas, which a move renames
+        names = sorted({*self.keys.functions(name), *self.keys.lemmas(name)})
         asked = self._registered if self.keys.asks_registry(name) else ""
         shared = [self.keys.shared[part] for part in ("prover", "readings", "solver")]
         versions = [platform.python_version(), str(RLIMIT)]
-        return digest([self.home.name, name, meaning, asked, *shared, *versions])
+        return digest([self.home.name, name, meaning, *names, asked, *shared, *versions])
 
     def get(self, name: str) -> Theorem | None:
         """The theorem, if it was proved of the very same definitions."""
