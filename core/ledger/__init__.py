@@ -19,7 +19,14 @@ from typing import Any
 from cratous.core.kernel import REGISTRY, Entry, named
 from cratous.core.kernel.names import short
 from cratous.core.kernel.sources import altered, position
-from cratous.core.ledger.home import PRODUCT, Home, package, theorem_file, theorem_home, theorem_name
+from cratous.core.ledger.home import (
+    PRODUCT,
+    Home,
+    package,
+    theorem_file,
+    theorem_home,
+    theorem_name,
+)
 from cratous.core.ledger.keys import MISSING, PARTS, Keys, compiler, solver_version
 from cratous.core.ledger.records import read
 from cratous.spec.errors import BadInput, Refused

@@ -38,6 +38,11 @@ READINGS = (
     "core.compiled.compiled",
     "core.compiled.exact",
     "core.readings.machine.compiled.machine",
+    "core.readings.exact.exactly",
+    "core.readings.exact.folds.folded",
+    "core.readings.enclosed.enclosed",
+    "core.readings.tiered.swift",
+    "core.readings.tiered.at_once",
     "core.ledger.require",
 )
 """How a kernel is marked, compiled, read exactly, and held to what was proved: with all they rest on."""
@@ -90,7 +95,8 @@ class Keys:
 
     def __init__(self, home: Home = PRODUCT, edits: Mapping[Path, bytes] | None = None) -> None:
         self.home = home
-        packages, parts = {"cratous": PRODUCT.root}, {"cratous": ("spec", "core", "proofs")}
+        packages = {"cratous": PRODUCT.root}
+        parts: dict[str, tuple[str, ...]] = {"cratous": ("spec", "core", "proofs")}
         if not home.product:
             packages[home.name], parts[home.name] = home.root, ("",)
         self.tree = Tree(packages, parts, edits)
@@ -117,7 +123,7 @@ class Keys:
         return tuple(place for home, number, own in methods for place in ((home, number), own))
 
     def _roots(self, names: Iterable[str]) -> list[Place]:
-        found = []
+        found: list[Place] = []
         for name in names:
             places = self.places(f"cratous.{name}")
             if not places:
@@ -222,7 +228,9 @@ class Keys:
 
     def _module(self, name: str) -> str | None:
         home = theorem_home(name, self.home, self._files)
-        return home and home.module(self._files[home][name.rpartition(".")[2]])
+        if home is None:
+            return None
+        return home.module(self._files[home][name.rpartition(".")[2]])
 
     def _read(self, name: str) -> tuple[str, tuple[str, ...]] | None:
         found = self.statement(name)

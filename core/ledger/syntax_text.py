@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 WORD = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*")
+PATTERN = re.compile(r"[\w.*]*[a-z][\w.*]*")
 IDENTIFIERS = re.compile(r"[A-Za-z_][\w.]*")
 SILENT = frozenset({"ctx", "type_comment", "kind", "type_ignores"})
 BY_NAME = frozenset({"getattr", "setattr", "delattr", "hasattr"})
@@ -43,7 +44,8 @@ class Reading:
 
     names: what it looks up outside of itself, with the attributes that follow, as `module.name`;
     attributes: every attribute that it names; imports: (name, module, name there) of imports inside of
-    functions; strings: texts that could be names, in order; rebinds: names of its module that it binds
+    functions; strings: texts that could be names, in order, with `*` for what is only known when the
+    code runs; rebinds: names of its module that it binds
     when it runs; asks: the words of ANY_ATTRIBUTE and ANYTHING by which it looks something up.
     """
 
@@ -199,6 +201,23 @@ class _Reader:
         else:
             self.found.parts.append(f"C{type(node.value).__name__} {node.value!r},")
 
+    def joined(self, node: ast.JoinedStr) -> None:
+        self.pattern(node.values)
+        self.plain(node)
+
+    def added(self, node: ast.BinOp) -> None:
+        if isinstance(node.op, ast.Add):
+            self.pattern([node.left, node.right])
+        self.plain(node)
+
+    def pattern(self, parts: list[ast.expr]) -> None:
+        """A text that is put together: it could be any name that its written parts fit."""
+        known = [p.value if isinstance(p, ast.Constant) else "*" for p in parts]
+        text = "".join(p if isinstance(p, str) else "" for p in known)
+        written = any(isinstance(p, ast.Constant) and isinstance(p.value, str) for p in parts)
+        if written and "*" in text and PATTERN.fullmatch(text):
+            self.found.strings.append(text)
+
     def annotation(self, node: ast.expr | None) -> None:
         if node is None:
             self.found.parts.append("-,")
@@ -230,7 +249,8 @@ class _Reader:
             self.annotation(node.returns)
         self.node(node.args)  # defaults and annotations belong to what is around
         inside = [node.body] if isinstance(node, ast.Lambda) else [*node.body]
-        bound, outer = set(), set()
+        bound: set[str] = set()
+        outer: set[str] = set()
         for what, name in _bindings(inside):
             (outer if what == "global" else bound).add(name)
         self.found.rebinds |= outer & bound
@@ -300,6 +320,8 @@ SPECIAL: dict[type[ast.AST], Callable[[_Reader, Any], None]] = {
     ast.Attribute: _Reader.attribute,
     ast.Call: _Reader.call,
     ast.Constant: _Reader.constant,
+    ast.JoinedStr: _Reader.joined,
+    ast.BinOp: _Reader.added,
     ast.arg: _Reader.argument,
     ast.AnnAssign: _Reader.annotated,
     ast.FunctionDef: _Reader.scope,

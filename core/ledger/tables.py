@@ -7,6 +7,7 @@ as well. It is kept in the private cache under the hash of that text.
 from __future__ import annotations
 
 import ast
+import copy
 import functools
 import hashlib
 import json
@@ -112,7 +113,8 @@ def restored(data: dict[str, Any]) -> Table:
     for row in data["units"]:
         pairs = {n: tuple(map(tuple, row.pop(n))) for n in ("imports", "methods")}
         lists = {n: tuple(v) if isinstance(v, list) else v for n, v in row.items()}
-        units.append(Unit(**lists, **pairs))
+        fields: dict[str, Any] = {**lists, **pairs}
+        units.append(Unit(**fields))
     bound = {name: tuple(found) for name, found in data["bound"].items()}
     rest = (tuple(data["loose"]), tuple(data["stars"]), data["sentence"], data["digest"])
     return Table(tuple(units), bound, *rest)
@@ -213,21 +215,16 @@ class _Maker:
 
     def of_class(self, node: ast.ClassDef) -> int:
         """The class with what always counts of it; its other methods are units of their own."""
-        methods, always = {}, []
+        methods: dict[str, list[ast.stmt]] = {}
+        always: list[ast.stmt] = []
         for inner in node.body:
             dunder = isinstance(inner, FUNCTIONS) and inner.name.startswith("__")
             if isinstance(inner, FUNCTIONS) and not dunder and not _told(inner):
                 methods.setdefault(inner.name, []).append(inner)
             elif not silent(inner):
                 always.append(inner)
-        head = ast.ClassDef(
-            name=node.name,
-            bases=node.bases,
-            keywords=node.keywords,
-            body=always,
-            decorator_list=node.decorator_list,
-            **({"type_params": node.type_params} if sys.version_info >= (3, 12) else {}),
-        )
+        head = copy.copy(node)
+        head.body = always
         numbers = [
             (name, self.unit("method", [*nodes], f"{node.name}.{name}"))
             for name, nodes in sorted(methods.items())

@@ -54,7 +54,7 @@ class Tree:
         """What a module defines; None if it is not of the tree."""
         if module not in self._tables:
             file = self.file(module)
-            self._tables[module] = file and self._read(file, module)
+            self._tables[module] = None if file is None else self._read(file, module)
         return self._tables[module]
 
     def _read(self, file: Path, module: str) -> Table:

@@ -8,6 +8,8 @@ method counts once something that was met names it, whatever object it is named 
 
 from __future__ import annotations
 
+import fnmatch
+import functools
 import hashlib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -91,7 +93,7 @@ class _Walk:
         self.edge: set[Place] = set()
         self.asks: dict[Place, frozenset[str]] = {}
         self.registry = False
-        self.strings: dict[str, None] = {}
+        self.strings: dict[str, int] = {}
         self.sha = hashlib.sha256()
 
     def say(self, text: str) -> None:
@@ -122,11 +124,11 @@ class _Walk:
         unit = self.tree.unit(place)
         self.say(unit.digest)
         for word in unit.strings:
-            named = word in self.known
-            if named:
-                self.strings[word] = None
+            names = _fitting(word, self.known)
+            for name in names:
+                self.strings.setdefault(name, len(self.strings))
             # which name it is follows from the order in which they are met
-            self.say(f"name {[*self.strings].index(word)}" if named else word)
+            self.say(f"names {[self.strings[name] for name in names]}" if names else word)
         for chain, targets in self.tree.edges(place):
             self.say(chain)
             for target in targets:
@@ -170,6 +172,15 @@ class _Walk:
             self.registry,
             tuple(self.strings),
         )
+
+
+@functools.cache
+def _fitting(word: str, known: frozenset[str]) -> tuple[str, ...]:
+    """The known names that a text is, or could become."""
+    if "*" not in word:
+        return (word,) if word in known else ()
+    fits = [n for n in known if ("." in n) == ("." in word) and fnmatch.fnmatchcase(n, word)]
+    return tuple(sorted(fits))
 
 
 def open_class(tree: Tree, place: Place) -> bool:

@@ -78,12 +78,15 @@ class Recall:
         return theorem if theorem.proved and theorem.name == name else None
 
     def put(self, theorems: Iterable[Theorem]) -> None:
-        """Keep those that are proved; a folder that cannot be written is no error."""
+        """Keep those that are proved; a folder that cannot be written is no error.
+
+        A theorem with a lemma whose name cannot be read in any text is not kept.
+        """
         for theorem in theorems:
             if self.folder is None or not theorem.proved:
                 continue
             name = self.key(theorem.name)
-            if name is None:
+            if name is None or not set(theorem.lemmas) <= self.keys.lemmas(theorem.name):
                 continue
             file = self.folder / name[:2] / name
             if file.is_file():

@@ -67,7 +67,11 @@ def _edited(place: str, old: str, new: str) -> Recall:
         ("core/daa/climb.py", "return ", "return 0 + "),
         ("core/kernel/__init__.py", "x: float\n    y: float", "y: float\n    x: float"),
         ("proofs/engine/prover.py", '"unsat": "proved"', '"sat": "proved"'),
-        ("proofs/engine/lift.py", "def lift(", "def lift_(x):\n    return x\n\n\n@lift_\ndef lift("),
+        (
+            "proofs/engine/lift.py",
+            "def lift(",
+            "def lift_(x):\n    return x\n\n\n@lift_\ndef lift(",
+        ),
     ],
 )
 def test_a_change_of_what_is_behind_it_is_another_theorem(place, old, new, plain):

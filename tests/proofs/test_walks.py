@@ -177,6 +177,26 @@ def test_what_cannot_does_not(what: str, tmp_path: Path) -> None:
     assert one == other
 
 
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("'law_a'", ["law_a"]),
+        ("f'law_{x}'", ["law_a", "law_b"]),
+        ("'law_' + x", ["law_a", "law_b"]),
+        ("'other'", []),
+        ("f'law: {x}'", []),
+        ("f'{x}.{x}'", []),
+    ],
+)
+def test_names_in_texts_are_known(text: str, names: list[str], tmp_path: Path) -> None:
+    _digest(tmp_path, {**FILES, "use.py": f"def root(x):\n    return {text}\n"})
+    tree = Tree({"pkg": tmp_path}, {"pkg": ("",)})
+    (place,) = tree.meant("pkg.use", ("root",))
+    assert not isinstance(place, str)
+    known = frozenset({"law_a", "law_b", "rule", "pkg.law_a"})
+    assert list(walk(tree, [place], known=known).strings) == names
+
+
 def test_an_excuse_is_of_one_definition_and_one_way_of_looking(tmp_path: Path) -> None:
     files = {**FILES, "use.py": "def root(x):\n    return eval(x)\n"}
     _digest(tmp_path, files)
