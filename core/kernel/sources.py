@@ -1,9 +1,9 @@
-"""Hashes of what source code means: syntax trees without comments, layout or docstrings.
+"""Functions as they run, and what they rest on.
 
-Used by the ledger: a kernel's key must change with anything that could change its meaning, and
-with nothing else. Closures follow the `import` statements inside the product and inside packages
-that add kernels of their own (`add_package`). `altered` holds the code that runs against the file
-that is hashed, so that stale or planted byte code cannot stand in for the source.
+Used by the ledger, whose keys are hashes of text (`core/ledger/keys.py`): `constants` are the values that
+a function rests on, and `altered` holds the code that runs against the file that is hashed, so that
+stale or planted byte code cannot stand in for the source. What counts is the product's, and that of
+packages that add kernels of their own (`add_package`).
 """
 
 from __future__ import annotations
@@ -191,6 +191,14 @@ def altered(item: Callable[..., Any] | Fold[Any]) -> list[str]:
 
 @functools.cache
 def _as_written(function: types.FunctionType, code: types.CodeType) -> bool:
-    """A function runs what its file says; code: what it runs now, so that it is looked at anew."""
+    """A function runs what the file of its module says, which lies where the module should.
+
+    code: what it runs now, so that it is looked at anew.
+    """
     file = Path(str(sys.modules[function.__module__].__file__)).resolve()
+    top, *parts = function.__module__.split(".")
+    if top in PACKAGES:
+        base = PACKAGES[top].joinpath(*parts)
+        if file not in (base.with_suffix(".py"), base / "__init__.py"):
+            return False
     return _written(file).get(_name(code)) == _hash(code)

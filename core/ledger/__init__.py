@@ -27,7 +27,8 @@ from cratous.core.ledger.home import (
     theorem_home,
     theorem_name,
 )
-from cratous.core.ledger.keys import MISSING, PARTS, Keys, compiler, solver_version
+from cratous.core.ledger.keys import Keys
+from cratous.core.ledger.parts import MISSING, PARTS, compiler, solver_version
 from cratous.core.ledger.records import read
 from cratous.spec.errors import BadInput, Refused
 
@@ -126,7 +127,10 @@ def check(folder: Path | None = None, home: Home = PRODUCT) -> Standing:
     """Hold every registered kernel, fold and driver of a home against its ledger, or another folder's."""
     entries = load_all(home)
     data = read(home.records if folder is None else folder)
-    problems = tuple(_problems(home, entries, data))
+    try:
+        problems = tuple(_problems(home, entries, data))
+    except (SyntaxError, OSError, LookupError) as error:
+        raise Refused(f"what the proofs rest on cannot be read: {error}") from error
     records = data["theorems"].values()
     proved = sum(record["status"] == "proved" for record in records)
     assumed = sum(len(record["assumptions"]) for record in records)

@@ -33,7 +33,7 @@ EXCUSES: dict[str, tuple[tuple[str, ...], str]] = {
         ("import_module", "importlib"),
         "the package with its kernels has a ledger of its own",
     ),
-    "core.ledger.keys.version": (("importlib",), "the versions are parts of each key"),
+    "core.ledger.parts.version": (("importlib",), "the versions are parts of each key"),
     "core.ledger.records.read": (("read_text",), "it reads what the keys are held against"),
     "core.ledger.syntax_text._Reader.plain": (("getattr",), TABLE),
     "core.ledger.tables._table": (("read_text",), TABLE),

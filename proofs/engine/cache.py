@@ -16,7 +16,8 @@ from pathlib import Path
 
 from cratous.core.files.private_cache import private_cache
 from cratous.core.kernel.sources import digest
-from cratous.core.ledger.keys import Keys, solver_version
+from cratous.core.ledger.keys import Keys
+from cratous.core.ledger.parts import solver_version
 
 ASKING = (
     "proofs.engine.prover._ask",

@@ -21,7 +21,8 @@ from typing import Any
 from cratous.core import ledger as gate
 from cratous.core.kernel.sources import digest
 from cratous.core.ledger.home import PRODUCT, Home
-from cratous.core.ledger.keys import MISSING, Keys
+from cratous.core.ledger.keys import Keys
+from cratous.core.ledger.parts import MISSING
 from cratous.proofs.engine.prover import RLIMIT, Theorem, restore
 
 

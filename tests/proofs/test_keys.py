@@ -12,8 +12,10 @@ import pytest
 from cratous.core import ledger
 from cratous.core.kernel.sources import ROOT, reached
 from cratous.core.ledger import keys as keys_module
+from cratous.core.ledger import parts
 from cratous.core.ledger.excuses import EXCUSED, EXCUSES
-from cratous.core.ledger.keys import MISSING, PROVER, READINGS, REMEMBERS, Keys
+from cratous.core.ledger.keys import Keys
+from cratous.core.ledger.parts import MISSING, PROVER, READINGS, REMEMBERS
 from cratous.core.ledger.walks import Walk
 
 ENTRIES = ledger.load_all()
@@ -300,12 +302,12 @@ def _recorded_as_missing() -> dict:
 
 
 @pytest.mark.parametrize("name", ["z3-solver", "numba", "llvmlite", "numpy"])
-def test_another_version_of_a_tool_is_noticed(
-    name: str, keys: Keys, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    real, other = keys_module.version, Keys()
-    monkeypatch.setattr(keys_module, "version", lambda n: "9.9" if n == name else real(n))
-    changed = {part for part in keys.shared if keys.shared[part] != other.shared[part]}
+def test_another_version_of_a_tool_is_noticed(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    real, other = parts.version, Keys()
+    other.shared  # noqa: B018  (read before the version changes)
+    monkeypatch.setattr(parts, "version", lambda n: "9.9" if n == name else real(n))
+    now = Keys().shared
+    changed = {part for part in now if now[part] != other.shared[part]}
     assert changed == {"solver" if name == "z3-solver" else "flags"}
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from cratous.core import ledger as gate
 from cratous.core.kernel.sources import ROOT
-from cratous.core.ledger import keys
+from cratous.core.ledger import parts
 from cratous.core.ledger.keys import Keys
 from cratous.proofs import ledger
 from cratous.proofs.claim import Claim
@@ -122,7 +122,7 @@ def test_another_version_is_another_theorem(what, monkeypatch, plain):
     if what == "python_version":
         monkeypatch.setattr(recall.platform, what, lambda: "0.0")
     else:
-        monkeypatch.setattr(keys, "version", lambda name: "0.0")
+        monkeypatch.setattr(parts, "version", lambda name: "0.0")
     assert Recall(None).key(NAME) != before
 
 
