@@ -187,6 +187,30 @@ def test_two_lemmas_do_not_change_places_unseen(keys: Keys) -> None:
     assert Keys(edits={file: swapped.encode()}).theorem(name) != keys.theorem(name)
 
 
+MAKERS = {
+    "core.kernel.fold": "registers the fold, which has a key of its own",
+    "core.readings.exact.folds.folded": "makes a reading of a fold that it is given",
+    "spec.daa.parameters._key": "makes a record from what it is given",
+}
+"""Functions of ours that are called when a module is read, to make a value."""
+
+
+def test_values_of_modules_are_made_by_functions_that_change_nothing_else(keys: Keys) -> None:
+    """A call in an assignment counts for the name alone: were it to change others, a key would not see."""
+    called = set()
+    for module in keys.tree.every_module:
+        file = keys.tree.file(module)
+        body = ast.parse(file.read_text(encoding="utf-8")).body if file else []
+        values = [n.value for n in body if isinstance(n, ast.Assign | ast.AnnAssign) and n.value]
+        for node in (inner for value in values for inner in ast.walk(value)):
+            name = ast.unparse(node.func) if isinstance(node, ast.Call) else ""
+            if name.replace(".", "").isidentifier():
+                for place in keys.tree.meant(module, tuple(name.split("."))):
+                    if not isinstance(place, str) and keys.tree.unit(place).kind == "function":
+                        called.add(keys.name(place).removeprefix("cratous."))
+    assert called == set(MAKERS)
+
+
 # -- what cannot be followed -----------------------------------------------------------------
 def _statements(keys: Keys) -> list[tuple[str, Walk]]:
     found = [(name, keys.statement(name)) for name in sorted(DATA["theorems"])]

@@ -4,64 +4,19 @@ from __future__ import annotations
 
 import importlib.util
 import os
-import shutil
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from ledger_tools import RESEAL, check, copied, prove
 
 from cratous.core import ledger
-
-PARTS = ("spec", "core", "proofs", "bridge", "services")
-CHECK = """
-import sys
-from cratous.core import ledger
-try:
-    print(ledger.require().line)
-except Exception as error:
-    print(type(error).__name__, error)
-    sys.exit(1)
-"""
 
 
 @pytest.fixture(scope="module")
 def product(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the product as it would be installed, with its ledger."""
-    home = tmp_path_factory.mktemp("product")
-    for part in PARTS:
-        shutil.copytree(
-            root / part, home / "cratous" / part, ignore=shutil.ignore_patterns("__pycache__")
-        )
-    for name in ("__init__.py", "__main__.py"):
-        shutil.copy(root / "src" / "cratous" / name, home / "cratous")
-    return home
-
-
-def _prove(home: Path, *options: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "cratous", "prove", *options],
-        cwd=home,
-        env={**os.environ, "PYTHONPATH": str(home), "PYTHONDONTWRITEBYTECODE": "1"},
-        capture_output=True,
-        text=True,
-        timeout=600,
-    )
-
-
-def _check(home: Path, first: str = "") -> subprocess.CompletedProcess[str]:
-    environment = {**os.environ, "PYTHONPATH": str(home), "PYTHONDONTWRITEBYTECODE": "1"}
-    # from another folder and without the checkout's editable install on the path
-    code = f"import sys; sys.path.insert(0, {str(home)!r})\n" + first + CHECK
-    return subprocess.run(
-        [sys.executable, "-c", code],
-        cwd=home,
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=900,
-    )
+    return copied(root, tmp_path_factory.mktemp("product"))
 
 
 def test_the_committed_ledger_vouches_for_the_committed_code():
@@ -155,7 +110,7 @@ def test_attack_is_caught(name: str, product: Path) -> None:
         assert old in original, f"{old!r} is not in {place}: this attack needs an update"
         file.write_text(original.replace(old, new))
     try:
-        done = _check(product)
+        done = check(product)
     finally:
         file.write_text(original)
     assert done.returncode == 1, done.stdout + done.stderr
@@ -164,7 +119,7 @@ def test_attack_is_caught(name: str, product: Path) -> None:
 
 
 def test_the_untouched_product_is_vouched_for(product: Path) -> None:
-    done = _check(product)
+    done = check(product)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "NOT VOUCHED" not in done.stdout
 
@@ -183,7 +138,7 @@ def test_planted_byte_code_is_caught(product: Path) -> None:
     cached.parent.mkdir(exist_ok=True)
     cached.write_bytes(code)
     try:
-        done = _check(product)
+        done = check(product)
     finally:
         cached.unlink()
     assert done.returncode == 1, done.stdout
@@ -194,7 +149,7 @@ def test_a_function_replaced_in_memory_is_caught(product: Path) -> None:
     code = "import cratous.core.well_clear as w\n"
     code += "exec(w.__file__ and 'def f(sz, vz, zthr_m, tcoa_s):\\n return False', vars(w))\n"
     code += "w.vertical_violation.__code__ = w.f.__code__\n"
-    done = _check(product, code)
+    done = check(product, code)
     assert done.returncode == 1, done.stdout + done.stderr
     assert "  vertical_violation: " in done.stdout
     assert "  violation: " in done.stdout  # it calls the replaced one
@@ -258,21 +213,6 @@ def test_machine_code_of_another_text_is_not_used(product: Path, tmp_path: Path)
     assert module.read_text() == text
 
 
-RESEAL = """
-from cratous.core import ledger
-from cratous.core.ledger import records
-folder = ledger.PRODUCT.records
-data, keys = ledger.read(folder), ledger.Keys()
-{edit}
-for name, entry in ledger.load_all().items():
-    record = data["kernels"][name]
-    record["key"] = keys.of(entry, record["theorems"], data["theorems"])
-for kind in records.KINDS:
-    data[kind] = {{name: records.sealed(name, record) for name, record in data[kind].items()}}
-records.write(records.texts(data), folder)
-"""
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("edit", "place", "old", "new", "wanted"),
@@ -301,8 +241,8 @@ def test_a_ledger_that_was_sealed_again_is_caught_by_proving(
         assert old in original
         file.write_text(original.replace(old, new))
     try:
-        assert _check(product, RESEAL.format(edit=edit)).returncode == 0
-        done = _prove(product, "--check")
+        assert check(product, RESEAL.format(edit=edit)).returncode == 0
+        done = prove(product, "--check")
     finally:
         file.write_text(original)
         for record, said in before.items():
@@ -319,7 +259,7 @@ def test_a_driver_that_no_longer_calls_its_checker_is_refused_by_the_prover(prod
     assert changed != original
     file.write_text(changed)
     try:
-        done = _prove(product)
+        done = prove(product)
     finally:
         file.write_text(original)
     assert done.returncode == 2, done.stdout + done.stderr
@@ -333,7 +273,7 @@ def test_comments_and_layout_change_nothing(product: Path) -> None:
     original = file.read_text()
     file.write_text(original.replace("    if ss <= dd:", "    # a remark\n    if  ss<=dd :"))
     try:
-        done = _check(product)
+        done = check(product)
     finally:
         file.write_text(original)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -347,7 +287,7 @@ def test_a_kernel_without_a_proof_is_refused(product: Path) -> None:
         '    """A sum."""\n    return a + b\n'
     )
     try:
-        done = _check(product)
+        done = check(product)
     finally:
         file.unlink()
     assert done.returncode == 1
@@ -373,94 +313,7 @@ def test_the_gate_is_quick(product: Path) -> None:
     """CPU seconds of the gate beyond the imports, with its tables made: 0.7 where this was written."""
     code = "import time\nfrom cratous.core import ledger\nledger.load_all()\nbegun = time.process_time()\n"
     code += "ledger.require()\nprint('took', time.process_time() - begun)\n"
-    _check(product)
-    done = _check(product, code)
+    check(product)
+    done = check(product, code)
     assert done.returncode == 0, done.stdout + done.stderr
     assert float(done.stdout.split("took ")[1].split()[0]) < 3
-
-
-# -- two branches ------------------------------------------------------------------------------
-def _git(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    options = ["-c", "user.name=a", "-c", "user.email=a@b", "-c", "commit.gpgsign=false"]
-    return subprocess.run(
-        ["git", *options, *words], cwd=folder, capture_output=True, text=True, timeout=120
-    )
-
-
-CHANGES = {
-    "now": ("core/well_clear/now.py", "    if ss <= dd:", "    if 0 + ss <= dd:"),
-    "gate": ("core/authority/gate.py", "Gate(1, gate.epoch + 1, False)", "Gate(1, 1 + gate.epoch, False)"),
-    "lasted": ("core/authority/timeliness.py", "now - since >= least", "least <= now - since"),
-    "again": ("core/authority/gate.py", "Gate(1, gate.epoch + 1, False)", "Gate(1, gate.epoch + 1 + 0, False)"),
-}  # fmt: skip
-
-
-def _branch(folder: Path, name: str, edit: Callable[[], None]) -> None:
-    assert _git(folder, "checkout", "-q", "-b", name, "main").returncode == 0
-    edit()
-    assert _git(folder, "commit", "-qam", name).returncode == 0
-
-
-@pytest.fixture(scope="module")
-def branches(product: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A scratch clone with a branch for each change of a kernel, its records written anew.
-
-    The changes keep the meaning; the keys are those that `cratous prove` would write, which the slow
-    test below runs.
-    """
-    folder = tmp_path_factory.mktemp("clone")
-    shutil.copytree(product, folder, dirs_exist_ok=True)
-    assert _git(folder, "init", "-q", "-b", "main").returncode == 0
-    _git(folder, "add", "-A")
-    assert _git(folder, "commit", "-qm", "main").returncode == 0
-    for name, (place, old, new) in CHANGES.items():
-        file = folder / "cratous" / place
-
-        def edit(file: Path = file, old: str = old, new: str = new) -> None:
-            text = file.read_text()
-            assert old in text, f"{old!r} is not in {file.name}: this case needs an update"
-            file.write_text(text.replace(old, new, 1))
-            assert _check(folder).returncode == 1, "the gate refuses what was not proved anew"
-            done = _check(folder, RESEAL.format(edit=""))
-            assert done.returncode == 0, done.stdout + done.stderr
-
-        _branch(folder, name, edit)
-    return folder
-
-
-@pytest.mark.parametrize(("one", "other"), [("now", "gate"), ("gate", "lasted"), ("lasted", "now")])
-def test_two_branches_that_change_two_kernels_merge_and_pass(
-    one: str, other: str, branches: Path
-) -> None:
-    assert _git(branches, "checkout", "-q", "-B", "merged", one).returncode == 0
-    merged = _git(branches, "merge", "-q", "--no-edit", other)
-    assert merged.returncode == 0, merged.stdout + merged.stderr
-    done = _check(branches)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "NOT VOUCHED" not in done.stdout
-
-
-def test_two_branches_that_change_one_kernel_do_not_merge_unseen(branches: Path) -> None:
-    assert _git(branches, "checkout", "-q", "-B", "merged", "gate").returncode == 0
-    merged = _git(branches, "merge", "-q", "--no-edit", "again")
-    _git(branches, "merge", "--abort")
-    assert merged.returncode != 0
-
-
-def test_a_merge_that_took_the_record_of_one_and_the_kernel_of_another_is_refused(
-    branches: Path,
-) -> None:
-    assert _git(branches, "checkout", "-q", "-B", "merged", "gate").returncode == 0
-    _git(branches, "checkout", "now", "--", f"cratous/{CHANGES['now'][0]}")
-    done = _check(branches)
-    _git(branches, "reset", "-q", "--hard")
-    assert done.returncode == 1
-    assert "horizontal_violation: changed since the proof: its source" in done.stdout
-
-
-@pytest.mark.slow
-def test_what_was_merged_is_what_a_proof_of_it_writes(branches: Path) -> None:
-    assert _git(branches, "checkout", "-q", "-B", "merged", "now").returncode == 0
-    assert _git(branches, "merge", "-q", "--no-edit", "lasted").returncode == 0
-    done = _prove(branches, "--check")
-    assert done.returncode == 0, done.stdout + done.stderr
