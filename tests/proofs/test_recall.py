@@ -83,7 +83,7 @@ def test_a_change_of_what_is_behind_it_is_another_theorem(place, old, new, plain
     [
         ("core/authority/gate.py", "gate.epoch + 1", "gate.epoch + 2"),
         ("spec/authority/gate.py", "return ", "return 0 or "),
-        ("core/daa/climb.py", "def ", "def unused(x: float) -> float:\n    return x\n\n\ndef "),
+        ("core/daa/climb.py", "\n\n\n", "\n\n\nUNUSED = 1\n\n\n"),
         ("proofs/ledger/recall.py", "file.is_file()", "file.exists()"),
     ],
 )
@@ -102,7 +102,7 @@ def test_a_theorem_about_whatever_is_registered_depends_on_every_kernel(plain):
     [
         "import importlib\nimportlib.import_module('far')",
         "from cratous.core.kernel import REGISTRY\nprint(REGISTRY)",
-        "text = open(__file__).read()",
+        "print(open(__file__).read())",
         "import sys\nsys.modules['far']",
     ],
 )
