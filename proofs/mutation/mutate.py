@@ -14,7 +14,7 @@ stillborn   the mutant cannot be run or lifted; apart, and not counted
 
 The budget is solver effort (rlimit), the order is fixed, and each mutant is judged in a process
 forked from one state: the result does not depend on the machine, on the number of processes, or
-on what was known before. Every verdict is stored when it is reached (`mutation_keys`), so a run
+on what was known before. Every verdict is stored when it is reached (`proofs/mutation/keys.py`), so a run
 that was stopped goes on where it was, and a change is paid for by what it touches alone.
 """
 

@@ -1,6 +1,6 @@
 """The mutation results that stand beside the proofs, `proofs/mutation/mutation.json`, and their document.
 
-Each target's results are kept under the key of all that they depend on (`mutation_keys`). A
+Each target's results are kept under the key of all that they depend on (`proofs/mutation/keys.py`). A
 result whose key is no longer that of the code is stale and listed as such; so is a kernel that
 was never mutated. A run on some targets replaces those and leaves the others alone.
 """
