@@ -1,27 +1,27 @@
-"""Hashes of what source code means: syntax trees without comments, layout or docstrings.
+"""Functions as they run, and what they rest on.
 
-Used by the ledger: a kernel's key must change with anything that could change its meaning, and
-with nothing else. Closures follow the `import` statements inside the product and inside packages
-that add kernels of their own (`add_package`). `altered` holds the code that runs against the file
-that is hashed, so that stale or planted byte code cannot stand in for the source.
+Used by the ledger, whose keys are hashes of text (`core/ledger/keys.py`): `constants` are the values that
+a function rests on, and `altered` holds the code that runs against the file that is hashed, so that
+stale or planted byte code cannot stand in for the source. What counts is the product's, and that of
+packages that add kernels of their own (`add_package`).
 """
 
 from __future__ import annotations
 
-import ast
+import contextlib
 import functools
 import hashlib
-import importlib
 import inspect
+import json
 import os
 import sys
-import textwrap
 import types
 from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, get_type_hints
 
+from cratous.core.files.private_cache import private_cache
 from cratous.core.kernel import Fold, qualified
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -45,7 +45,6 @@ def digest(parts: Iterable[str]) -> str:
 def add_package(name: str, folder: Path) -> None:
     """Let the sources of another package count as the product's own do."""
     PACKAGES[name] = folder.resolve()
-    imports.cache_clear()
 
 
 def ours(value: Any) -> bool:
@@ -76,116 +75,6 @@ def position(function: Any) -> str:
         return f"{place(file)}:{inspect.getsourcelines(function)[1]}"
     except OSError:
         return f"{function.__module__} (no source)"
-
-
-def module_file(name: str) -> Path | None:
-    """The source file of a module of ours; None for anything else."""
-    parts = name.split(".")
-    root = PACKAGES.get(parts[0])
-    if root is None:
-        return None
-    base = root.joinpath(*parts[1:])
-    for file in (base.with_suffix(".py"), base / "__init__.py"):
-        if len(parts) > 1 and file.is_file():
-            return file
-    return None
-
-
-def _strip_docstrings(tree: ast.AST) -> ast.AST:
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Module | ast.FunctionDef | ast.ClassDef):
-            body = node.body
-            if body and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant):
-                node.body = body[1:] or [ast.Pass()]
-    return tree
-
-
-def tree_text(source: str, *, docstrings: bool = False) -> str:
-    """The syntax tree as text; docstrings only if they matter (a theorem's is its sentence)."""
-    tree: ast.AST = ast.parse(source)
-    return ast.dump(tree if docstrings else _strip_docstrings(tree))
-
-
-def tree(path: Path, *, docstrings: bool = True) -> ast.Module:
-    """The syntax tree of a file as it is now; shared, so it must not be changed."""
-    stat = os.stat(path)
-    return _tree(path, docstrings, stat.st_mtime_ns, stat.st_size)
-
-
-@functools.cache
-def _tree(path: Path, docstrings: bool, changed_ns: int, size: int) -> ast.Module:
-    parsed = ast.parse(path.read_text(encoding="utf-8"))
-    if not docstrings:
-        _strip_docstrings(parsed)
-    return parsed
-
-
-@functools.cache
-def file_text(path: Path, docstrings: bool = False) -> str:
-    """The syntax tree of a file as text."""
-    return ast.dump(tree(path, docstrings=docstrings))
-
-
-def imported(path: Path) -> tuple[tuple[str, str], ...]:
-    """(module, name) of every import in a file; name is empty for `import module`."""
-    return _imported(path, tree(path))
-
-
-@functools.cache
-def _imported(path: Path, parsed: ast.Module) -> tuple[tuple[str, str], ...]:
-    return tuple(_import_statements(path, parsed))
-
-
-def _import_statements(path: Path, parsed: ast.Module) -> Iterator[tuple[str, str]]:
-    for node in ast.walk(parsed):
-        if isinstance(node, ast.Import):
-            yield from ((alias.name, "") for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            module = node.module or ""
-            if node.level:
-                package = _package_of(path)
-                up = package[: len(package) - node.level + 1]
-                module = ".".join([*up, *([module] if module else [])])
-            yield from ((module, alias.name) for alias in node.names)
-
-
-def _package_of(path: Path) -> list[str]:
-    for name, root in PACKAGES.items():
-        if path.is_relative_to(root):
-            return [name, *path.relative_to(root).parts[:-1]]
-    return []
-
-
-@functools.cache
-def imports(path: Path) -> tuple[Path, ...]:
-    """The files of the product that a file imports, at the top or anywhere inside."""
-    found = set()
-    for module, name in imported(path):
-        for candidate in (module, f"{module}.{name}"):
-            file = module_file(candidate)
-            if file is not None:
-                found.add(file)
-    return tuple(sorted(found))
-
-
-def closure(*paths: Path) -> tuple[Path, ...]:
-    """Files and everything of the product that they import, directly or not."""
-    seen: set[Path] = set()
-    todo = list(paths)
-    while todo:
-        file = todo.pop()
-        if file not in seen:
-            seen.add(file)
-            todo += imports(file)
-    return tuple(sorted(seen))
-
-
-def files_digest(files: Iterable[Path], *, docstrings: bool = False) -> str:
-    """One hash over the meaning of several files, names included."""
-    parts = []
-    for file in files:
-        parts += [place(file), file_text(file, docstrings)]
-    return digest(parts)
 
 
 def reached(item: Any) -> dict[str, Any]:
@@ -231,115 +120,85 @@ def _names(code: types.CodeType) -> Iterator[str]:
             yield from _names(constant)
 
 
-def function_parts(function: Callable[..., Any] | Fold[Any] | type) -> list[str]:
-    """The syntax trees of a function and of all that it calls or constructs, by name."""
-    parts = []
-    for name, value in sorted(reached(function).items()):
-        if inspect.isfunction(value) or inspect.isclass(value):
-            item: Any = value
-            parts.append(f"{name}={_source(item, getattr(item, '__code__', None))}")
-        else:
-            parts.append(f"{name}={type(value).__name__} {value!r}")
-    return parts
+def constants(item: Any) -> list[str]:
+    """The values of all constants that a function or fold rests on, in an order that no move changes."""
+    found = []
+    for name, value in reached(item).items():
+        last = name.rpartition(".")[2]
+        if name.startswith("fold "):
+            found.append(f"start {_shown(value[0])}")
+        elif isinstance(value, CONSTANTS) and not last.startswith("__"):
+            found.append(f"{last}={type(value).__name__} {_shown(value)}")
+    return sorted(found)
 
 
-@functools.cache
-def _source(value: Any, code: types.CodeType | None) -> str:
-    """The tree of a function or class; code: what a function runs now, so that it is read anew."""
-    try:
-        file = code.co_filename if code else str(sys.modules[value.__module__].__file__)
-        name = (code.co_qualname, code.co_firstlineno) if code else (value.__qualname__, 0)
-        stat = os.stat(file)
-        nodes = _defined(Path(file), stat.st_mtime_ns, stat.st_size).get(name, ())
-        if len(nodes) == 1:
-            return ast.dump(ast.Module([nodes[0]], []))
-        return tree_text(textwrap.dedent(inspect.getsource(value)))
-    except (OSError, SyntaxError):
-        return "no source"  # made at run time: it equals nothing that was proved
-
-
-@functools.cache
-def _defined(file: Path, changed_ns: int, size: int) -> dict[tuple[str, int], list[ast.stmt]]:
-    """Every function and class of a file without docstrings, by qualified name and first line.
-
-    The line of a class counts as 0: the class itself does not know it.
-    """
-    found: dict[tuple[str, int], list[ast.stmt]] = {}
-
-    def look(node: ast.AST, inside: str) -> None:
-        for child in ast.iter_child_nodes(node):
-            if isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef):
-                name = inside + child.name
-                first = min([child.lineno, *(mark.lineno for mark in child.decorator_list)])
-                found.setdefault((name, first), []).append(child)
-                look(child, f"{name}.<locals>.")
-            elif isinstance(child, ast.ClassDef):
-                found.setdefault((inside + child.name, 0), []).append(child)
-                look(child, f"{inside}{child.name}.")
-            else:
-                look(child, inside)
-
-    look(tree(file, docstrings=False), "")
-    return found
-
-
-def statement_parts(path: Path, engine: frozenset[Path]) -> list[str]:
-    """What a theorem file says: its tree, its sentence, and all that it takes from elsewhere.
-
-    engine: files that are hashed as the prover and therefore not here.
-    """
-    parts = [place(path), file_text(path, True)]
-    for module, name in sorted(set(imported(path))):
-        submodule = module_file(f"{module}.{name}") if name else module_file(module)
-        file = submodule or module_file(module)
-        if file is None or file in engine:
-            continue
-        value = None if submodule else getattr(importlib.import_module(module), name, None)
-        if isinstance(value, Fold) or inspect.isfunction(value) or inspect.isclass(value):
-            parts += function_parts(value)
-        elif value is not None and isinstance(value, CONSTANTS):
-            parts.append(f"{module}.{name}={type(value).__name__} {value!r}")
-        else:
-            parts.append(files_digest(f for f in closure(file) if f not in engine))
-    return parts
+def _shown(value: Any) -> str:
+    if isinstance(value, frozenset):
+        return f"{{{', '.join(sorted(map(_shown, value)))}}}"
+    if isinstance(value, tuple):
+        return f"({', '.join(map(_shown, value))})"
+    return repr(value)
 
 
 # -- the code that runs against the file that was hashed -------------------------------------
 @functools.cache
-def _written(file: Path) -> dict[tuple[str, int], types.CodeType]:
-    """Every code object that a file compiles to, by qualified name and line."""
-    found: dict[tuple[str, int], types.CodeType] = {}
-    todo = [compile(file.read_text(encoding="utf-8"), str(file), "exec", dont_inherit=True)]
+def _written(file: Path) -> dict[str, str]:
+    """The hash of every code object that a file compiles to, by qualified name and line.
+
+    Kept in the private cache by the hash of the file's text: compiling all files takes a second.
+    """
+    data = file.read_bytes()
+    maker = f"{sys.version} {sys.flags.optimize} {_hash.__code__.co_code!r}"
+    key = digest([maker, str(file), hashlib.sha256(data).hexdigest()])
+    kept = private_cache() / "codes" / key[:2] / key
+    with contextlib.suppress(OSError, ValueError, AttributeError):
+        return {str(n): str(h) for n, h in json.loads(kept.read_text(encoding="utf-8")).items()}
+    found = {}
+    todo = [compile(data, str(file), "exec", dont_inherit=True)]
     while todo:
         code = todo.pop()
-        found[code.co_qualname, code.co_firstlineno] = code
+        found[_name(code)] = _hash(code)
         todo += [c for c in code.co_consts if isinstance(c, types.CodeType)]
+    with contextlib.suppress(OSError):  # a folder that cannot be written is no error
+        kept.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+        part = kept.with_name(f"{key}.{os.getpid()}")
+        part.write_text(json.dumps(found), encoding="utf-8")
+        part.replace(kept)
     return found
 
 
-def _same_code(a: types.CodeType, b: types.CodeType) -> bool:
-    if (a.co_code, a.co_names, a.co_varnames, a.co_freevars, len(a.co_consts)) != (
-        b.co_code, b.co_names, b.co_varnames, b.co_freevars, len(b.co_consts),
-    ):  # fmt: skip
-        return False
-    for one, other in zip(a.co_consts, b.co_consts, strict=True):
-        if isinstance(one, types.CodeType) and isinstance(other, types.CodeType):
-            if not _same_code(one, other):
-                return False
-        elif type(one) is not type(other) or one != other:
-            return False
-    return True
+def _name(code: types.CodeType) -> str:
+    return f"{code.co_qualname}:{code.co_firstlineno}"
+
+
+def _hash(code: types.CodeType) -> str:
+    """What a code object does; line numbers and files count for nothing."""
+    parts = [code.co_code.hex(), *map(repr, (code.co_names, code.co_varnames, code.co_freevars))]
+    for value in code.co_consts:
+        inner = _hash(value) if isinstance(value, types.CodeType) else _shown(value)
+        parts.append(f"{type(value).__name__} {inner}")
+    return digest(parts)
 
 
 def altered(item: Callable[..., Any] | Fold[Any]) -> list[str]:
     """Functions that do not run what their source file says, of `item` and all it rests on."""
-    wrong = []
-    for name, value in reached(item).items():
-        if not inspect.isfunction(value):
-            continue
-        file = Path(str(sys.modules[value.__module__].__file__)).resolve()
-        code = value.__code__
-        written = _written(file).get((code.co_qualname, code.co_firstlineno))
-        if written is None or not _same_code(code, written):
-            wrong.append(name)
-    return sorted(wrong)
+    return sorted(
+        name
+        for name, value in reached(item).items()
+        if inspect.isfunction(value) and not _as_written(value, value.__code__)
+    )
+
+
+@functools.cache
+def _as_written(function: types.FunctionType, code: types.CodeType) -> bool:
+    """A function runs what the file of its module says, which lies where the module should.
+
+    code: what it runs now, so that it is looked at anew.
+    """
+    file = Path(str(sys.modules[function.__module__].__file__)).resolve()
+    top, *parts = function.__module__.split(".")
+    if top in PACKAGES:
+        base = PACKAGES[top].joinpath(*parts)
+        if file not in (base.with_suffix(".py"), base / "__init__.py"):
+            return False
+    return _written(file).get(_name(code)) == _hash(code)

@@ -41,10 +41,10 @@ def inventory() -> str:
     lines = [
         "# Proof inventory",
         "",
-        "Generated from `core/ledger.json` and `proofs/recheck.json` by `make docs`.",
+        "Generated from `core/ledger/records/` and `proofs/recheck.json` by `make docs`.",
         "",
         f"{len(theorems)} theorems, {obligations} obligations, {assumed} assumptions, "
-        f"{data.get('solver', 'no solver')}. All theorems are over the reals (or 64-bit "
+        f"{ledger.solver_version()}. All theorems are over the reals (or 64-bit "
         "integers); a verdict on doubles is exact where the same function is evaluated on "
         "rationals.",
         "",

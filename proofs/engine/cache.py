@@ -8,14 +8,28 @@ without a model are kept: a counterexample is always found anew.
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from cratous.core.files.private_cache import private_cache
-from cratous.core.kernel.sources import digest, files_digest
-from cratous.core.ledger import engine, solver_version
+from cratous.core.kernel.sources import digest
+from cratous.core.ledger.keys import Keys
+from cratous.core.ledger.parts import solver_version
+
+ASKING = (
+    "proofs.engine.prover._ask",
+    "proofs.engine.smtlib.question",
+    "proofs.engine.merkle.Hasher.key",
+)
+"""What decides how a question is put, and what its answer is."""
+
+
+@functools.cache
+def _strategy() -> str:
+    return Keys().asking(ASKING).digest
 
 
 @dataclass(frozen=True)
@@ -34,8 +48,7 @@ class Cache:
     def __init__(self, folder: Path | None) -> None:
         self.folder = folder
         self.hits = 0
-        strategy = sorted(file for file in engine() if file.stem in ("prover", "ladder", "smtlib"))
-        self._salt = (solver_version(), files_digest(strategy))
+        self._salt = (solver_version(), _strategy() if folder else "")
 
     def name(self, key: str, rlimit: int) -> str:
         """The file name of a question."""

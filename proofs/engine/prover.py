@@ -21,7 +21,7 @@ import z3
 
 from cratous.core.kernel import entry_of, qualified
 from cratous.core.kernel.sources import altered, ours, place, position
-from cratous.core.ledger import Home
+from cratous.core.ledger.home import Home
 from cratous.proofs.engine import definition_subset, plain_numbers
 from cratous.proofs.engine.cache import Answer, Cache
 from cratous.proofs.engine.claim import Claim, Obligation

@@ -1,14 +1,13 @@
 """Proves all theorems and writes what came of it into the ledger.
 
-The file holds facts only (no times, no machine): it is the same on every machine that proves the
-same code with the same solver, so CI can compare it byte by byte. Theorems are proved on all
+Its files hold facts only (no times, no machine): they are the same on every machine that proves the
+same code with the same solver, so CI can compare them byte by byte. Theorems are proved on all
 cores, each in a process forked from the same state, so that the result does not depend on how
 they are spread.
 """
 
 from __future__ import annotations
 
-import json
 import multiprocessing
 import os
 from collections.abc import Callable, Iterable
@@ -21,12 +20,12 @@ from cratous.core import ledger as gate
 from cratous.core.kernel import REGISTRY, Entry, checkers, entry_of, supported
 from cratous.core.kernel.names import short
 from cratous.core.kernel.sources import altered, position, reached
-from cratous.core.ledger import PRODUCT, Home
+from cratous.core.ledger.home import PRODUCT, Home
+from cratous.core.ledger.records import seal, sealed, texts
 from cratous.proofs.engine import prover
 from cratous.proofs.engine.cache import Cache
 from cratous.proofs.engine.subset import Finding, lint_all
 from cratous.proofs.ledger.recall import Recall
-from cratous.proofs.ledger.remembered import Remembered
 
 
 @dataclass(frozen=True)
@@ -242,6 +241,7 @@ def records(inventory: Inventory, home: Home = PRODUCT) -> dict[str, Any]:
         for kernel in record["kernels"]
     }
     kernels: dict[str, Any] = {}
+    keys = gate.Keys(home)
     for name, entry in entries.items():
         own = sorted(t for t, record in theorems.items() if name in record["kernels"])
         checked_by = list(checkers(entry)) if entry.kind == "driver" else []
@@ -256,52 +256,41 @@ def records(inventory: Inventory, home: Home = PRODUCT) -> dict[str, Any]:
             "checked_by": checked_by,
             "theorems": own,
             "status": "proved" if good else "not proved",
-            "key": gate.key_parts(entry, own, theorems, home),
+            "key": keys.of(entry, own, theorems),
         }
     for record in theorems.values():
         for lemma in record["lemmas"]:
             if lemma not in theorems and gate.theorem_file(lemma, home) is None:
                 record["status"] = "not proved"
-    data = {"solver": gate.solver_version(), "kernels": kernels, "theorems": theorems}
-    return {**data, "seal": gate.seal(data)}
+    data: dict[str, Any] = {
+        "kernels": {name: sealed(name, record) for name, record in kernels.items()},
+        "theorems": {name: sealed(name, record) for name, record in theorems.items()},
+    }
+    return {**data, "seal": seal(data)}
 
 
 def changed_theorems(home: Home = PRODUCT) -> list[str]:
-    """Theorems that are new, or about a kernel whose key differs from the ledger's."""
-    data = gate.read(home.ledger)
+    """Theorems that are new, or about a kernel whose key differs from the ledger's.
+
+    Those that ask for whatever is registered are among them where any kernel's differs.
+    """
+    data, keys = gate.read(home.records), gate.Keys(home)
     entries = gate.load_all(home)
     stale = set()
     for name, entry in entries.items():
         record = data["kernels"].get(name)
-        now = gate.key_parts(entry, record["theorems"], data["theorems"], home) if record else None
+        now = keys.of(entry, record["theorems"], data["theorems"]) if record else None
         if record is None or record["status"] != "proved" or now != record["key"]:
             stale.add(name)
     found = []
     for name in prover.theorem_files(prover.home_folder(home)):
         record = data["theorems"].get(name)
-        if record is None or record["status"] != "proved" or stale & set(record["kernels"]):
+        met = record is None or record["status"] != "proved" or stale & set(record["kernels"])
+        if met or (stale and keys.asks_registry(name)):
             found.append(name)
     return found
 
 
-def text(inventory: Inventory, home: Home = PRODUCT, remembered: Remembered | None = None) -> str:
-    """The ledger as it is written; remembered: where it is kept from run to run."""
-
-    def make() -> str:
-        return json.dumps(records(inventory, home), indent=1, sort_keys=True) + "\n"
-
-    if remembered is None:
-        return make()
-    said = {t.name: _theorem_record(t) for t in inventory.theorems}
-    return remembered.text("ledger", json.dumps(said, sort_keys=True), make)
-
-
-def write(new: str, path: Path = gate.LEDGER) -> bool:
-    """Write the ledger's text; True iff it differs from what was there."""
-    old = path.read_text(encoding="utf-8") if path.is_file() else ""
-    if new == old:
-        return False
-    part = path.with_suffix(".part")
-    part.write_text(new, encoding="utf-8")
-    part.replace(path)
-    return True
+def text(inventory: Inventory, home: Home = PRODUCT) -> dict[str, str]:
+    """The ledger as it is written: the text of each file, by its place in the folder."""
+    return texts(records(inventory, home), home)

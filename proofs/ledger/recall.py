@@ -1,113 +1,74 @@
 """Proved theorems that nothing has touched since: recalled without lifting their kernels again.
 
-A theorem is kept under a hash of the bytes of every file that could change what was proved: its
-own, those of its lemmas, all that these import, the prover; and of the versions of solver and
-Python. A theorem that asks the registry or the disk for what it is about (`DYNAMIC`) could meet
-any kernel, so every file counts for it. Only proved theorems are kept; what is refuted or unknown
-is looked at anew. As with solver answers, CI begins with an empty cache.
+A theorem is kept under a hash of all definitions that could change what was proved: what it says, its
+lemmas, all that these reach, the prover, the readings; and of the versions of solver and Python. A
+theorem that asks for whatever is registered depends on every kernel, fold and driver. Only proved
+theorems are kept; what is refuted or unknown is looked at anew. As with solver answers, CI begins
+with an empty cache.
 """
 
 from __future__ import annotations
 
 import functools
-import hashlib
 import json
 import os
 import platform
-import re
 from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from cratous.core import ledger as gate
-from cratous.core.kernel.sources import ROOT, closure, digest, imports, place
-from cratous.core.ledger import PRODUCT, Home
+from cratous.core.kernel.sources import digest
+from cratous.core.ledger.home import PRODUCT, Home
+from cratous.core.ledger.keys import Keys
+from cratous.core.ledger.parts import MISSING
 from cratous.proofs.engine.prover import RLIMIT, Theorem, restore
-
-DYNAMIC = re.compile(
-    rb"REGISTRY|load_all|import_module|__import__|importlib|read_text|read_bytes|(?<!\w)open\("
-    rb"|environ|globals\(\)|sys\.modules"
-)
-"""Words in a file by which a theorem may depend on more than it imports."""
-PUBLIC_READINGS = ROOT / "core" / "compiled.py"
-REGISTRY_ITSELF = ROOT / "core" / "kernel" / "__init__.py"
-MACHINERY = frozenset(
-    ROOT / "core" / name
-    for name in (
-        "readings/machine/compiled.py",
-        "readings/machine/domain.py",
-        "files/private_cache.py",
-        "kernel/sources.py",
-    )
-)
-"""They look up sources, settings and machine code for whoever runs kernels on arrays. A term takes
-nothing from what they find, unless a theorem's own file asks them."""
-
-
-@functools.cache
-def _hash(file: Path) -> str:
-    return hashlib.sha256(file.read_bytes()).hexdigest()
-
-
-def named(file: Path) -> str:
-    return f"{place(file)}={_hash(file)}"
-
-
-@functools.cache
-def _dynamic(file: Path) -> bool:
-    return file != REGISTRY_ITSELF and DYNAMIC.search(file.read_bytes()) is not None
-
-
-@functools.cache
-def _everything(home: Home) -> tuple[Path, ...]:
-    parts = [ROOT / part for part in ("spec", "core", "proofs")]
-    found = {file for part in parts for file in part.rglob("*") if file.suffix in (".py", ".lark")}
-    if not home.product:
-        found |= set(home.root.rglob("*.py"))
-    return tuple(sorted(found))
-
-
-def files(name: str, home: Home = PRODUCT) -> tuple[Path, ...]:
-    """Every file on which the theorem may depend, but for the prover's own."""
-    known = gate.theorem_names(home)
-    todo, roots = [name], {}
-    while todo:
-        file = gate.theorem_file(todo[-1], home)
-        one = todo.pop()
-        if file is not None and one not in roots:
-            roots[one] = file
-            todo += gate.mentioned(file) & known
-    found = closure(*roots.values())
-    asked = {file for root in roots.values() for file in imports(root)}
-    if PUBLIC_READINGS in asked:
-        asked |= set(imports(PUBLIC_READINGS))
-    looked_into = [file for file in found if file not in MACHINERY or file in asked]
-    return _everything(home) if any(_dynamic(file) for file in looked_into) else found
-
-
-def key(name: str, home: Home = PRODUCT) -> str:
-    """The hash under which the theorem is kept, as the files stand now."""
-    hashed = [named(file) for file in files(name, home)]
-    prover = [named(file) for file in sorted(gate.engine())]
-    versions = [gate.solver_version(), platform.python_version(), str(RLIMIT)]
-    return digest([home.name, name, *hashed, "the prover", *prover, *versions])
 
 
 class Recall:
-    """Proved theorems of one home in a folder; without a folder nothing is kept."""
+    """Proved theorems of one home in a folder; without a folder nothing is kept.
 
-    def __init__(self, folder: Path | None, home: Home = PRODUCT) -> None:
+    keys: by default of the files as they stand when the first theorem is asked for.
+    """
+
+    def __init__(self, folder: Path | None, home: Home = PRODUCT, keys: Keys | None = None) -> None:
         self.folder, self.home = folder, home
+        self._given = keys
+
+    @functools.cached_property
+    def keys(self) -> Keys:
+        """The keys by which theorems are known."""
+        return self._given or Keys(self.home)
+
+    @functools.cached_property
+    def _registered(self) -> str:
+        """All that is registered, with what it rests on."""
+        entries = gate.load_all(self.home) | gate.load_all()
+        return digest(f"{n}={self.keys.source(entry)}" for n, entry in sorted(entries.items()))
+
+    def key(self, name: str) -> str | None:
+        """The hash under which a theorem is kept; None where its file, or a lemma's, is not there."""
+        meaning = self.keys.theorem(name)
+        if meaning == MISSING:
+            return None
+        # what is kept names kernels and lemmas, which a move renames
+        names = sorted({*self.keys.functions(name), *self.keys.lemmas(name)})
+        asked = self._registered if self.keys.asks_registry(name) else ""
+        shared = [self.keys.shared[part] for part in ("prover", "readings", "solver")]
+        versions = [platform.python_version(), str(RLIMIT)]
+        return digest([self.home.name, name, meaning, *names, asked, *shared, *versions])
 
     def get(self, name: str) -> Theorem | None:
-        """The theorem, if it was proved from the very same files."""
+        """The theorem, if it was proved of the very same definitions."""
         if self.folder is None:
             return None
         try:
-            wanted = key(name, self.home)
+            wanted = self.key(name)
         except SyntaxError:
             return None  # the prover says where
+        if wanted is None:
+            return None
         try:
             data = json.loads((self.folder / wanted[:2] / wanted).read_text(encoding="utf-8"))
             if data["key"] != wanted or data["name"] != name:
@@ -118,11 +79,16 @@ class Recall:
         return theorem if theorem.proved and theorem.name == name else None
 
     def put(self, theorems: Iterable[Theorem]) -> None:
-        """Keep those that are proved; a folder that cannot be written is no error."""
+        """Keep those that are proved; a folder that cannot be written is no error.
+
+        A theorem with a lemma whose name cannot be read in any text is not kept.
+        """
         for theorem in theorems:
             if self.folder is None or not theorem.proved:
                 continue
-            name = key(theorem.name, self.home)
+            name = self.key(theorem.name)
+            if name is None or not set(theorem.lemmas) <= self.keys.lemmas(theorem.name):
+                continue
             file = self.folder / name[:2] / name
             if file.is_file():
                 continue

@@ -1,13 +1,13 @@
 """Texts that follow from the product's files alone, kept from one run to the next.
 
-What the ledger says and what the lint of decisions finds are functions of the bytes of the files, of
-the proved theorems and of the versions; where all are the same, so is the text. Nothing trusts such a
-text: the gate derives the keys anew, and CI begins with an empty folder.
+What the lint of decisions finds is a function of the bytes of the files and of the versions; where all
+are the same, so is the text. CI begins with an empty folder.
 """
 
 from __future__ import annotations
 
 import functools
+import hashlib
 import json
 import os
 import platform
@@ -16,11 +16,15 @@ from pathlib import Path
 
 from cratous.core import ledger as gate
 from cratous.core.kernel.sources import ROOT, digest, place
-from cratous.core.ledger import Home
-from cratous.proofs.ledger.recall import named
+from cratous.core.ledger.home import Home
 
 PARTS = ("spec", "core", "proofs", "services", "bridge")
 INPUTS = (".py", ".lark")
+
+
+def named(file: Path) -> str:
+    """A file with the hash of its bytes."""
+    return f"{place(file)}={hashlib.sha256(file.read_bytes()).hexdigest()}"
 
 
 @functools.cache

@@ -11,41 +11,27 @@ from __future__ import annotations
 import fnmatch
 import functools
 import importlib
-import inspect
 import json
 import os
 from pathlib import Path
 from typing import Any
 
-from cratous.core import ledger as gate
-from cratous.core.kernel import REGISTRY, Fold
-from cratous.core.kernel.sources import (
-    ROOT,
-    closure,
-    digest,
-    files_digest,
-    function_parts,
-    imported,
-    module_file,
-    ours,
-    reached,
-)
-from cratous.core.ledger import PRODUCT, Home
+from cratous.core.kernel import REGISTRY
+from cratous.core.kernel.sources import constants, digest
+from cratous.core.ledger import keys as ledger_keys
+from cratous.core.ledger.home import PRODUCT, Home
+from cratous.core.ledger.parts import solver_version
 from cratous.proofs.engine.theorem_files import theorem_files
 
 GENERATED = "filter_*"
 """Theorems that hold a kernel against what is generated from it. They never kill: every fault
 differs from what was generated before it was made, so they would hide each missing theorem."""
 
-JUDGES = ("mutation/judgement.py", "mutation/premises.py")
-
-
-@functools.cache
-def judging() -> str:
-    """The code that reaches verdicts, and the solver."""
-    roots = [ROOT / "proofs" / name for name in JUDGES]
-    files = [file for file in closure(*roots) if file.is_relative_to(ROOT / "proofs")]
-    return digest([files_digest(files), gate.solver_version()])
+JUDGES = (
+    "proofs.mutation.judgement.judge_target",
+    "proofs.mutation.premises.judge_premises",
+)
+"""What reaches verdicts, with all that it rests on, the prover among it."""
 
 
 class Keys:
@@ -55,14 +41,21 @@ class Keys:
         self.home, self.folder = home, home.theorems
         names = list(theorem_files(home.theorems)) if theorems is None else theorems
         self.theorems = [n for n in names if not fnmatch.fnmatch(n, GENERATED)]
-        self._reach = {name: reach(name, home) for name in self.theorems}
-        self._digest = {n: gate.theorem_digest([n], {}, home) for n in self.theorems}
+        self._keys = ledger_keys.Keys(home)
+        self._reach: dict[str, frozenset[str]] = {}
+
+    @functools.cached_property
+    def judging(self) -> str:
+        """The code that reaches verdicts, and the solver."""
+        return digest([self._keys.deciding(JUDGES).digest, solver_version()])
 
     def target(self, key: str, target: Any) -> str:
         """The key of a function or fold; key: its qualified name."""
-        names = sorted(n for n in self.theorems if key in self._reach[n])
-        users = [f"{name}={self._digest[name]}" for name in names]
-        return digest(["target", key, *function_parts(target), *users, judging()])
+        users = [n for n in self.theorems if key in self.reach(n)]
+        found = self._keys.function(key)
+        source = [found.digest if found else "missing", *constants(target)]
+        said = sorted(self._keys.theorem(name) for name in users)
+        return digest(["target", *source, "theorems", *said, self.judging])
 
     def mutant(self, target_key: str, text: str) -> str:
         """The key of a verdict on one mutant."""
@@ -70,43 +63,16 @@ class Keys:
 
     def premises(self, theorem: str) -> str:
         """The key of what the premises of a theorem are worth."""
-        return digest(["premises", theorem, self._digest[theorem], judging()])
+        return digest(["premises", self._keys.theorem(theorem), self.judging])
 
+    def reach(self, theorem: str) -> frozenset[str]:
+        """Qualified names of all functions and folds that a theorem or a lemma of it could look into.
 
-def reach(theorem: str, home: Home = PRODUCT) -> frozenset[str]:
-    """Qualified names of all functions and folds that a theorem or a lemma of it could look into.
-
-    Read off the imports, so it is more rather than less than what the theorem really uses.
-    """
-    found: set[str] = set()
-    known = gate.theorem_names(home)
-    todo, seen = [theorem], set()
-    while todo:
-        name = todo.pop()
-        file = gate.theorem_file(name, home)
-        if name in seen or file is None:
-            continue
-        seen.add(name)
-        found |= _reach_of(file)
-        todo += gate.mentioned(file) & known
-    return frozenset(found)
-
-
-@functools.cache
-def _reach_of(file: Path) -> frozenset[str]:
-    found: set[str] = set()
-    for module, name in set(imported(file)):
-        submodule = module_file(f"{module}.{name}") if name else module_file(module)
-        source = submodule or module_file(module)
-        if source is None:
-            continue
-        loaded = importlib.import_module(f"{module}.{name}" if submodule and name else module)
-        values = vars(loaded).values() if submodule else [getattr(loaded, name, None)]
-        for value in values:
-            function = inspect.isfunction(value) or inspect.isclass(value)
-            if isinstance(value, Fold) or (function and ours(value)):
-                found |= {name.removeprefix("fold ") for name in reached(value)}
-    return frozenset(found)
+        Read off the names in it, so it is more rather than less than what the theorem really uses.
+        """
+        if theorem not in self._reach:
+            self._reach[theorem] = self._keys.functions(theorem)
+        return self._reach[theorem]
 
 
 def find(key: str) -> Any:

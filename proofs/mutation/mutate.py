@@ -14,7 +14,7 @@ stillborn   the mutant cannot be run or lifted; apart, and not counted
 
 The budget is solver effort (rlimit), the order is fixed, and each mutant is judged in a process
 forked from one state: the result does not depend on the machine, on the number of processes, or
-on what was known before. Every verdict is stored when it is reached (`mutation_keys`), so a run
+on what was known before. Every verdict is stored when it is reached (`proofs/mutation/keys.py`), so a run
 that was stopped goes on where it was, and a change is paid for by what it touches alone.
 """
 
@@ -27,10 +27,10 @@ from typing import Any
 from cratous.core import ledger as gate
 from cratous.core.files.private_cache import private_cache
 from cratous.core.kernel.names import fits
-from cratous.core.ledger import PRODUCT, Home
+from cratous.core.ledger.home import PRODUCT, Home
 from cratous.proofs.engine import cache, forked, prover
 from cratous.proofs.mutation.judgement import judge_target
-from cratous.proofs.mutation.keys import Keys, Store, reach
+from cratous.proofs.mutation.keys import Keys, Store
 from cratous.proofs.mutation.premises import judge_premises
 from cratous.proofs.mutation.report import MutationReport
 from cratous.proofs.mutation.results import VERDICTS, PremiseResult, Result
@@ -83,7 +83,7 @@ def _chosen(
         mine = set(targets(sorted(theorems), keys.home))
 
         def could_meet(theorem: str) -> bool:
-            wanted = {k for k in reach(theorem, keys.home) if named(k) or k in mine}
+            wanted = {k for k in keys.reach(theorem) if named(k) or k in mine}
             return bool(wanted) if theorem not in skip else any(k not in skip for k in wanted)
 
         # only what could look into one of them is stated

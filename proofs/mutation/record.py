@@ -1,6 +1,6 @@
 """The mutation results that stand beside the proofs, `proofs/mutation/mutation.json`, and their document.
 
-Each target's results are kept under the key of all that they depend on (`mutation_keys`). A
+Each target's results are kept under the key of all that they depend on (`proofs/mutation/keys.py`). A
 result whose key is no longer that of the code is stale and listed as such; so is a kernel that
 was never mutated. A run on some targets replaces those and leaves the others alone.
 """
@@ -18,7 +18,7 @@ from typing import Any
 from cratous.core import ledger as gate
 from cratous.core.files.whole_file import write_atomically
 from cratous.proofs.mutation.judgement import faults
-from cratous.proofs.mutation.keys import Keys, find, reach
+from cratous.proofs.mutation.keys import Keys, find
 from cratous.proofs.mutation.report import MutationReport, percent
 from cratous.proofs.mutation.results import VERDICTS
 
@@ -83,15 +83,14 @@ def stale(data: dict[str, Any], keys: Keys) -> dict[str, str]:
             # of what has nothing to change there is nothing to record
             if one not in data["targets"] and _has_faults(find(one)):
                 found[one] = "it was never mutated"
-    for one in _definitions(tuple(keys.theorems)) - set(data["targets"]):
+    for one in _definitions(keys) - set(data["targets"]):
         found[one] = "it was never mutated"
     return found
 
 
-@functools.cache
-def _definitions(theorems: tuple[str, ...]) -> frozenset[str]:
+def _definitions(keys: Keys) -> frozenset[str]:
     """The functions of `spec` that these theorems could look into and in which there is something to change."""
-    names = {name for one in theorems for name in reach(one)}
+    names = {name for one in keys.theorems for name in keys.reach(one)}
     there = {name: find(name) for name in names if name.startswith("cratous.spec.")}
     return frozenset(n for n, f in there.items() if inspect.isfunction(f) and _has_faults(f))
 

@@ -15,7 +15,7 @@ from typing import Any
 
 from cratous.core.kernel import REGISTRY, Entry, Fold, supported
 from cratous.core.kernel.sources import position, reached
-from cratous.core.ledger import Home
+from cratous.core.ledger.home import Home
 from cratous.proofs.statements.relations import Relations, full_name
 from cratous.proofs.statements.restated import restates
 

@@ -21,13 +21,14 @@ import z3
 
 from cratous.core.kernel import REGISTRY, Fold
 from cratous.core.kernel.sources import digest, ours
-from cratous.core.ledger import Home
+from cratous.core.ledger.home import Home
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.lift import LiftError
 from cratous.proofs.engine.symbolic import _raw
 from cratous.proofs.engine.terms import free_names, fresh, known, leaves
 from cratous.proofs.engine.theorem_files import FOLDER, load_claim
-from cratous.proofs.ledger import recall
+from cratous.proofs.ledger.recall import Recall
+from cratous.proofs.ledger.remembered import named
 from cratous.proofs.statements.sides import sides, signs
 
 SAYS_RLIMIT = 200_000
@@ -275,7 +276,7 @@ class Kept:
     """
 
     def __init__(self, folder: Path | None, home: Home) -> None:
-        self.folder, self.home = folder, home
+        self.folder, self.home, self._recall = folder, home, Recall(None, home)
 
     def all(self, names: Iterable[str]) -> dict[str, Relations]:
         """The relations of these theorems, whose statements can be read."""
@@ -283,9 +284,10 @@ class Kept:
 
     def get(self, name: str) -> Relations:
         """The relations of one theorem."""
-        if self.folder is None:
+        known = self._recall.key(name) if self.folder is not None else None
+        if self.folder is None or known is None:
             return relations(name, self.home.theorems)
-        wanted = digest([recall.key(name, self.home), recall.named(Path(__file__).resolve())])
+        wanted = digest([known, named(Path(__file__).resolve())])
         file = self.folder / wanted[:2] / wanted
         try:
             return _restored(json.loads(file.read_text(encoding="utf-8")))

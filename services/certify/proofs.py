@@ -25,7 +25,7 @@ def inventory(standing: ledger.Standing, calls: dict[str, Any] | None) -> dict[s
     return {
         "line": standing.line,
         "solver": ledger.solver_version(),
-        "seal": data.get("seal", ""),
+        "seal": data["seal"],
         "problems": [{"kernel": names[p.name], "what": p.what} for p in standing.problems],
         "calls": NOT_RECORDED if calls is None else RECORDED,
         "kernels": kernels,

@@ -45,11 +45,11 @@ def assign(
 
     Exit codes: 0 optimal, or as good as asked for; 1 no plan exists; 2 bad input; 3 not decided.
     """
+    from cratous.core.ledger import require
     from cratous.services.planning.assign import Limits, solve
     from cratous.services.planning.assign_certificate import certified, verify, write
     from cratous.services.planning.assign_solvers import why_infeasible
     from cratous.services.planning.assign_vectors import read
-    from cratous.services.startup.standing import require
 
     require()
     data = json_of(bytes_of(file, expected="an assignment problem"), str(file))

@@ -24,8 +24,8 @@ def certify_plan(file: Path, as_json: bool) -> int:
 
     Exit codes: 0 the claim holds, 1 it does not (with the reason), 2 bad input.
     """
+    from cratous.core.ledger import require
     from cratous.services.planning.assign_certificate import read, verify
-    from cratous.services.startup.standing import require
 
     require()
     verdict = verify(read(file))

@@ -49,8 +49,8 @@ def _steps(
     file: Path, config: str, ownship: str, dimensions: tuple[int, ...],
     urgency: str | None = None, urgent: str = "",
 ) -> Iterator[Any]:  # fmt: skip
+    from cratous.core.ledger import require
     from cratous.services.daa import named_or_file, run
-    from cratous.services.startup.standing import require
     from cratous.spec.daa.parameters import URGENCIES
 
     require()

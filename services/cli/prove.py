@@ -135,7 +135,7 @@ def prove(
     """Prove every kernel against its definition and write the ledger.
 
     Runs each kernel on symbolic values, states every theorem of proofs/theorems about exactly
-    that function, and asks z3. The ledger (core/ledger.json) binds the proofs to the source:
+    that function, and asks z3. The ledger (core/ledger/records/) binds the proofs to the source:
     `cratous run` refuses a kernel that has changed since. What was proved before is known by its
     structural hash from the cache ($CRATOUS_CACHE), and where no file has changed nothing is even
     lifted; CI proves from an empty one.
@@ -148,6 +148,7 @@ def prove(
     from cratous.core import ledger as gate
     from cratous.core.files.private_cache import private_cache
     from cratous.core.kernel.names import fits, matching
+    from cratous.core.ledger import records
     from cratous.proofs import ledger
     from cratous.proofs.engine import cache, prover
     from cratous.proofs.ledger import formats
@@ -237,14 +238,16 @@ def prove(
             click.echo(f"{count} SMT-LIB files in {smt2_folder}")
     proved = sum(t.proved for t in theorems)
     if whole and not problems:
+        said = ledger.text(inventory, home)
         if check:
-            old = home.ledger.read_text(encoding="utf-8") if home.ledger.is_file() else ""
-            if ledger.text(inventory, home, remembered) != old:
+            differing = records.differing(said, home.records)
+            if differing:
                 problems.append(
-                    f"{home.ledger.name} differs from these proofs: run `cratous prove`"
+                    f"the ledger differs from these proofs in {', '.join(differing)}: "
+                    "run `cratous prove`"
                 )
         else:
-            ledger.write(ledger.text(inventory, home, remembered), home.ledger)
+            records.write(said, home.records)
     for path, make in outputs:
         if path is not None:
             formats.write(path, make(problems))

@@ -111,7 +111,7 @@ def _require_proofs(config: Any, log: Any, allow_unproved: bool) -> None:
     from cratous.services.uxas.registry import KINDS
 
     if any(KINDS[e.type].plans for e in config.entries if e.type in KINDS):
-        from cratous.services.startup.standing import require
+        from cratous.core.ledger import require
 
         standing = require(allow_unproved=allow_unproved)
         log("WARN" if standing.problems else "INFO", f"proofs: {standing.line}")

@@ -24,7 +24,6 @@ from cratous.core.well_clear import horizontal_violation, violation, violation_w
 from cratous.services.loading import load
 from cratous.services.pipeline.plan import make_plan
 from cratous.services.planning import assign
-from cratous.services.startup.standing import require
 
 MISSION = """
 name: warm
@@ -69,7 +68,7 @@ def warm() -> None:
     compiled(violation_within)(*state, zero, zero, 50.0, 30.0, 10.0, zero, 60.0)
     compiled(orient)(*state, zero, zero)
     warm_planning()
-    require(allow_unproved=True)  # what is clean is remembered
+    ledger.require(allow_unproved=True)  # what the gate reads is kept
 
 
 def warm_planning() -> None:

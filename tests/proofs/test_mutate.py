@@ -345,24 +345,23 @@ def test_a_verdict_depends_on_function_theorems_judge_and_solver(monkeypatch):
     key = KEYS.target("cratous.core.authority.gate.gives_way", function)
     assert Keys().target("cratous.core.authority.gate.gives_way", function) == key
     other = named("gate_offer").function
-    assert key != KEYS.target("cratous.core.authority.gate.gives_way", other)
+    assert key != KEYS.target("cratous.core.authority.gate.gate_offer", other)
     fewer = Keys(theorems=["authority_exactly_one_gives_way"])
     assert fewer.target("cratous.core.authority.gate.gives_way", function) != key
     unrelated = [name for name in KEYS.theorems if name != "geofence_orient_is_the_turn"]
     assert Keys(theorems=unrelated).target("cratous.core.authority.gate.gives_way", function) == key
     assert KEYS.mutant(key, "a") != KEYS.mutant(key, "b")
-    monkeypatch.setattr("cratous.proofs.mutation.keys.judging", lambda: "another")
+    monkeypatch.setattr(KEYS, "judging", "another")
     assert KEYS.target("cratous.core.authority.gate.gives_way", function) != key
 
 
-def test_what_a_theorem_meets_is_within_what_its_imports_reach():
+def test_what_a_theorem_meets_is_within_what_it_names():
     """A key must cover every theorem that can judge, also those that meet a function indirectly."""
     from cratous.core.kernel import qualified
-    from cratous.proofs.mutation.keys import reach
 
     for target, users in targets(KEYS.theorems).values():
         for name in users:
-            assert qualified(target) in reach(name), (name, target)
+            assert qualified(target) in KEYS.reach(name), (name, target)
 
 
 # -- asking ----------------------------------------------------------------------------------

@@ -53,8 +53,10 @@ def test_the_page_is_true(package: Path, root: Path) -> None:
         assert done.returncode == 0, done.stderr
         wanted = re.sub(r"z3 [\d.]+", ledger.solver_version(), printed)
         assert done.stdout.strip() == wanted.strip()
-    record = json.loads((package / "my_pkg" / "ledger.json").read_text())
-    assert record["kernels"]["my_pkg.reserve.reaches_home"]["status"] == "proved"
+    record = json.loads(
+        (package / "my_pkg" / "ledger" / "kernels" / "my_pkg.reserve.json").read_text()
+    )
+    assert record["my_pkg.reserve.reaches_home"]["status"] == "proved"
     again = _run(package, root, "cratous prove --package my_pkg --check")
     assert again.returncode == 0, again.stderr
 
@@ -72,7 +74,7 @@ print([f"{p.name}: {p.what}" for p in ledger.check_everything().problems if p.na
         ("reserve.py", ">= burn", "> burn", "its source"),
         ("spec/fuel.py", "fuel_kg - burn_kg_s *", "0 + fuel_kg - burn_kg_s *", "its definition"),
         ("theorems/reserve_is_kept.py", "speed > 0", "speed > 1", "its theorems"),
-        ("ledger.json", "reserve_is_kept", "reserve_was_kept", "edited"),
+        ("ledger/theorems/theorems.json", "reserve_is_kept", "reserve_was_kept", "edited"),
     ],
 )
 def test_the_gate_covers_the_package(
@@ -140,7 +142,7 @@ def test_a_theorem_that_binds_nothing_is_refused_with_its_place(
     assert done.returncode == 2, done.stdout + done.stderr
     assert wanted in done.stderr
     assert f"my_pkg/theorems/{name}.py" in done.stderr
-    assert not (package / "my_pkg" / "ledger.json").exists()
+    assert not (package / "my_pkg" / "ledger").exists()
 
 
 def test_a_kernel_without_theorem_or_definition_is_refused_with_its_place(
@@ -155,7 +157,7 @@ def test_a_kernel_without_theorem_or_definition_is_refused_with_its_place(
     assert done.returncode == 2
     assert "my_pkg/more.py:6: one_more: no theorem is about this kernel" in done.stderr
     assert "there is no spec/nowhere.py" in done.stderr
-    assert not (package / "my_pkg" / "ledger.json").exists()
+    assert not (package / "my_pkg" / "ledger").exists()
 
 
 def test_a_kernel_and_a_theorem_may_have_names_of_the_product(package: Path, root: Path) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from cratous.core import ledger as gate
+from cratous.core.ledger import records
 from cratous.proofs import ledger, recheck
 from cratous.proofs.engine import prover
 from cratous.proofs.mutation import mutate
@@ -31,14 +32,18 @@ def _json(capsys: pytest.CaptureFixture[str], *options: str) -> tuple[int, dict]
     return code, json.loads(capsys.readouterr().out)
 
 
+def _ledger() -> dict[str, bytes]:
+    return {file.name: file.read_bytes() for file in gate.PRODUCT.records.rglob("*.json")}
+
+
 def test_cold_and_warm_say_the_same(capsys: pytest.CaptureFixture[str]):
-    before = gate.LEDGER.read_bytes()
+    before = _ledger()
     code, cold = _json(capsys, "--only", "geofence_orient*")
     assert code == 0
     _, warm = _json(capsys, "--only", "geofence_orient*")
     assert warm["theorems"] == cold["theorems"]
     assert cold["proved"] == 1
-    assert gate.LEDGER.read_bytes() == before, "a part writes no ledger"
+    assert _ledger() == before, "a part writes no ledger"
 
 
 def test_all_views_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
@@ -76,11 +81,11 @@ def test_changed_proves_what_differs_from_the_ledger(
     inventory = ledger.prove_all(names)
     data = ledger.records(inventory)
     data["kernels"]["cratous.core.authority.gate.gives_way"]["key"]["source"] = "another"
-    data["seal"] = gate.seal(data)
-    file = tmp_path / "ledger.json"
-    file.write_text(json.dumps(data))
+    for kind in records.KINDS:
+        data[kind] = {name: records.sealed(name, record) for name, record in data[kind].items()}
+    records.write(records.texts(data), tmp_path)
     real = gate.read
-    monkeypatch.setattr(gate, "read", lambda path=gate.LEDGER: real(file))
+    monkeypatch.setattr(gate, "read", lambda folder: real(tmp_path))
     changed = ledger.changed_theorems()
     assert "authority_exactly_one_gives_way" in changed
     assert "geofence_straddles_is_its_definition" not in changed

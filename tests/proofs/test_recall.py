@@ -1,4 +1,4 @@
-"""Recalled theorems: only what was proved, only from the very same files."""
+"""Recalled theorems: only what was proved, only of the very same definitions."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ import pytest
 
 from cratous.core import ledger as gate
 from cratous.core.kernel.sources import ROOT
+from cratous.core.ledger import parts
+from cratous.core.ledger.keys import Keys
 from cratous.proofs import ledger
 from cratous.proofs.claim import Claim
 from cratous.proofs.engine import prover
 from cratous.proofs.ledger import recall, remembered
-from cratous.proofs.ledger.recall import Recall, files, key
+from cratous.proofs.ledger.recall import Recall
 from cratous.proofs.ledger.remembered import Remembered
 from cratous.spec.errors import BadInput
 
@@ -46,76 +48,82 @@ def test_a_proved_theorem_is_recalled_as_it_was_and_not_stated_again(memory, mon
     assert ledger.prove_all([], recall=memory).theorems == ()
 
 
+@pytest.fixture(scope="module")
+def plain() -> Recall:
+    return Recall(None)
+
+
+def _edited(place: str, old: str, new: str) -> Recall:
+    text = (ROOT / place).read_text()
+    assert old in text, f"{old!r} is not in {place}: this case needs an update"
+    return Recall(None, keys=Keys(edits={ROOT / place: text.replace(old, new, 1).encode()}))
+
+
 @pytest.mark.parametrize(
-    "place",
+    ("place", "old", "new"),
     [
-        "proofs/theorems/daa/height_follows_the_climb.py",
-        "proofs/theorems/daa/climb_is_flown.py",
-        "core/daa/climb.py",
-        "spec/daa/meaning.py",
-        "core/kernel/__init__.py",
-        "proofs/engine/prover.py",
-        "proofs/engine/lift.py",
-        "proofs/ledger/recall.py",
+        ("proofs/theorems/daa/height_follows_the_climb.py", "c.premise(", "c.premise(True or "),
+        ("proofs/theorems/daa/climb_is_flown.py", "c.premise(", "c.premise(True or "),
+        ("core/daa/climb.py", "return ", "return 0 + "),
+        ("core/kernel/__init__.py", "x: float\n    y: float", "y: float\n    x: float"),
+        ("proofs/engine/prover.py", '"unsat": "proved"', '"sat": "proved"'),
+        (
+            "proofs/engine/lift.py",
+            "def lift(",
+            "def lift_(x):\n    return x\n\n\n@lift_\ndef lift(",
+        ),
     ],
 )
-def test_a_change_of_any_file_behind_it_is_another_theorem(place, monkeypatch):
-    before, real = key(NAME), recall._hash
-    changed = ROOT / place
-    assert changed.is_file()
-    monkeypatch.setattr(recall, "_hash", lambda f: "other" if f == changed else real(f))
-    assert key(NAME) != before
+def test_a_change_of_what_is_behind_it_is_another_theorem(place, old, new, plain):
+    assert _edited(place, old, new).key(NAME) != plain.key(NAME)
 
 
-def test_a_change_elsewhere_is_none(monkeypatch):
-    before, real = key(NAME), recall._hash
-    elsewhere = (
-        ROOT / "core/authority/gate.py",
-        ROOT / "spec/authority/gate.py",
-        ROOT / "core/readings/machine/compiled.py",
-    )
-    monkeypatch.setattr(recall, "_hash", lambda f: "other" if f in elsewhere else real(f))
-    assert key(NAME) == before
+@pytest.mark.parametrize(
+    ("place", "old", "new"),
+    [
+        ("core/authority/gate.py", "gate.epoch + 1", "gate.epoch + 2"),
+        ("spec/authority/gate.py", "return ", "return 0 or "),
+        ("core/daa/climb.py", "\n\n\n", "\n\n\nUNUSED = 1\n\n\n"),
+        ("proofs/ledger/recall.py", "file.is_file()", "file.exists()"),
+    ],
+)
+def test_a_change_elsewhere_is_none(place, old, new, plain):
+    assert _edited(place, old, new).key(NAME) == plain.key(NAME)
 
 
-def test_a_theorem_about_whatever_is_registered_depends_on_every_file():
-    every = set(files("filter_graphs_are_the_kernels"))
-    assert {*(ROOT / "core").rglob("*.py"), *(ROOT / "spec").rglob("*.py")} <= every
-    assert set(files(NAME)) < every
+def test_a_theorem_about_whatever_is_registered_depends_on_every_kernel(plain):
+    name = "filter_graphs_are_the_kernels"
+    changed = _edited("core/authority/gate.py", "gate.epoch + 1", "gate.epoch + 2")
+    assert changed.key(name) != plain.key(name)
 
 
 @pytest.mark.parametrize(
     "line",
     [
-        "import importlib",
-        "from cratous.core.kernel import REGISTRY",
-        "from cratous.core.kernel.sources import reached",
-        "from cratous.core import compiled",
-        "text = open(__file__).read()",
+        "import importlib\nimportlib.import_module('far')",
+        "from cratous.core.kernel import REGISTRY\nprint(REGISTRY)",
+        "print(open(__file__).read())",
+        "import sys\nsys.modules['far']",
     ],
 )
-def test_so_does_a_theorem_whose_file_asks_for_more_than_it_imports(line, tmp_path, monkeypatch):
-    real = gate.theorem_file(NAME, gate.PRODUCT)
-    changed = tmp_path / real.name
-    changed.write_text(f"{line}\n{real.read_text()}")
-    place = gate.theorem_file
-    found = lambda name, home: changed if name == NAME else place(name, home)  # noqa: E731
-    monkeypatch.setattr(gate, "theorem_file", found)
-    assert {*(ROOT / "core").rglob("*.py")} <= set(files(NAME))
+def test_a_theorem_that_asks_for_more_than_it_names_depends_on_everything(line):
+    place = ROOT / "proofs/theorems/daa/height_follows_the_climb.py"
+    asking = {place: place.read_text().replace("def claim(", f"{line}\n\n\ndef claim(").encode()}
+    elsewhere = ROOT / "core/authority/gate.py"
+    more = {**asking, elsewhere: elsewhere.read_bytes() + b"\nMORE = 1\n"}
+    assert Recall(None, keys=Keys(edits=asking)).key(NAME) != Recall(
+        None, keys=Keys(edits=more)
+    ).key(NAME)
 
 
-def test_tools_for_arrays_behind_a_kernel_are_no_reason_to(monkeypatch):
-    found = set(files("well_clear_within_during_scales"))
-    assert {ROOT / "core/readings/machine/compiled.py", ROOT / "core/well_clear/during.py"} <= found
-    assert ROOT / "core/authority/gate.py" not in found
-
-
-@pytest.mark.parametrize("what", ["solver_version", "python_version"])
-def test_another_version_is_another_theorem(what, monkeypatch):
-    before = key(NAME)
-    owner = recall.gate if what == "solver_version" else recall.platform
-    monkeypatch.setattr(owner, what, lambda: "0.0")
-    assert key(NAME) != before
+@pytest.mark.parametrize("what", ["z3-solver", "python_version"])
+def test_another_version_is_another_theorem(what, monkeypatch, plain):
+    before = plain.key(NAME)
+    if what == "python_version":
+        monkeypatch.setattr(recall.platform, what, lambda: "0.0")
+    else:
+        monkeypatch.setattr(parts, "version", lambda name: "0.0")
+    assert Recall(None).key(NAME) != before
 
 
 def test_what_is_damaged_or_another_theorem_s_counts_as_absent(memory):
@@ -127,7 +135,7 @@ def test_what_is_damaged_or_another_theorem_s_counts_as_absent(memory):
     for wrong in ("", "{}", text[:-9], text.replace(one, other), text.replace('"kernels"', '"x"')):
         file.write_text(wrong)
         assert memory.get(one) is None
-    elsewhere = file.parent.parent / key(other)[:2] / key(other)
+    elsewhere = file.parent.parent / memory.key(other)[:2] / memory.key(other)
     elsewhere.parent.mkdir(exist_ok=True)
     elsewhere.write_text(text)
     assert memory.get(other) is None
@@ -188,4 +196,4 @@ def test_what_is_remembered_depends_on_every_file_of_the_product(monkeypatch):
         "prove.py",
         "tcp_port.py",
     }
-    assert not any(file.name == "ledger.json" for file in hashed)
+    assert not any("records" in file.parts for file in hashed)

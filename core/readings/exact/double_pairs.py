@@ -131,10 +131,13 @@ class Writer:
     def chosen(self, number: int, a: Pair, b: Pair, left: str | None = None) -> Pair:
         """a where `t` with the number holds, else b; left: what is left out, if not theirs."""
         pair = Pair(f"h{number}", f"l{number}", f"r{number}")
-        for part in ("high", "low", "left"):
-            x, y, given = getattr(a, part), getattr(b, part), left if part == "left" else None
-            text = given or f"{x} if t{number} else {y}"
-            self.lines.append(f"    {getattr(pair, part)} = {text}")
+        parts = (
+            (pair.high, a.high, b.high, None),
+            (pair.low, a.low, b.low, None),
+            (pair.left, a.left, b.left, left),
+        )
+        for into, x, y, given in parts:
+            self.lines.append(f"    {into} = {given or f'{x} if t{number} else {y}'}")
         return pair
 
     def value(self, node: Node) -> None:

@@ -1,0 +1,121 @@
+"""A package with kernels of its own: its name and folder, and where its parts lie in it."""
+
+from __future__ import annotations
+
+import importlib
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from cratous.core.kernel.sources import ROOT, add_package
+from cratous.spec.errors import BadInput
+
+
+@dataclass(frozen=True)
+class Home:
+    """A package with kernels: its name and folder, and where its parts lie in it."""
+
+    name: str
+    root: Path
+
+    @property
+    def product(self) -> bool:
+        """True iff it is the product itself."""
+        return self.name == "cratous"
+
+    @property
+    def records(self) -> Path:
+        """The folder of its ledger."""
+        return self.root / "core" / "ledger" / "records" if self.product else self.root / "ledger"
+
+    @property
+    def theorems(self) -> Path:
+        """The folder of its theorem files."""
+        return self.root / "proofs" / "theorems" if self.product else self.root / "theorems"
+
+    def definition(self, implements: str) -> Path:
+        """The file of a definition, named as `module.function` or `folder.module.function`."""
+        module = self.root.joinpath("spec", *implements.split(".")[:-1])
+        return module / "__init__.py" if module.is_dir() else module.with_suffix(".py")
+
+    def modules(self) -> Iterator[str]:
+        """Every module that may hold kernels."""
+        folder = self.root / "core" if self.product else self.root
+        for file in sorted(folder.rglob("*.py")):
+            parts = file.relative_to(self.root).with_suffix("").parts
+            if parts[0] != "theorems" and parts[-1] not in ("__init__", "__main__"):
+                yield ".".join((self.name, *parts))
+
+    def module(self, theorem: Path) -> str:
+        """The module that the file of a theorem is."""
+        inside = "cratous.proofs.theorems" if self.product else f"{self.name}.theorems"
+        return ".".join((inside, *theorem.relative_to(self.theorems).with_suffix("").parts))
+
+
+PRODUCT = Home("cratous", ROOT)
+
+
+def package(name: str) -> Home:
+    """The home of an installed or importable package with kernels of its own.
+
+    Raises BadInput if there is no such package.
+    """
+    if name == "cratous":
+        return PRODUCT
+    try:
+        module = importlib.import_module(name)
+    except ImportError as error:
+        raise BadInput(
+            f"the package cannot be imported ({error})",
+            item=name,
+            expected="the name of a package on the Python path",
+        ) from error
+    if not getattr(module, "__path__", None) or "." in name:
+        raise BadInput(
+            "this is a module, not a package", item=name, expected="a top-level folder of modules"
+        )
+    root = Path(next(iter(module.__path__))).resolve()
+    add_package(name, root)
+    return Home(name, root)
+
+
+# -- theorems --------------------------------------------------------------------------------
+def theorem_file(name: str, home: Home) -> Path | None:
+    """The file of a theorem, called so or `package.name`: of this home, else of the product."""
+    found = theorem_home(name, home)
+    return None if found is None else theorems(found)[name.rpartition(".")[2]]
+
+
+def theorem_home(
+    name: str, home: Home, files: Mapping[Home, dict[str, Path]] | None = None
+) -> Home | None:
+    """Whose theorem this is: of this home, else of the product. files: `theorems` of each."""
+    package, _, plain = name.rpartition(".")
+    for one in (home, PRODUCT):
+        if package in ("", one.name) and plain in (theorems(one) if files is None else files[one]):
+            return one
+    return None
+
+
+def theorems(home: Home) -> dict[str, Path]:
+    """What could be a theorem of this home: the files by name."""
+    found: dict[str, Path] = {}
+    for folder, _, names in os.walk(home.theorems):
+        for name in names:
+            if name.endswith(".py"):
+                file = Path(folder, name)
+                found[theorem_name(file, home.theorems)] = file
+    return found
+
+
+def theorem_name(file: Path, folder: Path) -> str:
+    """How the theorem of a file is called: its folders below `theorems` and itself, with `_`."""
+    return "_".join(file.relative_to(folder).with_suffix("").parts)
+
+
+def theorem_names(home: Home) -> set[str]:
+    """What could name a theorem of this home or of the product, alone or after its package."""
+    known = {one: theorems(one) for one in (home, PRODUCT)}
+    whole = {f"{one.name}.{name}" for one, names in known.items() for name in names}
+    return {name for names in known.values() for name in names} | whole

@@ -1,0 +1,105 @@
+"""The ledger on disk: a file for each module with kernels and for each folder of theorems.
+
+No file says anything of another, so that two branches that change two kernels change different lines.
+Each record has a checksum of its own, which notices edits by hand and broken merges; the seal over
+all of them is computed on reading.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from cratous.core.kernel.sources import digest
+from cratous.core.ledger.home import PRODUCT, Home, theorem_file
+from cratous.spec.errors import Refused
+
+KINDS = ("kernels", "theorems")
+
+
+def checksum(name: str, record: dict[str, Any]) -> str:
+    """Over the contents of one record."""
+    body = {key: value for key, value in record.items() if key != "seal"}
+    return digest([name, json.dumps(body, sort_keys=True)])
+
+
+def sealed(name: str, record: dict[str, Any]) -> dict[str, Any]:
+    """The record with its checksum."""
+    return {**record, "seal": checksum(name, record)}
+
+
+def read(folder: Path = PRODUCT.records) -> dict[str, Any]:
+    """The ledger as data, with the seal over all; empty where there is none.
+
+    Raises Refused for what cannot be read or was edited.
+    """
+    data: dict[str, Any] = {kind: {} for kind in KINDS}
+    for file in sorted(folder.glob("*/*.json")):
+        where = f"{file.parent.name}/{file.name}"
+        try:
+            for name, record in json.loads(file.read_text(encoding="utf-8")).items():
+                if record["seal"] != checksum(name, record):
+                    raise Refused(
+                        f"{where} was edited after the prover wrote it: {name}; run `cratous prove`"
+                    )
+                if name in data[file.parent.name]:
+                    raise ValueError(f"two records of {name}")
+                data[file.parent.name][name] = record
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            raise Refused(f"{where} cannot be read ({error!r}); run `cratous prove`") from error
+    data["seal"] = seal(data)
+    return data
+
+
+def seal(data: dict[str, Any]) -> str:
+    """One checksum over all records; empty where there are none."""
+    said = [f"{name} {data[kind][name]['seal']}" for kind in KINDS for name in sorted(data[kind])]
+    return digest(said) if said else ""
+
+
+def texts(data: dict[str, Any], home: Home = PRODUCT) -> dict[str, str]:
+    """The ledger as it is written: the text of each file, by its place in the folder."""
+    rows: dict[str, dict[str, Any]] = {}
+    for name, record in data["kernels"].items():
+        module = name.removeprefix("cratous.core.").rpartition(".")[0]
+        rows.setdefault(f"kernels/{module}.json", {})[name] = record
+    for name, record in data["theorems"].items():
+        rows.setdefault(f"theorems/{_folder(name, home)}.json", {})[name] = record
+    return {
+        place: json.dumps(found, indent=1, sort_keys=True) + "\n"
+        for place, found in sorted(rows.items())
+    }
+
+
+def _folder(name: str, home: Home) -> str:
+    """The folder that a theorem lies in, for the name of its file of records."""
+    file = theorem_file(name, home)
+    above = () if file is None else file.relative_to(home.theorems).parts[:-1]
+    return ".".join(above) or "theorems"
+
+
+def differing(new: dict[str, str], folder: Path) -> list[str]:
+    """The files of records that say something else than these texts, or should not be there."""
+    old = {f"{f.parent.name}/{f.name}": f for f in folder.glob("*/*.json")}
+    gone = sorted(set(old) - set(new))
+    return gone + [
+        place
+        for place, text in new.items()
+        if place not in old or old[place].read_text(encoding="utf-8") != text
+    ]
+
+
+def write(new: dict[str, str], folder: Path) -> list[str]:
+    """Write these texts, whole or not at all, and remove other records; the files that differed."""
+    found = differing(new, folder)
+    for place in found:
+        file = folder / place
+        if place not in new:
+            file.unlink()
+            continue
+        file.parent.mkdir(parents=True, exist_ok=True)
+        part = file.with_suffix(".part")
+        part.write_text(new[place], encoding="utf-8")
+        part.replace(file)
+    return found

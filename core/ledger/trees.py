@@ -1,0 +1,216 @@
+"""A tree of modules as written, and which definitions a name in one of them means.
+
+A tree need not be the one that runs: nothing of it is imported. Names are followed through imports,
+`import *` and submodules to the statements that bind them; what no module of the tree binds is outside.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from cratous.core.ledger.tables import Table, Unit, table
+
+Place = tuple[str, int]
+"""A unit: its module, and its number there."""
+Target = Place | str
+"""What a name means: a unit of the tree, or text for what is outside of it."""
+
+
+class Tree:
+    """Packages by name, with their folders. parts: folders of each whose loose statements count.
+
+    edits: files that are to be read as if they said this.
+    """
+
+    def __init__(
+        self,
+        packages: Mapping[str, Path],
+        parts: Mapping[str, tuple[str, ...]],
+        edits: Mapping[Path, bytes] | None = None,
+    ) -> None:
+        self.packages, self.parts = dict(packages), dict(parts)
+        self.edits = dict(edits or {})
+        self._tables: dict[str, Table | None] = {}
+        self._edges: dict[Place, tuple[tuple[str, tuple[Target, ...]], ...]] = {}
+        self._meant: dict[tuple[str, tuple[str, ...]], tuple[Target, ...]] = {}
+        self.open_classes: dict[Place, bool] = {}
+
+    # -- modules ----------------------------------------------------------------------------------
+    def file(self, module: str) -> Path | None:
+        """The source file of a module of the tree."""
+        top, *parts = module.split(".")
+        if top not in self.packages:
+            return None
+        base = self.packages[top].joinpath(*parts)
+        for file in (base.with_suffix(".py"), base / "__init__.py"):
+            if parts and (file in self.edits or file.is_file()):
+                return file
+        return base / "__init__.py" if not parts and (base / "__init__.py").is_file() else None
+
+    def table(self, module: str) -> Table | None:
+        """What a module defines; None if it is not of the tree."""
+        if module not in self._tables:
+            file = self.file(module)
+            self._tables[module] = None if file is None else self._read(file, module)
+        return self._tables[module]
+
+    def _read(self, file: Path, module: str) -> Table:
+        data = self.edits[file] if file in self.edits else file.read_bytes()
+        return table(data, module, file.name == "__init__.py")
+
+    def unit(self, place: Place) -> Unit:
+        """The unit there."""
+        found = self.table(place[0])
+        assert found is not None
+        return found.units[place[1]]
+
+    @functools.cached_property
+    def every_module(self) -> tuple[str, ...]:
+        """The modules of all parts of the packages."""
+        found: set[str] = set()
+        for package, root in self.packages.items():
+            for part in self.parts.get(package, ()):
+                found |= {module_name(package, root, f) for f in (root / part).rglob("*.py")}
+        return tuple(sorted(found))
+
+    @functools.cached_property
+    def everything(self) -> str:
+        """What all of these modules say, and the data files beside them."""
+        said = [one.digest for name in self.every_module if (one := self.table(name)) is not None]
+        for package, root in self.packages.items():
+            for part in self.parts.get(package, ()):
+                said += [_data(file) for file in (root / part).rglob("*") if file.suffix in DATA]
+        return " ".join(sorted(said))
+
+    # -- names ------------------------------------------------------------------------------------
+    def meant(self, module: str, chain: tuple[str, ...]) -> tuple[Target, ...]:
+        """What a name with its attributes means in a module; nothing for a builtin."""
+        key = (module, chain)
+        if key not in self._meant:
+            self._meant[key] = ()  # imports that go in a circle bind nothing
+            self._meant[key] = tuple(dict.fromkeys(self._bound(module, chain)))
+        return self._meant[key]
+
+    def _bound(self, module: str, chain: tuple[str, ...]) -> Iterator[Target]:
+        found = self.table(module)
+        if found is None:
+            return
+        name, rest = chain[0], chain[1:]
+        for number in found.bound.get(name, ()):
+            unit = found.units[number]
+            if unit.kind == "import":
+                _, source, there = unit.imports[0]
+                yield from self.imported(source, there, rest)
+            else:
+                yield module, number
+        for star in found.stars:
+            if self.table(star) is None:
+                yield f"{star}.*"
+            else:
+                yield from self.meant(star, chain)
+        if name not in found.bound and name != "__getattr__" and "__getattr__" in found.bound:
+            yield from self.meant(module, ("__getattr__",))
+
+    def imported(self, source: str, there: str, rest: tuple[str, ...]) -> Iterator[Target]:
+        """What `from source import there`, or `import source`, means with these attributes."""
+        if source.split(".")[0] not in self.packages:
+            yield f"{source}.{there}"
+        elif there:
+            yield from self._inside(source, (there, *rest))
+        else:
+            yield from self._inside(source, rest)
+
+    def _inside(self, module: str, chain: tuple[str, ...]) -> Iterator[Target]:
+        if not chain:
+            yield from self.whole(module)
+            return
+        inner = f"{module}.{chain[0]}"
+        found = self.meant(module, chain)
+        yield from found
+        if self.file(inner) is not None or self._folder(inner):
+            yield from self._inside(inner, chain[1:])
+        elif not found:
+            yield f"nothing called {chain[0]}"
+
+    def _folder(self, module: str) -> bool:
+        top, *parts = module.split(".")
+        return top in self.packages and self.packages[top].joinpath(*parts).is_dir()
+
+    def whole(self, module: str) -> Iterator[Target]:
+        """Everything that a module defines, for a use that cannot be told."""
+        found = self.table(module)
+        if found is None:
+            yield "a package"
+            return
+        yield from ((module, n) for n, u in enumerate(found.units) if u.kind != "import")
+        for unit in found.units:
+            if unit.kind == "import":
+                name, source, there = unit.imports[0]
+                if there and name not in ("annotations",):
+                    yield from self.imported(source, there, ())
+
+    # -- edges ------------------------------------------------------------------------------------
+    def edges(self, place: Place) -> tuple[tuple[str, tuple[Target, ...]], ...]:
+        """What a unit looks up: each name, as it is written, with what it means."""
+        if place not in self._edges:
+            self._edges[place] = tuple(self._edges_of(place))
+        return self._edges[place]
+
+    def _edges_of(self, place: Place) -> Iterator[tuple[str, tuple[Target, ...]]]:
+        module, number = place
+        unit = self.unit(place)
+        for chain in unit.names:
+            if targets := self.meant(module, tuple(chain.split("."))):
+                yield chain, targets
+        for name, source, there in unit.imports:
+            yield name, tuple(self.imported(source, there, ()))
+        found = self.table(module)
+        assert found is not None
+        if loose := [(module, n) for n in found.loose if n != number]:
+            yield "loose", tuple(loose)
+        if changed := self._changes.get(place):
+            yield "changed by", changed
+
+    @functools.cached_property
+    def _changes(self) -> dict[Place, tuple[Place, ...]]:
+        """Units of other modules that a module's loose statements mention, so may change."""
+        found: dict[Place, list[Place]] = {}
+        for module in self.every_module:
+            one = self.table(module)
+            for number in one.loose if one is not None else ():
+                for target in self._mentioned((module, number)):
+                    if target[0] != module:
+                        found.setdefault(target, []).append((module, number))
+        return {place: tuple(some) for place, some in found.items()}
+
+    def _mentioned(self, place: Place) -> set[Place]:
+        seen: set[Place] = set()
+        todo = [place]
+        while todo:
+            one = todo.pop()
+            if one in seen:
+                continue
+            seen.add(one)
+            unit = self.unit(one)
+            found = [t for n in unit.names for t in self.meant(one[0], tuple(n.split(".")))]
+            found += [t for _, source, n in unit.imports for t in self.imported(source, n, ())]
+            todo += [target for target in found if not isinstance(target, str)]
+        return seen
+
+
+DATA = (".lark", ".conf")
+"""Files beside the modules that these may read; records say what was proved, and decide nothing."""
+
+
+def module_name(package: str, root: Path, file: Path) -> str:
+    """The dotted name of a file of a package."""
+    parts = file.relative_to(root).with_suffix("").parts
+    return ".".join((package, *(parts[:-1] if parts[-1] == "__init__" else parts)))
+
+
+@functools.cache
+def _data(file: Path) -> str:
+    return hashlib.sha256(file.read_bytes()).hexdigest()

@@ -1,0 +1,69 @@
+"""A copy of the product with its ledger, for tests that change it; the gate and the prover on it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+PARTS = ("spec", "core", "proofs", "bridge", "services")
+CHECK = """
+import sys
+from cratous.core import ledger
+try:
+    print(ledger.require().line)
+except Exception as error:
+    print(type(error).__name__, error)
+    sys.exit(1)
+"""
+RESEAL = """
+from cratous.core import ledger
+from cratous.core.ledger import records
+folder = ledger.PRODUCT.records
+data, keys = ledger.read(folder), ledger.Keys()
+{edit}
+for name, entry in ledger.load_all().items():
+    record = data["kernels"][name]
+    record["key"] = keys.of(entry, record["theorems"], data["theorems"])
+for kind in records.KINDS:
+    data[kind] = {{name: records.sealed(name, record) for name, record in data[kind].items()}}
+records.write(records.texts(data), folder)
+"""
+
+
+def copied(root: Path, home: Path) -> Path:
+    """A copy of the product as it would be installed, with its ledger."""
+    for part in PARTS:
+        shutil.copytree(
+            root / part, home / "cratous" / part, ignore=shutil.ignore_patterns("__pycache__")
+        )
+    for name in ("__init__.py", "__main__.py"):
+        shutil.copy(root / "src" / "cratous" / name, home / "cratous")
+    return home
+
+
+def prove(home: Path, *options: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "cratous", "prove", *options],
+        cwd=home,
+        env={**os.environ, "PYTHONPATH": str(home), "PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        text=True,
+        timeout=600,
+    )
+
+
+def check(home: Path, first: str = "") -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "PYTHONPATH": str(home), "PYTHONDONTWRITEBYTECODE": "1"}
+    # from another folder and without the checkout's editable install on the path
+    code = f"import sys; sys.path.insert(0, {str(home)!r})\n" + first + CHECK
+    return subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=home,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=900,
+    )
