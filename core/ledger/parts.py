@@ -38,6 +38,7 @@ PROVER = (
     "proofs.ledger.prove_all",
     "proofs.ledger.problems",
     "proofs.ledger.records",
+    "proofs.statements.definitions.problems",
 )
 """What decides that something is proved: with all they rest on, part of the key of every proof."""
 REMEMBERS = (
