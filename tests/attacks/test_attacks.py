@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
 
 from cratous.proofs.self_test import case, trial
+from cratous.services.cli import main
 from cratous.spec.errors import BadInput
 
 CASES = list(case.cases())
@@ -93,3 +95,29 @@ def test_a_file_that_is_no_case_is_bad_input(text: str, tmp_path: Path) -> None:
     file.write_text(text)
     with pytest.raises(BadInput, match="no case of the self-test"):
         case.read(file)
+
+
+def test_the_command_says_by_kind_what_came_of_it(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    good = _honest()
+    monkeypatch.setattr(case, "cases", lambda: iter([good]))
+    assert main(["prove", "--self-test"]) == 0
+    out = capsys.readouterr().out
+    assert "machine integers: 1 of 1 accepted" in out
+    assert "1 of 1 cases of 1 kinds" in out
+    monkeypatch.setattr(
+        case, "cases", lambda: iter([good, _with(good, "refused", "whatever", "", "")])
+    )
+    assert main(["prove", "--self-test"]) == 1
+    said = capsys.readouterr()
+    assert "machine integers: 0 of 1 refused, 1 of 1 accepted" in said.out
+    assert "fine_difference: accepted" in said.err
+    assert main(["prove", "--self-test", "--json"]) == 1
+    data = json.loads(capsys.readouterr().out)
+    assert [row["wrong"] for row in data["cases"]] == ["", "accepted"]
+
+
+def test_the_self_test_goes_alone(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["prove", "--self-test", "--mutate"]) == 2
+    assert "--self-test" in capsys.readouterr().err
