@@ -35,8 +35,6 @@ PROVER = (
     "proofs.claim.Claim",
     "proofs.engine.prover.prove_file",
     "proofs.engine.subset.lint_all",
-    "proofs.ledger.prove_all",
-    "proofs.ledger.problems",
     "proofs.ledger.records",
     "proofs.statements.definitions.problems",
 )

@@ -15,6 +15,7 @@ import click
 from cratous.core.files.whole_file import write_atomically
 from cratous.services.cli.progress import Bar
 from cratous.services.cli.prove_checks import mutation, second_solver
+from cratous.services.cli.prove_self_test import self_test as tried
 from cratous.spec.errors import BadInput
 
 
@@ -56,25 +57,6 @@ def _export(theorems: list[Any], folder: Path, theorem_folder: Path) -> int:
     return written
 
 
-def _meaning(theorems: list[Any], home: Any, cache: Path | None) -> list[str]:
-    """What is wrong with the definitions that kernels name."""
-    from cratous.core import ledger as gate
-    from cratous.proofs.statements import definitions
-    from cratous.proofs.statements.relations import Kept
-
-    proofs = definitions.Proofs(
-        {theorem.name: theorem.kernels for theorem in theorems},
-        frozenset(theorem.name for theorem in theorems if theorem.proved),
-        Kept(cache and cache / "relations", home).all(theorem.name for theorem in theorems),
-    )
-    return definitions.problems(gate.load_all(home), home, proofs)
-
-
-def _end(name: str) -> str:
-    """A qualified name beside its place, which says the rest."""
-    return name.rpartition(".")[2]
-
-
 def _refuse(problems: list[str]) -> None:
     """Structural faults end the run: no ledger could say anything of such code."""
     for problem in problems:
@@ -105,6 +87,11 @@ def _refuse(problems: list[str]) -> None:
     help="With --recheck or --mutate: only what proofs/recheck.json and mutation.json have no verdict on.",
 )
 @click.option("--mutate", is_flag=True, help="Also look for faults that no theorem would notice.")
+@click.option(
+    "--self-test",
+    is_flag=True,
+    help="Try the prover itself: packages that it must refuse, and near misses that it must accept.",
+)
 @click.option("--package", "package_name", metavar="NAME", help="A package with own kernels.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--junit", type=click.Path(path_type=Path, dir_okay=False), help="Write JUnit XML.")
@@ -124,6 +111,7 @@ def prove(
     recheck: bool,
     new: bool,
     mutate: bool,
+    self_test: bool,
     package_name: str | None,
     as_json: bool,
     junit: Path | None,
@@ -151,6 +139,7 @@ def prove(
     from cratous.core.ledger import records
     from cratous.proofs import ledger
     from cratous.proofs.engine import cache, prover
+    from cratous.proofs.judgement import judge
     from cratous.proofs.ledger import formats
     from cratous.proofs.ledger.recall import Recall
     from cratous.proofs.ledger.remembered import Remembered
@@ -159,6 +148,10 @@ def prove(
     # thousands of syntax trees live to the end: looking for garbage in them is a third of a warm run
     gc.set_threshold(200_000, 20, 100)
     begun = time.monotonic()
+    if self_test:
+        if only or changed or check or recheck or new or mutate or package_name:
+            raise BadInput("--self-test goes with no other choice", item="cratous prove")
+        sys.exit(0 if tried(as_json, verbose) else 1)
     if sum((bool(only), changed, check)) > 1:
         raise BadInput("--only, --changed and --check exclude each other", item="cratous prove")
     if package_name:
@@ -195,14 +188,17 @@ def prove(
     remembered = Remembered(private_cache() / "remembered", home)
     bar = Bar("proving", len(names), not as_json and sys.stderr.isatty())
     with bar:
-        inventory = ledger.prove_all(
+        judged = judge(
             names,
-            lambda progress: bar.step(progress.name, progress.done, progress.of),
-            home=home,
+            home,
+            whole=whole,
+            tell=lambda progress: bar.step(progress.name, progress.done, progress.of),
             jobs=workers,
             cache=store,
             recall=memory,
+            keep=private_cache() / "relations",
         )
+    inventory = judged.inventory
     theorems = list(inventory.theorems)
     if not as_json:
         for theorem in theorems:
@@ -211,16 +207,7 @@ def prove(
         (junit, lambda found: formats.junit(theorems, found)),
         (sarif, lambda found: formats.sarif(theorems, found, home)),
     ]
-    structural = list(inventory.problems) if whole else []
-    if whole:
-        structural += [
-            f"{gate.place_of(name)}: {_end(name)}: no theorem is about this kernel"
-            for name in inventory.bare
-        ]
-        structural += [str(finding) for finding in inventory.findings]
-    problems = structural or [str(finding) for finding in inventory.findings]
-    unmeant = _meaning(theorems, home, private_cache()) if whole and not structural else []
-    problems = [*problems, *unmeant]
+    problems = judged.problems
     if whole and home.product:
         lint = remembered.text("decisions", "", lambda: json.dumps(decisions.unexplained()))
         problems += json.loads(lint)
@@ -237,7 +224,7 @@ def prove(
         if not as_json:
             click.echo(f"{count} SMT-LIB files in {smt2_folder}")
     proved = sum(t.proved for t in theorems)
-    if whole and not problems:
+    if whole and judged.binds and not problems:
         said = ledger.text(inventory, home)
         if check:
             differing = records.differing(said, home.records)
@@ -269,7 +256,7 @@ def prove(
     else:
         for line in dead:
             click.echo(line)
-        if not structural:
+        if not judged.structural:
             for problem in problems:
                 click.echo(problem, err=True)
         kernels = len({k for t in theorems for k in t.kernels})
@@ -285,8 +272,8 @@ def prove(
             click.echo(f"more than 1 s of solver CPU: {', '.join(slow)}")
         if not whole:
             click.echo("a part only: the ledger is not written")
-    if structural:
-        _refuse([*structural, *unmeant])
+    if judged.structural:
+        _refuse([*judged.structural, *judged.unmeant])
     contradicted = bool(data.get("recheck", {}).get("contradicted"))
     survives = mutate and not data["mutation"]["holds"]
     if proved < len(theorems) or problems or contradicted or survives:

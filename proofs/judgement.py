@@ -1,0 +1,87 @@
+"""What `cratous prove` finds of a product or package: theorems, and all that forbids to vouch for it.
+
+The command and its self-test judge by the same functions, so what the one refuses the other does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from cratous.core import ledger as gate
+from cratous.core.ledger.home import Home
+from cratous.proofs import ledger
+from cratous.proofs.engine.cache import Cache
+from cratous.proofs.ledger.recall import Recall
+from cratous.proofs.statements import definitions
+from cratous.proofs.statements.relations import Kept
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What came of proving these theorems.
+
+    structural: what no proof could be bound to, what is outside of the subset included; unmeant: kernels whose definition is none; both
+    with their places, and only looked for where all theorems are judged.
+    """
+
+    inventory: ledger.Inventory
+    structural: tuple[str, ...]
+    unmeant: tuple[str, ...]
+
+    @property
+    def problems(self) -> list[str]:
+        """Everything that is wrong beside theorems that are not proved."""
+        return [*self.structural, *self.unmeant]
+
+    @property
+    def binds(self) -> bool:
+        """A ledger may be written of it."""
+        return not self.structural and not self.unmeant
+
+    @property
+    def holds(self) -> bool:
+        """Everything is proved and nothing is wrong: the command ends with 0."""
+        return not self.problems and all(t.proved for t in self.inventory.theorems)
+
+
+def judge(
+    names: Iterable[str],
+    home: Home,
+    *,
+    whole: bool = True,
+    tell: ledger.Listener | None = None,
+    jobs: int | None = None,
+    cache: Cache | None = None,
+    recall: Recall | None = None,
+    keep: Path | None = None,
+) -> Judgement:
+    """Prove these theorems of a home, and look at its kernels and definitions.
+
+    whole: they are all that it has; keep: folder in which relations are kept from run to run.
+    Raises BadInput for a theorem that cannot be stated.
+    """
+    inventory = ledger.prove_all(names, tell, home=home, jobs=jobs, cache=cache, recall=recall)
+    findings = [str(finding) for finding in inventory.findings]
+    if not whole:
+        return Judgement(inventory, tuple(findings), ())
+    bare = [
+        f"{gate.place_of(name)}: {name.rpartition('.')[2]}: no theorem is about this kernel"
+        for name in inventory.bare
+    ]
+    structural = (*inventory.problems, *bare, *findings)
+    # what is outside of the subset is not read any further
+    unmeant = [] if structural else _unmeant(inventory, home, keep)
+    return Judgement(inventory, structural, tuple(unmeant))
+
+
+def _unmeant(inventory: ledger.Inventory, home: Home, keep: Path | None) -> list[str]:
+    """What is wrong with the definitions that kernels name."""
+    theorems = inventory.theorems
+    proofs = definitions.Proofs(
+        {theorem.name: theorem.kernels for theorem in theorems},
+        frozenset(theorem.name for theorem in theorems if theorem.proved),
+        Kept(keep, home).all(theorem.name for theorem in theorems),
+    )
+    return definitions.problems(gate.load_all(home), home, proofs)

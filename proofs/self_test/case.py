@@ -1,0 +1,81 @@
+"""A case of the self-test: a package as text, and what must come of proving it.
+
+A file begins with `verdict: refused` or `verdict: accepted`, `because:` (one plain sentence) and, if
+it is to be refused, `says:` (what the refusal must contain: words separated by commas, each with
+its alternatives separated by `|`). Then the package's files follow, each after a line such as
+`== spec/meaning.py`. The package is called `pkg` in them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from cratous.spec.errors import BadInput
+
+CASES = Path(__file__).resolve().parent / "cases"
+SECTION = re.compile(r"^== (\S+)\n", re.M)
+PACKAGE = re.compile(r"\bpkg\b")
+VERDICTS = ("refused", "accepted")
+EMPTY = {"__init__.py": "", "spec/__init__.py": ""}
+
+
+@dataclass(frozen=True)
+class Case:
+    """A package, by the text of each file, with the verdict that it must get and why.
+
+    says: all of these must be in the refusal, of each at least one alternative.
+    """
+
+    kind: str
+    name: str
+    verdict: str
+    because: str
+    says: tuple[tuple[str, ...], ...]
+    files: tuple[tuple[str, str], ...]
+
+    @property
+    def id(self) -> str:
+        """`kind/name`."""
+        return f"{self.kind}/{self.name}"
+
+    def write(self, folder: Path, package: str) -> None:
+        """Write the files as a package of this name into a folder."""
+        for place, text in {**EMPTY, **dict(self.files)}.items():
+            file = folder / package / place
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(PACKAGE.sub(package, text), encoding="utf-8")
+
+    def unsaid(self, reason: str) -> list[str]:
+        """What the reason of a refusal should contain and does not."""
+        said = reason.lower()
+        return [" or ".join(ways) for ways in self.says if not any(w in said for w in ways)]
+
+
+def read(file: Path) -> Case:
+    """The case of a file; raises BadInput for one that is none."""
+    parts = SECTION.split(file.read_text(encoding="utf-8"))
+    head: dict[str, str] = {}
+    for line in parts[0].splitlines():
+        name, colon, value = line.partition(":")
+        if line.strip():
+            head[name] = value.strip() if colon else ""
+    files = tuple(zip(parts[1::2], parts[2::2], strict=True))
+    ways = (word.split("|") for word in head.get("says", "").lower().split(",") if word.strip())
+    says = tuple(tuple(way.strip() for way in way_of_it) for way_of_it in ways)
+    good = head.get("verdict") in VERDICTS and head.get("because") and files
+    if not good or bool(says) != (head["verdict"] == "refused"):
+        raise BadInput(
+            "this is no case of the self-test",
+            where=f"{file.parent.name}/{file.name}",
+            expected="verdict, because and, if refused, says; then `== file` and its text",
+        )
+    return Case(file.parent.name, file.stem, head["verdict"], head["because"], says, files)
+
+
+def cases(folder: Path = CASES) -> Iterator[Case]:
+    """All cases, in order of kind and name."""
+    for file in sorted(folder.glob("*/*.case")):
+        yield read(file)

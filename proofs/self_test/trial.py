@@ -1,0 +1,131 @@
+"""One case tried: its package is written, proved as `cratous prove --package` does it, and judged.
+
+Each is tried in a process forked from one state: what a case does to the registry, to modules or
+to the prover itself is gone with it, and no verdict depends on the cases before.
+"""
+
+from __future__ import annotations
+
+import functools
+import gc
+import resource
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from cratous.core import ledger as gate
+from cratous.core.kernel.sources import function_parts
+from cratous.core.ledger import records
+from cratous.proofs import ledger
+from cratous.proofs.claim import Claim
+from cratous.proofs.engine import forked, prover
+from cratous.proofs.judgement import Judgement, judge
+from cratous.proofs.ledger.formats import failure_text
+from cratous.proofs.self_test.case import Case
+from cratous.spec.errors import BadInput, CratousError
+
+CPU_S = 60
+"""CPU seconds after which a case is ended: many times what any takes."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What came of a case: accepted, refused or broken (the prover ended in an error of its own).
+
+    reason: why it was refused; vouched: a ledger was left that vouches for all of its kernels.
+    """
+
+    case: Case
+    verdict: str
+    reason: str
+    vouched: bool
+
+    @property
+    def wrong(self) -> str:
+        """What is not as it must be, in one line; nothing where all is."""
+        said = " ".join(self.reason.split())
+        if self.verdict != self.case.verdict:
+            return f"{self.verdict}{': ' if said else ''}{said}"
+        if self.vouched != (self.verdict == "accepted"):
+            return f"{self.verdict}, yet the ledger {'vouches' if self.vouched else 'does not'}"
+        if unsaid := self.case.unsaid(self.reason):
+            return f"refused for another reason ({'; '.join(unsaid)} not in it): {said}"
+        return ""
+
+
+def _reason(found: Judgement) -> str:
+    lines = list(found.problems)
+    for theorem in found.inventory.theorems:
+        if not theorem.proved:
+            lines.append(f"not proved: {theorem.name}: {failure_text(theorem)}")
+    return "\n".join(lines)
+
+
+def _vouches(package: str, folder: Path) -> bool:
+    """The gate of another process finds a ledger, and nothing against any kernel of the package."""
+    _begin(folder)
+    try:
+        return not gate.check(home=gate.package(package)).problems
+    except CratousError:
+        return False
+
+
+def _begin(folder: Path) -> None:
+    """Prepare a forked process for a package that lies in this folder."""
+    sys.dont_write_bytecode = True
+    sys.path.insert(0, str(folder))
+    resource.setrlimit(resource.RLIMIT_CPU, (CPU_S, CPU_S))
+
+
+def _proved(package: str, folder: Path) -> tuple[str, str]:
+    """The verdict on a package that lies in this folder, and the reason; writes its ledger."""
+    _begin(folder)
+    try:
+        home = gate.package(package)
+        gate.load_all(home)
+        names = list(prover.theorem_files(prover.home_folder(home)))
+        if not names:
+            raise BadInput("the package has no theorems", where=home.name)
+        found = judge(names, home, jobs=1)
+        if found.binds:
+            records.write(ledger.text(found.inventory, home), home.records)
+        return ("accepted" if found.holds else "refused"), _reason(found)
+    except CratousError as error:
+        return "refused", str(error)
+    except BaseException as error:  # a case may raise whatever it likes
+        return "broken", f"{type(error).__name__}: {error}"
+
+
+def attempt(case: Case) -> Trial:
+    """Try one case, in a folder and in processes of its own."""
+    package = f"tried_{case.kind}_{case.name}"
+    with tempfile.TemporaryDirectory(prefix="cratous-") as made:
+        folder = Path(made).resolve()
+        case.write(folder, package)
+        try:
+            verdict, reason = forked.call(partial(_proved, package, folder))
+            written = any((folder / package / "ledger").rglob("*.json"))
+            vouched = written and forked.call(partial(_vouches, package, folder))
+        except Exception as error:  # it ended its process, or the gate met what it does not expect
+            return Trial(case, "broken", f"{type(error).__name__}: {error}", False)
+        # as the case calls it: the package's long name has words of its own
+        return Trial(case, verdict, reason.replace(package, "pkg"), vouched)
+
+
+def attempts(cases: Iterable[Case]) -> Iterator[Trial]:
+    """Try these cases, one after the other."""
+    prepare()
+    for case in cases:
+        yield attempt(case)
+
+
+@functools.cache
+def prepare() -> None:
+    """Read what every ledger hashes, so that the forked processes find it read."""
+    gate.check()
+    function_parts(Claim)
+    gc.collect()
+    gc.freeze()  # else each process copies what its collector looks at
