@@ -46,6 +46,12 @@ COUNTS = {
         {"use.py": "from pkg.tools import other as helper\n\ndef root(x):\n    return helper(x)\n"},
         {"use.py": "from pkg.tools import helper\n\ndef root(x):\n    return helper(x)\n"},
     ),
+    "which of two that are both used": (
+        {"use.py": "from pkg.tools import helper as a, other as b, helper as c\n\n"
+                   "def root(x):\n    return a(x) + b(x) + c(x)\n"},
+        {"use.py": "from pkg.tools import helper as a, other as b, other as c\n\n"
+                   "def root(x):\n    return a(x) + b(x) + c(x)\n"},
+    ),
     "a default": (
         {"use.py": "D = 1\ndef root(x=D):\n    return x\n"},
         {"use.py": "D = 2\ndef root(x=D):\n    return x\n"},
