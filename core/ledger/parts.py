@@ -36,7 +36,7 @@ PROVER = (
     "proofs.engine.prover.prove_file",
     "proofs.engine.subset.lint_all",
     "proofs.ledger.records",
-    "proofs.statements.definitions.problems",
+    "proofs.judgement.judge",
 )
 """What decides that something is proved: with all they rest on, part of the key of every proof."""
 REMEMBERS = (

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import gc
+import os
 import resource
 import sys
 import tempfile
@@ -16,11 +17,11 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+import z3
+
 from cratous.core import ledger as gate
-from cratous.core.kernel.sources import function_parts
 from cratous.core.ledger import records
 from cratous.proofs import ledger
-from cratous.proofs.claim import Claim
 from cratous.proofs.engine import forked, prover
 from cratous.proofs.judgement import Judgement, judge
 from cratous.proofs.ledger.formats import failure_text
@@ -74,7 +75,10 @@ def _vouches(package: str, folder: Path) -> bool:
 
 
 def _begin(folder: Path) -> None:
-    """Prepare a forked process for a package that lies in this folder."""
+    """Prepare a forked process for a package that lies in this folder; what it prints is not heard."""
+    silence = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(silence, 1)
+    os.dup2(silence, 2)
     sys.dont_write_bytecode = True
     sys.path.insert(0, str(folder))
     resource.setrlimit(resource.RLIMIT_CPU, (CPU_S, CPU_S))
@@ -124,8 +128,8 @@ def attempts(cases: Iterable[Case]) -> Iterator[Trial]:
 
 @functools.cache
 def prepare() -> None:
-    """Read what every ledger hashes, so that the forked processes find it read."""
+    """Read what every ledger hashes, and wake the solver, so that forked processes find it done."""
     gate.check()
-    function_parts(Claim)
+    z3.Solver(ctx=z3.main_ctx()).check()
     gc.collect()
     gc.freeze()  # else each process copies what its collector looks at
