@@ -22,11 +22,6 @@ RELAPSE_MS = 20_000
 """A takeover this soon after a handback is a relapse."""
 
 
-def persistence_ms(relapses: int) -> int:
-    """How long the way back must have been free: doubled per relapse, at most 16 times."""
-    return int(PERSIST_MS * 2 ** min(relapses, 4))
-
-
 def bearing_rad(p: Position, q: Position) -> float:
     """Direction from p to q, clockwise from north."""
     return math.atan2(q.east_m - p.east_m, q.north_m - p.north_m)

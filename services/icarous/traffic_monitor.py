@@ -38,6 +38,18 @@ class Threat(NamedTuple):
     ours_to_act: bool
 
 
+class Nearest(NamedTuple):
+    """How near a predicted loss may come [s]: see `last_time_s` and `hard_limit_s`."""
+
+    last_s: float
+    hard_s: float
+
+
+def nearest(ability: Ability, volume: WellClear, heartbeat_ms: int) -> Nearest:
+    """Both limits for a vehicle as it flies now."""
+    return Nearest(last_time_s(ability, volume, heartbeat_ms), hard_limit_s(ability, heartbeat_ms))
+
+
 def last_time_s(ability: Ability, volume: WellClear, heartbeat_ms: int) -> float:
     """The nearest predicted loss [s] at which the one with the right of way still waits.
 
@@ -83,14 +95,13 @@ def threats(
     volume: WellClear,
     before: tuple[Threat, ...],
     now_ms: int,
-    last_s: float,
-    hard_s: float,
+    limits: Nearest,
     in_turn: frozenset[int] = frozenset(),
 ) -> tuple[Threat, ...]:
     """All predicted losses, by intruder; `before` is what the last heartbeat gave.
 
-    last_s, hard_s: see `last_time_s` and `hard_limit_s`. An intruder in a turn is not where a
-    straight line leads, so unless the loss is nearer than hard_s its threat has to persist.
+    An intruder in a turn is not where a straight line leads, so unless the loss is nearer than
+    hard_s its threat has to persist.
     """
     since = {threat.intruder_id: threat.since_ms for threat in before}
     found = []
@@ -101,8 +112,8 @@ def threats(
         seen_ms = since.get(other.id, now_ms)
         ours = must_act(
             first,
-            last_s,
-            hard_s,
+            limits.last_s,
+            limits.hard_s,
             PERSIST_MS / 1000,
             lasted(seen_ms, now_ms, PERSIST_MS),
             other.id in in_turn,

@@ -10,17 +10,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from icarous_tools import ABILITY, NORTH, VOLUME, WIDE, head_on
 
+from cratous.core.authority.cycle import patience
 from cratous.core.avoidance.manoeuvre import along, fly_to, velocity_of
 from cratous.core.avoidance.prediction import Intruder, Piece, after, first_violation_s
 from cratous.core.avoidance.resolution import Scene, first_conflict_s, resolve
 from cratous.core.geofence.mission_legs import leg_ok
-from cratous.services.icarous import instance
-from cratous.services.icarous.return_to_path import goal_index, persistence_ms
+from cratous.services.icarous.foresight import describe
+from cratous.services.icarous.return_to_path import PERSIST_MS as FREE_MS
+from cratous.services.icarous.return_to_path import goal_index
 from cratous.services.icarous.traffic_monitor import (
     PERSIST_MS,
-    hard_limit_s,
     last_time_s,
     most_urgent,
+    nearest,
     threats,
 )
 from cratous.spec.mission import Position, Velocity, WellClear, Zone, ZoneKind
@@ -186,19 +188,18 @@ def test_when_nothing_is_free_it_says_so() -> None:
     stuck = ABILITY._replace(max_climb_m_s=0.0)
     choice = resolve(NORTH, stuck, Scene(ring, (), WIDE, 60.0), 0.0, 22.0, None)
     assert not choice.clear
-    assert "no manoeuvre is free" in instance.describe(choice)
+    assert "no manoeuvre is free" in describe(choice)
 
 
 # ---- who acts, and when --------------------------------------------------------------------------
 
 
-LAST_S = last_time_s(ABILITY, WIDE, 500)
-HARD_S = hard_limit_s(ABILITY, 500)
+LIMITS = nearest(ABILITY, WIDE, 500)
 
 
 def seen(own: int, other: Intruder, since_ms: int | None, in_turn: bool = False) -> bool:
     """Whether vehicle `own` acts now on a threat first seen at since_ms (None: just now)."""
-    before = threats(own, straight(), (other,), WIDE, (), since_ms or 0, LAST_S, HARD_S)
+    before = threats(own, straight(), (other,), WIDE, (), since_ms or 0, LIMITS)
     now_ms = 10_000
     found = threats(
         own,
@@ -207,8 +208,7 @@ def seen(own: int, other: Intruder, since_ms: int | None, in_turn: bool = False)
         WIDE,
         before if since_ms is not None else (),
         now_ms,
-        LAST_S,
-        HARD_S,
+        LIMITS,
         frozenset({other.id}) if in_turn else frozenset(),
     )
     assert found
@@ -244,7 +244,7 @@ def test_last_time_is_the_derivation() -> None:
 
 
 def test_persistence_doubles_with_relapses() -> None:
-    assert [persistence_ms(k) for k in (0, 1, 2, 9)] == [1500, 3000, 6000, 24000]
+    assert [patience(k, FREE_MS) for k in (0, 1, 2, 9)] == [1500, 3000, 6000, 24000]
 
 
 def test_goal_is_ahead_and_not_too_near() -> None:
