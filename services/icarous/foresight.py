@@ -62,7 +62,7 @@ def way_back_is_free(config: Config, state: State, sensed: Sensed) -> bool:
     if not told.waypoints:
         pieces = predicted(state, sensed, scene.lookahead_s)
     else:
-        points = told.waypoints[state.goal :]
+        points = told.waypoints[min(state.goal, len(told.waypoints) - 1) :]
         if told.resume is not None:
             points = (told.resume, *told.waypoints[min(told.next_index, len(told.waypoints)) :])
         radius_m = TURN_MARGIN * sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s

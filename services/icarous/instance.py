@@ -79,7 +79,9 @@ class Instance:
         match message:
             case Line(now_ms, line):
                 told = hear(state.told, line, self.config.projection, now_ms)
-                return replace(state, told=told), ()
+                # an index into the waypoints of another way says nothing
+                goal = state.goal if told.waypoints is state.told.waypoints else 0
+                return replace(state, told=told, goal=goal), ()
             case Sensed():
                 return self._beat(state, message)
 
