@@ -223,6 +223,12 @@ def test_an_offer_is_withdrawn_when_a_conflict_comes_up() -> None:
     assert of(out, Up)[0].line == SetMode("ACTIVE", 3)
     assert of(out, Steer)[0].epoch == 3
     assert of(out, Foresees)[0].resolution.startswith("offer withdrawn; heading")
+    # told also where the manoeuvre is the one flown already, but then not twice
+    again = replace(state, cycle=state.cycle._replace(mode=HANDBACK))
+    _, out = after(sensed(3000, OFFERED, (head_on(1500.0),)), state=again)
+    assert len(of(out, Foresees)) == 1
+    _, out = after(sensed(3000, OWNED, (head_on(1500.0),)), state=state)
+    assert of(out, Foresees) == []
 
 
 def test_without_the_link_it_flies_on_and_offers_nothing() -> None:
@@ -250,6 +256,12 @@ def test_an_instance_that_was_started_anew_in_command_flies_on() -> None:
     assert state.cycle.mode == AVOID
     assert [steer.epoch for steer in of(out, Steer)] == [1]
     assert acts(out) == []
+
+
+def test_a_takeover_makes_for_the_waypoint_that_is_next() -> None:
+    """Not for one that is told to be reached, though it lies ahead."""
+    state, _ = after(Line(0, WaypointReached(1)), sensed(500, FREE, NEAR), state=started())
+    assert (state.cycle.mode, state.goal) == (AVOID, 2)
 
 
 def test_another_way_is_flown_from_its_beginning() -> None:
