@@ -8,13 +8,16 @@ from dataclasses import replace
 from cratous.core.avoidance.manoeuvre import along, velocity_of
 from cratous.core.avoidance.prediction import Piece, buffered
 from cratous.core.avoidance.resolution import Choice, Scene, first_conflict_s, first_zone_s, resolve
+from cratous.core.avoidance.way_ahead import near_line, there_within
 from cratous.services.icarous.messages import Sensed
-from cratous.services.icarous.return_to_path import bearing_rad, goal_index, way_back
+from cratous.services.icarous.return_to_path import bearing_rad, flat, goal_index, way_back
 from cratous.services.icarous.state import Config, State
 from cratous.spec.mission import Position
 
 ON_PATH_M = 30.0
 """Nearer than this to its path a vehicle is taken to fly along it; else straight on [m]."""
+REACHED_S = 0.5
+"""A waypoint that is nearer than this [s of flight] is as good as reached."""
 TURN_MARGIN = 1.1
 """The way back is made of turns this much wider than the tightest."""
 
@@ -29,31 +32,17 @@ def scene_of(config: Config, state: State, sensed: Sensed) -> Scene:
 def predicted(state: State, sensed: Sensed, lookahead_s: float) -> tuple[Piece, ...]:
     """The own way ahead: along the waypoints while on the path, else straight on."""
     told, motion = state.told, sensed.motion
-    index = told.next_index
+    here, index = flat(motion.position), told.next_index
     if 0 < index < len(told.waypoints):
-        a, b = told.waypoints[index - 1], told.waypoints[index]
-        if _off_m(motion.position, a, b) <= ON_PATH_M:
-            ahead = told.waypoints[index:]
-            half_s = motion.speed_m_s * 0.5
-            near = math.hypot(
-                ahead[0].north_m - motion.position.north_m,
-                ahead[0].east_m - motion.position.east_m,
-            )
+        ahead = told.waypoints[index:]
+        goal = flat(ahead[0])
+        if near_line(here, flat(told.waypoints[index - 1]), goal, ON_PATH_M):
             # a waypoint that is as good as reached says nothing about the direction of flight
-            if near < half_s and len(ahead) > 1:
+            if len(ahead) > 1 and there_within(here, goal, motion.speed_m_s, REACHED_S):
                 ahead = ahead[1:]
             return along(motion, ahead, lookahead_s)
     v = velocity_of(motion.heading_rad, motion.speed_m_s, motion.climb_m_s)
     return (Piece(0.0, lookahead_s, motion.position, v),)
-
-
-def _off_m(p: Position, a: Position, b: Position) -> float:
-    north, east = b.north_m - a.north_m, b.east_m - a.east_m
-    length = math.hypot(north, east)
-    dn, de = p.north_m - a.north_m, p.east_m - a.east_m
-    if length < 1e-9:
-        return math.hypot(dn, de)
-    return abs(north * de - east * dn) / length
 
 
 def way_back_is_free(config: Config, state: State, sensed: Sensed) -> bool:

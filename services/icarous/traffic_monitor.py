@@ -16,6 +16,7 @@ from cratous.core.authority.right_of_way import must_act
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Ability, smallest_turn
 from cratous.core.avoidance.prediction import Intruder, Piece, first_violation_s
+from cratous.core.avoidance.way_ahead import turns
 from cratous.spec.mission import WellClear
 
 PERSIST_MS = 2000
@@ -84,7 +85,7 @@ def turning(now: Tracks, before: Tracks, dt_s: float) -> frozenset[int]:
     return frozenset(
         other
         for other, course in now
-        if other in was and abs(smallest_turn(was[other], course)) > TURNING_RAD_S * dt_s
+        if other in was and turns(smallest_turn(was[other], course), TURNING_RAD_S, dt_s)
     )
 
 
