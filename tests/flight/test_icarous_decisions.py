@@ -11,19 +11,24 @@ from hypothesis import strategies as st
 from icarous_tools import ABILITY, NORTH, VOLUME, WIDE, head_on
 
 from cratous.core.authority.cycle import patience
+from cratous.core.authority.gate import Gate
 from cratous.core.avoidance.manoeuvre import along, fly_to, velocity_of
 from cratous.core.avoidance.prediction import Intruder, Piece, after, first_violation_s
 from cratous.core.avoidance.resolution import Scene, first_conflict_s, resolve
 from cratous.core.geofence.mission_legs import leg_ok
-from cratous.services.icarous.foresight import describe
+from cratous.services.icarous.foresight import describe, predicted
+from cratous.services.icarous.inbox import Told
+from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.return_to_path import PERSIST_MS as FREE_MS
 from cratous.services.icarous.return_to_path import goal_index
+from cratous.services.icarous.state import State
 from cratous.services.icarous.traffic_monitor import (
     PERSIST_MS,
     last_time_s,
     most_urgent,
     nearest,
     threats,
+    turning,
 )
 from cratous.spec.mission import Position, Velocity, WellClear, Zone, ZoneKind
 
@@ -253,3 +258,53 @@ def test_goal_is_ahead_and_not_too_near() -> None:
     past = NORTH._replace(position=Position(450.0, 300.0, 300.0))
     assert goal_index(past, 85.0, line, 1) == 5
     assert goal_index(NORTH._replace(position=Position(2000.0, 0.0, 300.0)), 85.0, line, 1) == 9
+
+
+# ---- what is predicted of whom -------------------------------------------------------------------
+
+WAY = (Position(-1000.0, 0.0, 300.0), Position(100.0, 0.0, 300.0), Position(100.0, 900.0, 300.0))
+
+
+@pytest.mark.parametrize(
+    ("next_index", "north_m", "east_m", "pieces"),
+    [
+        (0, 0.0, 0.0, 1),  # not on its way to a waypoint yet: straight on
+        (1, 0.0, 0.0, 3),  # along both legs that are left, and on
+        (1, 0.0, 29.9, 3),
+        (1, 0.0, -30.1, 1),  # off the path
+        (1, 89.1, 0.0, 2),  # the next waypoint is as good as reached: 10.9 m at 22 m/s
+        (1, 88.9, 0.0, 3),
+        (2, 101.0, 895.0, 2),  # but the last one is flown to
+        (3, 0.0, 0.0, 1),  # past the last
+    ],
+)
+def test_which_way_is_predicted(
+    next_index: int, north_m: float, east_m: float, pieces: int
+) -> None:
+    state = State(told=Told(waypoints=WAY, next_index=next_index))
+    now = NORTH._replace(position=Position(north_m, east_m, 300.0))
+    found = predicted(state, Sensed(0, now, ABILITY, (), Gate(0, 0, False)), 60.0)
+    assert len(found) == pieces
+    if pieces == 1:
+        assert found == (Piece(0.0, 60.0, now.position, velocity_of(0.0, 22.0, 0.0)),)
+
+
+@pytest.mark.parametrize(
+    ("before_rad", "now_rad", "turns"),
+    [
+        (1.0, 1.0099, False),
+        (1.0, 1.0101, True),
+        (1.0, 0.9899, True),
+        (math.pi - 0.001, -math.pi + 0.001, False),  # across south
+    ],
+)
+def test_who_turns(before_rad: float, now_rad: float, turns: bool) -> None:
+    found = turning(((9, now_rad), (8, 0.0)), ((9, before_rad),), 0.5)
+    assert found == (frozenset({9}) if turns else frozenset())
+
+
+def test_a_waypoint_passed_abeam_is_no_goal() -> None:
+    bend = tuple(Position(500.0, east, 300.0) for east in (0.0, 900.0, 1800.0))
+    assert goal_index(NORTH, 85.0, bend, 0) == 1  # the way on leads off at a right angle
+    assert goal_index(NORTH._replace(position=Position(500.0, -1.0, 300.0)), 0.3, bend, 0) == 0
+    assert goal_index(NORTH._replace(position=Position(500.0, -1.0, 300.0)), 0.4, bend, 0) == 1
