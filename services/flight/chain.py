@@ -9,13 +9,15 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Container
 from dataclasses import dataclass, field, replace
-from enum import StrEnum
+from enum import IntEnum
 
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.routing.dubins import polyline_length_m
 from cratous.core.routing.polylines import Track, circle_points
 from cratous.services.flight.dynamics import AirState
+from cratous.spec import executive
 from cratous.spec.mission import Position, Vehicle, Zone
 from cratous.spec.mission.plan import Hold, PlanItem, Pose
 
@@ -27,11 +29,10 @@ LAP_LEGS = 72
 """A lap of a hold is flown as a polyline of this many legs."""
 
 
-class Phase(StrEnum):
-    TRANSIT = "transit"
-    WAIT = "wait"
-    TASK = "task"
-    DONE = "done"
+class Phase(IntEnum):
+    """The codes of `spec.executive`."""
+
+    TRANSIT, WAIT, TASK, DONE = executive.TRANSIT, executive.WAIT, executive.TASK, executive.DONE
 
 
 @dataclass
@@ -67,6 +68,13 @@ class Chain:
     def item(self) -> PlanItem | None:
         """The present item, or None when all are flown."""
         return self.items[self.k] if self.k < len(self.items) else None
+
+    def next_k(self, failed: Container[int]) -> int:
+        """Index of the item after the present one, those of failed tasks left out."""
+        k = self.k + 1
+        while k < len(self.items) and self.items[k].task_id in failed:
+            k += 1
+        return k
 
     def measure(self, state: AirState, now_ms: int, dt_s: float) -> int | None:
         """Bring the progress up to date; the instant at which the end was passed, if it was."""

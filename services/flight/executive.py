@@ -17,6 +17,7 @@ from typing import Any
 from cratous.core.authority.gate import UXAS
 from cratous.core.authority.link_end import suspended_after, track_is_told
 from cratous.core.authority.timeliness import too_early
+from cratous.core.executive.steps import end_passed, late_act, may_begin, task_after
 from cratous.core.routing.polylines import Track
 from cratous.services.flight import chain as chains
 from cratous.services.flight.ahead import last_lap, leaving_m, points_ahead, points_left
@@ -24,12 +25,14 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import gated, path_command, task_progress
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.expectation import expected_times
+from cratous.services.flight.lives import life
 from cratous.services.flight.messages import Flown, Route
 from cratous.services.flight.pace import FASTEST, broken_rows, trimmed_speed_m_s
 from cratous.services.flight.timing import closed_by, opens_ms
 from cratous.services.flight.ways import Ways
 from cratous.services.mission.frames import Projection
 from cratous.spec.constraint_rows import Row
+from cratous.spec.executive import FAIL, GO_ON, LAP, LAST_LAP, PLAN_ANEW, STANDS_BY, START
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.plan import Plan, PlanItem
 
@@ -140,20 +143,24 @@ class Executive:
             passed[vid] = chain.measure(states[vid], now_ms, self.dt_s)
 
     def _on_end(self, chain: Chain, at_ms: int, state: AirState, out: list[Any]) -> None:
+        """The end of the present track has been passed: what the kernel `end_passed` answers."""
         item = chain.item
-        if chain.phase is Phase.TASK and item is not None:
+        row, opens = self._may_begin(chain, at_ms)
+        more = chain.next_k(self.failed) < len(chain.items)
+        moved = end_passed(chain.phase, chain.suspended, opens, more)
+        if item is None or moved.act == LAST_LAP:
+            chain.enter(Phase(moved.phase), Track(last_lap(chain)), at_ms)
+        elif moved.act == GO_ON:
             self.ends[item.task_id] = at_ms
             out.append(self._progress(chain, at_ms, "Complete", 1.0, ""))
             self._next_item(chain, at_ms, state, out)
-        elif item is not None:
-            self._try_start(chain, at_ms, out)
-        else:
-            chain.enter(Phase.DONE, Track(last_lap(chain)), at_ms)
+        elif moved.act == START:
+            self._start(chain, item, at_ms, out)
+        elif moved.act == LAP:
+            self._lap(chain, item, at_ms, row, out)
 
     def _next_item(self, chain: Chain, at_ms: int, state: AirState, out: list[Any]) -> None:
-        chain.k += 1
-        while chain.item is not None and chain.item.task_id in self.failed:
-            chain.k += 1
+        chain.k = chain.next_k(self.failed)
         item = chain.item
         if item is None:
             self._loiter(chain, at_ms, state)
@@ -174,18 +181,27 @@ class Executive:
         layer = 1.5 * daa.buffer * daa.well_clear.zthr_m * self.finished
         chain.enter(Phase.DONE, self.ways.last(chain, state, layer if others else 0.0), at_ms)
 
-    def _try_start(self, chain: Chain, at_ms: int, out: list[Any]) -> None:
-        """At the start pose: begin the task, or fly a lap of the hold."""
+    def _may_begin(self, chain: Chain, at_ms: int) -> tuple[Row | None, bool]:
+        """Whether the task of a vehicle at its start pose may begin, and a row that forbids it."""
         item = chain.item
-        assert item is not None
+        if item is None or chain.phase is Phase.TASK:
+            return None, False
         row = closed_by(item.task_id, at_ms, self.plan.rows, self.starts, self.ends)
         early = item.wait_ms != 0 and too_early(at_ms, item.start_ms, EARLY_MS)
-        if row is None and not early:
-            self.starts[item.task_id] = at_ms
-            chain.speed_m_s = item.speed_m_s
-            chain.enter(Phase.TASK, Track(item.path, chains.start_pose(item).heading_rad), at_ms)
-            out.append(self._progress(chain, at_ms, "Active", 0.0, ""))
-            return
+        now = life(item.task_id, self.starts, self.ends, self.failed)
+        return row, may_begin(now, row is None, early)
+
+    def _start(self, chain: Chain, item: PlanItem, at_ms: int, out: list[Any]) -> None:
+        """At the start pose: begin the task."""
+        self.starts[item.task_id] = at_ms
+        chain.speed_m_s = item.speed_m_s
+        chain.enter(Phase.TASK, Track(item.path, chains.start_pose(item).heading_rad), at_ms)
+        out.append(self._progress(chain, at_ms, "Active", 0.0, ""))
+
+    def _lap(
+        self, chain: Chain, item: PlanItem, at_ms: int, row: Row | None, out: list[Any]
+    ) -> None:
+        """At the start pose: fly a lap of the hold. row: one that forbids to begin, if one does."""
         first = chain.phase is not Phase.WAIT
         chain.enter(Phase.WAIT, self.ways.lap(chain, item), at_ms)
         if first:
@@ -256,11 +272,12 @@ class Executive:
                 c.phase is Phase.TASK and c.item is not None and c.item.task_id == task_id
                 for c in self.chains.values()
             )
-            if not under_way and self.replan is not None:
-                if any(c.suspended or c.phase is Phase.TASK for c in self.chains.values()):
-                    continue  # plan anew when no task is under way: none is torn apart
-                if self.plan_anew(states, now_ms, row.text, out):
-                    return
+            torn = any(c.suspended or c.phase is Phase.TASK for c in self.chains.values())
+            act = late_act(under_way, self.replan is not None, torn)
+            if act == STANDS_BY:
+                continue
+            if act == PLAN_ANEW and self.plan_anew(states, now_ms, row.text, out):
+                return
             self._fail(task_id, now_ms, f"{row.text}: cannot be met any more", states, out)
 
     def _broken(self, factor: float, now_ms: int) -> list[tuple[int, Row]]:
@@ -307,12 +324,17 @@ class Executive:
         asked for and no vehicle was given."""
         for chain in list(self.chains.values()):
             for item in chain.items[max(chain.k, 0) :]:
-                if item.task_id not in self.failed and item.task_id not in self.ends:
+                if self._fails(item.task_id):
                     self._fail(item.task_id, now_ms, why, states, out)
         for task_id in asked:
-            if task_id not in self.failed and task_id not in self.ends:
+            if self._fails(task_id):
                 self.failed[task_id] = why
                 out.append(task_progress(task_id, NOBODY, now_ms, "Failed", 0.0, why))
+
+    def _fails(self, task_id: int) -> bool:
+        """Whether a task that is given up fails by that; one that is settled stays as it is."""
+        before = life(task_id, self.starts, self.ends, self.failed)
+        return task_after(before, FAIL) != before
 
     def _fail(
         self, task_id: int, now_ms: int, why: str, states: dict[int, AirState], out: list[Any]
@@ -339,9 +361,9 @@ class Executive:
 
     # reading ----------------------------------------------------------------------------------
 
-    def done(self) -> bool:
-        """True iff every chain is flown to its end."""
-        return all(chain.item is None for chain in self.chains.values())
+    def flying(self) -> int:
+        """How many vehicles have items of their chains left."""
+        return sum(chain.item is not None for chain in self.chains.values())
 
     def report(self, vehicle_id: int) -> list[Route | Flown]:
         """How far a vehicle is on the way that UxAS flies it, and the way if it has not been told."""

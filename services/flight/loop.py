@@ -14,6 +14,7 @@ from typing import Any
 from cratous.bridge import lmcp
 from cratous.bridge.loopback import Bridge
 from cratous.core.authority.gate import ICAROUS, UXAS, Gate
+from cratous.core.executive.steps import flight_outcome
 from cratous.services.bus import Bus
 from cratous.services.flight import link_end
 from cratous.services.flight.arrivals import arrivals
@@ -47,6 +48,7 @@ from cratous.services.mission.taking_part import absent
 from cratous.services.mission.wind import CALM, all_in_wind, in_wind, known_at, told, wind_at
 from cratous.services.planning.zones import hard_zones
 from cratous.spec.errors import NoPlan
+from cratous.spec.executive import COMPLETE, FAILED_FLIGHT, GOES_ON, LIMIT
 from cratous.spec.mission import Change, Mission
 from cratous.spec.mission.asked import asked
 from cratous.spec.mission.changes import TASK_ADDED, VEHICLE_JOINS, split, words
@@ -77,6 +79,7 @@ def fly(
         return _Flight(mission, plan, bus, bridge, instances).run(progress)
 
 
+OUTCOMES = {GOES_ON: "", COMPLETE: "complete", FAILED_FLIGHT: "failed", LIMIT: "limit"}
 BRINGS_WORK = (TASK_ADDED, VEHICLE_JOINS)
 """The end of the mission waits for changes of these kinds."""
 
@@ -205,11 +208,11 @@ class _Flight:
             self._accepted = None
 
     def _outcome(self, limit_ms: int) -> str:
-        back = all(node.gate.owner == UXAS for node in self.nodes.values())
-        expected = any(c.kind in BRINGS_WORK for c in self.to_come)
-        if self.executive.done() and back and not expected:
-            return "failed" if self._left() else "complete"
-        return "limit" if self.now_ms >= limit_ms else ""
+        flying = self.executive.flying()
+        away = sum(node.gate.owner != UXAS for node in self.nodes.values())
+        expected = sum(c.kind in BRINGS_WORK for c in self.to_come)
+        left = len(self._left()) if not flying else 0  # while some fly, what is left is no matter
+        return OUTCOMES[flight_outcome(flying, away, expected, left, self.now_ms, limit_ms)]
 
     def _left(self) -> list[int]:
         """The tasks that are asked for and not done."""
