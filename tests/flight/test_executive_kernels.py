@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import pickle
+from dataclasses import FrozenInstanceError, replace
 
 import pytest
 from flight_tools import flown, meeting, of_type, with_deadline
 
 from cratous.bridge import lmcp
-from cratous.services.flight import executive, loop, touched
-from cratous.services.flight.lives import life
+from cratous.core.routing.polylines import Track
+from cratous.services.flight import executive, lives, loop, touched
+from cratous.services.flight.chain import Chain, Phase
+from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.touched import touched_by
 from cratous.spec.executive import BEGUN, COMPLETE, ENDED, FAILED, GIVE_UP, LEFT, STANDS_BY
-from cratous.spec.mission import Change, Mission, Simulation
+from cratous.spec.mission import Change, Mission, Position, Simulation
 from cratous.spec.mission.changes import (
     TASK_ADDED,
     TASK_REMOVED,
@@ -34,8 +37,8 @@ def alone(limit_ms: int = 400_000) -> Mission:
 def test_what_has_become_of_a_task(
     ended: tuple[int, ...], failed: tuple[int, ...], expected: int
 ) -> None:
-    assert life(7, (8,), ended, failed) == expected
-    assert life(7, (7,), ended, failed) == (BEGUN if expected == LEFT else expected)
+    assert lives.life(7, (8,), ended, failed) == expected
+    assert lives.life(7, (7,), ended, failed) == (BEGUN if expected == LEFT else expected)
 
 
 def test_no_task_begins_that_may_not(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -74,7 +77,7 @@ def test_a_settled_task_does_not_fail_again(monkeypatch: pytest.MonkeyPatch) -> 
     result, log = flown(mission)
     assert list(result.failed) == [1]
     assert len(of_type(log, "TaskProgress", Phase=lmcp.enums["TaskPhase"].Failed)) == 1
-    monkeypatch.setattr(executive, "task_after", lambda before, event: before)
+    monkeypatch.setattr(lives, "task_after", lambda before, event: before)
     result, _ = flown(mission)
     assert list(result.failed) == []
 
@@ -96,3 +99,23 @@ def test_which_changes_ask_for_another_plan(
     assert touched_by([change], (), {}, {2}, {}) == why
     monkeypatch.setattr(touched, "change_counts", lambda *_: False)
     assert touched_by([change], (), {}, {2}, {}) == ""
+
+
+def test_a_chain_is_left_as_it_is_by_what_follows_it() -> None:
+    track = Track((Position(0.0, 0.0, 300.0), Position(100.0, 0.0, 300.0)))
+    chain = Chain(meeting().vehicles[0], (), 0, Phase.TRANSIT, track, 22.0)
+    before = pickle.dumps(chain)
+    state = AirState(Position(80.0, 0.0, 300.0), 0.0, 22.0, 0.0)
+    moved, at_ms = replace(chain, s_m=60.0).measure(state, 1000, 1.0)
+    assert (moved.s_m, moved.since_ms, at_ms) == (80.0, 1000, None)
+    entered = moved.enter(Phase.WAIT, track, 1500)
+    assert (entered.phase, entered.s_m, entered.since_ms) == (Phase.WAIT, 0.0, 1500)
+    assert (entered.version, entered.route_version) == (1, 1)
+    assert pickle.dumps(chain) == before
+    assert moved.s_m == 80.0
+    past = AirState(Position(104.0, 0.0, 300.0), 0.0, 22.0, 0.0)
+    assert moved.measure(past, 2000, 1.0)[1] == 1834  # 20 of 24 m in a second
+    with pytest.raises(FrozenInstanceError):
+        chain.s_m = 1.0  # type: ignore[misc]
+    with pytest.raises(FrozenInstanceError):
+        track.points = ()  # type: ignore[misc]
