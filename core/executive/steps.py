@@ -106,7 +106,10 @@ some_begun_before = fold(
 )
 
 
-@kernel(implements="executive.late_answer")
+@kernel(
+    implements="executive.late_answer",
+    restates="the rule for deadlines that cannot be kept; that another plan tears no task is proved of it",
+)
 def late_act(under_way: bool, may_plan: bool, torn: bool) -> int:
     """What to do about a task that cannot keep an upper bound any more: 0 wait, 1 plan anew, 2 fail it.
 
