@@ -17,7 +17,6 @@ from cratous.core.assignment.earliest_times import reference_ms as planned_refer
 from cratous.core.schedule.rows import row_holds
 from cratous.proofs.engine.counterexample import number_text
 from cratous.services.conform.values import finite
-from cratous.services.icarous.return_to_path import persistence_ms
 from cratous.services.mission.frames import compass
 from cratous.services.mission.times import margin_ms, reference_ms
 from cratous.spec.algebra import _number, _refuse_blank_or_deep
@@ -51,13 +50,6 @@ def a_wait_is_flown_in_whole_laps(wait_ms: int, lap_ms: int, lap_max_ms: int) ->
     laps = -(-found // lap_max_ms)
     assert found >= wait_ms
     assert laps * lap_ms <= found <= laps * lap_max_ms
-
-
-def persistence_grows_with_relapses(relapses: int) -> None:
-    """Who relapsed has to wait at least as long."""
-    assert 0 <= relapses < 100
-    before, after = persistence_ms(relapses), persistence_ms(relapses + 1)
-    assert 0 < before <= after
 
 
 def a_margin_is_negative_exactly_where_the_row_does_not_hold(

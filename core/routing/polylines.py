@@ -9,6 +9,7 @@ from __future__ import annotations
 import itertools
 import math
 from bisect import bisect_right
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from cratous.spec.mission import Position
@@ -21,8 +22,16 @@ class Near(NamedTuple):
     offset_m: float
 
 
+@dataclass(frozen=True, init=False)
 class Track:
-    """A polyline without repeated points; beyond both ends it goes straight on."""
+    """A polyline without repeated points; beyond both ends it goes straight on.
+
+    s_m: arc length at each point [m]; directions: of each leg, north and east of a unit vector.
+    """
+
+    points: tuple[Position, ...]
+    s_m: tuple[float, ...]
+    directions: tuple[tuple[float, float], ...]
 
     def __init__(self, points: tuple[Position, ...], heading_rad: float = 0.0) -> None:
         """points: one or more; heading_rad: direction if they are all at one place."""
@@ -33,17 +42,22 @@ class Track:
                 kept.append(point)
             else:
                 kept[-1] = point
-        self.points = tuple(kept)
-        self.s_m = [0.0]
-        self.directions: list[tuple[float, float]] = []
+        s_m, directions = [0.0], list[tuple[float, float]]()
         for a, b in itertools.pairwise(kept):
             north, east = b.north_m - a.north_m, b.east_m - a.east_m
             length = math.hypot(north, east)
-            self.directions.append((north / length, east / length))
-            self.s_m.append(self.s_m[-1] + length)
-        if not self.directions:
-            self.directions.append((math.cos(heading_rad), math.sin(heading_rad)))
-        self.length_m = self.s_m[-1]
+            directions.append((north / length, east / length))
+            s_m.append(s_m[-1] + length)
+        if not directions:
+            directions.append((math.cos(heading_rad), math.sin(heading_rad)))
+        object.__setattr__(self, "points", tuple(kept))
+        object.__setattr__(self, "s_m", tuple(s_m))
+        object.__setattr__(self, "directions", tuple(directions))
+
+    @property
+    def length_m(self) -> float:
+        """Of the whole polyline [m]."""
+        return self.s_m[-1]
 
     def _leg(self, s_m: float) -> int:
         return min(max(bisect_right(self.s_m, s_m) - 1, 0), len(self.directions) - 1)

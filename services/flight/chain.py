@@ -9,13 +9,15 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass, field, replace
-from enum import StrEnum
+from collections.abc import Container
+from dataclasses import dataclass, replace
+from enum import IntEnum
 
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.routing.dubins import polyline_length_m
 from cratous.core.routing.polylines import Track, circle_points
 from cratous.services.flight.dynamics import AirState
+from cratous.spec import executive
 from cratous.spec.mission import Position, Vehicle, Zone
 from cratous.spec.mission.plan import Hold, PlanItem, Pose
 
@@ -27,16 +29,15 @@ LAP_LEGS = 72
 """A lap of a hold is flown as a polyline of this many legs."""
 
 
-class Phase(StrEnum):
-    TRANSIT = "transit"
-    WAIT = "wait"
-    TASK = "task"
-    DONE = "done"
+class Phase(IntEnum):
+    """The codes of `spec.executive`."""
+
+    TRANSIT, WAIT, TASK, DONE = executive.TRANSIT, executive.WAIT, executive.TASK, executive.DONE
 
 
-@dataclass
+@dataclass(frozen=True)
 class Chain:
-    """Where one vehicle is in its plan. s_m: progress on `track`, measured at since_ms.
+    """Where one vehicle is in its plan; each method gives the chain as it is afterwards. s_m: progress on `track`, measured at since_ms.
 
     join_m: arc length on `track` at which the planned path begins again after an interruption;
     base_m: arc length of the task's path that `track` stands for beyond join_m; away: the path
@@ -60,35 +61,47 @@ class Chain:
     told_version: int = -1
     suspended: bool = False
     away: bool = False
-    task_started_ms: int = -1
-    failed: list[int] = field(default_factory=list)
 
     @property
     def item(self) -> PlanItem | None:
         """The present item, or None when all are flown."""
         return self.items[self.k] if self.k < len(self.items) else None
 
-    def measure(self, state: AirState, now_ms: int, dt_s: float) -> int | None:
-        """Bring the progress up to date; the instant at which the end was passed, if it was."""
+    def next_k(self, failed: Container[int]) -> int:
+        """Index of the item after the present one, those of failed tasks left out."""
+        k = self.k + 1
+        while k < len(self.items) and self.items[k].task_id in failed:
+            k += 1
+        return k
+
+    def measure(self, state: AirState, now_ms: int, dt_s: float) -> tuple[Chain, int | None]:
+        """With the progress up to date; and the instant at which the end was passed, if it was."""
         window = 2 * state.speed_m_s * max(dt_s, (now_ms - self.since_ms) / 1000) + 1
         near = self.track.nearest(state.position, self.s_m, window + abs(self.offset_m))
         before_m, before_ms = self.s_m, self.since_ms
-        self.s_m, self.since_ms, self.offset_m = near.s_m, now_ms, near.offset_m
+        after = replace(self, s_m=near.s_m, since_ms=now_ms, offset_m=near.offset_m)
         if near.s_m < self.track.length_m:
-            return None
+            return after, None
         if before_m >= self.track.length_m:
-            return before_ms
+            return after, before_ms
         share = (self.track.length_m - before_m) / (near.s_m - before_m)
-        return min(now_ms, before_ms + math.ceil(share * (now_ms - before_ms) - 1e-6))
+        return after, min(now_ms, before_ms + math.ceil(share * (now_ms - before_ms) - 1e-6))
 
-    def enter(self, phase: Phase, track: Track, at_ms: int) -> None:
-        """Begin a phase on a new track at an instant."""
-        self.phase, self.track = phase, track
-        self.s_m, self.since_ms, self.offset_m = 0.0, at_ms, 0.0
-        self.join_m = self.base_m = 0.0
-        self.away = False
-        self.version += 1
-        self.route_version += 1
+    def enter(self, phase: Phase, track: Track, at_ms: int) -> Chain:
+        """In a phase that begins on a new track at an instant."""
+        return replace(
+            self,
+            phase=phase,
+            track=track,
+            s_m=0.0,
+            since_ms=at_ms,
+            offset_m=0.0,
+            join_m=0.0,
+            base_m=0.0,
+            away=False,
+            version=self.version + 1,
+            route_version=self.route_version + 1,
+        )
 
     def path_flown_m(self) -> float:
         """How much of the task's path has been flown [m]; 0 outside the task."""

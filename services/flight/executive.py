@@ -11,12 +11,13 @@ failure of the task.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from cratous.core.authority.gate import UXAS
 from cratous.core.authority.link_end import suspended_after, track_is_told
 from cratous.core.authority.timeliness import too_early
+from cratous.core.executive.steps import end_passed, late_act, may_begin
 from cratous.core.routing.polylines import Track
 from cratous.services.flight import chain as chains
 from cratous.services.flight.ahead import last_lap, leaving_m, points_ahead, points_left
@@ -24,12 +25,14 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import gated, path_command, task_progress
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.expectation import expected_times
+from cratous.services.flight.lives import fails, life
 from cratous.services.flight.messages import Flown, Route
 from cratous.services.flight.pace import FASTEST, broken_rows, trimmed_speed_m_s
 from cratous.services.flight.timing import closed_by, opens_ms
 from cratous.services.flight.ways import Ways
 from cratous.services.mission.frames import Projection
 from cratous.spec.constraint_rows import Row
+from cratous.spec.executive import GO_ON, LAP, LAST_LAP, PLAN_ANEW, STANDS_BY, START
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.plan import Plan, PlanItem
 
@@ -80,12 +83,15 @@ class Executive:
             chain = Chain(vehicle, items, -1, Phase.DONE, track, state.speed_m_s)
             old = self.chains.get(vehicle.id)
             if old is not None:
-                chain.version, chain.suspended = old.version, old.suspended
-                chain.failed = old.failed
-            self.chains[vehicle.id] = chain
-            self._next_item(chain, now_ms, state, out)
+                chain = replace(chain, version=old.version, suspended=old.suspended)
+            self._next_item(self._put(chain), now_ms, state, out)
         self._settle(states, now_ms, out)
         return out
+
+    def _put(self, chain: Chain) -> Chain:
+        """From now on this is the chain of its vehicle."""
+        self.chains[chain.vehicle.id] = chain
+        return chain
 
     def _items(self, vehicle_id: int) -> tuple[Any, ...]:
         vehicle = self.mission.vehicle(vehicle_id)
@@ -101,11 +107,11 @@ class Executive:
         self._settle(states, now_ms, out)
         if now_ms % self.mission.simulation.heartbeat_ms == 0:
             self._watch_deadlines(states, now_ms, out)
-            for chain in self.chains.values():
+            for chain in tuple(self.chains.values()):
                 self._adapt_speed(chain, now_ms)
-        for vid, chain in self.chains.items():
+        for vid, chain in tuple(self.chains.items()):
             if chain.away and not chain.suspended and chain.s_m >= chain.join_m:
-                chain.away = False
+                self._put(replace(chain, away=False))
                 note = "back on the path"
                 out.append(self._progress(chain, now_ms, "Active", chain.served(), note))
             if track_is_told(chain.suspended, chain.version != before[vid]):
@@ -127,39 +133,47 @@ class Executive:
         """Handle every passing of an end up to now, the earliest first."""
         passed: dict[int, int | None] = {}
         for vid in sorted(self.chains):
-            chain = self.chains[vid]
-            if not chain.suspended:
-                passed[vid] = chain.measure(states[vid], now_ms, self.dt_s)
+            if not self.chains[vid].suspended:
+                passed[vid] = self._measure(vid, states[vid], now_ms)
         while True:
             due = [(at, vid) for vid, at in passed.items() if at is not None]
             if not due:
                 return
             at, vid = min(due)
-            chain = self.chains[vid]
-            self._on_end(chain, at, states[vid], out)
-            passed[vid] = chain.measure(states[vid], now_ms, self.dt_s)
+            self._on_end(self.chains[vid], at, states[vid], out)
+            passed[vid] = self._measure(vid, states[vid], now_ms)
+
+    def _measure(self, vehicle_id: int, state: AirState, now_ms: int) -> int | None:
+        """The instant at which the end of a track was passed, if it was; the progress is noted."""
+        chain, at_ms = self.chains[vehicle_id].measure(state, now_ms, self.dt_s)
+        self._put(chain)
+        return at_ms
 
     def _on_end(self, chain: Chain, at_ms: int, state: AirState, out: list[Any]) -> None:
+        """The end of the present track has been passed: what the kernel `end_passed` answers."""
         item = chain.item
-        if chain.phase is Phase.TASK and item is not None:
+        row, opens = self._may_begin(chain, at_ms)
+        more = chain.next_k(self.failed) < len(chain.items)
+        moved = end_passed(chain.phase, chain.suspended, opens, more)
+        if item is None or moved.act == LAST_LAP:
+            self._put(chain.enter(Phase(moved.phase), Track(last_lap(chain)), at_ms))
+        elif moved.act == GO_ON:
             self.ends[item.task_id] = at_ms
             out.append(self._progress(chain, at_ms, "Complete", 1.0, ""))
             self._next_item(chain, at_ms, state, out)
-        elif item is not None:
-            self._try_start(chain, at_ms, out)
-        else:
-            chain.enter(Phase.DONE, Track(last_lap(chain)), at_ms)
+        elif moved.act == START:
+            self._start(chain, item, at_ms, out)
+        elif moved.act == LAP:
+            self._lap(chain, item, at_ms, row, out)
 
     def _next_item(self, chain: Chain, at_ms: int, state: AirState, out: list[Any]) -> None:
-        chain.k += 1
-        while chain.item is not None and chain.item.task_id in self.failed:
-            chain.k += 1
+        chain = self._put(replace(chain, k=chain.next_k(self.failed)))
         item = chain.item
         if item is None:
             self._loiter(chain, at_ms, state)
             return
-        chain.speed_m_s = item.speed_m_s
-        chain.enter(Phase.TRANSIT, self.ways.transit(chain, state), at_ms)
+        chain = replace(chain, speed_m_s=item.speed_m_s)
+        chain = self._put(chain.enter(Phase.TRANSIT, self.ways.transit(chain, state), at_ms))
         out.append(self._progress(chain, at_ms, "Transit", 0.0, ""))
 
     def _loiter(self, chain: Chain, at_ms: int, state: AirState) -> None:
@@ -172,22 +186,33 @@ class Executive:
         others = any(c.item is not None for c in self.chains.values() if c is not chain)
         daa = self.mission.daa
         layer = 1.5 * daa.buffer * daa.well_clear.zthr_m * self.finished
-        chain.enter(Phase.DONE, self.ways.last(chain, state, layer if others else 0.0), at_ms)
+        track = self.ways.last(chain, state, layer if others else 0.0)
+        self._put(chain.enter(Phase.DONE, track, at_ms))
 
-    def _try_start(self, chain: Chain, at_ms: int, out: list[Any]) -> None:
-        """At the start pose: begin the task, or fly a lap of the hold."""
+    def _may_begin(self, chain: Chain, at_ms: int) -> tuple[Row | None, bool]:
+        """Whether the task of a vehicle at its start pose may begin, and a row that forbids it."""
         item = chain.item
-        assert item is not None
+        if item is None or chain.phase is Phase.TASK:
+            return None, False
         row = closed_by(item.task_id, at_ms, self.plan.rows, self.starts, self.ends)
         early = item.wait_ms != 0 and too_early(at_ms, item.start_ms, EARLY_MS)
-        if row is None and not early:
-            self.starts[item.task_id] = at_ms
-            chain.speed_m_s = item.speed_m_s
-            chain.enter(Phase.TASK, Track(item.path, chains.start_pose(item).heading_rad), at_ms)
-            out.append(self._progress(chain, at_ms, "Active", 0.0, ""))
-            return
+        now = life(item.task_id, self.starts, self.ends, self.failed)
+        return row, may_begin(now, row is None, early)
+
+    def _start(self, chain: Chain, item: PlanItem, at_ms: int, out: list[Any]) -> None:
+        """At the start pose: begin the task."""
+        self.starts[item.task_id] = at_ms
+        track = Track(item.path, chains.start_pose(item).heading_rad)
+        chain = replace(chain, speed_m_s=item.speed_m_s).enter(Phase.TASK, track, at_ms)
+        self._put(chain)
+        out.append(self._progress(chain, at_ms, "Active", 0.0, ""))
+
+    def _lap(
+        self, chain: Chain, item: PlanItem, at_ms: int, row: Row | None, out: list[Any]
+    ) -> None:
+        """At the start pose: fly a lap of the hold. row: one that forbids to begin, if one does."""
         first = chain.phase is not Phase.WAIT
-        chain.enter(Phase.WAIT, self.ways.lap(chain, item), at_ms)
+        chain = self._put(chain.enter(Phase.WAIT, self.ways.lap(chain, item), at_ms))
         if first:
             note = row.text if row is not None else f"planned start at {item.start_ms} ms"
             out.append(self._progress(chain, at_ms, "Waiting", 0.0, note))
@@ -199,7 +224,7 @@ class Executive:
         chain = self.chains[vehicle_id]
         if chain.suspended:
             return [], self.resume_point(vehicle_id)
-        chain.suspended = suspended_after(chain.suspended, act)
+        chain = self._put(replace(chain, suspended=suspended_after(chain.suspended, act)))
         if chain.phase is not Phase.TASK:
             return [], None
         if chain.away:
@@ -219,11 +244,12 @@ class Executive:
     def resume(self, vehicle_id: int, state: AirState, now_ms: int, act: int) -> None:
         """ICAROUS hands back: route to the resume point, then along the rest of the path."""
         chain = self.chains[vehicle_id]
-        chain.suspended = suspended_after(chain.suspended, act)
+        chain = replace(chain, suspended=suspended_after(chain.suspended, act))
         back = self.ways.back(chain, state)
-        chain.enter(chain.phase, back.track, now_ms)
+        chain = chain.enter(chain.phase, back.track, now_ms)
         if chain.phase is Phase.TASK:
-            chain.join_m, chain.base_m, chain.away = back.join_m, back.flown_m, True
+            chain = replace(chain, join_m=back.join_m, base_m=back.flown_m, away=True)
+        self._put(chain)
 
     # timing -----------------------------------------------------------------------------------
 
@@ -243,8 +269,7 @@ class Executive:
         if abs(speed - chain.speed_m_s) > 0.02 * item.speed_m_s or (
             left < 10 * item.speed_m_s and abs(speed - chain.speed_m_s) > 0.002 * item.speed_m_s
         ):
-            chain.speed_m_s = speed
-            chain.version += 1
+            self._put(replace(chain, speed_m_s=speed, version=chain.version + 1))
 
     def _watch_deadlines(self, states: dict[int, AirState], now_ms: int, out: list[Any]) -> None:
         """Find an upper bound that not even the fastest flight can keep; plan anew or fail."""
@@ -256,11 +281,12 @@ class Executive:
                 c.phase is Phase.TASK and c.item is not None and c.item.task_id == task_id
                 for c in self.chains.values()
             )
-            if not under_way and self.replan is not None:
-                if any(c.suspended or c.phase is Phase.TASK for c in self.chains.values()):
-                    continue  # plan anew when no task is under way: none is torn apart
-                if self.plan_anew(states, now_ms, row.text, out):
-                    return
+            torn = any(c.suspended or c.phase is Phase.TASK for c in self.chains.values())
+            act = late_act(under_way, self.replan is not None, torn)
+            if act == STANDS_BY:
+                continue
+            if act == PLAN_ANEW and self.plan_anew(states, now_ms, row.text, out):
+                return
             self._fail(task_id, now_ms, f"{row.text}: cannot be met any more", states, out)
 
     def _broken(self, factor: float, now_ms: int) -> list[tuple[int, Row]]:
@@ -287,8 +313,8 @@ class Executive:
     def know(self, zones: tuple[Zone, ...]) -> None:
         """These zones bind from now on."""
         self.zones, self.ways = zones, Ways(zones, self.dt_s)
-        for chain in self.chains.values():
-            chain.told_version = -1
+        for chain in tuple(self.chains.values()):
+            self._put(replace(chain, told_version=-1))
 
     def commands_now(self, epochs: dict[int, int]) -> list[Any]:
         """The present tracks, for all that UxAS commands."""
@@ -305,12 +331,13 @@ class Executive:
     ) -> None:
         """Nothing that is left can be done: every task of it fails by name, and those too that are
         asked for and no vehicle was given."""
-        for chain in list(self.chains.values()):
+        for vid in tuple(self.chains):
+            chain = self.chains[vid]
             for item in chain.items[max(chain.k, 0) :]:
-                if item.task_id not in self.failed and item.task_id not in self.ends:
+                if fails(item.task_id, self.starts, self.ends, self.failed):
                     self._fail(item.task_id, now_ms, why, states, out)
         for task_id in asked:
-            if task_id not in self.failed and task_id not in self.ends:
+            if fails(task_id, self.starts, self.ends, self.failed):
                 self.failed[task_id] = why
                 out.append(task_progress(task_id, NOBODY, now_ms, "Failed", 0.0, why))
 
@@ -327,10 +354,7 @@ class Executive:
                 continue
             served = chain.served() if item and item.task_id == task_id else 0.0
             out.append(task_progress(task_id, vid, now_ms, "Failed", served, why))
-            if item is not None and item.task_id == task_id and not chain.suspended:
-                self._next_item(chain, now_ms, states[vid], out)
-            elif item is not None and item.task_id == task_id:
-                chain.phase = Phase.TRANSIT
+            if item is not None and item.task_id == task_id:
                 self._next_item(chain, now_ms, states[vid], out)
         for row in self.plan.rows:
             waits = row.kind in (1, 2) and task_id in row.group
@@ -339,9 +363,9 @@ class Executive:
 
     # reading ----------------------------------------------------------------------------------
 
-    def done(self) -> bool:
-        """True iff every chain is flown to its end."""
-        return all(chain.item is None for chain in self.chains.values())
+    def flying(self) -> int:
+        """How many vehicles have items of their chains left."""
+        return sum(chain.item is not None for chain in self.chains.values())
 
     def report(self, vehicle_id: int) -> list[Route | Flown]:
         """How far a vehicle is on the way that UxAS flies it, and the way if it has not been told."""
@@ -353,7 +377,7 @@ class Executive:
     def route(self, vehicle_id: int) -> Route:
         """The way ahead: the present track, and what follows for as far as ICAROUS looks."""
         chain = self.chains[vehicle_id]
-        chain.told_version = chain.route_version
+        chain = self._put(replace(chain, told_version=chain.route_version))
         opens = self._opens_ms(chain.item, chain.since_ms) if chain.item is not None else 0
         ahead_m = chain.vehicle.max_speed_m_s * (self.mission.daa.lookahead_s + AHEAD_S)
         speed = chain.item.speed_m_s if chain.item else chain.speed_m_s

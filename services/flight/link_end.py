@@ -159,7 +159,7 @@ class UxasEnd:
     def _route(self, peer: Peer, route: Route) -> tuple[Peer, tuple[FromLinkEnd, ...]]:
         track = Track(route.points)
         told = lines.way(track.points, route.speed_m_s, self.projection)
-        after = replace(peer, marks_m=tuple(track.s_m), from_m=route.from_m, reached=0)
+        after = replace(peer, marks_m=track.s_m, from_m=route.from_m, reached=0)
         return after, _down(peer, told)
 
     def _beat(self, state: State, beat: Beat) -> Step:

@@ -13,8 +13,8 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.bridge.loopback import Bridge
-from cratous.bridge.text_protocol import Message
 from cratous.core.authority.gate import ICAROUS, UXAS, Gate
+from cratous.core.executive.steps import flight_outcome
 from cratous.services.bus import Bus
 from cratous.services.flight import link_end
 from cratous.services.flight.arrivals import arrivals
@@ -39,12 +39,16 @@ from cratous.services.flight.result import FlightResult
 from cratous.services.flight.sensing import looks
 from cratous.services.flight.touched import handed_over, left_by, nobody_may, touched_by
 from cratous.services.flight.vehicle import VehicleNode, traffic_picture, truth
-from cratous.services.icarous import instance
+from cratous.services.icarous.instance import Instance
+from cratous.services.icarous.messages import Foresees, Line, Sensed, Steer, ToInstance, Up, Wish
+from cratous.services.icarous.state import Config
+from cratous.services.icarous.state import State as InstanceState
 from cratous.services.mission.frames import Projection
 from cratous.services.mission.taking_part import absent
 from cratous.services.mission.wind import CALM, all_in_wind, in_wind, known_at, told, wind_at
 from cratous.services.planning.zones import hard_zones
 from cratous.spec.errors import NoPlan
+from cratous.spec.executive import COMPLETE, FAILED_FLIGHT, GOES_ON, LIMIT
 from cratous.spec.mission import Change, Mission
 from cratous.spec.mission.asked import asked
 from cratous.spec.mission.changes import TASK_ADDED, VEHICLE_JOINS, split, words
@@ -75,6 +79,7 @@ def fly(
         return _Flight(mission, plan, bus, bridge, instances).run(progress)
 
 
+OUTCOMES = {GOES_ON: "", COMPLETE: "complete", FAILED_FLIGHT: "failed", LIMIT: "limit"}
 BRINGS_WORK = (TASK_ADDED, VEHICLE_JOINS)
 """The end of the mission waits for changes of these kinds."""
 
@@ -103,12 +108,11 @@ class _Flight:
             mission, self.zones, plan, self.projection, dt_s, replan=self._replan
         )
         self.link, self.link_state = UxasEnd(self.projection), link_end.State()
-        self.brains = {vid: instance.State() for vid in instances}
-        self.configs = {
-            vid: instance.Config(vid, mission.daa, self.projection, mission.simulation.heartbeat_ms)
-            for vid in instances
+        beat_ms = mission.simulation.heartbeat_ms
+        self.icarous = {
+            vid: Instance(Config(vid, mission.daa, self.projection, beat_ms)) for vid in instances
         }
-        self.told: dict[int, list[Message]] = {vid: [] for vid in instances}
+        self.icarous_states = {vid: InstanceState() for vid in instances}
         self.takeovers = 0
         self.commands = 0
         self.now_ms = 0
@@ -204,11 +208,11 @@ class _Flight:
             self._accepted = None
 
     def _outcome(self, limit_ms: int) -> str:
-        back = all(node.gate.owner == UXAS for node in self.nodes.values())
-        expected = any(c.kind in BRINGS_WORK for c in self.to_come)
-        if self.executive.done() and back and not expected:
-            return "failed" if self._left() else "complete"
-        return "limit" if self.now_ms >= limit_ms else ""
+        flying = self.executive.flying()
+        away = sum(node.gate.owner != UXAS for node in self.nodes.values())
+        expected = sum(c.kind in BRINGS_WORK for c in self.to_come)
+        left = len(self._left()) if not flying else 0  # while some fly, what is left is no matter
+        return OUTCOMES[flight_outcome(flying, away, expected, left, self.now_ms, limit_ms)]
 
     def _left(self) -> list[int]:
         """The tasks that are asked for and not done."""
@@ -263,18 +267,17 @@ class _Flight:
         self._link(Beat(now, tuple(sorted(self._everyone().items()))))
         self._exchange()
         for vid in self.instances:
-            lines, self.told[vid] = tuple(self.told[vid]), []
-            self._think(vid, lines)
+            self._think(vid)
         self._exchange()
         self._link(Watch(now))
 
     def _exchange(self) -> None:
-        """Let the bridge deliver: what came up is heard, what came down waits for its ICAROUS."""
+        """Let the bridge deliver: what came up to UxAS's end, what came down to its ICAROUS."""
         came = arrivals(self.bridge.exchange(), self.now_ms)
         for message in came.up:
             self._link(message)
         for vid, line in came.down:
-            self.told[vid].append(line)
+            self._instance(vid, Line(self.now_ms, line))
 
     def _link(self, message: ToLinkEnd) -> None:
         """A message to the UxAS end of the bridge, and what follows from it."""
@@ -296,37 +299,38 @@ class _Flight:
                     self._link(self.executive.route(vid))
                     self._say([self.executive.command(vid, epoch)], "uxas/ics")
 
-    def _think(self, vid: int, messages: tuple[Message, ...]) -> None:
-        """One heartbeat of a vehicle's ICAROUS: its wishes reach the gate here, on board."""
+    def _think(self, vid: int) -> None:
+        """One heartbeat of a vehicle's ICAROUS, with what is sensed on board."""
         node = self.nodes[vid]
-        inputs = instance.Inputs(
-            self.now_ms,
-            node.motion,
-            node.ability,
-            traffic_picture(vid, self._everyone(), frozenset(self.instances)),
-            node.gate,
-            messages,
-        )
-        self.brains[vid], out = instance.step(self.configs[vid], self.brains[vid], inputs)
-        before = node.gate
-        if out.authority == "takeover":
-            fresh = node.gate.owner == UXAS
-            node.takeover()
-            self._gate(vid, before)
-            if fresh:
-                self.takeovers += 1
-                self._authority(vid, out.reason, out.intruder_id)
-        elif out.authority == "offer":
-            node.offer()
-            self._gate(vid, before)
-        if out.resolution:
-            self._say([conflict(vid, self.now_ms, out)], f"icarous/{vid}")
-        if out.velocity is not None:
-            self.commands += 1
-            command = velocity_command(vid, self.commands, out.velocity)
-            self._say([gated(vid, node.gate.epoch, ICAROUS, command)], f"icarous/{vid}")
-        for message in out.messages:
-            self.bridge.to_uxas(vid, message)
+        seen = traffic_picture(vid, self._everyone(), frozenset(self.instances))
+        self._instance(vid, Sensed(self.now_ms, node.motion, node.ability, seen, node.gate))
+
+    def _instance(self, vid: int, message: ToInstance) -> None:
+        """A message to a vehicle's ICAROUS, and what follows from it, on board and over the bridge."""
+        state, out = self.icarous[vid].handle(self.icarous_states[vid], message)
+        self.icarous_states[vid] = state
+        for answer in out:
+            match answer:
+                case Wish():
+                    self._wish(answer)
+                case Foresees():
+                    self._say([conflict(answer)], f"icarous/{vid}")
+                case Steer(_, epoch, velocity):
+                    self.commands += 1
+                    command = velocity_command(vid, self.commands, velocity)
+                    self._say([gated(vid, epoch, ICAROUS, command)], f"icarous/{vid}")
+                case Up(_, line):
+                    self.bridge.to_uxas(vid, line)
+
+    def _wish(self, wish: Wish) -> None:
+        """What ICAROUS wants of its gate reaches it here, on board."""
+        vid = wish.vehicle_id
+        node, before = self.nodes[vid], self.nodes[vid].gate
+        node.wish(wish.act)
+        self._gate(vid, before)
+        if node.gate.owner != before.owner:
+            self.takeovers += 1
+            self._authority(vid, wish.reason, wish.intruder_id)
 
     def _change(self, due: list[Change]) -> None:
         """What has become known since the last step: told, watched for, and planned for at once."""

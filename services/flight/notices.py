@@ -7,7 +7,7 @@ from typing import Any
 from cratous.bridge import lmcp
 from cratous.core.authority.gate import Gate
 from cratous.services.flight.commands import SENDERS
-from cratous.services.icarous.instance import Outputs
+from cratous.services.icarous.messages import Foresees
 from cratous.services.logs.records import fingerprint, to_data
 from cratous.spec.mission.plan import Plan
 
@@ -50,13 +50,13 @@ def plan_accepted(now_ms: int, plan: Plan, done: frozenset[int]) -> Any:
     )
 
 
-def conflict(vehicle_id: int, now_ms: int, out: Outputs) -> Any:
+def conflict(foreseen: Foresees) -> Any:
     """What an ICAROUS instance foresees and does about it, as a `Conflict`."""
     return lmcp.new(
         "Conflict",
-        VehicleID=vehicle_id,
-        IntruderID=out.intruder_id,
-        Time=now_ms,
-        TimeToViolation_s=out.first_violation_s,
-        Resolution=out.resolution,
+        VehicleID=foreseen.vehicle_id,
+        IntruderID=foreseen.intruder_id,
+        Time=foreseen.now_ms,
+        TimeToViolation_s=foreseen.first_violation_s,
+        Resolution=foreseen.resolution,
     )

@@ -1,13 +1,14 @@
 """When tasks start and end in the air: the rows of the plan, held against real times.
 
-`completed` and `started` map task ids to real times [ms]. Whether a row holds is decided by the
-kernel `row_holds`; what is added here are the reference times.
+`starts` and `ends` map task ids to real times [ms]. Whether a task may start, and whether a row holds,
+is decided by the kernels; what is added here are the reference times.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from cratous.core.executive.steps import all_ended_before, some_begun_before
 from cratous.core.schedule.rows import row_holds
 from cratous.spec.constraint_rows import (
     AFTER_END,
@@ -46,12 +47,20 @@ def closed_by(
 ) -> Row | None:
     """The first lower-bound row that forbids the task to start at an instant; None if it may."""
     for row in rows:
-        if row.i != task_id or row.kind not in LOWER:
-            continue
-        ref = reference(row, starts, ends)
-        if ref is None or not row_holds(row.kind, at_ms, at_ms, ref, row.lo, row.hi):
+        if row.i == task_id and row.kind in LOWER and not _open(row, at_ms, starts, ends):
             return row
     return None
+
+
+def _open(row: Row, at_ms: int, starts: Mapping[int, int], ends: Mapping[int, int]) -> bool:
+    """Whether a lower-bound row lets its task start at an instant."""
+    if not row.group:
+        return row_holds(row.kind, at_ms, at_ms, 0, row.lo, row.hi)
+    after_end = row.kind == AFTER_END
+    times = ends if after_end else starts
+    group = [(task in times, times.get(task, 0)) for task in row.group]
+    decide = all_ended_before if after_end else some_begun_before
+    return bool(decide(group, at_ms, row.lo))
 
 
 def opens_ms(

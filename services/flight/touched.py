@@ -4,13 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 
+from cratous.core.executive.steps import change_counts
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.routing.visibility import name_of
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState
+from cratous.spec import executive
 from cratous.spec.mission import Change, Mission, Zone
 from cratous.spec.mission.changes import TASK_ADDED, TASK_REMOVED, VEHICLE_JOINS, VEHICLE_LOST
 from cratous.spec.mission.plan import Plan
+
+KINDS = {
+    VEHICLE_LOST: executive.LOST,
+    VEHICLE_JOINS: executive.JOINS,
+    TASK_ADDED: executive.ADDED,
+    TASK_REMOVED: executive.REMOVED,
+}
 
 
 def tasks_text(tasks: Sequence[int]) -> str:
@@ -61,17 +70,20 @@ def touched_by(
 ) -> str:
     """Why what has become known asks for another plan; empty if it does not.
 
-    A new zone does if a leg that is still to be flown breaks it (kernels by `first_bad_leg`).
+    The kernel `change_counts` says which changes do by themselves. A new zone does if a leg that is still to be flown breaks it (kernels by `first_bad_leg`).
     ended: the tasks that are complete.
     """
     left = left_by(chains)
     for change in due:
-        if change.kind == VEHICLE_LOST and left.get(change.vehicle):
-            return f"vehicle {change.vehicle} leaves {tasks_text(left[change.vehicle])}"
-        if change.kind == TASK_REMOVED and change.task not in ended:
+        kind = KINDS.get(change.kind, executive.OTHER)
+        tasks = left.get(change.vehicle, [])
+        if not change_counts(kind, len(tasks), change.task in ended):
+            continue
+        if kind == executive.LOST:
+            return f"vehicle {change.vehicle} leaves {tasks_text(tasks)}"
+        if kind == executive.REMOVED:
             return f"task {change.task} is left out"
-        if change.kind in (TASK_ADDED, VEHICLE_JOINS):
-            return "what is left is shared out again"
+        return "what is left is shared out again"
     for vid, chain in sorted(chains.items()):
         ways = [(states[vid].position, *chain.track.rest(chain.s_m))]
         for item in chain.items[max(chain.k, 0) + 1 :]:

@@ -11,14 +11,13 @@ import math
 from typing import Any
 
 from cratous.bridge import lmcp
+from cratous.core.authority.cycle import gate_wished
 from cratous.core.authority.gate import (
     ICAROUS,
     UXAS,
     Gate,
     gate_accepts,
     gate_after,
-    gate_offer,
-    gate_takeover,
 )
 from cratous.core.avoidance.manoeuvre import Ability, Motion
 from cratous.core.avoidance.prediction import Intruder
@@ -75,13 +74,9 @@ class VehicleNode:
         self.command = decode(self._projection, command.Command, self.state.heading_rad)
         return []
 
-    def takeover(self) -> None:
-        """ICAROUS takes over, or withdraws its offer."""
-        self.gate = gate_takeover(self.gate)
-
-    def offer(self) -> None:
-        """ICAROUS offers control back."""
-        self.gate = gate_offer(self.gate)
+    def wish(self, act: int) -> None:
+        """Let the gate do what the vehicle's ICAROUS wants. act: as the cycle's kernels answer."""
+        self.gate = gate_wished(self.gate, act)
 
     def steer(self) -> None:
         """Choose the velocity of the coming step."""

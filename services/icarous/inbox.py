@@ -9,7 +9,6 @@ from cratous.bridge.text_protocol import (
     FenceVertex,
     HardReset,
     Message,
-    OwnPosition,
     SoftReset,
     StartMission,
     Waypoint,
@@ -39,11 +38,9 @@ class Told:
     started: bool = False
 
 
-def hear(told: Told, messages: tuple[Message, ...], projection: Projection, now_ms: int) -> Told:
-    """The same after some messages, in order."""
-    for message in messages:
-        told = replace(_hear(told, message, projection), heard_ms=now_ms)
-    return told
+def hear(told: Told, message: Message, projection: Projection, now_ms: int) -> Told:
+    """The same after one more line, which has come now [ms]."""
+    return replace(_hear(told, message, projection), heard_ms=now_ms)
 
 
 def _hear(told: Told, message: Message, projection: Projection) -> Told:
@@ -66,8 +63,6 @@ def _hear(told: Told, message: Message, projection: Projection) -> Told:
         return replace(told, vertices=(*kept, message))
     if isinstance(message, FenceDone):
         return _close_fence(told, projection)
-    if isinstance(message, OwnPosition):
-        return told
     return told
 
 

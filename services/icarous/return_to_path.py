@@ -12,6 +12,8 @@ import math
 
 from cratous.core.avoidance.manoeuvre import Motion, along
 from cratous.core.avoidance.prediction import Piece
+from cratous.core.avoidance.way_ahead import makes_for
+from cratous.core.kernel import Vec2
 from cratous.core.routing.dubins import cut, dubins
 from cratous.spec.mission import Position
 from cratous.spec.mission.plan import Pose
@@ -22,9 +24,9 @@ RELAPSE_MS = 20_000
 """A takeover this soon after a handback is a relapse."""
 
 
-def persistence_ms(relapses: int) -> int:
-    """How long the way back must have been free: doubled per relapse, at most 16 times."""
-    return int(PERSIST_MS * 2 ** min(relapses, 4))
+def flat(p: Position) -> Vec2:
+    """North and east of a place [m]."""
+    return Vec2(p.north_m, p.east_m)
 
 
 def bearing_rad(p: Position, q: Position) -> float:
@@ -37,12 +39,9 @@ def goal_index(now: Motion, radius_m: float, waypoints: tuple[Position, ...], in
 
     Near is three turn radii: inside them a turn may not reach the point at all.
     """
-    last = len(waypoints) - 1
+    last, here = len(waypoints) - 1, flat(now.position)
     while index < last:
-        here, goal, beyond = now.position, waypoints[index], waypoints[index + 1]
-        north, east = goal.north_m - here.north_m, goal.east_m - here.east_m
-        forward = north * (beyond.north_m - goal.north_m) + east * (beyond.east_m - goal.east_m)
-        if math.hypot(north, east) > 3 * radius_m and forward > 0:
+        if makes_for(here, flat(waypoints[index]), flat(waypoints[index + 1]), radius_m):
             break
         index += 1
     return min(index, last)

@@ -16,6 +16,7 @@ from cratous.core.authority.right_of_way import must_act
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Ability, smallest_turn
 from cratous.core.avoidance.prediction import Intruder, Piece, first_violation_s
+from cratous.core.avoidance.way_ahead import turns
 from cratous.spec.mission import WellClear
 
 PERSIST_MS = 2000
@@ -36,6 +37,18 @@ class Threat(NamedTuple):
     first_violation_s: float
     since_ms: int
     ours_to_act: bool
+
+
+class Nearest(NamedTuple):
+    """How near a predicted loss may come [s]: see `last_time_s` and `hard_limit_s`."""
+
+    last_s: float
+    hard_s: float
+
+
+def nearest(ability: Ability, volume: WellClear, heartbeat_ms: int) -> Nearest:
+    """Both limits for a vehicle as it flies now."""
+    return Nearest(last_time_s(ability, volume, heartbeat_ms), hard_limit_s(ability, heartbeat_ms))
 
 
 def last_time_s(ability: Ability, volume: WellClear, heartbeat_ms: int) -> float:
@@ -72,7 +85,7 @@ def turning(now: Tracks, before: Tracks, dt_s: float) -> frozenset[int]:
     return frozenset(
         other
         for other, course in now
-        if other in was and abs(smallest_turn(was[other], course)) > TURNING_RAD_S * dt_s
+        if other in was and turns(smallest_turn(was[other], course), TURNING_RAD_S, dt_s)
     )
 
 
@@ -83,14 +96,13 @@ def threats(
     volume: WellClear,
     before: tuple[Threat, ...],
     now_ms: int,
-    last_s: float,
-    hard_s: float,
+    limits: Nearest,
     in_turn: frozenset[int] = frozenset(),
 ) -> tuple[Threat, ...]:
     """All predicted losses, by intruder; `before` is what the last heartbeat gave.
 
-    last_s, hard_s: see `last_time_s` and `hard_limit_s`. An intruder in a turn is not where a
-    straight line leads, so unless the loss is nearer than hard_s its threat has to persist.
+    An intruder in a turn is not where a straight line leads, so unless the loss is nearer than
+    hard_s its threat has to persist.
     """
     since = {threat.intruder_id: threat.since_ms for threat in before}
     found = []
@@ -101,8 +113,8 @@ def threats(
         seen_ms = since.get(other.id, now_ms)
         ours = must_act(
             first,
-            last_s,
-            hard_s,
+            limits.last_s,
+            limits.hard_s,
             PERSIST_MS / 1000,
             lasted(seen_ms, now_ms, PERSIST_MS),
             other.id in in_turn,

@@ -12,7 +12,8 @@ from cratous.bridge.loopback import Bridge, Delivered
 from cratous.bridge.text_protocol import Direction, Heartbeat, StartMission, WireError
 from cratous.services.flight.arrivals import arrivals
 from cratous.services.flight.messages import Heard, Lost, Unreadable
-from cratous.services.icarous import instance
+from cratous.services.icarous.instance import Instance
+from cratous.services.icarous.messages import Line
 
 UP, DOWN = Direction.UP, Direction.DOWN
 
@@ -39,11 +40,9 @@ def test_each_thing_goes_where_it_belongs_in_order() -> None:
     assert found.up[2:] == (Lost(1, 500, ended),)
 
 
-def test_a_line_for_icarous_that_comes_late_is_read_at_its_next_heartbeat(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_each_line_for_icarous_is_read_once_and_in_order(monkeypatch: pytest.MonkeyPatch) -> None:
     delivered, read, held = list[Any](), list[Any](), list[Delivered]()
-    exchange, step = Bridge.exchange, instance.step
+    exchange, handle = Bridge.exchange, Instance.handle
     calls = iter(range(10**9))
 
     def late(self: Bridge) -> list[Delivered]:
@@ -56,15 +55,14 @@ def test_a_line_for_icarous_that_comes_late_is_read_at_its_next_heartbeat(
         delivered.extend(one.record for one in came if one.direction is DOWN)
         return came
 
-    def stepped(config: Any, state: Any, inputs: Any) -> Any:
-        read.extend(inputs.messages)
-        return step(config, state, inputs)
+    def handled(self: Instance, state: Any, message: Any) -> Any:
+        if isinstance(message, Line):
+            read.append(message.line)
+        return handle(self, state, message)
 
     monkeypatch.setattr(Bridge, "exchange", late)
-    monkeypatch.setattr(instance, "step", stepped)
+    monkeypatch.setattr(Instance, "handle", handled)
     result, _ = flown(meeting())
     assert result.outcome == "complete"
     assert len(read) > 1000
-    assert read == delivered[: len(read)]
-    last = max(k for k, line in enumerate(delivered) if type(line).__name__ == "OwnPosition")
-    assert len(read) > last - 100  # only what came with the last heartbeat is not read any more
+    assert read == delivered

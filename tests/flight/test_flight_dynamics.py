@@ -29,6 +29,7 @@ from cratous.services.flight.dynamics import (
 )
 from cratous.services.flight.vehicle import VehicleNode
 from cratous.services.mission.frames import Projection
+from cratous.spec.authority.cycle import OFFER, TAKE_OVER, WITHDRAW
 from cratous.spec.mission import Frame, Position, Vehicle, Velocity
 from cratous.spec.mission.plan import Hold
 
@@ -181,7 +182,7 @@ def test_gate_refuses_what_is_stale_or_without_authority() -> None:
     (dropped,) = vehicle.receive(velocity(0, ICAROUS), 250)
     assert (dropped.VehicleID, dropped.Time, dropped.GateEpoch) == (7, 250, 0)
     assert dropped.Sender.name == "ICAROUS"
-    vehicle.takeover()
+    vehicle.wish(TAKE_OVER)
     (stale,) = vehicle.receive(velocity(0, ICAROUS), 500)
     assert "epoch" in stale.Reason
     (without,) = vehicle.receive(velocity(1, UXAS), 500)
@@ -191,8 +192,8 @@ def test_gate_refuses_what_is_stale_or_without_authority() -> None:
 
 def test_handback_is_complete_with_the_first_command_of_the_new_epoch() -> None:
     vehicle = node()
-    vehicle.takeover()
-    vehicle.offer()
+    vehicle.wish(TAKE_OVER)
+    vehicle.wish(OFFER)
     assert vehicle.gate.owner == ICAROUS
     assert vehicle.receive(velocity(2, ICAROUS), 0) == []
     assert vehicle.receive(velocity(2, UXAS), 0) == []
@@ -202,9 +203,9 @@ def test_handback_is_complete_with_the_first_command_of_the_new_epoch() -> None:
 
 def test_withdrawn_offer_makes_the_answer_stale() -> None:
     vehicle = node()
-    vehicle.takeover()
-    vehicle.offer()
-    vehicle.takeover()
+    vehicle.wish(TAKE_OVER)
+    vehicle.wish(OFFER)
+    vehicle.wish(WITHDRAW)
     assert len(vehicle.receive(velocity(2, UXAS), 0)) == 1
     assert vehicle.gate.owner == ICAROUS
 

@@ -10,18 +10,25 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from icarous_tools import ABILITY, NORTH, VOLUME, WIDE, head_on
 
+from cratous.core.authority.cycle import patience
+from cratous.core.authority.gate import Gate
 from cratous.core.avoidance.manoeuvre import along, fly_to, velocity_of
 from cratous.core.avoidance.prediction import Intruder, Piece, after, first_violation_s
 from cratous.core.avoidance.resolution import Scene, first_conflict_s, resolve
 from cratous.core.geofence.mission_legs import leg_ok
-from cratous.services.icarous import instance
-from cratous.services.icarous.return_to_path import goal_index, persistence_ms
+from cratous.services.icarous.foresight import describe, predicted
+from cratous.services.icarous.inbox import Told
+from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.return_to_path import PERSIST_MS as FREE_MS
+from cratous.services.icarous.return_to_path import goal_index
+from cratous.services.icarous.state import State
 from cratous.services.icarous.traffic_monitor import (
     PERSIST_MS,
-    hard_limit_s,
     last_time_s,
     most_urgent,
+    nearest,
     threats,
+    turning,
 )
 from cratous.spec.mission import Position, Velocity, WellClear, Zone, ZoneKind
 
@@ -186,19 +193,18 @@ def test_when_nothing_is_free_it_says_so() -> None:
     stuck = ABILITY._replace(max_climb_m_s=0.0)
     choice = resolve(NORTH, stuck, Scene(ring, (), WIDE, 60.0), 0.0, 22.0, None)
     assert not choice.clear
-    assert "no manoeuvre is free" in instance.describe(choice)
+    assert "no manoeuvre is free" in describe(choice)
 
 
 # ---- who acts, and when --------------------------------------------------------------------------
 
 
-LAST_S = last_time_s(ABILITY, WIDE, 500)
-HARD_S = hard_limit_s(ABILITY, 500)
+LIMITS = nearest(ABILITY, WIDE, 500)
 
 
 def seen(own: int, other: Intruder, since_ms: int | None, in_turn: bool = False) -> bool:
     """Whether vehicle `own` acts now on a threat first seen at since_ms (None: just now)."""
-    before = threats(own, straight(), (other,), WIDE, (), since_ms or 0, LAST_S, HARD_S)
+    before = threats(own, straight(), (other,), WIDE, (), since_ms or 0, LIMITS)
     now_ms = 10_000
     found = threats(
         own,
@@ -207,8 +213,7 @@ def seen(own: int, other: Intruder, since_ms: int | None, in_turn: bool = False)
         WIDE,
         before if since_ms is not None else (),
         now_ms,
-        LAST_S,
-        HARD_S,
+        LIMITS,
         frozenset({other.id}) if in_turn else frozenset(),
     )
     assert found
@@ -244,7 +249,7 @@ def test_last_time_is_the_derivation() -> None:
 
 
 def test_persistence_doubles_with_relapses() -> None:
-    assert [persistence_ms(k) for k in (0, 1, 2, 9)] == [1500, 3000, 6000, 24000]
+    assert [patience(k, FREE_MS) for k in (0, 1, 2, 9)] == [1500, 3000, 6000, 24000]
 
 
 def test_goal_is_ahead_and_not_too_near() -> None:
@@ -253,3 +258,53 @@ def test_goal_is_ahead_and_not_too_near() -> None:
     past = NORTH._replace(position=Position(450.0, 300.0, 300.0))
     assert goal_index(past, 85.0, line, 1) == 5
     assert goal_index(NORTH._replace(position=Position(2000.0, 0.0, 300.0)), 85.0, line, 1) == 9
+
+
+# ---- what is predicted of whom -------------------------------------------------------------------
+
+WAY = (Position(-1000.0, 0.0, 300.0), Position(100.0, 0.0, 300.0), Position(100.0, 900.0, 300.0))
+
+
+@pytest.mark.parametrize(
+    ("next_index", "north_m", "east_m", "pieces"),
+    [
+        (0, 0.0, 0.0, 1),  # not on its way to a waypoint yet: straight on
+        (1, 0.0, 0.0, 3),  # along both legs that are left, and on
+        (1, 0.0, 29.9, 3),
+        (1, 0.0, -30.1, 1),  # off the path
+        (1, 89.1, 0.0, 2),  # the next waypoint is as good as reached: 10.9 m at 22 m/s
+        (1, 88.9, 0.0, 3),
+        (2, 101.0, 895.0, 2),  # but the last one is flown to
+        (3, 0.0, 0.0, 1),  # past the last
+    ],
+)
+def test_which_way_is_predicted(
+    next_index: int, north_m: float, east_m: float, pieces: int
+) -> None:
+    state = State(told=Told(waypoints=WAY, next_index=next_index))
+    now = NORTH._replace(position=Position(north_m, east_m, 300.0))
+    found = predicted(state, Sensed(0, now, ABILITY, (), Gate(0, 0, False)), 60.0)
+    assert len(found) == pieces
+    if pieces == 1:
+        assert found == (Piece(0.0, 60.0, now.position, velocity_of(0.0, 22.0, 0.0)),)
+
+
+@pytest.mark.parametrize(
+    ("before_rad", "now_rad", "turns"),
+    [
+        (1.0, 1.0099, False),
+        (1.0, 1.0101, True),
+        (1.0, 0.9899, True),
+        (math.pi - 0.001, -math.pi + 0.001, False),  # across south
+    ],
+)
+def test_who_turns(before_rad: float, now_rad: float, turns: bool) -> None:
+    found = turning(((9, now_rad), (8, 0.0)), ((9, before_rad),), 0.5)
+    assert found == (frozenset({9}) if turns else frozenset())
+
+
+def test_a_waypoint_passed_abeam_is_no_goal() -> None:
+    bend = tuple(Position(500.0, east, 300.0) for east in (0.0, 900.0, 1800.0))
+    assert goal_index(NORTH, 85.0, bend, 0) == 1  # the way on leads off at a right angle
+    assert goal_index(NORTH._replace(position=Position(500.0, -1.0, 300.0)), 0.3, bend, 0) == 0
+    assert goal_index(NORTH._replace(position=Position(500.0, -1.0, 300.0)), 0.4, bend, 0) == 1

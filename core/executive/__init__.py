@@ -1,0 +1,1 @@
+"""What UxAS's executive decides about chains of tasks in flight."""

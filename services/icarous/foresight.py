@@ -1,0 +1,95 @@
+"""What an instance puts to the kernels of avoidance: its way ahead, its way back, and its manoeuvre."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from cratous.core.avoidance.manoeuvre import along, velocity_of
+from cratous.core.avoidance.prediction import Piece, buffered
+from cratous.core.avoidance.resolution import Choice, Scene, first_conflict_s, first_zone_s, resolve
+from cratous.core.avoidance.way_ahead import near_line, there_within
+from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.return_to_path import bearing_rad, flat, goal_index, way_back
+from cratous.services.icarous.state import Config, State
+from cratous.spec.mission import Position
+
+ON_PATH_M = 30.0
+"""Nearer than this to its path a vehicle is taken to fly along it; else straight on [m]."""
+REACHED_S = 0.5
+"""A waypoint that is nearer than this [s of flight] is as good as reached."""
+TURN_MARGIN = 1.1
+"""The way back is made of turns this much wider than the tightest."""
+
+
+def scene_of(config: Config, state: State, sensed: Sensed) -> Scene:
+    """What manoeuvres are judged against now."""
+    daa = config.daa
+    volume = buffered(daa.well_clear, daa.buffer)
+    return Scene(sensed.intruders, state.told.zones, volume, daa.lookahead_s)
+
+
+def predicted(state: State, sensed: Sensed, lookahead_s: float) -> tuple[Piece, ...]:
+    """The own way ahead: along the waypoints while on the path, else straight on."""
+    told, motion = state.told, sensed.motion
+    here, index = flat(motion.position), told.next_index
+    if 0 < index < len(told.waypoints):
+        ahead = told.waypoints[index:]
+        goal = flat(ahead[0])
+        if near_line(here, flat(told.waypoints[index - 1]), goal, ON_PATH_M):
+            # a waypoint that is as good as reached says nothing about the direction of flight
+            if len(ahead) > 1 and there_within(here, goal, motion.speed_m_s, REACHED_S):
+                ahead = ahead[1:]
+            return along(motion, ahead, lookahead_s)
+    v = velocity_of(motion.heading_rad, motion.speed_m_s, motion.climb_m_s)
+    return (Piece(0.0, lookahead_s, motion.position, v),)
+
+
+def way_back_is_free(config: Config, state: State, sensed: Sensed) -> bool:
+    """The way onto the path and along it is free of predicted conflict over the look-ahead."""
+    told, scene = state.told, scene_of(config, state, sensed)
+    if not told.waypoints:
+        pieces = predicted(state, sensed, scene.lookahead_s)
+    else:
+        points = told.waypoints[min(state.goal, len(told.waypoints) - 1) :]
+        if told.resume is not None:
+            points = (told.resume, *told.waypoints[min(told.next_index, len(told.waypoints)) :])
+        radius_m = TURN_MARGIN * sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
+        pieces = way_back(sensed.motion, radius_m, points, scene.lookahead_s)
+    if first_conflict_s(pieces, scene) is not None:
+        return False
+    return first_zone_s(pieces, scene.zones, 5.0) is None if len(pieces) > 1 else True
+
+
+def manoeuvre(config: Config, state: State, sensed: Sensed) -> tuple[State, Choice]:
+    """The manoeuvre to fly now, remembered, with the waypoint that it makes for."""
+    state, goal = _with_goal(state, sensed)
+    motion = sensed.motion
+    course = bearing_rad(motion.position, goal) if goal is not None else motion.heading_rad
+    speed = state.told.speed_m_s or motion.speed_m_s
+    scene = scene_of(config, state, sensed)
+    choice = resolve(motion, sensed.ability, scene, course, speed, state.held)
+    return replace(state, held=choice), choice
+
+
+def _with_goal(state: State, sensed: Sensed) -> tuple[State, Position | None]:
+    """The waypoint to make for; none if no waypoints are known."""
+    waypoints = state.told.waypoints
+    if not waypoints:
+        return state, None
+    radius_m = sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
+    index = goal_index(sensed.motion, radius_m, waypoints, min(state.goal, len(waypoints) - 1))
+    return replace(state, goal=index), waypoints[index]
+
+
+def describe(choice: Choice) -> str:
+    """A manoeuvre in words, for the record; it says when none is free of conflict."""
+    heading = round(math.degrees(choice.heading_rad)) % 360
+    text = f"heading {heading:03d}"
+    if choice.kind == "altitude":
+        text += f", climb {choice.climb_m_s:+.1f} m/s"
+    if choice.kind == "speed":
+        text += f", speed {choice.speed_m_s:.1f} m/s"
+    if not choice.clear:
+        text += f"; no manoeuvre is free of conflict, this one is until {choice.first_violation_s:.1f} s"
+    return text

@@ -1,0 +1,78 @@
+"""What a vehicle and its ICAROUS instance say to each other: plain values, times in ms of virtual time.
+
+To the instance: lines that have come over the bridge, and at each heartbeat what the vehicle senses.
+From it, in this order: what it wants of the gate, what it foresees, the velocity to fly, lines to UxAS.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from cratous.bridge.text_protocol import Message
+from cratous.core.authority.gate import Gate
+from cratous.core.avoidance.manoeuvre import Ability, Motion
+from cratous.core.avoidance.prediction import Intruder
+from cratous.spec.mission import Velocity
+
+# to the instance --------------------------------------------------------------------------------
+
+
+class Line(NamedTuple):
+    """A line from UxAS has come over the bridge."""
+
+    now_ms: int
+    line: Message
+
+
+class Sensed(NamedTuple):
+    """A heartbeat is due. motion, ability: of the vehicle itself; intruders: everybody else, as its
+    surveillance sees them; gate: how its actuator gate stands."""
+
+    now_ms: int
+    motion: Motion
+    ability: Ability
+    intruders: tuple[Intruder, ...]
+    gate: Gate
+
+
+# from the instance ------------------------------------------------------------------------------
+
+
+class Wish(NamedTuple):
+    """To the gate. act: what the kernels of `core.authority.cycle` have answered, for
+    `gate_wished`; intruder_id: because of whom, 0 for none."""
+
+    vehicle_id: int
+    act: int
+    reason: str
+    intruder_id: int
+
+
+class Foresees(NamedTuple):
+    """To the record: a manoeuvre in words, and the predicted loss that it avoids, with whom and in how
+    many seconds (0 and -1 where there is nothing new of it)."""
+
+    vehicle_id: int
+    now_ms: int
+    intruder_id: int
+    first_violation_s: float
+    resolution: str
+
+
+class Steer(NamedTuple):
+    """To the autopilot, through the gate: fly this velocity. epoch: in which it is commanded."""
+
+    vehicle_id: int
+    epoch: int
+    velocity: Velocity
+
+
+class Up(NamedTuple):
+    """To UxAS, over the bridge: a line."""
+
+    vehicle_id: int
+    line: Message
+
+
+ToInstance = Line | Sensed
+FromInstance = Wish | Foresees | Steer | Up

@@ -1,0 +1,41 @@
+"""Everything that one ICAROUS instance remembers, and what does not change about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from cratous.core.authority.cycle import Cycle
+from cratous.core.avoidance.resolution import Choice
+from cratous.services.icarous.inbox import Told
+from cratous.services.icarous.traffic_monitor import Threat, Tracks
+from cratous.services.mission.frames import Projection
+from cratous.spec.authority.cycle import MONITOR
+from cratous.spec.mission import Daa
+
+START = Cycle(MONITOR, 0, False, 0, False, 0)
+"""UxAS flies, and has always done so."""
+
+
+class Config(NamedTuple):
+    """What does not change: whose instance, what it keeps clear of, and the heartbeat [ms]."""
+
+    vehicle_id: int
+    daa: Daa
+    projection: Projection
+    heartbeat_ms: int
+
+
+@dataclass(frozen=True)
+class State:
+    """cycle: who flies, as the kernels have it; told: what has come over the bridge; threats and
+    courses: of the last heartbeat; held: the manoeuvre being flown; goal: index of the waypoint that
+    it makes for; beats: heartbeats so far."""
+
+    cycle: Cycle = START
+    told: Told = field(default_factory=Told)
+    threats: tuple[Threat, ...] = ()
+    courses: Tracks = ()
+    held: Choice | None = None
+    goal: int = 0
+    beats: int = 0

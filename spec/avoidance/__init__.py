@@ -1,0 +1,1 @@
+"""What avoidance in flight takes for granted: the way ahead, and who flies straight on."""

@@ -1,0 +1,43 @@
+"""What is meant by being on a path, having a waypoint ahead, and flying straight on.
+
+Some definitions speak of an instant or of a distance flown, their last argument; the docstring says how it
+is quantified. They decide which way is predicted and which waypoint an avoiding vehicle makes for; what
+conflicts on that way is decided by the definitions of well clear and of zones. Metres, seconds, radians.
+"""
+
+from __future__ import annotations
+
+from cratous.spec.geofence import Point, along, squared_distance
+
+RADII = 3
+"""Nearer than this many turn radii a turn may not reach a waypoint at all."""
+
+
+def near_line_at(p: Point, a: Point, b: Point, width: float, t: float) -> bool:
+    """A point of the straight line through a and b is no farther from p than the width. EXISTS t."""
+    return squared_distance(p, along(a, b, t)) <= width * width
+
+
+def there_at(p: Point, goal: Point, speed: float, within: float, t: float) -> bool:
+    """Flown straight to the goal, it has been reached at the instant t, sooner than `within`. EXISTS t.
+    Premise: speed > 0."""
+    flown = speed * t
+    return t >= 0 and t < within and flown * flown >= squared_distance(p, goal)
+
+
+def ahead_at(p: Point, goal: Point, beyond: Point, s: float) -> bool:
+    """Flown from p some way in the direction that leads on from the goal, one is nearer to the goal: it
+    has not been passed abeam. EXISTS s, in lengths of the leg from the goal to `beyond`."""
+    there = Point(p.x + s * (beyond.x - goal.x), p.y + s * (beyond.y - goal.y))
+    return s > 0 and squared_distance(there, goal) < squared_distance(p, goal)
+
+
+def makes_for_at(p: Point, goal: Point, beyond: Point, radius: float, s: float) -> bool:
+    """The goal is one to make for: far enough to turn to it, and ahead. EXISTS s. Premise: radius >= 0."""
+    near = RADII * radius
+    return not squared_distance(p, goal) <= near * near and ahead_at(p, goal, beyond, s)
+
+
+def turns(turn: float, rate: float, dt: float) -> bool:
+    """The course has turned faster than the rate, to either side. Premise: dt > 0."""
+    return turn / dt > rate or turn / dt < -rate

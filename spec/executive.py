@@ -1,0 +1,125 @@
+"""What the executive may and must do with tasks in flight. Milliseconds.
+
+A chain's phase: TRANSIT to the start pose of its item, WAIT there while the task may not begin, TASK,
+DONE. A task's life: LEFT, BEGUN, ENDED, FAILED.
+"""
+
+from typing import NamedTuple
+
+TRANSIT, WAIT, TASK, DONE = 0, 1, 2, 3
+LEFT, BEGUN, ENDED, FAILED = 0, 1, 2, 3
+BEGIN, END, FAIL = 1, 2, 3
+NOTHING, LAP, START, GO_ON, LAST_LAP = 0, 1, 2, 3, 4
+"""What is done at the end of a track: nothing; a lap of the hold; begin the task; end it and go on
+to the next item; another lap at the end of the chain."""
+STANDS_BY, PLAN_ANEW, GIVE_UP = 0, 1, 2
+LOST, JOINS, ADDED, REMOVED, OTHER = 1, 2, 3, 4, 5
+GOES_ON, COMPLETE, FAILED_FLIGHT, LIMIT = 0, 1, 2, 3
+
+
+class Moved(NamedTuple):
+    """Phase and act."""
+
+    phase: int
+    act: int
+
+
+def at_start_pose(phase: int) -> bool:
+    """At the end of its track a vehicle in this phase is at the start pose of its item."""
+    return not (phase < TRANSIT or phase > WAIT)
+
+
+def is_after_passing(phase: int, suspended: bool, opens: bool, more: bool, moved: Moved) -> bool:
+    """Nothing happens to a vehicle that UxAS does not fly. At its start pose a task begins exactly if it
+    may, else its vehicle waits. At the end of its path a task ends, and the vehicle goes on to the
+    next item, if there is one. At the end of its chain it stays."""
+    if suspended:
+        return moved == Moved(phase, NOTHING)
+    if at_start_pose(phase):
+        begun = moved == Moved(TASK, START)
+        waits = moved == Moved(WAIT, LAP)
+        return (begun and opens) or (waits and not opens)
+    if phase == TASK:
+        onward = moved.phase == TRANSIT and more
+        over = moved.phase == DONE and not more
+        return moved.act == GO_ON and (onward or over)
+    return moved == Moved(DONE, LAST_LAP)
+
+
+def settled(life: int) -> bool:
+    """Nothing happens to a task any more."""
+    return not (life < ENDED or life > FAILED)
+
+
+def is_after_event(life: int, event: int, after: int) -> bool:
+    """What is settled stays as it is. A task that is not may be begun, again if it was interrupted by
+    another plan, or fail; it ends only if it was begun."""
+    if settled(life):
+        return after == life
+    if event == END and life == LEFT:
+        return after == LEFT
+    if event == BEGIN:
+        return after == BEGUN
+    if event == END:
+        return after == ENDED
+    if event == FAIL:
+        return after == FAILED
+    return after == life
+
+
+def may_begin(life: int, rows_open: bool, early: bool) -> bool:
+    """A task that is settled never begins; another does once nothing forbids it."""
+    forbidden = not rows_open or early
+    return not (settled(life) or forbidden)
+
+
+def preceded_by(ok: bool, known: bool, end: int, at: int, lo: int) -> bool:
+    """All tasks of the row so far have ended, and this one has, at least lo before the instant."""
+    early_enough = not at - lo < end
+    return ok and (known and early_enough)
+
+
+def followed(ok: bool, known: bool, start: int, at: int, lo: int) -> bool:
+    """Some task of the row so far has begun at least lo before the instant, or this one has."""
+    early_enough = not at - lo < start
+    return (known and early_enough) or ok
+
+
+def so_far(ok: bool) -> bool:
+    """After the last task of the row. Nothing is quantified."""
+    return ok
+
+
+def late_answer(under_way: bool, may_plan: bool, torn: bool) -> int:
+    """Another plan is made only where it interrupts no task, and is waited for where it would; a task
+    that is being flown, or that no planner can save, is given up."""
+    if may_plan and not under_way:
+        if not torn:
+            return PLAN_ANEW
+        return STANDS_BY
+    return GIVE_UP
+
+
+def change_counts(kind: int, left: int, ended: bool) -> bool:
+    """Work is taken from someone, nobody has it any more, or there may be more of it or more hands."""
+    orphaned = kind == LOST and left > 0
+    withdrawn = kind == REMOVED and not ended
+    hands = kind == JOINS
+    return orphaned or withdrawn or hands or kind == ADDED
+
+
+def all_over(flying: int, away: int, expected: int) -> bool:
+    """No vehicle has anything left to fly, UxAS commands all, and nothing is expected."""
+    return flying <= 0 and away <= 0 and expected <= 0
+
+
+def outcome(flying: int, away: int, expected: int, left: int, now: int, limit: int) -> int:
+    """A flight is complete only when all is over and nothing that was asked for is left; with something
+    left it has failed; one that is not over goes on to its limit and no further."""
+    if all_over(flying, away, expected) and left <= 0:
+        return COMPLETE
+    if all_over(flying, away, expected):
+        return FAILED_FLIGHT
+    if now < limit:
+        return GOES_ON
+    return LIMIT

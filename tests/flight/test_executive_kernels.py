@@ -1,0 +1,121 @@
+"""What the executive does with tasks is what its kernels answer, in the air too."""
+
+from __future__ import annotations
+
+import pickle
+from dataclasses import FrozenInstanceError, replace
+
+import pytest
+from flight_tools import flown, meeting, of_type, with_deadline
+
+from cratous.bridge import lmcp
+from cratous.core.routing.polylines import Track
+from cratous.services.flight import executive, lives, loop, touched
+from cratous.services.flight.chain import Chain, Phase
+from cratous.services.flight.dynamics import AirState
+from cratous.services.flight.touched import touched_by
+from cratous.spec.executive import BEGUN, COMPLETE, ENDED, FAILED, GIVE_UP, LEFT, STANDS_BY
+from cratous.spec.mission import Change, Mission, Position, Simulation
+from cratous.spec.mission.changes import (
+    TASK_ADDED,
+    TASK_REMOVED,
+    VEHICLE_JOINS,
+    VEHICLE_LOST,
+    WIND,
+)
+
+
+def alone(limit_ms: int = 400_000) -> Mission:
+    """One vehicle, one task, no traffic."""
+    return replace(meeting(), traffic=(), simulation=Simulation(limit_ms=limit_ms))
+
+
+@pytest.mark.parametrize(
+    ("ended", "failed", "expected"),
+    [((), (), LEFT), ((7,), (), ENDED), ((), (7,), FAILED), ((8,), (8,), LEFT)],
+)
+def test_what_has_become_of_a_task(
+    ended: tuple[int, ...], failed: tuple[int, ...], expected: int
+) -> None:
+    assert lives.life(7, (8,), ended, failed) == expected
+    assert lives.life(7, (7,), ended, failed) == (BEGUN if expected == LEFT else expected)
+
+
+def test_no_task_begins_that_may_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    result, log = flown(alone())
+    assert result.outcome == "complete"
+    begun = result.starts[1]
+    monkeypatch.setattr(executive, "may_begin", lambda *_: False)
+    result, log = flown(alone(begun + 60_000))
+    assert (result.outcome, result.starts, result.ends) == ("limit", {}, {})
+    phases = [p.Phase.name for p in of_type(log, "TaskProgress", TaskID=1)]
+    assert phases == ["Transit", "Waiting"]
+
+
+@pytest.mark.parametrize(("act", "failed"), [(GIVE_UP, [1]), (STANDS_BY, [])])
+def test_the_kernel_says_what_a_missed_deadline_leads_to(
+    monkeypatch: pytest.MonkeyPatch, act: int, failed: list[int]
+) -> None:
+    mission, plan = with_deadline()
+    result, _ = flown(mission, plan)
+    assert (result.replans, list(result.failed)) == (1, [])
+    monkeypatch.setattr(executive, "late_act", lambda *_: act)
+    result, _ = flown(mission, plan)
+    assert (result.replans, list(result.failed)) == (0, failed)
+
+
+def test_the_kernel_ends_the_flight(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(loop, "flight_outcome", lambda *_: COMPLETE)
+    result, _ = flown(alone())
+    assert (result.outcome, result.end_ms) == ("complete", 0)
+
+
+def test_a_settled_task_does_not_fail_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A change that leaves no plan fails what is left, once, and by the kernel."""
+    lost = Change(5000, VEHICLE_LOST, vehicle=1)
+    mission = replace(alone(60_000), changes=(lost,))
+    result, log = flown(mission)
+    assert list(result.failed) == [1]
+    assert len(of_type(log, "TaskProgress", Phase=lmcp.enums["TaskPhase"].Failed)) == 1
+    monkeypatch.setattr(lives, "task_after", lambda before, event: before)
+    result, _ = flown(mission)
+    assert list(result.failed) == []
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        (Change(0, VEHICLE_LOST, vehicle=1), ""),
+        (Change(0, VEHICLE_JOINS, vehicle=1), "what is left is shared out again"),
+        (Change(0, TASK_ADDED, task=1), "what is left is shared out again"),
+        (Change(0, TASK_REMOVED, task=1), "task 1 is left out"),
+        (Change(0, TASK_REMOVED, task=2), ""),
+        (Change(0, WIND), ""),
+    ],
+)
+def test_which_changes_ask_for_another_plan(
+    monkeypatch: pytest.MonkeyPatch, change: Change, why: str
+) -> None:
+    assert touched_by([change], (), {}, {2}, {}) == why
+    monkeypatch.setattr(touched, "change_counts", lambda *_: False)
+    assert touched_by([change], (), {}, {2}, {}) == ""
+
+
+def test_a_chain_is_left_as_it_is_by_what_follows_it() -> None:
+    track = Track((Position(0.0, 0.0, 300.0), Position(100.0, 0.0, 300.0)))
+    chain = Chain(meeting().vehicles[0], (), 0, Phase.TRANSIT, track, 22.0)
+    before = pickle.dumps(chain)
+    state = AirState(Position(80.0, 0.0, 300.0), 0.0, 22.0, 0.0)
+    moved, at_ms = replace(chain, s_m=60.0).measure(state, 1000, 1.0)
+    assert (moved.s_m, moved.since_ms, at_ms) == (80.0, 1000, None)
+    entered = moved.enter(Phase.WAIT, track, 1500)
+    assert (entered.phase, entered.s_m, entered.since_ms) == (Phase.WAIT, 0.0, 1500)
+    assert (entered.version, entered.route_version) == (1, 1)
+    assert pickle.dumps(chain) == before
+    assert moved.s_m == 80.0
+    past = AirState(Position(104.0, 0.0, 300.0), 0.0, 22.0, 0.0)
+    assert moved.measure(past, 2000, 1.0)[1] == 1834  # 20 of 24 m in a second
+    with pytest.raises(FrozenInstanceError):
+        chain.s_m = 1.0  # type: ignore[misc]
+    with pytest.raises(FrozenInstanceError):
+        track.points = ()  # type: ignore[misc]
