@@ -11,16 +11,24 @@ empty list too, so they may not use that there is an item which satisfies the pr
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import z3
 
 from cratous.proofs.engine.terms import Stub, free_names, known, leaves
 
-if TYPE_CHECKING:
-    from cratous.proofs.engine.claim import Claim
+
+class Claim(Protocol):
+    """What an induction needs of a claim: what is given and known there, and its unknown functions."""
+
+    premises: list[z3.BoolRef]
+    facts: list[z3.BoolRef]
+    roots: list[z3.BoolRef]
+    congruences: list[z3.BoolRef]
+    granted: tuple[z3.BoolRef, ...]
+    stubs: dict[Callable[..., Any], Stub]
 
 
 def names_in(value: Any) -> set[str]:

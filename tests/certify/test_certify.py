@@ -5,98 +5,19 @@ from __future__ import annotations
 import copy
 import functools
 import json
-import re
-import shutil
-import sqlite3
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
+from certify_tools import Run, edited, read
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cratous.services.certify import again, recorded, report, written
+from cratous.services.certify import again, report, written
 from cratous.services.cli import main
-from cratous.services.logs.sqlite_log import SqliteLog
-from cratous.services.results.ownership import manifest_text
 
-ROOT = Path(__file__).resolve().parents[2]
-Run = Callable[..., tuple[int, str, str]]
 FEW = 2
-
-
-@pytest.fixture(scope="module")
-def flown(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    out = tmp_path_factory.mktemp("flown")
-    mission = ROOT / "examples" / "crossing" / "mission.yaml"
-    assert main(["run", str(mission), "--out", str(out), "--allow-unproved", "--quiet"]) in (0, 3)
-    return out / "crossing"
-
-
-@pytest.fixture
-def run(capsys: pytest.CaptureFixture[str]) -> Run:
-    def call(*arguments: object) -> tuple[int, str, str]:
-        code = main([str(part) for part in arguments])
-        printed = capsys.readouterr()
-        return code, printed.out, printed.err
-
-    return call
-
-
-@pytest.fixture(scope="module")
-def judged(flown: Path) -> Iterator[None]:
-    """What takes long is done once for the log: its digest, the monitor, the plan check, z3, the ledger.
-
-    All that compares, and all that reads the report and the folder, is the product's own.
-    """
-    patch = pytest.MonkeyPatch()
-
-    def once(place: Any, name: str, key: Callable[..., Any] = lambda *_a, **_k: 0) -> None:
-        real, kept = getattr(place, name), {}
-
-        @functools.wraps(real)
-        def call(*arguments: Any, **named: Any) -> Any:
-            found = key(*arguments, **named)
-            if found not in kept:
-                kept[found] = real(*arguments, **named)
-            return kept[found]
-
-        patch.setattr(place, name, call)
-
-    once(SqliteLog, "digest", lambda log: log.path.stat().st_mtime_ns)
-    once(again, "watch")
-    once(again, "_certificate")
-    once(recorded, "inventory", lambda _standing, calls: json.dumps(calls))
-    once(recorded.ledger, "require")
-    once(report, "read_flight")
-    once(report, "read_digest", lambda path: path.stat().st_mtime_ns)
-    rows = list(again.read_log(flown / "log.sqlite"))
-    patch.setattr(again, "read_log", lambda _path: rows)
-    once(written, "pages", report.report_text)
-    yield
-    patch.undo()
-
-
-def edited(flown: Path, tmp_path: Path) -> Path:
-    folder = tmp_path / "edited"
-    shutil.rmtree(folder, ignore_errors=True)
-    shutil.copytree(flown, folder)
-    return folder
-
-
-def read(folder: Path) -> dict[str, Any]:
-    return dict(json.loads((folder / "report.json").read_text(encoding="utf-8")))
-
-
-def meta(folder: Path, key: str, value: Any) -> None:
-    """Edit (or, with None, forget) what the log recorded; no digest covers it."""
-    database = sqlite3.connect(folder / "log.sqlite")
-    with database:
-        database.execute("DELETE FROM meta WHERE key = ?", (key,))
-        if value is not None:
-            database.execute("INSERT INTO meta VALUES(?, ?)", (key, json.dumps(value)))
-    database.close()
 
 
 def places(data: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
@@ -338,128 +259,3 @@ def test_other_files_are_said_not_to_be_checked(
     assert json.loads(run("certify", folder, "--json")[1])["not_checked"] == [
         "notes.txt: no file of the results"
     ]
-
-
-def test_a_log_that_says_less(run: Run, flown: Path, judged: None, tmp_path: Path) -> None:
-    """Results of the version before: confirmed, and what nothing vouches for is listed."""
-    folder = edited(flown, tmp_path)
-    kept = json.loads(
-        json.dumps(report.Flown("", True, read(folder)["proofs"], {}).meta()["proofs"])
-    )
-    for key in ("environment", "command", "avoidance"):
-        meta(folder, key, None)
-    meta(folder, "proofs", {key: kept[key] for key in ("seal", "problems")})
-    (folder / "manifest.json").unlink()
-    code, out, err = run("certify", folder)
-    assert (code, err) == (read(flown)["exit_code"], "")
-    for name in ("environment", "command", "avoidance", "proofs.line", "proofs.solver", "manifest"):
-        assert f"not checked: {name}" in out
-    whole = read(folder)
-    whole["command"] = 7
-    (folder / "report.json").write_text(json.dumps(whole), encoding="utf-8")
-    code, _, err = run("certify", folder)
-    assert (code, "command: written 7" in err) == (1, True)
-
-
-def test_the_report_lists_what_the_log_recorded(flown: Path) -> None:
-    whole, calls = read(flown), SqliteLog(flown / "log.sqlite").meta()["calls"]
-    kernels = whole["proofs"]["kernels"]
-    assert set(kernels) == {*calls["called"], *calls["within"]}
-    assert {name: one["how"] for name, one in kernels.items() if one["how"]} == calls["called"]
-    named = {name for row in whole["constraints"] for name in row["kernels"]}
-    assert named <= set(calls["called"])
-    gate = "cratous.core.authority.gate.gate_accepts"
-    assert gate in named
-    for kernel in kernels.values():
-        assert kernel["kind"] == "driver" or (kernel["theorems"] and kernel["definition"])
-        assert set(kernel["theorems"]) <= set(whole["proofs"]["theorems"])
-    page = (flown / "report.html").read_text(encoding="utf-8")
-    links = set(re.findall(r'href="#([^"]*)"', page))
-    assert links <= set(re.findall(r'id="([^"]*)"', page))
-    assert f"kernel-{gate}" in links
-
-
-def test_counts_that_are_not_those_of_the_flight(
-    run: Run, flown: Path, judged: None, tmp_path: Path
-) -> None:
-    folder = edited(flown, tmp_path)
-    calls = SqliteLog(folder / "log.sqlite").meta()["calls"]
-    calls["called"]["cratous.core.authority.gate.gate_accepts"]["CPython"] += 1
-    meta(folder, "calls", calls)
-    code, _, err = run("certify", folder)
-    assert (code, "proofs: not those of the flight" in err) == (1, True)
-
-
-def test_a_log_from_before_calls_were_counted(
-    run: Run, flown: Path, judged: None, tmp_path: Path
-) -> None:
-    """Such a log vouches for no call; the report of then is held against all else and made anew."""
-    folder = edited(flown, tmp_path)
-    meta(folder, "calls", None)
-    code, _, err = run("certify", folder)
-    assert (code, "proofs.calls: written" in err) == (1, True)  # calls that nothing recorded
-    (folder / "manifest.json").unlink()
-    whole = read(folder)
-    whole["format"] = "cratous-report/1"
-    whole["proofs"] = {"kernels": [], "theorems": []}
-    for row in whole["constraints"]:
-        del row["kernels"]
-    text = json.dumps(whole, indent=1, sort_keys=True)
-    (folder / "report.json").write_text(text, encoding="utf-8")
-    code, _, err = run("certify", folder)
-    assert code == 1
-    assert "not checked: format" in err
-    assert "constraints" not in err.replace("report.json, line", "")
-    code, out, err = run("certify", folder, "--rewrite")
-    assert (code, err) == (read(flown)["exit_code"], "")
-    assert "rewritten: report.json" in out
-    anew = read(folder)
-    assert anew["format"] == "cratous-report/2"
-    assert (anew["proofs"]["calls"], anew["proofs"]["kernels"]) == ("not recorded", {})
-    assert "was not recorded" in (folder / "report.html").read_text(encoding="utf-8")
-    code, out, _ = run("certify", folder)
-    assert code == read(flown)["exit_code"]
-    assert "not checked: proofs.calls" in out
-    damaged = read(folder)
-    damaged["constraints"][0]["verdict"] = "violated"
-    (folder / "report.json").write_text(json.dumps(damaged), encoding="utf-8")
-    assert run("certify", folder)[0] == 1
-
-
-def test_another_ledger_than_at_the_flight(
-    run: Run, flown: Path, judged: None, tmp_path: Path
-) -> None:
-    """The inventory is then held against the digest in the log."""
-    folder = edited(flown, tmp_path)
-    whole = read(folder)
-    whole["proofs"]["seal"] = "0" * 64
-    kept = report.Flown("", True, whole["proofs"], {}).meta()["proofs"]
-    meta(folder, "proofs", kept)
-    files = {**whole}
-    (folder / "report.json").write_text(report.report_text(files), encoding="utf-8")
-    for name, text in report.pages(files).items():
-        (folder / name).write_text(text, encoding="utf-8")
-    names = ("certificate.json", "log.sqlite", "map.svg", "report.html", "report.json")
-    (folder / "manifest.json").write_text(manifest_text(folder, names))
-    assert run("certify", folder)[0] == whole["exit_code"]
-    next(iter(whole["proofs"]["theorems"].values()))["status"] = "refuted"
-    (folder / "report.json").write_text(json.dumps(whole), encoding="utf-8")
-    code, _, err = run("certify", folder)
-    assert (code, "proofs: not the inventory of the flight" in err) == (1, True)
-    meta(folder, "proofs", {"seal": "1" * 64, "problems": []})  # of the version before
-    code, _, err = run("certify", folder)
-    assert (code, "not checked: proofs: the ledger is another" in err) == (1, True)
-
-
-@pytest.mark.parametrize(
-    "key", ["environment", "command", "avoidance", "proofs", "calls", "mission", "plan"]
-)
-def test_what_a_log_cannot_say(
-    run: Run, flown: Path, judged: None, tmp_path: Path, key: str
-) -> None:
-    for value in (7, [], "text", {"a": 1}, {"problems": [3]}):
-        folder = edited(flown, tmp_path)
-        meta(folder, key, value)
-        code, out, err = run("certify", folder)
-        assert code in (1, 2), (value, out, err)
-        assert "internal error" not in err

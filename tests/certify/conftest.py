@@ -1,0 +1,68 @@
+"""A flight of the crossing mission that is certified, and the command that does it."""
+
+from __future__ import annotations
+
+import functools
+import json
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from certify_tools import ROOT, Run
+
+from cratous.services.certify import again, recorded, report, written
+from cratous.services.cli import main
+from cratous.services.logs.sqlite_log import SqliteLog
+
+
+@pytest.fixture(scope="module")
+def flown(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("flown")
+    mission = ROOT / "examples" / "crossing" / "mission.yaml"
+    assert main(["run", str(mission), "--out", str(out), "--allow-unproved", "--quiet"]) in (0, 3)
+    return out / "crossing"
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str]) -> Run:
+    def call(*arguments: object) -> tuple[int, str, str]:
+        code = main([str(part) for part in arguments])
+        printed = capsys.readouterr()
+        return code, printed.out, printed.err
+
+    return call
+
+
+@pytest.fixture(scope="module")
+def judged(flown: Path) -> Iterator[None]:
+    """What takes long is done once for the log: its digest, the monitor, the plan check, z3, the ledger.
+
+    All that compares, and all that reads the report and the folder, is the product's own.
+    """
+    patch = pytest.MonkeyPatch()
+
+    def once(place: Any, name: str, key: Callable[..., Any] = lambda *_a, **_k: 0) -> None:
+        real, kept = getattr(place, name), {}
+
+        @functools.wraps(real)
+        def call(*arguments: Any, **named: Any) -> Any:
+            found = key(*arguments, **named)
+            if found not in kept:
+                kept[found] = real(*arguments, **named)
+            return kept[found]
+
+        patch.setattr(place, name, call)
+
+    once(SqliteLog, "digest", lambda log: log.path.stat().st_mtime_ns)
+    once(again, "watch")
+    once(again, "_certificate")
+    once(recorded, "inventory", lambda _standing, calls: json.dumps(calls))
+    once(recorded.ledger, "require")
+    once(report, "read_flight")
+    once(report, "read_digest", lambda path: path.stat().st_mtime_ns)
+    rows = list(again.read_log(flown / "log.sqlite"))
+    patch.setattr(again, "read_log", lambda _path: rows)
+    once(written, "pages", report.report_text)
+    yield
+    patch.undo()
