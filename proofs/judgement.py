@@ -70,7 +70,8 @@ def judge(
         f"{gate.place_of(name)}: {name.rpartition('.')[2]}: no theorem is about this kernel"
         for name in inventory.bare
     ]
-    structural = (*inventory.problems, *bare, *findings)
+    dead = ledger.dead_paths(inventory.theorems)
+    structural = (*inventory.problems, *bare, *findings, *dead)
     # what is outside of the subset is not read any further
     unmeant = [] if structural else _unmeant(inventory, home, keep)
     return Judgement(inventory, structural, tuple(unmeant))

@@ -20,8 +20,18 @@ import z3
 from cratous.core.kernel import Fold, Vec2, qualified
 from cratous.proofs.engine.induction import Induction
 from cratous.proofs.engine.lift import OPAQUE, REPLACED, VISITS, Visit, join, lift
-from cratous.proofs.engine.symbolic import RANGE, SymBool, SymInt, SymMask, SymReal, equality
-from cratous.proofs.engine.terms import Stub, flatten, free_names, known, leaves, of_kind, statement
+from cratous.proofs.engine.symbolic import INT64, RANGE, SymBool, SymInt, SymMask, SymReal, equality
+from cratous.proofs.engine.terms import (
+    Stub,
+    flatten,
+    free_names,
+    known,
+    leaves,
+    of_its_kinds,
+    of_kind,
+    statement,
+    unbounded,
+)
 
 NAME = re.compile(r"[A-Za-z_]\w*(\.\w+)*", re.ASCII)
 """Names of a claim's values; the prover's own symbols have ! or # in theirs."""
@@ -63,6 +73,7 @@ class Claim:
     visits: list[Visit] = field(default_factory=list)
     granted: tuple[z3.BoolRef, ...] = ()
     used: list[Callable[..., Any]] = field(default_factory=list)
+    bounded: set[str] = field(default_factory=set)
     unseen: set[Callable[..., Any]] = field(default_factory=set)
     vouched: set[Callable[..., Any]] = field(default_factory=set)
     names: set[str] = field(default_factory=set)
@@ -91,6 +102,7 @@ class Claim:
     def integer(self, name: str) -> Any:
         """An arbitrary integer of at most 62 bits (a premise that the run time checks)."""
         value = self._value(name, lambda n: SymInt(z3.Int(n)))
+        self.bounded.add(str(value.term))
         self._restrict(z3.And(value.term >= -(2**61), value.term <= 2**61))
         return value
 
@@ -180,6 +192,7 @@ class Claim:
         self, function: Callable[..., Any], args: tuple[Any, ...], machine: bool = True
     ) -> Any:
         """The function's value; `machine`: its integers are those of compiled code."""
+        of_its_kinds(function, args)
         before = dict(OPAQUE)
         OPAQUE.update(self.stubs)
         VISITS.append([])
@@ -191,6 +204,9 @@ class Claim:
             OPAQUE.update(before)
         self.facts += lifted.roots
         self.roots += lifted.roots
+        for name, term in unbounded(args, self.bounded) if machine else ():
+            text = f"{function.__name__}: argument {name}: {RANGE}"
+            self._owe("defined", text, z3.And(term >= -INT64, term < INT64))
         for text, condition in lifted.obligations:
             if machine or not text.endswith(RANGE):
                 self._owe("defined", f"{function.__name__}: {text}", condition)

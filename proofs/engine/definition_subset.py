@@ -10,18 +10,20 @@ from __future__ import annotations
 import ast
 import functools
 import inspect
+import sys
 import types
 from collections.abc import Callable
 from fractions import Fraction
-from typing import Any, get_type_hints
+from typing import Any
 
 from cratous.core.kernel import entry_of, qualified
 from cratous.core.kernel.sources import ours
 from cratous.proofs.engine.expressions import Kinds, Refused
 from cratous.proofs.engine.kinds import Kind, Literal, is_kind, merged, shown
 from cratous.proofs.engine.lift import Visit
-from cratous.proofs.engine.subset import Body, Finding, identity, lint, syntax
+from cratous.proofs.engine.subset import Body, Finding, hints, identity, lint, syntax
 from cratous.proofs.engine.terms import leaves
+from cratous.proofs.engine.written import NOTHING, constant
 
 MORE = (ast.Mod, ast.LShift, ast.RShift)
 
@@ -43,7 +45,7 @@ class DefinitionKinds(Kinds):
             if both is None:
                 raise Refused(node, f"it is {shown(kinds[0])} or {shown(kinds[1])}: one kind")
             return both
-        if isinstance(node, ast.BinOp) and isinstance(node.op, MORE):
+        if isinstance(node, ast.BinOp) and isinstance(node.op, (*MORE, ast.BitXor)):
             both = merged(self.of(node.left, names), self.of(node.right, names))
             if both is not int and not isinstance(both, Literal):
                 raise Refused(node, "remainders and shifts are of integers")
@@ -60,11 +62,28 @@ class DefinitionKinds(Kinds):
     def _constant(self, node: ast.expr) -> Kind | None:
         """The kind of a constant of this module or of another one; None for anything else."""
         value = self.named(node)
+        if isinstance(value, bool | int | Fraction):
+            self._as_written(node, value)
         if isinstance(value, bool):
             return bool
         if isinstance(value, int):
             return Literal(abs(value))
         return float if isinstance(value, Fraction) else None
+
+    def _as_written(self, node: ast.expr, value: Any) -> None:
+        """The constant that runs is the one of the file that is hashed."""
+        if isinstance(node, ast.Attribute):
+            home, name = self.named(node.value), node.attr
+        else:
+            home, name = sys.modules.get(str(self.scope["__name__"])), ast.unparse(node)
+        said = constant(home, name) if isinstance(home, types.ModuleType) else NOTHING
+        if said is NOTHING and isinstance(node, ast.Name) and name in self.scope:
+            return  # imported: its own module has it
+        if said is NOTHING or said != value or type(said) is not type(value):
+            raise Refused(
+                node,
+                f"{name!r} is {value} as it runs, and not by its module's file: a constant is written once",
+            )
 
     def named(self, node: ast.expr) -> Any:
         """What a name, or the attribute of a module, stands for; None if it is local or nothing."""
@@ -78,19 +97,73 @@ class DefinitionKinds(Kinds):
 
     def _call(self, node: ast.Call, names: dict[str, Kind]) -> Kind:
         value = self.named(node.func)
+        if value is Fraction:
+            for part in node.args:
+                if not isinstance(self.of(part, names), Literal) or node.keywords:
+                    raise Refused(node, "a Fraction of two written integers")
+            return float
+        if (
+            isinstance(node.func, ast.Name)
+            and node.func.id in OVER
+            and node.func.id not in self.local
+        ):
+            return self._over(node, names)
         entry = entry_of(value)
         if not isinstance(value, types.FunctionType) or (entry and entry.kind == "kernel"):
             return super()._call(node, names)
         if not ours(value):
             raise Refused(node, f"{value.__name__!r} is no function of spec or core")
-        hints = get_type_hints(value)
-        result = hints.pop("return", None)
+        kinds = hints(value)
+        result = kinds.pop("return", None)
         order = list(inspect.signature(value).parameters)
-        if result is None or set(hints) != set(order):
+        if result is None or set(kinds) != set(order):
             raise Refused(node, f"{value.__name__!r} has no types")
-        self._arguments(node, order, hints, names)
+        self._arguments(node, order, kinds, names)
         self.callees.append(value)
         return result
+
+    def _over(self, node: ast.Call, names: dict[str, Kind]) -> Kind:
+        """any, all or sum of what is written for each of a few written values."""
+        name = ast.unparse(node.func)
+        if self.scope.get(name, OVER[name]) is not OVER[name]:
+            raise Refused(node, f"{name!r} is not Python's own here: give yours another name")
+        over = node.args[0] if len(node.args) == 1 and not node.keywords else None
+        if not isinstance(over, ast.GeneratorExp) or len(over.generators) != 1:
+            raise Refused(node, f"{name} of (... for ... in ...), over a few written values")
+        loop = over.generators[0]
+        kind = self.of(over.elt, {**names, **self._items(loop, names)})
+        if kind is not bool if name != "sum" else kind not in (float, int):
+            raise Refused(node, f"{name} is not of {shown(kind)}")
+        return kind
+
+    def _items(self, loop: ast.comprehension, names: dict[str, Kind]) -> dict[str, Kind]:
+        """The names that a loop over written values gives, with the kinds of their values."""
+        ways = [loop.iter]
+        targets = [loop.target]
+        if (
+            isinstance(loop.iter, ast.Call)
+            and ast.unparse(loop.iter.func) == "zip"
+            and "zip" not in self.scope
+        ):
+            ways = list(loop.iter.args)
+            targets = list(loop.target.elts) if isinstance(loop.target, ast.Tuple) else []
+        if loop.ifs or len(ways) != len(targets):
+            raise Refused(loop.iter, "a loop over a few written values, or a zip of such")
+        found: dict[str, Kind] = {}
+        for way, target in zip(ways, targets, strict=True):
+            constants = self.named(way)
+            if isinstance(way, ast.Tuple | ast.List):
+                kinds = [self.of(part, names) for part in way.elts]
+            elif isinstance(constants, tuple) and isinstance(way, ast.Name):
+                self._as_written(way, constants)
+                kinds = [Literal(abs(v)) if isinstance(v, int) else None for v in constants]
+            else:
+                raise Refused(way, "a loop over a few written values, or a zip of such")
+            both = functools.reduce(lambda a, b: None if a is None else merged(a, b), kinds)
+            if both is None or not isinstance(target, ast.Name):
+                raise Refused(way, "the values of a loop are of one kind, each with a name")
+            found[target.id] = both
+        return found
 
 
 @functools.cache
@@ -101,6 +174,9 @@ def outside(function: Callable[..., Any]) -> tuple[Finding, ...]:
     """
     parts = str(function.__module__).split(".")
     return () if "theorems" in parts[1:3] else tuple(check(function))
+
+
+OVER = {"any": any, "all": all, "sum": sum}
 
 
 def on_numbers(visit: Visit) -> bool:
@@ -146,12 +222,12 @@ def _check(function: Any) -> tuple[list[Finding], list[types.FunctionType]]:
         report(node, "nothing stands over a definition")
     if given.vararg or given.kwarg or given.defaults or given.kwonlyargs or given.posonlyargs:
         report(node, "arguments are written out, without defaults")
-    hints = get_type_hints(function)
-    if set(hints) != {a.arg for a in given.args} | {"return"}:
+    types_ = hints(function)
+    if set(types_) != {a.arg for a in given.args} | {"return"}:
         report(node, "each argument and the result has a type")
-    for part, kind in hints.items():
+    for part, kind in types_.items():
         if not is_kind(kind):
-            report(node, f"{part!r} is float, int, bool or a record of these without behaviour")
+            report(node, f"the type of {part!r}: float, int, bool or a record without behaviour")
     if found:
         return found, []
     local = {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and not _loaded(n)}

@@ -82,7 +82,8 @@ class Kinds:
                 return self._field(node, names)
             case ast.Call():
                 return self._call(node, names)
-        raise Refused(node, INSTEAD.get(type(node), f"no {type(node).__name__} in kernels"))
+        what = type(node).__name__
+        raise Refused(node, INSTEAD.get(type(node), f"no {what} in kernels and definitions"))
 
     def truth(self, node: ast.expr, names: dict[str, Kind]) -> None:
         """A condition: a truth value, nothing that Python only takes for one."""
@@ -133,7 +134,10 @@ class Kinds:
         kinds = [self.of(side, names) for side in sides]
         for operator, left, right in zip(node.ops, kinds, kinds[1:], strict=False):
             if not isinstance(operator, (*ORDER, ast.Eq, ast.NotEq)):
-                raise Refused(node, "comparisons are < <= > >= == !=")
+                raise Refused(
+                    node,
+                    "comparisons are < <= > >= == !=, never `is` or `in`: identity is no value",
+                )
             if not self.comparable(left, right, isinstance(operator, ORDER)):
                 raise Refused(
                     node,

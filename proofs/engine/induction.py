@@ -87,6 +87,15 @@ class Induction:
                 )
         _apart("the definition's start", start, item | spread(names_in(self.acc), self.claim))
         _apart("the fold's context", context, item)
+        known = names_in(self.item) | names_in(context)
+        for premise in self.claim.premises:
+            names = free_names(premise)
+            strange = sorted(names - spread(known, self.claim)) if names & item else []
+            if strange:
+                raise ValueError(
+                    f"a premise makes the item depend on {strange[0]}: put it into the context, "
+                    "which is the same for every item"
+                )
 
     def model_only(self, after: Any, result: Any) -> None:
         """The definition's step and result depend on its own accumulator, not on the kernel's."""

@@ -38,13 +38,18 @@ def is_record(value: Any) -> bool:
     if not fields or vars(value).get("_field_defaults"):
         return False
     more = set(vars(value)) - GENERATED - set(fields)
-    plain = all(type(vars(value).get(f)).__name__ == "_tuplegetter" for f in fields)
+    plain = all(_is_field(vars(value).get(f), number) for number, f in enumerate(fields))
     # what NamedTuple makes comes from a scope of its own; a class may not bring another
     scope = getattr(value.__new__, "__globals__", {})
     made = scope.get("__name__") == f"namedtuple_{value.__name__}"
     hints = get_type_hints(value)
     kinds = set(hints) == set(fields) and all(is_kind(kind) for kind in hints.values())
     return not more and plain and made and kinds
+
+
+def _is_field(value: Any, number: int) -> bool:
+    """What `NamedTuple` puts under a field's name: the getter of this very place."""
+    return type(value).__name__ == "_tuplegetter" and value.__reduce__()[1][0] == number
 
 
 def is_kind(value: Any) -> bool:

@@ -40,6 +40,8 @@ FACTS_RLIMIT = 3_000_000
 PATH_RLIMIT = 1_000_000
 STATE_CPU_S = 300
 """CPU seconds after which a statement is ended: many times what any takes."""
+THEIRS = (ValueError, TypeError, LiftError, AttributeError, NameError, LookupError, OSError)
+"""Errors that a theorem, a definition or a kernel brings up when it is stated."""
 _KEY = object()
 _NO_CACHE = Cache(None)
 
@@ -318,7 +320,7 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
                 got=f"more than {sys.getrecursionlimit()} levels",
             ) from error
         slip = _slip(error, folder)
-        if not slip and not isinstance(error, ValueError | TypeError | LiftError):
+        if not slip and not isinstance(error, THEIRS):
             raise  # not the theorem's doing
         raise BadInput(f"the theorem cannot be stated: {error}", where=slip or where) from error
     symbolic = [v.function for v in claim.visits if not definition_subset.on_numbers(v)]

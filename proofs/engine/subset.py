@@ -24,6 +24,7 @@ from typing import Any, get_type_hints
 from cratous.core.kernel import REGISTRY, Fold, entry_of, kernel, qualified
 from cratous.proofs.engine.expressions import Kinds, Refused
 from cratous.proofs.engine.kinds import Kind, fits, is_kind, merged, shown
+from cratous.proofs.engine.written import is_top
 
 STATEMENTS = "a kernel has assignments to names, `if` and `return`"
 INSTEAD: dict[type[ast.AST], str] = {
@@ -71,13 +72,30 @@ def identity(function: Any) -> str:
     if not isinstance(function, types.FunctionType) or hasattr(function, "__wrapped__"):
         return "it is no plain function: nothing may stand around the `def`"
     module = sys.modules.get(function.__module__)
+    plain: types.FunctionType = function
     if function.__closure__ or "." in function.__qualname__ or "<" in function.__qualname__:
         return "it is made inside of another function: write it at the top of a module"
+    if function.__code__.co_qualname != function.__name__:
+        return f"the code that runs is that of {function.__code__.co_qualname!r}, not its own"
     if module is None or function.__globals__ is not vars(module):
         return "it is not of the module that it names"
     if vars(module).get(function.__name__) is not function:
         return f"its module has another thing of the name {function.__name__!r}: give each its own"
+    try:
+        top = is_top(plain)
+    except OSError:
+        return "its source cannot be read: write it in a file"
+    if not top:
+        return "it is not the one definition of its name at the top of its module's file"
     return ""
+
+
+def hints(function: Any) -> dict[str, Any]:
+    """The types of arguments and result, as `get_type_hints`; text where one names nothing."""
+    try:
+        return get_type_hints(function)
+    except (NameError, TypeError, AttributeError, SyntaxError) as error:
+        return {"return": f"a type that is not there ({error})"}
 
 
 def lint(function: Any) -> list[Finding]:
@@ -123,10 +141,14 @@ def _head(node: ast.FunctionDef, function: types.FunctionType, report: Report) -
         report(node, "the result has no type")
     if getattr(node, "type_params", None):
         report(node, "no type parameters: a kernel has one kind of each argument")
-    for part, kind in get_type_hints(function).items():
+    for part, kind in hints(function).items():
         if not is_kind(kind):
             said = "the result" if part == "return" else f"argument {part!r}"
-            report(node, f"{said} is float, int, bool or a record of these without behaviour")
+            report(
+                node,
+                f"the type of {said}: float, int, bool or a record of these without behaviour; it is "
+                f"{getattr(kind, '__name__', kind)}",
+            )
 
 
 class Body:
@@ -174,7 +196,9 @@ class Body:
             return self._joined(node, [way for way in ways if way is not None])
         if isinstance(node, ast.Assign):
             return {**names, **self._assigned(node, names)}
-        raise Refused(node, INSTEAD.get(type(node), STATEMENTS))
+        raise Refused(
+            node, f"no {type(node).__name__.lower()} here: {INSTEAD.get(type(node), STATEMENTS)}"
+        )
 
     def _joined(self, node: ast.If, ways: list[dict[str, Kind]]) -> dict[str, Kind] | None:
         if len(ways) < 2:

@@ -8,13 +8,25 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterable
+from fractions import Fraction
 from typing import Any, get_type_hints
 
 import z3
 
 from cratous.core.kernel import Vec2
 from cratous.proofs.engine.canonical import canonical
-from cratous.proofs.engine.symbolic import PATHS, Sym, SymBool, SymInt, SymReal, _raw, as_real, wrap
+from cratous.proofs.engine.symbolic import (
+    PATHS,
+    LiftError,
+    Sym,
+    SymBool,
+    SymInt,
+    SymMask,
+    SymReal,
+    _raw,
+    as_real,
+    wrap,
+)
 
 
 class Stub:
@@ -107,6 +119,58 @@ def of_kind(value: Sym, fresh: Sym, name: str) -> Sym:
     if term.sort() != wanted:
         raise TypeError(f"the lemma's value {name!r} is of kind {wanted}, given is {term.sort()}")
     return wrap(term)
+
+
+def of_its_kinds(function: Callable[..., Any], args: tuple[Any, ...]) -> None:
+    """Refuse arguments of other kinds than a function's types say; TypeError. Without types all pass."""
+    try:
+        kinds = get_type_hints(function)
+    except (NameError, TypeError, AttributeError):
+        return  # what is wrong with its types is told where it is looked at
+    names = list(inspect.signature(function).parameters)
+    for name, value in zip(names, args, strict=False):
+        if name in kinds and not _is_of(value, kinds[name]):
+            wanted = getattr(kinds[name], "__name__", kinds[name])
+            raise TypeError(
+                f"{function.__name__}: {name!r} is of type {wanted}, given is another kind"
+            )
+
+
+def _is_of(value: Any, kind: Any) -> bool:
+    if kind is bool:
+        return isinstance(value, SymBool | bool)
+    if isinstance(value, bool | SymBool):
+        return kind not in (float, int)
+    if kind is int:
+        return isinstance(value, SymInt | SymMask | int)
+    if kind is float:
+        return isinstance(value, SymReal | int | Fraction | float) or _is_literal(value)
+    if hasattr(kind, "_fields"):
+        fields = get_type_hints(kind)
+        parts = [fields[part] for part in kind._fields]
+        return (
+            isinstance(value, tuple) and len(value) == len(parts) and all(map(_is_of, value, parts))
+        )
+    return True
+
+
+def unbounded(args: tuple[Any, ...], bounded: set[str]) -> list[tuple[str, z3.ArithRef]]:
+    """The integers among the arguments that no claim has bounded, with what to call them."""
+    found = []
+    for leaf in leaves(args):
+        if isinstance(leaf, SymInt) and not _is_literal(leaf) and free_names(leaf.term) - bounded:
+            found.append((" ".join(str(leaf.term).split())[:40], leaf.term))
+    return found
+
+
+def _is_literal(value: Any) -> bool:
+    """An integer that is written down, or one of several such."""
+    if not isinstance(value, SymInt):
+        return False
+    try:
+        return bool(z3.is_real(as_real(value.term)))
+    except LiftError:
+        return False
 
 
 def known(value: Any) -> z3.ExprRef:

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import ast
 import builtins
-import inspect
 import itertools
 import types
 import typing
@@ -22,6 +21,7 @@ from typing import Any
 
 from cratous.core.kernel import Fold, entry_of
 from cratous.core.kernel.sources import ours, place
+from cratous.proofs.engine import definition_subset
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.kinds import is_record
 from cratous.spec.errors import BadInput
@@ -120,7 +120,19 @@ def check(tree: ast.Module, path: Path) -> None:
 
 
 def check_values(scope: dict[str, Any], tree: ast.Module, path: Path) -> None:
-    """Refuse imports of anything but kernels, definitions, records, numbers and the engine's tools."""
+    """Refuse imports of anything but kernels, definitions, records, numbers and the engine's tools.
+
+    A function of `spec` that the theorem calls itself, not by c.define, is held to what definitions have.
+    """
+    for node in ast.walk(tree):
+        value = _called(node, scope)
+        plain = isinstance(value, types.FunctionType) and not _of_theorems(value)
+        if plain and (refused := definition_subset.outside(value)):
+            raise BadInput(
+                f"a theorem calls what is outside of the subset: {refused[0]}",
+                where=f"{place(path)}:{getattr(node, 'lineno', 1)}",
+                expected="definitions as docs/guides/own-kernel.md says",
+            )
     for node in tree.body:
         if not isinstance(node, ast.ImportFrom) or node.module == "__future__":
             continue
@@ -142,16 +154,37 @@ def _may_be_imported(value: Any, module: str) -> bool:
     if isinstance(value, bool | int | float | Fraction | str):
         return True
     if isinstance(value, types.ModuleType):
-        return ".spec" in value.__name__ and ours(_Named(value.__name__))
+        inside = value.__name__.split(".")[1:2]
+        mine = ours(_Named(value.__name__)) and inside not in (["proofs"], ["services"])
+        return mine and (not value.__name__.startswith("cratous.core") or inside == ["spec"])
     if isinstance(value, dict | tuple | frozenset | list):
         parts = value.items() if isinstance(value, dict) else value
         return all(_may_be_imported(part, module) for part in parts)
     if isinstance(value, types.FunctionType) and ours(value):
-        home = value.__module__.partition(".")[2]
-        return home.split(".")[0] in ("spec", "theorems") or home.startswith(
-            ("proofs.methods", "proofs.theorems")
-        )
-    return typing.get_origin(value) is not None or (inspect.isclass(value) and ours(value))
+        return _of_theorems(value) or value.__module__.split(".")[1:2] == ["spec"]
+    return typing.get_origin(value) is not None
+
+
+def _of_theorems(function: types.FunctionType) -> bool:
+    """A function of a theorem's file, or a method of proof of the product."""
+    home = function.__module__.partition(".")[2]
+    product = function.__module__.startswith("cratous.")
+    return home.startswith("theorems.") or (
+        product and home.startswith(("proofs.methods", "proofs.theorems"))
+    )
+
+
+def _called(node: ast.AST, scope: dict[str, Any]) -> Any:
+    """What a call calls, if it is a global name or the attribute of a module; else None."""
+    if not isinstance(node, ast.Call):
+        return None
+    if isinstance(node.func, ast.Name):
+        return scope.get(node.func.id)
+    if isinstance(node.func, ast.Attribute) and isinstance(node.func.value, ast.Name):
+        owner = scope.get(node.func.value.id)
+        if isinstance(owner, types.ModuleType):
+            return vars(owner).get(node.func.attr)
+    return None
 
 
 class _Named:
@@ -254,6 +287,12 @@ class _Function:
                 )
             self.expression(node.slice)
             return
+        for part in ast.walk(node):
+            if isinstance(part, ast.Attribute):
+                self._attribute(part)
+                raise _Refused(
+                    part, f"a change of {part.attr!r}", "names are assigned, nothing else"
+                )
         parts = [n for n in ast.walk(node) if isinstance(n, ast.expr)]
         if not all(
             isinstance(part, ast.Name | ast.Tuple | ast.Starred | ast.List) for part in parts
@@ -279,14 +318,14 @@ class _Function:
             self._attribute(node)
         python = isinstance(node, ast.Name) and hasattr(builtins, node.id)
         if isinstance(node, ast.Name) and python and node.id not in BUILTINS | self.imported:
-            raise _Refused(node, f"{node.id}", "the claim's statements")
+            raise _Refused(node, f"{node.id!r} of Python", "the claim's statements")
         if isinstance(node, ast.Compare) and not all(isinstance(o, COMPARISONS) for o in node.ops):
             raise _Refused(node, "`is`", "==, or c.same of two values")
-        if isinstance(called, ast.Attribute):
-            self._method(called)
         at_once = isinstance(node, ast.Call | ast.Starred)
         for part in _parts(node):
             self.expression(part, consumed=at_once or isinstance(part, ast.Starred))
+        if isinstance(called, ast.Attribute):
+            self._method(called)
         if isinstance(node, ast.ListComp | ast.DictComp | ast.GeneratorExp):
             for one in node.generators:
                 self._target(one.target)

@@ -9,6 +9,7 @@ a definition and be proved itself.
 from __future__ import annotations
 
 import importlib
+import inspect
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -63,7 +64,7 @@ def definition(entry: Entry, home: Home) -> Callable[..., Any] | None:
     if not home.definition(entry.implements).is_file():
         return None
     found = getattr(importlib.import_module(module), name, None)
-    return found if callable(found) and getattr(found, "__module__", "") == module else None
+    return found if inspect.isfunction(found) and found.__module__ == module else None
 
 
 def is_restated(entry: Entry, home: Home) -> bool | None:

@@ -254,8 +254,6 @@ def prove(
         }
         click.echo(json.dumps(shown, indent=1))
     else:
-        for line in dead:
-            click.echo(line)
         if not judged.structural:
             for problem in problems:
                 click.echo(problem, err=True)

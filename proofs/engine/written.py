@@ -1,0 +1,100 @@
+"""What a module's file says of a name: one definition at its top, one constant.
+
+The code that runs is held against this, so that what a module does to itself or to another one while
+it is imported is no part of a proof.
+"""
+
+from __future__ import annotations
+
+import ast
+import functools
+import inspect
+import os
+import types
+from fractions import Fraction
+from typing import Any
+
+NOTHING = object()
+PARTS = (
+    ast.Constant, ast.BinOp, ast.UnaryOp, ast.Tuple, ast.Name, ast.Call, ast.operator, ast.unaryop,
+    ast.expr_context, ast.Starred,
+)  # fmt: skip
+KNOWN = {"Fraction": Fraction, "tuple": tuple, "range": range}
+
+
+@functools.cache
+def _parsed(file: str, changed_ns: int) -> ast.Module:
+    with open(file, encoding="utf-8") as text:
+        return ast.parse(text.read())
+
+
+def _module(file: str) -> ast.Module:
+    return _parsed(file, os.stat(file).st_mtime_ns)
+
+
+def is_top(function: types.FunctionType) -> bool:
+    """Its file has one definition of this name, at the top, and nothing else gets the name there."""
+    tree = _module(str(inspect.getsourcefile(function)))
+    found = [n for n in ast.walk(tree) if _binds(n, function.__name__)]
+    top = [n for n in tree.body if isinstance(n, ast.FunctionDef) and n.name == function.__name__]
+    inner = {
+        id(n)
+        for f in ast.walk(tree)
+        if isinstance(f, ast.FunctionDef)
+        for b in f.body
+        for n in ast.walk(b)
+    }
+    fields = {
+        id(n)
+        for c in ast.walk(tree)
+        if isinstance(c, ast.ClassDef)
+        for b in c.body
+        for n in ast.walk(b)
+    }
+    return len(top) == 1 and [n for n in found if id(n) not in inner | fields] == top
+
+
+def _binds(node: ast.AST, name: str) -> bool:
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        return node.name == name
+    if isinstance(node, ast.alias):
+        return (node.asname or node.name) == name
+    return isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node.id == name
+
+
+def constant(module: types.ModuleType, name: str) -> Any:
+    """The value that a module's file gives a name; NOTHING where it gives none, or more than one."""
+    return _constants(str(module.__file__), os.stat(str(module.__file__)).st_mtime_ns).get(
+        name, NOTHING
+    )
+
+
+@functools.cache
+def _constants(file: str, changed_ns: int) -> dict[str, Any]:
+    known: dict[str, Any] = {}
+    for node in _parsed(file, changed_ns).body:
+        if isinstance(node, ast.Assign):
+            pairs = [(target, node.value) for target in node.targets]
+        elif isinstance(node, ast.AnnAssign) and node.value is not None:
+            pairs = [(node.target, node.value)]
+        else:
+            continue
+        for target, value in pairs:
+            if isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+                both = list(zip(target.elts, value.elts, strict=False))
+            else:
+                both = [(target, value)]
+            for one, said in both:
+                if isinstance(one, ast.Name):
+                    known[one.id] = NOTHING if one.id in known else _value(said, known)
+    return known
+
+
+def _value(node: ast.expr, known: dict[str, Any]) -> Any:
+    if not all(isinstance(part, PARTS) for part in ast.walk(node)):
+        return NOTHING
+    scope = {**KNOWN, **{n: v for n, v in known.items() if v is not NOTHING}, "__builtins__": {}}
+    try:
+        return eval(compile(ast.Expression(node), "<constant>", "eval"), scope)
+    except Exception:
+        return NOTHING
