@@ -88,7 +88,7 @@ class Induction:
         _apart("the definition's start", start, item | spread(names_in(self.acc), self.claim))
         _apart("the fold's context", context, item)
         known = names_in(self.item) | names_in(context)
-        for premise in self.claim.premises:
+        for premise in self.premises:
             names = free_names(premise)
             strange = sorted(names - spread(known, self.claim)) if names & item else []
             if strange:

@@ -25,7 +25,7 @@ from cratous.core.ledger.home import Home
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.lift import LiftError
 from cratous.proofs.engine.symbolic import _raw
-from cratous.proofs.engine.terms import free_names, fresh, known, leaves
+from cratous.proofs.engine.terms import free_names, free_values, fresh, known, leaves
 from cratous.proofs.engine.theorem_files import FOLDER, load_claim
 from cratous.proofs.ledger.recall import Recall
 from cratous.proofs.ledger.remembered import named
@@ -127,6 +127,7 @@ class _Outline(Claim):
     made_of: dict[str, frozenset[Function]] = field(default_factory=dict)
     evaluated: frozenset[Function] = frozenset()
     known_then: dict[int, frozenset[Function]] = field(default_factory=dict)
+    given_then: dict[int, tuple[z3.BoolRef, ...]] = field(default_factory=dict)
 
     def closed_value(self, function: Function, args: tuple[Any, ...]) -> Any:
         """An unknown value of the function's type, which remembers what it is made of.
@@ -183,6 +184,7 @@ class _Outline(Claim):
 
     def _owe(self, kind: str, text: str, goal: z3.BoolRef) -> None:
         self.known_then[len(self.obligations)] = self.evaluated
+        self.given_then[len(self.obligations)] = tuple(self.premises)
         super()._owe(kind, text, goal)
 
     def lemma(self, name: str, *, when: Any = True, **values: Any) -> None:
@@ -231,20 +233,29 @@ def relations(name: str, folder: Path = FOLDER) -> Relations:
         return Relations(_named_in(statement), NONE, NONE, NONE, tuple(sorted(set(claim.lemmas))))
     found: dict[str, set[tuple[str, str]]] = {"together": set(), "follows": set(), "leads": set()}
     for number, owed in enumerate(claim.obligations):
-        if owed.kind in ("goal", "base", "step", "use") and _says(claim, owed.goal):
+        if owed.kind in ("goal", "base", "step", "use"):
             evaluated = claim.known_then.get(number, frozenset())
             for how, pair in _pairs(claim, owed.goal, evaluated, induction=owed.kind != "goal"):
-                found[how].add(pair)
+                both = pair not in found[how] and owed.kind == "goal"
+                if not both or all(_says(claim, number, function) for function in pair):
+                    found[how].add(pair)
     used = frozenset(full_name(f) for f in claim.arguments if in_spec(f))
     pairs = {how: frozenset(some) for how, some in found.items()}
     return Relations(used, lemmas=tuple(sorted(set(claim.lemmas))), **pairs)
 
 
-def _says(claim: _Outline, goal: z3.BoolRef) -> bool:
-    """Does it say anything of the kernels and definitions? Not if it holds of any others as well."""
+def _says(claim: _Outline, number: int, function: str) -> bool:
+    """Does it say anything of the function? Not if it would say the same of any other one."""
+    goal, premises = claim.obligations[number].goal, claim.given_then.get(number, ())
+    names = claim.names_of(function)
+    values = free_values([goal, *premises])
+    others = [(v, z3.Const(f"{v}'", v.sort())) for v in values if str(v) in names]
+    if not others:
+        return True  # computed of known numbers, which are in the goal
     solver = z3.Solver()
     solver.set("rlimit", SAYS_RLIMIT)
-    solver.add(*claim.premises, z3.Not(goal))
+    solver.add(*premises, goal, z3.substitute(z3.Not(goal), *others))
+    solver.add(*[z3.substitute(premise, *others) for premise in premises])
     return bool(solver.check() != z3.unsat)
 
 
