@@ -23,6 +23,7 @@ from cratous.proofs.engine.lift import OPAQUE, REPLACED, VISITS, Visit, join, li
 from cratous.proofs.engine.symbolic import INT64, RANGE, SymBool, SymInt, SymMask, SymReal, equality
 from cratous.proofs.engine.terms import (
     Stub,
+    depending,
     flatten,
     free_names,
     known,
@@ -30,7 +31,6 @@ from cratous.proofs.engine.terms import (
     of_its_kinds,
     of_kind,
     statement,
-    unbounded,
 )
 
 NAME = re.compile(r"[A-Za-z_]\w*(\.\w+)*", re.ASCII)
@@ -73,7 +73,7 @@ class Claim:
     visits: list[Visit] = field(default_factory=list)
     granted: tuple[z3.BoolRef, ...] = ()
     used: list[Callable[..., Any]] = field(default_factory=list)
-    bounded: set[str] = field(default_factory=set)
+    wide: set[str] = field(default_factory=set)
     unseen: set[Callable[..., Any]] = field(default_factory=set)
     vouched: set[Callable[..., Any]] = field(default_factory=set)
     names: set[str] = field(default_factory=set)
@@ -102,13 +102,14 @@ class Claim:
     def integer(self, name: str) -> Any:
         """An arbitrary integer of at most 62 bits (a premise that the run time checks)."""
         value = self._value(name, lambda n: SymInt(z3.Int(n)))
-        self.bounded.add(str(value.term))
         self._restrict(z3.And(value.term >= -(2**61), value.term <= 2**61))
         return value
 
     def whole(self, name: str) -> Any:
         """An arbitrary integer of any size: for definitions, which are never compiled."""
-        return self._value(name, lambda n: SymInt(z3.Int(n)))
+        value = self._value(name, lambda n: SymInt(z3.Int(n)))
+        self.wide.add(str(value.term))
+        return value
 
     def boolean(self, name: str) -> Any:
         """An arbitrary truth value."""
@@ -204,7 +205,9 @@ class Claim:
             OPAQUE.update(before)
         self.facts += lifted.roots
         self.roots += lifted.roots
-        for name, term in unbounded(args, self.bounded) if machine else ():
+        # an unbounded integer that a premise restricts may be restricted to what no machine has
+        wide = self.wide & {name for premise in self.premises for name in free_names(premise)}
+        for name, term in depending(args, wide) if machine and wide else ():
             text = f"{function.__name__}: argument {name}: {RANGE}"
             self._owe("defined", text, z3.And(term >= -INT64, term < INT64))
         for text, condition in lifted.obligations:

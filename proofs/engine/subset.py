@@ -13,6 +13,7 @@ the same number in every reading. Each expression has one kind on every way (see
 from __future__ import annotations
 
 import ast
+import builtins
 import inspect
 import sys
 import textwrap
@@ -120,6 +121,13 @@ def lint(function: Any) -> list[Finding]:
     return found
 
 
+def _is_written(node: ast.expr, kind: Any, scope: dict[str, Any]) -> bool:
+    """The type that a function has for an argument is the one of its text."""
+    text = str(node.value) if isinstance(node, ast.Constant) else ast.unparse(node)
+    known = scope.get(text, getattr(builtins, text, None))
+    return known is kind or (isinstance(node, ast.Attribute) and kind is not None)
+
+
 Report = Callable[[ast.AST | None, str], None]
 
 
@@ -137,6 +145,8 @@ def _head(node: ast.FunctionDef, function: types.FunctionType, report: Report) -
     for argument in given.args:
         if argument.annotation is None:
             report(argument, f"argument {argument.arg!r} has no type")
+        elif not _is_written(argument.annotation, hints(function).get(argument.arg), scope):
+            report(argument, f"the type of {argument.arg!r} is not the one that is written")
     if node.returns is None:
         report(node, "the result has no type")
     if getattr(node, "type_params", None):

@@ -154,11 +154,11 @@ def _is_of(value: Any, kind: Any) -> bool:
     return True
 
 
-def unbounded(args: tuple[Any, ...], bounded: set[str]) -> list[tuple[str, z3.ArithRef]]:
-    """The integers among the arguments that no claim has bounded, with what to call them."""
+def depending(args: tuple[Any, ...], names: set[str]) -> list[tuple[str, z3.ArithRef]]:
+    """The integers among the arguments that are made of these values, with what to call them."""
     found = []
     for leaf in leaves(args):
-        if isinstance(leaf, SymInt) and not _is_literal(leaf) and free_names(leaf.term) - bounded:
+        if isinstance(leaf, SymInt) and not _is_literal(leaf) and free_names(leaf.term) & names:
             found.append((" ".join(str(leaf.term).split())[:40], leaf.term))
     return found
 

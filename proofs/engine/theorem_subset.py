@@ -58,6 +58,7 @@ OFFERED = frozenset(
 )
 """What a claim has for a theorem."""
 HIDDEN = (frozenset(vars(Claim)) | frozenset(Claim.__dataclass_fields__) | {"term"}) - OFFERED
+TOOLS = (itertools.pairwise, itertools.combinations, itertools.product)
 METHODS = frozenset(["append", "split", "join", "items", "keys", "values"])
 BUILTINS = frozenset(
     [
@@ -94,7 +95,9 @@ EXPRESSIONS: tuple[type[ast.expr], ...] = (
     ast.ListComp, ast.DictComp, ast.GeneratorExp, ast.JoinedStr, ast.FormattedValue, ast.Lambda,
 )  # fmt: skip
 COMPARISONS = (ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Eq, ast.NotEq, ast.In, ast.NotIn)
-ITERATORS = frozenset(["map", "zip", "enumerate", "reversed", "pairwise", "combinations"])
+ITERATORS = frozenset(
+    ["map", "zip", "enumerate", "reversed", "pairwise", "combinations", "product"]
+)
 MAKERS = (ast.List, ast.Dict, ast.ListComp, ast.DictComp)
 
 
@@ -142,13 +145,14 @@ def check_values(scope: dict[str, Any], tree: ast.Module, path: Path) -> None:
                 raise BadInput(
                     f"a theorem's file does not import {alias.name!r} of {node.module}",
                     where=f"{place(path)}:{node.lineno}",
-                    expected="kernels, folds, functions and modules of `spec`, records, numbers",
+                    expected="kernels as they are registered, folds, functions and modules of `spec`, "
+                    "records, numbers",
                 )
 
 
 def _may_be_imported(value: Any, module: str) -> bool:
     if module in ("typing", "collections.abc", "itertools", "fractions"):
-        return module != "itertools" or value in (itertools.pairwise, itertools.combinations)
+        return module != "itertools" or value in TOOLS
     if value is Claim or value is Fold or entry_of(value) is not None or is_record(value):
         return True
     if isinstance(value, bool | int | float | Fraction | str):

@@ -1,6 +1,6 @@
 """A case of the self-test: a package as text, and what must come of proving it.
 
-A file begins with `verdict: refused` or `verdict: accepted`, `because:` (one plain sentence) and, if
+A file begins with `verdict: refused`, `accepted` or `open` (a known hole: it ought to be refused), `because:` (one plain sentence) and, if
 it is to be refused, `says:` (what the refusal must contain: words separated by commas, each with
 its alternatives separated by `|`). Then the package's files follow, each after a line such as
 `== spec/meaning.py`. The package is called `pkg` in them.
@@ -18,7 +18,7 @@ from cratous.spec.errors import BadInput
 CASES = Path(__file__).resolve().parent / "cases"
 SECTION = re.compile(r"^== (\S+)\n", re.M)
 PACKAGE = re.compile(r"\bpkg\b")
-VERDICTS = ("refused", "accepted")
+VERDICTS = ("refused", "accepted", "open")
 EMPTY = {"__init__.py": "", "spec/__init__.py": ""}
 
 
@@ -66,7 +66,7 @@ def read(file: Path) -> Case:
     ways = (word.split("|") for word in head.get("says", "").lower().split(",") if word.strip())
     says = tuple(tuple(way.strip() for way in way_of_it) for way_of_it in ways)
     good = head.get("verdict") in VERDICTS and head.get("because") and files
-    if not good or bool(says) != (head["verdict"] == "refused"):
+    if not good or (bool(says) != (head["verdict"] == "refused") and head["verdict"] != "open"):
         raise BadInput(
             "this is no case of the self-test",
             where=f"{file.parent.name}/{file.name}",

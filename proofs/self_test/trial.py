@@ -48,6 +48,12 @@ class Trial:
     def wrong(self) -> str:
         """What is not as it must be, in one line; nothing where all is."""
         said = " ".join(self.reason.split())
+        if self.case.verdict == "open":
+            return (
+                ""
+                if self.verdict == "accepted"
+                else f"no longer open, it is {self.verdict}: {said}"
+            )
         if self.verdict != self.case.verdict:
             return f"{self.verdict}{': ' if said else ''}{said}"
         if self.vouched != (self.verdict == "accepted"):

@@ -38,6 +38,7 @@ def self_test(as_json: bool, verbose: bool) -> bool:
             for trial in trials
         ]
         data = {"cases": rows, "wrong": len(wrong), "seconds": round(seconds, 2)}
+        data["open"] = [trial.case.id for trial in trials if trial.case.verdict == "open"]
         click.echo(json.dumps(data, indent=1))
         return not wrong
     for kind in sorted({trial.case.kind for trial in trials}):
@@ -56,6 +57,9 @@ def self_test(as_json: bool, verbose: bool) -> bool:
                 )
             elif verbose:
                 click.echo(f"  {trial.case.name}: {trial.case.because}")
+    for trial in trials:
+        if trial.case.verdict == "open":
+            click.secho(f"open: {trial.case.id}: {trial.case.because}", fg="yellow")
     kinds = len({trial.case.kind for trial in trials})
     right = len(trials) - len(wrong)
     click.echo(f"{right} of {len(trials)} cases of {kinds} kinds as they must be, {seconds:.0f} s")
