@@ -73,7 +73,7 @@ def judge(
     dead = ledger.dead_paths(inventory.theorems)
     structural = (*inventory.problems, *bare, *findings, *dead)
     # what is outside of the subset is not read any further
-    unmeant = [] if structural else _unmeant(inventory, home, keep)
+    unmeant = [] if findings else _unmeant(inventory, home, keep)
     return Judgement(inventory, structural, tuple(unmeant))
 
 

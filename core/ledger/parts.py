@@ -36,7 +36,8 @@ PROVER = (
     "proofs.engine.prover.prove_file",
     "proofs.engine.subset.lint_all",
     "proofs.ledger.records",
-    "proofs.judgement.judge",
+    "proofs.ledger.prove_all",
+    "proofs.ledger.problems",
 )
 """What decides that something is proved: with all they rest on, part of the key of every proof."""
 REMEMBERS = (

@@ -142,7 +142,7 @@ class Claim:
     def assume(self, condition: Any, *, owner: str, reason: str) -> None:
         """Take something for granted; it stays in the ledger, with owner and reason, for ever."""
         self.facts.append(statement(condition))
-        self.assumptions.append((str(condition), owner, reason))
+        self.assumptions.append((str(statement(condition)), owner, reason))
 
     def use(self, kernel: Callable[..., Any], *args: Any) -> Any:
         """Run a kernel of `core` on these values; the theorem is about it."""

@@ -12,6 +12,7 @@ from __future__ import annotations
 import ast
 import builtins
 import itertools
+import math
 import types
 import typing
 from collections.abc import Iterator
@@ -153,6 +154,8 @@ def check_values(scope: dict[str, Any], tree: ast.Module, path: Path) -> None:
 def _may_be_imported(value: Any, module: str) -> bool:
     if module in ("typing", "collections.abc", "itertools", "fractions"):
         return module != "itertools" or value in TOOLS
+    if module == "math":
+        return value is math.sqrt
     if value is Claim or value is Fold or entry_of(value) is not None or is_record(value):
         return True
     if isinstance(value, bool | int | float | Fraction | str):

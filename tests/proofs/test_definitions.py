@@ -58,9 +58,9 @@ def _said(entry: Entry, proofs: Proofs) -> str:
 
 def _proofs(name: str, uses: str = "", *, proved: bool = True, lemma: str = "") -> Proofs:
     """One theorem about a kernel; it, or its lemma, uses a definition."""
-    using = replace(NOTHING, definitions=frozenset([uses]))
-    said = {"one": using} if not lemma else {"one": replace(NOTHING, lemmas=(lemma,)), lemma: using}
     full = "nobody" if name == "nobody" else named(name).name
+    using = replace(NOTHING, definitions=frozenset([uses]), together=frozenset([(full, uses)]))
+    said = {"one": using} if not lemma else {"one": replace(NOTHING, lemmas=(lemma,)), lemma: using}
     return Proofs({"one": (full,)}, frozenset(["one"] if proved else []), said)
 
 
@@ -83,6 +83,15 @@ def test_a_definition_that_no_theorem_uses() -> None:
     for idle in (_proofs("later", "cratous.spec.schedule.earlier_of"), _proofs("earlier", used)):
         assert "which none of its theorems uses" in _said(later, idle)
     assert problems({"later": later}, PRODUCT, _proofs("later", used, lemma="two")) == []
+
+
+def test_a_definition_that_no_theorem_holds_it_against() -> None:
+    later = named("later")
+    used = definition_name(later, PRODUCT)
+    found = _proofs("later", used)
+    (using,) = found.relations.values()
+    idle = replace(found, relations={"one": replace(using, together=frozenset())})
+    assert "which none of its theorems holds it against" in _said(later, idle)
 
 
 def test_a_definition_with_the_kernels_own_formula() -> None:
@@ -236,7 +245,6 @@ def test_what_is_no_formula_is_not_compared() -> None:
     ("theorem", "kernel", "meant", "how"),
     [
         ("authority_gate_changes_begin_epochs", "gate_takeover", "authority.gate.is_takeover", "together"),
-        ("authority_gate_changes_begin_epochs", "gate_takeover", "authority.gate.well_formed", "follows"),
         # handed to a helper, inside a fold's own step, through folds over a closed chain
         ("schedule_holds_is_its_definition", "schedule_holds", "schedule.rows_hold_step", "together"),
         ("geofence_boundary_distance_is_that_of_the_nearest_edge", "boundary_distance",

@@ -129,7 +129,12 @@ def claim(c):
             "    c.show(c.use(reaches_home, c.real('x')))",
             "'reaches_home', which is not registered",
         ),
-        ("of_a_missing_kernel", "from my_pkg.reserve import nowhere", "    pass", "is not there"),
+        (
+            "of_a_missing_kernel",
+            "from my_pkg.reserve import nowhere",
+            "    c.show(True)",
+            "is not there",
+        ),
         ("broken", "from", "    pass", "no Python"),
     ],
 )

@@ -11,7 +11,6 @@ from cratous.proofs.engine.lift import REPLACED
 from cratous.spec.errors import BadInput
 
 HEAD = '''"""A sentence."""
-import math
 from fractions import Fraction
 from math import sqrt
 
@@ -27,10 +26,6 @@ def off(x, n):
 
 def rooted(x):
     return sqrt(x) * sqrt(x) != x
-
-
-def through_module(x):
-    return math.sqrt(x) * math.sqrt(x) != x
 
 
 def power(x):
@@ -67,12 +62,12 @@ def rounded(x):
 
 
 def in_place(x):
-    x /= 49
+    x = x / 49
     return x != Fraction(1, 49)
 
 
 def deeper(x):
-    return any(sqrt(y) * sqrt(y) != y for y in (x, x + 1))
+    return sum([sqrt(y) * sqrt(y) for y in (x, x + 1)]) != 2 * x + 1
 
 
 def by_default(x, k=TENTH):
@@ -112,7 +107,6 @@ INEXACT = {
     "TENTH + TENTH + TENTH > Fraction(3, 10)": "`TENTH + TENTH`",
     "c.define(rooted, 2)": "`sqrt(x)`",
     "c.define(rooted, Fraction(2))": "`sqrt(x)`",
-    "c.define(through_module, 2)": "`math.sqrt(x)`",
     "c.define(power, 49)": "`x ** (-1)`",
     "c.define(thirds)": "`(1 - three) / three`",
     "c.define(by_one, 49)": "`one() / n`",
@@ -156,8 +150,8 @@ def test_what_is_exact_is_proved(shown: str, tmp_path: Path):
     assert stated(tmp_path, shown).proved
 
 
-def test_a_function_without_a_source_is_refused_where_it_divides(tmp_path: Path):
-    with pytest.raises(BadInput, match="source cannot be read"):
+def test_a_function_without_a_source_is_refused(tmp_path: Path):
+    with pytest.raises(BadInput, match="'eval' of Python"):
         stated(tmp_path, 'c.define(eval("lambda x: x / 49 * 49 != x"), 1)')
 
 

@@ -196,26 +196,40 @@ def test_all_kernels_are_in_the_subset():
 LIMIT = 3
 
 
-def outside(a: float, b) -> float:
-    """Not in the subset, in six ways."""
-    total, limit = 0.5 * a, 1
+def outside(a: float, b: float) -> float:
+    """Not in the subset, in each of its lines."""
+    _half = 0.5 * a
     for k in range(3):
-        total += k
-    return total // LIMIT * limit
+        a = a + k
+    a += b
+    _c, _d = a, b
+    _least = LIMIT
+    if b:
+        return a
+    if a is b:
+        return b
+    return a // b
+
+
+def untyped(a: float, b) -> float:
+    """An argument has no type."""
+    return a
 
 
 def test_the_lint_names_what_is_outside_of_the_subset():
     text = "\n".join(str(f) for f in lint(outside))
     for part in (
-        "'b' has no type",
         "0.5",
         "fold",
         "x = x + y",
-        "//",
-        "'LIMIT' is neither",
         "no bare tuples",
+        "'LIMIT' is neither",
+        "a condition is a truth value",
+        "`is`",
+        "//",
     ):
         assert part in text, part
+    assert "'b' has no type" in "\n".join(str(f) for f in lint(untyped))
 
 
 def test_smt2_export_says_what_it_is():

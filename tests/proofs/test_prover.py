@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from fractions import Fraction
 from pathlib import Path
 
@@ -165,10 +166,8 @@ def claim(c: Claim) -> None:
     assert prover.prove_file("third", folder=tmp_path).proved
 
 
-def test_a_process_that_dies_is_an_error(tmp_path: Path):
-    (tmp_path / "dies.py").write_text(
-        '"""A sentence."""\nimport os\n\n\ndef claim(c):\n    os._exit(9)\n'
-    )
+def test_a_process_that_dies_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(prover, "prove_file", lambda *_a, **_k: os._exit(9))
     with pytest.raises(RuntimeError, match="dies ended without an answer"):
         ledger.prove_theorems(["dies"], folder=tmp_path, jobs=1)
 
