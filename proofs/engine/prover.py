@@ -284,7 +284,6 @@ def _satisfiable(terms: list[z3.BoolRef], rlimit: int, cache: Cache, hasher: Has
     return answer.result
 
 
-# -- theorem files ----------------------------------------------------------------------
 def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
     """The claim of a theorem file, stated, and its sentence; the kernels must be registered."""
     statement, sentence = load_claim(name, folder)

@@ -52,7 +52,13 @@ def _with(one: case.Case, verdict: str, says: str, old: str, new: str) -> case.C
         ("accepted", "", "n - m >= 0", "n - m > 0", "refused: "),
         ("refused", "zero", "n - m >= 0", "n - m > 0", "refused for another reason (zero not in"),
         ("refused", "refuted", "n - m >= 0", "n - m > 0", ""),
-        ("accepted", "", "from pkg.spec import meaning", "import os; os._exit(3)", "broken: "),
+        (
+            "accepted",
+            "",
+            "from cratous.core.kernel import",
+            "import os; os._exit(3)  #",
+            "broken: ",
+        ),
     ],
 )
 def test_what_is_not_as_it_must_be_is_said(
@@ -74,8 +80,8 @@ def test_no_case_touches_the_next() -> None:
         _honest(),
         "accepted",
         "",
-        "from pkg.spec import meaning",
-        "from pkg.spec import meaning\nimport z3\nz3.Solver.check = lambda *a: z3.sat",
+        "from cratous.core.kernel import kernel",
+        "from cratous.core.kernel import kernel\nimport z3\nz3.Solver.check = lambda *a: z3.sat",
     )
     assert trial.attempt(vandal).verdict != "accepted"
     assert trial.attempt(_honest()).wrong == ""

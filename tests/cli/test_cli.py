@@ -211,13 +211,14 @@ def test_plan_tells_the_notes_of_a_mission(run: Run, tmp_path: Path) -> None:
 def test_the_ledger_is_a_gate(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from cratous.core import ledger
 
-    empty: dict[str, Any] = {"kernels": {}, "theorems": {}}
+    empty: dict[str, Any] = {"kernels": {}, "theorems": {}, "seal": "", "solver": ""}
     monkeypatch.setattr(ledger, "read", lambda *_path: empty)
     code, out, err = run("run", CROSSING, "--out", tmp_path / "out", "--quiet")
     assert (code, out) == (2, "")
     assert "ledger does not vouch" in err
     assert list(tmp_path.iterdir()) == []
-    assert run("run", CROSSING, "--out", tmp_path, "--quiet", "--allow-unproved")[0] == 3
+    done = run("run", CROSSING, "--out", tmp_path, "--quiet", "--allow-unproved")
+    assert done[0] == 3, done[2]
     page = (tmp_path / "crossing" / "report.html").read_text(encoding="utf-8")
     assert "Flown with --allow-unproved" in page
 

@@ -175,6 +175,7 @@ KEPT = {
     "proofs/mutation/keys.py": "verdicts, renamed when whole, in the private cache",
     "proofs/ledger/recall.py": "theorems, renamed when whole, in the private cache",
     "proofs/statements/relations.py": "what statements relate, renamed when whole, in the private cache",
+    "proofs/self_test/case.py": "packages of the self-test, in a temporary folder",
     "proofs/ledger/remembered.py": "texts, renamed when whole, in the private cache",
     "services/startup/warm.py": "a mission in a temporary folder",
     "services/results/folder.py": "inside the hidden folder of a run",
