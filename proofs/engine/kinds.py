@@ -25,9 +25,9 @@ GENERATED = {
     "__annotations__", "__doc__", "__firstlineno__", "__getnewargs__", "__match_args__", "__module__",
     "__new__", "__orig_bases__", "__replace__", "__repr__", "__slots__", "__static_attributes__",
     "_asdict", "_field_defaults", "_fields", "_make", "_replace",
-    "__classdictcell__", "__annotate__", "__annotate_func__", "__annotations_cache__",
+    "__classdictcell__", "__annotate__", "__annotate_func__", "__annotations_cache__", "__slotnames__",
 }  # fmt: skip
-"""What `NamedTuple` puts into a record by itself."""
+"""What `NamedTuple` puts into a record by itself, and `copy` at the first copy of one."""
 
 
 def is_record(value: Any) -> bool:
