@@ -83,7 +83,7 @@ class Process:
             root["EntityID"],
             root["EntityType"],
             config.path,
-            {**root, "where": config.where},
+            {**root, "where": config.where, "strict": config.strict},
             {"admit": self._admit, "data": data},
             say,
         )
