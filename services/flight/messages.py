@@ -102,6 +102,13 @@ class Lost(NamedTuple):
     event: LinkEvent
 
 
+class GateIs(NamedTuple):
+    """How a vehicle's gate stands from now on, by the vehicle itself."""
+
+    vehicle_id: int
+    gate: Gate
+
+
 class Watch(NamedTuple):
     """Look for instances that have fallen silent."""
 
@@ -192,7 +199,19 @@ class Over(NamedTuple):
     outcome: str
 
 
-ToLinkEnd = Connected | ZonesKnown | Route | Flown | Left | Beat | Heard | Unreadable | Lost | Watch
+ToLinkEnd = (
+    Connected
+    | ZonesKnown
+    | Route
+    | Flown
+    | Left
+    | Beat
+    | Heard
+    | Unreadable
+    | Lost
+    | GateIs
+    | Watch
+)
 FromLinkEnd = Say | Down | Suspend | TakeBack
 
 
@@ -255,7 +274,7 @@ class OnBoard(NamedTuple):
 
 
 ToVehicle = Commanded | Wished | LimitsAre | Look | Sense | Choose | Move
-FromVehicle = Say | OnBoard
+FromVehicle = Say | GateIs | OnBoard
 
 ToExecutive = Begin | SetOut | Tick | Planned | NotPlanned | Report | Closing | Suspend | TakeBack
 FromExecutive = Say | ZonesKnown | Route | Flown | Left | Look | LimitsAre | AskPlan | Over

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.core.authority.gate import Gate
+from cratous.bridge.text_protocol import SetMode
+from cratous.core.authority.gate import ICAROUS, UXAS, Gate, epoch_given
 from cratous.services.flight.commands import SENDERS
 from cratous.services.flight.dynamics import AirState
 from cratous.services.icarous.messages import Foresees
@@ -28,7 +29,11 @@ def gate_state(vehicle_id: int, now_ms: int, gate: Gate) -> Any:
 
 def dropped(command: Any, now_ms: int, sender: int, gate: Gate) -> Any:
     """A `GatedCommand` that the gate has not let through, as a `CommandDropped`."""
-    stale = command.Epoch != gate.epoch
+    reason = "sent by one without authority"
+    if not epoch_given(gate, command.Epoch):
+        reason = "of an epoch that was never given"
+    elif command.Epoch != gate.epoch:
+        reason = "of another epoch"
     return lmcp.new(
         "CommandDropped",
         VehicleID=command.VehicleID,
@@ -36,7 +41,23 @@ def dropped(command: Any, now_ms: int, sender: int, gate: Gate) -> Any:
         Sender=SENDERS[sender],
         Epoch=command.Epoch,
         GateEpoch=gate.epoch,
-        Reason="of another epoch" if stale else "sent by one without authority",
+        Reason=reason,
+    )
+
+
+def mode_refused(vehicle_id: int, now_ms: int, line: SetMode, epoch: int, gate: Gate) -> Any:
+    """A SETMOD that says what cannot be true, as a `ModeRefused`."""
+    reason = "of the present epoch, which began otherwise"
+    if not epoch_given(gate, epoch):
+        reason = "of an epoch that was never given"
+    return lmcp.new(
+        "ModeRefused",
+        VehicleID=vehicle_id,
+        Time=now_ms,
+        Owner=SENDERS[ICAROUS if line.mode == "ACTIVE" else UXAS],
+        Epoch=epoch,
+        GateEpoch=gate.epoch,
+        Reason=reason,
     )
 
 

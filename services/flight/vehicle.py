@@ -39,6 +39,7 @@ from cratous.services.flight.messages import (
     Choose,
     Commanded,
     FromVehicle,
+    GateIs,
     LimitsAre,
     Look,
     Move,
@@ -139,7 +140,7 @@ class VehicleNode:
         """How the gate stands, if it has changed; who commands from now on, if that has."""
         vid, gate, said = self.vehicle.id, after.gate, list[FromVehicle]()
         if gate != before:
-            said.append(self._say(gate_state(vid, now_ms, gate)))
+            said += [GateIs(vid, gate), self._say(gate_state(vid, now_ms, gate))]
         if gate.owner != before.owner:
             said.append(self._say(authority_change(vid, now_ms, gate, reason, intruder_id)))
         return tuple(said)

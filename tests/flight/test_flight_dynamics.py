@@ -28,7 +28,7 @@ from cratous.services.flight.dynamics import (
     turn_radius_m,
     turn_rate_rad_s,
 )
-from cratous.services.flight.messages import Choose, Commanded, Move, ToVehicle, Wished
+from cratous.services.flight.messages import Choose, Commanded, Move, Say, ToVehicle, Wished
 from cratous.services.flight.vehicle import State, VehicleNode
 from cratous.services.icarous.messages import Wish
 from cratous.services.mission.frames import Projection
@@ -159,7 +159,7 @@ def after(*messages: ToVehicle, state: State = NODE.first()) -> tuple[State, lis
     out: tuple[Any, ...] = ()
     for message in messages:
         state, out = NODE.handle(state, message)
-    return state, [said.body for said in out]
+    return state, [said.body for said in out if isinstance(said, Say)]
 
 
 def wished(act: int) -> Wished:
