@@ -25,12 +25,14 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import gated, path_command, task_progress
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.expectation import expected_times
-from cratous.services.flight.lives import fails, life
+from cratous.services.flight.left_out import leave_out, nothing_of
+from cratous.services.flight.lives import life
 from cratous.services.flight.messages import Flown, Route
 from cratous.services.flight.pace import FASTEST, broken_rows, trimmed_speed_m_s
 from cratous.services.flight.timing import closed_by, opens_ms
 from cratous.services.flight.ways import Ways
 from cratous.services.mission.frames import Projection
+from cratous.spec.algebra.partial import waits_for
 from cratous.spec.constraint_rows import Row
 from cratous.spec.executive import GO_ON, LAP, LAST_LAP, PLAN_ANEW, STANDS_BY, START
 from cratous.spec.mission import Mission, Position, Zone
@@ -40,8 +42,6 @@ AHEAD_S = 30
 """Waypoints are told at least this much farther than the look-ahead [s]."""
 EARLY_MS = 500
 """A planned wait may end this much early; the rows themselves are never bent."""
-NOBODY = 0
-"""The vehicle of a task that was given to none."""
 OPEN_MARGIN_MS = 60
 """Aim this much later than the predicted opening, so that rounding never costs a lap."""
 
@@ -65,6 +65,7 @@ class Executive:
     starts: dict[int, int] = field(default_factory=dict)
     ends: dict[int, int] = field(default_factory=dict)
     failed: dict[int, str] = field(default_factory=dict)
+    left_out: dict[int, str] = field(default_factory=dict)
     commands: int = 0
     replans: int = 0
     finished: int = 0
@@ -74,8 +75,9 @@ class Executive:
         self.ways = Ways(self.zones, self.dt_s)
 
     def begin(self, states: dict[int, AirState], now_ms: int = 0) -> list[Any]:
-        """Set every vehicle on its way; the first messages."""
-        out: list[Any] = []
+        """Set every vehicle on its way; the first messages. What the plan leaves out fails."""
+        settled = (self.starts, self.ends, self.failed)
+        self.left_out, out = leave_out(self.plan, settled, self.left_out, self.chains, now_ms)
         for vehicle in self.mission.vehicles:
             state = states[vehicle.id]
             items = self._items(vehicle.id)
@@ -304,7 +306,7 @@ class Executive:
         self.plan = made
         self.replans += 1
         for chain in self.chains.values():
-            if chain.item is not None:
+            if chain.item is not None and chain.item.task_id in made.chosen:
                 note = f"planned anew, because of {why}"
                 out.append(self._progress(chain, now_ms, "Planned", 0.0, note))
         out.extend(self.begin(states, now_ms))
@@ -329,17 +331,10 @@ class Executive:
         asked: Iterable[int],
         out: list[Any],
     ) -> None:
-        """Nothing that is left can be done: every task of it fails by name, and those too that are
-        asked for and no vehicle was given."""
-        for vid in tuple(self.chains):
-            chain = self.chains[vid]
-            for item in chain.items[max(chain.k, 0) :]:
-                if fails(item.task_id, self.starts, self.ends, self.failed):
-                    self._fail(item.task_id, now_ms, why, states, out)
-        for task_id in asked:
-            if fails(task_id, self.starts, self.ends, self.failed):
-                self.failed[task_id] = why
-                out.append(task_progress(task_id, NOBODY, now_ms, "Failed", 0.0, why))
+        """Nothing that is left can be done: nobody flies any of it, and all that is asked for fails by
+        name."""
+        self.plan = nothing_of(self.plan, asked, why)
+        out.extend(self.begin(states, now_ms))
 
     def _fail(
         self, task_id: int, now_ms: int, why: str, states: dict[int, AirState], out: list[Any]
@@ -357,7 +352,7 @@ class Executive:
             if item is not None and item.task_id == task_id:
                 self._next_item(chain, now_ms, states[vid], out)
         for row in self.plan.rows:
-            waits = row.kind in (1, 2) and task_id in row.group
+            waits = task_id in row.group and waits_for(row, set(row.group) - self.failed.keys())
             if waits and row.i not in self.failed and row.i not in self.starts:
                 self._fail(row.i, now_ms, f"{row.text}: task {task_id} failed", states, out)
 

@@ -51,7 +51,7 @@ from cratous.spec.errors import NoPlan
 from cratous.spec.executive import COMPLETE, FAILED_FLIGHT, GOES_ON, LIMIT
 from cratous.spec.mission import Change, Mission
 from cratous.spec.mission.asked import asked
-from cratous.spec.mission.changes import TASK_ADDED, VEHICLE_JOINS, split, words
+from cratous.spec.mission.changes import TASK_ADDED, VEHICLE_JOINS, WIND, split, words
 from cratous.spec.mission.plan import Plan
 
 Segmenter = Callable[[bytes], Iterable[bytes]]
@@ -81,7 +81,7 @@ def fly(
 
 OUTCOMES = {GOES_ON: "", COMPLETE: "complete", FAILED_FLIGHT: "failed", LIMIT: "limit"}
 BRINGS_WORK = (TASK_ADDED, VEHICLE_JOINS)
-"""The end of the mission waits for changes of these kinds."""
+"""The end of the mission waits for changes of these kinds; and for the wind, if a task is left out."""
 
 
 class _Flight:
@@ -191,7 +191,7 @@ class _Flight:
             self.now_ms,
             dict(executive.starts),
             dict(executive.ends),
-            dict(executive.failed),
+            {**executive.left_out, **executive.failed},
             self.takeovers,
             executive.replans,
             steps,
@@ -210,7 +210,8 @@ class _Flight:
     def _outcome(self, limit_ms: int) -> str:
         flying = self.executive.flying()
         away = sum(node.gate.owner != UXAS for node in self.nodes.values())
-        expected = sum(c.kind in BRINGS_WORK for c in self.to_come)
+        kinds = (*BRINGS_WORK, *((WIND,) if self.executive.left_out else ()))
+        expected = sum(c.kind in kinds for c in self.to_come)
         left = len(self._left()) if not flying else 0  # while some fly, what is left is no matter
         return OUTCOMES[flight_outcome(flying, away, expected, left, self.now_ms, limit_ms)]
 
@@ -378,15 +379,19 @@ class _Flight:
     ) -> Plan | None:
         from cratous.services.pipeline.plan import make_plan
 
-        poses = {vid: state.pose for vid, state in states.items()}
-        flown = [
-            (task, self.executive.starts[task], self.executive.ends[task]) for task in sorted(done)
-        ]
+        flying = self.executive
+        flown = [(task, flying.starts[task], flying.ends[task]) for task in sorted(done)]
         here = {v.id for v in self.known.vehicles}
-        poses = {vid: pose for vid, pose in poses.items() if vid in here}
         try:
-            away = absent(self.mission, now_ms)
-            plan = make_plan(self.known, starts=poses, done=flown, now_ms=now_ms, absent=away)
+            plan = make_plan(
+                self.known,
+                starts={vid: state.pose for vid, state in states.items() if vid in here},
+                done=flown,
+                now_ms=now_ms,
+                absent=absent(self.mission, now_ms),
+                undone=flying.failed,
+                begun=flying.starts.keys() - done,
+            )
         except NoPlan as error:
             self.no_plan = str(error)
             return None
