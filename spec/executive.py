@@ -22,6 +22,9 @@ FOR_NOTHING, FOR_CHANGE, FOR_DEADLINE = 0, 1, 2
 KEEP_ON, FLY_PLAN, DROP_LEFT, DROP_LATE = 0, 1, 2, 3
 """What an answer leads to: nothing; the plan is flown; all that is left fails; the late task fails."""
 
+FLY_WAY, FAIL_TASK, CIRCLE = 0, 1, 2
+"""What is done after the search for a way: it is flown; the task fails; the vehicle circles where it is."""
+
 
 class Moved(NamedTuple):
     """Phase and act."""
@@ -167,3 +170,10 @@ def falls_with(kind: int, named: bool, life: int) -> bool:
     waits = not (kind < AFTER_END or kind > AFTER_START)
     begun = life != LEFT
     return waits and named and not begun
+
+
+def is_after_search(found: bool, tasked: bool, act: int) -> bool:
+    """Only a way that was found is flown, and it is. Without one the vehicle stays: if it is there for a
+    task, that fails, so that nothing is waited for that cannot come."""
+    flies, fails = act == FLY_WAY, act == FAIL_TASK
+    return flies == found and fails == (tasked and not flies) and not (act < 0 or act > CIRCLE)

@@ -194,3 +194,16 @@ def falls_with(kind: int, named: bool, life: int) -> bool:
     one that has failed; life: of the task.
     """
     return (kind == 1 or kind == 2) and named and life == 0
+
+
+@kernel(implements="executive.is_after_search")
+def way_act(found: bool, tasked: bool) -> int:
+    """What to do after the search for a way that keeps the zones: 0 fly it, 1 fail the task, 2 circle.
+
+    found: there is one; tasked: a task needs it.
+    """
+    if found:
+        return 0
+    if tasked:
+        return 1
+    return 2

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from cratous.core.authority.timeliness import too_early
-from cratous.core.executive.steps import end_passed, falls_with, may_begin
+from cratous.core.executive.steps import end_passed, falls_with, may_begin, way_act
 from cratous.core.routing.polylines import Track
 from cratous.services.flight import chain as chains
 from cratous.services.flight.ahead import last_lap
@@ -23,12 +23,13 @@ from cratous.services.flight.messages import Say
 from cratous.services.flight.timing import closed_by
 from cratous.spec.algebra.partial import waits_for
 from cratous.spec.constraint_rows import Row
-from cratous.spec.executive import GO_ON, LAP, LAST_LAP, START
+from cratous.spec.executive import FAIL_TASK, GO_ON, LAP, LAST_LAP, START
 from cratous.spec.mission import Vehicle
 from cratous.spec.mission.plan import PlanItem
 
 EARLY_MS = 500
 """A planned wait may end this much early; the rows themselves are never bent."""
+NO_WAY = "no way there keeps the zones"
 NAME = "uxas/executive"
 """The sender of what the executive says of itself."""
 
@@ -66,17 +67,20 @@ def _items(state: State, vehicle: Vehicle) -> tuple[PlanItem, ...]:
 
 def settle(config: Config, state: State, out: Out) -> State:
     """Handle every passing of an end up to now, the earliest first."""
-    passed: dict[int, int | None] = {}
-    for vid in sorted(c.vehicle.id for c in state.chains):
-        if not state.chain(vid).suspended:
-            state, passed[vid] = _measure(config, state, vid)
+    passed, tracks = dict[int, int | None](), dict[int, int]()
+    new = sorted(c.vehicle.id for c in state.chains)
     while True:
+        for vid in new:
+            if not state.chain(vid).suspended:
+                state, passed[vid] = _measure(config, state, vid)
+                tracks[vid] = state.chain(vid).version
         due = [(at, vid) for vid, at in passed.items() if at is not None]
         if not due:
             return state
         at, vid = min(due)
         state = _on_end(config, state, state.chain(vid), at, out)
-        state, passed[vid] = _measure(config, state, vid)
+        # a failure can put others on new tracks: they have passed the end of none yet
+        new = [v for v in tracks if v == vid or state.chain(v).version != tracks[v]]
 
 
 def _measure(config: Config, state: State, vehicle_id: int) -> tuple[State, int | None]:
@@ -129,7 +133,8 @@ def _start(state: State, chain: Chain, item: PlanItem, at_ms: int, out: Out) -> 
 
 
 def next_item(config: Config, state: State, chain: Chain, at_ms: int, out: Out) -> State:
-    """On the way to the next item of a chain that has not failed; circling where there is none."""
+    """On the way to the next item of a chain that has not failed; circling where there is none. An item
+    to which no way keeps the zones fails."""
     chain = replace(chain, k=chain.next_k(dict(state.failed)))
     state = state.put(chain)
     item, air = chain.item, state.air(chain.vehicle.id)
@@ -137,6 +142,9 @@ def next_item(config: Config, state: State, chain: Chain, at_ms: int, out: Out) 
         return _loiter(config, state, chain, at_ms)
     chain = replace(chain, speed_m_s=item.speed_m_s)
     way = config.ways(state.zones).transit(chain, air)
+    if way is None or way_act(way is not None, True) == FAIL_TASK:
+        state = state.put(replace(chain, phase=Phase.TRANSIT))
+        return fail(config, state, item.task_id, NO_WAY, out)
     chain = chain.enter(Phase.TRANSIT, way, at_ms)
     out.append(progress(chain, at_ms, "Transit"))
     return state.put(chain)
