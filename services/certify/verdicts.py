@@ -81,7 +81,8 @@ def requirement_rows(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
         chosen = min(
             measured,
             key=lambda row: (row["unit"] != "m", row["margin"]),
-            default=telling[0] if telling else None,
+            # nothing is measured: the row that most was seen for, not whichever comes first
+            default=max(telling, key=lambda row: row["checks"], default=None),
         )
         found.append(
             {
