@@ -123,3 +123,10 @@ def outcome(flying: int, away: int, expected: int, left: int, now: int, limit: i
     if now < limit:
         return GOES_ON
     return LIMIT
+
+
+def completes_at(t: int, outcome: int, end: int, limit: int) -> bool:
+    """The mission ends at the instant t, complete, and t lies between its beginning and its limit.
+    THERE IS an instant t."""
+    in_time = t >= 0 and t <= limit
+    return in_time and t == end and outcome == COMPLETE

@@ -151,3 +151,12 @@ def flight_outcome(flying: int, away: int, expected: int, left: int, now: int, l
     if now >= limit:
         return 3
     return 0
+
+
+@kernel(implements="executive.completes_at")
+def completes(outcome: int, end: int, limit: int) -> bool:
+    """True iff a mission has ended complete, in time.
+
+    outcome: as of `flight_outcome`; end: when it ended; limit: until when it had to [ms].
+    """
+    return outcome == 1 and end >= 0 and end <= limit

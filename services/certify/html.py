@@ -9,6 +9,8 @@ from typing import Any
 from cratous.core.kernel.names import short
 from cratous.services.certify.gantt import gantt, plan_bars, plan_rows, tree
 from cratous.services.certify.picture import map_view, separation_view, time_view
+from cratous.services.certify.proofs import statuses
+from cratous.services.certify.trace import chains
 from cratous.spec.algebra import parse
 from cratous.spec.files.printable import printable
 
@@ -65,6 +67,7 @@ def render(report: dict[str, Any]) -> str:
     text: str = _environment().get_template("report.html").render(
         r=report, map=map_view(report), time=time_view(report), near=separation_view(report),
         gantt=_gantt(report), tree=_tree(report), losses=losses(report), names=_names(report),
+        chains=chains(report), statuses=statuses(report["proofs"]),
     )  # fmt: skip
     return text
 

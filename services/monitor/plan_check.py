@@ -12,6 +12,7 @@ from dataclasses import replace
 from itertools import islice, pairwise
 
 from cratous.core.kernel import qualified
+from cratous.core.schedule.choice import as_asked
 from cratous.core.schedule.rows import eligible, row_holds, schedule_holds
 from cratous.services.mission.times import Times, all_hold, row_verdict
 from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok
@@ -97,16 +98,36 @@ def _verdict(item: str, good: bool, note: str, method: str, **more: object) -> V
 
 def _complete(mission: Mission, plan: Plan) -> Verdict:
     """Every task of one branch is planned exactly once, and no other."""
-    planned = sorted(item.task_id for item in plan.items)
+    planned = [item.task_id for item in plan.items]
+    chosen = frozenset(planned)
+    alike = any(True for _ in row_choices(mission, chosen))
+    asked = chosen if alike else _first_choice(mission)
+    known = sorted({*planned, *(task.id for task in mission.tasks), *asked})
+    good = as_asked(
+        [(int(task in asked), int(task in asked), planned.count(task)) for task in known]
+    )
     twice = sorted({task for task in planned if planned.count(task) > 1})
-    branch = next(row_choices(mission, frozenset(planned)), None)
-    good = branch is not None and not twice
-    note = f"tasks planned: {', '.join(map(str, planned)) or 'none'}"
+    note = f"tasks planned: {', '.join(map(str, sorted(planned))) or 'none'}"
     if twice:
         note += f"; planned twice: {', '.join(map(str, twice))}"
-    if branch is None:
+    if not alike:
         note += "; they are no complete choice of the mission's relations"
-    return _verdict("plan: every task of one choice, once", good, note, "branches", checks=1)
+    return _verdict(
+        "plan: every task of one choice, once",
+        bool(good),
+        note,
+        "as_asked",
+        checks=len(known),
+        kernels=(qualified(as_asked),),
+    )
+
+
+def _first_choice(mission: Mission) -> frozenset[int]:
+    """The tasks of the relations' first branch; all tasks where there are no relations."""
+    term = term_of(mission)
+    if term is None:
+        return frozenset(task.id for task in mission.tasks)
+    return frozenset(tasks(next(iter(branches(term)))))
 
 
 def _eligibility(mission: Mission, plan: Plan) -> Iterator[Verdict]:
