@@ -108,7 +108,7 @@ def _problems(home: Home, entries: dict[str, Entry], data: dict[str, Any]) -> It
         if record is None:
             yield Problem(name, "it is not in the ledger")
             continue
-        if record["status"] != "proved":
+        if not record["proved"]:
             yield Problem(name, f"it is {record['status']}")
             continue
         if lacking := _not_proved(record["theorems"], theorems, home):

@@ -74,6 +74,15 @@ def is_restated(entry: Entry, home: Home) -> bool | None:
     return None if meant is None else restates(function, meant)
 
 
+def relating(entry: Entry, home: Home, proofs: Proofs) -> list[str]:
+    """The theorems about an entry, and lemmas of them, whose goals relate it to its definition."""
+    if not entry.implements:
+        return []
+    pair = (full_name(entry.function), definition_name(entry, home))
+    theorems = proofs.resting(proofs.about(entry.name))
+    return [theorem for theorem in theorems if pair in proofs.relations[theorem].pairs]
+
+
 def problems(entries: Mapping[str, Entry], home: Home, proofs: Proofs) -> list[str]:
     """What is wrong with the definitions that kernels and folds name, each with its place.
 
@@ -99,10 +108,7 @@ def _of_meaning(entry: Entry, home: Home, proofs: Proofs) -> Iterator[str]:
         theorems = proofs.resting(proofs.about(entry.name))
         if not any(full in proofs.relations[theorem].definitions for theorem in theorems):
             yield f"implements {named}, which none of its theorems uses (c.define)"
-        elif not any(
-            (full_name(entry.function), full) in proofs.relations[theorem].pairs
-            for theorem in theorems
-        ):
+        elif not relating(entry, home, proofs):
             yield (
                 f"implements {named}, which none of its theorems holds it against: a goal relates "
                 "the two, and does not hold of other functions as well"

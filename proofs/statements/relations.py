@@ -24,14 +24,19 @@ from cratous.core.kernel.sources import digest, ours
 from cratous.core.ledger.home import Home
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.lift import LiftError
-from cratous.proofs.engine.symbolic import _raw
+from cratous.proofs.engine.symbolic import SymBool, SymInt, SymMask, SymReal, _raw
 from cratous.proofs.engine.terms import free_names, free_values, fresh, known, leaves
 from cratous.proofs.engine.theorem_files import FOLDER, load_claim
 from cratous.proofs.ledger.recall import Recall
 from cratous.proofs.ledger.remembered import named
+from cratous.proofs.statements import sentences
+from cratous.proofs.statements.sentences import UNREAD, Call, Stated
 from cratous.proofs.statements.sides import sides, signs
 
 SAYS_RLIMIT = 200_000
+KINDS = {
+    SymReal: "real number", SymInt: "integer", SymBool: "truth value", SymMask: "mask of 64 bits",
+}  # fmt: skip
 Function = Callable[..., Any]
 
 
@@ -41,7 +46,7 @@ class Relations:
 
     together: both in what is concluded, as in an equality, or the definition asked of the kernel's
     result; follows: the kernel from the definition; leads: the definition from the kernel. lemmas:
-    what the theorem rests on.
+    what the theorem rests on; statement: what it says, as a sentence made from it.
     """
 
     definitions: frozenset[str]
@@ -49,6 +54,7 @@ class Relations:
     follows: frozenset[tuple[str, str]]
     leads: frozenset[tuple[str, str]]
     lemmas: tuple[str, ...]
+    statement: str = UNREAD
 
     @property
     def pairs(self) -> frozenset[tuple[str, str]]:
@@ -128,6 +134,32 @@ class _Outline(Claim):
     evaluated: frozenset[Function] = frozenset()
     known_then: dict[int, frozenset[Function]] = field(default_factory=dict)
     given_then: dict[int, tuple[z3.BoolRef, ...]] = field(default_factory=dict)
+    kinds: dict[str, str] = field(default_factory=dict)
+    values_of: dict[str, Call] = field(default_factory=dict)
+    folded: tuple[Fold[Any], tuple[str, ...]] | None = None
+    relation: z3.BoolRef | None = None
+
+    def _value(self, name: str, make: Callable[[str], Any]) -> Any:
+        value = super()._value(name, make)
+        self.kinds[name] = KINDS[type(value)]
+        return value
+
+    def fold(self, kernel_fold: Fold[Any], **how: Any) -> None:
+        """An induction over the items of a fold."""
+        items = tuple(str(known(leaf)) for leaf in leaves(how["item"]))
+        self.folded = (kernel_fold, items)
+        super().fold(kernel_fold, **how)
+
+    def _grant(self, condition: z3.BoolRef) -> None:
+        self.relation = condition
+        super()._grant(condition)
+
+    def as_stated(self) -> Stated:
+        """The claim as it was read."""
+        fold, items = self.folded or (None, ())
+        return Stated(
+            self.kinds, self.values_of, self.obligations, self.given_then, fold, items, self.relation
+        )  # fmt: skip
 
     def closed_value(self, function: Function, args: tuple[Any, ...]) -> Any:
         """An unknown value of the function's type, which remembers what it is made of.
@@ -144,6 +176,7 @@ class _Outline(Claim):
         if key not in self.met:
             name = f"{full_name(function)}#{len(self.met)}"
             value = self.met[key] = _unknown(name, get_type_hints(function).get("return"))
+            self.values_of[name] = Call(function, args)
             self.kept += terms
             inner = frozenset([function]).union(*[self.functions_in(term) for term in terms])
             self.made_of |= {str(known(leaf)): inner for leaf in leaves(value)}
@@ -241,7 +274,8 @@ def relations(name: str, folder: Path = FOLDER) -> Relations:
                     found[how].add(pair)
     used = frozenset(full_name(f) for f in claim.arguments if in_spec(f))
     pairs = {how: frozenset(some) for how, some in found.items()}
-    return Relations(used, lemmas=tuple(sorted(set(claim.lemmas))), **pairs)
+    lemmas = tuple(sorted(set(claim.lemmas)))
+    return Relations(used, lemmas=lemmas, statement=sentences.sentence(claim.as_stated()), **pairs)
 
 
 def _says(claim: _Outline, number: int, function: str) -> bool:
@@ -298,13 +332,15 @@ class Kept:
         known = self._recall.key(name) if self.folder is not None else None
         if self.folder is None or known is None:
             return relations(name, self.home.theorems)
-        wanted = digest([known, named(Path(__file__).resolve())])
+        readers = (__file__, sentences.__file__)
+        wanted = digest([known, *(named(Path(reader).resolve()) for reader in readers)])
         file = self.folder / wanted[:2] / wanted
         try:
             return _restored(json.loads(file.read_text(encoding="utf-8")))
         except (OSError, ValueError, KeyError, TypeError):
             found = relations(name, self.home.theorems)
-        text = json.dumps({part: sorted(getattr(found, part)) for part in PARTS})
+        parts: dict[str, Any] = {part: sorted(getattr(found, part)) for part in PARTS}
+        text = json.dumps({**parts, "statement": found.statement})
         try:
             file.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
             part = file.with_name(f"{wanted}.{os.getpid()}")
@@ -323,7 +359,8 @@ def _restored(data: dict[str, Any]) -> Relations:
         frozenset((str(a), str(b)) for a, b in data[part]) for part in PARTS[1:4]
     )
     lemmas = tuple(map(str, data["lemmas"]))
-    return Relations(frozenset(map(str, data["definitions"])), together, follows, leads, lemmas)
+    definitions, statement = frozenset(map(str, data["definitions"])), str(data["statement"])
+    return Relations(definitions, together, follows, leads, lemmas, statement)
 
 
 NONE: frozenset[tuple[str, str]] = frozenset()
