@@ -135,6 +135,7 @@ def prove(
     """
     from cratous.core import ledger as gate
     from cratous.core.files.private_cache import private_cache
+    from cratous.core.kernel import REGISTRY
     from cratous.core.kernel.names import fits, matching
     from cratous.core.ledger import records
     from cratous.proofs import ledger
@@ -170,13 +171,14 @@ def prove(
     whole = not only and not changed
     about = [] if whole else names
     if mutate and only:
-        from cratous.proofs.mutation.mutate import Keys, chosen
+        from cratous.proofs.mutation.keys import Keys
+        from cratous.proofs.mutation.mutate import chosen
 
         for name in every:
             prover.load_claim(name, folder)  # says what is wrong with a file, and where
         # the theorems that meet a function of this name are proved too
         met = chosen(only, Keys(home), about)
-        matching(only, [*every, *met], "theorem or function", "--only", gate.REGISTRY)
+        matching(only, [*every, *met], "theorem or function", "--only", REGISTRY)
         names = sorted({*names, *(name for users in met.values() for name in users)})
     elif only:
         matching(only, every, "theorem", "--only")
@@ -227,7 +229,7 @@ def prove(
     if whole and judged.binds and not problems:
         said = ledger.text(inventory, home)
         if check:
-            differing = records.differing(said, home.records)
+            differing = records.differing(said, home.records, provenance=False)
             if differing:
                 problems.append(
                     f"the ledger differs from these proofs in {', '.join(differing)}: "
@@ -265,6 +267,11 @@ def prove(
         )
         click.secho(f"{assumed} assumptions", fg="red" if assumed else None, nl=False)
         click.echo(f", {gate.solver_version()}")
+        before = [
+            one for one in records.solvers(gate.read(home.records)) if one != gate.solver_version()
+        ]
+        if check and before:
+            click.echo(f"the ledger was written with {', '.join(before)}")
         slow = [f"{t.name} {t.seconds:.1f} s" for t in theorems if t.seconds > 1]
         if slow and verbose:
             click.echo(f"more than 1 s of solver CPU: {', '.join(slow)}")
