@@ -13,7 +13,11 @@ from typing import Any
 
 from cratous.core.kernel.sources import digest
 from cratous.core.ledger.home import PRODUCT, Home, theorem_file
+<<<<<<< HEAD
 from cratous.core.ledger.status import status_of
+=======
+from cratous.core.ledger.parts import PROVENANCE
+>>>>>>> w6
 from cratous.spec.errors import Refused
 
 KINDS = ("kernels", "theorems")
@@ -104,15 +108,35 @@ def _folder(name: str, home: Home) -> str:
     return ".".join(above) or "theorems"
 
 
-def differing(new: dict[str, str], folder: Path) -> list[str]:
-    """The files of records that say something else than these texts, or should not be there."""
+def differing(new: dict[str, str], folder: Path, *, provenance: bool = True) -> list[str]:
+    """The files of records that say something else than these texts, or should not be there.
+
+    provenance: whether another solver alone is a difference.
+    """
     old = {f"{f.parent.name}/{f.name}": f for f in folder.glob("*/*.json")}
     gone = sorted(set(old) - set(new))
+    said = str if provenance else _without_provenance
     return gone + [
         place
         for place, text in new.items()
-        if place not in old or old[place].read_text(encoding="utf-8") != text
+        if place not in old or said(old[place].read_text(encoding="utf-8")) != said(text)
     ]
+
+
+def _without_provenance(text: str) -> str:
+    """The same records without the solver's version; as they stand if one was edited by hand."""
+    rows = json.loads(text)
+    for name, record in rows.items():
+        if record.pop("seal") != checksum(name, record):
+            return text
+        for part in PROVENANCE:
+            record.get("key", {}).pop(part, None)
+    return json.dumps(rows, sort_keys=True)
+
+
+def solvers(data: dict[str, Any]) -> list[str]:
+    """The solvers that records name, of a ledger as `read` gives it."""
+    return sorted({record["key"]["solver"] for record in data["kernels"].values()})
 
 
 def write(new: dict[str, str], folder: Path) -> list[str]:

@@ -74,7 +74,7 @@ def in_spec(function: Any) -> bool:
 
 
 def _part(function: Any) -> str:
-    return (*function.__module__.split("."), "")[1]
+    return str((*function.__module__.split("."), "")[1])
 
 
 @dataclass(frozen=True)

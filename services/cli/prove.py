@@ -149,6 +149,7 @@ def prove(
     """
     from cratous.core import ledger as gate
     from cratous.core.files.private_cache import private_cache
+    from cratous.core.kernel import REGISTRY
     from cratous.core.kernel.names import fits, matching
     from cratous.core.ledger import records
     from cratous.proofs import ledger
@@ -184,13 +185,14 @@ def prove(
     whole = not only and not changed
     about = [] if whole else names
     if mutate and only:
-        from cratous.proofs.mutation.mutate import Keys, chosen
+        from cratous.proofs.mutation.keys import Keys
+        from cratous.proofs.mutation.mutate import chosen
 
         for name in every:
             prover.load_claim(name, folder)  # says what is wrong with a file, and where
         # the theorems that meet a function of this name are proved too
         met = chosen(only, Keys(home), about)
-        matching(only, [*every, *met], "theorem or function", "--only", gate.REGISTRY)
+        matching(only, [*every, *met], "theorem or function", "--only", REGISTRY)
         names = sorted({*names, *(name for users in met.values() for name in users)})
     elif only:
         matching(only, every, "theorem", "--only")
@@ -243,7 +245,7 @@ def prove(
         said = ledger.text(inventory, home, judged.grounds, judged.statements)
         statuses = _statuses(said)
         if check:
-            differing = records.differing(said, home.records)
+            differing = records.differing(said, home.records, provenance=False)
             if differing:
                 problems.append(
                     f"the ledger differs from these proofs in {', '.join(differing)}: "
@@ -290,6 +292,11 @@ def prove(
         click.echo(f", {gate.solver_version()}")
         if statuses:
             click.echo("; ".join(f"{number} {status}" for status, number in statuses.items()))
+        before = [
+            one for one in records.solvers(gate.read(home.records)) if one != gate.solver_version()
+        ]
+        if check and before:
+            click.echo(f"the ledger was written with {', '.join(before)}")
         slow = [f"{t.name} {t.seconds:.1f} s" for t in theorems if t.seconds > 1]
         if slow and verbose:
             click.echo(f"more than 1 s of solver CPU: {', '.join(slow)}")

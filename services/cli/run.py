@@ -69,6 +69,13 @@ def run(
         return _many(mission, seeds, out, daa, allow_unproved, command, as_json, quiet)
     command += ["--seed", str(seed)] if seed else []
     settings = Settings(daa, allow_unproved, shlex.join(command))
+    return fly_and_show(mission, seed, out, settings, as_json, quiet)
+
+
+def fly_and_show(
+    mission: Path, seed: int, out: Path | None, settings: Settings, as_json: bool, quiet: bool
+) -> int:
+    """Run one mission and print what came of it; returns the exit code."""
     with progress(quiet or as_json) as tell:
         report, folder = run_one(mission, seed, out or Path("out"), settings, tell)
     if as_json:
