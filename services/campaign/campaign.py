@@ -81,9 +81,14 @@ class Conduct:
             "run": {**run.decides, "name": run.name, **more},
         }  # fmt: skip
 
-    def fly(self, engine: Engine, course: Course, tell: Tell) -> None:
-        """Fly what is not stored. Refused if a worker will not fly, BadInput if it cannot be stored."""
-        missing = self._missing(course)
+    def fly(
+        self, engine: Engine, course: Course, tell: Tell, runs: Iterable[Run] | None = None
+    ) -> None:
+        """Fly what is not stored, of all runs or of some.
+
+        Refused if a worker will not fly, BadInput if a result cannot be stored.
+        """
+        missing = self._missing(course, self.runs() if runs is None else runs)
 
         def feed() -> Attempt | None:
             return self._again.popleft() if self._again else next(missing, None)
@@ -93,8 +98,8 @@ class Conduct:
                 self._take(answer.task, answer.answer, answer.died, course)
             tell(course.line())
 
-    def _missing(self, course: Course) -> Iterator[Attempt]:
-        for run in self.runs():
+    def _missing(self, course: Course, runs: Iterable[Run]) -> Iterator[Attempt]:
+        for run in runs:
             if run.id in self._tries:
                 course.total -= 1  # the same run under two names
                 continue
@@ -126,7 +131,7 @@ class Conduct:
         else:
             course.count(outcome_of(None, ()))
 
-    def rows(self) -> Iterable[Row]:
-        """All runs with their results, in order; a run without a result is lost."""
-        for run in self.runs():
+    def rows(self, runs: Iterable[Run] | None = None) -> Iterator[Row]:
+        """All runs, or some, with their results, in order; a run without a result is lost."""
+        for run in self.runs() if runs is None else runs:
             yield row_of(run, self._store.result(run.id), self._campaign.requirements)

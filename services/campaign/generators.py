@@ -8,7 +8,7 @@ range of one leaves the others as they were.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import cos, radians, sin
 from random import Random
 from typing import Any
@@ -32,23 +32,30 @@ MIRRORED = ("converging",)
 
 
 class Draw:
-    """The parameters of one seed, and what was drawn."""
+    """The parameters of one seed, and what was drawn; `given` are not drawn but taken.
 
-    def __init__(self, data: dict[str, Any], seed: int) -> None:
+    bounds: between which each is drawn, before it is mirrored.
+    """
+
+    def __init__(
+        self, data: dict[str, Any], seed: int, given: Mapping[str, float] | None = None
+    ) -> None:
         self.kind: str = data["kind"]
-        given = {name: tuple(bounds) for name, bounds in data.get("ranges", {}).items()}
-        self._ranges = {**COMMON, **KINDS[self.kind], **given}
-        self._seed = seed
+        own = {name: tuple(bounds) for name, bounds in data.get("ranges", {}).items()}
+        self._ranges = {**COMMON, **KINDS[self.kind], **own}
+        self._seed, self._given = seed, given or {}
         self.drawn: dict[str, float] = {}
+        self.bounds: dict[str, tuple[float, float]] = {}
 
     def __call__(self, name: str, number: int = 0) -> float:
         """A parameter; number: of which intruder or zone, from 1, 0 if there is one for all."""
         low, high = self._ranges[name]
         key = f"{name}[{number}]" if number else name
         value = round(Random(f"{self._seed} {key}").uniform(low, high), 3)
+        value = self._given.get(key, value)
         if name == "angle_deg" and self.kind in MIRRORED:
-            value *= Random(f"{self._seed} side {key}").choice((-1, 1))
-        self.drawn[key] = value
+            value *= self.side(key)
+        self.drawn[key], self.bounds[key] = value, (low, high)
         return value
 
     def side(self, key: str) -> int:
@@ -57,10 +64,10 @@ class Draw:
 
 
 def mission_of(
-    data: dict[str, Any], name: str, seed: int
-) -> tuple[dict[str, Any], dict[str, float]]:
-    """The mission file of a seed as data, and the parameters that were drawn."""
-    draw = Draw(data, seed)
+    data: dict[str, Any], name: str, seed: int, given: Mapping[str, float] | None = None
+) -> tuple[dict[str, Any], Draw]:
+    """The mission file of a seed as data, and its parameters; those `given` are taken as they are."""
+    draw = Draw(data, seed, given)
     time, speed = draw("time_s"), draw("own_speed_m_s")
     way = speed * time
     vehicles = [_vehicle(1, (-way, 0.0, ALTITUDE_M), 0.0, speed)]
@@ -85,7 +92,7 @@ def mission_of(
         "zones": list(_zones(draw, data, way)),
         "simulation": {"limit_s": round(6 * time)},
     }
-    return {key: value for key, value in mission.items() if value != []}, draw.drawn
+    return {key: value for key, value in mission.items() if value != []}, draw
 
 
 Point = tuple[float, float, float]

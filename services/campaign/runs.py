@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from random import Random
 from typing import Any
@@ -41,35 +41,60 @@ def runs_of(campaign: Campaign, version: str, allow_unproved: bool) -> Iterator[
     for seed in campaign.seeds or (0,):
         for source in campaign.missions or (None,):
             for option in campaign.options:
-                text, own_seed, drawn = _written(campaign, source, seed, option)
-                decides = {
-                    "mission": text, "seed": own_seed, "daa": option.daa, "judge": campaign.judge,
-                    "allow_unproved": allow_unproved, "version": version,
-                }  # fmt: skip
-                name = campaign.name if source is None else source.name
-                yield Run(fingerprint(decides), name, option.name, seed, decides, drawn)
+                data = Made(campaign, source, option, seed)
+                yield data.run(version, allow_unproved)
 
 
-def _written(
-    campaign: Campaign, source: Source | None, seed: int, option: Option
-) -> tuple[str, int, dict[str, Any]]:
-    """The text of the mission file, the seed of its own variants, and what was drawn."""
-    drawn: dict[str, Any] = {}
-    own_seed = 0
-    if source is None:
-        data, drawn = mission_of(campaign.generator or {}, campaign.name, seed)
-    else:
-        own_seed = seed if source.varies else 0
-        if not campaign.vary and not option.changes:
-            return source.text, own_seed, drawn
-        data = copy.deepcopy(source.document.data)
-    drawn = dict(drawn)
-    for variable in campaign.vary:
-        drawn[variable.item] = _drawn(variable, seed)
-        put(data, variable.item, drawn[variable.item])
-    for item, value in option.changes:
-        put(data, item, value)
-    return _text(data), own_seed, drawn
+class Made:
+    """The mission file of one seed under one option, and what was drawn for it.
+
+    given: values of numbers that would be drawn, by name, which are taken instead. bounds: between
+    which each number of `drawn` was drawn.
+    """
+
+    def __init__(
+        self,
+        campaign: Campaign,
+        source: Source | None,
+        option: Option,
+        seed: int,
+        given: Mapping[str, float] | None = None,
+    ) -> None:
+        self._option, self._judge, self._seed = option, campaign.judge, seed
+        self.drawn: dict[str, Any] = {}
+        self.bounds: dict[str, tuple[float, float]] = {}
+        self._name, self._own_seed, self._text = campaign.name, 0, ""
+        if source is None:
+            self.data, draw = mission_of(campaign.generator or {}, campaign.name, seed, given)
+            self.drawn, self.bounds = dict(draw.drawn), dict(draw.bounds)
+        else:
+            self._name, self._own_seed = source.name, seed if source.varies else 0
+            unchanged = not campaign.vary and not option.changes
+            self._text = source.text if unchanged else ""
+            self.data = copy.deepcopy(source.document.data)
+        for variable in campaign.vary:
+            value = (given or {}).get(variable.item, _drawn(variable, seed))
+            self.drawn[variable.item] = value
+            if variable.bounds is not None:
+                self.bounds[variable.item] = variable.bounds
+            put(self.data, variable.item, value)
+        for item, value in option.changes:
+            put(self.data, item, value)
+
+    def of(self, data: dict[str, Any]) -> Made:
+        """The same with another mission file."""
+        other = copy.copy(self)
+        other.data, other._text = data, ""
+        return other
+
+    def run(self, version: str, allow_unproved: bool) -> Run:
+        """The run of the mission as it is now."""
+        decides = {
+            "mission": self._text or _text(self.data), "seed": self._own_seed, "daa": self._option.daa,
+            "judge": self._judge, "allow_unproved": allow_unproved, "version": version,
+        }  # fmt: skip
+        option, drawn = self._option.name, self.drawn
+        return Run(fingerprint(decides), self._name, option, self._seed, decides, drawn)
 
 
 def _text(data: dict[str, Any]) -> str:

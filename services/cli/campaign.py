@@ -14,6 +14,7 @@ import click
 from cratous.services.cli.show import progress, say, table
 
 Tell = Callable[[str], None]
+ALL = ("G1", "G2", "G3", "G4", "G5")
 EVERY = 10.0
 """Seconds between two lines of progress where no terminal shows them."""
 
@@ -41,11 +42,15 @@ def seed_range(_ctx: Any, _param: Any, value: str | None) -> range | None:
 @click.option(
     "--reports", type=click.IntRange(0, 10), default=10, help="Worst flights to keep. [10]"
 )
-@click.option("--json", "as_json", is_flag=True, help="Print campaign.json.")
+@click.option("--find", type=click.Choice(ALL), help="Search for a run that fails this, instead.")
+@click.option(
+    "--budget", type=click.IntRange(1, 100_000), default=200, help="Runs of a search. [200]"
+)
+@click.option("--json", "as_json", is_flag=True, help="Print campaign.json, or what was found.")
 @click.option("--quiet", is_flag=True, help="No progress, only the result.")
 def campaign(
     file: Path, seeds: range | None, workers: int, scheduler: str | None, out: Path | None, no_daa: bool,
-    allow_unproved: bool, reports: int, as_json: bool, quiet: bool,
+    allow_unproved: bool, reports: int, find: str | None, budget: int, as_json: bool, quiet: bool,
 ) -> int:  # fmt: skip
     """Fly and judge all runs of a campaign FILE, or all variants of a mission FILE.
 
@@ -56,6 +61,7 @@ def campaign(
     \b
     Examples:  cratous campaign examples/campaigns/options.yaml --workers 2
                cratous campaign examples/crossing/mission.yaml --seeds 1-1000
+               cratous campaign examples/campaigns/traffic.yaml --find G2
 
     Exit codes: 0 all runs hold, 1 something is violated, without a plan, or judge and monitor
     disagree, 2 bad input, 3 something is unknown, excused, impossible or lost.
@@ -66,6 +72,12 @@ def campaign(
     place = out or Path("out") / "campaigns" / found.name
     how = {"workers": workers, "scheduler": scheduler, "allow_unproved": allow_unproved}
     with progress(quiet or as_json) as tell:
+        if find is not None:
+            from cratous.services.cli.campaign_find import searched, show_found
+
+            data = searched(found, place, how, find, budget, tell)
+            show_found(data, place, as_json)
+            return int(data["exit_code"])
         summary = conducted(found, place, how, reports, tell)
     if as_json:
         click.echo(json.dumps(summary, indent=1, sort_keys=True))
@@ -101,7 +113,7 @@ def conducted(
         seeds, missions = max(1, len(campaign.seeds)), max(1, len(campaign.missions))
         course = Course(seeds * missions * len(campaign.options))
         with engine(how["workers"], how["scheduler"]) as made:
-            conduct.fly(made, course, _paced(tell))
+            conduct.fly(made, course, paced(tell))
         tell(course.line())
         rows = list(conduct.rows())
         lost = [(row.run.name, why) for row in rows for why in store.lost(row.run.id)]
@@ -112,18 +124,18 @@ def conducted(
     return summary
 
 
-def _paced(tell: Tell) -> Tell:
+def paced(tell: Tell) -> Tell:
     """Progress: passing lines on a terminal, else one now and then."""
     last = [time.monotonic()]
 
-    def paced(text: str) -> None:
+    def now_and_then(text: str) -> None:
         if sys.stderr.isatty():
             tell(f"\r{text}")
         elif time.monotonic() - last[0] > EVERY:
             last[0] = time.monotonic()
             tell(text)
 
-    return paced
+    return now_and_then
 
 
 def _reports(
@@ -140,17 +152,22 @@ def _reports(
     try:
         for row in worst(rows, campaign.requirements)[:count]:
             folder = place / "flights" / row.run.name
-            links[row.run.name] = f"flights/{row.run.name}/{HTML_NAME}"
+            link = f"flights/{row.run.name}/{HTML_NAME}"
             stored = row.result or {}
             if _is_kept(folder, stored.get("log", "")):
+                links[row.run.name] = link
                 continue
             tell(f"report of {row.run.name}")
             answer = worker.attempt(conduct.task(row.run, keep=str(folder)))
+            if "lost" in answer:
+                tell(f"no report of {row.run.name}: {answer['lost']}")
+                continue
             if answer.get("result") != stored:
                 raise Refused(
                     f"{row.run.name} flown again gives another result: {_other(answer, stored)}; "
                     "the stored results of this version are not to be trusted"
                 )
+            links[row.run.name] = link
             mission = folder.parent / f"{row.run.name}.yaml"
             write_atomically(mission, row.run.decides["mission"])
     finally:
@@ -159,9 +176,7 @@ def _reports(
 
 
 def _other(answer: dict[str, Any], stored: dict[str, Any]) -> str:
-    got = answer.get("result")
-    if got is None:
-        return str(answer)[:200]
+    got = answer.get("result") or {}
     return ", ".join(sorted(key for key in stored if got.get(key) != stored[key]))
 
 

@@ -49,19 +49,19 @@ def test_they_load_and_meet(kind: str, cooperative: bool, tmp_path: Path) -> Non
 
 def test_a_zone_lies_beside_or_across() -> None:
     for seed in range(1, 20):
-        data, drawn = mission_of({"kind": "aimed", "zones_beside": 1, "zones_across": 1}, "z", seed)
+        data, draw = mission_of({"kind": "aimed", "zones_beside": 1, "zones_across": 1}, "z", seed)
         beside, across = ([east for _, east in zone["vertices"]] for zone in data["zones"])
         nearest = min(abs(min(beside)), abs(max(beside)))
-        assert nearest == pytest.approx(drawn["zone_gap_m[1]"])
+        assert nearest == pytest.approx(draw.drawn["zone_gap_m[1]"])
         assert min(beside) * max(beside) > 0
         assert min(across) < 0 < max(across)
 
 
 def test_another_range_leaves_the_other_draws() -> None:
-    _, one = mission_of({"kind": "converging"}, "a", 7)
-    _, two = mission_of({"kind": "converging", "ranges": {"time_s": [50, 60]}}, "a", 7)
-    assert 50 <= two.pop("time_s") <= 60
-    assert two.items() <= one.items()
+    _, draw = mission_of({"kind": "converging"}, "a", 7)
+    _, other = mission_of({"kind": "converging", "ranges": {"time_s": [50, 60]}}, "a", 7)
+    assert 50 <= other.drawn.pop("time_s") <= 60
+    assert other.drawn.items() <= draw.drawn.items()
 
 
 def test_an_impossible_mission_says_why() -> None:
