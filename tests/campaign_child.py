@@ -39,7 +39,7 @@ def _do(what: str) -> None:
         while True:
             kept.append(bytearray(50_000_000))
     elif first == "sleep":
-        time.sleep(0.3)
+        time.sleep(0.5)
 
 
 def flown(margins: dict[str, float], **more: Any) -> dict[str, Any]:

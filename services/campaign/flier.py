@@ -50,7 +50,7 @@ class Flier:
 
     def fly(self, task: Any, time_s: float) -> dict[str, Any]:
         """`{"result": ...}`, or `{"lost": why}` if the process was lost with this task."""
-        lost = self._begin()
+        lost = self.begin()
         if lost:
             return {"lost": lost}
         assert self._process is not None
@@ -79,8 +79,8 @@ class Flier:
                     stream.close()
         self._process = None
 
-    def _begin(self) -> str:
-        """Have a process; why not, if it cannot be had."""
+    def begin(self) -> str:
+        """Have a process, and know its version; why not, if it cannot be had."""
         if self._process is not None and self._process.poll() is None:
             return ""
         self.end()

@@ -17,10 +17,12 @@ def attempt(task: dict[str, Any]) -> dict[str, Any]:
     task: function and memory_mb of the flier, time_s, version that asks, and what is flown (`run`).
     """
     flier = _flier(task["function"], task["memory_mb"])
-    answer = flier.fly(task["run"], task["time_s"])
-    if flier.version and flier.version != task["version"]:
+    lost = flier.begin()
+    if lost:
+        return {"lost": lost}
+    if flier.version != task["version"]:
         return {"other version": flier.version}
-    return answer
+    return flier.fly(task["run"], task["time_s"])
 
 
 def _flier(function: str, memory_mb: int) -> Flier:

@@ -69,6 +69,12 @@ def conduct(file: Path, folder: Path, engine: Any, watch: Any = None) -> tuple[s
         return text_of(build(campaign, list(one.rows()), "v")), course
 
 
+def _flies(worker: int) -> bool:
+    """Whether a worker has begun an attempt: then there is a process that flies."""
+    threads = Path(f"/proc/{worker}/task").iterdir()
+    return any((thread / "children").read_text() for thread in threads)
+
+
 def test_a_killed_worker_costs_an_attempt_and_no_byte(tmp_path: Path) -> None:
     file = written(tmp_path, {"plain": "sleep"}, VARIED)
     with engine(1, None) as alone:
@@ -77,7 +83,7 @@ def test_a_killed_worker_costs_an_attempt_and_no_byte(tmp_path: Path) -> None:
     with cluster(2) as (address, processes), engine(1, address) as made:
 
         def watch(course: Course) -> None:
-            if course.flown >= 2 and not killed:
+            if course.flown >= 2 and not killed and _flies(processes[1].pid):
                 killed.append(processes[1].pid)
                 os.kill(processes[1].pid, signal.SIGKILL)
 

@@ -114,12 +114,13 @@ def test_another_version_is_refused() -> None:
 
 
 def test_a_flier_of_another_version_flies_nothing(tmp_path: Path) -> None:
-    campaign = load_campaign(written(tmp_path, {"plain": ""}, ""), None, ())
+    campaign = load_campaign(written(tmp_path, {"plain": f"die {tmp_path}/flown"}, ""), None, ())
     with Store(tmp_path / "out") as store, here() as engine:
         one = Conduct(campaign, store, FUNCTION, "0" * 64, False)
         with pytest.raises(Refused, match="another version"):
             one.fly(engine, Course(1), lambda _text: None)
         assert all(store.result(run.id) is None for run in one.runs())
+    assert not (tmp_path / "flown").exists()
 
 
 def test_two_campaigns_do_not_write_into_one_folder(tmp_path: Path) -> None:
