@@ -13,11 +13,8 @@ from typing import Any
 
 from cratous.core.kernel.sources import digest
 from cratous.core.ledger.home import PRODUCT, Home, theorem_file
-<<<<<<< HEAD
-from cratous.core.ledger.status import status_of
-=======
 from cratous.core.ledger.parts import PROVENANCE
->>>>>>> w6
+from cratous.core.ledger.status import status_of
 from cratous.spec.errors import Refused
 
 KINDS = ("kernels", "theorems")

@@ -31,6 +31,7 @@ PACKAGE = f"{Path(__file__).parents[2]}/"
 COMMANDS = {
     "run": "Plan, prove, fly, monitor and certify a mission.",
     "demo": "Fly an example that ships with the product.",
+    "campaign": "Fly and judge many runs, and count what holds.",
     "plan": "Plan a mission and check the plan; nothing flies.",
     "prove": "Prove the kernels and write the ledger (in a checkout).",
     "conform": "Run published vectors against the kernels and the wires.",
