@@ -84,5 +84,6 @@ def _unmeant(inventory: ledger.Inventory, home: Home, keep: Path | None) -> list
         {theorem.name: theorem.kernels for theorem in theorems},
         frozenset(theorem.name for theorem in theorems if theorem.proved),
         Kept(keep, home).all(theorem.name for theorem in theorems),
+        {theorem.name: theorem.uses for theorem in theorems},
     )
     return definitions.problems(gate.load_all(home), home, proofs)

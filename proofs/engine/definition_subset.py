@@ -164,7 +164,7 @@ class DefinitionKinds(Kinds):
         if isinstance(loop.iter, ast.Call) and called == "zip":
             ways = list(loop.iter.args)
             targets = list(loop.target.elts) if isinstance(loop.target, ast.Tuple) else []
-        if len(ways) != len(targets):
+        if not ways or len(ways) != len(targets):
             raise Refused(loop.iter, "a loop over a few written values, or a zip of such")
         found: dict[str, Kind] = {}
         for way, target in zip(ways, targets, strict=True):

@@ -10,7 +10,7 @@ import ast
 import sys
 import types
 import typing
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -46,11 +46,11 @@ def check_values(scope: dict[str, Any], tree: ast.Module, path: Path) -> None:
         line = getattr(node, "lineno", 1)
         raise BadInput(what, where=f"{place(path)}:{line}", expected=WANTED)
 
-    for node in tree.body:
-        for alias in node.names if isinstance(node, ast.ImportFrom) else ():
-            value, module = scope[alias.asname or alias.name], str(node.module)
+    for imported in (node for node in tree.body if isinstance(node, ast.ImportFrom)):
+        for alias in imported.names:
+            value, module = scope[alias.asname or alias.name], str(imported.module)
             if alias.name not in TOOLS.get(module, ()) and not _may_be_used(value):
-                refuse(node, f"a theorem's file does not import {alias.name!r} of {module}")
+                refuse(imported, f"a theorem's file does not import {alias.name!r} of {module}")
             if isinstance(value, types.FunctionType) and of_theorems(value):
                 _check_file(value.__module__)
     defined = {id(node) for node in _defined(tree)}
@@ -60,7 +60,9 @@ def check_values(scope: dict[str, Any], tree: ast.Module, path: Path) -> None:
             continue
         if isinstance(node, ast.Attribute) and not _may_be_used(value):
             refuse(node, f"a theorem's file does not use {ast.unparse(node)!r}")
+        # what is outside of the subset in a kernel is told where it is lifted
         plain = isinstance(value, types.FunctionType) and not of_theorems(value)
+        plain = plain and entry_of(value) is None
         if plain and id(node) not in defined and (out := definition_subset.outside(value)):
             refuse(node, f"a theorem uses what is outside of the subset: {out[0]}")
 
@@ -78,8 +80,8 @@ def _may_be_used(value: Any) -> bool:
     if isinstance(value, bool | int | float | Fraction | str):
         return True
     if isinstance(value, dict | tuple | frozenset | list):
-        parts = value.items() if isinstance(value, dict) else value
-        return all(map(_may_be_used, parts))
+        inner: Iterable[Any] = value.items() if isinstance(value, dict) else value
+        return all(map(_may_be_used, inner))
     if isinstance(value, types.FunctionType) and ours(value):
         return of_theorems(value) or value.__module__.split(".")[1:2] == ["spec"]
     return typing.get_origin(value) is not None
