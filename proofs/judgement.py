@@ -87,6 +87,7 @@ def judge(
         {theorem.name: theorem.kernels for theorem in theorems},
         frozenset(theorem.name for theorem in theorems if theorem.proved),
         read,
+        {theorem.name: theorem.uses for theorem in theorems},
     )
     unmeant = tuple(definitions.problems(entries, home, proofs))
     return Judgement(inventory, structural, unmeant, grounds(entries, home, proofs), statements)
