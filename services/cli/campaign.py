@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import json
-import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import click
 
-from cratous.services.cli.show import progress, say, table
+from cratous.services.cli.show import paced, progress, say, table
 
 Tell = Callable[[str], None]
 ALL = ("G1", "G2", "G3", "G4", "G5")
-EVERY = 10.0
-"""Seconds between two lines of progress where no terminal shows them."""
 
 
 def seed_range(_ctx: Any, _param: Any, value: str | None) -> range | None:
@@ -120,20 +116,6 @@ def conducted(
         summary = build(campaign, rows, version)
         _write(summary, place, _reports(conduct, rows, campaign, place, reports, tell))
     return summary, lost
-
-
-def paced(tell: Tell) -> Tell:
-    """Progress: passing lines on a terminal, else one now and then."""
-    last = [time.monotonic()]
-
-    def now_and_then(text: str) -> None:
-        if sys.stderr.isatty():
-            tell(f"\r{text}")
-        elif time.monotonic() - last[0] > EVERY:
-            last[0] = time.monotonic()
-            tell(text)
-
-    return now_and_then
 
 
 def _reports(
