@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import json
-import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import click
 
-from cratous.services.cli.show import progress, say, table
+from cratous.services.cli.show import paced, progress, say, table
 
 Tell = Callable[[str], None]
 ALL = ("G1", "G2", "G3", "G4", "G5")
-EVERY = 10.0
-"""Seconds between two lines of progress where no terminal shows them."""
 
 
 def seed_range(_ctx: Any, _param: Any, value: str | None) -> range | None:
@@ -78,11 +74,11 @@ def campaign(
             data = searched(found, place, how, find, budget, tell)
             show_found(data, place, as_json)
             return int(data["exit_code"])
-        summary = conducted(found, place, how, reports, tell)
+        summary, lost = conducted(found, place, how, reports, tell)
     if as_json:
         click.echo(json.dumps(summary, indent=1, sort_keys=True))
     else:
-        show(summary)
+        show(summary, lost)
         say(f"summary: {place / 'campaign.html'}")
     return int(summary["exit_code"])
 
@@ -96,8 +92,8 @@ def option_of(daa: bool) -> Any:
 
 def conducted(
     campaign: Any, place: Path, how: dict[str, Any], reports: int, tell: Tell
-) -> dict[str, Any]:
-    """Fly what is missing, write the summary into a folder, and return it."""
+) -> tuple[dict[str, Any], list[str]]:
+    """Fly what is missing and write the summary into a folder; it, and why attempts were lost."""
     from cratous.core import ledger
     from cratous.services.campaign.campaign import Conduct, Course
     from cratous.services.campaign.engine import engine
@@ -116,26 +112,10 @@ def conducted(
             conduct.fly(made, course, paced(tell))
         tell(course.line())
         rows = list(conduct.rows())
-        lost = [(row.run.name, why) for row in rows for why in store.lost(row.run.id)]
-        for name, why in lost[:20]:
-            tell(f"attempt lost: {name}: {why}")
+        lost = [why for row in rows for why in store.lost(row.run.id)]
         summary = build(campaign, rows, version)
         _write(summary, place, _reports(conduct, rows, campaign, place, reports, tell))
-    return summary
-
-
-def paced(tell: Tell) -> Tell:
-    """Progress: passing lines on a terminal, else one now and then."""
-    last = [time.monotonic()]
-
-    def now_and_then(text: str) -> None:
-        if sys.stderr.isatty():
-            tell(f"\r{text}")
-        elif time.monotonic() - last[0] > EVERY:
-            last[0] = time.monotonic()
-            tell(text)
-
-    return now_and_then
+    return summary, lost
 
 
 def _reports(
@@ -215,8 +195,11 @@ def table_of_runs(summary: dict[str, Any]) -> None:
     table(["run", "takeovers", "least separation", "outcome", "why"], rows, verdict_column=3)
 
 
-def show(summary: dict[str, Any]) -> None:
-    """The summary for people; disagreement of judge and monitor comes first."""
+def show(summary: dict[str, Any], lost: list[str]) -> None:
+    """The summary for people; disagreement of judge and monitor comes first.
+
+    lost: why attempts were lost, those at runs that were flown later included.
+    """
     from cratous.services.campaign.pages import share
 
     if summary["disagreements"]:
@@ -240,6 +223,8 @@ def show(summary: dict[str, Any]) -> None:
                     f"{name}: of {found['pairs']} pairs {found['first_only']} hold under {one['first']} "
                     f"alone, {found['second_only']} under {one['second']} alone{chance}"
                 )
+    for why in sorted(set(lost))[:10]:
+        say(f"attempts lost, {lost.count(why)}: {why}")
     for reason in summary["reasons"][:5]:
         say(f"{reason['outcome']}, {reason['count']} runs: {reason['why']}")
     for line in summary["limits"]:

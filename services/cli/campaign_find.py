@@ -9,8 +9,7 @@ from typing import Any
 
 import click
 
-from cratous.services.cli.campaign import paced
-from cratous.services.cli.show import say
+from cratous.services.cli.show import paced, say
 
 NAME, CASE = "search.json", "found"
 FORMAT = "cratous-search/1"

@@ -145,10 +145,10 @@ def _many(
     how = {"workers": 1, "scheduler": None, "allow_unproved": settings.allow_unproved}
     with progress(quiet or as_json) as tell, TemporaryDirectory(prefix="cratous-") as scratch:
         place = out or Path(scratch) / "campaign"
-        found = conducted(campaign, place, how, 10 if out else 0, tell)
+        found, lost = conducted(campaign, place, how, 10 if out else 0, tell)
     if as_json:
         click.echo(json.dumps(found, indent=1, sort_keys=True))
     else:
         table_of_runs(found)
-        show(found)
+        show(found, lost)
     return int(found["exit_code"])

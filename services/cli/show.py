@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -11,6 +12,8 @@ import click
 
 from cratous.spec.files.printable import printable
 
+EVERY = 10.0
+"""Seconds between two lines of progress where no terminal shows them."""
 COLOURS = {"holds": "green", "violated": "red", "unknown": "yellow", "excused": "yellow"}
 
 
@@ -99,3 +102,17 @@ def progress(quiet: bool) -> Iterator[Callable[[str], None]]:
                 console.print(printable(text), markup=False)
 
         yield tell
+
+
+def paced(tell: Callable[[str], None]) -> Callable[[str], None]:
+    """Progress: passing lines on a terminal, else one now and then."""
+    last = [time.monotonic()]
+
+    def now_and_then(text: str) -> None:
+        if sys.stderr.isatty():
+            tell(f"\r{text}")
+        elif time.monotonic() - last[0] > EVERY:
+            last[0] = time.monotonic()
+            tell(text)
+
+    return now_and_then
