@@ -17,7 +17,7 @@ from cratous.proofs.engine.cache import Cache
 from cratous.proofs.ledger.recall import Recall
 from cratous.proofs.statements import definitions
 from cratous.proofs.statements.grounds import grounds
-from cratous.proofs.statements.relations import Kept
+from cratous.proofs.statements.kept import Kept
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,6 @@ not proved holds nothing against anything.
 
 from __future__ import annotations
 
-import json
-import os
 import types
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
@@ -20,24 +18,20 @@ from typing import Any, get_args, get_origin, get_type_hints
 import z3
 
 from cratous.core.kernel import REGISTRY, Fold, qualified
-from cratous.core.kernel.sources import digest, ours
-from cratous.core.ledger.home import Home
+from cratous.core.kernel.sources import ours
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.closed import TRUE
 from cratous.proofs.engine.lift import LiftError
 from cratous.proofs.engine.symbolic import SymBool, SymInt, SymMask, SymReal, _raw
 from cratous.proofs.engine.terms import free_names, free_values, fresh, known, leaves
 from cratous.proofs.engine.theorem_files import FOLDER, load_claim
-from cratous.proofs.ledger.recall import Recall
-from cratous.proofs.ledger.remembered import named
 from cratous.proofs.statements import sentences
 from cratous.proofs.statements.sentences import UNREAD, Call, Stated
 from cratous.proofs.statements.sides import sides, signs
 
 SAYS_RLIMIT = 200_000
-KINDS = {
-    SymReal: "real number", SymInt: "integer", SymBool: "truth value", SymMask: "mask of 64 bits",
-}  # fmt: skip
+KINDS = {SymReal: "real number", SymInt: "integer", SymBool: "truth value", SymMask: "64-bit mask"}
+NONE: frozenset[tuple[str, str]] = frozenset()
 Function = Callable[..., Any]
 Use = tuple[str, int]
 
@@ -378,59 +372,6 @@ def _pairs(
                 for sign in signs(conclusion, claim.names_of(kernel)) or {True}:
                     how = "follows" if sign else "leads"
                     yield from ((how, (kernel, other)) for other in _definitions(before) - meant)
-
-
-class Kept:
-    """The relations of theorems, in a folder from one run to the next; without one they are read anew.
-
-    They are kept as proved theorems are, under a hash of all that the statement depends on.
-    """
-
-    def __init__(self, folder: Path | None, home: Home) -> None:
-        self.folder, self.home, self._recall = folder, home, Recall(None, home)
-
-    def all(self, names: Iterable[str]) -> dict[str, Relations]:
-        """The relations of these theorems, whose statements can be read."""
-        return {name: self.get(name) for name in names}
-
-    def get(self, name: str) -> Relations:
-        """The relations of one theorem."""
-        known = self._recall.key(name) if self.folder is not None else None
-        if self.folder is None or known is None:
-            return relations(name, self.home.theorems)
-        readers = (__file__, sentences.__file__)
-        wanted = digest([known, *(named(Path(reader).resolve()) for reader in readers)])
-        file = self.folder / wanted[:2] / wanted
-        try:
-            return _restored(json.loads(file.read_text(encoding="utf-8")))
-        except (OSError, ValueError, KeyError, TypeError):
-            found = relations(name, self.home.theorems)
-        parts: dict[str, Any] = {part: sorted(getattr(found, part)) for part in PARTS}
-        text = json.dumps({**parts, "statement": found.statement})
-        try:
-            file.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
-            part = file.with_name(f"{wanted}.{os.getpid()}")
-            part.write_text(text, encoding="utf-8")
-            part.replace(file)
-        except OSError:
-            pass  # a folder that cannot be written is no error
-        return found
-
-
-PARTS = ("definitions", "together", "follows", "leads", "lemmas", "uses")
-
-
-def _restored(data: dict[str, Any]) -> Relations:
-    together, follows, leads = (
-        frozenset((str(a), str(b)) for a, b in data[part]) for part in PARTS[1:4]
-    )
-    lemmas = tuple(map(str, data["lemmas"]))
-    uses = frozenset((str(a), str(b), str(c), int(d)) for a, b, c, d in data["uses"])
-    definitions, statement = frozenset(map(str, data["definitions"])), str(data["statement"])
-    return Relations(definitions, together, follows, leads, lemmas, uses, statement)
-
-
-NONE: frozenset[tuple[str, str]] = frozenset()
 
 
 def _named_in(statement: Function) -> frozenset[str]:
