@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from cratous.services.monitor.promises import PLAN_ROWS, Row, Watched, missing, promised
+from cratous.services.monitor.promises import PLAN_ROWS, Watched, missing, promised
 from cratous.spec.mission.guarantees import REQUIREMENTS, Outcome, Verdict, worst
 
 
@@ -40,7 +40,7 @@ def with_promised(rows: list[dict[str, Any]], seen: Watched) -> list[dict[str, A
     """The rows, and an unknown one for each that is promised and not among them."""
     flown = {row["item"] for row in rows if (row["requirement"], row["source"]) == ("G1", "flight")}
     wanted = {
-        "plan": [Row("G1", item) for item in PLAN_ROWS],
+        "plan": list(PLAN_ROWS),
         "flight": list(promised(seen, flown)),
     }
     found = list(rows)

@@ -12,7 +12,7 @@ from cratous.services.mission.wind import known_at
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Outcome, Verdict, worst
-from cratous.spec.mission.plan import Plan
+from cratous.spec.mission.plan import PartialPlan, Plan, left_out_of
 
 Tell = Callable[[str], None]
 
@@ -110,7 +110,8 @@ def run_mission(
         bus.tap(writer.tap)
         with counted() as calls:
             plan, checks = plan_and_check(mission, bus)
-            tell("\n".join((plan_line(plan, checks), *absent_lines(mission))))
+            said = (plan_line(plan, checks), *left_out_lines(plan), *absent_lines(mission))
+            tell("\n".join(said))
             refuse_bad_plan(checks)
             if plan.certificate:
                 write_certificate(bus, folder / CERTIFICATE_NAME)
@@ -131,8 +132,12 @@ def run_mission(
 
 
 def refuse_bad_plan(checks: list[Verdict]) -> None:
-    """Nothing flies by a plan that fails its check."""
+    """Nothing flies by a plan that fails its check; a plan of a part flies if that is all it fails in."""
+    from cratous.services.monitor.plan_check import PART, WHOLE
+
     bad = [check for check in checks if check.outcome is Outcome.VIOLATED]
+    if any(check.item == PART for check in checks):
+        bad = [check for check in bad if check.item != WHOLE]
     if bad:
         raise NoPlan(tuple(f"the best plan found fails its check: {sentence(c)}" for c in bad[:5]))
 
@@ -154,10 +159,21 @@ def plan_line(plan: Plan, checks: list[Verdict]) -> str:
         chains.append(f"vehicle {vehicle}: {tasks}")
     outcome = worst([check.outcome for check in checks])
     good = sum(check.outcome is Outcome.HOLDS for check in checks)
+    part = "a part of what is asked for, " if left_out_of(plan) else ""
     return (
-        f"plan: {'; '.join(chains)}; {plan.makespan_ms / 1000:.1f} s, {standing(plan)}; "
+        f"plan: {'; '.join(chains)}; {part}"
+        f"{plan.makespan_ms / 1000:.1f} s, {standing(plan)}; "
         f"{good} of {len(checks)} constraints hold ({outcome})"
     )
+
+
+def left_out_lines(plan: Plan) -> list[str]:
+    """A line for each task that a plan leaves out, and whether no more could be done."""
+    left = left_out_of(plan)
+    lines = [f"left out: {one.text}" for one in left]
+    if left and not (isinstance(plan, PartialPlan) and plan.sure):
+        lines.append("whether more could be done is not certain")
+    return lines
 
 
 def standing(plan: Plan) -> str:

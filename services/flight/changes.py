@@ -82,6 +82,8 @@ def ask(config: Config, state: State) -> AskPlan:
         tuple((vid, air.pose) for vid, air in state.aircraft if vid in here),
         tuple((task, starts[task], ends[task]) for task in sorted(ends)),
         tuple(absent(config.mission, state.now_ms).items()),
+        state.failed,
+        tuple(sorted(starts.keys() - ends.keys())),
     )
 
 
@@ -97,7 +99,7 @@ def planned(config: Config, state: State, plan: Plan, asked_for: Asked, out: Out
     out.extend(
         progress(chain, state.now_ms, "Planned", note)
         for chain in state.chains
-        if chain.item is not None
+        if chain.item is not None and chain.item.task_id in plan.chosen
     )
     return begin(config, state, out)
 

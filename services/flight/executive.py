@@ -45,11 +45,11 @@ from cratous.spec.executive import (
     GOES_ON,
     LIMIT,
 )
-from cratous.spec.mission.changes import TASK_ADDED, VEHICLE_JOINS, split
+from cratous.spec.mission.changes import TASK_ADDED, VEHICLE_JOINS, WIND, split
 
 OUTCOMES = {GOES_ON: "", COMPLETE: "complete", FAILED_FLIGHT: "failed", LIMIT: "limit"}
 BRINGS_WORK = (TASK_ADDED, VEHICLE_JOINS)
-"""The end of the mission waits for changes of these kinds."""
+"""The end of the mission waits for changes of these kinds; and for the wind, if a task is left out."""
 
 Step = tuple[State, tuple[FromExecutive, ...]]
 Versions = tuple[tuple[int, int], ...]
@@ -189,7 +189,8 @@ class Executive:
         now_ms, limit_ms = message.now_ms, self.config.mission.simulation.limit_ms
         flying = sum(chain.item is not None for chain in state.chains)
         away = sum(gate.owner != UXAS for _, gate in message.gates)
-        expected = sum(c.kind in BRINGS_WORK for c in state.to_come)
+        kinds = (*BRINGS_WORK, *((WIND,) if state.left_out else ()))
+        expected = sum(c.kind in kinds for c in state.to_come)
         todo = len(changes.left(state)) if not flying else 0  # while some fly it is no matter
         how = OUTCOMES[flight_outcome(flying, away, expected, todo, now_ms, limit_ms)]
         if how:

@@ -64,7 +64,8 @@ class Config:
 class State:
     """known: the mission as it is known now; mission: all of it in the wind of now; zones: those that
     bind, with their padding turned into vertices; to_come: changes that nobody knows of yet; aircraft
-    and epochs: of the vehicles, as told last; starts, ends: real ones; failed: tasks with the reason;
+    and epochs: of the vehicles, as told last; starts, ends: real ones; failed: tasks with the reason; left_out:
+    those that the plan in force leaves out, with the reason;
     commands, replans, finished: counts; hurry: some deadline is near; asked: for which plan."""
 
     known: Mission
@@ -80,6 +81,7 @@ class State:
     starts: Times = ()
     ends: Times = ()
     failed: tuple[tuple[int, str], ...] = ()
+    left_out: tuple[tuple[int, str], ...] = ()
     commands: int = 0
     replans: int = 0
     finished: int = 0

@@ -189,7 +189,7 @@ class _Flight:
             self.now_ms,
             dict(end.starts),
             dict(end.ends),
-            dict(end.failed),
+            {**dict(end.left_out), **dict(end.failed)},
             sum(state.takeovers for state in self.vehicle_states.values()),
             end.replans,
             steps,
@@ -282,6 +282,8 @@ def _planned(asked: AskPlan) -> Planned | NotPlanned:
             done=asked.done,
             now_ms=asked.now_ms,
             absent=dict(asked.absent),
+            undone=dict(asked.undone),
+            begun=asked.begun,
         )
     except NoPlan as error:
         return NotPlanned(str(error))

@@ -184,13 +184,16 @@ class TakeBack(NamedTuple):
 
 class AskPlan(NamedTuple):
     """To the planner: a plan for what is left. known: the mission as it is known; starts: where each
-    vehicle is; done: the tasks flown, with start and end [ms]; absent: who takes no part, and why."""
+    vehicle is; done: the tasks flown, with start and end [ms]; absent: who takes no part, and why;
+    undone: tasks that have ended undone, and why; begun: tasks that have been begun and not ended."""
 
     now_ms: int
     known: Mission
     starts: tuple[tuple[int, Pose], ...]
     done: tuple[tuple[int, int, int], ...]
     absent: tuple[tuple[int, str], ...]
+    undone: tuple[tuple[int, str], ...]
+    begun: tuple[int, ...]
 
 
 class Over(NamedTuple):

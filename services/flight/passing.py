@@ -17,9 +17,11 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import task_progress
 from cratous.services.flight.dynamics import turn_radius_m
 from cratous.services.flight.executive_state import Config, Out, State
-from cratous.services.flight.lives import fails, life
+from cratous.services.flight.left_out import leave_out, nothing_of
+from cratous.services.flight.lives import life
 from cratous.services.flight.messages import Say
 from cratous.services.flight.timing import closed_by
+from cratous.spec.algebra.partial import waits_for
 from cratous.spec.constraint_rows import Row
 from cratous.spec.executive import FAIL_TASK, GO_ON, LAP, LAST_LAP, START
 from cratous.spec.mission import Vehicle
@@ -27,8 +29,6 @@ from cratous.spec.mission.plan import PlanItem
 
 EARLY_MS = 500
 """A planned wait may end this much early; the rows themselves are never bent."""
-NOBODY = 0
-"""The vehicle of a task that was given to none."""
 NO_WAY = "no way there keeps the zones"
 NAME = "uxas/executive"
 """The sender of what the executive says of itself."""
@@ -42,7 +42,12 @@ def progress(chain: Chain, at_ms: int, phase: str, note: str = "", served: float
 
 
 def begin(config: Config, state: State, out: Out) -> State:
-    """Set every vehicle on its way by the plan in force."""
+    """Set every vehicle on its way by the plan in force. What that leaves out fails by name."""
+    settled = (dict(state.starts), dict(state.ends), dict(state.failed))
+    before, chains = dict(state.left_out), state.by_vehicle()
+    left, said = leave_out(state.plan, settled, before, chains, state.now_ms)
+    out.extend(Say(body, NAME) for body in said)
+    state = replace(state, left_out=tuple(left.items()))
     for vehicle in state.mission.vehicles:
         air, items = state.air(vehicle.id), _items(state, vehicle)
         track = Track((air.position,), air.heading_rad)
@@ -172,23 +177,15 @@ def fail(config: Config, state: State, task_id: int, why: str, out: Out) -> Stat
         if item is not None and item.task_id == task_id:
             state = next_item(config, state, chain, now_ms, out)
     for row in state.plan.rows:
-        lived = life(row.i, dict(state.starts), dict(state.ends), dict(state.failed))
-        if falls_with(row.kind, task_id in row.group, lived):
+        failed = dict(state.failed)
+        lived = life(row.i, dict(state.starts), dict(state.ends), failed)
+        waits = task_id in row.group and waits_for(row, set(row.group) - failed.keys())
+        if falls_with(row.kind, waits, lived):
             state = fail(config, state, row.i, f"{row.text}: task {task_id} failed", out)
     return state
 
 
 def give_up(config: Config, state: State, why: str, asked: Iterable[int], out: Out) -> State:
-    """Nothing that is left can be done: every task of it fails by name, and those too that are
-    asked for and no vehicle was given."""
-    for vid in [c.vehicle.id for c in state.chains]:
-        chain = state.chain(vid)
-        for item in chain.items[max(chain.k, 0) :]:
-            if fails(item.task_id, dict(state.starts), dict(state.ends), dict(state.failed)):
-                state = fail(config, state, item.task_id, why, out)
-    for task_id in asked:
-        if fails(task_id, dict(state.starts), dict(state.ends), dict(state.failed)):
-            state = state.has_failed(task_id, why)
-            body = task_progress(task_id, NOBODY, state.now_ms, "Failed", 0.0, why)
-            out.append(Say(body, NAME))
-    return state
+    """Nothing that is left can be done: nobody flies any of it, and all that is asked for fails by
+    name."""
+    return begin(config, replace(state, plan=nothing_of(state.plan, asked, why)), out)
