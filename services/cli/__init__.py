@@ -8,6 +8,8 @@ more say which signal ended it.
 
 from __future__ import annotations
 
+import atexit
+import gc
 import importlib
 import io
 import json
@@ -40,6 +42,7 @@ COMMANDS = {
     "lmcp": "Read, write, explain and compare LMCP messages.",
     "uxas": "Run a UxAS configuration: services and bridges.",
     "algebra": "Check, draw or enumerate a process-algebra text.",
+    "warm": "Compile ahead what commands would compile when they need it.",
     "version": "Print the version.",
 }
 
@@ -82,6 +85,9 @@ def main(argv: list[str] | None = None) -> int:
     # the flag may stand anywhere, as users put it at the end
     arguments = [part for part in arguments if part != "--debug"]
     as_json = "--json" in arguments
+    if argv is None:
+        # the process ends with the command: what is still there needs no last collection
+        atexit.register(gc.freeze)
     try:
         with stoppable():
             result = cli.main(args=arguments, prog_name="cratous", standalone_mode=False)

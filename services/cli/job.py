@@ -85,7 +85,7 @@ def run_mission(
         mission_hash,
         write_report,
     )
-    from cratous.services.certify.verdicts import constraint_rows
+    from cratous.services.certify.verdicts import constraint_rows, plan_rows
     from cratous.services.flight.loop import fly
     from cratous.services.logs.log import LogWriter
     from cratous.services.logs.records import to_data
@@ -125,7 +125,7 @@ def run_mission(
         writer.note("calls", counts)
         writer.note("proofs", flown.meta()["proofs"])
     tell(f"evidence: {summary(flown.proofs)}")
-    rows = constraint_rows(checks, "plan") + constraint_rows(verdicts, "flight")
+    rows = plan_rows(checks) + constraint_rows(verdicts, "flight")
     report = build_report(mission, plan, rows, log, flown)
     write_report(report, folder)
     return report

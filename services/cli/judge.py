@@ -29,6 +29,7 @@ def judge(log: Path, mission: Path | None, as_json: bool, every: bool) -> int:
     """
     from cratous.judge import judge as decide
     from cratous.judge.verdict import GUARANTEES, HOLDS
+    from cratous.services.cli.show import say
 
     found = decide(log, mission)
     if as_json:
@@ -37,13 +38,13 @@ def judge(log: Path, mission: Path | None, as_json: bool, every: bool) -> int:
     if found.disagreements:
         click.echo(f"DISAGREEMENT of judge and monitor in {len(found.disagreements)} rows")
     for difference in found.differences:
-        click.echo(f"  {difference.kind}: {difference.line()}")
+        say(f"  {difference.kind}: {difference.line()}")
     for name, title in GUARANTEES.items():
         rows = [row for row in found.rows if row.guarantee == name]
         click.echo(f"{name} {found.of(name):9} {len(rows)} rows: {title}")
         for row in rows:
             if every or row.verdict != HOLDS:
-                click.echo(f"   {row.verdict:9} {row.item}: {row.note}")
+                say(f"   {row.verdict:9} {row.item}: {row.note}")
     if found.not_covered:
         click.echo(f"not covered (not protected): {', '.join(map(str, found.not_covered))}")
     beside = "no report to compare with"

@@ -47,8 +47,8 @@ def plan(
     from cratous.services.loading import load
     from cratous.services.logs.records import to_data
 
+    loaded = load(mission, seed)  # a bad mission is refused before anything takes time
     standing = ledger.require(allow_unproved=allow_unproved)
-    loaded = load(mission, seed)
     bus = new_bus()
     with counted() as calls:
         made, checks = plan_and_check(loaded, bus)

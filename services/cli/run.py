@@ -229,10 +229,10 @@ def geometry_text(mission: Any) -> str:
 
 
 def separation_text(report: dict[str, Any]) -> str:
-    """The least horizontal distance between two of our vehicles, once a second."""
-    from cratous.services.certify.picture import separation_view
+    """The least horizontal distance of a vehicle to another one or to traffic, once a second."""
+    from cratous.services.certify.charts import separation_view
 
     view = separation_view(report)
     if view is None:
         return "-"
-    return f"{min(curve['least_m'] for curve in view['curves']):.0f} m"
+    return f"{view['curves'][0]['least_m']:.0f} m"

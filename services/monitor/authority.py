@@ -133,8 +133,10 @@ class AuthorityWatch:
         found = []
         for vehicle, seen in sorted(self.vehicles.items()):
             outcome = Outcome.HOLDS if self._ended else Outcome.UNKNOWN
-            note = f"{seen.takeovers} takeovers, each handed back"
+            note = "no takeover"
             if seen.takeovers:
+                many = "takeover" if seen.takeovers == 1 else "takeovers"
+                note = f"{seen.takeovers} {many}, each handed back"
                 note += f" (longest {seen.longest_ms / 1000:.2f} s)"
             note += f"; {seen.commands} commands, {seen.dropped} of them stale and dropped"
             if seen.forged:

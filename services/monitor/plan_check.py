@@ -28,7 +28,8 @@ Path = tuple[Position, ...]
 
 WHOLE = "plan: every task of one choice, once"
 PART = "plan: a part that the relations permit"
-"""A plan that leaves tasks out has this row as well; what it leaves out is not done: the first is violated."""
+"""A plan that leaves tasks out has this row as well. Of a flight the tasks served are judged instead of the first
+one: a later plan may do what the first leaves out, or it may be withdrawn."""
 CHOICES_MAX = 4096
 """So many branches of the same tasks are looked at for one whose rows hold."""
 SPEED_TOLERANCE_MS = 2
@@ -131,10 +132,8 @@ def _complete(mission: Mission, plan: Plan) -> Iterator[Verdict]:
         note += f"; left out: {', '.join(map(str, left))}"
     elif not whole:
         note += "; they are no complete choice of the mission's relations"
-    whole_row = _verdict(WHOLE, whole and not twice, note, "branches", checks=1)
-    yield replace(whole_row, requirement="G3")
+    yield _verdict(WHOLE, whole and not twice, note, "branches", checks=1)
     if part:
-        note = "what must wait for what is left out is left out too"
         yield _verdict(PART, not twice, note, "may_be_done", checks=1)
 
 

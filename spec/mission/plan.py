@@ -113,7 +113,7 @@ class PartialPlan(Plan):
 def partial(plan: Plan, left_out: tuple[LeftOut, ...], sure: bool) -> PartialPlan:
     """A plan that leaves these tasks out."""
     return PartialPlan(
-        **{f.name: getattr(plan, f.name) for f in fields(plan)}, left_out=left_out, sure=sure
+        **{f.name: getattr(plan, f.name) for f in fields(Plan)}, left_out=left_out, sure=sure
     )
 
 
