@@ -4,14 +4,15 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.ready
 
-.PHONY: help venv demo test test-fast test-long lint types prove recheck mutate crosshair fuzz daa-fuzz bench docs lock clean
+.PHONY: help venv demo test test-fast test-long lint types prove recheck mutate crosshair fuzz daa-fuzz bench docs dist changelog lock clean
 
 help:
 	@echo "make demo      set up, then plan, prove, fly, monitor and certify the crossing mission"
 	@echo "make test      set up, then run the tests"
 	@echo "make test-long the tests that take many minutes"
 	@echo "make venv      only set up (.venv, pinned dependencies, compiled kernels)"
-	@echo "make lint      style, types, kernel subset"
+	@echo "make lint      style and spelling"
+	@echo "make types     mypy, strict"
 	@echo "make prove     prove every kernel (the cache answers what it has proved) and hold the ledger against it"
 	@echo "make recheck   put every proof to the second solver (cvc5)"
 	@echo "make mutate    look for faults that no theorem would notice, where something has changed since"
@@ -20,6 +21,8 @@ help:
 	@echo "make daa-fuzz  detect and avoid on 100,000 random and degenerate encounters"
 	@echo "make bench     benchmarks (ratios, see bench/README.md)"
 	@echo "make docs      regenerate the generated documents"
+	@echo "make changelog move the fragments of changelog.d into CHANGELOG.md"
+	@echo "make dist      build sdist and wheel of what is committed, into dist/"
 
 venv: $(STAMP)
 
@@ -46,6 +49,7 @@ test-fast: venv
 lint: venv
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/codespell
 
 types: venv
 	$(BIN)/mypy
@@ -59,8 +63,10 @@ recheck: venv
 mutate: venv
 	$(BIN)/cratous prove --mutate --new
 
+# seconds for each function
+EACH_S ?= 10
 crosshair: venv
-	$(BIN)/python -m crosshair check --analysis_kind=asserts --per_condition_timeout=10 tests/crosshair_targets.py
+	$(BIN)/python -m crosshair check --analysis_kind=asserts --per_condition_timeout=$(EACH_S) tests/crosshair_targets.py
 
 fuzz: venv
 	$(BIN)/python tests/fuzz_lmcp.py --count 1000000
@@ -74,6 +80,12 @@ bench: venv
 docs: venv
 	$(BIN)/python docs/tools/generate.py
 	$(BIN)/python -m cratous.bridge.lmcp.generate
+
+changelog: venv
+	$(BIN)/python .ci/changelog --write
+
+dist: venv
+	$(BIN)/python .ci/dist
 
 lock:
 	$(BIN)/python -m pip install --quiet pip-tools

@@ -56,3 +56,14 @@ class Refused(CratousError):
     """The product refuses to act, e.g. because a kernel's proof does not match its source."""
 
     exit_code = 2
+
+
+class NotInstalled(CratousError):
+    """A library of an optional part of the product is not there; `extra` is what brings it."""
+
+    def __init__(self, library: str, extra: str) -> None:
+        self.library, self.extra = library, extra
+        super().__init__(
+            f"{library} is not installed; expected the extra {extra!r}: "
+            f"pip install 'cratous[{extra}]'"
+        )

@@ -177,3 +177,10 @@ def is_after_search(found: bool, tasked: bool, act: int) -> bool:
     task, that fails, so that nothing is waited for that cannot come."""
     flies, fails = act == FLY_WAY, act == FAIL_TASK
     return flies == found and fails == (tasked and not flies) and not (act < 0 or act > CIRCLE)
+
+
+def completes_at(t: int, outcome: int, end: int, limit: int) -> bool:
+    """The mission ends at the instant t, complete, and t lies between its beginning and its limit.
+    THERE IS an instant t."""
+    in_time = t >= 0 and t <= limit
+    return in_time and t == end and outcome == COMPLETE

@@ -207,3 +207,12 @@ def way_act(found: bool, tasked: bool) -> int:
     if tasked:
         return 1
     return 2
+
+
+@kernel(implements="executive.completes_at")
+def completes(outcome: int, end: int, limit: int) -> bool:
+    """True iff a mission has ended complete, in time.
+
+    outcome: as of `flight_outcome`; end: when it ended; limit: until when it had to [ms].
+    """
+    return outcome == 1 and end >= 0 and end <= limit

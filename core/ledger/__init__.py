@@ -3,9 +3,10 @@
 A ledger is written by `cratous prove`: the product's is `core/ledger/records/`, a package with
 kernels of its own has `<package>/ledger/`. For every registered kernel, fold and driver it keeps the
 parts of its key (`keys`): its own definition with all that it calls, the definition in `spec`, its
-theorems with everything they take from elsewhere, the prover, the solver, the readings (how a
+theorems with everything they take from elsewhere, the prover, the readings (how a
 kernel becomes machine code or an exact verdict) and the compiler. `check` computes them anew and
-names whatever differs; it also holds the code that runs against the file that was hashed.
+names whatever differs; it also holds the code that runs against the file that was hashed. Which
+solver proved it is told beside the key and is no reason to refuse.
 """
 
 from __future__ import annotations
@@ -108,7 +109,7 @@ def _problems(home: Home, entries: dict[str, Entry], data: dict[str, Any]) -> It
         if record is None:
             yield Problem(name, "it is not in the ledger")
             continue
-        if record["status"] != "proved":
+        if not record["proved"]:
             yield Problem(name, f"it is {record['status']}")
             continue
         if lacking := _not_proved(record["theorems"], theorems, home):

@@ -38,7 +38,7 @@ def keys_of(home: Home, entries: Mapping[str, Entry], data: Mapping[str, Any]) -
     stamp = _stamp(home, known, data)
     file = private_cache() / KEPT / stamp
     with contextlib.suppress(OSError, ValueError):
-        found = json.loads(file.read_text(encoding="utf-8"))
+        found: Found = json.loads(file.read_text(encoding="utf-8"))
         if _is_found(found, known):
             return found
     keys, theorems = Keys(home), data["theorems"]

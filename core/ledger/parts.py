@@ -12,10 +12,11 @@ PARTS = {
     "spec": "its definition in spec",
     "theorems": "its theorems",
     "prover": "the prover",
-    "solver": "the solver's version",
     "readings": "the readings (machine code, the exact reading, the registry, this gate)",
     "flags": "the compiler flags or the versions of numba, llvmlite, numpy",
 }
+PROVENANCE = ("solver",)
+"""Kept beside the parts of a key, and no reason to refuse: a proof is none the less one with another z3."""
 READINGS = (
     "core.kernel.kernel",
     "core.kernel.driver",

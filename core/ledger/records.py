@@ -13,9 +13,26 @@ from typing import Any
 
 from cratous.core.kernel.sources import digest
 from cratous.core.ledger.home import PRODUCT, Home, theorem_file
+from cratous.core.ledger.parts import PROVENANCE
+from cratous.core.ledger.status import status_of
 from cratous.spec.errors import Refused
 
 KINDS = ("kernels", "theorems")
+FIELDS = {
+    "kernels": frozenset(
+        {
+            "kind", "implements", "supports", "restates", "checked_by", "rechecked_by", "theorems",
+            "against", "proved", "status", "key", "seal",
+        }
+    ),
+    "theorems": frozenset(
+        {
+            "sentence", "statement", "kernels", "lemmas", "status", "premises", "obligations",
+            "assumptions", "seal",
+        }
+    ),
+}  # fmt: skip
+"""What a record has, no less and no more."""
 
 
 def checksum(name: str, record: dict[str, Any]) -> str:
@@ -45,11 +62,20 @@ def read(folder: Path = PRODUCT.records) -> dict[str, Any]:
                     )
                 if name in data[file.parent.name]:
                     raise ValueError(f"two records of {name}")
+                _fits(name, file.parent.name, record)
                 data[file.parent.name][name] = record
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise Refused(f"{where} cannot be read ({error!r}); run `cratous prove`") from error
     data["seal"] = seal(data)
     return data
+
+
+def _fits(name: str, kind: str, record: dict[str, Any]) -> None:
+    """Raise ValueError for a record of another form, or with a status that its facts do not give."""
+    if strange := sorted(FIELDS[kind] ^ set(record)):
+        raise ValueError(f"{name}: its fields are of another format: {', '.join(strange)}")
+    if kind == "kernels" and (given := status_of(record)) != record["status"]:
+        raise ValueError(f"{name}: its status is {record['status']!r}, its facts give {given!r}")
 
 
 def seal(data: dict[str, Any]) -> str:
@@ -79,15 +105,35 @@ def _folder(name: str, home: Home) -> str:
     return ".".join(above) or "theorems"
 
 
-def differing(new: dict[str, str], folder: Path) -> list[str]:
-    """The files of records that say something else than these texts, or should not be there."""
+def differing(new: dict[str, str], folder: Path, *, provenance: bool = True) -> list[str]:
+    """The files of records that say something else than these texts, or should not be there.
+
+    provenance: whether another solver alone is a difference.
+    """
     old = {f"{f.parent.name}/{f.name}": f for f in folder.glob("*/*.json")}
     gone = sorted(set(old) - set(new))
+    said = str if provenance else _without_provenance
     return gone + [
         place
         for place, text in new.items()
-        if place not in old or old[place].read_text(encoding="utf-8") != text
+        if place not in old or said(old[place].read_text(encoding="utf-8")) != said(text)
     ]
+
+
+def _without_provenance(text: str) -> str:
+    """The same records without the solver's version; as they stand if one was edited by hand."""
+    rows = json.loads(text)
+    for name, record in rows.items():
+        if record.pop("seal") != checksum(name, record):
+            return text
+        for part in PROVENANCE:
+            record.get("key", {}).pop(part, None)
+    return json.dumps(rows, sort_keys=True)
+
+
+def solvers(data: dict[str, Any]) -> list[str]:
+    """The solvers that records name, of a ledger as `read` gives it."""
+    return sorted({record["key"]["solver"] for record in data["kernels"].values()})
 
 
 def write(new: dict[str, str], folder: Path) -> list[str]:

@@ -30,7 +30,7 @@ class Equality:
         calls = [visit.args for visits in self.visits.values() for visit in visits]
         return frozenset(k for args in calls for k, a in enumerate(args) if isinstance(a, SymMask))
 
-    def equivalent(self, mutant: Any) -> tuple[str, str, tuple | None]:
+    def equivalent(self, mutant: Any) -> tuple[str, str, tuple[Any, ...] | None]:
         """Equal everywhere, or in all calls that the theorems make; else what is known, and where.
 
         Gives verdict, note, and an input on which the two differ if the solver found one.
@@ -89,8 +89,8 @@ class Equality:
         return [], []
 
     def _differs(
-        self, mutant: Any, args: tuple, given: list[z3.BoolRef], rlimit: int
-    ) -> tuple[str, tuple | None]:
+        self, mutant: Any, args: tuple[Any, ...], given: list[z3.BoolRef], rlimit: int
+    ) -> tuple[str, tuple[Any, ...] | None]:
         """`unsat` if the two agree on these arguments; with `sat`, values where they do not."""
         one = lift(self.original, *args)
         with in_place(self.original, mutant):
@@ -117,7 +117,10 @@ class Equality:
 
 
 def _lies_in(
-    domain: list[z3.BoolRef], leaves: list[z3.ExprRef], args: tuple, given: list[z3.BoolRef]
+    domain: list[z3.BoolRef],
+    leaves: list[z3.ExprRef],
+    args: tuple[Any, ...],
+    given: list[z3.BoolRef],
 ) -> bool:
     """Do these arguments satisfy the premises, where `given` holds?"""
     pairs = list(zip(leaves, [known(leaf) for leaf in flat(args)], strict=True))

@@ -21,7 +21,9 @@ ENOUGH = 24
 STILLBORN = (TypeError, NameError, AttributeError, RecursionError)
 
 
-def inputs(function: Callable[..., Any], masks: frozenset[int], count: int) -> list[tuple]:
+def inputs(
+    function: Callable[..., Any], masks: frozenset[int], count: int
+) -> list[tuple[Any, ...]]:
     """`count` argument tuples; `masks`: positions of arguments that are bit masks."""
     hints = get_type_hints(function)
     kinds = [hints[name] for name in inspect.signature(function).parameters]
@@ -52,7 +54,7 @@ def _draw(kind: Any, rng: random.Random, reach: int, mask: bool, *, top: bool) -
     return kind(*[_draw(fields[f], rng, reach, False, top=False) for f in fields])
 
 
-def shaped(kinds: list[Any], values: Iterator[Any]) -> tuple:
+def shaped(kinds: list[Any], values: Iterator[Any]) -> tuple[Any, ...]:
     """Arguments of these types from their scalars, in order."""
     row = []
     for kind in kinds:
@@ -65,11 +67,11 @@ def shaped(kinds: list[Any], values: Iterator[Any]) -> tuple:
 class Difference:
     """Inputs on which a mutant and its original differ, or why the mutant cannot be run."""
 
-    inputs: tuple[tuple, ...] = ()
+    inputs: tuple[tuple[Any, ...], ...] = ()
     stillborn: str = ""
 
 
-def run(function: Callable[..., Any], row: tuple) -> Any:
+def run(function: Callable[..., Any], row: tuple[Any, ...]) -> Any:
     """The result, or the name of the arithmetic error that stands in its place."""
     try:
         return function(*row)
@@ -77,7 +79,9 @@ def run(function: Callable[..., Any], row: tuple) -> Any:
         return type(error).__name__
 
 
-def compare(mutant: Callable[..., Any], rows: list[tuple], results: list[Any]) -> Difference:
+def compare(
+    mutant: Callable[..., Any], rows: list[tuple[Any, ...]], results: list[Any]
+) -> Difference:
     """Run the mutant on inputs whose results the original gave."""
     found = []
     for row, wanted in zip(rows, results, strict=True):

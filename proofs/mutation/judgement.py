@@ -141,7 +141,7 @@ class Target:
                 return name
         return ""
 
-    def refuted(self, mutant: Any, rows: list[tuple], glanced: bool = False) -> str:
+    def refuted(self, mutant: Any, rows: list[tuple[Any, ...]], glanced: bool = False) -> str:
         """The first theorem that is refuted with the mutant in place, or nothing.
 
         rows: inputs that tell mutant and original apart; a question about one of them is a small
@@ -160,7 +160,12 @@ class Target:
         return ""
 
     def _refutes(
-        self, name: str, questions: list[list[z3.BoolRef]], rows: list[tuple], near: int, far: int
+        self,
+        name: str,
+        questions: list[list[z3.BoolRef]],
+        rows: list[tuple[Any, ...]],
+        near: int,
+        far: int,
     ) -> bool:
         """near: the effort for a question about an input; far: for one about any, 0 for none."""
         starts = [[*p.values] for p in self.points if p.theorem == name and p.row in rows][:3]
@@ -188,7 +193,7 @@ class Target:
         most = budget(self.effort[name])
         return all(ask(question, most) == "unsat" for question in self._questions(name, mutant))
 
-    def allowed(self, rows: tuple[tuple, ...]) -> list[tuple]:
+    def allowed(self, rows: tuple[tuple[Any, ...], ...]) -> list[tuple[Any, ...]]:
         """Up to three of these inputs for which some theorem speaks about the function.
 
         Most that are allowed are easily seen to be; a few get more effort where none is.
@@ -201,9 +206,9 @@ class Target:
         return self._allowed(rows, visits, GLANCE) or self._allowed(rows[:2], visits, NEAR)
 
     def _allowed(
-        self, rows: tuple[tuple, ...], visits: list[tuple[str, Visit]], effort: int
-    ) -> list[tuple]:
-        found: list[tuple] = []
+        self, rows: tuple[tuple[Any, ...], ...], visits: list[tuple[str, Visit]], effort: int
+    ) -> list[tuple[Any, ...]]:
+        found: list[tuple[Any, ...]] = []
         for row in rows:
             for number, (name, visit) in enumerate(visits):
                 if self._allows(name, visit, row, effort):
@@ -215,7 +220,7 @@ class Target:
                 break
         return found
 
-    def _allows(self, name: str, visit: Visit, row: tuple, effort: int) -> bool:
+    def _allows(self, name: str, visit: Visit, row: tuple[Any, ...], effort: int) -> bool:
         """Do the theorem's premises leave this input to the visit?"""
         conditions = [*claim_of(name).premises, *visit.context, *visit.granted]
         # on a path of a caller, or in a theorem with other values, it may be a question

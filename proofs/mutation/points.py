@@ -31,7 +31,7 @@ TRIES, KEPT = 60, 25
 class Point:
     """An input that a theorem allows, and values of the theorem at which it occurs."""
 
-    row: tuple
+    row: tuple[Any, ...]
     theorem: str
     values: tuple[z3.BoolRef, ...]
 

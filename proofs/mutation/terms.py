@@ -35,10 +35,10 @@ def flat(value: Any) -> list[Any]:
 def is_free(value: Any) -> bool:
     """An arbitrary value, which an input fixes at once."""
     term = known(value)
-    return z3.is_const(term) and term.decl().kind() == z3.Z3_OP_UNINTERPRETED
+    return bool(z3.is_const(term) and term.decl().kind() == z3.Z3_OP_UNINTERPRETED)
 
 
-def equal(args: tuple[Any, ...], row: tuple) -> list[z3.BoolRef]:
+def equal(args: tuple[Any, ...], row: tuple[Any, ...]) -> list[z3.BoolRef]:
     """The arguments of a visit have these values."""
     equations = []
     for one, value in zip(flat(args), flat(row), strict=True):
@@ -54,7 +54,9 @@ def equal(args: tuple[Any, ...], row: tuple) -> list[z3.BoolRef]:
     return equations
 
 
-def with_values(conditions: list[z3.BoolRef], args: tuple[Any, ...], row: tuple) -> bool | None:
+def with_values(
+    conditions: list[z3.BoolRef], args: tuple[Any, ...], row: tuple[Any, ...]
+) -> bool | None:
     """Whether the conditions can hold where these arguments have these values.
 
     conditions: satisfiable together, so those about other values alone leave the answer open to
@@ -92,6 +94,6 @@ def premise_text(term: z3.ExprRef) -> str:
     return f"{ranged[1]} has at most 62 bits" if ranged else text
 
 
-def row_text(row: tuple) -> str:
+def row_text(row: tuple[Any, ...]) -> str:
     """An input for people."""
     return ", ".join(str(value) for value in flat(row))

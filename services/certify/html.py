@@ -10,6 +10,8 @@ from cratous.core.kernel.names import short
 from cratous.services.certify.charts import altitude_view, separation_view
 from cratous.services.certify.gantt import gantt, plan_bars, plan_rows, tree
 from cratous.services.certify.picture import map_view, time_view
+from cratous.services.certify.proofs import statuses
+from cratous.services.certify.trace import chains
 from cratous.spec.algebra import parse
 from cratous.spec.files.printable import printable
 
@@ -64,6 +66,7 @@ def render(report: dict[str, Any]) -> str:
         r=report, map=map_view(report), time=time_view(report), near=separation_view(report),
         high=altitude_view(report), rows_of=_rows_of(report),
         gantt=_gantt(report), tree=_tree(report), losses=losses(report), names=_names(report),
+        chains=chains(report), statuses=statuses(report["proofs"]),
     )  # fmt: skip
     return text
 

@@ -22,6 +22,7 @@ import click
 
 from cratous.services.cli.stopping import Stopped, stoppable
 from cratous.spec.errors import BadInput, CratousError, NoPlan
+from cratous.spec.files.extras import told
 from cratous.spec.files.printable import json_text, printable
 
 INTERNAL_ERROR = 70
@@ -29,6 +30,8 @@ PACKAGE = f"{Path(__file__).parents[2]}/"
 """Where the product's modules are, as tracebacks name it."""
 COMMANDS = {
     "run": "Plan, prove, fly, monitor and certify a mission.",
+    "demo": "Fly an example that ships with the product.",
+    "campaign": "Fly and judge many runs, and count what holds.",
     "plan": "Plan a mission and check the plan; nothing flies.",
     "prove": "Prove the kernels and write the ledger (in a checkout).",
     "conform": "Run published vectors against the kernels and the wires.",
@@ -71,7 +74,7 @@ class LazyGroup(click.Group):
 def cli(debug: bool) -> None:
     """Verified mission autonomy for teams of unmanned aircraft.
 
-    Try it:  cratous run examples/crossing/mission.yaml
+    Try it:  cratous demo
 
     Exit codes: 0 all requirements hold, 1 something is violated or no plan exists, 2 bad input,
     3 something is unknown or excused.
@@ -89,7 +92,7 @@ def main(argv: list[str] | None = None) -> int:
         # the process ends with the command: what is still there needs no last collection
         atexit.register(gc.freeze)
     try:
-        with stoppable():
+        with stoppable(), told():
             result = cli.main(args=arguments, prog_name="cratous", standalone_mode=False)
         return result if isinstance(result, int) else 0
     except click.exceptions.Exit as done:

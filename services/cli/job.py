@@ -74,8 +74,24 @@ def run_mission(
     mission: Mission, folder: Path, settings: Settings, tell: Tell = silent
 ) -> dict[str, Any]:
     """Fly one mission and write log and report into `folder`; returns the report as data."""
-    from cratous import __version__
     from cratous.core import ledger
+    from cratous.services.certify.report import write_report
+
+    standing = ledger.require(allow_unproved=settings.allow_unproved)
+    tell(f"proofs: {standing.line}")
+    report = fly_mission(mission, folder, settings, standing, tell)
+    write_report(report, folder)
+    return report
+
+
+def fly_mission(
+    mission: Mission, folder: Path, settings: Settings, standing: Any, tell: Tell = silent
+) -> dict[str, Any]:
+    """Fly one mission and write its log into `folder`; returns the report as data.
+
+    standing: of `core.ledger.require`, asked before anything is flown in this process.
+    """
+    from cratous import __version__
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory, summary
     from cratous.services.certify.report import (
@@ -83,7 +99,6 @@ def run_mission(
         build_report,
         environment,
         mission_hash,
-        write_report,
     )
     from cratous.services.certify.verdicts import constraint_rows, plan_rows
     from cratous.services.flight.loop import fly
@@ -92,8 +107,6 @@ def run_mission(
     from cratous.services.monitor import Monitor
     from cratous.services.results.names import CERTIFICATE_NAME, LOG_NAME
 
-    standing = ledger.require(allow_unproved=settings.allow_unproved)
-    tell(f"proofs: {standing.line}")
     if not settings.daa:
         mission = replace(mission, instances=())
     bus = new_bus()
@@ -126,9 +139,7 @@ def run_mission(
         writer.note("proofs", flown.meta()["proofs"])
     tell(f"evidence: {summary(flown.proofs)}")
     rows = plan_rows(checks) + constraint_rows(verdicts, "flight")
-    report = build_report(mission, plan, rows, log, flown)
-    write_report(report, folder)
-    return report
+    return build_report(mission, plan, rows, log, flown)
 
 
 def refuse_bad_plan(checks: list[Verdict]) -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 from cratous.core.files.whole_file import replacing
 from cratous.services.daa import Step
 from cratous.spec.errors import BadInput
+from cratous.spec.files.extras import told
 
 COLOURS = {0: "#d9ead3", 1: "#fff2cc", 2: "#f6b26b", 3: "#cc0000", 4: "#38761d", -1: "#bbbbbb"}
 LABELS = {0: "none", 1: "FAR", 2: "MID", 3: "NEAR", 4: "recovery", -1: "unknown"}
@@ -30,10 +31,11 @@ def draw(steps: Sequence[Step], file: Path) -> None:
         )
     if not steps:
         raise BadInput("there is nothing to draw", where=str(file), expected="at least one step")
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.collections import PolyCollection
-    from matplotlib.figure import Figure
-    from matplotlib.patches import Patch
+    with told():
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.collections import PolyCollection
+        from matplotlib.figure import Figure
+        from matplotlib.patches import Patch
 
     times = [s.instant.time_s for s in steps]
     width = times[1] - times[0] if len(times) > 1 else 1.0

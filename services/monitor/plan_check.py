@@ -12,6 +12,7 @@ from dataclasses import replace
 from itertools import islice, pairwise
 
 from cratous.core.kernel import qualified
+from cratous.core.schedule.choice import as_asked
 from cratous.core.schedule.rows import eligible, row_holds, schedule_holds
 from cratous.services.mission.times import Times, all_hold, row_verdict
 from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok
@@ -121,20 +122,34 @@ def _complete(mission: Mission, plan: Plan) -> Iterator[Verdict]:
     """Every task of one branch is planned exactly once, and no other; if not, whether it is a part."""
     planned = sorted(item.task_id for item in plan.items)
     chosen = frozenset(planned)
+    alike = any(True for _ in row_choices(mission, chosen))
+    wanted = chosen if alike else _first_choice(mission)
+    known = sorted({*planned, *(task.id for task in mission.tasks), *wanted})
+    counts = [(int(t in wanted), int(t in wanted), planned.count(t)) for t in known]
     twice = sorted({task for task in planned if planned.count(task) > 1})
-    whole = next(row_choices(mission, chosen), None) is not None
     note = f"tasks planned: {', '.join(map(str, planned)) or 'none'}"
     if twice:
         note += f"; planned twice: {', '.join(map(str, twice))}"
-    part = not whole and next(part_choices(mission, chosen), None) is not None
+    part = not alike and any(True for _ in part_choices(mission, chosen))
     if part:
         left = [t for t in asked(mission, frozenset(), chosen) if t not in chosen]
         note += f"; left out: {', '.join(map(str, left))}"
-    elif not whole:
+    elif not alike:
         note += "; they are no complete choice of the mission's relations"
-    yield _verdict(WHOLE, whole and not twice, note, "branches", checks=1)
+    decided = (qualified(as_asked),)
+    yield _verdict(
+        WHOLE, bool(as_asked(counts)), note, "as_asked", checks=len(known), kernels=decided
+    )
     if part:
         yield _verdict(PART, not twice, note, "may_be_done", checks=1)
+
+
+def _first_choice(mission: Mission) -> frozenset[int]:
+    """The tasks of the relations' first branch; all tasks where there are no relations."""
+    term = term_of(mission)
+    if term is None:
+        return frozenset(task.id for task in mission.tasks)
+    return frozenset(tasks(next(iter(branches(term)))))
 
 
 def _eligibility(mission: Mission, plan: Plan) -> Iterator[Verdict]:

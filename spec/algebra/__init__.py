@@ -117,7 +117,7 @@ def parallel_of(ids: Iterable[int]) -> Term:
 def _syntax(text: str) -> Term:
     from lark.exceptions import UnexpectedInput, UnexpectedToken
 
-    run = _parser().parse_interactive(text)
+    run: Any = _parser().parse_interactive(text)  # lark has no types here
     before = last = None
     try:
         for token in run.iter_parse():
@@ -133,11 +133,12 @@ def _syntax(text: str) -> Term:
 def _parser() -> Lark:
     from lark import Lark, Transformer
 
-    class Build(Transformer):
+    class Build(Transformer[Any, Any]):
         """Builds terms while parsing, so that no recursion is needed."""
 
         def start(self, children: list[Any]) -> Term:
-            return children[0]
+            term: Term = children[0]
+            return term
 
         def atom(self, children: list[Any]) -> Term:
             token, suffix = children[0], children[1] if len(children) > 1 else None

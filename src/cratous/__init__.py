@@ -1,3 +1,3 @@
 """CRATOUS: verified mission autonomy for teams of unmanned aircraft."""
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"

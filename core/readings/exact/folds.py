@@ -19,7 +19,7 @@ import numpy as np
 from cratous.core.kernel import Fold
 from cratous.core.readings.exact import exact
 from cratous.core.readings.exact.float_filter import Certain, Filter, filtered
-from cratous.core.readings.graph import Node, NotInSubset
+from cratous.core.readings.graph.nodes import Node, NotInSubset
 from cratous.core.readings.graph.printing import name, straight
 from cratous.core.readings.machine.compiled import EXACT, FLAGS, Reading, aligned, load
 from cratous.spec.errors import BadInput

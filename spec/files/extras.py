@@ -1,0 +1,31 @@
+"""Libraries that only optional parts of the product need, and the extra that brings each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from cratous.spec.errors import NotInstalled
+
+EXTRAS = {
+    "matplotlib": ("matplotlib", "plots"),
+    "zmq": ("pyzmq", "wires"),
+    "serial": ("pyserial", "wires"),
+    "mcap": ("mcap", "wires"),
+    "lz4": ("lz4", "wires"),
+    "zstandard": ("zstandard", "wires"),
+    "cvc5": ("cvc5", "prove"),
+}
+"""By the name that is imported: the library, and the extra of `pyproject.toml`."""
+
+
+@contextmanager
+def told() -> Iterator[None]:
+    """Whatever is imported in here and belongs to an extra that is not installed raises NotInstalled."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        found = EXTRAS.get((error.name or "").partition(".")[0])
+        if found is None:
+            raise
+        raise NotInstalled(*found) from error
