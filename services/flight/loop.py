@@ -231,7 +231,8 @@ class _Flight:
     def _instance(self, vid: int, message: ToInstance) -> None:
         state, out = self.icarous[vid].handle(self.icarous_states[vid], message)
         self.icarous_states[vid] = state
-        self._deliver(out)
+        # whatever it says, it speaks for its own vehicle alone
+        self._deliver(answer._replace(vehicle_id=vid) for answer in out)
 
     def _deliver(self, answers: Iterable[Answer]) -> None:
         """Each answer to its receiver, with all that follows from it, before the next one."""

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from flight_tools import VOLUME, meeting
+from flight_tools import VOLUME, flown, meeting, of_type, vehicle
 
 from cratous.bridge import lmcp
 from cratous.bridge.loopback import Bridge
@@ -15,7 +15,10 @@ from cratous.core.kernel import Vec2
 from cratous.core.well_clear import violation_within
 from cratous.services.bus import Bus
 from cratous.services.flight.loop import fly
+from cratous.services.icarous.instance import Instance
+from cratous.services.icarous.messages import Sensed, Wish
 from cratous.services.pipeline.plan import make_plan
+from cratous.spec.authority.cycle import TAKE_OVER
 from cratous.spec.mission import (
     Simulation,
 )
@@ -65,3 +68,22 @@ def test_silence_of_icarous_is_reported(monkeypatch: pytest.MonkeyPatch) -> None
     fly(mission, make_plan(mission), bus)
     notes = [b.Note for b in log if type(b).__name__ == "BridgeStatus"]
     assert notes == ["connected", "silent since 3000 ms"]
+
+
+def test_an_instance_takes_no_vehicle_but_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The ICAROUS of vehicle 2 claims vehicle 1 at each heartbeat: it gets its own, as if it had said so."""
+    handle = Instance.handle
+
+    def greedy(actor: Instance, state: Any, message: Any) -> Any:
+        after, out = handle(actor, state, message)
+        if actor.config.vehicle_id == 2 and isinstance(message, Sensed):
+            out = (Wish(1, TAKE_OVER, "mine", 1), *out)
+        return after, out
+
+    monkeypatch.setattr(Instance, "handle", greedy)
+    two = (vehicle(1, 0.0, 0.0), vehicle(2, 0.0, 5000.0))
+    mission = replace(
+        meeting(), vehicles=two, traffic=(), instances=(1, 2), simulation=Simulation(limit_ms=2000)
+    )
+    _, log = flown(mission)
+    assert {g.VehicleID for g in of_type(log, "GateState")} == {2}

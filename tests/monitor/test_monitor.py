@@ -273,6 +273,17 @@ def test_two_commanders_or_none_are_seen(messages, wanted):
     assert wanted in verdict.note
 
 
+def test_what_was_forged_is_refused_counted_and_told():
+    forged = [command(700, "UxAS", 10**14), dropped(700, 10**14)]
+    mode = lmcp.new("ModeRefused", VehicleID=1, Time=750, Owner="ICAROUS", Epoch=10**14)
+    verdict = authority(command(0, "UxAS", 0), *TAKEN, *forged, (750, mode), *BACK)
+    assert verdict.outcome is Outcome.HOLDS
+    assert (
+        "1 of them stale and dropped, 1 of these of an epoch that was never given" in verdict.note
+    )
+    assert verdict.note.endswith("1 modes refused that could not be true")
+
+
 def test_a_silent_bridge_is_seen_and_a_missing_one_is_unknown():
     gap = [m for m in beats(3000) if not 700 < m[0] < 2300]
     verdict = watch(mission(), [*apart(), *gap, *done()])["G5"]
