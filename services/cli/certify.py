@@ -31,9 +31,11 @@ def certify(folder: Path, rewrite: bool, as_json: bool) -> int:
     differences named; 2 bad input.
     """
     from cratous.services.certify.again import certify_again
+    from cratous.services.cli.progress import waiting
     from cratous.services.cli.show import requirement_table, say
 
-    done = certify_again(folder, rewrite=rewrite)
+    with waiting("judging the flight again from its log", as_json):
+        done = certify_again(folder, rewrite=rewrite)
     report, found = done.report, done.found
     code = 1 if found else int(report["exit_code"])
     if as_json:

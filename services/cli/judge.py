@@ -29,9 +29,11 @@ def judge(log: Path, mission: Path | None, as_json: bool, every: bool) -> int:
     """
     from cratous.judge import judge as decide
     from cratous.judge.verdict import GUARANTEES, HOLDS
+    from cratous.services.cli.progress import waiting
     from cratous.services.cli.show import say
 
-    found = decide(log, mission)
+    with waiting("judging the log", as_json):
+        found = decide(log, mission)
     if as_json:
         click.echo(json.dumps(found.data(), indent=1))
         return found.exit_code

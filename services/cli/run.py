@@ -13,7 +13,9 @@ from typing import Any
 import click
 
 from cratous.services.cli.job import Settings, folder_name, run_mission
-from cratous.services.cli.show import progress, requirement_table, say, table
+from cratous.services.cli.job import silent as untold
+from cratous.services.cli.progress import waiting
+from cratous.services.cli.show import requirement_table, say, table
 from cratous.spec.errors import CratousError, NoPlan
 from cratous.spec.mission.guarantees import Outcome, exit_code
 
@@ -69,7 +71,9 @@ def run(
         return _many(mission, seeds, out, daa, allow_unproved, command, as_json, quiet)
     command += ["--seed", str(seed)] if seed else []
     settings = Settings(daa, allow_unproved, shlex.join(command))
-    with progress(quiet or as_json) as tell:
+    silent = quiet or as_json
+    with waiting("loading the mission", silent) as wait:
+        tell = untold if silent else wait.tell
         report, folder = run_one(mission, seed, out or Path("out"), settings, tell)
     if as_json:
         click.echo(json.dumps(summary(report, folder), indent=1))
@@ -144,8 +148,13 @@ def _many(
 ) -> int:
     """Run all variants; folders are kept only if --out was given."""
     found: list[dict[str, Any]] = []
-    with progress(quiet or as_json) as tell, TemporaryDirectory(prefix="cratous-") as scratch:
-        for seed in seeds:
+    silent = quiet or as_json
+    with (
+        waiting("variants", silent) as wait,
+        TemporaryDirectory(prefix="cratous-") as scratch,
+    ):
+        tell = untold if silent else wait.tell
+        for seed in wait.each(seeds, "variants"):
             settings = Settings(daa, allow_unproved, shlex.join([*command, "--seed", str(seed)]))
             keep = out or Path(scratch)
             row = _variant(path, seed, keep, settings)
