@@ -64,11 +64,11 @@ def assign(
         shown = "-" if best is None else f"{100 * max(0, best - bound) / best:.1f} %"
         click.echo(f"{count} nodes: cost {best}, bound {bound}, gap {shown}", err=True)
 
-    with waiting("searching for the best assignment", as_json or progress) as wait:
+    with waiting("searching for the best assignment", as_json or progress) as told:
         found = solve(problem, Limits(seconds, nodes, gap, seed=seed), tell if progress else None)
-        wait.at("making the certificate")
+        told.at("making the certificate")
         solution, body = certified(problem, found)
-        wait.at("checking the certificate")
+        told.at("checking the certificate")
         verdict = verify(body)
     if verdict.wrong:
         raise RuntimeError(f"the certificate does not hold: {verdict.wrong}")
