@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import cos, floor, log10, pi, sin
 from typing import Any
 
-MAP_WIDTH, MAP_HEIGHT, MAP_EDGE = 640.0, 480.0, 40.0
+MAP_WIDTH, MAP_HEIGHT, MAP_EDGE, MAP_FOOT = 640.0, 504.0, 40.0, 24.0
 BAR_LEFT, BAR_WIDTH, BAR_ROW = 110.0, 590.0, 46.0
 
 
@@ -21,7 +21,8 @@ class Scale:
         easts = [point[1] for point in points] or [0.0]
         span_n = max(max(norths) - min(norths), 1.0)
         span_e = max(max(easts) - min(easts), 1.0)
-        self.factor = min((MAP_WIDTH - 2 * MAP_EDGE) / span_e, (MAP_HEIGHT - 2 * MAP_EDGE) / span_n)
+        high = MAP_HEIGHT - MAP_FOOT  # the scale stands below the map
+        self.factor = min((MAP_WIDTH - 2 * MAP_EDGE) / span_e, (high - 2 * MAP_EDGE) / span_n)
         self._north = (max(norths) + min(norths)) / 2
         self._east = (max(easts) + min(easts)) / 2
 
@@ -29,7 +30,7 @@ class Scale:
         """Drawing coordinates of a place."""
         return (
             round(MAP_WIDTH / 2 + (east - self._east) * self.factor, 1),
-            round(MAP_HEIGHT / 2 - (north - self._north) * self.factor, 1),
+            round((MAP_HEIGHT - MAP_FOOT) / 2 - (north - self._north) * self.factor, 1),
         )
 
     def line(self, places: list[Any]) -> str:

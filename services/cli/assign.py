@@ -46,6 +46,7 @@ def assign(
     Exit codes: 0 optimal, or as good as asked for; 1 no plan exists; 2 bad input; 3 not decided.
     """
     from cratous.core.ledger import require
+    from cratous.services.cli.progress import waiting
     from cratous.services.planning.assign import Limits, solve
     from cratous.services.planning.assign_certificate import certified, verify, write
     from cratous.services.planning.assign_solvers import why_infeasible
@@ -63,9 +64,12 @@ def assign(
         shown = "-" if best is None else f"{100 * max(0, best - bound) / best:.1f} %"
         click.echo(f"{count} nodes: cost {best}, bound {bound}, gap {shown}", err=True)
 
-    found = solve(problem, Limits(seconds, nodes, gap, seed=seed), tell if progress else None)
-    solution, body = certified(problem, found)
-    verdict = verify(body)
+    with waiting("searching for the best assignment", as_json or progress) as told:
+        found = solve(problem, Limits(seconds, nodes, gap, seed=seed), tell if progress else None)
+        told.at("making the certificate")
+        solution, body = certified(problem, found)
+        told.at("checking the certificate")
+        verdict = verify(body)
     if verdict.wrong:
         raise RuntimeError(f"the certificate does not hold: {verdict.wrong}")
     if certificate is not None:

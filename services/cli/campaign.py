@@ -9,7 +9,9 @@ from typing import Any
 
 import click
 
-from cratous.services.cli.show import paced, progress, say, table
+from cratous.services.cli.job import silent as untold
+from cratous.services.cli.progress import passing, waiting
+from cratous.services.cli.show import say, table
 
 Tell = Callable[[str], None]
 ALL = ("G1", "G2", "G3", "G4", "G5")
@@ -67,7 +69,9 @@ def campaign(
     found = load_campaign(file, seeds, (option_of(not no_daa),))
     place = out or Path("out") / "campaigns" / found.name
     how = {"workers": workers, "scheduler": scheduler, "allow_unproved": allow_unproved}
-    with progress(quiet or as_json) as tell:
+    silent = quiet or as_json
+    with waiting("reading the campaign", silent) as wait:
+        tell = untold if silent else wait.tell
         if find is not None:
             from cratous.services.cli.campaign_find import searched, show_found
 
@@ -109,7 +113,7 @@ def conducted(
         seeds, missions = max(1, len(campaign.seeds)), max(1, len(campaign.missions))
         course = Course(seeds * missions * len(campaign.options))
         with engine(how["workers"], how["scheduler"]) as made:
-            conduct.fly(made, course, paced(tell))
+            conduct.fly(made, course, passing(tell))
         tell(course.line())
         rows = list(conduct.rows())
         lost = [why for row in rows for why in store.lost(row.run.id)]

@@ -9,7 +9,8 @@ from typing import Any
 
 import click
 
-from cratous.services.cli.show import paced, say
+from cratous.services.cli.progress import passing
+from cratous.services.cli.show import say
 
 NAME, CASE = "search.json", "found"
 FORMAT = "cratous-search/1"
@@ -40,7 +41,7 @@ def searched(
 
         def fly(runs: Iterable[Run]) -> list[Any]:
             some = list(runs)
-            conduct.fly(made, course, paced(tell), some)
+            conduct.fly(made, course, passing(tell), some)
             return list(conduct.rows(some))
 
         found = search.run(fly, budget)

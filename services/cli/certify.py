@@ -40,9 +40,11 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool) -> int:
     """
     from cratous.services.certify.again import certify_again
     from cratous.services.certify.trace import lines, traced
+    from cratous.services.cli.progress import waiting
     from cratous.services.cli.show import requirement_table, say
 
-    done = certify_again(folder, rewrite=rewrite)
+    with waiting("judging the flight again from its log", as_json):
+        done = certify_again(folder, rewrite=rewrite)
     report, found = done.report, done.found
     code = 1 if found else int(report["exit_code"])
     chains = traced(report) if trace and not found else None

@@ -25,10 +25,12 @@ def certify_plan(file: Path, as_json: bool) -> int:
     Exit codes: 0 the claim holds, 1 it does not (with the reason), 2 bad input.
     """
     from cratous.core.ledger import require
+    from cratous.services.cli.progress import waiting
     from cratous.services.planning.assign_certificate import read, verify
 
-    require()
-    verdict = verify(read(file))
+    with waiting("checking the certificate", as_json):
+        require()
+        verdict = verify(read(file))
     code = 1 if verdict.wrong else 0
     if as_json:
         data = {

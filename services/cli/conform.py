@@ -9,6 +9,7 @@ from pathlib import Path
 import click
 
 from cratous.services import conform as suites
+from cratous.services.cli.progress import waiting
 from cratous.services.cli.show import say
 from cratous.spec.errors import BadInput
 
@@ -47,7 +48,8 @@ def conform(suite: str, files: tuple[Path, ...], show: int, as_json: bool) -> in
     reports = []
     for file in _in_folders(files):
         judge = suites.suite(suite)
-        report = suites.run(judge, file, show)
+        with waiting(f"judging the cases of {file.name}", as_json):
+            report = suites.run(judge, file, show)
         report.summary = suites.summary_of(judge)
         reports.append(report)
         if as_json:

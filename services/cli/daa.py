@@ -5,7 +5,8 @@ from __future__ import annotations
 import itertools
 import json
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -48,18 +49,22 @@ def daa() -> None:
 
 def _steps(
     file: Path, config: str, ownship: str, dimensions: tuple[int, ...],
-    urgency: str | None = None, urgent: str = "",
-) -> Iterator[Any]:  # fmt: skip
+    urgency: str | None = None, urgent: str = "", *, quiet: bool = False,
+) -> Generator[Any, None, None]:  # fmt: skip
+    """The steps of a file, one after the other; quiet: nothing is told of how far it is."""
     from cratous.core.ledger import require
+    from cratous.services.cli.progress import waiting
     from cratous.services.daa import named_or_file, run
     from cratous.spec.daa.parameters import URGENCIES
 
-    require()
     changes: dict[str, Any] = {}
     if urgency or urgent:
         changes["urgency_strategy"] = URGENCIES.index(urgency or "fixed")
         changes["most_urgent_aircraft"] = urgent
-    return run(file, named_or_file(config).parameters, ownship, dimensions, changes)
+    with waiting("holding the code against its proofs", quiet) as wait:
+        require()
+        steps = run(file, named_or_file(config).parameters, ownship, dimensions, changes)
+        yield from wait.each(steps, "steps of the encounter")
 
 
 def _put(text: str, out: Path | None) -> None:
@@ -79,7 +84,7 @@ def _table(kind: str) -> Callable[..., int]:
         dimensions = (0, 1, 2, 3) if kind == "bands" else ()
         rows = [
             row
-            for step in _steps(file, config, ownship, dimensions, urgency, urgent)
+            for step in _steps(file, config, ownship, dimensions, urgency, urgent, quiet=as_json)
             for row in ROWS[kind](step.instant)
         ]
         _put(json.dumps(rows, allow_nan=False) if as_json else as_csv(rows), out)
@@ -158,10 +163,9 @@ def excuse(
     """
     from cratous.services.daa.excuse import as_data, excuse_text, judge_step
 
-    steps = _steps(file, config, ownship, ())
-    if time_s is not None:
-        steps = iter([_at(steps, time_s, file)])
-    judged = [(s.instant.time_s, judge_step(s)) for s in steps]
+    with closing(_steps(file, config, ownship, (), quiet=as_json)) as steps:
+        chosen = steps if time_s is None else [_at(steps, time_s, file)]
+        judged = [(s.instant.time_s, judge_step(s)) for s in chosen]
     if as_json:
         _put(json.dumps([as_data(*one) for one in judged], allow_nan=False), out)
     else:
@@ -191,8 +195,9 @@ def explain(
     from cratous.services.daa.explain import explain as words
     from cratous.services.daa.tables import as_data
 
-    steps = _steps(file, config, ownship, (0, 1, 2, 3), urgency, urgent)
-    chosen = _first_alert(steps) if time_s is None else _at(steps, time_s, file)
+    every = _steps(file, config, ownship, (0, 1, 2, 3), urgency, urgent, quiet=as_json)
+    with closing(every) as steps:
+        chosen = _first_alert(steps) if time_s is None else _at(steps, time_s, file)
     lines = words(chosen.parameters, chosen.instant)
     if as_json:
         _put(json.dumps({**as_data(chosen.instant), "reasons": lines}, allow_nan=False), out)

@@ -48,6 +48,29 @@ def plan_and_check(mission: Mission, bus: Any) -> tuple[Plan, list[Verdict]]:
     return plan, check_plan(known, plan)
 
 
+TOLD = ("TaskPlanOptions", "AssignmentCostMatrix")
+
+
+def planning_told(at: Callable[[str, int, int], None], tasks: int) -> Callable[[Any], None]:
+    """A tap on the bus that tells how far planning is; tasks: how many are asked for."""
+    seen = dict.fromkeys(TOLD, 0)
+    at("planning the options of the tasks", 0, tasks)
+
+    def tap(message: Any) -> None:
+        name = message.topic.rpartition(".")[2]
+        if name not in seen:
+            return
+        seen[name] += 1
+        if seen["AssignmentCostMatrix"]:
+            at("searching for the best assignment", 0, 0)
+        elif seen["TaskPlanOptions"] < tasks:
+            at("planning the options of the tasks", seen["TaskPlanOptions"], tasks)
+        else:
+            at("planning the ways between the tasks", 0, 0)
+
+    return tap
+
+
 def absent_lines(mission: Mission) -> list[str]:
     """A line for each vehicle that takes no part at the start."""
     away = absent(mission, 0).items()
@@ -121,6 +144,7 @@ def fly_mission(
     }
     with LogWriter(log, **meta) as writer:
         bus.tap(writer.tap)
+        bus.tap(planning_told(_passing(tell), len(mission.tasks)))
         with counted() as calls:
             plan, checks = plan_and_check(mission, bus)
             said = (plan_line(plan, checks), *left_out_lines(plan), *absent_lines(mission))
@@ -151,6 +175,11 @@ def refuse_bad_plan(checks: list[Verdict]) -> None:
         bad = [check for check in bad if check.item != WHOLE]
     if bad:
         raise NoPlan(tuple(f"the best plan found fails its check: {sentence(c)}" for c in bad[:5]))
+
+
+def _passing(tell: Tell) -> Callable[[str, int, int], None]:
+    """What is done now, as a line that the next one may overwrite."""
+    return lambda what, done, of: tell(f"\r{what}" + (f": {done} of {of}" if of else ""))
 
 
 def _progress(tell: Tell) -> Callable[[int, str], None]:

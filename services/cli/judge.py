@@ -9,6 +9,12 @@ from typing import Any
 import click
 
 
+def _say(text: str) -> None:
+    """One line; what comes from a log acts on no terminal and begins no line of its own."""
+    shown = (c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    click.echo("".join(shown))
+
+
 @click.command()
 @click.argument("log", type=click.Path(path_type=Path))
 @click.option(
@@ -29,7 +35,6 @@ def judge(log: Path, mission: Path | None, as_json: bool, every: bool) -> int:
     3 something is unknown.
     """
     from cratous.judge.verdict import GUARANTEES, HOLDS
-    from cratous.services.cli.show import say
 
     found = judgement(log, mission)
     if as_json:
@@ -38,13 +43,13 @@ def judge(log: Path, mission: Path | None, as_json: bool, every: bool) -> int:
     if found.disagreements:
         click.echo(f"DISAGREEMENT of judge and monitor in {len(found.disagreements)} rows")
     for difference in found.differences:
-        say(f"  {difference.kind}: {difference.line()}")
+        _say(f"  {difference.kind}: {difference.line()}")
     for name, title in GUARANTEES.items():
         rows = [row for row in found.rows if row.guarantee == name]
         click.echo(f"{name} {found.of(name):9} {len(rows)} rows: {title}")
         for row in rows:
             if every or row.verdict != HOLDS:
-                say(f"   {row.verdict:9} {row.item}: {row.note}")
+                _say(f"   {row.verdict:9} {row.item}: {row.note}")
     if found.not_covered:
         click.echo(f"not covered (not protected): {', '.join(map(str, found.not_covered))}")
     beside = "no report to compare with"

@@ -27,12 +27,15 @@ def monitor(log: Path, as_json: bool, allow_unproved: bool) -> int:
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory, summary
     from cratous.services.certify.verdicts import constraint_rows, requirement_rows
+    from cratous.services.cli.progress import waiting
     from cratous.services.cli.show import requirement_table
     from cratous.services.results.names import LOG_NAME
 
-    standing = ledger.require(allow_unproved=allow_unproved)
-    with counted() as calls:
-        verdicts = watch(log / LOG_NAME if log.is_dir() else log)
+    with waiting("holding the code against its proofs", as_json) as wait:
+        standing = ledger.require(allow_unproved=allow_unproved)
+        wait.at("judging the messages of the log")
+        with counted() as calls:
+            verdicts = watch(log / LOG_NAME if log.is_dir() else log)
     evidence = inventory(standing, calls.data())
     rows = constraint_rows(verdicts, "flight")
     code = exit_code([v.outcome for v in verdicts])

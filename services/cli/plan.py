@@ -31,6 +31,10 @@ def plan(
     Exit codes: 0 the plan satisfies all its constraints, 1 it does not or no plan exists, 2 bad
     input, 3 something is unknown.
     """
+    from cratous.services.loading import load
+
+    loaded = load(mission, seed)  # a bad mission is refused before anything that takes time
+
     from cratous.core import ledger
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory, summary
@@ -41,18 +45,21 @@ def plan(
         new_bus,
         plan_and_check,
         plan_line,
+        planning_told,
         write_certificate,
     )
+    from cratous.services.cli.progress import waiting
     from cratous.services.cli.show import margin_text, say, table
-    from cratous.services.loading import load
     from cratous.services.logs.records import to_data
 
-    loaded = load(mission, seed)  # a bad mission is refused before anything takes time
-    standing = ledger.require(allow_unproved=allow_unproved)
     bus = new_bus()
-    with counted() as calls:
-        made, checks = plan_and_check(loaded, bus)
-    evidence = inventory(standing, calls.data())
+    with waiting("holding the code against its proofs", as_json) as wait:
+        standing = ledger.require(allow_unproved=allow_unproved)
+        bus.tap(planning_told(wait.at, len(loaded.tasks)))
+        with counted() as calls:
+            made, checks = plan_and_check(loaded, bus)
+        wait.at("gathering the evidence")
+        evidence = inventory(standing, calls.data())
     if certificate is not None:
         write_certificate(bus, certificate)
     code = exit_code([check.outcome for check in checks])

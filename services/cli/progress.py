@@ -1,10 +1,116 @@
-"""A progress bar for work that is done in other processes."""
+"""What a command does and how far it is, on stderr, once it has taken more than a second.
+
+`waiting` is for a command that works in its own process, `Bar` for work that is done in others.
+"""
 
 from __future__ import annotations
 
+import sys
+import threading
 import time
-from contextlib import AbstractContextManager, nullcontext
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator, Sized
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from typing import Any, TypeVar
+
+import click
+
+from cratous.spec.files.printable import printable
+
+T = TypeVar("T")
+CLEARED = "\r\x1b[2K"
+"""The cursor at the beginning of a line that is empty."""
+PATIENCE_S, BETWEEN_S, CELLS = 1.0, 5.0, 24
+"""When it is said first, how often lines follow where there is no terminal, and the bar's length."""
+
+
+class Waiting:
+    """What is being done now; said by a thread, as the work itself may be one long call."""
+
+    def __init__(self, what: str) -> None:
+        self._now = (what, 0, 0)
+        self._over = threading.Event()
+        self._drawing = threading.Lock()
+        self._drawn = False
+
+    def at(self, what: str, done: int = 0, of: int = 0) -> None:
+        """This is done now, and so far; `of` is 0 where the end is not known."""
+        self._now = (what, done, of)
+
+    def each(self, items: Iterable[T], what: str, of: int = 0) -> Iterator[T]:
+        """The items, while it is told which of them is in work."""
+        of = of or (len(items) if isinstance(items, Sized) else 0)
+        for number, item in enumerate(items):
+            self.at(what, number + 1, of)
+            yield item
+
+    def tell(self, text: str) -> None:
+        """A line that stays; one that begins with a carriage return is what is done now."""
+        if text.startswith("\r"):
+            self.at(text[1:].strip())
+        else:
+            self.line(text)
+
+    def text(self) -> str:
+        """The line for a file or a pipe."""
+        what, done, of = self._now
+        return printable(what + (f": {done} of {of}" if of else f": {done}" if done else ""))
+
+    def bar(self) -> str:
+        """The line for a terminal."""
+        _, done, of = self._now
+        cells = round(CELLS * min(1.0, done / of)) if of else 0
+        return f"[{'#' * cells}{'.' * (CELLS - cells)}] {self.text()}" if of else self.text()
+
+    def say(self, stream: Any, terminal: bool) -> None:
+        """Until it is over: after a moment what is done, and then whatever else is."""
+        pause, said = PATIENCE_S, ""
+        while not self._over.wait(pause):
+            line = self.bar() if terminal else self.text()
+            with self._drawing:
+                if line != said and not self._over.is_set():
+                    stream.write(f"{CLEARED}{line}" if terminal else f"{line}\n")
+                    stream.flush()
+                    self._drawn, said = terminal, line
+            pause = 0.2 if terminal else BETWEEN_S
+
+    def line(self, text: str) -> None:
+        """A line that stays, above a bar that is there."""
+        with self._drawing:
+            self._clear(sys.stderr)
+            click.echo(printable(text), err=True)
+
+    def end(self, stream: Any) -> None:
+        """Nothing more is said; a bar goes."""
+        with self._drawing:
+            self._over.set()
+            self._clear(stream)
+
+    def _clear(self, stream: Any) -> None:
+        if self._drawn:
+            stream.write(CLEARED)
+            stream.flush()
+        self._drawn = False
+
+
+@contextmanager
+def waiting(what: str, quiet: bool = False) -> Iterator[Waiting]:
+    """Around work that may take long: a bar on a terminal, lines elsewhere; quiet: neither."""
+    made, stream = Waiting(what), sys.stderr
+    if quiet:
+        yield made
+        return
+    thread = threading.Thread(target=made.say, args=(stream, stream.isatty()), daemon=True)
+    thread.start()
+    try:
+        yield made
+    finally:
+        made.end(stream)
+        thread.join()
+
+
+def passing(tell: Callable[[str], None]) -> Callable[[str], None]:
+    """Tells lines as what is done now: none of them stays."""
+    return lambda text: tell(f"\r{text}")
 
 
 class Bar:

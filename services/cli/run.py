@@ -13,7 +13,9 @@ import click
 
 from cratous.services.cli.campaign import seed_range
 from cratous.services.cli.job import Settings, folder_name, run_mission
-from cratous.services.cli.show import progress, requirement_table, say
+from cratous.services.cli.job import silent as untold
+from cratous.services.cli.progress import waiting
+from cratous.services.cli.show import requirement_table, say
 
 Tell = Callable[[str], None]
 
@@ -66,7 +68,9 @@ def fly_and_show(
     mission: Path, seed: int, out: Path | None, settings: Settings, as_json: bool, quiet: bool
 ) -> int:
     """Run one mission and print what came of it; returns the exit code."""
-    with progress(quiet or as_json) as tell:
+    silent = quiet or as_json
+    with waiting("loading the mission", silent) as wait:
+        tell = untold if silent else wait.tell
         report, folder = run_one(mission, seed, out or Path("out"), settings, tell)
     if as_json:
         click.echo(json.dumps(summary(report, folder), indent=1))
@@ -143,7 +147,9 @@ def _many(
 
     campaign = load_campaign(mission, seeds, (option_of(settings.daa),))
     how = {"workers": 1, "scheduler": None, "allow_unproved": settings.allow_unproved}
-    with progress(quiet or as_json) as tell, TemporaryDirectory(prefix="cratous-") as scratch:
+    silent = quiet or as_json
+    with waiting("variants", silent) as wait, TemporaryDirectory(prefix="cratous-") as scratch:
+        tell = untold if silent else wait.tell
         place = out or Path(scratch) / "campaign"
         found, lost = conducted(campaign, place, how, 10 if out else 0, tell)
     if as_json:

@@ -1,19 +1,14 @@
-"""Tables and progress for people. rich is imported only here, and only when it is needed."""
+"""Tables and lines for people. rich is imported only when a table is drawn."""
 
 from __future__ import annotations
 
 import sys
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from typing import Any
 
 import click
 
 from cratous.spec.files.printable import printable
 
-EVERY = 10.0
-"""Seconds between two lines of progress where no terminal shows them."""
 COLOURS = {"holds": "green", "violated": "red", "unknown": "yellow", "excused": "yellow"}
 
 
@@ -75,44 +70,3 @@ def requirement_table(rows: list[dict[str, Any]]) -> None:
         ],
         verdict_column=1,
     )
-
-
-@contextmanager
-def progress(quiet: bool) -> Iterator[Callable[[str], None]]:
-    """A function that tells one line of progress on stderr; with a spinner on a terminal.
-
-    A line that begins with a carriage return is passing: only a terminal shows it.
-    """
-    if quiet:
-        yield lambda _text: None
-        return
-    if not sys.stderr.isatty():
-        yield lambda text: None if text.startswith("\r") else say(text, err=True)
-        return
-    from rich.console import Console
-    from rich.markup import escape
-
-    console = Console(stderr=True, highlight=False)
-    with console.status("working") as status:
-
-        def tell(text: str) -> None:
-            if text.startswith("\r"):
-                status.update(escape(printable(text[1:])))
-            else:
-                console.print(printable(text), markup=False)
-
-        yield tell
-
-
-def paced(tell: Callable[[str], None]) -> Callable[[str], None]:
-    """Progress: passing lines on a terminal, else one now and then."""
-    last = [time.monotonic()]
-
-    def now_and_then(text: str) -> None:
-        if sys.stderr.isatty():
-            tell(f"\r{text}")
-        elif time.monotonic() - last[0] > EVERY:
-            last[0] = time.monotonic()
-            tell(text)
-
-    return now_and_then

@@ -6,7 +6,7 @@ import time
 
 import click
 
-from cratous.services.cli.show import progress
+from cratous.services.cli.progress import waiting
 
 
 @click.command()
@@ -30,9 +30,10 @@ def warm(planning: bool, prune: bool, days: float, quiet: bool) -> int:
 
     steps = PLANNING if planning else STEPS
     began = time.monotonic()
-    with progress(quiet) as tell:
-        for number, (name, step) in enumerate(steps, 1):
-            tell(f"{number} of {len(steps)}: {name}")
+    with waiting("compiling", quiet) as wait:
+        for name, step in wait.each(steps, "steps"):
+            if not quiet:
+                wait.line(f"compiling: {name}")
             step()
     if not quiet:
         click.echo(f"what the runtime uses is compiled ({time.monotonic() - began:.0f} s)")

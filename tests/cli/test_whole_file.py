@@ -171,6 +171,7 @@ KEPT = {
     "core/kernel/sources.py": "hashes of code, renamed when whole, in the private cache",
     "core/ledger/records.py": "the ledger, renamed when whole; to change the file is to prove all anew",
     "core/ledger/tables.py": "tables of definitions, renamed when whole, in the private cache",
+    "core/ledger/kept_keys.py": "keys of kernels, renamed when whole, in the private cache",
     "proofs/engine/cache.py": "solver answers, renamed when whole, in the private cache",
     "proofs/mutation/keys.py": "verdicts, renamed when whole, in the private cache",
     "proofs/ledger/recall.py": "theorems, renamed when whole, in the private cache",

@@ -1,0 +1,80 @@
+"""What takes long is told on stderr: a bar on a terminal, lines elsewhere, nothing where it is quick."""
+
+from __future__ import annotations
+
+import io
+import time
+from types import SimpleNamespace
+
+import pytest
+
+from cratous.services.cli import progress
+from cratous.services.cli.job import planning_told
+from cratous.services.cli.progress import Waiting, waiting
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.fixture(autouse=True)
+def soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(progress, "PATIENCE_S", 0.05)
+    monkeypatch.setattr(progress, "BETWEEN_S", 0.01)
+
+
+def _until(stream: io.StringIO, text: str) -> None:
+    """Wait for the thread; that it never says this is a failure."""
+    end = time.monotonic() + 20
+    while text not in stream.getvalue():
+        assert time.monotonic() < end, stream.getvalue()
+        time.sleep(0.01)
+
+
+def test_lines_where_there_is_no_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    stream = io.StringIO()
+    monkeypatch.setattr("sys.stderr", stream)
+    with waiting("reading\x1b[31m") as wait:
+        _until(stream, "reading\\x1b[31m\n")
+        for number in wait.each([1, 2], "steps"):
+            _until(stream, f"steps: {number} of 2\n")
+        wait.at("messages", 7)
+        _until(stream, "messages: 7\n")
+    assert "\x1b" not in stream.getvalue()
+
+
+def test_a_bar_on_a_terminal_goes_at_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    stream = Terminal()
+    monkeypatch.setattr("sys.stderr", stream)
+    with waiting("reading") as wait:
+        wait.at("steps", 1, 4)
+        _until(stream, "[######..................] steps: 1 of 4")
+    assert stream.getvalue().endswith("\r\x1b[2K")
+
+
+def test_nothing_is_said_of_what_is_quick_or_quiet(monkeypatch: pytest.MonkeyPatch) -> None:
+    stream = Terminal()
+    monkeypatch.setattr("sys.stderr", stream)
+    with waiting("reading", quiet=True):
+        time.sleep(0.2)
+    monkeypatch.setattr(progress, "PATIENCE_S", 60.0)
+    with pytest.raises(ValueError, match="out"), waiting("reading"):
+        raise ValueError("out")
+    assert stream.getvalue() == ""
+
+
+def test_planning_tells_how_far_it_is() -> None:
+    wait = Waiting("")
+    tap = planning_told(wait.at, 2)
+    said = [wait.text()]
+    for name in ("RoutePlanRequest", "TaskPlanOptions", "TaskPlanOptions", "AssignmentCostMatrix"):
+        tap(SimpleNamespace(topic=f"uxas.messages.task.{name}"))
+        said.append(wait.text())
+    assert said == [
+        "planning the options of the tasks: 0 of 2",
+        "planning the options of the tasks: 0 of 2",
+        "planning the options of the tasks: 1 of 2",
+        "planning the ways between the tasks",
+        "searching for the best assignment",
+    ]
