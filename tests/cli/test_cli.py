@@ -37,11 +37,11 @@ def run(capsys: pytest.CaptureFixture[str]) -> Run:
 
 
 @pytest.fixture(scope="module")
-def flown(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def flown(fly_once: Callable[[Path], Path]) -> Path:
     """The folder of a flown crossing; whether the ledger vouches is another test's business."""
-    out = tmp_path_factory.mktemp("flown")
-    assert main(["run", str(CROSSING), "--out", str(out), "--allow-unproved", "--quiet"]) in (0, 3)
-    return out / "crossing"
+    done = fly_once(CROSSING)
+    assert report_of(done)["exit_code"] in (0, 3)
+    return done
 
 
 def report_of(folder: Path) -> dict[str, Any]:
