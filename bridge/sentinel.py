@@ -86,18 +86,24 @@ def unframe(data: bytes, where: str = "frame") -> bytes:
 class FrameStream:
     """The payloads in one direction of a connection; see the module.
 
-    max_payload: longest payload accepted [bytes]. on_drop: called with every Drop, as soon as it is
-    certain. frames: payloads given so far. counts: drops by reason. dropped_bytes: all bytes that
+    max_payload: longest payload accepted [bytes]. max_strays: after so many heads in a row that led
+    nowhere the stream is given up (`spoiled`): nothing of it is read any more; None: never.
+    on_drop: called with every Drop, as soon as it is certain. frames: payloads given so far. counts: drops by reason. dropped_bytes: all bytes that
     belonged to no payload's frame. drops: the last 100 of them. pending: bytes held back because
     what follows decides. None of these depends on how the bytes were segmented, but `pending`.
     """
 
     def __init__(
-        self, *, max_payload: int = MAX_PAYLOAD, on_drop: Callable[[Drop], None] | None = None
+        self,
+        *,
+        max_payload: int = MAX_PAYLOAD,
+        max_strays: int | None = None,
+        on_drop: Callable[[Drop], None] | None = None,
     ) -> None:
         if max_payload < 1:
             raise BadInput("wrong limit", item="max_payload", expected="> 0", got=str(max_payload))
-        self.max_payload = max_payload
+        self.max_payload, self.max_strays = max_payload, max_strays
+        self.spoiled = False
         self.frames = 0
         self.dropped_bytes = 0
         self.counts: Counter[str] = Counter()
@@ -106,6 +112,7 @@ class FrameStream:
         self._buffer = bytearray()
         self._start = 0  # place of the buffer's first byte in the stream
         self._in_step = True  # what came last was a frame, or nothing yet
+        self._strays = 0  # drops since the last frame
         self._need = 0  # bytes that the buffer must hold before anything can be decided
 
     @property
@@ -115,6 +122,10 @@ class FrameStream:
 
     def feed(self, data: bytes | bytearray | memoryview) -> list[bytes]:
         """Take the next bytes of the stream; the payloads that they complete, in order."""
+        if self.spoiled:
+            self.dropped_bytes += len(data)
+            self._start += len(data)
+            return []
         self._buffer += data
         if len(self._buffer) < self._need:
             return []
@@ -127,7 +138,7 @@ class FrameStream:
         """
         if self._buffer.startswith(HEAD[:1]) and self._buffer:
             self._drop(UNFINISHED, 0, "the rest of the frame", f"{len(self._buffer)} bytes")
-            self._skip(1)
+            self._skip(len(self._buffer) if self._strayed() else 1)
         return self._read()
 
     def close(self) -> list[bytes]:
@@ -169,14 +180,25 @@ class FrameStream:
             at += size
             if payload is None:
                 self.dropped_bytes += size
+                if self._strayed():
+                    self.dropped_bytes += len(buffer) - at
+                    at = len(buffer)
+                    break
             else:
                 payloads.append(payload)
                 self.frames += 1
                 self._in_step = True
+                self._strays = 0
         del buffer[:at]
         self._start += at
         self._need = max(0, self._need - at)
         return payloads
+
+    def _strayed(self) -> bool:
+        """One more that was no frame; whether the stream is given up by that."""
+        self._strays += 1
+        self.spoiled = self._strays == self.max_strays
+        return self.spoiled
 
     def _frame(self, at: int) -> tuple[int, bytes | None]:
         """What stands at a head: (bytes done with, payload or None); (0, None) is not decided."""

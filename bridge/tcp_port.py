@@ -21,6 +21,7 @@ from cratous.spec.errors import BadInput
 _CHUNK = 65536
 _READS = 16  # chunks from one peer in one step, so that a fast one leaves time for the others
 _MOST_UNFINISHED = 3
+_MOST_STRAYS = 10_000  # pieces that are no frame, one after the other
 _RETRY_S = (0.1, 2.0)  # first and longest pause between attempts to connect
 
 STALLED = "peer does not read"
@@ -28,6 +29,7 @@ NOBODY = "not connected"
 LATE = "frame not finished in time"
 FULL = "too many connections"
 HELD = "unfinished frames hold too much memory"
+NOISE = "nothing but what is no frame"
 
 
 class _Connection:
@@ -220,7 +222,9 @@ class TcpPort:
         def dropped(drop: sentinel.Drop) -> None:
             self._tally.refuse(drop.reason, str(drop.error(name)))
 
-        stream = sentinel.FrameStream(max_payload=self._limits.payload_bytes, on_drop=dropped)
+        stream = sentinel.FrameStream(
+            max_payload=self._limits.payload_bytes, max_strays=_MOST_STRAYS, on_drop=dropped
+        )
         peer = _Connection(sock, name, stream)
         self._peers[sock.fileno()] = peer
         self._poll.register(sock.fileno(), select.EPOLLIN)
@@ -281,6 +285,10 @@ class TcpPort:
                 return
             payloads = peer.stream.feed(data)
             found.extend(Incoming((payload,), peer.name) for payload in payloads)
+            if peer.stream.spoiled:
+                self._tally.refuse(NOISE, f"{peer.name}, {_MOST_STRAYS} pieces in a row")
+                self._drop(peer, NOISE)
+                return
             if payloads or not peer.stream.pending:
                 peer.begun_s = None
             if peer.stream.pending and peer.begun_s is None:

@@ -13,6 +13,8 @@ from cratous.spec.errors import BadInput
 Point = tuple[float, float]
 SEARCHES = ("line_search", "point_search", "area_search", "pattern_search")
 KINDS = (*SEARCHES, "must_fly", "loiter")
+Said = dict[int, tuple[tuple[int, bool], ...]]
+"""By number: when it was said to take part (True) or not any more, in the order of time [ms]."""
 CHANGES = ("zone", "vehicle_lost", "vehicle_joins", "task_added", "task_removed", "wind")
 
 
@@ -105,10 +107,8 @@ class Mission:
     heartbeat_ms: int = 500
     limit_ms: int = 7_200_000
     seed: int = 0
-    lost: dict[int, int] = field(default_factory=dict)
-    joins: dict[int, int] = field(default_factory=dict)
-    added: dict[int, int] = field(default_factory=dict)
-    removed: dict[int, int] = field(default_factory=dict)
+    vehicle_said: Said = field(default_factory=dict)
+    task_said: Said = field(default_factory=dict)
 
     @property
     def protected(self) -> list[int]:
@@ -116,18 +116,41 @@ class Mission:
         return sorted(v.id for v in self.vehicles.values() if v.protected)
 
 
+def said_of(changes: Sequence[tuple[str, int, int]], enters: str, leaves: str) -> Said:
+    """What is said of the vehicles or tasks among changes (kind, number, instant), by time."""
+    found: dict[int, list[tuple[int, bool]]] = {}
+    for kind, number, at in sorted(changes, key=lambda change: change[2]):
+        if kind in (enters, leaves):
+            found.setdefault(number, []).append((at, kind == enters))
+    return {number: tuple(entries) for number, entries in found.items()}
+
+
+def away_because(said: Said, number: int, at_ms: int) -> str:
+    """`left` or `to come` if it does not take part at an instant nor just before; else empty.
+
+    What was said last counts; what is first said to come was not there before.
+    """
+    entries = said.get(number, ())
+    before = [there for at, there in entries if at < at_ms]
+    now = [there for at, there in entries if at <= at_ms]
+    first = not entries or not entries[0][1]
+    if (before[-1] if before else first) or (now[-1] if now else first):
+        return ""
+    return "left" if now else "to come"
+
+
 def from_log(data: Node) -> Mission:
     """The mission that the log's meta data carry; BadInput if they do not fit."""
     frame, simulation, daa = data["frame"], data["simulation"], data["daa"]["well_clear"]
     zones = [zone(z) for z in data["zones"]]
-    since: dict[str, dict[int, int]] = {name: {} for name in CHANGES}
+    said = []
     for change in data["changes"]:
         kind, at = change["kind"].one_of(*CHANGES), _not_negative(change["at_ms"])
         if kind == "zone":
             zones.append(zone(change["zone"], at))
         elif kind != "wind":
             number = change["vehicle" if kind.startswith("vehicle") else "task"].whole
-            since[kind].setdefault(number, at)
+            said.append((kind, number, at))
     volume = Volume(*(daa[name].real for name in Volume._fields))
     mission = Mission(
         name=data["name"].text,
@@ -144,10 +167,8 @@ def from_log(data: Node) -> Mission:
         heartbeat_ms=positive(simulation["heartbeat_ms"]),
         limit_ms=positive(simulation["limit_ms"]),
         seed=data["seed"].whole,
-        lost=since["vehicle_lost"],
-        joins=since["vehicle_joins"],
-        added=since["task_added"],
-        removed=since["task_removed"],
+        vehicle_said=said_of(said, "vehicle_joins", "vehicle_lost"),
+        task_said=said_of(said, "task_added", "task_removed"),
     )
     check(mission, data)
     return mission
@@ -160,7 +181,7 @@ def check(mission: Mission, data: Node) -> None:
     if not abs(mission.latitude_deg) <= 90:
         raise data["frame"].wrong("a latitude from -90 to 90")
     known = {*mission.vehicles, *mission.tasks}
-    named = [*mission.lost, *mission.joins, *mission.added, *mission.removed]
+    named = [*mission.vehicle_said, *mission.task_said]
     strange = [n for n in named if n not in known]
     if strange:
         raise data["changes"].wrong(f"vehicles and tasks that exist, not {strange[0]}")

@@ -45,14 +45,14 @@ class _Reader:
     def mission(self) -> m.Mission:
         root = self.root
         zones = [self.zone(z, 0) for z in root.get("zones", [])]
-        since: dict[str, dict[int, int]] = {name: {} for name in m.CHANGES}
+        said = []
         for change in root.get("changes", []):
             at = _ms(change["at_s"])
             for name in m.CHANGES:
                 if name == "zone" and change.has(name):
                     zones.append(self.zone(change[name], at))
                 elif name != "wind" and change.has(name):
-                    since[name].setdefault(change[name].whole, at)
+                    said.append((name, change[name].whole, at))
         vehicles = [self.vehicle(v) for v in root["vehicles"]]
         guarded = [v.id for v in vehicles if v.protected]
         count = root.get("bridge", {}).get("instances", len(guarded)).whole
@@ -73,10 +73,8 @@ class _Reader:
             step_ms=m.positive(simulation.get("step_ms", 250)),
             heartbeat_ms=m.positive(simulation.get("heartbeat_ms", 500)),
             limit_ms=_ms(simulation.get("limit_s", 7200)),
-            lost=since["vehicle_lost"],
-            joins=since["vehicle_joins"],
-            added=since["task_added"],
-            removed=since["task_removed"],
+            vehicle_said=m.said_of(said, "vehicle_joins", "vehicle_lost"),
+            task_said=m.said_of(said, "task_added", "task_removed"),
         )
 
     def point(self, data: Node) -> m.Point:

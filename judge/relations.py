@@ -17,7 +17,7 @@ from itertools import islice, product
 
 from cratous.judge.algebra import Term, Window, all_of, parse, without
 from cratous.judge.log import Log
-from cratous.judge.mission import Mission
+from cratous.judge.mission import Mission, away_because
 from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, doubted, seconds, worst
 from cratous.spec.errors import BadInput
 
@@ -73,17 +73,22 @@ def deeds(mission: Mission, log: Log) -> dict[int, Deed]:
     return found
 
 
-def asked(mission: Mission, done: dict[int, Deed]) -> Term | None:
+def asked(mission: Mission, done: dict[int, Deed], end_ms: int | None) -> Term | None:
     """The relations over the tasks that take part in the end; None if there are none.
 
-    A task that was removed takes part if it had been done before.
+    A task that was removed takes part if it had been done before, and if it is asked for again, were it
+    after the end.
     """
     text = mission.relations.strip()
     whole = parse(text) if text else all_of(sorted(mission.tasks))
     _refuse_strangers(mission, whole)
     gone = set()
-    for task, at in mission.removed.items():
+    for task, entries in mission.task_said.items():
         deed = done.get(task, Deed())
+        known = [entry for entry in entries if end_ms is None or entry[0] <= end_ms]
+        if not known or known[-1][1] or any(there for _, there in entries[len(known) :]):
+            continue
+        at = known[-1][0]
         if deed.complete_ms is None or deed.complete_ms > at:
             gone.add(task)
     return without(whole, gone)
@@ -231,7 +236,7 @@ def best_way(term: Term, done: dict[int, Deed], served: set[int]) -> tuple[Term,
 
 def rows(mission: Mission, log: Log, done: dict[int, Deed], served: set[int]) -> Iterator[Row]:
     """Order, timing and choice, then eligibility."""
-    term = asked(mission, done)
+    term = asked(mission, done, log.end_ms)
     if term is not None:
         yield from _relation_rows(term, done, served)
     for task, deed in sorted(done.items()):
@@ -271,11 +276,10 @@ def _eligible(mission: Mission, number: int, deed: Deed) -> Row:
         wrong = ""
         if vehicle not in mission.vehicles or (task.eligible and vehicle not in task.eligible):
             wrong = f"vehicle {vehicle} may not do it"
-        elif start > mission.lost.get(vehicle, start):
-            wrong = f"vehicle {vehicle} was lost before"
-        elif start < mission.joins.get(vehicle, start):
-            wrong = f"vehicle {vehicle} had not joined"
-        elif start < mission.added.get(number, start):
+        elif why := away_because(mission.vehicle_said, vehicle, start):
+            gone = "was lost before" if why == "left" else "had not joined"
+            wrong = f"vehicle {vehicle} {gone}"
+        elif away_because(mission.task_said, number, start) == "to come":
             wrong = "it had not been asked for"
         if wrong:
             return Row(

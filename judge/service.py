@@ -39,7 +39,7 @@ def served(flight: Flight) -> dict[int, Service]:
 
 def rows(flight: Flight, found: dict[int, Service]) -> Iterator[Row]:
     """One row for each task that is asked for in the way that fits best, and one for the end."""
-    term = asked(flight.mission, flight.done)
+    term = asked(flight.mission, flight.done, flight.log.end_ms)
     if term is not None:
         good = {t for t, (verdict, *_) in found.items() if verdict == HOLDS}
         for task in sorted(best_way(term, flight.done, good)[0].tasks()):

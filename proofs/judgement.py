@@ -5,16 +5,18 @@ The command and its self-test judge by the same functions, so what the one refus
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from cratous.core import ledger as gate
 from cratous.core.ledger.home import Home
+from cratous.core.ledger.status import Grounds
 from cratous.proofs import ledger
 from cratous.proofs.engine.cache import Cache
 from cratous.proofs.ledger.recall import Recall
 from cratous.proofs.statements import definitions
+from cratous.proofs.statements.grounds import grounds
 from cratous.proofs.statements.relations import Kept
 
 
@@ -22,13 +24,16 @@ from cratous.proofs.statements.relations import Kept
 class Judgement:
     """What came of proving these theorems.
 
-    structural: what no proof could be bound to, what is outside of the subset included; unmeant: kernels whose definition is none; both
-    with their places, and only looked for where all theorems are judged.
+    structural: what no proof could be bound to, what is outside of the subset included; unmeant: kernels
+    whose definition is none; both with their places. grounds: what the status of each kernel rests on.
+    These are only looked for where all theorems are judged. statements: by theorem, what it says.
     """
 
     inventory: ledger.Inventory
     structural: tuple[str, ...]
     unmeant: tuple[str, ...]
+    grounds: Mapping[str, Grounds] = field(default_factory=dict)
+    statements: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def problems(self) -> list[str]:
@@ -64,25 +69,25 @@ def judge(
     """
     inventory = ledger.prove_all(names, tell, home=home, jobs=jobs, cache=cache, recall=recall)
     findings = [str(finding) for finding in inventory.findings]
+    # what is outside of the subset is not read any further
+    read = {} if findings else Kept(keep, home).all(t.name for t in inventory.theorems)
+    statements = {name: found.statement for name, found in read.items()}
     if not whole:
-        return Judgement(inventory, tuple(findings), ())
+        return Judgement(inventory, tuple(findings), (), statements=statements)
     bare = [
         f"{gate.place_of(name)}: {name.rpartition('.')[2]}: no theorem is about this kernel"
         for name in inventory.bare
     ]
     dead = ledger.dead_paths(inventory.theorems)
     structural = (*inventory.problems, *bare, *findings, *dead)
-    # what is outside of the subset is not read any further
-    unmeant = [] if findings else _unmeant(inventory, home, keep)
-    return Judgement(inventory, structural, tuple(unmeant))
-
-
-def _unmeant(inventory: ledger.Inventory, home: Home, keep: Path | None) -> list[str]:
-    """What is wrong with the definitions that kernels name."""
-    theorems = inventory.theorems
+    if findings:
+        return Judgement(inventory, structural, ())
+    entries, theorems = gate.load_all(home), inventory.theorems
     proofs = definitions.Proofs(
         {theorem.name: theorem.kernels for theorem in theorems},
         frozenset(theorem.name for theorem in theorems if theorem.proved),
-        Kept(keep, home).all(theorem.name for theorem in theorems),
+        read,
+        {theorem.name: theorem.uses for theorem in theorems},
     )
-    return definitions.problems(gate.load_all(home), home, proofs)
+    unmeant = tuple(definitions.problems(entries, home, proofs))
+    return Judgement(inventory, structural, unmeant, grounds(entries, home, proofs), statements)

@@ -6,6 +6,8 @@ DONE. A task's life: LEFT, BEGUN, ENDED, FAILED.
 
 from typing import NamedTuple
 
+from cratous.spec.constraint_rows import AFTER_END, AFTER_START
+
 TRANSIT, WAIT, TASK, DONE = 0, 1, 2, 3
 LEFT, BEGUN, ENDED, FAILED = 0, 1, 2, 3
 BEGIN, END, FAIL = 1, 2, 3
@@ -15,6 +17,13 @@ to the next item; another lap at the end of the chain."""
 STANDS_BY, PLAN_ANEW, GIVE_UP = 0, 1, 2
 LOST, JOINS, ADDED, REMOVED, OTHER = 1, 2, 3, 4, 5
 GOES_ON, COMPLETE, FAILED_FLIGHT, LIMIT = 0, 1, 2, 3
+FOR_NOTHING, FOR_CHANGE, FOR_DEADLINE = 0, 1, 2
+"""For what a plan has been asked: for nothing, after a change, for a deadline that cannot be kept."""
+KEEP_ON, FLY_PLAN, DROP_LEFT, DROP_LATE = 0, 1, 2, 3
+"""What an answer leads to: nothing; the plan is flown; all that is left fails; the late task fails."""
+
+FLY_WAY, FAIL_TASK, CIRCLE = 0, 1, 2
+"""What is done after the search for a way: it is flown; the task fails; the vehicle circles where it is."""
 
 
 class Moved(NamedTuple):
@@ -123,3 +132,55 @@ def outcome(flying: int, away: int, expected: int, left: int, now: int, limit: i
     if now < limit:
         return GOES_ON
     return LIMIT
+
+
+class Answer(NamedTuple):
+    """For what a plan is asked afterwards, and what is done."""
+
+    awaited: int
+    act: int
+
+
+def is_asked(asked: int) -> bool:
+    """A plan is being waited for."""
+    return not (asked < FOR_CHANGE or asked > FOR_DEADLINE)
+
+
+def is_after_answer(asked: int, found: bool, answer: Answer) -> bool:
+    """An answer that nobody waits for changes nothing. One that is waited for is waited for no more: a plan
+    is flown; without one a change leaves nothing of the work to be done, a deadline costs its task."""
+    if not is_asked(asked):
+        return answer == Answer(asked, KEEP_ON)
+    flown = answer.act == FLY_PLAN and found
+    all_lost = answer.act == DROP_LEFT and asked == FOR_CHANGE
+    one_lost = answer.act == DROP_LATE and asked == FOR_DEADLINE
+    return answer.awaited == FOR_NOTHING and (flown or (not found and (all_lost or one_lost)))
+
+
+def on_path_again(away: bool, suspended: bool, flown_m: float, join_m: float) -> bool:
+    """UxAS flies the vehicle, which had left the path of its task, and the place where the way back joins
+    the path does not lie ahead of it any more [m]."""
+    ahead_m = join_m - flown_m
+    return away and not (suspended or ahead_m > 0)
+
+
+def falls_with(kind: int, named: bool, life: int) -> bool:
+    """A task that has not begun can never begin after one that has failed, if a row makes it wait for
+    that one's end or start."""
+    waits = not (kind < AFTER_END or kind > AFTER_START)
+    begun = life != LEFT
+    return waits and named and not begun
+
+
+def is_after_search(found: bool, tasked: bool, act: int) -> bool:
+    """Only a way that was found is flown, and it is. Without one the vehicle stays: if it is there for a
+    task, that fails, so that nothing is waited for that cannot come."""
+    flies, fails = act == FLY_WAY, act == FAIL_TASK
+    return flies == found and fails == (tasked and not flies) and not (act < 0 or act > CIRCLE)
+
+
+def completes_at(t: int, outcome: int, end: int, limit: int) -> bool:
+    """The mission ends at the instant t, complete, and t lies between its beginning and its limit.
+    THERE IS an instant t."""
+    in_time = t >= 0 and t <= limit
+    return in_time and t == end and outcome == COMPLETE

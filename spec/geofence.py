@@ -329,3 +329,10 @@ def share_a_point(p: Point, q: Point, a: Point, b: Point, s: float, t: float, sh
     if shared and s == 1 and t == 0:
         return False
     return common_point(p, q, a, b, s, t)
+
+
+def part_seen(part: float, unseen: float, whole: float) -> bool:
+    """A part of the whole has been seen that is at least 99 hundredths of it. THERE IS such a part: what
+    was seen is the whole without what was not."""
+    seen = part + unseen <= whole
+    return seen and 100 * part >= 99 * whole

@@ -113,3 +113,15 @@ def earlier_of(t: int, best: int, value: int) -> bool:
     FOR ALL t: this equals `t >= m` exactly for m the earlier of best and value.
     """
     return t >= best or t >= value
+
+
+def flown_as_asked(n: int, ok: bool, least: int, most: int, times: int) -> bool:
+    """All tasks so far, and one more, are done as often as is asked for: there is an n-th time where
+    it has to be done n times, and none where it may not be done so often. FOR ALL n >= 1."""
+    there = n <= times
+    return ok and (there or n > least) and (n <= most or not there)
+
+
+def flown_as_asked_result(ok: bool) -> bool:
+    """After the last task. Nothing is quantified."""
+    return ok

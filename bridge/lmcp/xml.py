@@ -18,12 +18,22 @@ from typing import Any
 
 from cratous.bridge.lmcp import model
 from cratous.bridge.lmcp.objects import LmcpObject, enums, types, unknown_field
+from cratous.bridge.lmcp.xml_text import mended, parse
 from cratous.bridge.lmcp.xml_writing import dumps
 from cratous.spec.errors import BadInput
-from cratous.spec.files.limits import DOCUMENT_BYTES, TAGS, at_most, integer_of
+from cratous.spec.files.limits import integer_of
 from cratous.spec.files.text_file import bytes_of
 
-__all__ = ["LmcpNote", "dumps", "loads", "parse", "read_element", "read_file", "read_messages"]
+__all__ = [
+    "LmcpNote",
+    "dumps",
+    "loads",
+    "mended",
+    "parse",
+    "read_element",
+    "read_file",
+    "read_messages",
+]
 
 _INTEGER = re.compile(r"[+-]?[0-9]{1,20}\Z")
 _REAL = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?\Z")
@@ -75,11 +85,12 @@ def read_messages(path: str | Path, notes: list[str]) -> list[Any]:
     """The objects of a message file of UxAS, whose reader takes what `read_file` refuses.
 
     A value that is left empty is the field's default, `<F><KIND>v</KIND></F>` is the value v of an
-    enumeration, and a file may hold one object after the other; each case is noted. Lines that
-    begin with `#` say nothing. All else is refused as in `read_file`.
+    enumeration, a file may hold one object after the other, and `xml_text.mended` says what else;
+    each case is noted. Lines that begin with `#` say nothing. All else is refused as in `read_file`.
     """
     data = bytes_of(Path(path))
     data = _HASH_LINE.sub(b"", data)  # the line's end stays: places keep their line numbers
+    data = mended(data, str(path), notes)
     head = re.match(rb"\s*(?:<\?xml[^>]*\?>)?", data)
     body = data[head.end() :] if head else data
     try:
@@ -118,41 +129,6 @@ def loads(
         for note in source.notes:
             warnings.warn(LmcpNote(note), stacklevel=2)
     return objects
-
-
-def parse(text: str | bytes, where: str = "text") -> Any:
-    """The root element of an XML text, read without entities, network or comments."""
-    from lxml import etree
-
-    parser = etree.XMLParser(
-        resolve_entities=False,
-        no_network=True,
-        huge_tree=False,
-        load_dtd=False,
-        remove_comments=True,
-        remove_pis=True,
-    )
-    data = text.encode("utf-8") if isinstance(text, str) else text
-    if isinstance(text, str):  # a declared encoding no longer holds for text that is decoded
-        data = re.sub(rb"\A(<\?xml[^>]*?)\s+encoding=(\"[^\"]*\"|'[^']*')", rb"\1", data)
-    at_most(len(data), DOCUMENT_BYTES, "the XML is too long", where)
-    at_most(data.count(b"<"), TAGS, "too many elements", where, "tags")
-    try:
-        root = etree.fromstring(data, parser)
-    except etree.XMLSyntaxError as err:
-        line = err.lineno or 1
-        raise BadInput(
-            "not well-formed XML", where=f"{where}:{line}", expected="XML", got=err.msg or str(err)
-        ) from None
-    for node in root.iter():
-        if not isinstance(node.tag, str):
-            raise BadInput(
-                "entity in XML",
-                where=f"{where}:{node.sourceline or 1}",
-                expected="no entities but the five of XML",
-                got=str(node.text),
-            )
-    return root
 
 
 def read_element(

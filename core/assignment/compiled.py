@@ -13,7 +13,7 @@ import numpy as np
 
 from cratous.core.readings.machine.compiled import machine
 
-SMALL_TASKS, SMALL_MOVES = 3, 24
+SMALL_TASKS, SMALL_MOVES = 3, 120
 """Up to so many tasks, and vehicles times options, an instance is small."""
 
 

@@ -6,18 +6,18 @@ whether a wait that is no whole number of laps becomes longer or shorter. Under 
 only rise (`raised`), so what stands when nothing rises any more is the componentwise earliest
 schedule, and there is none if a start rises past its latest, or round a circle. Where a choice is
 broken, both sides are tried, so the result is the best of the earliest schedules of all choices.
-The result is checked by the proved kernels (`schedule_holds`) by whoever uses it.
+What was found is put to the proved kernels (`schedule_holds`, `chain_holds`) before it is given.
 """
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from cratous.core.assignment.steps import raised
-from cratous.core.kernel import driver
+from cratous.core.assignment.steps import chain_holds, raised
+from cratous.core.kernel import Refusal, driver
 from cratous.core.schedule.rows import schedule_holds
 from cratous.spec.constraint_rows import (
     AFTER_END,
@@ -54,15 +54,19 @@ class Visit(NamedTuple):
 
 @dataclass(frozen=True)
 class Times:
-    """Arrival, start and end per visit; `violated` is a row that cannot be met, if there is none.
-
-    sure: all choices were tried, so there is no better schedule, or none at all.
-    """
+    """Arrival, start and end per visit. sure: all choices were tried, so there is no better schedule."""
 
     arrive_ms: tuple[int, ...]
     start_ms: tuple[int, ...]
     end_ms: tuple[int, ...]
-    violated: Row | None = None
+    sure: bool = True
+
+
+@dataclass(frozen=True)
+class Unmet(Refusal):
+    """No schedule was found: a row that cannot be met. sure: all choices were tried, so there is none."""
+
+    violated: Row
     sure: bool = True
 
 
@@ -317,15 +321,15 @@ class _Best:
             self.system.edges[added.pop()].pop()
 
 
-@driver(checked_by=("schedule_holds", "row_holds"))
+@driver(checked_by=("schedule_holds", "chain_holds", "row_holds"))
 def earliest(
     visits: Sequence[Visit],
     rows: Sequence[Row],
     cost: Cost | None = None,
     limit: int = 1 << 62,
     effort: int = CHOICES_MAX,
-) -> Times:
-    """The best schedule of the chains under the rows; `violated` set if there is none.
+) -> Times | Unmet:
+    """The best schedule of the chains under the rows, or what cannot be met.
 
     Visits must stand in the order of flight within a chain. cost: of the starts, never falling with
     them (the latest end if None); limit: only schedules that cost less count; effort: choices that
@@ -335,22 +339,44 @@ def earliest(
     best = _Best(system, cost or latest_end(visits), limit, effort)
     if system.broken is None:
         best.search(list(system.first), range(len(visits)))
-    start, violated = best.best, None
-    if start is not None:
-        starts = {visit.task_id: s for s, visit in zip(start, visits, strict=True)}
-        ends = {visit.task_id: starts[visit.task_id] + visit.duration_ms for visit in visits}
-        if not rows_hold(rows, starts, ends):
-            start = None
-    if start is None:
-        violated = system.broken or best.violated or _none_below(limit)
-        start = list(system.first)
-    return Times(
-        tuple(system.arrival(start, k) for k in range(len(visits))),
-        tuple(start),
-        tuple(s + v.duration_ms for s, v in zip(start, visits, strict=True)),
-        violated,
-        best.effort >= 0,
-    )
+    found = None if best.best is None else _times(system, best)
+    if found is not None and keeps(found, visits, rows):
+        return found
+    return Unmet(system.broken or best.violated or _none_below(limit), best.effort >= 0)
+
+
+def _times(system: _System, best: _Best) -> Times:
+    assert best.best is not None
+    start, visits = best.best, system.visits
+    arrive = tuple(system.arrival(start, k) for k in range(len(visits)))
+    ends = tuple(s + v.duration_ms for s, v in zip(start, visits, strict=True))
+    return Times(arrive, tuple(start), ends, best.effort >= 0)
+
+
+def keeps(times: Times, visits: Sequence[Visit], rows: Sequence[Row]) -> bool:
+    """Whether these times of the visits keep all rows, and each chain can be flown at them."""
+    starts = {visit.task_id: s for s, visit in zip(times.start_ms, visits, strict=True)}
+    ends = {visit.task_id: e for e, visit in zip(times.end_ms, visits, strict=True)}
+    chains = list(_legs(times, visits))
+    if sum(map(len, chains)) != len(visits):
+        return False  # two visits claim to come after one
+    return rows_hold(rows, starts, ends) and all(chain_holds(legs) for legs in chains)
+
+
+def _legs(times: Times, visits: Sequence[Visit]) -> Iterator[list[tuple[int, int, int, int]]]:
+    """Of each chain the (travel, start, end, duration) of its visits; what is flown stands as it is."""
+    next_of = {visit.previous: k for k, visit in enumerate(visits) if visit.previous >= 0}
+    for first, visit in enumerate(visits):
+        if visit.previous >= 0:
+            continue
+        legs, k, way = [], first, visit.ready_ms
+        while k >= 0:
+            one = visits[k]
+            start = times.start_ms[k]
+            travel = start if one.fixed_ms is not None else way + one.travel_ms
+            legs.append((travel, start, times.end_ms[k], one.duration_ms))
+            k, way = next_of.get(k, -1), 0
+        yield legs
 
 
 def _none_below(limit: int) -> Row:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from cratous.core.assignment.compiled import machine_for
-from cratous.core.assignment.earliest_times import Visit, earliest, least_starts
+from cratous.core.assignment.earliest_times import Unmet, Visit, earliest, least_starts
 from cratous.core.assignment.instance import Instance
 from cratous.core.assignment.layers import Ahead, first_state
 from cratous.core.assignment.refutation import bound
@@ -81,7 +81,7 @@ class Settler:
             return weighted(max(ends, default=0), sum(ends), legs, *per)
 
         times = earliest(visits, self.rows, cost, limit)
-        if times.violated is not None:
+        if isinstance(times, Unmet):
             self.unsure += not times.sure
             return limit, None
         found = [

@@ -36,6 +36,15 @@ def gate_offer(gate: Gate) -> Gate:
 
 
 @kernel(
+    implements="authority.gate.was_given",
+    restates="which epochs there have been; that none of the others reaches the actuators is proved of it",
+)
+def epoch_given(gate: Gate, epoch: int) -> bool:
+    """True iff the gate is in this epoch or has been; the others are forged or an error."""
+    return epoch >= 0 and epoch <= gate.epoch
+
+
+@kernel(
     implements="authority.gate.may_act",
     restates="the rule of the gate; what it keeps from happening is proved of it",
 )

@@ -1,12 +1,13 @@
 """The UxAS end of the bridge to one vehicle's ICAROUS, as transition kernels.
 
-This end knows of the vehicle's gate only what SETMOD lines say, each with the epoch that it began.
-The service keeps one `LinkEnd` for each vehicle, tells the kernels what came, and does what they
-answer. Definitions: `spec.authority.link_end`.
+ICAROUS says by SETMOD lines, each with the epoch that it began, who commands; the vehicle reports how
+its gate stands. A line is believed only if the gate says the same. The service keeps one `LinkEnd` for
+each vehicle, tells the kernels what came, and does what they answer. Definitions: `spec.authority.link_end`.
 """
 
 from typing import NamedTuple
 
+from cratous.core.authority.gate import Gate, epoch_given
 from cratous.core.authority.timeliness import in_time
 from cratous.core.kernel import kernel
 
@@ -28,15 +29,22 @@ class Linked(NamedTuple):
 
 
 @kernel(implements="authority.link_end.is_after_mode")
-def link_mode(end: LinkEnd, active: bool, epoch: int) -> Linked:
+def link_mode(end: LinkEnd, gate: Gate, active: bool, epoch: int) -> Linked:
     """A SETMOD has come.
 
-    active: it says that ICAROUS commands, else that it offers control; epoch: the one that began with
-    it. act: 0 nothing, 1 suspend what UxAS flies, 2 take the vehicle back, 3 report a mode that is
-    overtaken.
+    gate: as the vehicle has reported it last; active: the line says that ICAROUS commands, else that it
+    offers control; epoch: the one that began with it. act: 0 nothing, 1 suspend what UxAS flies, 2 take
+    the vehicle back, 3 report a mode that is overtaken, 4 refuse a mode that cannot be true.
     """
-    if epoch <= end.epoch:
+    if epoch == end.epoch and active == end.active:
+        return Linked(end, 0)
+    if not epoch_given(gate, epoch):
+        return Linked(end, 4)
+    if epoch < gate.epoch or epoch < end.epoch:
         return Linked(end, 3)
+    uxas_may = gate.owner == 0 or gate.offered
+    if active == uxas_may:
+        return Linked(end, 4)
     after = LinkEnd(active, epoch, end.alive)
     if active:
         return Linked(after, 1)

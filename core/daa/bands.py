@@ -25,7 +25,7 @@ from cratous.core.daa.state import (
     Guidance,
     Recovery,
 )
-from cratous.core.readings.machine.compiled import machine
+from cratous.core.readings.tiered import swift
 from cratous.spec.daa.parameters import NEAR, NONE, RECOVERY, Parameters, sensitivity
 
 SAMPLE_S = 1.0
@@ -198,7 +198,7 @@ def raw_bands(
     recovery, state = np.zeros(5), np.zeros(5, dtype=np.int64)
     radius, half = _recovery_size(p, own.alt_m)
     if n:
-        machine(guide)(
+        swift(guide, n * g.values // 3)(
             g.right, g.left, g.step_s, g.targets, g.rate_m_s, g.accel_m_s2, SAMPLE_S,
             traffic.states, traffic.mapped, traffic.conflict, traffic.kinds, traffic.volumes,
             traffic.alerting_s, sides * p.conflict_crit, sides * p.recovery_crit,
@@ -260,7 +260,7 @@ def last_times(
         g = grid(p, own, dimension)
         safe_r = np.ones(len(g.targets) or len(g.right), dtype=np.bool_)
         safe_l = np.ones(len(g.left), dtype=np.bool_)
-        time_s = machine(last_time)(
+        time_s = swift(last_time, g.values // 3)(
             g.right, g.left, g.step_s, g.step_s if exact else 0.0, g.targets, g.rate_m_s, g.accel_m_s2, SAMPLE_S,
             traffic.states, i, traffic.kinds[region], traffic.volumes[region],
             p.lookahead_time_s, p.bands_add_time_to_maneuver, entry_s,

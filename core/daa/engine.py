@@ -19,7 +19,7 @@ from cratous.core.daa.bands import Raw, Traffic, last_times, out_of_range, raw_b
 from cratous.core.daa.spread import spread_conflict
 from cratous.core.daa.state import HDIR, Aircraft, Coordination, LevelTimes
 from cratous.core.daa.urgency import coordination, sides
-from cratous.core.readings.machine.compiled import machine
+from cratous.core.readings.tiered import swift
 from cratous.spec.daa.parameters import (
     FAR,
     NEAR,
@@ -164,11 +164,11 @@ def look(
     width = t.kinds.shape[1] if len(t.counts) else 0
     first, last = np.full((n, width), math.nan), np.full((n, width), math.nan)
     if n and width:
-        machine(raw_levels)(
+        swift(raw_levels, n)(
             relative, errors, judged, t.counts, t.kinds, t.volumes, t.alerting_s,
             p.lookahead_time_s, levels,
         )  # fmt: skip
-        machine(level_times)(
+        swift(level_times, n)(
             relative, errors, judged, t.counts, t.kinds, t.volumes, p.lookahead_time_s, first, last
         )
     for i, a in enumerate(index):

@@ -32,6 +32,11 @@ class Grid(NamedTuple):
     rate_m_s: float
     accel_m_s2: float
 
+    @property
+    def values(self) -> int:
+        """How many values are looked at."""
+        return len(self.right) + len(self.left) + len(self.targets)
+
 
 EMPTY = np.zeros(0)
 

@@ -18,7 +18,7 @@ from cratous.core.daa.grid import sides_in
 from cratous.core.daa.steps import piece_counts, straight_from, until
 from cratous.core.daa.uncertainty import lost, lost_span
 from cratous.core.kernel import Vec2, driver
-from cratous.core.readings.machine.compiled import machine
+from cratous.core.readings.tiered import swift
 from cratous.spec.daa.parameters import NEAR, Parameters
 
 
@@ -66,7 +66,7 @@ def coordination_reasons(
         if not across and not up:
             continue
         steps = range(k, k + 1) if g.step_s == 0 else range(k + 1)
-        asked: Any = machine(step_is_repulsive)
+        asked: Any = swift(step_is_repulsive)
         at = next(
             (j for j in steps if not asked(path, j, g.step_s, traffic.states[i], across, up)), -1
         )
@@ -156,7 +156,7 @@ def altitude_reasons(p: Parameters, seen: Seen, raw: Raw, k: int) -> list[Reason
             if not traffic.conflict[region, i]:
                 horizon_s = min(horizon_s, float(traffic.alerting_s[region, i]))
             volume = traffic.volumes[region, i]
-            if machine(altitude_conflict)(
+            if swift(altitude_conflict)(
                 g.right[0], traffic.states[i], traffic.kinds[region, i], volume, g.targets[k],
                 g.rate_m_s, g.accel_m_s2, SAMPLE_S, 0.0, horizon_s, p.lookahead_time_s,
                 p.bands_add_time_to_maneuver, False, 0.0,

@@ -10,7 +10,7 @@ from cratous.core.daa.grid import Grid, grid, sides_in
 from cratous.core.daa.guidance import evaluate
 from cratous.core.daa.state import ALT, Aircraft
 from cratous.core.kernel import driver
-from cratous.core.readings.machine.compiled import machine
+from cratous.core.readings.tiered import swift
 from cratous.spec.daa.parameters import Level, Parameters
 
 
@@ -44,7 +44,7 @@ def spread_conflict(
             continue
         safe_r = np.ones(len(g.targets) or len(g.right), dtype=np.bool_)
         safe_l = np.ones(len(g.left), dtype=np.bool_)
-        machine(evaluate)(
+        swift(evaluate, g.values // 3)(
             g.right, g.left, g.step_s, g.step_s, g.targets, g.rate_m_s, g.accel_m_s2, SAMPLE_S,
             other.reshape(1, 6), np.zeros(1, dtype=np.int64),
             np.array([kind], dtype=np.int64), volume.reshape(1, 11),

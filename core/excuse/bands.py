@@ -22,7 +22,7 @@ from cratous.core.daa.volume import conflict_span
 from cratous.core.excuse.state import OPEN, REFUSED, SURELY, Other, Tried
 from cratous.core.excuse.way_out import after_piece, manoeuvre_judged, piece_lost, way_out
 from cratous.core.kernel import Vec2, driver
-from cratous.core.readings.machine.compiled import machine
+from cratous.core.readings.tiered import swift
 from cratous.spec.daa.parameters import Parameters
 
 
@@ -157,7 +157,7 @@ def judge(
     flown = np.concatenate([o.pieces for o in others]) if others else np.zeros((0, 8))
     answers = np.full(count, manoeuvre_judged.start, dtype=np.int64)
     by, facts = np.full(count, -1, dtype=np.int64), np.zeros((count, 3))
-    machine(judge_pieces)(
+    swift(judge_pieces, len(pieces) * len(flown) // 15)(
         np.ascontiguousarray(pieces), first, np.ascontiguousarray(flown), begins,
         np.array([o.kind for o in others], dtype=np.int64),
         np.array([o.thresholds for o in others], dtype=np.float64).reshape(-1, 5),

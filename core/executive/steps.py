@@ -151,3 +151,68 @@ def flight_outcome(flying: int, away: int, expected: int, left: int, now: int, l
     if now >= limit:
         return 3
     return 0
+
+
+class Answered(NamedTuple):
+    """For what a plan is asked afterwards, and what to do: 0 nothing, 1 fly the plan, 2 fail all that is
+    left, 3 fail the late task."""
+
+    awaited: int
+    act: int
+
+
+@kernel(implements="executive.is_after_answer")
+def answered(asked: int, found: bool) -> Answered:
+    """The planner has answered.
+
+    asked: for what a plan has been asked, 0 nothing, 1 a change, 2 a deadline; found: there is a plan.
+    """
+    if asked != 1 and asked != 2:
+        return Answered(asked, 0)
+    if found:
+        return Answered(0, 1)
+    if asked == 1:
+        return Answered(0, 2)
+    return Answered(0, 3)
+
+
+@kernel(implements="executive.on_path_again")
+def rejoined(away: bool, suspended: bool, flown_m: float, join_m: float) -> bool:
+    """True iff a vehicle has come back onto the path of its task.
+
+    away: it had left the path; suspended: UxAS does not fly it; flown_m: how far it is on its track [m];
+    join_m: where the path begins again on it [m].
+    """
+    return away and not suspended and flown_m >= join_m
+
+
+@kernel(implements="executive.falls_with")
+def falls_with(kind: int, named: bool, life: int) -> bool:
+    """True iff a task fails with another that has failed.
+
+    kind: of a row of the task, 1 after the end of others, 2 after their start; named: the row names the
+    one that has failed; life: of the task.
+    """
+    return (kind == 1 or kind == 2) and named and life == 0
+
+
+@kernel(implements="executive.is_after_search")
+def way_act(found: bool, tasked: bool) -> int:
+    """What to do after the search for a way that keeps the zones: 0 fly it, 1 fail the task, 2 circle.
+
+    found: there is one; tasked: a task needs it.
+    """
+    if found:
+        return 0
+    if tasked:
+        return 1
+    return 2
+
+
+@kernel(implements="executive.completes_at")
+def completes(outcome: int, end: int, limit: int) -> bool:
+    """True iff a mission has ended complete, in time.
+
+    outcome: as of `flight_outcome`; end: when it ended; limit: until when it had to [ms].
+    """
+    return outcome == 1 and end >= 0 and end <= limit

@@ -1,8 +1,8 @@
 """Marking and registering kernels, folds and drivers.
 
 A *kernel* is a plain typed function in the subset of `core.subset`. A *fold* runs a kernel step
-over data of run-time length. A *driver* is a map, a fold or a search whose output a proved kernel
-re-checks. All three are registered here under their qualified names, `package.module.function`, so
+over data of run-time length. A *driver* is a map, a fold or a search that proved
+kernels decide in; how far they vouch for its output is read from its text (`proofs.statements`). All three are registered here under their qualified names, `package.module.function`, so
 that the ledger can be held against them and two of one bare name stand side by side. The
 decorators return the function itself: CPython runs exactly what is written.
 """
@@ -29,11 +29,15 @@ class Vec2(NamedTuple):
     y: float
 
 
+class Refusal:
+    """Base of what a driver gives where it found nothing: such a result claims nothing."""
+
+
 @dataclass(frozen=True)
 class Entry:
     """One registered function: its qualified name, what it is, what it implements, the function.
 
-    uses: kernels that a fold is made of, or that re-check a driver as its author names them (see
+    uses: kernels that a fold is made of, or that decide for a driver as its author names them (see
     `checkers`); nonnegative: arguments for which a number below 0 means nothing; supports: the kernel
     or fold of which it is a part, which has the definition (see `supported`); restates: what a formula
     is for that its definition only repeats.
@@ -181,7 +185,10 @@ def kernel(
 
 
 def driver(*, checked_by: tuple[str, ...]) -> Callable[[F], F]:
-    """Register a search or map; `checked_by` names the kernels that re-check its output."""
+    """Register a search or map; `checked_by` names the kernels that decide in it.
+
+    That its whole output goes through one of them is not taken from here: its text has to show it.
+    """
 
     def mark(function: F) -> F:
         _register(Entry(qualified(function), "driver", "", function, checked_by))

@@ -28,6 +28,7 @@ from cratous.core.ledger.home import (
     theorem_home,
     theorem_name,
 )
+from cratous.core.ledger.kept_keys import keys_of
 from cratous.core.ledger.keys import Keys
 from cratous.core.ledger.parts import MISSING, PARTS, compiler, solver_version
 from cratous.core.ledger.records import read
@@ -102,19 +103,19 @@ def _not_proved(names: list[str], theorems: dict[str, Any], home: Home) -> str:
 
 
 def _problems(home: Home, entries: dict[str, Entry], data: dict[str, Any]) -> Iterator[Problem]:
-    theorems, keys = data["theorems"], Keys(home)
+    theorems, keys = data["theorems"], keys_of(home, entries, data)
     for name, entry in entries.items():
         record = data["kernels"].get(name)
         if record is None:
             yield Problem(name, "it is not in the ledger")
             continue
-        if record["status"] != "proved":
+        if not record["proved"]:
             yield Problem(name, f"it is {record['status']}")
             continue
         if lacking := _not_proved(record["theorems"], theorems, home):
             yield Problem(name, f"it rests on what is not in the ledger as proved: {lacking}")
             continue
-        now, then = keys.of(entry, record["theorems"], theorems), record["key"]
+        now, then = keys[name], record["key"]
         changed = [PARTS[p] for p in PARTS if now[p] != then.get(p) or now[p] == MISSING]
         if changed:
             yield Problem(name, "changed since the proof: " + ", ".join(changed))

@@ -14,9 +14,25 @@ from typing import Any
 from cratous.core.kernel.sources import digest
 from cratous.core.ledger.home import PRODUCT, Home, theorem_file
 from cratous.core.ledger.parts import PROVENANCE
+from cratous.core.ledger.status import status_of
 from cratous.spec.errors import Refused
 
 KINDS = ("kernels", "theorems")
+FIELDS = {
+    "kernels": frozenset(
+        {
+            "kind", "implements", "supports", "restates", "checked_by", "rechecked_by", "theorems",
+            "against", "proved", "status", "key", "seal",
+        }
+    ),
+    "theorems": frozenset(
+        {
+            "sentence", "statement", "kernels", "lemmas", "status", "premises", "obligations",
+            "assumptions", "seal",
+        }
+    ),
+}  # fmt: skip
+"""What a record has, no less and no more."""
 
 
 def checksum(name: str, record: dict[str, Any]) -> str:
@@ -46,11 +62,20 @@ def read(folder: Path = PRODUCT.records) -> dict[str, Any]:
                     )
                 if name in data[file.parent.name]:
                     raise ValueError(f"two records of {name}")
+                _fits(name, file.parent.name, record)
                 data[file.parent.name][name] = record
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise Refused(f"{where} cannot be read ({error!r}); run `cratous prove`") from error
     data["seal"] = seal(data)
     return data
+
+
+def _fits(name: str, kind: str, record: dict[str, Any]) -> None:
+    """Raise ValueError for a record of another form, or with a status that its facts do not give."""
+    if strange := sorted(FIELDS[kind] ^ set(record)):
+        raise ValueError(f"{name}: its fields are of another format: {', '.join(strange)}")
+    if kind == "kernels" and (given := status_of(record)) != record["status"]:
+        raise ValueError(f"{name}: its status is {record['status']!r}, its facts give {given!r}")
 
 
 def seal(data: dict[str, Any]) -> str:

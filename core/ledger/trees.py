@@ -37,10 +37,13 @@ class Tree:
         self._edges: dict[Place, tuple[tuple[str, tuple[Target, ...]], ...]] = {}
         self._meant: dict[tuple[str, tuple[str, ...]], tuple[Target, ...]] = {}
         self.open_classes: dict[Place, bool] = {}
+        self.asked: set[str] = set()
+        """The modules and folders that were looked for."""
 
     # -- modules ----------------------------------------------------------------------------------
     def file(self, module: str) -> Path | None:
         """The source file of a module of the tree."""
+        self.asked.add(module)
         top, *parts = module.split(".")
         if top not in self.packages:
             return None

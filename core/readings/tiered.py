@@ -2,7 +2,8 @@
 
 `core.readings.machine.compiled.machine` compiles the text that CPython runs, so which of the two ran cannot be seen
 in what comes out (`tests/routing/test_routing.py`); only the time differs. Short jobs start without the
-compiler.
+compiler. Compiling takes seconds, so machine code that an earlier run has kept is used much sooner;
+not while calls are counted, as which reading ran is then told (`by_work_alone`).
 """
 
 import contextlib
@@ -12,14 +13,15 @@ from typing import Any
 
 from cratous.core.kernel import qualified
 
-MUCH = 300
-_patience = [MUCH]
+SOON, MUCH, WORTH = 300, 3_000, 60_000
+"""After so much work the compiled loop is used: if it is kept, if work alone counts, if it is not kept."""
+_patience: list[int | None] = [None]
 _done: Counter[str] = Counter()
 _compiled: dict[str, Callable[..., Any]] = {}
 
 
 def swift(function: Callable[..., Any], work: int = 1) -> Callable[..., Any]:
-    """The function as it stands, or compiled once more than MUCH has been done with it.
+    """The function as it stands, or compiled once enough has been done with it.
 
     work: how much this call does; a unit is about what CPython does in a tenth of a millisecond.
     """
@@ -28,7 +30,7 @@ def swift(function: Callable[..., Any], work: int = 1) -> Callable[..., Any]:
     if known is not None:
         return known
     _done[name] += work
-    if _done[name] <= _patience[-1]:
+    if _done[name] <= _limit(function, _done[name]):
         return function
     from cratous.core.readings.machine.compiled import machine
 
@@ -36,10 +38,33 @@ def swift(function: Callable[..., Any], work: int = 1) -> Callable[..., Any]:
     return _compiled[name]
 
 
-def begin_anew() -> None:
-    """Forget what has been done: when the compiler takes over depends on what comes now alone."""
+def _limit(function: Callable[..., Any], done: int) -> int:
+    """How much is done with a function before it is compiled."""
+    fixed = _patience[-1]
+    if fixed is not None:
+        return fixed
+    if done <= SOON:
+        return SOON
+    from cratous.core.readings.machine.compiled import is_kept
+
+    return SOON if is_kept(function) else WORTH
+
+
+def _begin_anew() -> None:
     _done.clear()
     _compiled.clear()
+
+
+@contextlib.contextmanager
+def by_work_alone() -> Iterator[None]:
+    """Inside, when the compiler takes over follows from the work done inside, and from nothing else."""
+    _begin_anew()
+    _patience.append(MUCH)
+    try:
+        yield
+    finally:
+        _patience.pop()
+        _begin_anew()
 
 
 @contextlib.contextmanager

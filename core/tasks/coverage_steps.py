@@ -1,4 +1,7 @@
-"""Whether a small square lies in a convex polygon: left of all its edges. Definition: `spec.geofence`."""
+"""Whether a small square lies in a convex polygon: left of all its edges; and whether enough was seen.
+
+Definitions: `spec.geofence`.
+"""
 
 from cratous.core.geofence.planar import orient
 from cratous.core.kernel import Vec2, fold, kernel
@@ -32,3 +35,12 @@ square_within = fold(
     start=True,
     finish=within_result,
 )
+
+
+@kernel(implements="geofence.part_seen")
+def enough_seen(unseen: float, whole: float) -> bool:
+    """True iff a search of this size is served: at most one part in a hundred of it was not seen.
+
+    unseen, whole: in one unit, points of a line or square metres of an area, >= 0.
+    """
+    return 100 * unseen <= whole

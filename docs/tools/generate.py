@@ -18,6 +18,7 @@ import services_table
 from cratous.core import ledger
 from cratous.core.files.whole_file import write_atomically
 from cratous.core.kernel.names import short
+from cratous.core.ledger.status import counts, in_words
 from cratous.proofs import recheck
 from cratous.proofs.mutation import record as mutation_record
 from cratous.proofs.mutation.keys import Keys
@@ -53,6 +54,8 @@ def inventory() -> str:
         "within its budget. Effort is z3's, in thousands of its own steps.",
         "",
         "## Theorems",
+        "Under each sentence of an author stands one that is made from what the theorem states.",
+        "",
         "| theorem | sentence | about | obligations | effort | second solver |",
         "|---|---|---|---|---|---|",
     ]
@@ -60,7 +63,8 @@ def inventory() -> str:
         about = ", ".join(f"`{names[kernel]}`" for kernel in theorem["kernels"])
         spent = f"{known[name]['z3_effort'] / 1000:.0f}" if name in known else "-"
         lines.append(
-            f"| `{name}` | {theorem['sentence']} | {about} | {theorem['obligations']} "
+            f"| `{name}` | {theorem['sentence']}<br>*{_cell(theorem['statement'])}* "
+            f"| {about} | {theorem['obligations']} "
             f"| {spent} | {verdicts[name]} |"
         )
     for theorem_name, theorem in sorted(theorems.items()):
@@ -70,17 +74,28 @@ def inventory() -> str:
     if waiting:
         lines += ["", "## Obligations that the second solver does not confirm"]
         lines += [f"- {row['cvc5']}: {'; '.join(row['of'])}" for row in waiting]
-    lines += ["", "## Kernels, folds and drivers", "| name | kind | definition | stands on |"]
-    lines.append("|---|---|---|---|")
+    lines += ["", "## Kernels, folds and drivers", ""]
+    said = counts([kernel["status"] for kernel in kernels.values()])
+    lines += ["; ".join(f"{number} {status}" for status, number in said.items()) + ".", ""]
+    lines += ["| name | kind | definition | status | theorems, or kernels that decide in it |"]
+    lines.append("|---|---|---|---|---|")
     for name, kernel in sorted(kernels.items()):
-        stands = kernel["theorems"] or [f"checked by {names[k]}" for k in kernel["checked_by"]]
+        stands = kernel["theorems"] or [names[one] for one in kernel["checked_by"]]
         definition = f"`{kernel['implements']}`" if kernel["implements"] else "search or map"
         if kernel["supports"]:
             definition = f"a step of `{names[kernel['supports']]}`"
         if kernel["restates"]:
             definition += f", restated: {kernel['restates']}"
-        lines.append(f"| `{names[name]}` | {kernel['kind']} | {definition} | {', '.join(stands)} |")
+        lines.append(
+            f"| `{names[name]}` | {kernel['kind']} | {definition} | {in_words(kernel, names)} "
+            f"| {', '.join(stands)} |"
+        )
     return "\n".join(lines) + "\n"
+
+
+def _cell(text: str) -> str:
+    """Text that stands in a table and means only itself."""
+    return text.replace("|", "\\|").replace("*", "\\*").replace("_", "\\_").replace("<", "&lt;")
 
 
 def mutation() -> str:

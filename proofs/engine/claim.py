@@ -17,17 +17,26 @@ from typing import Any
 
 import z3
 
-from cratous.core.kernel import Fold, Vec2, qualified
-from cratous.proofs.engine.induction import Induction
-from cratous.proofs.engine.lift import OPAQUE, REPLACED, VISITS, Visit, join, lift
-from cratous.proofs.engine.symbolic import INT64, RANGE, SymBool, SymInt, SymMask, SymReal, equality
+from cratous.core.kernel import Fold, Vec2, entry_of, qualified
+from cratous.proofs.engine import closed
+from cratous.proofs.engine.closed import TRUE, path_to
+from cratous.proofs.engine.induction import Induction, arbitrary
+from cratous.proofs.engine.lift import CLOSED, OPAQUE, REPLACED, VISITS, Visit, join, lift
+from cratous.proofs.engine.symbolic import (
+    INT64,
+    RANGE,
+    SymBool,
+    SymInt,
+    SymMask,
+    SymReal,
+    equality,
+)
 from cratous.proofs.engine.terms import (
     Stub,
     depending,
+    fields_of_both,
     flatten,
     free_names,
-    known,
-    leaves,
     of_its_kinds,
     of_kind,
     statement,
@@ -80,8 +89,9 @@ class Claim:
     dropped: frozenset[int] = frozenset()
     weakened: Callable[[int, z3.BoolRef], z3.BoolRef] | None = None
     stated: int = 0
+    uses: list[closed.Call] = field(default_factory=list)
+    told: closed.Told = field(default_factory=closed.Told)
 
-    # -- arbitrary values ---------------------------------------------------------------
     def _value(self, name: str, make: Callable[[str], Any]) -> Any:
         if name in self.names:
             raise ValueError(f"the value {name!r} is introduced twice")
@@ -125,9 +135,8 @@ class Claim:
 
     def vector(self, name: str) -> Vec2:
         """An arbitrary vector in the plane."""
-        return Vec2(self.real(name + ".x"), self.real(name + ".y"))
+        return Vec2(*self.reals(f"{name}.x {name}.y"))
 
-    # -- statements ---------------------------------------------------------------------
     def premise(self, condition: Any) -> None:
         """Restrict the theorem to values that satisfy `condition`."""
         self._restrict(statement(condition))
@@ -135,27 +144,33 @@ class Claim:
     def _restrict(self, premise: z3.BoolRef) -> None:
         """Add a premise, unless this reading of the claim is to do without it (`proofs.mutation.mutate`)."""
         number, self.stated = self.stated, self.stated + 1
-        if number in self.dropped:
-            return
-        self.premises.append(premise if self.weakened is None else self.weakened(number, premise))
+        if number not in self.dropped:
+            weaker = premise if self.weakened is None else self.weakened(number, premise)
+            self.premises.append(weaker)
 
     def assume(self, condition: Any, *, owner: str, reason: str) -> None:
         """Take something for granted; it stays in the ledger, with owner and reason, for ever."""
         self.facts.append(statement(condition))
         self.assumptions.append((str(statement(condition)), owner, reason))
 
-    def use(self, kernel: Callable[..., Any], *args: Any) -> Any:
-        """Run a kernel of `core` on these values; the theorem is about it."""
+    def use(self, kernel: Callable[..., Any], *args: Any, when: Any = True) -> Any:
+        """Run a kernel of `core` on these values; the theorem is about it.
+
+        when: where its value counts; elsewhere it owes nothing, and is any value.
+        """
         self.used.append(kernel)
         self._name()
-        return self._lift(kernel, args)
+        where = TRUE if when is True else statement(when)
+        return self._lift(kernel, args, where=where)
 
     def _name(self) -> None:
-        """The theorem is about the kernels that it uses, and that it or a lemma looks into."""
+        # the theorem is about the kernels that it uses, and that it or a lemma looks into
         for kernel in self.used:
-            seen = kernel not in self.stubs or kernel in self.vouched
-            if seen and qualified(kernel) not in self.kernels:
-                self.kernels.append(qualified(kernel))
+            if kernel not in self.stubs or kernel in self.vouched:
+                self._about(kernel)
+
+    def _about(self, kernel: Any) -> None:
+        self.kernels += [qualified(kernel)] if qualified(kernel) not in self.kernels else []
 
     def define(self, definition: Callable[..., Any], *args: Any) -> Any:
         """Evaluate a definition of `spec` on these values."""
@@ -164,15 +179,13 @@ class Claim:
     def opaque(self, *functions: Callable[..., Any]) -> None:
         """Do not look into these functions: equal arguments give equal, otherwise unknown results.
 
-        What is known about them then comes from `lemma` alone, whose premises are owed for the
-        very arguments of the call, so a contract cannot ignore them.
+        What is known about them then comes from `lemma` alone, whose premises are owed for the very
+        arguments of the call; what they owe themselves is owed at every call (see `closed`).
         """
         for function in functions:
             self.unseen.add(function)
-            if function in self.stubs:
-                continue
-            # two functions of one name, a kernel and its definition, must not share their results
-            self.stubs[function] = Stub(self.prefix + qualified(function), function)
+            if function not in self.stubs:
+                self.stubs[function] = Stub(self.prefix + qualified(function), function)
 
     def calls(self, function: Callable[..., Any]) -> list[tuple[Any, ...]]:
         """The arguments of every call of an opaque function so far."""
@@ -184,36 +197,63 @@ class Claim:
     ) -> None:
         """For an opaque function: where the two argument lists are equal, so are the results."""
         stub = self.stubs[function]
-        equal = self.all_of(*[self.same(a, b) for a, b in zip(one, other, strict=True)])
-        fact = z3.Implies(equal.term, statement(self.same(stub(*one), stub(*other))))
+        fact = self.implies(self.same(one, other), self.same(stub(*one), stub(*other))).term
         self.congruences.append(fact)
         self.facts.append(fact)
 
     def _lift(
-        self, function: Callable[..., Any], args: tuple[Any, ...], machine: bool = True
+        self,
+        function: Callable[..., Any],
+        args: tuple[Any, ...],
+        machine: bool = True,
+        where: z3.BoolRef = TRUE,
     ) -> Any:
-        """The function's value; `machine`: its integers are those of compiled code."""
+        """The value; machine: its integers are those of compiled code; where: it counts."""
         of_its_kinds(function, args)
         before = dict(OPAQUE)
         OPAQUE.update(self.stubs)
         VISITS.append([])
+        met: list[tuple[Callable[..., Any], tuple[Any, ...], z3.BoolRef]] = []
+        CLOSED.append(lambda f, given: met.append((f, given, path_to(where))))
         try:
             lifted = lift(function, *args)
         finally:
+            CLOSED.pop()
             self.visits += [replace(v, granted=self.granted) for v in VISITS.pop()]
             OPAQUE.clear()
             OPAQUE.update(before)
         self.facts += lifted.roots
+        self._closed(function, args, met, machine, where)
         self.roots += lifted.roots
-        # an unbounded integer that a premise restricts may be restricted to what no machine has
         wide = self.wide & {name for premise in self.premises for name in free_names(premise)}
         for name, term in depending(args, wide) if machine and wide else ():
             text = f"{function.__name__}: argument {name}: {RANGE}"
             self._owe("defined", text, z3.And(term >= -INT64, term < INT64))
         for text, condition in lifted.obligations:
             if machine or not text.endswith(RANGE):
-                self._owe("defined", f"{function.__name__}: {text}", condition)
+                goal = condition if where is TRUE else z3.Implies(where, condition)
+                self._owe("defined", f"{function.__name__}: {text}", goal)
         return lifted.value
+
+    def _closed(
+        self, function: Callable[..., Any], args: Any, met: list[Any], machine: bool, where: Any
+    ) -> None:
+        """Remember the calls of closed functions, for what they owe; a lemma shows that of its own."""
+        if self.prefix:
+            own = machine or entry_of(function) is None  # a kernel's integers may not fit else
+            if own and function in self.stubs and function not in self.unseen:
+                self.told.add(function, self.stubs[function].key(args), where, ())
+            return
+        given = (*self.premises, *self.facts)
+        for called, values, path in met:
+            key = self.stubs[called].key(values)
+            self.uses.append(closed.Call(called, values, key, path, machine, given))
+
+    def settle(self) -> None:
+        """State what the calls of closed functions owe, when everything else is stated."""
+        calls, self.uses = self.uses, []
+        for text, given, goal in closed.owed(calls, self.told):
+            self.obligations.append(Obligation("defined", text, given, goal))
 
     def _owe(self, kind: str, text: str, goal: z3.BoolRef) -> None:
         given = (*self.premises, *self.facts)
@@ -239,13 +279,12 @@ class Claim:
         for number, term in enumerate(terms, 1):
             self._owe("goal", f"{text}: case {number}", z3.Implies(term, statement(goal)))
         self.goals.append(statement(goal))
-        self.facts.append(statement(goal))
+        self.facts.append(self.goals[-1])
 
     def lemma(self, name: str, *, when: Any = True, **values: Any) -> None:
-        """Use the theorem `name` for these values where `when` holds.
+        """Use the theorem `name` for these values where `when` holds: its premises are owed there.
 
-        Its premises are owed there, and its goals are known there. What is opaque here is opaque
-        in the lemma too.
+        What is opaque here is opaque in the lemma too.
         """
         if self.load is None:
             raise RuntimeError("lemmas need a loader")
@@ -269,6 +308,7 @@ class Claim:
         self.vouched |= inner.vouched | (set(inner.used) - inner.unseen)
         self._name()
         given = statement(when)
+        self.told.through(inner.told, given, (*self.premises, *self.granted))
         self.lemmas.append(name)
         for premise in inner.premises:
             self._owe("lemma", f"premise of {name}", z3.Implies(given, premise))
@@ -299,14 +339,7 @@ class Claim:
     def same(self, a: Any, b: Any) -> Any:
         """Equality of two values; of tuples, field by field."""
         if isinstance(a, tuple) or isinstance(b, tuple):
-            if not (isinstance(a, tuple) and isinstance(b, tuple)) or len(a) != len(b):
-                raise TypeError("a record is compared with what has other fields")
-            if getattr(a, "_fields", ()) != getattr(b, "_fields", ()) and all(
-                type(one) is not tuple for one in (a, b)
-            ):
-                names = f"{type(a).__name__} and {type(b).__name__}"
-                raise TypeError(f"records of two kinds are compared: {names}")
-            return self.all_of(*[self.same(x, y) for x, y in zip(a, b, strict=True)])
+            return self.all_of(*[self.same(x, y) for x, y in fields_of_both(a, b)])
         return equality(a, b)
 
     def fold(
@@ -336,9 +369,8 @@ class Claim:
         if self.prefix:
             return  # used as a lemma, a fold has no goals to offer
         kernel_fold = REPLACED.get(kernel_fold, kernel_fold)
-        self._arbitrary((acc, model), (item, context))
-        if qualified(kernel_fold) not in self.kernels:
-            self.kernels.append(qualified(kernel_fold))
+        arbitrary(self.premises, (acc, model), (item, context))
+        self._about(kernel_fold)
         induction = Induction(self, acc, model, item)
         before = statement(relation(acc, model))
         with induction.without_items():
@@ -346,6 +378,7 @@ class Claim:
             induction.relation(before, base, start=model_start, context=context)
             self._owe("base", "relation at the start", base)
         # both are run only where the relation holds, so what they owe is owed there
+        plain = list(self.facts)
         self._grant(before)
         after = self.use(kernel_fold.step, acc, *item, *context)
         model_after = self.define(model_step, model, *item, *context)
@@ -355,30 +388,12 @@ class Claim:
             wanted = self.define(model_finish, model)
             self._owe("use", "results are equal", statement(self.same(result, wanted)))
         induction.model_only(model_after, wanted)
-        self.facts = [fact for fact in self.facts if not fact.eq(before)]
-        self.granted = ()
+        # what was shown where the relation was granted holds there alone
+        there = {fact.get_id() for fact in (*self.roots, *self.congruences)}
+        gained = [fact for fact in self.facts[len(plain) :] if fact.get_id() in there]
+        self.facts, self.granted = [*plain, *gained], ()
 
     def _grant(self, condition: z3.BoolRef) -> None:
-        """Take it for granted in what follows, as an induction does."""
+        # for granted in what follows, as an induction does
         self.facts.append(condition)
         self.granted = (condition,)
-
-    def _arbitrary(self, accumulators: Any, others: Any) -> None:
-        """Refuse accumulators over which no induction runs."""
-        own = [known(leaf) for leaf in leaves(accumulators)]
-        if any(not z3.is_const(t) or t.decl().kind() != z3.Z3_OP_UNINTERPRETED for t in own):
-            raise ValueError("a fold's accumulators are arbitrary values, not terms or literals")
-        names = {str(term) for term in own}
-        if len(names) < len(own):
-            raise ValueError("a fold's accumulators are distinct values")
-        for leaf in leaves(others):
-            shared = sorted(names & free_names(known(leaf)))
-            if shared:
-                raise ValueError(f"an item or context depends on the accumulator {shared[0]}")
-        for premise in self.premises:
-            shared = sorted(names & free_names(premise))
-            if shared:
-                raise ValueError(
-                    f"a premise restricts the accumulator {shared[0]}: no step keeps to it; "
-                    "put it into the relation (an unbounded integer is `c.whole`)"
-                )

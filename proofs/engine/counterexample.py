@@ -54,8 +54,8 @@ class Watched(Claim):
     runs: list[Run] = field(default_factory=list)
     folds: list[Fold[Any]] = field(default_factory=list)
 
-    def use(self, kernel: Callable[..., Any], *args: Any) -> Any:
-        value = super().use(kernel, *args)
+    def use(self, kernel: Callable[..., Any], *args: Any, when: Any = True) -> Any:
+        value = super().use(kernel, *args, when=when)
         self.runs.append(Run("kernel", kernel, args, value))
         return value
 

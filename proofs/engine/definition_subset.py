@@ -128,40 +128,62 @@ class DefinitionKinds(Kinds):
         if self.scope.get(name, OVER[name]) is not OVER[name]:
             raise Refused(node, f"{name!r} is not Python's own here: give yours another name")
         over = node.args[0] if len(node.args) == 1 and not node.keywords else None
+        if isinstance(over, ast.Tuple | ast.List):
+            return self._of_all(node, name, self._common(over, names))
         if not isinstance(over, ast.GeneratorExp) or len(over.generators) != 1:
             raise Refused(node, f"{name} of (... for ... in ...), over a few written values")
         loop = over.generators[0]
-        kind = self.of(over.elt, {**names, **self._items(loop, names)})
+        if loop.ifs:
+            raise Refused(node, "a loop over all of a few written values")
+        kind = self.of(over.elt, {**names, **self.items(loop, names)})
+        return self._of_all(node, name, kind)
+
+    def _of_all(self, node: ast.Call, name: str, kind: Kind) -> Kind:
+        """The kind of any, all or sum of values of this kind."""
         if kind is not bool if name != "sum" else kind not in (float, int):
             raise Refused(node, f"{name} is not of {shown(kind)}")
         return kind
 
-    def _items(self, loop: ast.comprehension, names: dict[str, Kind]) -> dict[str, Kind]:
+    def _common(self, node: ast.Tuple | ast.List, names: dict[str, Kind]) -> Kind:
+        """The kind of all values that are written here."""
+        kinds = [self.of(part, names) for part in node.elts]
+        both = functools.reduce(lambda a, b: None if a is None else merged(a, b), kinds)
+        if both is None:
+            raise Refused(node, "the values that are gone through are of one kind")
+        return both
+
+    def items(self, loop: ast.comprehension | ast.For, names: dict[str, Kind]) -> dict[str, Kind]:
         """The names that a loop over written values gives, with the kinds of their values."""
         ways = [loop.iter]
         targets = [loop.target]
-        if (
-            isinstance(loop.iter, ast.Call)
-            and ast.unparse(loop.iter.func) == "zip"
-            and "zip" not in self.scope
-        ):
+        called = ast.unparse(loop.iter.func) if isinstance(loop.iter, ast.Call) else ""
+        if called in self.scope or called in self.local:
+            raise Refused(
+                loop.iter, f"{called!r} is not Python's own here: give yours another name"
+            )
+        if isinstance(loop.iter, ast.Call) and called == "zip":
             ways = list(loop.iter.args)
             targets = list(loop.target.elts) if isinstance(loop.target, ast.Tuple) else []
-        if loop.ifs or len(ways) != len(targets):
+        if not ways or len(ways) != len(targets):
             raise Refused(loop.iter, "a loop over a few written values, or a zip of such")
         found: dict[str, Kind] = {}
         for way, target in zip(ways, targets, strict=True):
             constants = self.named(way)
-            if isinstance(way, ast.Tuple | ast.List):
-                kinds = [self.of(part, names) for part in way.elts]
+            if isinstance(way, ast.Tuple | ast.List) and way.elts:
+                both = self._common(way, names)
+            elif isinstance(way, ast.Call) and called == "range" and len(way.args) == 1:
+                both = self.of(way.args[0], names)
+                if not isinstance(both, Literal) or not 0 < both.bound <= LOOPS:
+                    raise Refused(way, f"so many times as is written, at most {LOOPS}")
             elif isinstance(constants, tuple) and isinstance(way, ast.Name):
                 self._as_written(way, constants)
-                kinds = [Literal(abs(v)) if isinstance(v, int) else None for v in constants]
+                if not constants or not all(type(v) is int for v in constants):
+                    raise Refused(way, "a tuple of integers that its module writes once")
+                both = Literal(max(abs(v) for v in constants))
             else:
                 raise Refused(way, "a loop over a few written values, or a zip of such")
-            both = functools.reduce(lambda a, b: None if a is None else merged(a, b), kinds)
-            if both is None or not isinstance(target, ast.Name):
-                raise Refused(way, "the values of a loop are of one kind, each with a name")
+            if not isinstance(target, ast.Name):
+                raise Refused(way, "each value of a loop has a name")
             found[target.id] = both
         return found
 
@@ -172,10 +194,18 @@ def outside(function: Callable[..., Any]) -> tuple[Finding, ...]:
 
     Functions of a theorem's own file are in the language of theorems (`theorem_subset`).
     """
-    parts = str(function.__module__).split(".")
-    return () if "theorems" in parts[1:3] else tuple(check(function))
+    return () if of_theorems(function) else tuple(check(function))
 
 
+def of_theorems(function: Callable[..., Any]) -> bool:
+    """A function of a theorem's file, or a method of proof of the product."""
+    package, _, home = str(function.__module__).partition(".")
+    if package == "cratous":
+        return home.startswith(("proofs.methods.", "proofs.theorems."))
+    return home.startswith("theorems.")
+
+
+LOOPS = 1000
 OVER = {"any": any, "all": all, "sum": sum}
 
 

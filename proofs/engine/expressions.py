@@ -145,6 +145,10 @@ class Kinds:
                 )
         return bool
 
+    def items(self, loop: ast.For, names: dict[str, Kind]) -> dict[str, Kind]:
+        """The names that a loop gives: kernels have none."""
+        raise Refused(loop, "loops over data are `fold`s over a kernel step")
+
     def comparable(self, one: Kind, other: Kind, order: bool) -> bool:
         """Numbers of one kind; truth values unless it is asked which is less."""
         both = merged(one, other)

@@ -56,6 +56,27 @@ def spread(names: set[str], claim: Claim) -> set[str]:
         found |= more
 
 
+def arbitrary(premises: list[z3.BoolRef], accumulators: Any, others: Any) -> None:
+    """Refuse accumulators over which no induction runs."""
+    own = [known(leaf) for leaf in leaves(accumulators)]
+    if any(not z3.is_const(t) or t.decl().kind() != z3.Z3_OP_UNINTERPRETED for t in own):
+        raise ValueError("a fold's accumulators are arbitrary values, not terms or literals")
+    names = {str(term) for term in own}
+    if len(names) < len(own):
+        raise ValueError("a fold's accumulators are distinct values")
+    for leaf in leaves(others):
+        shared = sorted(names & free_names(known(leaf)))
+        if shared:
+            raise ValueError(f"an item or context depends on the accumulator {shared[0]}")
+    for premise in premises:
+        shared = sorted(names & free_names(premise))
+        if shared:
+            raise ValueError(
+                f"a premise restricts the accumulator {shared[0]}: no step keeps to it; "
+                "put it into the relation (an unbounded integer is `c.whole`)"
+            )
+
+
 def _apart(what: str, value: Any, others: set[str]) -> None:
     shared = sorted(names_in(value) & others)
     if shared:

@@ -39,6 +39,8 @@ PRUNE_RLIMIT = 200_000
 MAX_PATHS = 4096
 OPAQUE: dict[Callable[..., Any], Callable[..., Any]] = {}
 """Functions that are not looked into at present, with what stands for them (see Claim.opaque)."""
+CLOSED: list[Callable[[Callable[..., Any], tuple[Any, ...]], None]] = []
+"""Who is told of every call of such a function, the innermost last (see `closed`)."""
 REPLACED: dict[Any, Any] = {}
 """Functions and folds in whose place another one is lifted at present (see `proofs.mutation.mutate`)."""
 
@@ -193,6 +195,8 @@ def _shown(branches: list[tuple[z3.BoolRef, Any]]) -> str:
 def lift(function: Callable[..., Any], *args: Any) -> Lifted:
     """Run `function` on symbolic arguments through every path, and join the results."""
     if function in OPAQUE:
+        for tell in CLOSED[-1:]:
+            tell(function, args)
         return Lifted(OPAQUE[function](*args), (), 1)
     if function in _LIFTING:
         circle = " -> ".join(f.__name__ for f in [*_LIFTING[_LIFTING.index(function) :], function])

@@ -22,7 +22,7 @@ import z3
 from cratous.core.kernel import entry_of, qualified
 from cratous.core.kernel.sources import altered, ours, place, position
 from cratous.core.ledger.home import Home
-from cratous.proofs.engine import definition_subset, plain_numbers
+from cratous.proofs.engine import definition_subset, plain_numbers, reached
 from cratous.proofs.engine.cache import Answer, Cache
 from cratous.proofs.engine.claim import Claim, Obligation
 from cratous.proofs.engine.counterexample import Model, Watched, story, telling
@@ -76,7 +76,9 @@ class Outcome:
 class Theorem:
     """A claim with its outcomes. Only `prove` can make one.
 
-    paths: of every kernel that it is about, which paths some values reach under the premises.
+    paths: of every kernel that it is about, which paths some values reach under the premises; varied:
+    how the
+    arguments of every use of a kernel, in order, vary under them (see `reached`).
     """
 
     name: str
@@ -88,6 +90,7 @@ class Theorem:
     assumptions: tuple[tuple[str, str, str], ...]
     _key: Any = field(default=None, compare=False, repr=False)
     paths: tuple[tuple[str, tuple[bool, ...]], ...] = ()
+    varied: tuple[tuple[str, str], ...] = ()
 
     def __post_init__(self) -> None:
         if self._key is not _KEY:
@@ -97,6 +100,16 @@ class Theorem:
     def proved(self) -> bool:
         """True iff the premises are satisfiable and every obligation is proved."""
         return self.premises == "satisfiable" and all(o.status == "proved" for o in self.outcomes)
+
+    @property
+    def uses(self) -> dict[tuple[str, int], str]:
+        """How the arguments vary in each use of a kernel, numbered for each kernel (see `reached`)."""
+        counted: dict[str, int] = {}
+        found = {}
+        for name, how in self.varied:
+            counted[name] = counted.get(name, -1) + 1
+            found[name, counted[name]] = how
+        return found
 
     @property
     def rlimit(self) -> int:
@@ -130,6 +143,7 @@ def restore(data: dict[str, Any]) -> Theorem:
         tuple((str(a), str(b), str(c)) for a, b, c in data["assumptions"]),
         _KEY,
         tuple((str(name), tuple(map(bool, seen))) for name, seen in data["paths"]),
+        tuple((str(name), str(how)) for name, how in data["varied"]),
     )
 
 
@@ -228,6 +242,7 @@ def prove(
     tell: called with (done, all) after each obligation. Raises ValueError for a claim that names
     no kernel or shows nothing.
     """
+    claim.settle()
     if not claim.kernels:
         raise ValueError(f"theorem {name}: it names no kernel (state it with c.use)")
     if not claim.obligations:
@@ -239,6 +254,10 @@ def prove(
         outcomes.append(_decide(claim, obligation, rlimit, cache, hasher))
         if tell is not None:
             tell(len(outcomes), len(claim.obligations))
+
+    def possible(terms: list[z3.BoolRef]) -> str:
+        return _satisfiable(terms, min(rlimit, PATH_RLIMIT), cache, hasher)
+
     return Theorem(
         name,
         sentence,
@@ -248,31 +267,9 @@ def prove(
         tuple(outcomes),
         tuple(claim.assumptions),
         _KEY,
-        _reached_paths(claim, min(rlimit, PATH_RLIMIT), cache, hasher),
+        reached.paths(claim, possible),
+        reached.varied(claim, possible),
     )
-
-
-def _reached_paths(
-    claim: Claim, rlimit: int, cache: Cache, hasher: Hasher
-) -> tuple[tuple[str, tuple[bool, ...]], ...]:
-    """For each kernel that is looked into: is each of its paths possible under the premises?
-
-    A path that the solver cannot judge counts as possible: only a proof makes it dead.
-    """
-    found: dict[str, list[bool]] = {}
-    for visit in claim.visits:
-        if visit.context or entry_of(visit.function) is None:
-            continue
-        name, conditions = qualified(visit.function), visit.lifted.branches
-        # arguments may be literals: the uses with the most paths are the kernel's
-        if len(conditions) > len(found.get(name, [])):
-            found[name] = [False] * len(conditions)
-        seen = found[name]
-        for number, condition in enumerate(conditions):
-            if len(conditions) == len(seen) and not seen[number]:
-                terms = [*claim.premises, *visit.lifted.roots, condition]
-                seen[number] = _satisfiable(terms, rlimit, cache, hasher) != "unsat"
-    return tuple((name, tuple(seen)) for name, seen in sorted(found.items()) if len(seen) > 1)
 
 
 def _satisfiable(terms: list[z3.BoolRef], rlimit: int, cache: Cache, hasher: Hasher) -> str:
@@ -297,6 +294,7 @@ def state(name: str, folder: Path = FOLDER) -> tuple[Watched, str]:
     try:
         with cpu_limit(STATE_CPU_S, z3.main_ctx()):
             claim = stated(statement)
+            claim.settle()
             plain_numbers.hold(stated, statement, claim.visits)
             hanging = sorted(n for n in claim.asking if hangs_on_calls(n, folder))
     except OutOfTime as error:

@@ -24,7 +24,7 @@ from typing import Any, get_type_hints
 
 from cratous.core.kernel import REGISTRY, Fold, entry_of, kernel, qualified
 from cratous.proofs.engine.expressions import Kinds, Refused
-from cratous.proofs.engine.kinds import Kind, fits, is_kind, merged, shown
+from cratous.proofs.engine.kinds import Kind, Literal, fits, is_kind, merged, shown
 from cratous.proofs.engine.written import is_top
 
 STATEMENTS = "a kernel has assignments to names, `if` and `return`"
@@ -206,11 +206,30 @@ class Body:
             return self._joined(node, [way for way in ways if way is not None])
         if isinstance(node, ast.Assign):
             return {**names, **self._assigned(node, names)}
+        if isinstance(node, ast.For) and self.kinds.several and not node.orelse:
+            return self._repeated(node, names)
         raise Refused(
             node, f"no {type(node).__name__.lower()} here: {INSTEAD.get(type(node), STATEMENTS)}"
         )
 
-    def _joined(self, node: ast.If, ways: list[dict[str, Kind]]) -> dict[str, Kind] | None:
+    def _repeated(self, node: ast.For, names: dict[str, Kind]) -> dict[str, Kind] | None:
+        """The locals after a loop over written values, of which there is at least one."""
+        before, rounds = names, 0
+        while True:
+            after = self._block(node.body, {**before, **self.kinds.items(node, before)})
+            if after is None:
+                raise Refused(node, "a loop goes through all its values: return after it")
+            joined = self._joined(node, [before, after]) or {}
+            if all(joined.get(name) == kind for name, kind in before.items()):
+                return {**after, **joined}
+            rounds += 1
+            # a number that grows with each value has no bound that is written
+            grown = [n for n in joined if rounds > 1 and joined[n] != before[n]]
+            before = joined | {n: int for n in grown if isinstance(joined[n], Literal)}
+
+    def _joined(
+        self, node: ast.If | ast.For, ways: list[dict[str, Kind]]
+    ) -> dict[str, Kind] | None:
         if len(ways) < 2:
             return ways[0] if ways else None
         joined = {}

@@ -40,8 +40,12 @@ class Stub:
         self.calls: list[tuple[Any, ...]] = []
         self.results: dict[str, Any] = {}
 
+    def key(self, args: tuple[Any, ...]) -> str:
+        """A text that equal arguments share."""
+        return "; ".join(normal(arg, kind) for arg, kind in zip(args, self.kinds, strict=True))
+
     def __call__(self, *args: Any) -> Any:
-        key = "; ".join(normal(arg, kind) for arg, kind in zip(args, self.kinds, strict=True))
+        key = self.key(args)
         if key not in self.results:
             self.results[key] = fresh(f"{self.name}#{len(self.calls)}", self.result)
             self.calls.append(args)
@@ -75,6 +79,18 @@ def leaves(value: Any) -> list[Any]:
     if isinstance(value, tuple):
         return [leaf for part in value for leaf in leaves(part)]
     return [value]
+
+
+def fields_of_both(a: Any, b: Any) -> list[tuple[Any, Any]]:
+    """The fields of two records of one kind, by pairs; TypeError for two kinds."""
+    if not (isinstance(a, tuple) and isinstance(b, tuple)) or len(a) != len(b):
+        raise TypeError("a record is compared with what has other fields")
+    if getattr(a, "_fields", ()) != getattr(b, "_fields", ()) and all(
+        type(one) is not tuple for one in (a, b)
+    ):
+        names = f"{type(a).__name__} and {type(b).__name__}"
+        raise TypeError(f"records of two kinds are compared: {names}")
+    return list(zip(a, b, strict=True))
 
 
 def free_names(term: z3.ExprRef) -> set[str]:

@@ -11,7 +11,7 @@ from pathlib import Path
 from cratous.core.kernel.names import near
 from cratous.core.kernel.sources import place
 from cratous.core.ledger.home import PRODUCT, theorem_name
-from cratous.proofs.engine import theorem_subset
+from cratous.proofs.engine import theorem_subset, theorem_values
 from cratous.proofs.engine.claim import Claim
 from cratous.spec.errors import BadInput
 
@@ -94,7 +94,7 @@ def load_claim(name: str, folder: Path = FOLDER) -> tuple[Callable[[Claim], None
         except SyntaxError as error:
             line = f"{place(path)}:{error.lineno}"
             raise BadInput(f"the theorem is no Python: {error.msg}", where=line) from error
-        theorem_subset.check_values(module.__dict__, parsed, path)
+        theorem_values.check_values(module.__dict__, parsed, path)
         sys.modules[module_name] = module
     sentence = " ".join((ast.get_docstring(ast.parse(text)) or "").split())
     if not sentence:

@@ -11,20 +11,11 @@ from __future__ import annotations
 
 import ast
 import builtins
-import itertools
-import math
-import types
-import typing
 from collections.abc import Iterator
-from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
-from cratous.core.kernel import Fold, entry_of
-from cratous.core.kernel.sources import ours, place
-from cratous.proofs.engine import definition_subset
+from cratous.core.kernel.sources import place
 from cratous.proofs.engine.claim import Claim
-from cratous.proofs.engine.kinds import is_record
 from cratous.spec.errors import BadInput
 
 OFFERED = frozenset(
@@ -59,7 +50,6 @@ OFFERED = frozenset(
 )
 """What a claim has for a theorem."""
 HIDDEN = (frozenset(vars(Claim)) | frozenset(Claim.__dataclass_fields__) | {"term"}) - OFFERED
-TOOLS = (itertools.pairwise, itertools.combinations, itertools.product)
 METHODS = frozenset(["append", "split", "join", "items", "keys", "values"])
 BUILTINS = frozenset(
     [
@@ -95,10 +85,20 @@ EXPRESSIONS: tuple[type[ast.expr], ...] = (
     ast.UnaryOp, ast.Compare, ast.BoolOp, ast.IfExp, ast.Starred, ast.Subscript, ast.Slice,
     ast.ListComp, ast.DictComp, ast.GeneratorExp, ast.JoinedStr, ast.FormattedValue, ast.Lambda,
 )  # fmt: skip
+TYPES = (ast.Name, ast.Attribute, ast.Subscript, ast.Tuple, ast.List, ast.BinOp, ast.Constant)
 COMPARISONS = (ast.Lt, ast.LtE, ast.Gt, ast.GtE, ast.Eq, ast.NotEq, ast.In, ast.NotIn)
 ITERATORS = frozenset(
     ["map", "zip", "enumerate", "reversed", "pairwise", "combinations", "product"]
 )
+WORDS: dict[type[ast.AST], str] = {
+    ast.Import: "`import` of a whole module",
+    ast.ClassDef: "a class",
+    ast.AsyncFunctionDef: "`async`",
+    ast.AugAssign: "`+=` and its like",
+    ast.NamedExpr: "`:=`",
+    ast.Set: "a set",
+    ast.SetComp: "a set",
+}
 MAKERS = (ast.List, ast.Dict, ast.ListComp, ast.DictComp)
 
 
@@ -123,84 +123,6 @@ def check(tree: ast.Module, path: Path) -> None:
         ) from refused
 
 
-def check_values(scope: dict[str, Any], tree: ast.Module, path: Path) -> None:
-    """Refuse imports of anything but kernels, definitions, records, numbers and the engine's tools.
-
-    A function of `spec` that the theorem calls itself, not by c.define, is held to what definitions have.
-    """
-    for node in ast.walk(tree):
-        value = _called(node, scope)
-        plain = isinstance(value, types.FunctionType) and not _of_theorems(value)
-        if plain and (refused := definition_subset.outside(value)):
-            raise BadInput(
-                f"a theorem calls what is outside of the subset: {refused[0]}",
-                where=f"{place(path)}:{getattr(node, 'lineno', 1)}",
-                expected="definitions as docs/guides/own-kernel.md says",
-            )
-    for node in tree.body:
-        if not isinstance(node, ast.ImportFrom) or node.module == "__future__":
-            continue
-        for alias in node.names:
-            value = scope[alias.asname or alias.name]
-            if not _may_be_imported(value, str(node.module)):
-                raise BadInput(
-                    f"a theorem's file does not import {alias.name!r} of {node.module}",
-                    where=f"{place(path)}:{node.lineno}",
-                    expected="kernels as they are registered, folds, functions and modules of `spec`, "
-                    "records, numbers",
-                )
-
-
-def _may_be_imported(value: Any, module: str) -> bool:
-    if module in ("typing", "collections.abc", "itertools", "fractions"):
-        return module != "itertools" or value in TOOLS
-    if module == "math":
-        return value is math.sqrt
-    if value is Claim or value is Fold or entry_of(value) is not None or is_record(value):
-        return True
-    if isinstance(value, bool | int | float | Fraction | str):
-        return True
-    if isinstance(value, types.ModuleType):
-        inside = value.__name__.split(".")[1:2]
-        mine = ours(_Named(value.__name__)) and inside not in (["proofs"], ["services"])
-        return mine and (not value.__name__.startswith("cratous.core") or inside == ["spec"])
-    if isinstance(value, dict | tuple | frozenset | list):
-        parts = value.items() if isinstance(value, dict) else value
-        return all(_may_be_imported(part, module) for part in parts)
-    if isinstance(value, types.FunctionType) and ours(value):
-        return _of_theorems(value) or value.__module__.split(".")[1:2] == ["spec"]
-    return typing.get_origin(value) is not None
-
-
-def _of_theorems(function: types.FunctionType) -> bool:
-    """A function of a theorem's file, or a method of proof of the product."""
-    home = function.__module__.partition(".")[2]
-    product = function.__module__.startswith("cratous.")
-    return home.startswith("theorems.") or (
-        product and home.startswith(("proofs.methods", "proofs.theorems"))
-    )
-
-
-def _called(node: ast.AST, scope: dict[str, Any]) -> Any:
-    """What a call calls, if it is a global name or the attribute of a module; else None."""
-    if not isinstance(node, ast.Call):
-        return None
-    if isinstance(node.func, ast.Name):
-        return scope.get(node.func.id)
-    if isinstance(node.func, ast.Attribute) and isinstance(node.func.value, ast.Name):
-        owner = scope.get(node.func.value.id)
-        if isinstance(owner, types.ModuleType):
-            return vars(owner).get(node.func.attr)
-    return None
-
-
-class _Named:
-    """Stands for a module where `ours` wants something that has one."""
-
-    def __init__(self, module: str) -> None:
-        self.__module__ = module
-
-
 def _top(tree: ast.Module) -> set[str]:
     """Check what stands at the top of the file; returns the imported names."""
     names: set[str] = set()
@@ -220,8 +142,13 @@ def _top(tree: ast.Module) -> set[str]:
             if not all(isinstance(target, ast.Name) for target in node.targets):
                 raise _Refused(node, "such an assignment", "a constant with a name")
         elif not isinstance(node, ast.FunctionDef) and not (number == 0 and _is_text(node)):
-            raise _Refused(node, f"a {type(node).__name__}", "imports, constants and functions")
+            raise _Refused(node, _named(node), "imports from modules, constants and functions")
     return names
+
+
+def _named(node: ast.AST) -> str:
+    """A kind of syntax for a message, as it is written."""
+    return WORDS.get(type(node), f"`{type(node).__name__.lower()}`")
 
 
 def _of_proofs(module: str) -> bool:
@@ -253,12 +180,26 @@ class _Function:
         for default in (*self.node.args.defaults, *self.node.args.kw_defaults):
             if default is not None:
                 self.expression(default)
+        given = self.node.args
+        every = (*given.posonlyargs, *given.args, *given.kwonlyargs, given.vararg, given.kwarg)
+        for annotation in (self.node.returns, *(one.annotation for one in every if one)):
+            if annotation is not None:
+                self._type(annotation)
         self._block(self.node.body)
+
+    def _type(self, node: ast.expr) -> None:
+        """An annotation, which Python computes when the file is read: names of types alone."""
+        for part in ast.walk(node):
+            text = isinstance(part, ast.Constant) and part.value is not None and part.value != ...
+            if isinstance(part, ast.expr) and (text or not isinstance(part, TYPES)):
+                raise _Refused(node, "an annotation that is computed", "the name of a type")
+            if isinstance(part, ast.Name | ast.Attribute):
+                self.expression(part)
 
     def _block(self, body: list[ast.stmt]) -> None:
         for node in body:
             if not isinstance(node, STATEMENTS):
-                raise _Refused(node, f"a {type(node).__name__}", "assignments, loops and calls")
+                raise _Refused(node, _named(node), "assignments, loops and calls")
             self._statement(node)
 
     def _statement(self, node: ast.stmt) -> None:
@@ -314,7 +255,7 @@ class _Function:
     def expression(self, node: ast.expr, *, consumed: bool = False) -> None:
         """Check an expression; consumed: it is gone through at once, so it may be an iterator."""
         if not isinstance(node, EXPRESSIONS):
-            raise _Refused(node, f"a {type(node).__name__}", "numbers, records, lists and calls")
+            raise _Refused(node, _named(node), "numbers, records, lists and calls")
         called = node.func if isinstance(node, ast.Call) else None
         iterator = isinstance(node, ast.GeneratorExp) or (
             isinstance(called, ast.Name) and called.id in ITERATORS
@@ -324,8 +265,13 @@ class _Function:
         if isinstance(node, ast.Attribute):
             self._attribute(node)
         python = isinstance(node, ast.Name) and hasattr(builtins, node.id)
-        if isinstance(node, ast.Name) and python and node.id not in BUILTINS | self.imported:
+        inner = isinstance(node, ast.Name) and node.id.startswith("__")
+        if isinstance(node, ast.Name) and (
+            inner or (python and node.id not in BUILTINS | self.imported)
+        ):
             raise _Refused(node, f"{node.id!r} of Python", "the claim's statements")
+        if called is not None and not isinstance(called, ast.Name | ast.Attribute):
+            raise _Refused(node, "a call of what has no name", "name it first")
         if isinstance(node, ast.Compare) and not all(isinstance(o, COMPARISONS) for o in node.ops):
             raise _Refused(node, "`is`", "==, or c.same of two values")
         at_once = isinstance(node, ast.Call | ast.Starred)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -22,6 +22,7 @@ from cratous.core.kernel.names import short
 from cratous.core.kernel.sources import altered, position, reached
 from cratous.core.ledger.home import PRODUCT, Home
 from cratous.core.ledger.records import seal, sealed, texts
+from cratous.core.ledger.status import Grounds, status_of
 from cratous.proofs.engine import prover
 from cratous.proofs.engine.cache import Cache
 from cratous.proofs.engine.subset import Finding, lint_all
@@ -179,14 +180,14 @@ def problems(entries: dict[str, Entry], home: Home = PRODUCT) -> list[str]:
             found.append(f"{where}: the code that runs is not its file's: {', '.join(wrong)}")
         if entry.kind == "driver":
             if not entry.uses:
-                found.append(f"{where}: no kernel re-checks this driver's output (checked_by)")
+                found.append(f"{where}: no kernel decides in this driver (checked_by)")
             for checker in checkers(entry):
                 if checker not in REGISTRY or REGISTRY[checker].kind == "driver":
                     found.append(f"{where}: its checker {checker!r} is no kernel or fold")
                 elif not any({name, checker} <= names for names in calls.values()):
                     found.append(
-                        f"{where}: nothing calls its checker {checker!r} on its output: neither "
-                        "itself nor a driver that uses it"
+                        f"{where}: nothing calls {checker!r}, by which it is said to be checked: "
+                        "neither itself nor a driver that uses it"
                     )
     return found
 
@@ -231,9 +232,22 @@ def _theorem_record(theorem: prover.Theorem) -> dict[str, Any]:
     }
 
 
-def records(inventory: Inventory, home: Home = PRODUCT) -> dict[str, Any]:
-    """The ledger as data."""
-    theorems = {t.name: _theorem_record(t) for t in inventory.theorems}
+def records(
+    inventory: Inventory,
+    home: Home = PRODUCT,
+    grounds: Mapping[str, Grounds] | None = None,
+    statements: Mapping[str, str] | None = None,
+) -> dict[str, Any]:
+    """The ledger as data.
+
+    grounds: by kernel, fold or driver, of `proofs.statements.grounds`; without them nothing is said to
+    be proved against a definition, or to be re-checked. statements: by theorem, what it says as a
+    sentence made from its claim.
+    """
+    theorems: dict[str, dict[str, Any]] = {
+        t.name: {**_theorem_record(t), "statement": (statements or {}).get(t.name, "")}
+        for t in inventory.theorems
+    }
     entries = gate.load_all(home)
     proved = {
         kernel: all(r["status"] == "proved" for r in theorems.values() if kernel in r["kernels"])
@@ -245,23 +259,28 @@ def records(inventory: Inventory, home: Home = PRODUCT) -> dict[str, Any]:
     for name, entry in entries.items():
         own = sorted(t for t, record in theorems.items() if name in record["kernels"])
         checked_by = list(checkers(entry)) if entry.kind == "driver" else []
+        ground = (grounds or {}).get(name, Grounds())
         good = proved.get(name, False)
         if entry.kind == "driver":
-            good = bool(checked_by) and all(proved.get(u, False) for u in checked_by)
-        kernels[name] = {
+            asked = {*checked_by, *ground.rechecked_by}
+            good = bool(checked_by) and all(proved.get(one, False) for one in asked)
+        record: dict[str, Any] = {
             "kind": entry.kind,
             "implements": entry.implements,
             "supports": supported(entry) if entry.supports else "",
             "restates": entry.restates,
             "checked_by": checked_by,
+            "rechecked_by": sorted(ground.rechecked_by),
             "theorems": own,
-            "status": "proved" if good else "not proved",
+            "against": sorted(ground.against),
+            "proved": good,
             "key": keys.of(entry, own, theorems),
         }
-    for record in theorems.values():
-        for lemma in record["lemmas"]:
+        kernels[name] = {**record, "status": status_of(record)}
+    for theorem in theorems.values():
+        for lemma in theorem["lemmas"]:
             if lemma not in theorems and gate.theorem_file(lemma, home) is None:
-                record["status"] = "not proved"
+                theorem["status"] = "not proved"
     data: dict[str, Any] = {
         "kernels": {name: sealed(name, record) for name, record in kernels.items()},
         "theorems": {name: sealed(name, record) for name, record in theorems.items()},
@@ -280,7 +299,7 @@ def changed_theorems(home: Home = PRODUCT) -> list[str]:
     for name, entry in entries.items():
         record = data["kernels"].get(name)
         now = keys.of(entry, record["theorems"], data["theorems"]) if record else None
-        if record is None or record["status"] != "proved" or now != record["key"]:
+        if record is None or not record["proved"] or now != record["key"]:
             stale.add(name)
     found = []
     for name in prover.theorem_files(prover.home_folder(home)):
@@ -291,6 +310,11 @@ def changed_theorems(home: Home = PRODUCT) -> list[str]:
     return found
 
 
-def text(inventory: Inventory, home: Home = PRODUCT) -> dict[str, str]:
+def text(
+    inventory: Inventory,
+    home: Home = PRODUCT,
+    grounds: Mapping[str, Grounds] | None = None,
+    statements: Mapping[str, str] | None = None,
+) -> dict[str, str]:
     """The ledger as it is written: the text of each file, by its place in the folder."""
-    return texts(records(inventory, home), home)
+    return texts(records(inventory, home, grounds, statements), home)

@@ -14,6 +14,7 @@ from typing import Any
 
 from cratous.core.kernel import Fold, qualified
 from cratous.proofs.claim import Claim
+from cratous.proofs.engine.induction import arbitrary
 from cratous.proofs.engine.lift import REPLACED
 from cratous.proofs.engine.terms import statement
 
@@ -45,7 +46,7 @@ def closed_chain(
     accumulators = [acc for _, acc, _ in (*runs, *models)]
     contexts = [context for _, _, context in (*runs, *models)]
     readers = [c.use] * len(runs) + [c.define] * len(models)
-    c._arbitrary(tuple(accumulators), tuple(contexts))
+    arbitrary(c.premises, tuple(accumulators), tuple(contexts))
     for fold in folds[: len(runs)]:
         if qualified(fold) not in c.kernels:
             c.kernels.append(qualified(fold))

@@ -41,6 +41,7 @@ def state(name: str, **how: Any) -> Claim:
     statement = load_claim(name, folder)[0]
     claim = Claim(load=lambda other: load_lemma(other, folder), **how)
     statement(claim)
+    claim.settle()
     return claim
 
 

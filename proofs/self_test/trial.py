@@ -101,7 +101,8 @@ def _proved(package: str, folder: Path) -> tuple[str, str]:
             raise BadInput("the package has no theorems", where=home.name)
         found = judge(names, home, jobs=1)
         if found.binds:
-            records.write(ledger.text(found.inventory, home), home.records)
+            said = ledger.text(found.inventory, home, found.grounds, found.statements)
+            records.write(said, home.records)
         return ("accepted" if found.holds else "refused"), _reason(found)
     except CratousError as error:
         return "refused", str(error)

@@ -17,6 +17,7 @@ from typing import Any
 from cratous.core.kernel import REGISTRY, Entry, Fold, supported
 from cratous.core.kernel.sources import position, reached
 from cratous.core.ledger.home import Home
+from cratous.proofs.engine.reached import of_more_than_one
 from cratous.proofs.statements.relations import Relations, full_name
 from cratous.proofs.statements.restated import restates
 
@@ -25,12 +26,20 @@ from cratous.proofs.statements.restated import restates
 class Proofs:
     """What was proved of a home: its theorems by name, and what their statements relate.
 
-    kernels: those that each theorem is about; proved: the theorems that are.
+    kernels: those that each theorem is about; proved: the theorems that are; varied: how the
+    arguments of their uses of kernels vary, by name and number.
     """
 
     kernels: Mapping[str, tuple[str, ...]]
     proved: frozenset[str]
     relations: Mapping[str, Relations]
+    varied: Mapping[str, Mapping[tuple[str, int], str]]
+
+    def holds_of_any(self, theorem: str, pair: tuple[str, str]) -> bool:
+        """The theorem relates the two by a use whose arguments are not fixed to one value."""
+        uses = self.relations[theorem].uses
+        varied = self.varied.get(theorem, {})
+        return of_more_than_one(how for use, how in varied.items() if (*pair, *use) in uses)
 
     def about(self, name: str) -> list[str]:
         """The theorems about a kernel, in order."""
@@ -74,6 +83,15 @@ def is_restated(entry: Entry, home: Home) -> bool | None:
     return None if meant is None else restates(function, meant)
 
 
+def relating(entry: Entry, home: Home, proofs: Proofs) -> list[str]:
+    """The theorems about an entry, and lemmas of them, whose goals relate it to its definition."""
+    if not entry.implements:
+        return []
+    pair = (full_name(entry.function), definition_name(entry, home))
+    theorems = proofs.resting(proofs.about(entry.name))
+    return [theorem for theorem in theorems if pair in proofs.relations[theorem].pairs]
+
+
 def problems(entries: Mapping[str, Entry], home: Home, proofs: Proofs) -> list[str]:
     """What is wrong with the definitions that kernels and folds name, each with its place.
 
@@ -99,13 +117,17 @@ def _of_meaning(entry: Entry, home: Home, proofs: Proofs) -> Iterator[str]:
         theorems = proofs.resting(proofs.about(entry.name))
         if not any(full in proofs.relations[theorem].definitions for theorem in theorems):
             yield f"implements {named}, which none of its theorems uses (c.define)"
-        elif not any(
-            (full_name(entry.function), full) in proofs.relations[theorem].pairs
-            for theorem in theorems
-        ):
+        elif not relating(entry, home, proofs):
             yield (
                 f"implements {named}, which none of its theorems holds it against: a goal relates "
                 "the two, and does not hold of other functions as well"
+            )
+        elif not any(
+            proofs.holds_of_any(theorem, (full_name(entry.function), full)) for theorem in theorems
+        ):
+            yield (
+                f"implements {named}, which none of its theorems holds it against for more than one "
+                "value of each argument: use arbitrary values (c.real) that no premise fixes"
             )
         same = is_restated(entry, home)
         if same and not entry.restates:

@@ -19,20 +19,27 @@ from typing import Any, get_args, get_origin, get_type_hints
 
 import z3
 
-from cratous.core.kernel import REGISTRY, Fold
+from cratous.core.kernel import REGISTRY, Fold, qualified
 from cratous.core.kernel.sources import digest, ours
 from cratous.core.ledger.home import Home
 from cratous.proofs.engine.claim import Claim
+from cratous.proofs.engine.closed import TRUE
 from cratous.proofs.engine.lift import LiftError
-from cratous.proofs.engine.symbolic import _raw
+from cratous.proofs.engine.symbolic import SymBool, SymInt, SymMask, SymReal, _raw
 from cratous.proofs.engine.terms import free_names, free_values, fresh, known, leaves
 from cratous.proofs.engine.theorem_files import FOLDER, load_claim
 from cratous.proofs.ledger.recall import Recall
 from cratous.proofs.ledger.remembered import named
+from cratous.proofs.statements import sentences
+from cratous.proofs.statements.sentences import UNREAD, Call, Stated
 from cratous.proofs.statements.sides import sides, signs
 
 SAYS_RLIMIT = 200_000
+KINDS = {
+    SymReal: "real number", SymInt: "integer", SymBool: "truth value", SymMask: "mask of 64 bits",
+}  # fmt: skip
 Function = Callable[..., Any]
+Use = tuple[str, int]
 
 
 @dataclass(frozen=True)
@@ -41,7 +48,9 @@ class Relations:
 
     together: both in what is concluded, as in an equality, or the definition asked of the kernel's
     result; follows: the kernel from the definition; leads: the definition from the kernel. lemmas:
-    what the theorem rests on.
+    what the theorem rests on. uses: the pairs, each with a use of a kernel by which they are related
+    (of a fold, its step): qualified name, and number among the theorem's uses of it. statement: what the
+    theorem says, as a sentence made from it.
     """
 
     definitions: frozenset[str]
@@ -49,6 +58,8 @@ class Relations:
     follows: frozenset[tuple[str, str]]
     leads: frozenset[tuple[str, str]]
     lemmas: tuple[str, ...]
+    uses: frozenset[tuple[str, str, str, int]] = frozenset()
+    statement: str = UNREAD
 
     @property
     def pairs(self) -> frozenset[tuple[str, str]]:
@@ -125,9 +136,40 @@ class _Outline(Claim):
     kept: list[z3.ExprRef] = field(default_factory=list)
     arguments: dict[Function, list[tuple[Any, ...]]] = field(default_factory=dict)
     made_of: dict[str, frozenset[Function]] = field(default_factory=dict)
-    evaluated: frozenset[Function] = frozenset()
-    known_then: dict[int, frozenset[Function]] = field(default_factory=dict)
+    evaluated: dict[Function, list[tuple[str, ...]]] = field(default_factory=dict)
+    written: dict[Use, tuple[str, ...]] = field(default_factory=dict)
+    used_in: dict[str, frozenset[Use]] = field(default_factory=dict)
+    counted: dict[str, int] = field(default_factory=dict)
+    stepped: dict[str, Use] = field(default_factory=dict)
     given_then: dict[int, tuple[z3.BoolRef, ...]] = field(default_factory=dict)
+    kinds: dict[str, str] = field(default_factory=dict)
+    values_of: dict[str, Call] = field(default_factory=dict)
+    folded: tuple[Fold[Any], tuple[str, ...]] | None = None
+    relation: z3.BoolRef | None = None
+
+    def _value(self, name: str, make: Callable[[str], Any]) -> Any:
+        value = super()._value(name, make)
+        self.kinds[name] = KINDS[type(value)]
+        return value
+
+    def fold(self, kernel_fold: Fold[Any], **how: Any) -> None:
+        """An induction over the items of a fold."""
+        items = tuple(str(known(leaf)) for leaf in leaves(how["item"]))
+        self.folded = (kernel_fold, items)
+        step = qualified(kernel_fold.step)
+        self.stepped[full_name(kernel_fold)] = (step, self.counted.get(step, -1) + 1)
+        super().fold(kernel_fold, **how)
+
+    def _grant(self, condition: z3.BoolRef) -> None:
+        self.relation = condition
+        super()._grant(condition)
+
+    def as_stated(self) -> Stated:
+        """The claim as it was read."""
+        fold, items = self.folded or (None, ())
+        return Stated(
+            self.kinds, self.values_of, self.obligations, self.given_then, fold, items, self.relation
+        )  # fmt: skip
 
     def closed_value(self, function: Function, args: tuple[Any, ...]) -> Any:
         """An unknown value of the function's type, which remembers what it is made of.
@@ -138,16 +180,59 @@ class _Outline(Claim):
         terms = [known(leaf) for leaf in leaves(args)]
         self.arguments.setdefault(function, []).append(args)
         if args and all(map(_is_number, leaves(args))):
-            self.evaluated |= {function}
+            self.evaluated.setdefault(function, []).append(tuple(str(t) for t in terms))
             return function(*args)
         key = (function, tuple(term.get_id() for term in terms))
         if key not in self.met:
             name = f"{full_name(function)}#{len(self.met)}"
             value = self.met[key] = _unknown(name, get_type_hints(function).get("return"))
+            self.values_of[name] = Call(function, args)
             self.kept += terms
             inner = frozenset([function]).union(*[self.functions_in(term) for term in terms])
             self.made_of |= {str(known(leaf)): inner for leaf in leaves(value)}
+            uses = frozenset[Use]().union(*[self.uses_in(term) for term in terms])
+            self.used_in |= {str(known(leaf)): uses for leaf in leaves(value)}
         return self.met[key]
+
+    def use(self, kernel: Function, *args: Any, when: Any = True) -> Any:
+        value = super().use(kernel, *args, when=when)
+        name = qualified(kernel)
+        number = self.counted[name] = self.counted.get(name, -1) + 1
+        written = [leaf for leaf in leaves(args) if isinstance(leaf, int)]
+        self.written[name, number] = tuple(str(known(leaf)) for leaf in written)
+        for leaf in map(known, leaves(value)):
+            if str(leaf) in self.used_in:
+                self.used_in[str(leaf)] |= {(name, number)}
+        return value
+
+    def uses_in(self, term: z3.ExprRef) -> frozenset[Use]:
+        """The uses of kernels that a term is made of."""
+        none: frozenset[Use] = frozenset()
+        return none.union(*[self.used_in.get(name, none) for name in free_names(term)])
+
+    def uses_of(self, kernel: str, terms: Iterable[z3.BoolRef]) -> frozenset[Use]:
+        """Those of a kernel, or the fold's step, by their full name, in these terms."""
+        if kernel in self.stepped:
+            return frozenset([self.stepped[kernel]])
+        found = frozenset[Use]().union(*map(self.uses_in, terms))
+        fold = next((f for f in self.folds() if full_name(f) == kernel), None)
+        names = (kernel,) if fold is None else (qualified(fold.step), qualified(fold.finish))
+        return frozenset(use for use in found if use[0] in names)
+
+    def rows(self, uses: Iterable[Use]) -> set[str]:
+        """The definitions that were evaluated at numbers which are written down in these uses."""
+        written = [set(self.written.get(use, ())) for use in uses]
+        return {
+            full_name(function)
+            for function, points in self.evaluated.items()
+            if in_spec(function)
+            and any(set(point) and set(point) <= row for point in points for row in written)
+        }
+
+    def folds(self) -> list[Fold[Any]]:
+        """The folds that the theorem is about."""
+        entries = [REGISTRY[name] for name in self.kernels if name in REGISTRY]
+        return [entry.function for entry in entries if isinstance(entry.function, Fold)]
 
     def functions_in(self, value: Any) -> frozenset[Function]:
         """All functions that a value is made of."""
@@ -161,7 +246,13 @@ class _Outline(Claim):
             name for name, made in self.made_of.items() if kernel in {full_name(f) for f in made}
         )
 
-    def _lift(self, function: Any, args: tuple[Any, ...], machine: bool = True) -> Any:
+    def _lift(
+        self,
+        function: Any,
+        args: tuple[Any, ...],
+        machine: bool = True,
+        where: z3.BoolRef = TRUE,
+    ) -> Any:
         function = _plain(function)
         if _part(function) in ("proofs", "theorems"):
             # the statement's own helper is looked into, what it calls is not
@@ -169,11 +260,14 @@ class _Outline(Claim):
             for value in function.__globals__.values():
                 if isinstance(value, types.FunctionType) and _part(value) == "core":
                     stubs.setdefault(value, _Closed(value, self))
-            return super()._lift(function, args, machine)
+            return super()._lift(function, args, machine, where)
         return self.closed_value(function, args)
 
     def opaque(self, *functions: Function) -> None:
         """Everything is closed already."""
+
+    def _closed(self, *_: Any) -> None:
+        """What closed functions owe is not asked for."""
 
     def calls(self, function: Function) -> list[tuple[Any, ...]]:
         """The arguments with which it was used."""
@@ -183,7 +277,6 @@ class _Outline(Claim):
         """Equal arguments give the same value already."""
 
     def _owe(self, kind: str, text: str, goal: z3.BoolRef) -> None:
-        self.known_then[len(self.obligations)] = self.evaluated
         self.given_then[len(self.obligations)] = tuple(self.premises)
         super()._owe(kind, text, goal)
 
@@ -232,16 +325,20 @@ def relations(name: str, folder: Path = FOLDER) -> Relations:
         # it asks for more than what a closed function tells: only that it names them is known
         return Relations(_named_in(statement), NONE, NONE, NONE, tuple(sorted(set(claim.lemmas))))
     found: dict[str, set[tuple[str, str]]] = {"together": set(), "follows": set(), "leads": set()}
+    uses: set[tuple[str, str, str, int]] = set()
     for number, owed in enumerate(claim.obligations):
+        said = [owed.goal, *claim.given_then.get(number, ())]
         if owed.kind in ("goal", "base", "step", "use"):
-            evaluated = claim.known_then.get(number, frozenset())
-            for how, pair in _pairs(claim, owed.goal, evaluated, induction=owed.kind != "goal"):
+            for how, pair in _pairs(claim, owed.goal, induction=owed.kind != "goal"):
                 both = pair not in found[how] and owed.kind == "goal"
                 if not both or all(_says(claim, number, function) for function in pair):
                     found[how].add(pair)
+                    uses |= {(*pair, *use) for use in claim.uses_of(pair[0], said)}
     used = frozenset(full_name(f) for f in claim.arguments if in_spec(f))
     pairs = {how: frozenset(some) for how, some in found.items()}
-    return Relations(used, lemmas=tuple(sorted(set(claim.lemmas))), **pairs)
+    lemmas = tuple(sorted(set(claim.lemmas)))
+    says = sentences.sentence(claim.as_stated())
+    return Relations(used, lemmas=lemmas, uses=frozenset(uses), statement=says, **pairs)
 
 
 def _says(claim: _Outline, number: int, function: str) -> bool:
@@ -260,14 +357,17 @@ def _says(claim: _Outline, number: int, function: str) -> bool:
 
 
 def _pairs(
-    claim: _Outline, goal: z3.BoolRef, evaluated: frozenset[Function], *, induction: bool
+    claim: _Outline, goal: z3.BoolRef, *, induction: bool
 ) -> Iterator[tuple[str, tuple[str, str]]]:
     """The pairs of kernel and definition that a goal relates, and how."""
     for given, conclusion in sides(goal):
-        spoken = claim.functions_in(conclusion) | evaluated
+        spoken = claim.functions_in(conclusion)
         kernels = _kernels(spoken) | (_folds(claim, spoken) if induction else set())
         meant = _definitions(spoken)
         yield from (("together", (kernel, other)) for kernel in kernels for other in meant)
+        for kernel in kernels:
+            rows = claim.rows(claim.uses_of(kernel, [conclusion]))
+            yield from (("together", (kernel, other)) for other in rows - meant)
         for condition in (*claim.premises, *given):
             before = claim.functions_in(condition)
             for kernel in _kernels(before) - kernels:
@@ -298,13 +398,15 @@ class Kept:
         known = self._recall.key(name) if self.folder is not None else None
         if self.folder is None or known is None:
             return relations(name, self.home.theorems)
-        wanted = digest([known, named(Path(__file__).resolve())])
+        readers = (__file__, sentences.__file__)
+        wanted = digest([known, *(named(Path(reader).resolve()) for reader in readers)])
         file = self.folder / wanted[:2] / wanted
         try:
             return _restored(json.loads(file.read_text(encoding="utf-8")))
         except (OSError, ValueError, KeyError, TypeError):
             found = relations(name, self.home.theorems)
-        text = json.dumps({part: sorted(getattr(found, part)) for part in PARTS})
+        parts: dict[str, Any] = {part: sorted(getattr(found, part)) for part in PARTS}
+        text = json.dumps({**parts, "statement": found.statement})
         try:
             file.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
             part = file.with_name(f"{wanted}.{os.getpid()}")
@@ -315,7 +417,7 @@ class Kept:
         return found
 
 
-PARTS = ("definitions", "together", "follows", "leads", "lemmas")
+PARTS = ("definitions", "together", "follows", "leads", "lemmas", "uses")
 
 
 def _restored(data: dict[str, Any]) -> Relations:
@@ -323,7 +425,9 @@ def _restored(data: dict[str, Any]) -> Relations:
         frozenset((str(a), str(b)) for a, b in data[part]) for part in PARTS[1:4]
     )
     lemmas = tuple(map(str, data["lemmas"]))
-    return Relations(frozenset(map(str, data["definitions"])), together, follows, leads, lemmas)
+    uses = frozenset((str(a), str(b), str(c), int(d)) for a, b, c, d in data["uses"])
+    definitions, statement = frozenset(map(str, data["definitions"])), str(data["statement"])
+    return Relations(definitions, together, follows, leads, lemmas, uses, statement)
 
 
 NONE: frozenset[tuple[str, str]] = frozenset()
@@ -344,11 +448,9 @@ def _kernels(functions: Iterable[Function]) -> set[str]:
     return {full_name(f) for f in functions if not in_spec(f)}
 
 
-def _folds(claim: Claim, spoken: Iterable[Function]) -> set[str]:
+def _folds(claim: _Outline, spoken: Iterable[Function]) -> set[str]:
     """The folds that an induction runs over, of those that the theorem is about."""
-    entries = [REGISTRY[name] for name in claim.kernels if name in REGISTRY]
-    folds = [entry.function for entry in entries if isinstance(entry.function, Fold)]
-    return {full_name(fold) for fold in folds if {fold.step, fold.finish} & set(spoken)}
+    return {full_name(f) for f in claim.folds() if {f.step, f.finish} & set(spoken)}
 
 
 def _definitions(functions: Iterable[Function]) -> set[str]:

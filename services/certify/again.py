@@ -12,7 +12,7 @@ from cratous.services.certify.comparing import differences
 from cratous.services.certify.reading import read_report
 from cratous.services.certify.recorded import flown_of
 from cratous.services.certify.report import build_report, mission_hash, plan_hash, report_text
-from cratous.services.certify.verdicts import constraint_rows
+from cratous.services.certify.verdicts import constraint_rows, plan_rows
 from cratous.services.certify.written import Files
 from cratous.services.logs.log import read_envelopes, read_log, read_meta
 from cratous.services.logs.records import from_data
@@ -143,7 +143,7 @@ def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[st
 
     mission, plan = subject(log)
     flown, silent, wrong = flown_of(read_meta(log), written, str(log))
-    rows = constraint_rows(check_plan(known_at(mission, 0), plan), "plan")
+    rows = plan_rows(check_plan(known_at(mission, 0), plan))
     rows += constraint_rows(watch(log), "flight")
     report = json.loads(report_text(build_report(mission, plan, rows, log, flown)))
     if wrong:  # one sentence says it; what differs in detail says no more

@@ -123,8 +123,8 @@ def counted() -> Iterator[Calls]:
     try:
         ledger.load_all()  # what is registered later has no entry that counts
         calls = Calls()
-        tiered.begin_anew()
         with contextlib.ExitStack() as stack:
+            stack.enter_context(tiered.by_work_alone())
             stack.callback(calls.close)
             for name, entry in REGISTRY.items():
                 if not isinstance(entry.function, Fold):

@@ -7,8 +7,11 @@ from importlib.resources import files
 from typing import Any
 
 from cratous.core.kernel.names import short
+from cratous.services.certify.charts import altitude_view, separation_view
 from cratous.services.certify.gantt import gantt, plan_bars, plan_rows, tree
-from cratous.services.certify.picture import map_view, separation_view, time_view
+from cratous.services.certify.picture import map_view, time_view
+from cratous.services.certify.proofs import statuses
+from cratous.services.certify.trace import chains
 from cratous.spec.algebra import parse
 from cratous.spec.files.printable import printable
 
@@ -43,11 +46,8 @@ def _shown(value: Any) -> Any:
 
 
 def seconds(time_ms: float | None) -> str:
-    """Milliseconds as `mm:ss.s`, or a dash."""
-    if time_ms is None:
-        return "–"
-    minutes, rest = divmod(round(time_ms / 100), 600)
-    return f"{minutes}:{rest / 10:04.1f}"
+    """Milliseconds as seconds, as the notes of verdicts have them, or a dash."""
+    return "–" if time_ms is None else f"{time_ms / 1000:.1f} s"
 
 
 def margin(row: dict[str, Any]) -> str:
@@ -64,9 +64,25 @@ def render(report: dict[str, Any]) -> str:
     """The page; every text from the report is escaped."""
     text: str = _environment().get_template("report.html").render(
         r=report, map=map_view(report), time=time_view(report), near=separation_view(report),
+        high=altitude_view(report), rows_of=_rows_of(report),
         gantt=_gantt(report), tree=_tree(report), losses=losses(report), names=_names(report),
+        chains=chains(report), statuses=statuses(report["proofs"]),
     )  # fmt: skip
     return text
+
+
+def _rows_of(report: dict[str, Any]) -> dict[str, int]:
+    """For each requirement the number of the constraint that its verdict is told by; 0 for none."""
+    found = {}
+    for wanted in report["requirements"]:
+        rows = [
+            k
+            for k, row in enumerate(report["constraints"], 1)
+            if row["requirement"] == wanted["requirement"] and row["verdict"] == wanted["verdict"]
+        ]
+        same = [k for k in rows if report["constraints"][k - 1]["item"] == wanted["item"]]
+        found[wanted["requirement"]] = next(iter([*same, *rows]), 0)
+    return found
 
 
 def map_svg(report: dict[str, Any]) -> str:

@@ -6,11 +6,11 @@ directions; y grows downwards as SVG has it.
 
 from __future__ import annotations
 
-from math import ceil, cos, floor, hypot, log10, pi, sin
+from math import cos, floor, log10, pi, sin
 from typing import Any
 
-MAP_WIDTH, MAP_HEIGHT, MAP_EDGE = 1000.0, 640.0, 46.0
-BAR_LEFT, BAR_WIDTH, BAR_ROW = 110.0, 860.0, 46.0
+MAP_WIDTH, MAP_HEIGHT, MAP_EDGE = 640.0, 480.0, 40.0
+BAR_LEFT, BAR_WIDTH, BAR_ROW = 110.0, 590.0, 46.0
 
 
 class Scale:
@@ -186,7 +186,7 @@ def _start(vehicle: dict[str, Any], color: int, scale: Scale) -> dict[str, Any]:
 
 
 def _scale_bar(factor: float) -> dict[str, Any]:
-    metres = 150 / factor
+    metres = 120 / factor
     step = 10 ** floor(log10(metres))
     length = max(k * step for k in (1, 2, 5) if k * step <= metres)
     text = f"{length / 1000:g} km" if length >= 1000 else f"{length:g} m"
@@ -213,7 +213,7 @@ def time_view(report: dict[str, Any]) -> dict[str, Any]:
         for bar in flight["bars"]
         if bar["vehicle"] in rows
     ]
-    step = _nice_step(end_s / 8)
+    step = nice_step(end_s / 6)
     return {
         "width": BAR_LEFT + BAR_WIDTH + 30,
         "height": len(vehicles) * BAR_ROW + 34,
@@ -230,52 +230,7 @@ def time_view(report: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _nice_step(least: float) -> float:
+def nice_step(least: float) -> float:
+    """The least of 1, 2, 5, 10, 20 ... that is not below."""
     power = 10 ** floor(log10(max(least, 1e-3)))
     return next(k * power for k in (1, 2, 5, 10) if k * power >= least)
-
-
-def separation_view(report: dict[str, Any]) -> dict[str, Any] | None:
-    """Horizontal distance of each pair of our vehicles over time; None with less than two."""
-    tracks = {
-        vehicle["id"]: report["flight"]["tracks"].get(str(vehicle["id"]), [])
-        for vehicle in report["mission"]["vehicles"]
-    }
-    curves = []
-    numbers = [number for number, track in tracks.items() if track]
-    for k, one in enumerate(numbers):
-        for other in numbers[k + 1 :]:
-            there = {row[0]: row for row in tracks[other]}
-            curve = [
-                (row[0], hypot(row[1] - there[row[0]][1], row[2] - there[row[0]][2]))
-                for row in tracks[one]
-                if row[0] in there
-            ]
-            if curve:
-                curves.append((one, other, curve))
-    if not curves:
-        return None
-    end_s = max(report["flight"]["end_ms"] / 1000, 1.0)
-    least_m = min(distance for _, _, curve in curves for _, distance in curve)
-    dthr_m = report["mission"]["daa"]["well_clear"]["dthr_m"]
-    # the low end is what matters, so far distances are cut
-    top_m = max(1500.0, 6 * dthr_m, ceil(least_m / 500 + 1) * 500)
-
-    def xy(time_ms: float, distance_m: float) -> str:
-        x = BAR_LEFT + BAR_WIDTH * time_ms / 1000 / end_s
-        return f"{x:.1f},{150 - 140 * min(distance_m, top_m) / top_m:.1f}"
-
-    return {
-        "width": BAR_LEFT + BAR_WIDTH + 30,
-        "top_m": top_m,
-        "dthr_m": dthr_m,
-        "dthr_y": round(150 - 140 * dthr_m / top_m, 1),
-        "curves": [
-            {
-                "pair": f"{one} and {other}",
-                "points": " ".join(xy(*point) for point in curve),
-                "least_m": round(min(distance for _, distance in curve), 1),
-            }
-            for one, other, curve in curves
-        ],
-    }

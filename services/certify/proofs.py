@@ -7,10 +7,9 @@ from typing import Any
 from cratous.core import ledger
 from cratous.core.kernel.names import short
 from cratous.core.kernel.sources import place
+from cratous.core.ledger.status import counts
 
 RECORDED, NOT_RECORDED = "recorded", "not recorded"
-USES = "uses proved kernels"
-"""What a driver is called that the ledger vouches for: no theorem is about itself."""
 
 
 def inventory(standing: ledger.Standing, calls: dict[str, Any] | None) -> dict[str, Any]:
@@ -43,18 +42,20 @@ def _kernels(calls: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:
     for name in sorted({*called, *within}):
         record, ways = known.get(name, {}), called.get(name, {})
         whole = record.get("supports", "")
-        status = record.get("status", "not in the ledger")
+        meant = known.get(whole, record)
         found[name] = {
             "kind": record.get("kind", ""),
             "count": sum(ways.values()),
             "how": dict(ways),
             "within": list(within.get(name, [])),
-            "status": USES if (record.get("kind"), status) == ("driver", "proved") else status,
+            "status": record.get("status", "not in the ledger"),
             "theorems": list(record.get("theorems", [])),
-            "definition": known.get(whole, record).get("implements", ""),
+            "against": list(meant.get("against", [])),
+            "definition": meant.get("implements", ""),
             "step_of": whole,
             "restates": record.get("restates", ""),
             "checked_by": list(record.get("checked_by", [])),
+            "rechecked_by": list(record.get("rechecked_by", [])),
             "source": record.get("key", {}).get("source", ""),
         }
     return found
@@ -62,13 +63,15 @@ def _kernels(calls: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:
 
 def _theorems(kernels: dict[str, Any], known: dict[str, Any]) -> dict[str, Any]:
     """The theorems about some kernels, and the lemmas that they rest on."""
-    todo, found = [t for one in kernels.values() for t in one["theorems"]], {}
+    todo = [t for one in kernels.values() for t in (*one["theorems"], *one["against"])]
+    found: dict[str, Any] = {}
     while todo:
         name = todo.pop()
         if name not in found and name in known:
             record = known[name]
             found[name] = {
                 "sentence": record["sentence"],
+                "statement": record["statement"],
                 "status": record["status"],
                 "kernels": list(record["kernels"]),
                 "lemmas": list(record.get("lemmas", [])),
@@ -88,6 +91,11 @@ def _definitions(kernels: dict[str, Any]) -> dict[str, str]:
             file = ledger.package(name.split(".")[0]).definition(one["definition"])
             found[one["definition"]] = place(file)
     return dict(sorted(found.items()))
+
+
+def statuses(proofs: dict[str, Any]) -> dict[str, int]:
+    """How many of what was called stand at each status."""
+    return counts([one["status"] for one in proofs["kernels"].values()])
 
 
 def summary(proofs: dict[str, Any]) -> str:

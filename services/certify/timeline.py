@@ -192,6 +192,9 @@ def _event(flight: Flight, short: str, body: dict[str, Any]) -> None:
     elif short == "CommandDropped":
         text = f"command dropped by the gate: {body['Reason']}"
         _note(flight, time_ms, int(body["VehicleID"]), text)
+    elif short == "ModeRefused":
+        text = f"mode of ICAROUS refused: {body['Reason']} ({body['Epoch']})"
+        _note(flight, time_ms, int(body["VehicleID"]), text)
 
 
 def _note(flight: Flight, time_ms: int, vehicle: int | None, text: str) -> None:

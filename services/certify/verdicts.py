@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from cratous.services.monitor.plan_check import PART, WHOLE
 from cratous.services.monitor.promises import PLAN_ROWS, Row, Watched, missing, promised
 from cratous.spec.mission.guarantees import REQUIREMENTS, Outcome, Verdict, worst
 
@@ -36,11 +37,23 @@ def constraint_rows(verdicts: Iterable[Verdict], source: str) -> list[dict[str, 
     ]
 
 
+def plan_rows(checks: Iterable[Verdict]) -> list[dict[str, Any]]:
+    """The rows of a plan that was flown: of a plan of a part, that it is one."""
+    rows = constraint_rows(checks, "plan")
+    part = any(row["item"] == PART for row in rows)
+    return [row for row in rows if not (part and row["item"] == WHOLE)]
+
+
+def _instead(expected: list[Row], present: set[str]) -> list[Row]:
+    """The rows on a plan, with that of a part in place of that of the whole if it is present."""
+    return [row for row in expected if row.item != WHOLE or PART not in present]
+
+
 def with_promised(rows: list[dict[str, Any]], seen: Watched) -> list[dict[str, Any]]:
     """The rows, and an unknown one for each that is promised and not among them."""
     flown = {row["item"] for row in rows if (row["requirement"], row["source"]) == ("G1", "flight")}
     wanted = {
-        "plan": [Row("G1", item) for item in PLAN_ROWS],
+        "plan": _instead(list(PLAN_ROWS), {row["item"] for row in rows}),
         "flight": list(promised(seen, flown)),
     }
     found = list(rows)
@@ -68,7 +81,8 @@ def requirement_rows(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
         chosen = min(
             measured,
             key=lambda row: (row["unit"] != "m", row["margin"]),
-            default=telling[0] if telling else None,
+            # nothing is measured: the row that most was seen for, not whichever comes first
+            default=max(telling, key=lambda row: row["checks"], default=None),
         )
         found.append(
             {

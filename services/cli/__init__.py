@@ -8,6 +8,8 @@ more say which signal ended it.
 
 from __future__ import annotations
 
+import atexit
+import gc
 import importlib
 import io
 import json
@@ -29,6 +31,7 @@ PACKAGE = f"{Path(__file__).parents[2]}/"
 COMMANDS = {
     "run": "Plan, prove, fly, monitor and certify a mission.",
     "demo": "Fly an example that ships with the product.",
+    "campaign": "Fly and judge many runs, and count what holds.",
     "plan": "Plan a mission and check the plan; nothing flies.",
     "prove": "Prove the kernels and write the ledger (in a checkout).",
     "conform": "Run published vectors against the kernels and the wires.",
@@ -42,6 +45,7 @@ COMMANDS = {
     "lmcp": "Read, write, explain and compare LMCP messages.",
     "uxas": "Run a UxAS configuration: services and bridges.",
     "algebra": "Check, draw or enumerate a process-algebra text.",
+    "warm": "Compile ahead what commands would compile when they need it.",
     "version": "Print the version.",
 }
 
@@ -84,6 +88,9 @@ def main(argv: list[str] | None = None) -> int:
     # the flag may stand anywhere, as users put it at the end
     arguments = [part for part in arguments if part != "--debug"]
     as_json = "--json" in arguments
+    if argv is None:
+        # the process ends with the command: what is still there needs no last collection
+        atexit.register(gc.freeze)
     try:
         with stoppable(), told():
             result = cli.main(args=arguments, prog_name="cratous", standalone_mode=False)

@@ -15,8 +15,13 @@ SHOWN = 20
 @click.option(
     "--rewrite", is_flag=True, help="Make report.html and map.svg anew where they differ."
 )
+@click.option(
+    "--trace",
+    is_flag=True,
+    help="Print for each row which kernels decided it, and their theorems and definitions.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON, all differences.")
-def certify(folder: Path, rewrite: bool, as_json: bool) -> int:
+def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool) -> int:
     """Judge a finished flight again from its log and compare with all that is written of it.
 
     FOLDER is an output folder of `cratous run`. The log's digest, the plan check and the monitor
@@ -25,17 +30,24 @@ def certify(folder: Path, rewrite: bool, as_json: bool) -> int:
     Nothing is written, unless with --rewrite: what is made from report.json is then made anew, if
     report.json and the rest are confirmed.
 
+    With --trace every row of the report is followed to the kernels that decided it and were called in
+    this run, from each to the theorems that hold it against its definition, and to that definition.
+
     Example:  cratous certify out/crossing
 
     Exit codes: as of the flight if the report is confirmed (0, 1 or 3); 1 if it is not, with the
-    differences named; 2 bad input.
+    differences named, or if something is missing in a trace; 2 bad input.
     """
     from cratous.services.certify.again import certify_again
+    from cratous.services.certify.trace import lines, traced
     from cratous.services.cli.show import requirement_table, say
 
     done = certify_again(folder, rewrite=rewrite)
     report, found = done.report, done.found
     code = 1 if found else int(report["exit_code"])
+    chains = traced(report) if trace and not found else None
+    if chains is not None and chains["missing"]:
+        code = 1
     if as_json:
         data = {
             "confirmed": not found,
@@ -45,6 +57,7 @@ def certify(folder: Path, rewrite: bool, as_json: bool) -> int:
             "verdict": report.get("verdict"),
             "digest": report["log"]["digest"] if report else None,
             "exit_code": code,
+            **({"trace": {k: v for k, v in chains.items() if k != "names"}} if chains else {}),
         }
         click.echo(json.dumps(data, indent=1))
         return code
@@ -57,6 +70,8 @@ def certify(folder: Path, rewrite: bool, as_json: bool) -> int:
     else:
         requirement_table(report["requirements"])
         say(f"confirmed from the log with the digest {report['log']['digest']}")
+    for line in lines(chains) if chains is not None else ():
+        say(line)
     for text in done.unchecked:
         say(f"not checked: {text}", err=bool(found))
     for name in done.rewritten:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 from collections.abc import Callable, Iterator
@@ -114,19 +115,29 @@ def plot(
     return 0
 
 
-def _at(steps: list[Any], time_s: float, file: Path) -> Any:
-    """The step at a time."""
-    found = next((s for s in steps if math.isclose(s.instant.time_s, time_s, abs_tol=1e-6)), None)
-    if found is None:
-        times = [s.instant.time_s for s in steps]
-        raise BadInput(
-            "there is no step at this time",
-            where=str(file),
-            item="--time",
-            expected=f"{times[0]:g} to {times[-1]:g} s" if times else "none",
-            got=f"{time_s:g} s",
-        )
-    return found
+def _at(steps: Iterator[Any], time_s: float, file: Path) -> Any:
+    """The step at a time; what comes after it is not computed."""
+    times = []
+    for step in steps:
+        if math.isclose(step.instant.time_s, time_s, abs_tol=1e-6):
+            return step
+        times.append(step.instant.time_s)
+    raise BadInput(
+        "there is no step at this time",
+        where=str(file),
+        item="--time",
+        expected=f"{times[0]:g} to {times[-1]:g} s" if times else "none",
+        got=f"{time_s:g} s",
+    )
+
+
+def _first_alert(steps: Iterator[Any]) -> Any:
+    """The first step with an alert, else the first one."""
+    first = next(steps)
+    with_alert = (
+        s for s in itertools.chain([first], steps) if any(a.level for a in s.instant.alerts)
+    )
+    return next(with_alert, first)
 
 
 @daa.command()
@@ -147,9 +158,9 @@ def excuse(
     """
     from cratous.services.daa.excuse import as_data, excuse_text, judge_step
 
-    steps = list(_steps(file, config, ownship, ()))
+    steps = _steps(file, config, ownship, ())
     if time_s is not None:
-        steps = [_at(steps, time_s, file)]
+        steps = iter([_at(steps, time_s, file)])
     judged = [(s.instant.time_s, judge_step(s)) for s in steps]
     if as_json:
         _put(json.dumps([as_data(*one) for one in judged], allow_nan=False), out)
@@ -180,11 +191,8 @@ def explain(
     from cratous.services.daa.explain import explain as words
     from cratous.services.daa.tables import as_data
 
-    steps = list(_steps(file, config, ownship, (0, 1, 2, 3), urgency, urgent))
-    if time_s is not None:
-        chosen = _at(steps, time_s, file)
-    else:
-        chosen = next((s for s in steps if any(a.level for a in s.instant.alerts)), steps[0])
+    steps = _steps(file, config, ownship, (0, 1, 2, 3), urgency, urgent)
+    chosen = _first_alert(steps) if time_s is None else _at(steps, time_s, file)
     lines = words(chosen.parameters, chosen.instant)
     if as_json:
         _put(json.dumps({**as_data(chosen.instant), "reasons": lines}, allow_nan=False), out)

@@ -12,7 +12,7 @@ from cratous.services.mission.wind import known_at
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Outcome, Verdict, worst
-from cratous.spec.mission.plan import Plan
+from cratous.spec.mission.plan import PartialPlan, Plan, left_out_of
 
 Tell = Callable[[str], None]
 
@@ -74,8 +74,24 @@ def run_mission(
     mission: Mission, folder: Path, settings: Settings, tell: Tell = silent
 ) -> dict[str, Any]:
     """Fly one mission and write log and report into `folder`; returns the report as data."""
-    from cratous import __version__
     from cratous.core import ledger
+    from cratous.services.certify.report import write_report
+
+    standing = ledger.require(allow_unproved=settings.allow_unproved)
+    tell(f"proofs: {standing.line}")
+    report = fly_mission(mission, folder, settings, standing, tell)
+    write_report(report, folder)
+    return report
+
+
+def fly_mission(
+    mission: Mission, folder: Path, settings: Settings, standing: Any, tell: Tell = silent
+) -> dict[str, Any]:
+    """Fly one mission and write its log into `folder`; returns the report as data.
+
+    standing: of `core.ledger.require`, asked before anything is flown in this process.
+    """
+    from cratous import __version__
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory, summary
     from cratous.services.certify.report import (
@@ -83,17 +99,14 @@ def run_mission(
         build_report,
         environment,
         mission_hash,
-        write_report,
     )
-    from cratous.services.certify.verdicts import constraint_rows
+    from cratous.services.certify.verdicts import constraint_rows, plan_rows
     from cratous.services.flight.loop import fly
     from cratous.services.logs.log import LogWriter
     from cratous.services.logs.records import to_data
     from cratous.services.monitor import Monitor
     from cratous.services.results.names import CERTIFICATE_NAME, LOG_NAME
 
-    standing = ledger.require(allow_unproved=settings.allow_unproved)
-    tell(f"proofs: {standing.line}")
     if not settings.daa:
         mission = replace(mission, instances=())
     bus = new_bus()
@@ -110,7 +123,8 @@ def run_mission(
         bus.tap(writer.tap)
         with counted() as calls:
             plan, checks = plan_and_check(mission, bus)
-            tell("\n".join((plan_line(plan, checks), *absent_lines(mission))))
+            said = (plan_line(plan, checks), *left_out_lines(plan), *absent_lines(mission))
+            tell("\n".join(said))
             refuse_bad_plan(checks)
             if plan.certificate:
                 write_certificate(bus, folder / CERTIFICATE_NAME)
@@ -124,15 +138,17 @@ def run_mission(
         writer.note("calls", counts)
         writer.note("proofs", flown.meta()["proofs"])
     tell(f"evidence: {summary(flown.proofs)}")
-    rows = constraint_rows(checks, "plan") + constraint_rows(verdicts, "flight")
-    report = build_report(mission, plan, rows, log, flown)
-    write_report(report, folder)
-    return report
+    rows = plan_rows(checks) + constraint_rows(verdicts, "flight")
+    return build_report(mission, plan, rows, log, flown)
 
 
 def refuse_bad_plan(checks: list[Verdict]) -> None:
-    """Nothing flies by a plan that fails its check."""
+    """Nothing flies by a plan that fails its check; a plan of a part flies if that is all it fails in."""
+    from cratous.services.monitor.plan_check import PART, WHOLE
+
     bad = [check for check in checks if check.outcome is Outcome.VIOLATED]
+    if any(check.item == PART for check in checks):
+        bad = [check for check in bad if check.item != WHOLE]
     if bad:
         raise NoPlan(tuple(f"the best plan found fails its check: {sentence(c)}" for c in bad[:5]))
 
@@ -154,10 +170,21 @@ def plan_line(plan: Plan, checks: list[Verdict]) -> str:
         chains.append(f"vehicle {vehicle}: {tasks}")
     outcome = worst([check.outcome for check in checks])
     good = sum(check.outcome is Outcome.HOLDS for check in checks)
+    part = "a part of what is asked for, " if left_out_of(plan) else ""
     return (
-        f"plan: {'; '.join(chains)}; {plan.makespan_ms / 1000:.1f} s, {standing(plan)}; "
+        f"plan: {'; '.join(chains)}; {part}"
+        f"{plan.makespan_ms / 1000:.1f} s, {standing(plan)}; "
         f"{good} of {len(checks)} constraints hold ({outcome})"
     )
+
+
+def left_out_lines(plan: Plan) -> list[str]:
+    """A line for each task that a plan leaves out, and whether no more could be done."""
+    left = left_out_of(plan)
+    lines = [f"left out: {one.text}" for one in left]
+    if left and not (isinstance(plan, PartialPlan) and plan.sure):
+        lines.append("whether more could be done is not certain")
+    return lines
 
 
 def standing(plan: Plan) -> str:

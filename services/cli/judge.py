@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -27,23 +28,23 @@ def judge(log: Path, mission: Path | None, as_json: bool, every: bool) -> int:
     Exit codes: 0 all requirements hold, 1 something is violated or the two disagree, 2 bad input,
     3 something is unknown.
     """
-    from cratous.judge import judge as decide
     from cratous.judge.verdict import GUARANTEES, HOLDS
+    from cratous.services.cli.show import say
 
-    found = decide(log, mission)
+    found = judgement(log, mission)
     if as_json:
         click.echo(json.dumps(found.data(), indent=1))
         return found.exit_code
     if found.disagreements:
         click.echo(f"DISAGREEMENT of judge and monitor in {len(found.disagreements)} rows")
     for difference in found.differences:
-        click.echo(f"  {difference.kind}: {difference.line()}")
+        say(f"  {difference.kind}: {difference.line()}")
     for name, title in GUARANTEES.items():
         rows = [row for row in found.rows if row.guarantee == name]
         click.echo(f"{name} {found.of(name):9} {len(rows)} rows: {title}")
         for row in rows:
             if every or row.verdict != HOLDS:
-                click.echo(f"   {row.verdict:9} {row.item}: {row.note}")
+                say(f"   {row.verdict:9} {row.item}: {row.note}")
     if found.not_covered:
         click.echo(f"not covered (not protected): {', '.join(map(str, found.not_covered))}")
     beside = "no report to compare with"
@@ -51,3 +52,10 @@ def judge(log: Path, mission: Path | None, as_json: bool, every: bool) -> int:
         beside = "as the monitor" if not found.differences else "see above for the monitor"
     click.echo(f"JUDGED {found.verdict} ({beside}); exit code {found.exit_code}")
     return found.exit_code
+
+
+def judgement(log: Path, mission: Path | None = None) -> Any:
+    """What the judge says of a log, a `cratous.judge.Judgement`; the one door to it."""
+    from cratous.judge import judge as decide
+
+    return decide(log, mission)

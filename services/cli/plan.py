@@ -37,6 +37,7 @@ def plan(
     from cratous.services.certify.verdicts import constraint_rows
     from cratous.services.cli.job import (
         absent_lines,
+        left_out_lines,
         new_bus,
         plan_and_check,
         plan_line,
@@ -46,8 +47,8 @@ def plan(
     from cratous.services.loading import load
     from cratous.services.logs.records import to_data
 
+    loaded = load(mission, seed)  # a bad mission is refused before anything takes time
     standing = ledger.require(allow_unproved=allow_unproved)
-    loaded = load(mission, seed)
     bus = new_bus()
     with counted() as calls:
         made, checks = plan_and_check(loaded, bus)
@@ -98,7 +99,7 @@ def plan(
     click.echo()
     for note in loaded.notes:
         say(f"note: {note}")
-    for line in (plan_line(made, checks), *absent_lines(loaded)):
+    for line in (plan_line(made, checks), *left_out_lines(made), *absent_lines(loaded)):
         click.echo(line)
     click.echo(f"proofs: {standing.line}")
     click.echo(f"evidence: {summary(evidence)}")

@@ -19,7 +19,7 @@ from cratous.services.cli.prove_self_test import self_test as tried
 from cratous.spec.errors import BadInput
 
 
-def _show(theorem: Any, verbose: bool) -> None:
+def _show(theorem: Any, verbose: bool, statement: str) -> None:
     from cratous.proofs.ledger.formats import failure_text
 
     mark = (
@@ -30,11 +30,20 @@ def _show(theorem: Any, verbose: bool) -> None:
     click.echo(f"{mark} {theorem.name} ({len(theorem.outcomes)} obligations)")
     if verbose:
         click.echo(f"           {theorem.sentence}")
+        click.secho(f"           stated: {statement}", dim=True)
     for condition, owner, reason in theorem.assumptions:
         text = f"           ASSUMED by {owner}: {' '.join(condition.split())} ({reason})"
         click.secho(text, fg="red")
     for line in failure_text(theorem).splitlines():
         click.echo(f"           {line}")
+
+
+def _statuses(said: dict[str, str]) -> dict[str, int]:
+    """How many kernels, folds and drivers a ledger has of each status."""
+    from cratous.core.ledger.status import counts
+
+    kept = (json.loads(text) for place, text in said.items() if place.startswith("kernels/"))
+    return counts([record["status"] for rows in kept for record in rows.values()])
 
 
 def _export(theorems: list[Any], folder: Path, theorem_folder: Path) -> int:
@@ -103,7 +112,12 @@ def _refuse(problems: list[str]) -> None:
     help="Write every obligation as SMT-LIB 2 into this folder (unsat means proved).",
 )
 @click.option("--jobs", type=click.IntRange(1), help="Processes; by default one for each core.")
-@click.option("-v", "--verbose", is_flag=True, help="Print each theorem's sentence.")
+@click.option(
+    "-v",
+    "--verbose",
+    is_flag=True,
+    help="Print each theorem's sentence, and one made from what it states.",
+)
 def prove(
     only: tuple[str, ...],
     changed: bool,
@@ -204,7 +218,7 @@ def prove(
     theorems = list(inventory.theorems)
     if not as_json:
         for theorem in theorems:
-            _show(theorem, verbose)
+            _show(theorem, verbose, judged.statements.get(theorem.name, ""))
     outputs: list[tuple[Path | None, Callable[[list[str]], str]]] = [
         (junit, lambda found: formats.junit(theorems, found)),
         (sarif, lambda found: formats.sarif(theorems, found, home)),
@@ -226,8 +240,10 @@ def prove(
         if not as_json:
             click.echo(f"{count} SMT-LIB files in {smt2_folder}")
     proved = sum(t.proved for t in theorems)
+    statuses: dict[str, int] = {}
     if whole and judged.binds and not problems:
-        said = ledger.text(inventory, home)
+        said = ledger.text(inventory, home, judged.grounds, judged.statements)
+        statuses = _statuses(said)
         if check:
             differing = records.differing(said, home.records, provenance=False)
             if differing:
@@ -246,7 +262,14 @@ def prove(
     if as_json:
         shown = {
             "proved": proved,
-            "theorems": [formats.theorem_data(t, second.get(t.name)) for t in theorems],
+            "statuses": statuses,
+            "theorems": [
+                {
+                    **formats.theorem_data(t, second.get(t.name)),
+                    "statement": judged.statements.get(t.name, ""),
+                }
+                for t in theorems
+            ],
             "problems": problems,
             "dead_paths": dead,
             "assumptions": assumed,
@@ -267,6 +290,8 @@ def prove(
         )
         click.secho(f"{assumed} assumptions", fg="red" if assumed else None, nl=False)
         click.echo(f", {gate.solver_version()}")
+        if statuses:
+            click.echo("; ".join(f"{number} {status}" for status, number in statuses.items()))
         before = [
             one for one in records.solvers(gate.read(home.records)) if one != gate.solver_version()
         ]

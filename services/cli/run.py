@@ -1,9 +1,8 @@
-"""`cratous run`: the main job, for one mission or for many seeded variants of it."""
+"""`cratous run`: the main job, for one mission; many variants of it are a campaign."""
 
 from __future__ import annotations
 
 import json
-import re
 import shlex
 from collections.abc import Callable
 from pathlib import Path
@@ -12,29 +11,20 @@ from typing import Any
 
 import click
 
+from cratous.services.cli.campaign import seed_range
 from cratous.services.cli.job import Settings, folder_name, run_mission
-from cratous.services.cli.show import progress, requirement_table, say, table
-from cratous.spec.errors import CratousError, NoPlan
-from cratous.spec.mission.guarantees import Outcome, exit_code
+from cratous.services.cli.show import progress, requirement_table, say
 
 Tell = Callable[[str], None]
-
-
-def seed_range(_ctx: Any, _param: Any, value: str | None) -> range | None:
-    """`1-50` as a range, both ends included."""
-    if value is None:
-        return None
-    match = re.fullmatch(r"(\d{1,9})-(\d{1,9})", value)
-    if not match or int(match[1]) > int(match[2]) or int(match[2]) - int(match[1]) >= 10_000:
-        raise click.BadParameter(f"expected A-B with A <= B, for example 1-50; got {value!r}")
-    return range(int(match[1]), int(match[2]) + 1)
 
 
 @click.command()
 @click.argument("mission", type=click.Path(path_type=Path))
 @click.option("--out", type=click.Path(path_type=Path), help="Folder for the results. [out]")
 @click.option("--seed", type=click.IntRange(0), default=0, help="Variant; 0 is as written.")
-@click.option("--seeds", callback=seed_range, metavar="A-B", help="Run all these variants.")
+@click.option(
+    "--seeds", callback=seed_range, metavar="A-B", help="All these variants, as `cratous campaign`."
+)
 @click.option("--no-daa", is_flag=True, help="Switch avoidance off; the requirements stay.")
 @click.option("--allow-unproved", is_flag=True, help="Fly kernels without proof (recorded).")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
@@ -66,7 +56,7 @@ def run(
     if seeds is not None:
         if seed:
             raise click.UsageError("--seed and --seeds exclude each other")
-        return _many(mission, seeds, out, daa, allow_unproved, command, as_json, quiet)
+        return _many(mission, seeds, out, Settings(daa, allow_unproved), as_json, quiet)
     command += ["--seed", str(seed)] if seed else []
     settings = Settings(daa, allow_unproved, shlex.join(command))
     return fly_and_show(mission, seed, out, settings, as_json, quiet)
@@ -140,106 +130,25 @@ def _show(report: dict[str, Any], folder: Path) -> None:
 
 
 def _many(
-    path: Path,
+    mission: Path,
     seeds: range,
     out: Path | None,
-    daa: bool,
-    allow_unproved: bool,
-    command: list[str],
+    settings: Settings,
     as_json: bool,
     quiet: bool,
 ) -> int:
-    """Run all variants; folders are kept only if --out was given."""
-    found: list[dict[str, Any]] = []
+    """A campaign of all variants with one worker, which is kept only if --out was given."""
+    from cratous.services.campaign.definition import load_campaign
+    from cratous.services.cli.campaign import conducted, option_of, show, table_of_runs
+
+    campaign = load_campaign(mission, seeds, (option_of(settings.daa),))
+    how = {"workers": 1, "scheduler": None, "allow_unproved": settings.allow_unproved}
     with progress(quiet or as_json) as tell, TemporaryDirectory(prefix="cratous-") as scratch:
-        for seed in seeds:
-            settings = Settings(daa, allow_unproved, shlex.join([*command, "--seed", str(seed)]))
-            keep = out or Path(scratch)
-            row = _variant(path, seed, keep, settings)
-            found.append(row)
-            tell(f"seed {seed}: {row['verdict']}, {row['takeovers']} takeovers")
-    outcomes = [Outcome(row["verdict"]) for row in found]
-    code = exit_code(outcomes)
+        place = out or Path(scratch) / "campaign"
+        found = conducted(campaign, place, how, 10 if out else 0, tell)
     if as_json:
-        click.echo(json.dumps({"exit_code": code, "variants": found}, indent=1))
-        return code
-    table(
-        ["seed", "geometry", "takeovers", "least separation", "verdict", "named"],
-        [
-            [
-                str(row["seed"]),
-                row["geometry"],
-                str(row["takeovers"]),
-                row["separation"],
-                row["verdict"],
-                row["named"],
-            ]
-            for row in found
-        ],
-        verdict_column=4,
-    )
-    counts = ", ".join(f"{outcomes.count(kind)} {kind}" for kind in Outcome if outcomes.count(kind))
-    click.echo(f"{len(found)} variants: {counts}; exit code {code}")
-    return code
-
-
-def _variant(path: Path, seed: int, out: Path, settings: Settings) -> dict[str, Any]:
-    """One row of the table; a variant without a plan is a row too, bad input is an error."""
-    from cratous.services.loading import load
-
-    geometry = geometry_text(load(path, seed))
-    try:
-        report, _ = run_one(path, seed, out, settings, lambda _text: None)
-    except NoPlan as error:
-        return {
-            "seed": seed,
-            "geometry": geometry,
-            "takeovers": 0,
-            "separation": "-",
-            "verdict": str(Outcome.VIOLATED),
-            "named": str(error),
-            "digest": "",
-        }
-    except CratousError as error:
-        error.add_note(f"(seed {seed})")
-        raise
-    return {
-        "seed": seed,
-        "geometry": geometry,
-        "takeovers": len(report["flight"]["takeovers"]),
-        "separation": separation_text(report),
-        "verdict": report["verdict"],
-        "named": named_text(report),
-        "digest": report["log"]["digest"],
-    }
-
-
-def named_text(report: dict[str, Any]) -> str:
-    """The requirements that do not hold, the violated ones first."""
-    parts = []
-    for outcome in (Outcome.VIOLATED, Outcome.UNKNOWN, Outcome.EXCUSED):
-        ids = [r["requirement"] for r in report["requirements"] if r["verdict"] == outcome]
-        if ids:
-            parts.append(f"{outcome}: {', '.join(ids)}")
-    if report["proofs"]["problems"]:
-        parts.append("kernels without proof")
-    return "; ".join(parts)
-
-
-def geometry_text(mission: Any) -> str:
-    """Courses and speeds of the first two vehicles."""
-    from math import degrees
-
-    return ", ".join(
-        f"{degrees(v.heading_rad) % 360:.0f}° {v.speed_m_s:.1f} m/s" for v in mission.vehicles[:2]
-    )
-
-
-def separation_text(report: dict[str, Any]) -> str:
-    """The least horizontal distance between two of our vehicles, once a second."""
-    from cratous.services.certify.picture import separation_view
-
-    view = separation_view(report)
-    if view is None:
-        return "-"
-    return f"{min(curve['least_m'] for curve in view['curves']):.0f} m"
+        click.echo(json.dumps(found, indent=1, sort_keys=True))
+    else:
+        table_of_runs(found)
+        show(found)
+    return int(found["exit_code"])

@@ -34,6 +34,7 @@ _COMPILING = (
 @click.option("-version", "version", is_flag=True, help="Print the versions and go on.")
 @click.option("--without", multiple=True, metavar="TYPE", help="Leave out services of a type.")
 @click.option("--check", is_flag=True, help="Check the configuration, start nothing.")
+@click.option("--strict", is_flag=True, help="Refuse what is read leniently otherwise.")
 @click.option("--virtual-time", is_flag=True, help="Wait for nothing; no bridges.")
 @click.option("--allow-unproved", is_flag=True, help="Plan with kernels that have no proof.")
 def uxas(
@@ -42,6 +43,7 @@ def uxas(
     version: bool,
     without: tuple[str, ...],
     check: bool,
+    strict: bool,
     virtual_time: bool,
     allow_unproved: bool,
 ) -> int:
@@ -61,12 +63,15 @@ def uxas(
 
     if version:
         _versions()
-    config = read(cfg_path)
+    config = read(cfg_path, strict=strict)
     root = config.root
     if check:
         from cratous.services.uxas.manager import check as check_all
 
-        count = len(check_all(config, frozenset(without)))
+        notes: list[str] = []
+        count = len(check_all(config, frozenset(without), notes))
+        for note in notes:
+            say(f"warning: {note}")
         say(f"{cfg_path}: {count} services and bridges")
         return 0
     log = Logs(

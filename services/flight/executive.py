@@ -1,398 +1,197 @@
 """Flies a plan: transit, wait while the gate in time is closed, task; for all vehicles at once.
 
-A task starts when its vehicle passes the start pose and every lower bound of the plan's rows
-holds for the REAL times of the others; until then the vehicle circles on its hold. While it
-comes near, it adapts its speed a little so as to pass the start pose just when it may. Events of
-all vehicles are handled in the order of their instants within a step. A delay that breaks an
-upper bound leads to a new plan for the tasks that are left, and if there is none to a named
-failure of the task.
+`handle(state, message) -> (state, messages)`. A task starts when its vehicle passes the start pose
+and every lower bound of the plan's rows holds for the REAL times of the others; until then the
+vehicle circles on its hold. While it comes near, it adapts its speed a little so as to pass the start
+pose just when it may. Events of all vehicles are handled in the order of their instants within a
+step. A delay that breaks an upper bound, and a change that touches the plan, ask for another plan
+for the tasks that are left; the step goes on with the answer. If there is no plan, tasks fail by name.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 from cratous.core.authority.gate import UXAS
-from cratous.core.authority.link_end import suspended_after, track_is_told
-from cratous.core.authority.timeliness import too_early
-from cratous.core.executive.steps import end_passed, late_act, may_begin
-from cratous.core.routing.polylines import Track
-from cratous.services.flight import chain as chains
-from cratous.services.flight.ahead import last_lap, leaving_m, points_ahead, points_left
-from cratous.services.flight.chain import Chain, Phase
-from cratous.services.flight.commands import gated, path_command, task_progress
-from cratous.services.flight.dynamics import AirState, turn_radius_m
-from cratous.services.flight.expectation import expected_times
-from cratous.services.flight.lives import fails, life
-from cratous.services.flight.messages import Flown, Route
-from cratous.services.flight.pace import FASTEST, broken_rows, trimmed_speed_m_s
-from cratous.services.flight.timing import closed_by, opens_ms
-from cratous.services.flight.ways import Ways
-from cratous.services.mission.frames import Projection
-from cratous.spec.constraint_rows import Row
-from cratous.spec.executive import GO_ON, LAP, LAST_LAP, PLAN_ANEW, STANDS_BY, START
-from cratous.spec.mission import Mission, Position, Zone
-from cratous.spec.mission.plan import Plan, PlanItem
+from cratous.core.authority.link_end import track_is_told
+from cratous.core.executive.steps import answered, flight_outcome, rejoined
+from cratous.services.flight import changes, deadlines, interruption, passing, telling
+from cratous.services.flight.executive_state import Asked, Config, Out, State
+from cratous.services.flight.messages import (
+    Begin,
+    Closing,
+    FromExecutive,
+    NotPlanned,
+    Over,
+    Planned,
+    Report,
+    Say,
+    SetOut,
+    Suspend,
+    TakeBack,
+    Tick,
+    ToExecutive,
+    ZonesKnown,
+)
+from cratous.services.flight.notices import mission_end
+from cratous.spec.executive import (
+    COMPLETE,
+    DROP_LATE,
+    DROP_LEFT,
+    FAILED_FLIGHT,
+    FLY_PLAN,
+    FOR_CHANGE,
+    FOR_NOTHING,
+    GOES_ON,
+    LIMIT,
+)
+from cratous.spec.mission.changes import TASK_ADDED, VEHICLE_JOINS, WIND, split
 
-AHEAD_S = 30
-"""Waypoints are told at least this much farther than the look-ahead [s]."""
-EARLY_MS = 500
-"""A planned wait may end this much early; the rows themselves are never bent."""
-NOBODY = 0
-"""The vehicle of a task that was given to none."""
-OPEN_MARGIN_MS = 60
-"""Aim this much later than the predicted opening, so that rounding never costs a lap."""
+OUTCOMES = {GOES_ON: "", COMPLETE: "complete", FAILED_FLIGHT: "failed", LIMIT: "limit"}
+BRINGS_WORK = (TASK_ADDED, VEHICLE_JOINS)
+"""The end of the mission waits for changes of these kinds; and for the wind, if a task is left out."""
 
-Replan = Callable[[dict[int, AirState], frozenset[int], int], Plan | None]
+Step = tuple[State, tuple[FromExecutive, ...]]
+Versions = tuple[tuple[int, int], ...]
 
 
-@dataclass
+@dataclass(frozen=True)
 class Executive:
-    """The UxAS side of the flight: chains by vehicle, real times, and the rows in force.
+    """The UxAS side of a flight; what does not change about it."""
 
-    zones: the mission's, with their padding already turned into vertices.
-    """
+    config: Config
 
-    mission: Mission
-    zones: tuple[Zone, ...]
-    plan: Plan
-    projection: Projection
-    dt_s: float
-    replan: Replan | None = None
-    chains: dict[int, Chain] = field(default_factory=dict)
-    starts: dict[int, int] = field(default_factory=dict)
-    ends: dict[int, int] = field(default_factory=dict)
-    failed: dict[int, str] = field(default_factory=dict)
-    commands: int = 0
-    replans: int = 0
-    finished: int = 0
-    hurry: bool = False
+    def handle(self, state: State, message: ToExecutive) -> Step:
+        """One step: the state afterwards, and what to send, in order."""
+        out: Out = []
+        match message:
+            case Begin():
+                state = self._begin(state, message, out)
+            case SetOut():
+                state = self._set_out(state, out)
+            case Tick():
+                state = self._tick(state, message, out)
+            case Planned() | NotPlanned():
+                state = self._answered(state, message, out)
+            case Suspend():
+                state = interruption.suspend(state, message, out)
+            case TakeBack():
+                state = interruption.take_back(self.config, state, message, out)
+            case Report(now_ms):
+                state = self._report(state, now_ms, out)
+            case Closing():
+                self._close(state, message, out)
+        return state, tuple(out)
 
-    def __post_init__(self) -> None:
-        self.ways = Ways(self.zones, self.dt_s)
+    def _begin(self, state: State, message: Begin, out: Out) -> State:
+        """Set every vehicle on its way; who is told of it is told at `SetOut`."""
+        now_ms, aircraft = message
+        state = replace(state, now_ms=now_ms, aircraft=aircraft)
+        state = changes.known_from_the_start(self.config, state, out)
+        state = passing.begin(self.config, state, out)
+        out.append(ZonesKnown(state.zones))
+        return state
 
-    def begin(self, states: dict[int, AirState], now_ms: int = 0) -> list[Any]:
-        """Set every vehicle on its way; the first messages."""
-        out: list[Any] = []
-        for vehicle in self.mission.vehicles:
-            state = states[vehicle.id]
-            items = self._items(vehicle.id)
-            track = Track((state.position,), state.heading_rad)
-            chain = Chain(vehicle, items, -1, Phase.DONE, track, state.speed_m_s)
-            old = self.chains.get(vehicle.id)
-            if old is not None:
-                chain = replace(chain, version=old.version, suspended=old.suspended)
-            self._next_item(self._put(chain), now_ms, state, out)
-        self._settle(states, now_ms, out)
-        return out
+    def _set_out(self, state: State, out: Out) -> State:
+        """The first ways, and the first commands: no gate has been in another epoch than 0."""
+        for vid in self.config.instances:
+            state = telling.route(state, vid, out)
+        for vid, _ in state.aircraft:
+            state = telling.command(self.config, state, vid, 0, out)
+        return state
 
-    def _put(self, chain: Chain) -> Chain:
-        """From now on this is the chain of its vehicle."""
-        self.chains[chain.vehicle.id] = chain
-        return chain
+    # a step of the flight ----------------------------------------------------------------------
 
-    def _items(self, vehicle_id: int) -> tuple[Any, ...]:
-        vehicle = self.mission.vehicle(vehicle_id)
-        radius = chains.ROUTE_MARGIN * turn_radius_m(vehicle.speed_m_s, vehicle.max_bank_rad)
-        return tuple(
-            chains.with_hold(item, radius, self.zones) for item in self.plan.chain(vehicle_id)
+    def _tick(self, state: State, tick: Tick, out: Out) -> State:
+        """What has become known; then events since the last step, in the order of time."""
+        due, to_come = split(state.to_come, tick.now_ms)
+        epochs = tuple((vid, gate.epoch) for vid, gate in tick.gates)
+        state = replace(
+            state,
+            now_ms=tick.now_ms,
+            aircraft=tick.aircraft,
+            epochs=epochs,
+            to_come=tuple(to_come),
         )
+        if due:
+            state = changes.change(self.config, state, due, out)
+        return self._asking(state, out) if state.asked else self._events(state, out)
 
-    def step(self, states: dict[int, AirState], epochs: dict[int, int], now_ms: int) -> list[Any]:
-        """One step: events since the last one, in time order, then commands for changed tracks."""
-        out: list[Any] = []
-        before = {vid: chain.version for vid, chain in self.chains.items()}
-        self._settle(states, now_ms, out)
-        if now_ms % self.mission.simulation.heartbeat_ms == 0:
-            self._watch_deadlines(states, now_ms, out)
-            for chain in tuple(self.chains.values()):
-                self._adapt_speed(chain, now_ms)
-        for vid, chain in tuple(self.chains.items()):
-            if chain.away and not chain.suspended and chain.s_m >= chain.join_m:
-                self._put(replace(chain, away=False))
+    def _events(self, state: State, out: Out) -> State:
+        """Ends of tracks, then deadlines; the rest of the step unless a plan is asked for."""
+        versions = tuple((chain.vehicle.id, chain.version) for chain in state.chains)
+        state = passing.settle(self.config, state, out)
+        if not self._beats(state):
+            return self._commands(state, versions, out)
+        state, late = deadlines.watch(state)
+        return self._deadlines(state, late, versions, out)
+
+    def _deadlines(self, state: State, late: deadlines.Late, versions: Versions, out: Out) -> State:
+        state = deadlines.act_on(self.config, state, late, versions, out)
+        return self._asking(state, out) if state.asked else self._commands(state, versions, out)
+
+    def _commands(self, state: State, versions: Versions, out: Out) -> State:
+        """The end of a step: speeds are adapted, tracks that have changed are commanded."""
+        if self._beats(state):
+            for chain in state.chains:
+                state = state.put(deadlines.adapted(state, state.chain(chain.vehicle.id)))
+        before, epochs = dict(versions), dict(state.epochs)
+        for vid in [chain.vehicle.id for chain in state.chains]:
+            chain = state.chain(vid)
+            if rejoined(chain.away, chain.suspended, chain.s_m, chain.join_m):
                 note = "back on the path"
-                out.append(self._progress(chain, now_ms, "Active", chain.served(), note))
+                out.append(passing.progress(chain, state.now_ms, "Active", note, chain.served()))
+                state = state.put(replace(chain, away=False))
             if track_is_told(chain.suspended, chain.version != before[vid]):
-                out.append(self.command(vid, epochs[vid]))
-        return out
+                state = telling.command(self.config, state, vid, epochs[vid], out)
+        return state
 
-    def command(self, vehicle_id: int, epoch: int) -> Any:
-        """The present track from here on, for the vehicle's gate."""
-        chain = self.chains[vehicle_id]
-        self.commands += 1
-        tasks = (chain.item.task_id,) if chain.item and chain.phase is Phase.TASK else ()
-        points, speed = points_left(chain), chain.speed_m_s
-        body = path_command(self.projection, vehicle_id, self.commands, points, speed, tasks)
-        return gated(vehicle_id, epoch, UXAS, body)
+    def _beats(self, state: State) -> bool:
+        """Whether a heartbeat is due in this step."""
+        return state.now_ms % self.config.mission.simulation.heartbeat_ms == 0
 
-    # events -------------------------------------------------------------------------------
+    # another plan ------------------------------------------------------------------------------
 
-    def _settle(self, states: dict[int, AirState], now_ms: int, out: list[Any]) -> None:
-        """Handle every passing of an end up to now, the earliest first."""
-        passed: dict[int, int | None] = {}
-        for vid in sorted(self.chains):
-            if not self.chains[vid].suspended:
-                passed[vid] = self._measure(vid, states[vid], now_ms)
-        while True:
-            due = [(at, vid) for vid, at in passed.items() if at is not None]
-            if not due:
-                return
-            at, vid = min(due)
-            self._on_end(self.chains[vid], at, states[vid], out)
-            passed[vid] = self._measure(vid, states[vid], now_ms)
+    def _asking(self, state: State, out: Out) -> State:
+        out.append(changes.ask(self.config, state))
+        return state
 
-    def _measure(self, vehicle_id: int, state: AirState, now_ms: int) -> int | None:
-        """The instant at which the end of a track was passed, if it was; the progress is noted."""
-        chain, at_ms = self.chains[vehicle_id].measure(state, now_ms, self.dt_s)
-        self._put(chain)
-        return at_ms
+    def _answered(self, state: State, message: Planned | NotPlanned, out: Out) -> State:
+        """The answer of the planner: what the kernel `answered` answers, and the rest of the step."""
+        asked = state.asked or Asked(FOR_NOTHING, "", "")
+        waits, act = answered(asked.kind, isinstance(message, Planned))
+        state = replace(state, asked=state.asked if waits else None)
+        if act == FLY_PLAN and isinstance(message, Planned):
+            state = changes.planned(self.config, state, message.plan, asked, out)
+            if asked.kind == FOR_CHANGE:
+                state = telling.command_all(self.config, state, out)
+                return self._events(state, out)
+            return self._commands(state, asked.versions, out)
+        if act == DROP_LEFT and isinstance(message, NotPlanned):
+            state = changes.unplanned(self.config, state, message.why, asked, out)
+            return self._events(state, out)
+        if act == DROP_LATE:
+            state = deadlines.give_up_first(self.config, state, asked.late, out)
+            return self._deadlines(state, asked.late[1:], asked.versions, out)
+        return state
 
-    def _on_end(self, chain: Chain, at_ms: int, state: AirState, out: list[Any]) -> None:
-        """The end of the present track has been passed: what the kernel `end_passed` answers."""
-        item = chain.item
-        row, opens = self._may_begin(chain, at_ms)
-        more = chain.next_k(self.failed) < len(chain.items)
-        moved = end_passed(chain.phase, chain.suspended, opens, more)
-        if item is None or moved.act == LAST_LAP:
-            self._put(chain.enter(Phase(moved.phase), Track(last_lap(chain)), at_ms))
-        elif moved.act == GO_ON:
-            self.ends[item.task_id] = at_ms
-            out.append(self._progress(chain, at_ms, "Complete", 1.0, ""))
-            self._next_item(chain, at_ms, state, out)
-        elif moved.act == START:
-            self._start(chain, item, at_ms, out)
-        elif moved.act == LAP:
-            self._lap(chain, item, at_ms, row, out)
+    # heartbeats, and the end -------------------------------------------------------------------
 
-    def _next_item(self, chain: Chain, at_ms: int, state: AirState, out: list[Any]) -> None:
-        chain = self._put(replace(chain, k=chain.next_k(self.failed)))
-        item = chain.item
-        if item is None:
-            self._loiter(chain, at_ms, state)
-            return
-        chain = replace(chain, speed_m_s=item.speed_m_s)
-        chain = self._put(chain.enter(Phase.TRANSIT, self.ways.transit(chain, state), at_ms))
-        out.append(self._progress(chain, at_ms, "Transit", 0.0, ""))
+    def _report(self, state: State, now_ms: int, out: Out) -> State:
+        """Where the cameras look; how far everybody is, for those with an instance."""
+        out.extend(telling.look(self.config, state, vid, now_ms) for vid, _ in state.aircraft)
+        for vid in self.config.instances:
+            state = telling.report(state, vid, out)
+        return state
 
-    def _loiter(self, chain: Chain, at_ms: int, state: AirState) -> None:
-        """Circle at the end of the chain; raised to a layer of its own while others still fly.
-
-        The layer is one and a half buffered vertical thresholds per vehicle, in the order of
-        finishing, so that one who has finished is in nobody's way.
-        """
-        self.finished += 1
-        others = any(c.item is not None for c in self.chains.values() if c is not chain)
-        daa = self.mission.daa
-        layer = 1.5 * daa.buffer * daa.well_clear.zthr_m * self.finished
-        track = self.ways.last(chain, state, layer if others else 0.0)
-        self._put(chain.enter(Phase.DONE, track, at_ms))
-
-    def _may_begin(self, chain: Chain, at_ms: int) -> tuple[Row | None, bool]:
-        """Whether the task of a vehicle at its start pose may begin, and a row that forbids it."""
-        item = chain.item
-        if item is None or chain.phase is Phase.TASK:
-            return None, False
-        row = closed_by(item.task_id, at_ms, self.plan.rows, self.starts, self.ends)
-        early = item.wait_ms != 0 and too_early(at_ms, item.start_ms, EARLY_MS)
-        now = life(item.task_id, self.starts, self.ends, self.failed)
-        return row, may_begin(now, row is None, early)
-
-    def _start(self, chain: Chain, item: PlanItem, at_ms: int, out: list[Any]) -> None:
-        """At the start pose: begin the task."""
-        self.starts[item.task_id] = at_ms
-        track = Track(item.path, chains.start_pose(item).heading_rad)
-        chain = replace(chain, speed_m_s=item.speed_m_s).enter(Phase.TASK, track, at_ms)
-        self._put(chain)
-        out.append(self._progress(chain, at_ms, "Active", 0.0, ""))
-
-    def _lap(
-        self, chain: Chain, item: PlanItem, at_ms: int, row: Row | None, out: list[Any]
-    ) -> None:
-        """At the start pose: fly a lap of the hold. row: one that forbids to begin, if one does."""
-        first = chain.phase is not Phase.WAIT
-        chain = self._put(chain.enter(Phase.WAIT, self.ways.lap(chain, item), at_ms))
-        if first:
-            note = row.text if row is not None else f"planned start at {item.start_ms} ms"
-            out.append(self._progress(chain, at_ms, "Waiting", 0.0, note))
-
-    # interruption ---------------------------------------------------------------------------
-
-    def suspend(self, vehicle_id: int, now_ms: int, act: int) -> tuple[list[Any], Position | None]:
-        """ICAROUS has taken over: messages, and the resume point if a task was active."""
-        chain = self.chains[vehicle_id]
-        if chain.suspended:
-            return [], self.resume_point(vehicle_id)
-        chain = self._put(replace(chain, suspended=suspended_after(chain.suspended, act)))
-        if chain.phase is not Phase.TASK:
-            return [], None
-        if chain.away:
-            return [], self.resume_point(vehicle_id)
-        note = f"left the path at {chain.path_flown_m():.0f} m"
-        return [
-            self._progress(chain, now_ms, "Suspended", chain.served(), note)
-        ], self.resume_point(vehicle_id)
-
-    def resume_point(self, vehicle_id: int) -> Position | None:
-        """Where the path was left, if a task was active: the sensor misses nothing."""
-        chain = self.chains[vehicle_id]
-        if chain.phase is not Phase.TASK:
-            return None
-        return chain.track.at(leaving_m(chain))
-
-    def resume(self, vehicle_id: int, state: AirState, now_ms: int, act: int) -> None:
-        """ICAROUS hands back: route to the resume point, then along the rest of the path."""
-        chain = self.chains[vehicle_id]
-        chain = replace(chain, suspended=suspended_after(chain.suspended, act))
-        back = self.ways.back(chain, state)
-        chain = chain.enter(chain.phase, back.track, now_ms)
-        if chain.phase is Phase.TASK:
-            chain = replace(chain, join_m=back.join_m, base_m=back.flown_m, away=True)
-        self._put(chain)
-
-    # timing -----------------------------------------------------------------------------------
-
-    def expected(self, factor: float, now_ms: int) -> tuple[dict[int, int], dict[int, int]]:
-        """Expected starts and ends of all tasks, ways flown at `factor` times the planned speed."""
-        return expected_times(
-            self.chains, self.plan.rows, self.starts, self.ends, self.failed, factor, now_ms
-        )
-
-    def _adapt_speed(self, chain: Chain, now_ms: int) -> None:
-        """Slow down or speed up so as to pass the start pose when the task may begin."""
-        item = chain.item
-        if item is None or chain.suspended or chain.phase not in (Phase.TRANSIT, Phase.WAIT):
-            return
-        target, left = self._opens_ms(item, now_ms, OPEN_MARGIN_MS), chain.left_m()
-        speed = trimmed_speed_m_s(item, chain.vehicle, left, target - now_ms, self.hurry)
-        if abs(speed - chain.speed_m_s) > 0.02 * item.speed_m_s or (
-            left < 10 * item.speed_m_s and abs(speed - chain.speed_m_s) > 0.002 * item.speed_m_s
-        ):
-            self._put(replace(chain, speed_m_s=speed, version=chain.version + 1))
-
-    def _watch_deadlines(self, states: dict[int, AirState], now_ms: int, out: list[Any]) -> None:
-        """Find an upper bound that not even the fastest flight can keep; plan anew or fail."""
-        self.hurry = bool(self._broken(1.0, now_ms))
-        if not self.hurry:
-            return
-        for task_id, row in self._broken(FASTEST, now_ms):
-            under_way = any(
-                c.phase is Phase.TASK and c.item is not None and c.item.task_id == task_id
-                for c in self.chains.values()
-            )
-            torn = any(c.suspended or c.phase is Phase.TASK for c in self.chains.values())
-            act = late_act(under_way, self.replan is not None, torn)
-            if act == STANDS_BY:
-                continue
-            if act == PLAN_ANEW and self.plan_anew(states, now_ms, row.text, out):
-                return
-            self._fail(task_id, now_ms, f"{row.text}: cannot be met any more", states, out)
-
-    def _broken(self, factor: float, now_ms: int) -> list[tuple[int, Row]]:
-        """The tasks that are left whose upper bounds break at this pace, with the first row."""
-        settled = self.ends.keys() | self.failed.keys()
-        return broken_rows(self.plan.rows, *self.expected(factor, now_ms), settled)
-
-    def plan_anew(self, states: dict[int, AirState], now_ms: int, why: str, out: list[Any]) -> bool:
-        """A new plan for what is left, from where all are; False if there is none."""
-        if self.replan is None:
-            return False
-        made = self.replan(states, frozenset(self.ends), now_ms)
-        if made is None:
-            return False
-        self.plan = made
-        self.replans += 1
-        for chain in self.chains.values():
-            if chain.item is not None:
-                note = f"planned anew, because of {why}"
-                out.append(self._progress(chain, now_ms, "Planned", 0.0, note))
-        out.extend(self.begin(states, now_ms))
-        return True
-
-    def know(self, zones: tuple[Zone, ...]) -> None:
-        """These zones bind from now on."""
-        self.zones, self.ways = zones, Ways(zones, self.dt_s)
-        for chain in tuple(self.chains.values()):
-            self._put(replace(chain, told_version=-1))
-
-    def commands_now(self, epochs: dict[int, int]) -> list[Any]:
-        """The present tracks, for all that UxAS commands."""
-        free = [vid for vid, chain in self.chains.items() if not chain.suspended]
-        return [self.command(vid, epochs[vid]) for vid in free]
-
-    def give_up(
-        self,
-        now_ms: int,
-        why: str,
-        states: dict[int, AirState],
-        asked: Iterable[int],
-        out: list[Any],
-    ) -> None:
-        """Nothing that is left can be done: every task of it fails by name, and those too that are
-        asked for and no vehicle was given."""
-        for vid in tuple(self.chains):
-            chain = self.chains[vid]
-            for item in chain.items[max(chain.k, 0) :]:
-                if fails(item.task_id, self.starts, self.ends, self.failed):
-                    self._fail(item.task_id, now_ms, why, states, out)
-        for task_id in asked:
-            if fails(task_id, self.starts, self.ends, self.failed):
-                self.failed[task_id] = why
-                out.append(task_progress(task_id, NOBODY, now_ms, "Failed", 0.0, why))
-
-    def _fail(
-        self, task_id: int, now_ms: int, why: str, states: dict[int, AirState], out: list[Any]
-    ) -> None:
-        """Name the failure of a task, and of those that can now never begin."""
-        self.failed[task_id] = why
-        for vid in sorted(self.chains):
-            chain = self.chains[vid]
-            item = chain.item
-            ids = [i.task_id for i in chain.items]
-            if task_id not in ids:
-                continue
-            served = chain.served() if item and item.task_id == task_id else 0.0
-            out.append(task_progress(task_id, vid, now_ms, "Failed", served, why))
-            if item is not None and item.task_id == task_id:
-                self._next_item(chain, now_ms, states[vid], out)
-        for row in self.plan.rows:
-            waits = row.kind in (1, 2) and task_id in row.group
-            if waits and row.i not in self.failed and row.i not in self.starts:
-                self._fail(row.i, now_ms, f"{row.text}: task {task_id} failed", states, out)
-
-    # reading ----------------------------------------------------------------------------------
-
-    def flying(self) -> int:
-        """How many vehicles have items of their chains left."""
-        return sum(chain.item is not None for chain in self.chains.values())
-
-    def report(self, vehicle_id: int) -> list[Route | Flown]:
-        """How far a vehicle is on the way that UxAS flies it, and the way if it has not been told."""
-        chain = self.chains[vehicle_id]
-        new = track_is_told(chain.suspended, chain.route_version != chain.told_version)
-        out: list[Route | Flown] = [self.route(vehicle_id)] if new else []
-        return out if chain.suspended else [*out, Flown(vehicle_id, chain.s_m)]
-
-    def route(self, vehicle_id: int) -> Route:
-        """The way ahead: the present track, and what follows for as far as ICAROUS looks."""
-        chain = self.chains[vehicle_id]
-        chain = self._put(replace(chain, told_version=chain.route_version))
-        opens = self._opens_ms(chain.item, chain.since_ms) if chain.item is not None else 0
-        ahead_m = chain.vehicle.max_speed_m_s * (self.mission.daa.lookahead_s + AHEAD_S)
-        speed = chain.item.speed_m_s if chain.item else chain.speed_m_s
-        return Route(vehicle_id, points_ahead(chain, opens, ahead_m), speed, chain.s_m)
-
-    def _opens_ms(self, item: PlanItem, now_ms: int, margin_ms: int = 0) -> int:
-        """When an item's task is expected to be allowed to begin, and a margin if it must wait."""
-        starts, ends = self.expected(1.0, now_ms)
-        starts.pop(item.task_id, None)
-        opens = opens_ms(item.task_id, self.plan.rows, starts, ends)
-        if opens > 0:
-            opens += margin_ms
-        return max(opens, item.start_ms) if item.wait_ms > 0 else opens
-
-    def _progress(self, chain: Chain, at_ms: int, phase: str, served: float, note: str) -> Any:
-        item = chain.item
-        assert item is not None
-        return task_progress(item.task_id, chain.vehicle.id, at_ms, phase, served, note)
+    def _close(self, state: State, message: Closing, out: Out) -> None:
+        """Whether the flight has ended, and how: what the kernel `flight_outcome` answers."""
+        now_ms, limit_ms = message.now_ms, self.config.mission.simulation.limit_ms
+        flying = sum(chain.item is not None for chain in state.chains)
+        away = sum(gate.owner != UXAS for _, gate in message.gates)
+        kinds = (*BRINGS_WORK, *((WIND,) if state.left_out else ()))
+        expected = sum(c.kind in kinds for c in state.to_come)
+        todo = len(changes.left(state)) if not flying else 0  # while some fly it is no matter
+        how = OUTCOMES[flight_outcome(flying, away, expected, todo, now_ms, limit_ms)]
+        if how:
+            out += [Say(mission_end(now_ms, how), passing.NAME), Over(how)]

@@ -2,7 +2,9 @@
 
 Down: zones, waypoints and START_MISSION at the start and whenever the way changes; at each
 heartbeat WPRCH, POSTN, ATTUD and one OBJCT per other aircraft. Up: SETMOD (with the epoch that
-ICAROUS's gate is in), SETVEL, HBEAT. On a takeover the executive suspends the vehicle, and ICAROUS
+ICAROUS's gate is in, at each heartbeat while ICAROUS flies), SETVEL, HBEAT. A SETMOD is believed only if
+the vehicle's own report of its gate says the same; one of an epoch that was never given is refused and
+said. On a takeover the executive suspends the vehicle, and ICAROUS
 is told the resume point by RESET_SFT; on an offer the executive takes the vehicle back in the new
 epoch. Which mode is believed and who counts as alive is decided by the kernels of
 `core.authority.link_end`.
@@ -16,6 +18,7 @@ from dataclasses import dataclass, replace
 
 from cratous.bridge import lmcp
 from cratous.bridge.text_protocol import Heartbeat, Message, SetMode, WaypointReached
+from cratous.core.authority.gate import UXAS, Gate
 from cratous.core.authority.link_end import LinkEnd, link_mode, link_sign
 from cratous.core.routing.polylines import Track
 from cratous.services.flight import lines
@@ -25,6 +28,7 @@ from cratous.services.flight.messages import (
     Down,
     Flown,
     FromLinkEnd,
+    GateIs,
     Heard,
     Left,
     Lost,
@@ -37,12 +41,14 @@ from cratous.services.flight.messages import (
     Watch,
     ZonesKnown,
 )
+from cratous.services.flight.notices import mode_refused
 from cratous.services.mission.frames import Projection
 from cratous.spec.authority.link_end import (
     ENDED,
     HEARD,
     OVERTAKEN,
     PASSED,
+    REFUSED,
     SAY_HEARD,
     SAY_LOST,
     SAY_SILENT,
@@ -55,6 +61,8 @@ LINK_LOST_MS = 2000
 """A vehicle's ICAROUS counts as silent when nothing came up for this long [ms]."""
 START = LinkEnd(False, 0, True)
 """UxAS commands and the instance is heard."""
+UNTOUCHED = Gate(UXAS, 0, False)
+"""The gate of a vehicle that has not reported anything yet."""
 NAME = "uxas/ics"
 """The sender of what this end publishes."""
 
@@ -65,7 +73,8 @@ class Peer:
 
     end: who commands and whether it is heard, as the kernels have it; open: the connection stands;
     marks_m: arc length of each waypoint told, from from_m of the vehicle's track on; reached: how
-    many of them are told to be reached; down: heartbeats sent; heard_ms: when it was last heard.
+    many of them are told to be reached; down: heartbeats sent; heard_ms: when it was last heard; gate: as
+    the vehicle has reported it last.
     """
 
     vehicle_id: int
@@ -76,6 +85,7 @@ class Peer:
     from_m: float = 0.0
     reached: int = 0
     down: int = 0
+    gate: Gate = UNTOUCHED
 
 
 @dataclass(frozen=True)
@@ -132,6 +142,8 @@ class UxasEnd:
                 return peer, _down(peer, [lines.reset_to(position, self.projection)])
             case Heard(_, now_ms, line):
                 return _heard(peer, line, now_ms)
+            case GateIs(_, gate):
+                return replace(peer, gate=gate), ()
             case Unreadable(_, now_ms, text):
                 return peer, (_status(peer, peer.open, now_ms, text),)
             case Lost(_, now_ms, event):
@@ -176,7 +188,7 @@ class UxasEnd:
         return replace(state, peers=tuple(peers)), tuple(out)
 
 
-ToOne = Route | Flown | Left | Heard | Unreadable | Lost
+ToOne = Route | Flown | Left | Heard | Unreadable | Lost | GateIs
 OfOne = tuple[Peer, tuple[FromLinkEnd, ...]]
 
 
@@ -199,17 +211,19 @@ def _heard(peer: Peer, line: Message, now_ms: int) -> OfOne:
 
 
 def _mode(peer: Peer, line: SetMode, now_ms: int) -> OfOne:
-    """A SETMOD line; one without an epoch, as the original sends it, begins the next."""
-    epoch = line.epoch if line.epoch is not None else peer.end.epoch + 1
-    linked = link_mode(peer.end, line.mode == "ACTIVE", epoch)
+    """A SETMOD line; one without an epoch, as the original sends it, is of the present one."""
+    epoch = line.epoch if line.epoch is not None else peer.gate.epoch
+    linked = link_mode(peer.end, peer.gate, line.mode == "ACTIVE", epoch)
     after, vid = replace(peer, end=linked.end), peer.vehicle_id
     if linked.act == SUSPEND:
         return after, (Suspend(vid, now_ms, linked.act),)
     if linked.act == TAKE_BACK:
         return after, (TakeBack(vid, now_ms, linked.act, epoch),)
     if linked.act == OVERTAKEN:
-        note = f"a mode of epoch {epoch} is overtaken by one of epoch {peer.end.epoch}"
+        note = f"a mode of epoch {epoch} is overtaken by one of epoch {peer.gate.epoch}"
         return after, (_status(after, after.end.alive, now_ms, note),)
+    if linked.act == REFUSED:
+        return after, (Say(mode_refused(vid, now_ms, line, epoch, peer.gate), NAME),)
     return after, ()
 
 

@@ -1,7 +1,7 @@
 """What the actors of a flight say to each other: plain values, times in ms of virtual time.
 
-Each message has one receiver: the UxAS end of the bridge, the executive, the wire, or (`Say`)
-everybody on the bus.
+Each message has one receiver: the UxAS end of the bridge, the executive, a vehicle, a planner, the
+wire, or (`Say`) everybody on the bus.
 """
 
 from __future__ import annotations
@@ -10,8 +10,11 @@ from typing import Any, NamedTuple
 
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.text_protocol import Message
-from cratous.services.flight.dynamics import AirState
-from cratous.spec.mission import Position, Zone
+from cratous.core.authority.gate import Gate
+from cratous.services.flight.dynamics import AirState, Limits
+from cratous.services.icarous.messages import Sensed, Wish
+from cratous.spec.mission import Mission, Position, Zone
+from cratous.spec.mission.plan import Plan, Pose
 
 
 class Say(NamedTuple):
@@ -99,6 +102,13 @@ class Lost(NamedTuple):
     event: LinkEvent
 
 
+class GateIs(NamedTuple):
+    """How a vehicle's gate stands from now on, by the vehicle itself."""
+
+    vehicle_id: int
+    gate: Gate
+
+
 class Watch(NamedTuple):
     """Look for instances that have fallen silent."""
 
@@ -106,6 +116,50 @@ class Watch(NamedTuple):
 
 
 # to the executive -------------------------------------------------------------------------------
+
+
+class Begin(NamedTuple):
+    """The mission begins. aircraft: the state of each of its vehicles, by id."""
+
+    now_ms: int
+    aircraft: tuple[tuple[int, AirState], ...]
+
+
+class SetOut(NamedTuple):
+    """Everybody is connected: tell the first ways and command the first tracks."""
+
+
+class Tick(NamedTuple):
+    """A step of the flight. aircraft: as in `Begin`; gates: how each vehicle's gate stands, by id."""
+
+    now_ms: int
+    aircraft: tuple[tuple[int, AirState], ...]
+    gates: tuple[tuple[int, Gate], ...]
+
+
+class Planned(NamedTuple):
+    """The plan that was asked for."""
+
+    plan: Plan
+
+
+class NotPlanned(NamedTuple):
+    """There is no plan as it was asked for. why: the reasons, in words."""
+
+    why: str
+
+
+class Report(NamedTuple):
+    """A heartbeat is due: where the cameras look, and how far everybody is on the way."""
+
+    now_ms: int
+
+
+class Closing(NamedTuple):
+    """A step is over: does the flight end? gates: as in `Tick`."""
+
+    now_ms: int
+    gates: tuple[tuple[int, Gate], ...]
 
 
 class Suspend(NamedTuple):
@@ -125,5 +179,105 @@ class TakeBack(NamedTuple):
     epoch: int
 
 
-ToLinkEnd = Connected | ZonesKnown | Route | Flown | Left | Beat | Heard | Unreadable | Lost | Watch
+# from the executive -----------------------------------------------------------------------------
+
+
+class AskPlan(NamedTuple):
+    """To the planner: a plan for what is left. known: the mission as it is known; starts: where each
+    vehicle is; done: the tasks flown, with start and end [ms]; absent: who takes no part, and why;
+    undone: tasks that have ended undone, and why; begun: tasks that have been begun and not ended."""
+
+    now_ms: int
+    known: Mission
+    starts: tuple[tuple[int, Pose], ...]
+    done: tuple[tuple[int, int, int], ...]
+    absent: tuple[tuple[int, str], ...]
+    undone: tuple[tuple[int, str], ...]
+    begun: tuple[int, ...]
+
+
+class Over(NamedTuple):
+    """To the clock: the flight has ended. outcome: how, in one word."""
+
+    outcome: str
+
+
+ToLinkEnd = (
+    Connected
+    | ZonesKnown
+    | Route
+    | Flown
+    | Left
+    | Beat
+    | Heard
+    | Unreadable
+    | Lost
+    | GateIs
+    | Watch
+)
 FromLinkEnd = Say | Down | Suspend | TakeBack
+
+
+# to a vehicle -----------------------------------------------------------------------------------
+
+
+class Commanded(NamedTuple):
+    """A `GatedCommand` has reached the vehicle's gate."""
+
+    now_ms: int
+    command: Any
+
+
+class Wished(NamedTuple):
+    """The vehicle's own ICAROUS wants something of the gate."""
+
+    now_ms: int
+    wish: Wish
+
+
+class LimitsAre(NamedTuple):
+    """What the airframe can do over the ground from now on."""
+
+    vehicle_id: int
+    limits: Limits
+
+
+class Look(NamedTuple):
+    """The state is due. payloads: a `CameraState` per camera; tasks: the ids of those that are looked
+    at something for."""
+
+    vehicle_id: int
+    now_ms: int
+    payloads: tuple[Any, ...]
+    tasks: tuple[int, ...]
+
+
+class Sense(NamedTuple):
+    """The vehicle's surveillance is due. aircraft: as in `Beat`; cooperating: those of our own that
+    avoid."""
+
+    now_ms: int
+    aircraft: tuple[tuple[int, AirState], ...]
+    cooperating: tuple[int, ...]
+
+
+class Choose(NamedTuple):
+    """Choose the velocity of the coming step."""
+
+
+class Move(NamedTuple):
+    """Fly the step."""
+
+
+class OnBoard(NamedTuple):
+    """To a vehicle's ICAROUS instance: what the vehicle senses."""
+
+    vehicle_id: int
+    sensed: Sensed
+
+
+ToVehicle = Commanded | Wished | LimitsAre | Look | Sense | Choose | Move
+FromVehicle = Say | GateIs | OnBoard
+
+ToExecutive = Begin | SetOut | Tick | Planned | NotPlanned | Report | Closing | Suspend | TakeBack
+FromExecutive = Say | ZonesKnown | Route | Flown | Left | Look | LimitsAre | AskPlan | Over

@@ -1,14 +1,17 @@
-"""What a flight tells of itself besides commands, as LMCP messages: gates, authority, plan, conflicts."""
+"""What a flight tells of itself besides commands, as LMCP messages: gates, authority, plan, conflicts, truth."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.core.authority.gate import Gate
+from cratous.bridge.text_protocol import SetMode
+from cratous.core.authority.gate import ICAROUS, UXAS, Gate, epoch_given
 from cratous.services.flight.commands import SENDERS
+from cratous.services.flight.dynamics import AirState
 from cratous.services.icarous.messages import Foresees
 from cratous.services.logs.records import fingerprint, to_data
+from cratous.services.mission.frames import compass
 from cratous.spec.mission.plan import Plan
 
 
@@ -21,6 +24,40 @@ def gate_state(vehicle_id: int, now_ms: int, gate: Gate) -> Any:
         Owner=SENDERS[gate.owner],
         Epoch=gate.epoch,
         Offered=gate.offered,
+    )
+
+
+def dropped(command: Any, now_ms: int, sender: int, gate: Gate) -> Any:
+    """A `GatedCommand` that the gate has not let through, as a `CommandDropped`."""
+    reason = "sent by one without authority"
+    if not epoch_given(gate, command.Epoch):
+        reason = "of an epoch that was never given"
+    elif command.Epoch != gate.epoch:
+        reason = "of another epoch"
+    return lmcp.new(
+        "CommandDropped",
+        VehicleID=command.VehicleID,
+        Time=now_ms,
+        Sender=SENDERS[sender],
+        Epoch=command.Epoch,
+        GateEpoch=gate.epoch,
+        Reason=reason,
+    )
+
+
+def mode_refused(vehicle_id: int, now_ms: int, line: SetMode, epoch: int, gate: Gate) -> Any:
+    """A SETMOD that says what cannot be true, as a `ModeRefused`."""
+    reason = "of the present epoch, which began otherwise"
+    if not epoch_given(gate, epoch):
+        reason = "of an epoch that was never given"
+    return lmcp.new(
+        "ModeRefused",
+        VehicleID=vehicle_id,
+        Time=now_ms,
+        Owner=SENDERS[ICAROUS if line.mode == "ACTIVE" else UXAS],
+        Epoch=epoch,
+        GateEpoch=gate.epoch,
+        Reason=reason,
     )
 
 
@@ -60,3 +97,31 @@ def conflict(foreseen: Foresees) -> Any:
         TimeToViolation_s=foreseen.first_violation_s,
         Resolution=foreseen.resolution,
     )
+
+
+def truth(vehicle_id: int, s: AirState, now_ms: int, cooperative: bool) -> Any:
+    """Where an aircraft is and how it flies until the next step, as the monitor reads it."""
+    p, v = s.position, s.velocity
+    return lmcp.new(
+        "TruthState",
+        VehicleID=vehicle_id,
+        Time=now_ms,
+        North=p.north_m,
+        East=p.east_m,
+        Altitude=p.alt_m,
+        VelocityNorth=v.north_m_s,
+        VelocityEast=v.east_m_s,
+        VelocityDown=v.down_m_s,
+        Heading=compass(s.heading_rad),
+        Cooperative=cooperative,
+    )
+
+
+def mission_change(now_ms: int, what: str, answer: str) -> Any:
+    """What has become known and what was done about it, as a `MissionChange`."""
+    return lmcp.new("MissionChange", Time=now_ms, What=what, Consequence=answer)
+
+
+def mission_end(now_ms: int, outcome: str) -> Any:
+    """That the flight has ended and how, as a `MissionEnd`."""
+    return lmcp.new("MissionEnd", Time=now_ms, Outcome=outcome)

@@ -1,9 +1,11 @@
-"""A flyable way from where a vehicle is to a pose, around the zones."""
+"""A flyable way from where a vehicle is to a pose, around the zones; none where none is found."""
 
 from __future__ import annotations
 
+import itertools
 import math
 
+from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.routing.dubins import cut, dubins
 from cratous.core.routing.visibility import Roadmap, route
 from cratous.services.flight.dynamics import AirState
@@ -11,28 +13,49 @@ from cratous.services.planning.zones import roadmaps
 from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import Pose
 
+Way = tuple[Position, ...]
+
 
 class Router:
     """Routes made in flight; the roadmaps around the zones are made once per turn radius."""
 
     def __init__(self, zones: tuple[Zone, ...]) -> None:
         self._zones = zones
-        self._maps: dict[float, tuple[Roadmap, ...]] = {}
+        self._maps: dict[tuple[float, tuple[Zone, ...]], tuple[Roadmap, ...]] = {}
 
     def way_to(
         self, state: AirState, radius_m: float, target: Pose, max_slope: float = math.inf
-    ) -> tuple[Position, ...]:
-        """The planner's route to the pose; the shortest Dubins path if it finds none.
+    ) -> Way:
+        """A way to the pose that breaks no zone; empty if none is found.
 
-        The latter is for a vehicle that is already in a zone, or has no way: that it breaks a
-        zone is then what ICAROUS and the monitor see.
+        The planner's route, else the shortest Dubins path, if its legs obey the zones. A zone that the
+        vehicle is in already is left on the way, for good: that it has been entered is then what
+        ICAROUS and the monitor see.
         """
+        here = (state.position,)
+        entered = tuple(z for z in self._zones if first_bad_leg(here, (z,)) is not None)
+        kept = tuple(z for z in self._zones if z not in entered)
         radius = round(radius_m, 3)
-        if radius not in self._maps:
-            self._maps[radius] = roadmaps(self._zones, radius)
         for slope in (max_slope, math.inf):
-            for roadmap in self._maps[radius]:
-                found = route(state.pose, target, radius, roadmap, slope)
-                if found.points:
-                    return found.points
-        return cut(dubins(state.pose, target, radius), target)
+            for roadmap in self._roadmaps(radius, kept):
+                found = route(state.pose, target, radius, roadmap, slope).points
+                if found and _leaves(found, entered):
+                    return found
+        direct = cut(dubins(state.pose, target, radius), target)
+        clear = first_bad_leg(direct, kept) is None and _leaves(direct, entered)
+        return direct if clear else ()
+
+    def _roadmaps(self, radius: float, zones: tuple[Zone, ...]) -> tuple[Roadmap, ...]:
+        key = radius, zones
+        if key not in self._maps:
+            self._maps[key] = roadmaps(zones, radius)
+        return self._maps[key]
+
+
+def _leaves(way: Way, entered: tuple[Zone, ...]) -> bool:
+    """Whether a way comes out of each of these zones and does not enter it again."""
+    for zone in entered:
+        clear = [first_bad_leg(leg, (zone,)) is None for leg in itertools.pairwise(way)]
+        if clear[-1:] != [True] or clear != sorted(clear):
+            return False
+    return True

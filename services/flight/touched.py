@@ -12,7 +12,7 @@ from cratous.services.flight.dynamics import AirState
 from cratous.spec import executive
 from cratous.spec.mission import Change, Mission, Zone
 from cratous.spec.mission.changes import TASK_ADDED, TASK_REMOVED, VEHICLE_JOINS, VEHICLE_LOST
-from cratous.spec.mission.plan import Plan
+from cratous.spec.mission.plan import Plan, left_out_of, left_out_text
 
 KINDS = {
     VEHICLE_LOST: executive.LOST,
@@ -33,18 +33,23 @@ def left_by(chains: Mapping[int, Chain]) -> dict[int, list[int]]:
 
 
 def handed_over(before: Mapping[int, list[int]], plan: Plan) -> str:
-    """Which tasks another plan gives to other vehicles, and which it does not have any more."""
+    """Which tasks another plan gives to other vehicles, which are not asked for any more, and which it
+    leaves out, with the reasons."""
+    gone = {one.task_id for one in left_out_of(plan)}
     who = {item.task_id: item.vehicle_id for item in plan.items}
     to: dict[int, list[int]] = {}
     out: list[int] = []
     for vehicle, tasks in sorted(before.items()):
         for task in tasks:
-            if task not in who:
+            if task not in who and task not in gone:
                 out.append(task)
+            elif task in gone:
+                continue
             elif who[task] != vehicle:
                 to.setdefault(who[task], []).append(task)
     parts = [f"{tasks_text(tasks)} to vehicle {vehicle}" for vehicle, tasks in sorted(to.items())]
-    return "; ".join([*parts, *([f"{tasks_text(out)} left out"] if out else [])])
+    parts += [f"{tasks_text(out)} no longer asked for"] if out else []
+    return "; ".join(filter(None, (*parts, left_out_text(plan))))
 
 
 def nobody_may(known: Mission, left: Collection[int], absent: Mapping[int, str]) -> str:

@@ -1,4 +1,4 @@
-"""One vehicle: airframe, autopilot, actuator gate, and what its own surveillance sees.
+"""One vehicle: airframe, autopilot, actuator gate and surveillance: `handle(state, message) -> (state, messages)`.
 
 The gate sits here, at the actuators, and so do the own state and the traffic picture that its
 ICAROUS instance works with: a broken link takes nothing from collision avoidance. All decisions
@@ -8,6 +8,7 @@ about authority are those of the gate kernels.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 from typing import Any
 
 from cratous.bridge import lmcp
@@ -26,6 +27,7 @@ from cratous.services.flight.commands import SENDERS, decode
 from cratous.services.flight.dynamics import (
     MAX_ACCELERATION_M_S2,
     AirState,
+    Limits,
     advance,
     first_state,
     limits_of,
@@ -33,105 +35,151 @@ from cratous.services.flight.dynamics import (
     turn_radius_m,
     turn_rate_rad_s,
 )
+from cratous.services.flight.messages import (
+    Choose,
+    Commanded,
+    FromVehicle,
+    GateIs,
+    LimitsAre,
+    Look,
+    Move,
+    OnBoard,
+    Say,
+    Sense,
+    ToVehicle,
+    Wished,
+)
+from cratous.services.flight.notices import authority_change, dropped, gate_state
+from cratous.services.icarous.messages import Sensed
 from cratous.services.mission.frames import Projection, compass
 from cratous.spec.mission import Vehicle
 from cratous.spec.mission.plan import Hold
 
 OVERRUN_S = 5.0
 """Flying on past the end of a path for this long [s] without a new command starts a loiter."""
+UNTOUCHED = Gate(UXAS, 0, False)
+"""UxAS commands, and has always done so."""
+HANDED_BACK = "the way back is free: handed back"
 
 
+@dataclass(frozen=True)
+class State:
+    """air: where it is and how it flies until the next step; command: what the autopilot flies, None for
+    nothing yet; roll_rad: of the last turn; takeovers: how often ICAROUS has taken the vehicle."""
+
+    air: AirState
+    limits: Limits
+    gate: Gate = UNTOUCHED
+    command: Command | None = None
+    roll_rad: float = 0.0
+    takeovers: int = 0
+
+
+Step = tuple[State, tuple[FromVehicle, ...]]
+
+
+@dataclass(frozen=True)
 class VehicleNode:
-    """A vehicle in the simulator. Times in ms, steps of dt_s."""
+    """A vehicle in the simulator; what does not change. Steps of dt_s; it descends to floor_m at most."""
 
-    def __init__(
-        self, vehicle: Vehicle, projection: Projection, dt_s: float, floor_m: float
-    ) -> None:
-        self.vehicle, self.limits = vehicle, limits_of(vehicle)
-        self.state: AirState = first_state(vehicle)
-        self.gate = Gate(UXAS, 0, False)
-        self.command: Command | None = None
-        self._projection, self._dt_s, self._floor_m = projection, dt_s, floor_m
-        self._roll_rad = 0.0
+    vehicle: Vehicle
+    projection: Projection
+    dt_s: float
+    floor_m: float
 
-    def receive(self, command: Any, now_ms: int) -> list[Any]:
+    def first(self) -> State:
+        """At mission start."""
+        return State(first_state(self.vehicle), limits_of(self.vehicle))
+
+    def handle(self, state: State, message: ToVehicle) -> Step:
+        """One step: the state afterwards, and what to send, in order."""
+        match message:
+            case Commanded():
+                return self._commanded(state, message)
+            case Wished():
+                return self._wished(state, message)
+            case LimitsAre(_, limits):
+                return replace(state, limits=limits), ()
+            case Look():
+                return state, (self._say(self._air_vehicle_state(state, message)),)
+            case Sense():
+                return state, (self._sensed(state, message),)
+            case Choose():
+                return self._choose(state), ()
+            case Move():
+                return replace(state, air=advance(state.air, self.dt_s)), ()
+
+    def _say(self, body: Any) -> Say:
+        return Say(body, f"vehicle/{self.vehicle.id}")
+
+    def _commanded(self, state: State, message: Commanded) -> Step:
         """Let a GatedCommand through, or say that it was dropped."""
+        command, before = message.command, state.gate
         sender = ICAROUS if command.Sender.name == SENDERS[ICAROUS] else UXAS
-        if not gate_accepts(self.gate, sender, command.Epoch):
-            stale = command.Epoch != self.gate.epoch
-            return [
-                lmcp.new(
-                    "CommandDropped",
-                    VehicleID=self.vehicle.id,
-                    Time=now_ms,
-                    Sender=SENDERS[sender],
-                    Epoch=command.Epoch,
-                    GateEpoch=self.gate.epoch,
-                    Reason="of another epoch" if stale else "sent by one without authority",
-                )
-            ]
-        self.gate = gate_after(self.gate, sender, command.Epoch)
-        self.command = decode(self._projection, command.Command, self.state.heading_rad)
-        return []
-
-    def wish(self, act: int) -> None:
-        """Let the gate do what the vehicle's ICAROUS wants. act: as the cycle's kernels answer."""
-        self.gate = gate_wished(self.gate, act)
-
-    def steer(self) -> None:
-        """Choose the velocity of the coming step."""
-        dt, state = self._dt_s, self.state
-        if isinstance(self.command, Follow):
-            self.command, progress = track_progress(self.command, state, dt)
-            if progress.after_m > progress.length_m + OVERRUN_S * state.speed_m_s:
-                self.command = self._loiter_here()
-        elif self.command is None:
-            self.command = self._loiter_here()
-        wanted = decide(self.command, state, self.limits, dt)
-        self.state = steer(state, wanted, self.limits, dt)
-        turn = math.remainder(self.state.heading_rad - state.heading_rad, 2 * math.pi)
-        self._roll_rad = math.atan(self.state.speed_m_s * turn / dt / 9.80665)
-
-    def advance(self) -> None:
-        """Fly the step."""
-        self.state = advance(self.state, self._dt_s)
-
-    def _loiter_here(self) -> Circle:
-        s = self.state
-        radius = 1.2 * turn_radius_m(s.speed_m_s, self.limits.max_bank_rad)
-        p = s.position
-        hold = Hold(
-            p.north_m - radius * math.sin(s.heading_rad),
-            p.east_m + radius * math.cos(s.heading_rad),
-            p.alt_m,
-            radius,
-            True,
+        if not gate_accepts(before, sender, command.Epoch):
+            return state, (self._say(dropped(command, message.now_ms, sender, before)),)
+        after = replace(
+            state,
+            gate=gate_after(before, sender, command.Epoch),
+            command=decode(self.projection, command.Command, state.air.heading_rad),
         )
-        return Circle(hold, s.speed_m_s)
+        return after, self._notices(before, after, message.now_ms, HANDED_BACK, 0)
 
-    @property
-    def motion(self) -> Motion:
-        """Own state, as the vehicle's ICAROUS instance gets it."""
-        s = self.state
-        return Motion(s.position, s.heading_rad, s.speed_m_s, s.climb_m_s)
+    def _wished(self, state: State, message: Wished) -> Step:
+        """Let the gate do what the vehicle's ICAROUS wants."""
+        now_ms, wish = message
+        after = replace(state, gate=gate_wished(state.gate, wish.act))
+        if after.gate.owner != state.gate.owner:
+            after = replace(after, takeovers=state.takeovers + 1)
+        said = self._notices(state.gate, after, now_ms, wish.reason, wish.intruder_id)
+        return after, said
 
-    @property
-    def ability(self) -> Ability:
-        """What the airframe can do at its present speed."""
-        limits = self.limits
-        return Ability(
-            turn_rate_rad_s(self.state.speed_m_s, limits.max_bank_rad),
+    def _notices(
+        self, before: Gate, after: State, now_ms: int, reason: str, intruder_id: int
+    ) -> tuple[FromVehicle, ...]:
+        """How the gate stands, if it has changed; who commands from now on, if that has."""
+        vid, gate, said = self.vehicle.id, after.gate, list[FromVehicle]()
+        if gate != before:
+            said += [GateIs(vid, gate), self._say(gate_state(vid, now_ms, gate))]
+        if gate.owner != before.owner:
+            said.append(self._say(authority_change(vid, now_ms, gate, reason, intruder_id)))
+        return tuple(said)
+
+    def _choose(self, state: State) -> State:
+        """Choose the velocity of the coming step."""
+        dt, air, command = self.dt_s, state.air, state.command
+        if isinstance(command, Follow):
+            command, progress = track_progress(command, air, dt)
+            if progress.after_m > progress.length_m + OVERRUN_S * air.speed_m_s:
+                command = _loiter_here(state)
+        elif command is None:
+            command = _loiter_here(state)
+        moved = steer(air, decide(command, air, state.limits, dt), state.limits, dt)
+        turn = math.remainder(moved.heading_rad - air.heading_rad, 2 * math.pi)
+        roll_rad = math.atan(moved.speed_m_s * turn / dt / 9.80665)
+        return replace(state, air=moved, command=command, roll_rad=roll_rad)
+
+    def _sensed(self, state: State, message: Sense) -> OnBoard:
+        """What the vehicle's ICAROUS instance gets: own state, what the airframe can do at its present
+        speed, everybody else, the gate."""
+        air, limits = state.air, state.limits
+        ability = Ability(
+            turn_rate_rad_s(air.speed_m_s, limits.max_bank_rad),
             limits.min_speed_m_s,
             limits.max_speed_m_s,
             limits.max_climb_m_s,
             MAX_ACCELERATION_M_S2,
-            self._floor_m,
+            self.floor_m,
         )
+        motion = Motion(air.position, air.heading_rad, air.speed_m_s, air.climb_m_s)
+        seen = traffic_picture(self.vehicle.id, message)
+        sensed = Sensed(message.now_ms, motion, ability, seen, state.gate)
+        return OnBoard(self.vehicle.id, sensed)
 
-    def air_vehicle_state(self, now_ms: int, payloads: list[Any], tasks: list[int]) -> Any:
+    def _air_vehicle_state(self, state: State, look: Look) -> Any:
         """The state that goes out at 2 Hz: degrees, body axes (u forward, v right, w down)."""
-        s = self.state
-        lat, lon = self._projection.to_geodetic(s.position.north_m, s.position.east_m)
+        s = state.air
+        lat, lon = self.projection.to_geodetic(s.position.north_m, s.position.east_m)
         heading = compass(s.heading_rad)
         mode = {"Follow": "Waypoint", "Circle": "Loiter", "Fly": "FlightDirector"}
         return lmcp.new(
@@ -142,43 +190,37 @@ class VehicleNode:
             w=-s.climb_m_s,
             Heading=heading,
             Course=heading,
-            Roll=math.degrees(self._roll_rad),
+            Roll=math.degrees(state.roll_rad),
             Groundspeed=s.speed_m_s,
             Airspeed=s.speed_m_s,
             VerticalSpeed=s.climb_m_s,
             Location=lmcp.new("Location3D", Latitude=lat, Longitude=lon, Altitude=s.position.alt_m),
             EnergyAvailable=100.0,
-            PayloadStateList=payloads,
-            Mode=mode.get(type(self.command).__name__, "Waypoint"),
-            AssociatedTasks=tasks,
-            Time=now_ms,
+            PayloadStateList=list(look.payloads),
+            Mode=mode.get(type(state.command).__name__, "Waypoint"),
+            AssociatedTasks=list(look.tasks),
+            Time=look.now_ms,
         )
 
 
-def truth(vehicle_id: int, s: AirState, now_ms: int, cooperative: bool) -> Any:
-    """Where an aircraft is and how it flies until the next step, as the monitor reads it."""
-    p, v = s.position, s.velocity
-    return lmcp.new(
-        "TruthState",
-        VehicleID=vehicle_id,
-        Time=now_ms,
-        North=p.north_m,
-        East=p.east_m,
-        Altitude=p.alt_m,
-        VelocityNorth=v.north_m_s,
-        VelocityEast=v.east_m_s,
-        VelocityDown=v.down_m_s,
-        Heading=compass(s.heading_rad),
-        Cooperative=cooperative,
+def _loiter_here(state: State) -> Circle:
+    s = state.air
+    radius = 1.2 * turn_radius_m(s.speed_m_s, state.limits.max_bank_rad)
+    p = s.position
+    hold = Hold(
+        p.north_m - radius * math.sin(s.heading_rad),
+        p.east_m + radius * math.cos(s.heading_rad),
+        p.alt_m,
+        radius,
+        True,
     )
+    return Circle(hold, s.speed_m_s)
 
 
-def traffic_picture(
-    own_id: int, states: dict[int, AirState], cooperating: frozenset[int]
-) -> tuple[Intruder, ...]:
+def traffic_picture(own_id: int, sense: Sense) -> tuple[Intruder, ...]:
     """Everyone else, as surveillance on board sees them, by id."""
     return tuple(
-        Intruder(other, states[other].position, states[other].velocity, other in cooperating)
-        for other in sorted(states)
+        Intruder(other, air.position, air.velocity, other in sense.cooperating)
+        for other, air in sense.aircraft
         if other != own_id
     )

@@ -1,7 +1,8 @@
 """Tracks made in flight: to the next task, back onto the path that was left, around at the end.
 
 What is planned is flown as it is planned; these are made where a vehicle does not come from where
-the plan has it. Zones and turns are the router's; what is flown is judged by the monitor.
+the plan has it. Zones and turns are the router's; where it finds no way that keeps the zones there is none.
+What is flown is judged by the monitor.
 """
 
 from __future__ import annotations
@@ -34,18 +35,22 @@ class Ways:
         self.zones, self.dt_s = zones, dt_s
         self._router = Router(zones)
 
-    def transit(self, chain: Chain, state: AirState) -> Track:
-        """The planned way to the item, or a new one if we do not come from where it begins."""
+    def transit(self, chain: Chain, state: AirState) -> Track | None:
+        """The planned way to the item, or a new one if we do not come from where it begins; None if
+        there is none."""
         item = chain.item
         assert item is not None
         track = chains.transit_track(item, state.position)
-        first = track.points[0]
-        off = math.hypot(
-            first.north_m - state.position.north_m, first.east_m - state.position.east_m
-        )
-        if off <= 3 * state.speed_m_s * self.dt_s + 1:
+        if self._there(state, track.points[0]):
             return track
-        return Track(self._to(chain, state, chains.start_pose(item)))
+        way = self._to(chain, state, chains.start_pose(item))
+        return Track(way) if way else None
+
+    def _there(self, state: AirState, place: Position) -> bool:
+        """Whether a vehicle is at a place, as well as a track is followed."""
+        p = state.position
+        off = math.hypot(place.north_m - p.north_m, place.east_m - p.east_m)
+        return off <= 3 * state.speed_m_s * self.dt_s + 1
 
     def lap(self, chain: Chain, item: PlanItem) -> Track:
         """One lap of the hold at the start pose of an item."""
@@ -54,26 +59,32 @@ class Ways:
         assert hold is not None
         return Track(chains.lap_points(hold, Position(*pose[:3])))
 
-    def back(self, chain: Chain, state: AirState) -> Back:
-        """To where the path was left, or to a waypoint ahead in transit, and on along the rest."""
-        flown = 0.0
+    def back(self, chain: Chain, state: AirState) -> Back | None:
+        """To where the path was left, or in transit to a waypoint ahead, else to its end, and on along
+        the rest; None if there is no way."""
         if chain.phase is Phase.TASK:
             join = leaving_m(chain)
-            flown = chain.base_m + join - chain.join_m
-        else:
-            join = join_in_transit(chain, state)
+            return self._onto(chain, state, join, chain.base_m + join - chain.join_m)
+        ahead = self._onto(chain, state, join_in_transit(chain, state), 0.0)
+        return ahead or self._onto(chain, state, chain.track.length_m, 0.0)
+
+    def _onto(self, chain: Chain, state: AirState, join: float, flown_m: float) -> Back | None:
         rest = Track(chain.track.rest(join), chain.track.heading_rad(join))
         target = Pose(*rest.points[0], rest.heading_rad(0.0))
         way = self._to(chain, state, target)
+        if not way:
+            return None
         track = Track((*way, *rest.points[1:]), target.heading_rad)
-        return Back(track, max(0.0, track.length_m - rest.length_m), flown)
+        return Back(track, max(0.0, track.length_m - rest.length_m), flown_m)
 
     def last(self, chain: Chain, state: AirState, layer_m: float) -> Track:
-        """Circle at the end of the chain, raised by layer_m where zones and climb allow it."""
-        end = chain.track.at(chain.track.length_m) if chain.k > 0 else state.position
-        heading = (
-            chain.track.heading_rad(chain.track.length_m) if chain.k > 0 else state.heading_rad
-        )
+        """Circle at the end of the chain, where the vehicle is there, else where it is; raised by
+        layer_m where zones and climb allow it."""
+        end, heading = chain.track.at(chain.track.length_m), state.heading_rad
+        if chain.k > 0 and self._there(state, end):
+            heading = chain.track.heading_rad(chain.track.length_m)
+        else:
+            end = state.position
         slope = 0.9 * chain.vehicle.max_climb_m_s / chain.vehicle.max_speed_m_s
         return chains.final_loiter(
             Pose(*end, heading), _radius_m(chain), layer_m, slope, self.zones

@@ -154,11 +154,10 @@ class Instance:
         return state, (*out, *self._commands(sensed, choice, cycled.act))
 
     def _commands(self, sensed: Sensed, choice: Choice, act: int) -> tuple[FromInstance, ...]:
-        """The velocity of a manoeuvre, to the autopilot and to UxAS, and the mode if that changes."""
-        vid, epoch = self.config.vehicle_id, gate_wished(sensed.gate, act).epoch
+        """The velocity of a manoeuvre, to the autopilot and to UxAS, and the mode, which UxAS needs to
+        hear once: a line that is lost is made good by the next one."""
+        vid, gate = self.config.vehicle_id, gate_wished(sensed.gate, act)
         v = velocity_of(choice.heading_rad, choice.speed_m_s, choice.climb_m_s)
-        modes: tuple[Up, ...] = ()
-        if act != NOTHING:
-            modes = (Up(vid, SetMode("PASSIVE" if act == OFFER else "ACTIVE", epoch)),)
+        mode = SetMode("PASSIVE" if gate.offered else "ACTIVE", gate.epoch)
         told = SetVelocity(north_mps=v.north_m_s, east_mps=v.east_m_s, down_mps=v.down_m_s)
-        return (Steer(vid, epoch, v), *modes, Up(vid, told))
+        return (Steer(vid, gate.epoch, v), Up(vid, mode), Up(vid, told))

@@ -1,4 +1,4 @@
-"""A mission document against `spec/mission/mission.schema.json`, in words that a user can act on."""
+"""A document against its JSON Schema, the mission's or a campaign's, in words that a user can act on."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ def mission_schema() -> dict[str, Any]:
     return schema
 
 
-def schema_problems(document: Document) -> list[BadInput]:
-    """All departures from the schema, in the order of the file."""
+def schema_problems(document: Document, schema: dict[str, Any] | None = None) -> list[BadInput]:
+    """All departures from a schema (the mission's unless another is given), in the order of the file."""
     from jsonschema import Draft202012Validator
 
     found: list[tuple[Key, BadInput]] = []
-    for error in Draft202012Validator(mission_schema()).iter_errors(document.data):
+    for error in Draft202012Validator(schema or mission_schema()).iter_errors(document.data):
         found.extend(_problems(document, error))
     order = [(document.lines.get(key, 0), str(key), problem) for key, problem in found]
     return [problem for _, _, problem in sorted(order, key=lambda row: row[:2])]

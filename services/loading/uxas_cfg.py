@@ -133,7 +133,7 @@ def _is_uxas(path: Path) -> bool:
     from cratous.bridge.lmcp import xml
 
     try:
-        return bool(xml.parse(bytes_of(path), str(path)).tag == "UxAS")
+        return bool(xml.parse(xml.mended(bytes_of(path), str(path), []), str(path)).tag == "UxAS")
     except BadInput:
         return False
 
@@ -142,12 +142,12 @@ def read_cfg(path: Path) -> Configuration:
     """Read a configuration and all messages that it sends, in the order of sending."""
     from cratous.bridge.lmcp import xml
 
-    root = xml.parse(bytes_of(path), str(path))
+    notes: list[str] = []
+    root = xml.parse(xml.mended(bytes_of(path), str(path), notes), str(path))
     if root.tag != "UxAS":
         raise BadInput(
             "not a UxAS configuration", where=str(path), expected="<UxAS>", got=f"<{root.tag}>"
         )
-    notes: list[str] = []
     services, messages = [], []
     for element in root:
         if element.tag != "Service":

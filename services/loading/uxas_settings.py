@@ -65,7 +65,7 @@ ROOT: Mapping[str, Attr] = {
     "ConsoleLoggerSeverityLevel": choice("WARN", *SEVERITIES),
     "MainFileLoggerSeverityLevel": choice("DEBUG", *SEVERITIES),
     "StartDelay_ms": whole(0),
-    "RunDuration_s": whole(None, 0),
+    "RunDuration_s": number(None),
     "isLoggingThreadId": flag(False),
     "isDataTimestamp": flag(False),
     # ours: how missions are understood, and the bus over several processes
@@ -99,20 +99,31 @@ class Entry:
 
 @dataclass(frozen=True)
 class Configuration:
-    """What a file says: the root's attributes as values, then services and bridges in order."""
+    """What a file says: the root's attributes as values, then services and bridges in order.
+
+    notes: what was read leniently; strict: nothing is to be.
+    """
 
     path: Path
     root: Mapping[str, Any]
     entries: tuple[Entry, ...]
     where: str = ""
+    notes: tuple[str, ...] = ()
+    strict: bool = False
 
 
-def read(path: Path) -> Configuration:
-    """Read a configuration; BadInput (with all problems that were found) if it is none."""
+def read(path: Path, *, strict: bool = False) -> Configuration:
+    """Read a configuration; BadInput (with all problems that were found) if it is none.
+
+    strict: what is read leniently otherwise, and noted, is refused.
+    """
     from cratous.bridge.lmcp import xml
 
     text = bytes_of(path, expected="a UxAS configuration (-cfgPath FILE; cfg.xml by default)")
-    root = xml.parse(text, str(path))
+    notes: list[str] = []
+    root = xml.parse(xml.mended(text, str(path), notes), str(path))
+    if strict and notes:
+        raise BadInput(notes[0], expected="XML as it is defined, or no --strict")
     if root.tag != "UxAS":
         raise BadInput(
             "not a UxAS configuration", where=str(path), expected="<UxAS>", got=f"<{root.tag}>"
@@ -137,7 +148,7 @@ def read(path: Path) -> Configuration:
                 )
             )
     refuse(problems)
-    return Configuration(path, values, tuple(entries), where)
+    return Configuration(path, values, tuple(entries), where, tuple(notes), strict)
 
 
 def entry(element: Any, where: str) -> Entry:

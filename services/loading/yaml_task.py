@@ -82,6 +82,7 @@ def yaml_task(data: dict[str, Any], places: Places, where: WhereKey, number: int
         start_point=None if start is None else places.position(start),
         pattern=Pattern(data["pattern"]) if "pattern" in data else None,
         extent_m=float(data.get("extent_m", 0.0)),
+        priority=int(data.get("priority", 0)),
     )
 
 

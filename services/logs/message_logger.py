@@ -1,7 +1,7 @@
 """The message logger: a service that writes every message it is configured for to a log.
 
 UxAS mounts it as MessageLoggerDataService: `LogMessage MessageType` is a prefix of addresses ("afrl"
-takes all of CMASI), `LogFileMessageCountLimit` turns text files on beside the database, with so
+takes all of CMASI), `LogFileName` the begin of the files' names, `LogFileMessageCountLimit` turns text files on beside the database, with so
 many messages in a file, `FilesPerSubDirectory` puts so many of them in a folder.
 `NumberMessagesToSkip` logs one message of a type, then skips so many of it, and so on.
 
@@ -17,6 +17,7 @@ nobody has a model of are logged too. It goes on when the log cannot be written,
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -32,6 +33,7 @@ from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import integer_of
 
 STEM = "messageLog"
+_NAME = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,99}")
 SERVICE_TYPE = "MessageLoggerDataService"
 
 
@@ -60,12 +62,13 @@ class MessageLogger:
         rules: Iterable[LogRule] = (LogRule(""),),
         *,
         name: str = SERVICE_TYPE,
+        stem: str = STEM,
         text_limit: int = 0,
         files_per_folder: int = 0,
         path: Path | None = None,
         **store: Any,
     ) -> None:
-        """A new log `messageLog_<n>.sqlite` in the folder (or at `path`); BadInput if it cannot be.
+        """A new log `<stem>_<n>.sqlite` in the folder (or at `path`); BadInput if it cannot be.
 
         text_limit: messages in each text file, 0 for no such files; store: of `LogStore`, and meta
         data of the log.
@@ -74,12 +77,12 @@ class MessageLogger:
         self.rules = tuple(rules)
         self.prefixes = tuple(dict.fromkeys(rule.prefix for rule in self.rules))
         self._skips = any(rule.skip for rule in self.rules)
-        path, number = (path, 0) if path is not None else _free(folder)
+        path, number = (path, 0) if path is not None else _free(folder, stem)
         store = {"writer": SERVICE_TYPE, **store}
         self.log = LogStore(path, **store)
         self._texts: TextFiles | None = None
         if text_limit > 0:
-            self._texts = TextFiles(folder, f"{STEM}_{number}", text_limit, files_per_folder)
+            self._texts = TextFiles(folder, f"{stem}_{number}", text_limit, files_per_folder)
         self._tap_state = self.start()
 
     @classmethod
@@ -112,6 +115,7 @@ class MessageLogger:
         return cls(
             folder,
             rules,
+            stem=_stem(attributes, where),
             text_limit=_whole(attributes, "LogFileMessageCountLimit", where),
             files_per_folder=_whole(attributes, "FilesPerSubDirectory", where),
             **store,
@@ -212,11 +216,24 @@ def _status(kind: str, text: str) -> Any:
     return lmcp.new("ServiceStatus", StatusType=kind, Info=[pair])
 
 
-def _free(folder: Path) -> tuple[Path, int]:
+def _stem(attributes: Mapping[str, str], where: str) -> str:
+    name = attributes.get("LogFileName", "") or STEM
+    if not _NAME.fullmatch(name):
+        raise BadInput(
+            "no name of a file",
+            where=where,
+            item="LogFileName",
+            expected="up to 100 letters, digits, '.', '_' and '-', not '.' at the begin",
+            got=name,
+        )
+    return name
+
+
+def _free(folder: Path, stem: str) -> tuple[Path, int]:
     """The first log name that is free in the folder, and its number."""
     number = 0
     try:
-        while (path := folder / f"{STEM}_{number}.sqlite").exists():
+        while (path := folder / f"{stem}_{number}.sqlite").exists():
             number += 1
     except OSError as error:
         raise cannot_write(folder, error) from None

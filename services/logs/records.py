@@ -107,7 +107,7 @@ def _read_tuple(hints: tuple[Any, ...], data: Any, item: str) -> tuple[Any, ...]
 
 def _read_record(cls: Any, data: Any, item: str) -> Any:
     if not isinstance(data, dict):
-        raise _misfit(item, f"an object ({cls.__name__})", data)
+        raise _misfit(item, f"an object with {', '.join(_names(cls))}", data)
     # a record of a subclass is known by its fields
     cls = next((c for c in cls.__subclasses__() if set(data) == set(_names(c))), cls)
     hints, names = _hints(cls), _names(cls)
@@ -121,7 +121,9 @@ def _read_record(cls: Any, data: Any, item: str) -> Any:
         return cls(**found)
     except TypeError:
         missing = ", ".join(name for name in names if name not in found)
-        raise _misfit(item, f"the fields {', '.join(names)}", f"none for {missing}") from None
+        raise BadInput(
+            "does not fit", item=item, expected=", ".join(names), got=f"none for {missing}"
+        ) from None
 
 
 def _names(cls: Any) -> list[str]:
@@ -131,4 +133,12 @@ def _names(cls: Any) -> list[str]:
 
 
 def _misfit(item: str, expected: str, got: Any) -> BadInput:
-    return BadInput("does not fit", item=item, expected=expected, got=repr(got)[:80])
+    return BadInput("does not fit", item=item, expected=expected, got=_as_json(got)[:80])
+
+
+def _as_json(got: Any) -> str:
+    """A value as its writer knows it: `null`, not `None`."""
+    try:
+        return json.dumps(got, ensure_ascii=False)
+    except (TypeError, ValueError):
+        return repr(got)

@@ -64,7 +64,7 @@ class Monitor:
         elif short == "TaskProgress":
             self.constraints.progress(body)
             self.completion.progress(body)
-        elif short in ("GateState", "GatedCommand", "CommandDropped"):
+        elif short in ("GateState", "GatedCommand", "CommandDropped", "ModeRefused"):
             self.authority.message(short, body, envelope.time_ms)
         elif short == "Heartbeat":
             self.bridge.heartbeat(body)

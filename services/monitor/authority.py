@@ -14,6 +14,7 @@ from cratous.core.authority.gate import (
     ICAROUS,
     UXAS,
     Gate,
+    epoch_given,
     gate_accepts,
     gate_after,
     gate_offer,
@@ -33,7 +34,8 @@ ON_CHANGE = {qualified(gate_takeover), qualified(gate_offer)}
 
 @dataclass
 class Command:
-    """What has been seen of the authority over one vehicle; `due`: what must be reported next."""
+    """What has been seen of the authority over one vehicle; `due`: what must be reported next; forged:
+    dropped commands of epochs that were never given; refused: modes that could not be true."""
 
     gate: Gate = field(default_factory=lambda: Gate(UXAS, 0, False))
     due: str = ""
@@ -43,6 +45,8 @@ class Command:
     longest_ms: int = 0
     commands: int = 0
     dropped: int = 0
+    forged: int = 0
+    refused: int = 0
     faults: list[tuple[int, str]] = field(default_factory=list)
     kernels: set[str] = field(default_factory=set)
 
@@ -55,12 +59,17 @@ class AuthorityWatch:
         self._ended = False
 
     def message(self, short: str, body: Any, time_ms: int) -> None:
-        """A state of the gate, a command, or a dropped command."""
+        """A state of the gate, a command, a dropped command, or a mode that UxAS has refused."""
         seen = self.vehicles.get(body.VehicleID)
         if seen is None:
             return
+        if short == "ModeRefused":
+            seen.refused += 1
+            return
         if short == "CommandDropped":
             seen.dropped += 1
+            seen.forged += not epoch_given(seen.gate, body.Epoch)
+            seen.kernels.add(qualified(epoch_given))
             if seen.due != "drop":
                 seen.faults.append((time_ms, "a command was dropped that had authority"))
             seen.due = ""
@@ -124,10 +133,16 @@ class AuthorityWatch:
         found = []
         for vehicle, seen in sorted(self.vehicles.items()):
             outcome = Outcome.HOLDS if self._ended else Outcome.UNKNOWN
-            note = f"{seen.takeovers} takeovers, each handed back"
+            note = "no takeover"
             if seen.takeovers:
+                many = "takeover" if seen.takeovers == 1 else "takeovers"
+                note = f"{seen.takeovers} {many}, each handed back"
                 note += f" (longest {seen.longest_ms / 1000:.2f} s)"
             note += f"; {seen.commands} commands, {seen.dropped} of them stale and dropped"
+            if seen.forged:
+                note += f", {seen.forged} of these of an epoch that was never given"
+            if seen.refused:
+                note += f"; {seen.refused} modes refused that could not be true"
             time_ms = None
             if seen.faults:
                 outcome, (time_ms, note) = Outcome.VIOLATED, seen.faults[0]

@@ -2,24 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
-from cratous.core.kernel import qualified
+from cratous.core.executive.steps import completes
+from cratous.core.geofence.distance import FARTHER, edge_against
+from cratous.core.kernel import Vec2, qualified
 from cratous.core.routing.dubins import turn_radius_m
-from cratous.core.well_clear import dips_to_zero
+from cratous.core.schedule.rows import row_holds
+from cratous.core.tasks.coverage_steps import enough_seen
 from cratous.services.monitor.coverage import CoverageWatch
 from cratous.services.monitor.presence import Ending, Presence
 from cratous.services.monitor.promises import END, Watched, served_item
 from cratous.services.monitor.prospects import prospects
 from cratous.services.monitor.samples import Sample
+from cratous.spec.constraint_rows import AFTER_END
+from cratous.spec.executive import COMPLETE, FAILED_FLIGHT
 from cratous.spec.mission import AREAS, SEARCHES, Loiter, Mission, Position, Task, TaskKind
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission.plan import Plan
 
 SERVED = 0.99
-"""A search is served when the footprints covered at least this fraction of its line or point."""
+"""The fraction of a search from which the kernel `enough_seen` takes it to be served: the margin's zero."""
 
 
 BANK_RESERVE = 1.1
@@ -124,14 +130,27 @@ class CompletionWatch:
     def verdicts(self, seen: Watched) -> list[Verdict]:
         """One verdict for each task that is asked for, and one on the mission's end."""
         found = [self._task_verdict(task, seen) for task in sorted(seen.tasks)]
-        good = self._outcome == "complete"
-        seconds = (self._end_ms or 0) / 1000
-        note = f"mission ended {self._outcome!r} after {seconds:.2f} s"
-        outcome = Outcome.HOLDS if good else Outcome.VIOLATED
-        if self._outcome is None:
-            note, outcome = "the messages stop before the mission ends", Outcome.UNKNOWN
-        found.append(Verdict("G3", END, outcome, Kind.OBSERVED, note, self._end_ms, checks=1))
-        return found
+        return [*found, self._end_verdict()]
+
+    def _end_verdict(self) -> Verdict:
+        if self._outcome is None or self._end_ms is None:
+            note = "the messages stop before the mission ends"
+            return Verdict("G3", END, Outcome.UNKNOWN, Kind.OBSERVED, note, checks=1)
+        told = COMPLETE if self._outcome == "complete" else FAILED_FLIGHT
+        # the last step of a flight may begin before its limit and end after it
+        limit_ms = self._mission.simulation.limit_ms + self._step_ms
+        good = completes(told, self._end_ms, limit_ms)
+        return Verdict(
+            "G3",
+            END,
+            Outcome.HOLDS if good else Outcome.VIOLATED,
+            Kind.OBSERVED,
+            f"mission ended {self._outcome!r} after {self._end_ms / 1000:.2f} s",
+            self._end_ms,
+            checks=1,
+            method="completes",
+            kernels=(qualified(completes),),
+        )
 
     def _task_verdict(self, task: int, seen: Watched) -> Verdict:
         doing = self._tasks[task]
@@ -144,7 +163,7 @@ class CompletionWatch:
         if covered is not None:
             margin = 100 * (covered - SERVED)
             note += f"; the footprint covered {100 * covered:.2f} % of it"
-            if covered < SERVED and outcome is Outcome.HOLDS:
+            if not self._coverage.served(task) and outcome is Outcome.HOLDS:
                 outcome = Outcome.VIOLATED
         missed = self._missed(task)
         if missed and outcome is Outcome.HOLDS:
@@ -174,9 +193,14 @@ class CompletionWatch:
 
     def _kernels(self, task: int) -> tuple[str, ...]:
         """The kernels that were asked about a task; none where messages alone say what became of it."""
+        doing, kind = self._tasks[task], self._kinds[task].kind
+        asked: list[Callable[..., Any]] = [edge_against] if doing.judged_near else []
+        if kind is TaskKind.LOITER and doing.touched and not doing.too_near:
+            asked.append(row_holds)
+        if kind in SEARCHES:
+            asked.append(enough_seen)
         seen = self._coverage.kernels.get(task)
-        near = qualified(dips_to_zero) if self._tasks[task].judged_near else None
-        return tuple(name for name in (seen, near) if name is not None)
+        return (*([seen] if seen is not None else []), *map(qualified, asked))
 
     def _unseen(self, number: int) -> str:
         """What was not seen of the flight of a complete task that is judged by places; empty if nothing."""
@@ -196,8 +220,10 @@ class CompletionWatch:
         if task.kind in (TaskKind.MUST_FLY, TaskKind.LOITER) and not doing.touched:
             return f"its point was never within {CAPTURE_M:g} m of what the task asks"
         # the first and the last step of a loiter are not counted in full
-        lacking = task.duration_ms - 2 * self._step_ms - doing.near_ms
-        if task.kind is TaskKind.LOITER and lacking > 0:
+        need_ms = task.duration_ms - 2 * self._step_ms
+        near_ms = doing.near_ms
+        enough = row_holds(AFTER_END, near_ms, near_ms, 0, need_ms, 0)
+        if task.kind is TaskKind.LOITER and not enough:
             return f"loitered {doing.near_ms / 1000:.2f} of {task.duration_ms / 1000:.2f} s"
         return ""
 
@@ -205,7 +231,7 @@ class CompletionWatch:
 def _method(task: Task) -> str:
     if task.kind in AREAS:
         return "square_within on footprints"
-    return "locate on footprints" if task.kind in SEARCHES else "dips_to_zero"
+    return "locate on footprints" if task.kind in SEARCHES else "edge_against"
 
 
 def centre_of(task: Task) -> Position:
@@ -214,9 +240,13 @@ def centre_of(task: Task) -> Position:
 
 
 def comes_near(before: Sample, after: Sample, point: Position, reach_m: float) -> bool:
-    """True iff the leg comes within reach_m of the point, horizontally (kernel `dips_to_zero`)."""
+    """True iff the leg comes within reach_m of the point, horizontally (kernel `edge_against`)."""
+    a, b, p = (_exact(one) for one in (before.position, after.position, point))
     exact: Any = Fraction
-    s = [exact(before.position[k]) - exact(point[k]) for k in (0, 1)]
-    v = [exact(after.position[k]) - exact(before.position[k]) for k in (0, 1)]
-    ss, vv, sv = s[0] ** 2 + s[1] ** 2, v[0] ** 2 + v[1] ** 2, s[0] * v[0] + s[1] * v[1]
-    return dips_to_zero(vv, 2 * sv, ss - exact(reach_m) ** 2, exact(1))
+    nearest = edge_against(p, a, b, exact(reach_m))
+    return nearest != FARTHER
+
+
+def _exact(point: Position) -> Vec2:
+    exact: Any = Fraction
+    return Vec2(exact(point[0]), exact(point[1]))

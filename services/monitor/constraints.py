@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cratous.core.kernel import qualified
+from cratous.core.schedule.choice import as_asked
 from cratous.core.schedule.rows import eligible, runs_forward
 from cratous.services.mission.times import row_verdict
 from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok
@@ -111,9 +112,14 @@ class ConstraintWatch:
         note = f"tasks {names} are asked for"
         if beside:
             note += f", and tasks {', '.join(map(str, beside))} were begun besides"
+        # each task at most once, and only if it is asked for
+        begun = [(0, int(t in seen.tasks), int(t in self._starts)) for t in sorted(wanted)]
         outcome = Outcome.HOLDS if ending.over else Outcome.UNKNOWN
-        outcome = Outcome.VIOLATED if beside else outcome
-        yield Verdict("G1", CHOICE, outcome, Kind.EXACT, note, checks=1)
+        outcome = outcome if as_asked(begun) else Outcome.VIOLATED
+        yield Verdict(
+            "G1", CHOICE, outcome, Kind.EXACT, note, checks=len(begun), method="as_asked",
+            kernels=(qualified(as_asked),),
+        )  # fmt: skip
         times = {t: (self._starts[t], self._ends[t]) for t in self._starts if t in self._ends}
         for row in term_rows(seen.asked, frozenset(seen.tasks), times) or ():
             missing = [t for t in (row.i, *row.group) if t not in times]

@@ -9,6 +9,7 @@ not count in full against the search: the fraction given is a lower bound.
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
@@ -23,6 +24,7 @@ from cratous.core.tasks.coverage import (
     square_side_m,
 )
 from cratous.core.tasks.coverage_arrays import mark_seen
+from cratous.core.tasks.coverage_steps import enough_seen
 from cratous.services.mission.frames import Projection
 from cratous.spec.mission import AREAS, SEARCHES, Mission, Task
 
@@ -61,7 +63,15 @@ class _Area:
 
     def fraction(self) -> float:
         """At least this much has been seen."""
-        return share_covered(int((~self._seen).sum()), self._side_m, self._area_m2)
+        return share_covered(self._unseen(), self._side_m, self._area_m2)
+
+    def sizes(self) -> tuple[Fraction, Fraction]:
+        """(what has not been seen, at most; the whole), in square metres."""
+        side, whole = Fraction(self._side_m), Fraction(self._area_m2)
+        return self._unseen() * side * side, whole
+
+    def _unseen(self) -> int:
+        return int((~self._seen).sum())
 
 
 class CoverageWatch:
@@ -104,6 +114,16 @@ class CoverageWatch:
             return bool(locate(edges, Vec2(*point)) >= 0)
 
         self._unseen[task] = [p for p in self._unseen[task] if not seen(p)]
+
+    def served(self, task: int) -> bool:
+        """Whether enough of a search has been seen (kernel `enough_seen`)."""
+        unseen: Any
+        whole: Any
+        if task in self._areas:
+            unseen, whole = self._areas[task].sizes()
+        else:
+            unseen, whole = len(self._unseen[task]), self._total[task]
+        return enough_seen(unseen, whole)
 
     def fraction(self, task: int) -> float | None:
         """Fraction seen so far; None for a task that is no search."""

@@ -12,19 +12,25 @@ from dataclasses import replace
 from itertools import islice, pairwise
 
 from cratous.core.kernel import qualified
+from cratous.core.schedule.choice import as_asked
 from cratous.core.schedule.rows import eligible, row_holds, schedule_holds
 from cratous.services.mission.times import Times, all_hold, row_verdict
 from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok
 from cratous.spec.algebra import ALTERNATIVE, Atom, Term
 from cratous.spec.algebra.meaning import branches, rows, tasks
+from cratous.spec.algebra.partial import after_choices, kept_rows, may_be_done
 from cratous.spec.constraint_rows import AFTER_END, Row
 from cratous.spec.mission import Mission, Position, Zone
-from cratous.spec.mission.asked import term_of
+from cratous.spec.mission.asked import asked, term_of
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 from cratous.spec.mission.plan import Plan, PlanItem
 
 Path = tuple[Position, ...]
 
+WHOLE = "plan: every task of one choice, once"
+PART = "plan: a part that the relations permit"
+"""A plan that leaves tasks out has this row as well. Of a flight the tasks served are judged instead of the first
+one: a later plan may do what the first leaves out, or it may be withdrawn."""
 CHOICES_MAX = 4096
 """So many branches of the same tasks are looked at for one whose rows hold."""
 SPEED_TOLERANCE_MS = 2
@@ -33,7 +39,7 @@ SPEED_TOLERANCE_MS = 2
 
 def check_plan(mission: Mission, plan: Plan) -> list[Verdict]:
     """One verdict for each constraint that the plan has to satisfy."""
-    found = [_complete(mission, plan)]
+    found = list(_complete(mission, plan))
     found += _eligibility(mission, plan)
     found += _chains(mission, plan)
     found += _relations(mission, plan)
@@ -72,15 +78,32 @@ def _within(term: Term, chosen: frozenset[int]) -> Term | None:
     return replace(term, operands=kept)
 
 
+def part_choices(mission: Mission, chosen: frozenset[int]) -> Iterator[tuple[Row, ...]]:
+    """The rows on the chosen tasks of each branch that permits that just these of its tasks are done.
+
+    No more than CHOICES_MAX branches are looked at.
+    """
+    term = term_of(mission)
+    if term is None or not chosen:
+        return
+    for branch in islice(branches(after_choices(term, chosen)), CHOICES_MAX):
+        if chosen <= set(tasks(branch)) and may_be_done(branch, chosen):
+            yield kept_rows(branch, chosen)
+
+
 def term_rows(mission: Mission, chosen: frozenset[int], times: Times) -> tuple[Row, ...] | None:
     """The constraint rows of the chosen tasks; None if no branch consists of them.
 
     Of several branches with these tasks it is the first whose rows hold of the times (ms), as far
     as their tasks have times; else the first of those with the fewest broken rows.
     """
+    return _best_rows(row_choices(mission, chosen), times)
+
+
+def _best_rows(choices: Iterator[tuple[Row, ...]], times: Times) -> tuple[Row, ...] | None:
     best: tuple[Row, ...] | None = None
     least = math.inf
-    for choice in row_choices(mission, chosen):
+    for choice in choices:
         known = [row for row in choice if all(t in times for t in (row.i, *row.group))]
         broken = sum(row_verdict(row, times, "").outcome is not Outcome.HOLDS for row in known)
         if broken < least:
@@ -95,18 +118,38 @@ def _verdict(item: str, good: bool, note: str, method: str, **more: object) -> V
     return Verdict("G1", item, outcome, Kind.EXACT, note, method=method, **more)  # type: ignore[arg-type]
 
 
-def _complete(mission: Mission, plan: Plan) -> Verdict:
-    """Every task of one branch is planned exactly once, and no other."""
+def _complete(mission: Mission, plan: Plan) -> Iterator[Verdict]:
+    """Every task of one branch is planned exactly once, and no other; if not, whether it is a part."""
     planned = sorted(item.task_id for item in plan.items)
+    chosen = frozenset(planned)
+    alike = any(True for _ in row_choices(mission, chosen))
+    wanted = chosen if alike else _first_choice(mission)
+    known = sorted({*planned, *(task.id for task in mission.tasks), *wanted})
+    counts = [(int(t in wanted), int(t in wanted), planned.count(t)) for t in known]
     twice = sorted({task for task in planned if planned.count(task) > 1})
-    branch = next(row_choices(mission, frozenset(planned)), None)
-    good = branch is not None and not twice
     note = f"tasks planned: {', '.join(map(str, planned)) or 'none'}"
     if twice:
         note += f"; planned twice: {', '.join(map(str, twice))}"
-    if branch is None:
+    part = not alike and any(True for _ in part_choices(mission, chosen))
+    if part:
+        left = [t for t in asked(mission, frozenset(), chosen) if t not in chosen]
+        note += f"; left out: {', '.join(map(str, left))}"
+    elif not alike:
         note += "; they are no complete choice of the mission's relations"
-    return _verdict("plan: every task of one choice, once", good, note, "branches", checks=1)
+    decided = (qualified(as_asked),)
+    yield _verdict(
+        WHOLE, bool(as_asked(counts)), note, "as_asked", checks=len(known), kernels=decided
+    )
+    if part:
+        yield _verdict(PART, not twice, note, "may_be_done", checks=1)
+
+
+def _first_choice(mission: Mission) -> frozenset[int]:
+    """The tasks of the relations' first branch; all tasks where there are no relations."""
+    term = term_of(mission)
+    if term is None:
+        return frozenset(task.id for task in mission.tasks)
+    return frozenset(tasks(next(iter(branches(term)))))
 
 
 def _eligibility(mission: Mission, plan: Plan) -> Iterator[Verdict]:
@@ -185,6 +228,8 @@ def _chains(mission: Mission, plan: Plan) -> Iterator[Verdict]:
 def _relations(mission: Mission, plan: Plan) -> Iterator[Verdict]:
     times = {item.task_id: (item.start_ms, item.end_ms) for item in plan.items}
     wanted = term_rows(mission, frozenset(times), times)
+    if wanted is None:
+        wanted = _best_rows(part_choices(mission, frozenset(times)), times)
     if wanted is None:
         return
     for row in wanted:

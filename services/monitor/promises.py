@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable, Iterator, Set
 from typing import NamedTuple
 
 from cratous.core.schedule.rows import runs_forward
-from cratous.services.monitor.plan_check import row_choices
+from cratous.services.monitor.plan_check import WHOLE, row_choices
 from cratous.services.monitor.presence import Span, in_the_air
 from cratous.spec.mission import Mission, Zone
 from cratous.spec.mission.asked import asked
@@ -20,8 +20,6 @@ from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 CHOICE = "flight: no task of another choice of the relations"
 END = "end of mission"
 WAYS = {"Down": "to", "Up": "from"}
-PLAN_ROWS = ("plan: every task of one choice, once", "plan: all order and timing rows at once")
-"""What the check of the plan before the flight says of every plan."""
 
 
 class Row(NamedTuple):
@@ -30,6 +28,10 @@ class Row(NamedTuple):
     requirement: str
     item: str
     vehicles: tuple[int, ...] = ()
+
+
+PLAN_ROWS = (Row("G1", WHOLE), Row("G1", "plan: all order and timing rows at once"))
+"""What the check of the plan before the flight says of every plan."""
 
 
 class Watched(NamedTuple):

@@ -18,6 +18,8 @@ from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
 from cratous.services.pipeline.offers import OPTIONS, Offered, Told, read, travel_of
 from cratous.services.pipeline.status import status
 from cratous.services.planning import mission_assign, without_vehicles
+from cratous.services.planning.left_out import assign_part
+from cratous.services.planning.partial import Parts
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 
 NAME = "AssignmentTreeBranchBoundService"
@@ -99,29 +101,48 @@ class AssignmentTreeBranchBoundService:
             OperatingRegion=matrix.OperatingRegion,
             TaskList=listed,
         )
-        out += [status(key, "Information", facts(result)), summary]
+        out += [
+            status(key, "Information", facts(result)),
+            *_left_out(key, context.assigned),
+            summary,
+        ]
 
 
 def _found(inputs: Offered, rows: list[Any], tasks: Iterable[int]) -> mission_assign.Found:
-    """The assignment; else NoPlan with what no vehicle can do or reach, or which constraints clash."""
-    mission = inputs.mission
+    """The assignment of all tasks, else of the part that leaves out least; if nothing can be done, NoPlan
+    with what no vehicle can do or reach, or which constraints clash."""
+    mission, problem = inputs.mission, inputs.problem(travel_of(inputs, rows))
+    limits, places = mission_assign.limits_of(mission), mission_assign.places_in(mission)
     try:
-        found = mission_assign.assign(
-            inputs.problem(travel_of(inputs, rows)),
-            mission_assign.limits_of(mission),
-            mission_assign.places_in(mission),
-        )
+        found = mission_assign.assign(problem, limits, places)
     except BadInput as error:
         # only what is said of tasks better elsewhere is no mistake of ours
-        why = without_vehicles.why_none(inputs)
+        why = without_vehicles.why_none(inputs) or tuple(inputs.undone.values())
         if not why:
             raise
-        raise NoPlan(why) from error
+        if not problem.choices:
+            raise NoPlan(why) from error
+        found = mission_assign.Found(None, None, why)
     if found.assignment is None:
+        priority = {task.id: task.priority for task in mission.tasks}
+        part = assign_part(
+            problem, limits, places, Parts(problem, priority, inputs.begun),
+            without_vehicles.unable(inputs),
+        )  # fmt: skip
+        if part.assignment is not None:
+            return part
         reached = {row.DestinationTaskID for row in rows}
         missing = [f"the costs have no way to task {task}" for task in tasks if task not in reached]
         raise NoPlan(without_vehicles.why_none(inputs) or (*found.reasons, *missing))
     return found
+
+
+def _left_out(key: int, found: mission_assign.Found) -> list[Any]:
+    """A warning for each task that is left out, with its TaskID and the reason."""
+    return [
+        status(key, "Warning", [("TaskID", str(left.task_id)), ("reason", left.text)])
+        for left in found.left_out
+    ]
 
 
 def facts(result: Assignment) -> list[tuple[str, str]]:

@@ -26,6 +26,7 @@ from cratous.services.pipeline.implementation import loiter_action
 from cratous.services.pipeline.offers import OPTIONS, Told, read, travel_of
 from cratous.services.pipeline.status import status
 from cratous.services.planning.loiters import Given, Loiter, loiters_of, schedule
+from cratous.services.planning.partial import part_problem
 from cratous.spec.errors import BadInput, CratousError
 
 NAME = "LoiterAssignmentService"
@@ -181,7 +182,7 @@ def _due(context: Context, mine: Work, summary: Any) -> tuple[Due, ...]:
         Given(task.AssignedVehicle, task.TaskID, task.OptionID, task.TimeThreshold)
         for task in summary.TaskList
     ]
-    steps = schedule(problem, given)
+    steps = schedule(part_problem(problem, {one.task_id for one in given}), given)
     loiters = loiters_of(steps, offered.inputs.options, context.inputs.zones)
     return tuple(Due(loiter, _action(context, loiter)) for loiter in loiters)
 

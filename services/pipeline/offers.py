@@ -38,8 +38,9 @@ class Offered(Inputs):
     def __init__(self, base: Inputs, offered: tuple[Option, ...], known: bool) -> None:
         """known: options were computed here, so that it is known which were dropped, and why."""
         super().__init__(
-            base.mission, base.starts, base.fixed, base.now_ms, base.flying, base.absent
-        )
+            base.mission, base.starts, base.fixed, base.now_ms, base.flying, base.absent,
+            base.undone, base.begun,
+        )  # fmt: skip
         self.offered, self._base, self._known = offered, base, known
 
     @cached_property

@@ -8,7 +8,7 @@ AutomationRequest -> validator -> UniqueAutomationRequest -> tasks -> TaskPlanOp
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
@@ -28,7 +28,8 @@ from cratous.services.planning import stages, without_vehicles
 from cratous.services.planning.inputs import Inputs
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission import Mission
-from cratous.spec.mission.plan import Plan, Pose
+from cratous.spec.mission.changes import with_choices
+from cratous.spec.mission.plan import LeftOut, Plan, Pose, partial
 
 LIMIT_MS = 5000
 """How long a request may take [ms]; here no time passes while one is planned."""
@@ -81,27 +82,35 @@ def make_plan(
     done: Iterable[Any] = (),
     now_ms: int = 0,
     absent: Mapping[int, str] | None = None,
+    undone: Mapping[int, str] | None = None,
+    begun: Collection[int] = (),
 ) -> Plan:
-    """The best plan found for the mission. BadInput for a bad start, NoPlan with reasons.
+    """The best plan found for the mission, a `PartialPlan` where not all of it can be done.
+
+    BadInput for a bad start, NoPlan with reasons if nothing can be done.
 
     bus: where the planning messages go (its own if None); its queue is run until it is empty, and
     the services leave it afterwards. starts: present poses by vehicle id, instead of the mission's;
     done: tasks already flown, as (task_id, start_ms, end_ms) or anything with these attributes;
     now_ms: when the vehicles set off; absent: vehicles that are not in the mission as it is known,
-    with the reason. In flight (starts given) a vehicle inside a zone is no bad input: there is just
+    with the reason; undone: tasks that have ended undone, with the reason; begun: tasks that have been begun
+    and are not ended, which make the choice of a `+`. In flight (starts given) a vehicle inside a zone is no bad input: there is just
     no route from where it is; and nothing may be left to do.
     """
     flying = starts is not None
     if not mission.tasks and flying:
         return stages.nothing_asked(mission)
     bus = Bus(lmcp.full_names) if bus is None else bus
-    poses = stages.start_poses(mission, starts)
-    inputs = Inputs(mission, poses, stages.fixed_tasks(done), now_ms, flying, absent or {})
+    poses, fixed = stages.start_poses(mission, starts), stages.fixed_tasks(done)
+    mission = with_choices(mission, {*begun, *(task.task_id for task in fixed)})
+    inputs = Inputs(
+        mission, poses, fixed, now_ms, flying, absent or {}, undone or {}, frozenset(begun)
+    )
     inputs.check_starts()
     if not inputs.wanted:
-        return stages.nothing_left(mission, inputs.branches, inputs.fixed)
+        return _nothing_wanted(inputs)
     if not mission.vehicles:
-        raise NoPlan(without_vehicles.without_options(inputs))
+        raise NoPlan(without_vehicles.why_none(inputs))
     requests = requests_on(bus)
     source = MissionSource(inputs)
     with services_on(bus, inputs, Contexts(source), requests) as contexts:
@@ -110,6 +119,13 @@ def make_plan(
         plan = _answered(requests, contexts)
     requests.told = {}
     return plan
+
+
+def _nothing_wanted(inputs: Inputs) -> Plan:
+    """The plan when no task is left to do."""
+    plan = stages.nothing_left(inputs.mission, inputs.branches, inputs.fixed)
+    left = tuple(LeftOut(task, why) for task, why in without_vehicles.unable(inputs).items())
+    return partial(plan, left, True) if left else plan
 
 
 def requests_on(bus: Bus) -> MissionRequests:
@@ -159,11 +175,13 @@ def _answered(requests: MissionRequests, contexts: Contexts) -> Plan:
         raise NoPlan(requests.reasons or ("the services have not answered",))
     context = contexts.of(unique.RequestID)
     plan = _exact(context, requests.newest("TaskAssignmentSummary"))
+    assert context.assigned is not None
+    if context.assigned.left_out:
+        plan = partial(plan, context.assigned.left_out, context.assigned.sure)
     said = {c.VehicleID: _order(c) for c in commands}
     flown = {v: [item.task_id for item in plan.chain(v)] for v in said}
     if said != flown or len(plan.items) != sum(map(len, said.values())):
         raise RuntimeError(f"the commands are of {said}, the plan of {flown}")
-    assert context.assigned is not None
     requests.certificate = context.assigned.certificate
     return plan
 

@@ -93,7 +93,7 @@ class AutomationRequestValidatorService:
         elif topic == RESPONSE:
             state = self._respond(state, body, out, now_ms)
         elif topic == STATUS:
-            state = self._fail(state, body, out, now_ms)
+            state = self._fail(self._noted(state, body), body, out, now_ms)
         elif topic == INITIALISED:
             state = state._replace(initialised=state.initialised | {body.TaskID})
         elif topic == REMOVE:
@@ -146,6 +146,15 @@ class AutomationRequestValidatorService:
             return state
         out.append(answer(state.asked[ticket], body, state.notes))
         return _done(state, ticket)
+
+    def _noted(self, state: Requests, body: Any) -> Requests:
+        """A warning that a task of the request in the pipeline is left out goes into its answer."""
+        facts = {pair.Key: pair.Value for pair in body.Info}
+        if body.StatusType.name != "Warning" or "TaskID" not in facts or not state.work:
+            return state
+        if facts.get("RequestID") != str(state.work):
+            return state
+        return state._replace(notes=(*state.notes, f"left out: {facts.get('reason', '')}"))
 
     def _fail(self, state: Requests, body: Any, out: list[Any], now_ms: int) -> Requests:
         """An error ends the request that it names; without a name, the one in the pipeline."""

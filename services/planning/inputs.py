@@ -28,7 +28,8 @@ class Inputs:
     """A mission from given poses at an instant [ms], with what has been flown of it.
 
     flying: the poses are where the vehicles are, not where a user has put them; absent: the vehicles
-    that take no part, with the reasons.
+    that take no part, with the reasons; undone: tasks that have ended undone, with the reasons; begun:
+    tasks that have been begun and are not ended.
     """
 
     mission: Mission
@@ -37,6 +38,8 @@ class Inputs:
     now_ms: int = 0
     flying: bool = False
     absent: Mapping[int, str] = field(default_factory=dict)
+    undone: Mapping[int, str] = field(default_factory=dict)
+    begun: frozenset[int] = frozenset()
 
     def check_starts(self) -> None:
         """BadInput if a user has put a vehicle where it may not be."""
@@ -68,8 +71,8 @@ class Inputs:
 
     @cached_property
     def wanted(self) -> tuple[int, ...]:
-        """The tasks of any branch that are not yet flown, by id."""
-        done = {f.task_id for f in self.fixed}
+        """The tasks of any branch that are not yet flown and have not ended undone, by id."""
+        done = {f.task_id for f in self.fixed} | self.undone.keys()
         if not self.all_branches:
             return tuple(sorted(set(tasks(self.term)) - done))
         return tuple(sorted({t for branch in self.branches for t in branch.tasks} - done))

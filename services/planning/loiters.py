@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from cratous.core.assignment.earliest_times import earliest
+from cratous.core.assignment.earliest_times import Unmet, earliest
 from cratous.core.assignment.instance import TIME_MAX_MS
 from cratous.core.assignment.settlement import Settler
 from cratous.core.schedule.rows import runs_forward
@@ -122,7 +122,7 @@ def _timed(
     rows = (*binding(problem, part), *floors)
     rules = Settler(instance, None, part.tasks, rows, laps, part.done)
     times = earliest(rules.visits(moves), rows)
-    if times.violated is not None:
+    if isinstance(times, Unmet):
         return times.violated.text
     shift = len(part.done)
     return tuple(

@@ -23,6 +23,7 @@ from cratous.spec.algebra import Term, format_term
 from cratous.spec.algebra.meaning import tasks as tasks_of
 from cratous.spec.assignment.search import CUMULATIVE, MINMAX, AssignmentProblem, Choice, Solution
 from cratous.spec.mission import Mission
+from cratous.spec.mission.plan import LeftOut
 
 NODES = 1_000_000
 """Nodes of a mission's search where it gives no limit, some seconds at most."""
@@ -35,11 +36,16 @@ Travel = Callable[[int, int, int], int | None]
 
 @dataclass(frozen=True)
 class Found:
-    """The assignment with its certificate; or none, with the reasons."""
+    """The assignment with its certificate; or none, with the reasons.
+
+    left_out: tasks that are asked for and not in it; sure: no more can be done, as far as was searched.
+    """
 
     assignment: Assignment | None
     certificate: dict[str, Any] | None
     reasons: tuple[str, ...] = ()
+    left_out: tuple[LeftOut, ...] = ()
+    sure: bool = True
 
 
 def problem_of(

@@ -90,6 +90,12 @@ def _end(found: Solution, task: int) -> int | None:
     return next((step.end_ms for step in found.steps if step.task_id == task), None)
 
 
+def is_wayless(problem: AssignmentProblem) -> bool:
+    """Whether not even without any constraint on times there is a schedule."""
+    questions = _Rows(problem)
+    return not questions.rows or questions.ask([])[0] is False
+
+
 def timing_reasons(
     problem: AssignmentProblem, found: Solution, where: Places = nowhere
 ) -> tuple[str, ...]:

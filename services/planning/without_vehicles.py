@@ -10,12 +10,34 @@ from cratous.services.planning.inputs import Inputs
 
 def why_none(inputs: Inputs) -> tuple[str, ...]:
     """What no vehicle can do or reach."""
-    return without_options(inputs) or without_routes(inputs)
+    none = {
+        task: f"no vehicle can do {_named(inputs, task)}: {why}"
+        for task, why in without_options(inputs).items()
+    }
+    unreached = {
+        task: f"no vehicle can reach task {task}: {why}"
+        for task, why in without_routes(inputs).items()
+    }
+    return tuple((none or unreached).values())
 
 
-def without_options(inputs: Inputs) -> tuple[str, ...]:
-    """A reason for each wanted task that no vehicle can fly."""
-    reasons = []
+def unable(inputs: Inputs) -> dict[int, str]:
+    """A reason for each task that no vehicle can do or reach, or that has ended undone."""
+    return {
+        **{task: f"it ended undone: {why}" for task, why in inputs.undone.items()},
+        **{task: f"no vehicle can do it: {why}" for task, why in without_options(inputs).items()},
+        **{task: f"no vehicle can reach it: {why}" for task, why in without_routes(inputs).items()},
+    }
+
+
+def _named(inputs: Inputs, task_id: int) -> str:
+    label = inputs.mission.task(task_id).label
+    return f"task {task_id}" + (f" ({label})" if label else "")
+
+
+def without_options(inputs: Inputs) -> dict[int, str]:
+    """What keeps the vehicles from each wanted task that none can fly."""
+    reasons = {}
     for task_id in inputs.wanted:
         if any(option.task_id == task_id for option in inputs.options):
             continue
@@ -24,15 +46,13 @@ def without_options(inputs: Inputs) -> tuple[str, ...]:
             if drop.task_id == task_id:
                 causes.update((f"vehicle {v}: {drop.reason}", None) for v in drop.vehicles)
         said = "; ".join((*causes, *_absent(inputs, task_id)))
-        label = inputs.mission.task(task_id).label
-        named = f"task {task_id}" + (f" ({label})" if label else "")
-        reasons.append(f"no vehicle can do {named}: {said or 'no vehicle is eligible'}")
-    return tuple(reasons)
+        reasons[task_id] = said or "no vehicle is eligible"
+    return reasons
 
 
-def without_routes(inputs: Inputs) -> tuple[str, ...]:
-    """A reason for each wanted task that no vehicle can reach, from its start or another task."""
-    reasons = []
+def without_routes(inputs: Inputs) -> dict[int, str]:
+    """What keeps the vehicles from each wanted task that none can reach, from its start or another task."""
+    reasons = {}
     options, routes = inputs.options, inputs.routes
     for task_id in inputs.wanted:
         mine = [k for k, option in enumerate(options) if option.task_id == task_id]
@@ -54,8 +74,8 @@ def without_routes(inputs: Inputs) -> tuple[str, ...]:
                 break
         if mine and not reached:
             said = "; ".join((*causes, *_absent(inputs, task_id)))
-            reasons.append(f"no vehicle can reach task {task_id}: {said}")
-    return tuple(reasons)
+            reasons[task_id] = said
+    return reasons
 
 
 def _absent(inputs: Inputs, task_id: int) -> list[str]:

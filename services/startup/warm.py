@@ -1,6 +1,6 @@
-"""`python -m cratous.services.startup.warm`: compile the kernels that the runtime uses on arrays.
+"""What `cratous warm` does: compile the kernels that the runtime uses on arrays, each step with a name.
 
-Part of the set-up, so that the first mission does not wait for the compiler. `ensure_planning` asks for
+Part of the set-up, so that no mission waits for the compiler. `ensure_planning` asks for
 it where a service that has to answer in time begins in a cache that has not been filled: in a
 process of its own, because the compiler takes a minute and more memory than planning itself.
 """
@@ -59,21 +59,27 @@ zones:
 """A way around a zone, lanes with turns, footprints along a line: every loop that planning compiles."""
 
 
-def warm() -> None:
-    """Compile, and run once."""
+ENCOUNTER = """NAME sx sy sz trk gs vs time
+unitless [nmi] [nmi] [ft] [deg] [knot] [fpm] [s]
+own 0 0 5000 0 150 0 0
+north 0.3 4 5300 180 180 -150 0
+east 4 2.5 5100 270 200 0 0
+"""
+"""Two intruders in conflict: alerts, bands in all dimensions, reasons, and whether there is a way out."""
+
+
+def warm_kernels() -> None:
+    """Well clear and orientation over arrays."""
     zero = 0.0
     state = (100.0, zero, -10.0, zero)
     compiled(horizontal_violation)(*state, 50.0, 10.0)
     compiled(violation)(*state, zero, zero, 50.0, 30.0, 10.0, zero)
     compiled(violation_within)(*state, zero, zero, 50.0, 30.0, 10.0, zero, 60.0)
     compiled(orient)(*state, zero, zero)
-    warm_planning()
-    ledger.require(allow_unproved=True)  # what the gate reads is kept
 
 
 def warm_planning() -> None:
-    """Compile what planning a mission calls, and remember that it is done."""
-    assign.warm()
+    """What planning a mission calls; remembered as done, for `ensure_planning`."""
     with tempfile.TemporaryDirectory() as folder, at_once():
         file = Path(folder) / "mission.yaml"
         file.write_text(MISSION, encoding="utf-8")
@@ -82,13 +88,44 @@ def warm_planning() -> None:
     _mark().touch()
 
 
+def warm_daa() -> None:
+    """What detect and avoid calls, and the judges of a way out."""
+    from cratous.services.daa import named_or_file, run
+    from cratous.services.daa.excuse import judge_step
+    from cratous.services.daa.explain import explain
+
+    with tempfile.TemporaryDirectory() as folder, at_once():
+        file = Path(folder) / "encounter.daa"
+        file.write_text(ENCOUNTER, encoding="utf-8")
+        for step in run(file, named_or_file("do_365b").parameters):
+            explain(step.parameters, step.instant)
+            judge_step(step)
+
+
+def warm_gate() -> None:
+    """What the gate reads, whatever it says."""
+    ledger.require(allow_unproved=True)
+
+
+PLANNING: tuple[tuple[str, Callable[[], None]], ...] = (
+    ("the searches of the assignment", assign.warm),
+    ("the loops of planning", warm_planning),
+)
+STEPS = (
+    ("well clear over arrays", warm_kernels),
+    *PLANNING,
+    ("detect and avoid", warm_daa),
+    ("what the gate reads", warm_gate),
+)
+
+
 def ensure_planning(say: Callable[[str], None]) -> None:
     """Have planning's loops compiled, unless they are; `say` is told when that takes time."""
     if _mark().is_file():
         return
     say("the planning loops are compiled, once for this version and machine; this takes a minute")
     done = subprocess.run(
-        [sys.executable, "-m", "cratous.services.startup.warm"],
+        [sys.executable, "-m", "cratous", "warm", "--planning", "--quiet"],
         capture_output=True,
         text=True,
         check=False,
@@ -103,8 +140,3 @@ def _mark() -> Path:
     for file in sorted((ROOT / "core").rglob("*.py")):
         sha.update(file.read_bytes())
     return private_cache() / "warm" / sha.hexdigest()
-
-
-if __name__ == "__main__":
-    warm()
-    print("what the runtime uses is compiled")

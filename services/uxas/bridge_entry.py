@@ -56,6 +56,7 @@ class Given:
         made = Rules(
             prefixes=self.prefixes(),
             self_generated=self.values["ConsiderSelfGenerated"],
+            trusted=self.values["Trust"],
             **rules,
         )
         return Bridge(self.name, self.host, self.identity, port, made)

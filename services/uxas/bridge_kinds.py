@@ -188,7 +188,8 @@ def _kind(
     self_generated: bool = False,
     keys: bool = False,
 ) -> BridgeKind:
-    common = {"ConsiderSelfGenerated": flag(self_generated), **LIMITS, **(KEYS if keys else {})}
+    common = {"ConsiderSelfGenerated": flag(self_generated), "Trust": flag(False), **LIMITS}
+    common |= KEYS if keys else {}
     return BridgeKind({**own, **common}, {**SUBSCRIBE, **children}, make)
 
 

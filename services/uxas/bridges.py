@@ -3,7 +3,8 @@
 Out: messages whose address begins with a subscribed prefix; where the bridge is of the kind that
 keeps foreign messages in (`own_only`), those of our own entity alone; never its own imports (but see
 `relay`), never what is addressed to the bridge itself, never KillService. In: LMCP that decodes; its source
-attributes as they came, or those of the bridge where it considers messages self-generated. What
+attributes as they came, or those of the bridge where it considers messages self-generated; no
+CreateNewService or KillService, unless the configuration trusts those behind the bridge. What
 does not pass for another reason than these rules is counted and logged.
 """
 
@@ -35,7 +36,7 @@ class Rules:
     impact: two parts, IMPACT's address and LMCP bytes, from entity `external_id`; throttle: the
     same AirVehicleConfiguration goes out once. relay: what clients say in the name of our entity
     goes out again, so that all clients hear it. returns: our own messages come back from such a
-    relay, and are not taken in again.
+    relay, and are not taken in again. trusted: who is behind it may make and end services.
     """
 
     prefixes: tuple[str, ...]
@@ -48,6 +49,7 @@ class Rules:
     throttle: bool = False
     relay: bool = False
     returns: bool = False
+    trusted: bool = False
 
 
 class Bridge:
@@ -125,6 +127,7 @@ class Bridge:
     def _import(self, incoming: Incoming) -> Envelope:
         if self.rules.impact:
             body, payload = self._received(incoming.parts[1], "message")
+            self._admit(body)
             who = Identity(self.rules.external_id, self._identity.service_id, "fusion")
             return self._envelope(body, payload, "", who)
         message = wire.parse(incoming.parts[0])
@@ -133,7 +136,7 @@ class Bridge:
         who = Identity(number(message.entity_id), number(message.service_id), message.group)
         if self.rules.self_generated:
             who = self._identity._replace(group=self.rules.group)
-        topic = found.all_names[0]
+        topic = self._admit(found)
         address = self.rules.aliases.get(message.address, message.address)
         if address != topic and address in lmcp.types:
             raise BadInput("payload of another type", item=address, expected=address, got=topic)
@@ -147,6 +150,16 @@ class Bridge:
             # under another name it comes back to this bridge, in the order of the bus
             source = f"eid{who.entity_id}.sid{who.service_id}"
         return self._envelope(found, payload, "" if address == topic else address, who, source)
+
+    def _admit(self, body: Any) -> str:
+        """The type of an object that may come in; BadInput for one that is for trusted peers alone."""
+        topic: str = body.all_names[0]
+        if topic in (KILL, CREATE) and not self.rules.trusted:
+            raise BadInput(
+                f"{topic.rpartition('.')[2]} over a bridge that is not trusted",
+                expected='Trust="TRUE" on the bridge in the configuration',
+            )
+        return topic
 
     def _received(self, payload: bytes, where: str) -> tuple[Any, bytes]:
         """Object and message of a payload; what a client does not quite right is said."""

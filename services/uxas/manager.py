@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Callable, Iterable
+from difflib import get_close_matches
 from functools import partial
 from typing import Any
 
@@ -27,13 +28,15 @@ from cratous.services.loading.uxas_settings import (
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import TASKS, TaskService
 from cratous.services.pipeline.world import World
-from cratous.services.uxas import bridge_kinds, own, registry
+from cratous.services.uxas import bridge_kinds, not_covered, own, registry
 from cratous.services.uxas.bridge_entry import Given
 from cratous.services.uxas.bridges import CREATE, KILL, Bridge
 from cratous.services.uxas.frame import Host
 from cratous.spec.errors import BadInput, CratousError
 
 FIRST_ID = 50
+SLIP = 0.85
+"""Names as alike as this (difflib's ratio) are one name with a slip in it: that is a mistake, no other service."""
 _COMMON = {"MessageGroup": Attr()}  # of every service: the group of its messages and its address
 
 
@@ -77,7 +80,10 @@ class ServiceManager:
 
         without: types that the user has asked to leave out.
         """
-        entries = check(self._config, without)
+        notes: list[str] = []
+        entries = check(self._config, without, notes)
+        for note in notes:
+            self._host.log("WARN", note)
         for left_out in self._config.entries:
             if left_out.type in without:
                 self._host.log("WARN", f"{left_out.where}: {left_out.type} is left out, as asked")
@@ -231,15 +237,25 @@ def _forget(world: World, task: Any) -> None:
         world.forget("task", task.TaskID)
 
 
-def check(config: Configuration, without: frozenset[str] = frozenset()) -> list[Entry]:
+def check(
+    config: Configuration, without: frozenset[str] = frozenset(), notes: list[str] | None = None
+) -> list[Entry]:
     """The entries to make; BadInput with all that is wrong with types, attributes and elements.
 
-    without: types that the user has asked to leave out.
+    without: types that the user has asked to leave out. notes: takes what was read leniently, and the
+    services that nobody has here; a strict configuration is refused for them.
     """
     entries = [e for e in config.entries if e.type not in without]
     problems: list[BadInput] = []
     own.load(config, problems)
     refuse(problems)
+    said = list(config.notes)
+    if not config.strict:
+        absent = [e for e in entries if e.kind == "Service" and _nobody_has(e.type)]
+        said += [f"{e.where}: no service {e.type} here; what it does is not done" for e in absent]
+        entries = [e for e in entries if e not in absent]
+    if notes is not None:
+        notes.extend(said)
     for item in entries:
         _check(item, entries, problems)
     refuse(problems)
@@ -315,8 +331,15 @@ def _whole(text: str) -> bool:
     return True
 
 
+def _nobody_has(kind: str) -> bool:
+    """True for a service of UxAS that is not covered, and for one of a name like no other's."""
+    known = [*registry.KINDS, *TASKS, *bridge_kinds.BRIDGES]
+    slip = get_close_matches(kind, known, 1, SLIP) or ":" in kind
+    return own.kind_of(kind) is None and (kind in not_covered.SERVICES or not slip)
+
+
 def _unknown(item: Entry, known: Any) -> BadInput:
-    if item.type in registry.TASKS_NOT_YET:
+    if item.type in not_covered.TASKS:
         return BadInput(
             f"tasks of type {item.type} are not covered yet",
             where=item.where,
@@ -324,7 +347,7 @@ def _unknown(item: Entry, known: Any) -> BadInput:
             expected=", ".join(TASKS),
             got=item.type,
         )
-    if item.type in registry.NOT_YET:  # and not in KINDS
+    if item.type in not_covered.SERVICES:  # and not in KINDS
         return BadInput(
             f"{item.type} of UxAS is not covered yet",
             where=item.where,

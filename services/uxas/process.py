@@ -83,7 +83,7 @@ class Process:
             root["EntityID"],
             root["EntityType"],
             config.path,
-            {**root, "where": config.where},
+            {**root, "where": config.where, "strict": config.strict},
             {"admit": self._admit, "data": data},
             say,
         )
@@ -203,6 +203,9 @@ class Process:
         if self._doorkeeper is None:
             self._doorkeeper = Doorkeeper(self.context)
         self._doorkeeper.admit(curve)
+        if curve.server is None and curve.clients is None:  # it binds, and has no list
+            where = f"{curve.where}: " if curve.where else ""
+            self.log("WARN", f"{where}no CurveClientKeys: whoever has any key is let in")
 
     def _fault(self, name: str, envelope: Envelope | None, error: Exception) -> None:
         what = f"message {envelope.seq} ({envelope.topic})" if envelope else "its own doing"

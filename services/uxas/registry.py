@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from cratous.services.loading.uxas_settings import Attr, Entry, choice, flag, number, whole
@@ -23,7 +24,7 @@ from cratous.services.pipeline import (
 )
 from cratous.services.pipeline.contexts import Contexts
 from cratous.services.pipeline.validator import AutomationRequestValidatorService
-from cratous.services.uxas import batch, leash, regions, small, tracker, waypoints
+from cratous.services.uxas import batch, diagram, leash, regions, small, tracker, waypoints
 from cratous.services.uxas.daidalus import detection, response
 from cratous.services.uxas.daidalus import parameters as daidalus
 from cratous.services.uxas.frame import Host
@@ -120,10 +121,20 @@ def _report(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int)
     )
 
 
-def _logger(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    folder = host.shared.get("data")
+def _data(host: Host, entry: Entry) -> Path:
+    folder: Path | None = host.shared.get("data")
     if folder is None:
         raise BadInput("no folder to write to", where=entry.where, item=entry.type)
+    return folder
+
+
+def _diagram(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    world, folder = source_of(host).world, _data(host, entry)
+    return diagram.AutomationDiagramDataService(name, world, folder, host.entity_id)
+
+
+def _logger(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    folder = _data(host, entry)
     (folder / "SavedMessages").mkdir(parents=True, exist_ok=True)
     return MessageLogger.from_parts(
         entry.attributes, entry.children, folder / "SavedMessages", entry.where, name=name
@@ -299,8 +310,13 @@ KINDS: dict[str, Kind] = {
         plans=True,
     ),
     "SendMessagesService": Kind({"PathToMessageFiles": Attr()}, _messages, ("Message",)),
+    "AutomationDiagramDataService": Kind({}, _diagram, single=True),
     "MessageLoggerDataService": Kind(
-        {"LogFileMessageCountLimit": whole(0), "FilesPerSubDirectory": whole(0)},
+        {
+            "LogFileName": Attr(),
+            "LogFileMessageCountLimit": whole(0),
+            "FilesPerSubDirectory": whole(0),
+        },
         _logger,
         ("LogMessage",),
     ),
@@ -372,6 +388,7 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
     "DAIDALUS_WCV_Response": (
         response.DaidalusResponse, ("VehicleActionCommand", "MissionCommand", "ServiceStatus")
     ),
+    "AutomationDiagramDataService": (diagram.AutomationDiagramDataService, ("ServiceStatus",)),
     "SendMessagesService": (small.SendMessagesService, ()),
     "MessageLoggerDataService": (MessageLogger, ()),
     "Test_SimulationTime": (small.SimulationTime, ()),
@@ -379,22 +396,3 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
     "StatusReportService": (small.StatusReportService, ("OnboardStatusReport",)),
 }  # fmt: skip
 """Of each service its class, which says what it subscribes to, and the messages that it sends."""
-
-NOT_YET = (
-    "AutomationDiagramDataService",
-    "OsmPlannerService",
-    "RoutePlannerService",
-    "SerialAutomationRequestTestService",
-    "SteeringService",
-)
-"""Services of UxAS that we do not have; named in a configuration they are refused."""
-
-TASKS_NOT_YET = (
-    "afrl.impact.BlockadeTask",
-    "afrl.impact.CommRelayTask",
-    "afrl.impact.CordonTask",
-    "afrl.impact.EscortTask",
-    "afrl.impact.MultiVehicleWatchTask",
-    "uxas.messages.task.AssignmentCoordinatorTask",
-    "uxas.messages.task.RendezvousTask",
-)

@@ -115,6 +115,8 @@ def _bodies(host: Host, bases: tuple[Path, ...], name: str, where: str) -> list[
         host.log("INFO", f"{where}: {name} is read from {path}")
     notes: list[str] = []
     bodies = lmcp.xml.read_messages(path, notes)
+    if notes and host.root.get("strict"):
+        raise BadInput(notes[0], expected="a message file without this, or no --strict")
     for note in notes:
         host.log("WARN", note)
     return bodies

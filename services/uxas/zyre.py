@@ -125,5 +125,11 @@ def zyre_bridge(given: Given) -> ZyreBridge:
         report=host.log,
         where=given.entry.where,
     )
-    rules = Rules((), own_only=True, group="ZyreBridge", self_generated=v["ConsiderSelfGenerated"])
+    rules = Rules(
+        (),
+        own_only=True,
+        group="ZyreBridge",
+        self_generated=v["ConsiderSelfGenerated"],
+        trusted=v["Trust"],
+    )
     return ZyreBridge(given, node, rules)

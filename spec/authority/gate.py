@@ -35,6 +35,11 @@ def may_act(state: State, sender: int, epoch: int) -> bool:
     return may_command(state, sender) and epoch == state.epoch
 
 
+def was_given(state: State, epoch: int) -> bool:
+    """Some change so far has begun this epoch, or it is the first one; none has begun a later one."""
+    return not (epoch < 0 or epoch > state.epoch)
+
+
 def stale(after: State, epoch: int) -> bool:
     """Whatever was commanded in this epoch cannot act any more, whoever sent it."""
     return not may_act(after, 0, epoch) and not may_act(after, 1, epoch)

@@ -1,15 +1,18 @@
 """The UxAS end of the bridge to one vehicle's ICAROUS: what it must believe, do, and leave.
 
 ICAROUS may take a vehicle at any time; UxAS learns of it by SETMOD lines, each with the epoch of the
-gate (`spec.authority.gate`) that began with it. Until it hears that control is offered, UxAS keeps its
-hands off the vehicle.
+gate (`spec.authority.gate`) that began with it, sent again and again. The vehicle reports how its gate
+stands; a line that says otherwise is nobody's to believe. Until it hears that control is offered, UxAS
+keeps its hands off the vehicle.
 """
 
 from typing import NamedTuple
 
-NOTHING, SUSPEND, TAKE_BACK, OVERTAKEN = 0, 1, 2, 3
+from cratous.spec.authority.gate import State, may_command, was_given
+
+NOTHING, SUSPEND, TAKE_BACK, OVERTAKEN, REFUSED = 0, 1, 2, 3, 4
 """What this end does about a mode: nothing; suspend what UxAS flies and tell where it was left; fly
-back and command it; report a mode that a newer one has overtaken."""
+back and command it; report a mode that a newer one has overtaken; refuse one that cannot be true."""
 
 HEARD, ENDED, PASSED = 1, 2, 3
 """A message has come; the connection has ended; time has passed."""
@@ -29,12 +32,27 @@ def believes_uxas(end: End) -> bool:
     return not end.active
 
 
-def is_after_mode(before: End, active: bool, epoch: int, after: End, act: int) -> bool:
-    """A mode of an epoch that began no later than the last one's changes nothing and is reported. Any
-    other is believed, and that alone changes; UxAS then lets go of a vehicle that it may not command,
-    and takes back one that it may command again."""
-    if not epoch > before.epoch:
+def is_true(gate: State, active: bool, epoch: int) -> bool:
+    """What a mode says is so: the gate is in its epoch, and UxAS may command unless it says otherwise."""
+    return epoch == gate.epoch and active != may_command(gate, 0)
+
+
+def is_past(before: End, gate: State, epoch: int) -> bool:
+    """The epoch was given, and a newer one is known to have begun."""
+    return was_given(gate, epoch) and (epoch < before.epoch or epoch != gate.epoch)
+
+
+def is_after_mode(before: End, gate: State, active: bool, epoch: int, after: End, act: int) -> bool:
+    """The mode that is believed already changes nothing. One that is past is reported, and one that is
+    neither past nor true is refused; neither changes anything. A true one is believed, and that alone
+    changes; UxAS then lets go of a vehicle that it may not command, and takes back one that it may
+    command again."""
+    if active == before.active and epoch == before.epoch:
+        return after == before and act == NOTHING
+    if is_past(before, gate, epoch):
         return after == before and act == OVERTAKEN
+    if not is_true(gate, active, epoch):
+        return after == before and act == REFUSED
     believed = after == End(active, epoch, before.alive)
     if not believes_uxas(after):
         return believed and act == SUSPEND

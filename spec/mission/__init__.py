@@ -154,7 +154,8 @@ class Task:
     way to fly in a loiter, or while looking at a point. gsd_m: coarsest ground sample distance
     that will do [m a pixel], 0: any. sweep_rad: direction of an area's lanes, None: any;
     start_point: where the search of an area has to begin. extent_m: a pattern reaches so far from
-    its centre: over a disc (spiral, sector), or a square (square, sweep).
+    its centre: over a disc (spiral, sector), or a square (square, sweep). priority: where not all tasks
+    can be done, those of higher priority are.
     """
 
     id: int
@@ -174,6 +175,7 @@ class Task:
     start_point: Position | None = None
     pattern: Pattern | None = None
     extent_m: float = 0.0
+    priority: int = 0
 
 
 class ZoneKind(StrEnum):

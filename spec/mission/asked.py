@@ -52,18 +52,20 @@ def _best(term: Term, worth: Worth) -> tuple[int, int, int]:
 
 def asked(mission: Mission, done: Set[int], accepted: Set[int]) -> tuple[int, ...]:
     """The tasks that have to be served: of a branch that is done whole, else of the one most like
-    what was accepted. Of several the first; no tasks if the mission has none.
+    what was accepted: of those with most of it the one with the fewest tasks besides. Of several the
+    first; no tasks if the mission has none.
     """
     term = term_of(mission)
     if term is None:
         return ()
     much = 2 * len(mission.tasks) + 2
+    most = much * much
 
     def lacking(task: int) -> int:
         return (0 if task in done else -much) + (task in accepted)
 
     def alike(task: int) -> int:
-        return (much if task in accepted else -much) + (task in done)
+        return (most if task in accepted else -much) + (task in done)
 
     whole = algebra_meaning.tasks(best_branch(term, lacking))
     if set(whole) <= done:

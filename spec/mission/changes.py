@@ -6,7 +6,9 @@ from collections.abc import Iterable, Set
 from dataclasses import dataclass, replace
 
 from cratous.spec import algebra
-from cratous.spec.algebra import Atom, Term
+from cratous.spec.algebra import ALTERNATIVE, Atom, Term
+from cratous.spec.algebra.meaning import tasks
+from cratous.spec.algebra.partial import after_choices
 from cratous.spec.mission import Change, Mission
 
 VEHICLE_LOST, VEHICLE_JOINS = "vehicle_lost", "vehicle_joins"
@@ -71,6 +73,22 @@ def asked_by(mission: Mission, now_ms: int, done: Iterable[int] = ()) -> Mission
     without those that were removed by then, unless they are among those `done`."""
     later = {c.task for c in mission.changes if c.kind == TASK_ADDED and c.at_ms > now_ms}
     return _without_tasks(mission, _gone(mission, now_ms).keys() - set(done) - later)
+
+
+def with_choices(mission: Mission, begun: Set[int]) -> Mission:
+    """The mission with the choice of each `+` made of which a task was begun: of its other operands none may
+    be begun any more."""
+    if not begun or ALTERNATIVE not in mission.relations:
+        return mission
+    ids = frozenset(task.id for task in mission.tasks)
+    term = algebra.parse(mission.relations, ids, where=mission.source)
+    made = after_choices(term, begun)
+    kept = set(tasks(made))
+    return replace(
+        mission,
+        tasks=tuple(task for task in mission.tasks if task.id in kept),
+        relations=algebra.format_term(made),
+    )
 
 
 def without_vehicles(mission: Mission, now_ms: int) -> dict[int, Change]:

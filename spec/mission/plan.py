@@ -7,7 +7,7 @@ task itself. Polylines are what is flown: arcs are already cut into short legs.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 from cratous.spec.constraint_rows import Row
@@ -78,3 +78,54 @@ class Plan:
     def chain(self, vehicle_id: int) -> tuple[PlanItem, ...]:
         """The items of one vehicle, in the order of flight."""
         return tuple(item for item in self.items if item.vehicle_id == vehicle_id)
+
+
+class LeftOut(NamedTuple):
+    """A task that is asked for and not planned.
+
+    reason: why it cannot be done; waiting: the tasks that are left out because they wait for it; instead:
+    the planned tasks with which there is no schedule for it.
+    """
+
+    task_id: int
+    reason: str
+    waiting: tuple[int, ...] = ()
+    instead: tuple[int, ...] = ()
+
+    @property
+    def text(self) -> str:
+        """In words: the task, why, and what else is not done because of it."""
+        waiting = f"; what waits for it: {', '.join(map(str, self.waiting))}"
+        return f"task {self.task_id} ({self.reason}{waiting if self.waiting else ''})"
+
+
+@dataclass(frozen=True)
+class PartialPlan(Plan):
+    """A plan of a part of what is asked for: what can be done of it.
+
+    chosen: the tasks of that part; sure: no more can be done, as far as was searched.
+    """
+
+    left_out: tuple[LeftOut, ...] = ()
+    sure: bool = True
+
+
+def partial(plan: Plan, left_out: tuple[LeftOut, ...], sure: bool) -> PartialPlan:
+    """A plan that leaves these tasks out."""
+    return PartialPlan(
+        **{f.name: getattr(plan, f.name) for f in fields(Plan)}, left_out=left_out, sure=sure
+    )
+
+
+def left_out_of(plan: Plan) -> tuple[LeftOut, ...]:
+    """The tasks that a plan leaves out; none of a plan of all that is asked for."""
+    return plan.left_out if isinstance(plan, PartialPlan) else ()
+
+
+def left_out_text(plan: Plan) -> str:
+    """In one line which tasks a plan leaves out and why; empty if none."""
+    said = [left.text for left in left_out_of(plan)]
+    if not said:
+        return ""
+    doubt = "" if isinstance(plan, PartialPlan) and plan.sure else "; more may be possible"
+    return f"left out: {'; '.join(said)}{doubt}"

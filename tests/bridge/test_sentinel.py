@@ -188,3 +188,42 @@ def test_envelopes_that_would_be_read_otherwise_are_not_written() -> None:
     ):
         with pytest.raises(BadInput):
             bad.pack()
+
+
+@given(
+    noise=st.lists(st.sampled_from([b"+=+=+=+=", b"+=+=+=+=5#@#@#@#@", b"x", frame(b"abc")]), max_size=40),
+    cuts=st.lists(st.integers(1, 30), max_size=40),
+    most=st.integers(1, 6),
+)  # fmt: skip
+def test_a_stream_of_noise_is_given_up_at_the_same_place_however_it_is_cut(
+    noise: list[bytes], cuts: list[int], most: int
+) -> None:
+    data = b"".join(noise) + b"." * 30
+    whole, cut = FrameStream(max_strays=most), FrameStream(max_strays=most)
+    expected, got, at = whole.feed(data), [], 0
+    for size in [*cuts, len(data)]:
+        got += cut.feed(data[at : at + size])
+        at += size
+    assert (got, cut.spoiled, cut.counts) == (expected, whole.spoiled, whole.counts)
+    free = FrameStream()
+    free.feed(data)
+    assert len(expected) <= free.frames
+    if not whole.spoiled:
+        assert whole.frames == free.frames
+
+
+def test_what_comes_after_too_much_noise_is_not_read() -> None:
+    stream = FrameStream(max_strays=100)
+    assert stream.feed(b"+=+=+=+=x" * 99 + frame(b"in time")) == [b"in time"]
+    assert stream.feed(b"+=+=+=+=x" * 100 + frame(b"too late")) == []
+    assert stream.spoiled
+    assert stream.pending == 0
+    assert stream.feed(frame(b"later")) == []
+    assert stream.close() == []
+
+
+def test_a_peer_that_is_gone_leaves_no_long_work_behind() -> None:
+    stream = FrameStream(max_strays=1000)
+    stream.feed(b"+=+=+=+=9999999#@#@#@#@" * 100_000)  # heads of frames that never come
+    assert stream.close() == []
+    assert sum(stream.counts.values()) == 1000

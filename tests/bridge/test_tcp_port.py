@@ -11,7 +11,7 @@ import pytest
 
 from cratous.bridge.port import Limits, address, often
 from cratous.bridge.sentinel import FrameStream, frame
-from cratous.bridge.tcp_port import FULL, HELD, LATE, NOBODY, STALLED, TcpPort
+from cratous.bridge.tcp_port import FULL, HELD, LATE, NOBODY, NOISE, STALLED, TcpPort
 from cratous.spec.errors import BadInput
 
 ANY = address("tcp://127.0.0.1:0", ("tcp",), free=True)
@@ -85,6 +85,19 @@ def test_a_frame_that_announces_gigabytes_is_refused_and_the_next_one_arrives(
     assert set(server.got) == {b"good", b"unaffected"}
     assert server.reports.has("1600000000")
     assert server.port.counts.refused["payload longer than the limit"] == 1
+
+
+def test_a_peer_that_sends_only_heads_is_dropped_and_costs_the_others_nothing(
+    server: Server,
+) -> None:
+    noisy, other = server.connect(), server.connect()
+    noisy.setblocking(False)
+    with contextlib.suppress(BlockingIOError):
+        noisy.sendall(b"+=+=+=+=" * 100_000)
+    server.until(lambda: server.port.peers == 1)
+    assert server.port.counts.refused[NOISE] == 1
+    other.sendall(frame(b"unaffected"))
+    server.until(lambda: server.got == [b"unaffected"])
 
 
 def test_a_connection_that_never_finishes_a_frame_is_dropped(server: Server) -> None:

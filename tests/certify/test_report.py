@@ -12,9 +12,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cratous.services.certify.charts import FEW, altitude_view, separation_view
 from cratous.services.certify.comparing import differences, text_difference
 from cratous.services.certify.html import margin, render, seconds
-from cratous.services.certify.picture import map_view, separation_view, time_view
+from cratous.services.certify.picture import map_view, time_view
 from cratous.services.certify.reading import read_report
 from cratous.services.certify.timeline import bars, read_flight
 from cratous.services.certify.verdicts import constraint_rows, requirement_rows
@@ -199,8 +200,15 @@ def test_a_row_leads_to_its_kernel_and_on_to_theorem_and_definition() -> None:
     page = html.document_fromstring(render(report()))
     targets = {node.get("id") for node in page.xpath("//*[@id]")}
     links = {node.get("href") for node in page.xpath("//a")}
-    assert links == {"#kernel-a.k", "#theorem-t", "#definition-s.d"}
-    assert {link[1:] for link in links} == targets
+    evidence = {"#kernel-a.k", "#theorem-t", "#definition-s.d"}
+    # each requirement leads to the constraint that it is told by
+    assert links == evidence | {f"#constraint-{k}" for k in range(1, 6)}
+    assert {link[1:] for link in links} <= targets
+    rows = page.xpath("//section[@id='answer']//table[1]//tr[td]")
+    for row in rows:
+        (link,) = row.xpath(".//a/@href")
+        (told,) = page.xpath(f"//tr[@id='{link[1:]}']/td[1]")
+        assert row.xpath("./td[1]/b")[0].text.startswith(told.text)
     decided = [
         node.text_content()
         for node in page.xpath("//h2[.='Constraints']/following::table[1]//td[6]")
@@ -221,7 +229,7 @@ def test_nothing_is_evidence_where_calls_were_not_recorded() -> None:
     page = render(whole)
     assert "was not recorded" in page
     assert 'b.k</span> <span class="soft">(calls not recorded)' in page
-    assert "<a " not in page
+    assert '<a class="mono"' not in page, "nothing leads to evidence that is not there"
 
 
 def test_the_map_keeps_one_scale_and_north_up() -> None:
@@ -240,12 +248,70 @@ def test_the_map_keeps_one_scale_and_north_up() -> None:
 
 def test_time_line_and_separation() -> None:
     view = time_view(report())
-    assert all(bar["x"] >= 110 and bar["x"] + bar["width"] <= 970.2 for bar in view["bars"])
+    assert all(bar["x"] >= 110 and bar["x"] + bar["width"] <= 700.2 for bar in view["bars"])
     assert separation_view(report())["curves"][0]["least_m"] == pytest.approx(100.0)  # type: ignore[index]
 
 
+def test_altitudes_over_time() -> None:
+    whole = report()
+    whole["flight"]["tracks"]["1"][-1][3] = 360.0
+    view = altitude_view(whole)
+    assert view is not None
+    assert [(c["low_m"], c["high_m"]) for c in view["curves"]] == [(300.0, 360.0), (300.0, 300.0)]
+    levels = {level["text"]: level["y"] for level in view["levels"]}
+    ys = [float(pair.split(",")[1]) for pair in view["curves"][0]["points"].split()]
+    assert ys[0] == levels["300 m"]
+    assert ys[-1] < ys[0], "up is up"
+    assert min(levels.values()) < min(ys), "no line lies on the frame"
+    assert max(levels.values()) > max(ys)
+    whole["flight"]["tracks"] = {}
+    assert altitude_view(whole) is None
+    assert separation_view(whole) is None
+
+
+def test_the_nearest_pairs_come_first_traffic_among_them() -> None:
+    whole = report()
+    tracks = whole["flight"]["tracks"]
+    whole["flight"]["tracks"] |= {
+        str(k): [[t, n, e + 10.0 * k, alt + 50.0, 0] for t, n, e, alt, _ in tracks["2"]]
+        for k in range(90, 99)
+    }
+    view = separation_view(whole)
+    assert view is not None
+    found = [curve["least_m"] for curve in view["curves"]]
+    assert found == sorted(found)
+    assert (len(found), view["pairs"]) == (FEW, 1 + 2 * 9), "no pair of traffic with traffic"
+    assert view["curves"][0]["pair"] == "1 and 2"
+    assert view["curves"][1]["above_m"] == 50.0
+    assert f"nearest {FEW} of 19 pairs" in render(whole)
+
+
+def test_a_requirement_without_margins_is_told_by_what_most_was_seen_for() -> None:
+    rows = [row("G4", Outcome.HOLDS) for _ in range(3)]
+    for one, checks in zip(rows, (3, 158, 4), strict=True):
+        one["margin"], one["checks"], one["note"] = None, checks, f"{checks} checks"
+    assert requirement_rows(rows)[3]["note"] == "158 checks"
+
+
+def test_paper_has_the_answer_and_the_inventory_only_when_asked_for() -> None:
+    from lxml import html
+
+    text = render(report())
+    page = html.document_fromstring(text)
+    needed = {node.get("id"): node for node in page.xpath("//section[@class='by-need']")}
+    assert set(needed) == {"constraints", "evidence", "events"}
+    sheet = page.xpath("//style")[0].text.partition("@media print")[2]
+    assert ".by-need { display: none; }" in sheet
+    assert ".by-need:target, .by-need:has(:target) { display: block;" in sheet
+    (answer,) = page.xpath("//section[@id='answer']")
+    titles = [node.text for node in answer.xpath(".//h2")]
+    assert titles == ["Requirements", "Reproduce", "Not covered"]
+    assert len(answer.xpath(".//svg[@role='img']")) == 3, "map, altitudes, closest approaches"
+    assert not re.search(r"\d:\d\d\.\d", text), "times are written one way"
+
+
 def test_words_for_times_and_margins() -> None:
-    assert (seconds(0), seconds(61_240), seconds(None)) == ("0:00.0", "1:01.2", "–")
+    assert (seconds(0), seconds(61_240), seconds(None)) == ("0.0 s", "61.2 s", "–")
     assert margin({"margin": None, "unit": ""}) == "–"
     assert margin({"margin": 12.3456, "unit": "m"}) == "12.35 m"
 

@@ -57,7 +57,7 @@ def test_what_is_warm_is_not_warmed_again(tmp_path: Path, monkeypatch: pytest.Mo
     monkeypatch.setattr(subprocess, "run", run)
     said: list[str] = []
     warm.ensure_planning(said.append)
-    assert calls[0][-1] == "cratous.services.startup.warm"
+    assert calls[0][1:] == ["-m", "cratous", "warm", "--planning", "--quiet"]
     assert ["compiled, once" in text for text in said] == [True]
     warm.ensure_planning(said.append)  # the other process has left no mark: it is asked again
     assert said[-1].endswith("no compiler")

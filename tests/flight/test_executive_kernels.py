@@ -4,18 +4,35 @@ from __future__ import annotations
 
 import pickle
 from dataclasses import FrozenInstanceError, replace
+from typing import Any
 
 import pytest
 from flight_tools import flown, meeting, of_type, with_deadline
 
 from cratous.bridge import lmcp
+from cratous.core.executive.steps import Answered
 from cratous.core.routing.polylines import Track
-from cratous.services.flight import executive, lives, loop, touched
+from cratous.services.flight import deadlines, executive, lives, passing, touched
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState
+from cratous.services.flight.executive import Executive
+from cratous.services.flight.executive_state import Config, first_state
+from cratous.services.flight.messages import NotPlanned, Planned, ToExecutive, ToVehicle
 from cratous.services.flight.touched import touched_by
-from cratous.spec.executive import BEGUN, COMPLETE, ENDED, FAILED, GIVE_UP, LEFT, STANDS_BY
-from cratous.spec.mission import Change, Mission, Position, Simulation
+from cratous.services.flight.vehicle import VehicleNode
+from cratous.services.mission.frames import Projection
+from cratous.spec.executive import (
+    BEGUN,
+    COMPLETE,
+    DROP_LATE,
+    ENDED,
+    FAILED,
+    FOR_NOTHING,
+    GIVE_UP,
+    LEFT,
+    STANDS_BY,
+)
+from cratous.spec.mission import Change, Mission, Position, Simulation, Traffic, Velocity
 from cratous.spec.mission.changes import (
     TASK_ADDED,
     TASK_REMOVED,
@@ -45,7 +62,7 @@ def test_no_task_begins_that_may_not(monkeypatch: pytest.MonkeyPatch) -> None:
     result, log = flown(alone())
     assert result.outcome == "complete"
     begun = result.starts[1]
-    monkeypatch.setattr(executive, "may_begin", lambda *_: False)
+    monkeypatch.setattr(passing, "may_begin", lambda *_: False)
     result, log = flown(alone(begun + 60_000))
     assert (result.outcome, result.starts, result.ends) == ("limit", {}, {})
     phases = [p.Phase.name for p in of_type(log, "TaskProgress", TaskID=1)]
@@ -59,15 +76,62 @@ def test_the_kernel_says_what_a_missed_deadline_leads_to(
     mission, plan = with_deadline()
     result, _ = flown(mission, plan)
     assert (result.replans, list(result.failed)) == (1, [])
-    monkeypatch.setattr(executive, "late_act", lambda *_: act)
+    monkeypatch.setattr(deadlines, "late_act", lambda *_: act)
     result, _ = flown(mission, plan)
     assert (result.replans, list(result.failed)) == (0, failed)
 
 
 def test_the_kernel_ends_the_flight(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(loop, "flight_outcome", lambda *_: COMPLETE)
+    monkeypatch.setattr(executive, "flight_outcome", lambda *_: COMPLETE)
     result, _ = flown(alone())
     assert (result.outcome, result.end_ms) == ("complete", 0)
+
+
+def test_the_kernel_says_what_an_answer_of_the_planner_leads_to(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    mission, plan = with_deadline()
+    monkeypatch.setattr(executive, "answered", lambda *_: Answered(FOR_NOTHING, DROP_LATE))
+    result, _ = flown(mission, plan)
+    assert (result.replans, list(result.failed)) == (0, [1])
+
+
+def test_an_answer_that_nobody_waits_for_changes_nothing() -> None:
+    mission, plan = with_deadline()
+    actor = Executive(Config(mission, Projection(mission.frame), ()))
+    state = first_state(mission, plan)
+    for answer in (Planned(plan), NotPlanned("no way")):
+        assert actor.handle(state, answer) == (state, ())
+
+
+def test_a_step_changes_nothing_but_its_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a flight with a takeover, a change, a deadline and a failure: every step, taken twice."""
+    seen: dict[str, set[str]] = {"Executive": set(), "VehicleNode": set()}
+
+    def checked(actor_type: type[Any]) -> None:
+        handle = actor_type.handle
+
+        def twice(actor: Any, state: Any, message: Any) -> Any:
+            before = pickle.dumps(state)
+            after, out = handle(actor, state, message)
+            again, same = handle(actor, pickle.loads(before), message)
+            assert pickle.dumps(state) == before
+            assert (again, repr(same)) == (after, repr(out))
+            seen[actor_type.__name__].add(type(message).__name__)
+            return after, out
+
+        monkeypatch.setattr(actor_type, "handle", twice)
+
+    checked(Executive)
+    checked(VehicleNode)
+    mission, plan = with_deadline()
+    near = Traffic(90, Position(600.0, -600.0, 300.0), Velocity(0.0, 22.0, 0.0))
+    lost = Change(100_000, VEHICLE_LOST, vehicle=1)
+    mission = replace(mission, traffic=(near,), changes=(lost,))
+    result, _ = flown(mission, plan)
+    assert (result.takeovers, list(result.failed)) == (1, [1])
+    assert seen["Executive"] == {m.__name__ for m in ToExecutive.__args__}
+    assert seen["VehicleNode"] == {m.__name__ for m in ToVehicle.__args__} - {"LimitsAre"}
 
 
 def test_a_settled_task_does_not_fail_again(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -27,7 +28,9 @@ from cratous.services.flight.dynamics import (
     turn_radius_m,
     turn_rate_rad_s,
 )
-from cratous.services.flight.vehicle import VehicleNode
+from cratous.services.flight.messages import Choose, Commanded, Move, Say, ToVehicle, Wished
+from cratous.services.flight.vehicle import State, VehicleNode
+from cratous.services.icarous.messages import Wish
 from cratous.services.mission.frames import Projection
 from cratous.spec.authority.cycle import OFFER, TAKE_OVER, WITHDRAW
 from cratous.spec.mission import Frame, Position, Vehicle, Velocity
@@ -148,12 +151,24 @@ VEHICLE = Vehicle(
 )
 
 
-def node() -> VehicleNode:
-    return VehicleNode(VEHICLE, Projection(FRAME), DT_S, 60.0)
+NODE = VehicleNode(VEHICLE, Projection(FRAME), DT_S, 60.0)
 
 
-def velocity(epoch: int, sender: int) -> object:
-    return gated(7, epoch, sender, velocity_command(7, 1, Velocity(20.0, 5.0, -1.0)))
+def after(*messages: ToVehicle, state: State = NODE.first()) -> tuple[State, list[Any]]:
+    """The state after some messages, and what the last one led to."""
+    out: tuple[Any, ...] = ()
+    for message in messages:
+        state, out = NODE.handle(state, message)
+    return state, [said.body for said in out if isinstance(said, Say)]
+
+
+def wished(act: int) -> Wished:
+    return Wished(0, Wish(7, act, "why", 90))
+
+
+def velocity(epoch: int, sender: int, now_ms: int = 0) -> Commanded:
+    command = velocity_command(7, 1, Velocity(20.0, 5.0, -1.0))
+    return Commanded(now_ms, gated(7, epoch, sender, command))
 
 
 def test_commands_survive_the_way_over_lmcp() -> None:
@@ -177,47 +192,45 @@ def test_commands_survive_the_way_over_lmcp() -> None:
 
 
 def test_gate_refuses_what_is_stale_or_without_authority() -> None:
-    vehicle = node()
-    assert vehicle.receive(velocity(0, UXAS), 0) == []
-    (dropped,) = vehicle.receive(velocity(0, ICAROUS), 250)
+    state, out = after(velocity(0, UXAS))
+    assert out == []
+    state, (dropped,) = after(velocity(0, ICAROUS, 250), state=state)
     assert (dropped.VehicleID, dropped.Time, dropped.GateEpoch) == (7, 250, 0)
     assert dropped.Sender.name == "ICAROUS"
-    vehicle.wish(TAKE_OVER)
-    (stale,) = vehicle.receive(velocity(0, ICAROUS), 500)
+    state, _ = after(wished(TAKE_OVER), state=state)
+    _, (stale,) = after(velocity(0, ICAROUS, 500), state=state)
     assert "epoch" in stale.Reason
-    (without,) = vehicle.receive(velocity(1, UXAS), 500)
+    _, (without,) = after(velocity(1, UXAS, 500), state=state)
     assert "authority" in without.Reason
-    assert vehicle.receive(velocity(1, ICAROUS), 500) == []
+    assert after(velocity(1, ICAROUS, 500), state=state)[1] == []
 
 
 def test_handback_is_complete_with_the_first_command_of_the_new_epoch() -> None:
-    vehicle = node()
-    vehicle.wish(TAKE_OVER)
-    vehicle.wish(OFFER)
-    assert vehicle.gate.owner == ICAROUS
-    assert vehicle.receive(velocity(2, ICAROUS), 0) == []
-    assert vehicle.receive(velocity(2, UXAS), 0) == []
-    assert (vehicle.gate.owner, vehicle.gate.offered) == (UXAS, False)
-    assert len(vehicle.receive(velocity(2, ICAROUS), 250)) == 1
+    state, _ = after(wished(TAKE_OVER), wished(OFFER))
+    assert state.gate.owner == ICAROUS
+    state, out = after(velocity(2, ICAROUS), state=state)
+    assert out == []
+    state, out = after(velocity(2, UXAS), state=state)
+    assert [type(body).__name__ for body in out] == ["GateState", "AuthorityChange"]
+    assert (state.gate.owner, state.gate.offered, state.takeovers) == (UXAS, False, 1)
+    assert len(after(velocity(2, ICAROUS, 250), state=state)[1]) == 1
 
 
 def test_withdrawn_offer_makes_the_answer_stale() -> None:
-    vehicle = node()
-    vehicle.wish(TAKE_OVER)
-    vehicle.wish(OFFER)
-    vehicle.wish(WITHDRAW)
-    assert len(vehicle.receive(velocity(2, UXAS), 0)) == 1
-    assert vehicle.gate.owner == ICAROUS
+    state, _ = after(wished(TAKE_OVER), wished(OFFER), wished(WITHDRAW))
+    state, out = after(velocity(2, UXAS), state=state)
+    assert len(out) == 1
+    assert state.gate.owner == ICAROUS
 
 
 def test_vehicle_without_a_new_command_loiters_past_the_end() -> None:
-    vehicle, projection = node(), Projection(FRAME)
+    projection = Projection(FRAME)
     points = (Position(0.0, 0.0, 300.0), Position(300.0, 0.0, 300.0))
-    vehicle.receive(gated(7, 0, UXAS, path_command(projection, 7, 1, points, 22.0)), 0)
+    path = gated(7, 0, UXAS, path_command(projection, 7, 1, points, 22.0))
+    state, _ = after(Commanded(0, path))
     farthest = 0.0
     for _ in range(800):
-        vehicle.steer()
-        vehicle.advance()
-        farthest = max(farthest, math.hypot(*vehicle.state.position[:2]))
-    assert isinstance(vehicle.command, Circle)
+        state, _ = after(Choose(), Move(), state=state)
+        farthest = max(farthest, math.hypot(*state.air.position[:2]))
+    assert isinstance(state.command, Circle)
     assert farthest < 800.0

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import itertools
 import pickle
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import pytest
 from flight_tools import flown, meeting, of_type, plain_steps, with_deadline
 
+from cratous.bridge import lmcp
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.loopback import Bridge
 from cratous.bridge.text_protocol import (
@@ -21,15 +23,19 @@ from cratous.bridge.text_protocol import (
     StartMission,
     WaypointReached,
 )
+from cratous.core.authority.gate import ICAROUS, UXAS, Gate
 from cratous.core.authority.link_end import Linked
+from cratous.services.bus import Bus
 from cratous.services.flight import link_end
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.link_end import State, UxasEnd
+from cratous.services.flight.loop import fly
 from cratous.services.flight.messages import (
     Beat,
     Connected,
     Down,
     Flown,
+    GateIs,
     Heard,
     Left,
     Lost,
@@ -44,9 +50,12 @@ from cratous.services.flight.messages import (
 )
 from cratous.services.logs.records import from_data, to_data
 from cratous.services.mission.frames import Projection
+from cratous.services.monitor import Monitor
+from cratous.services.pipeline.plan import make_plan
 from cratous.spec.authority.link_end import SUSPEND, TAKE_BACK
 from cratous.spec.mission import Change, Frame, Position, Simulation, Zone, ZoneKind
 from cratous.spec.mission.changes import ZONE as ZONE_APPEARS
+from cratous.spec.mission.guarantees import Outcome
 
 END = UxasEnd(Projection(Frame(45.0, -121.0, 0.0)))
 ZONE = Zone(4, ZoneKind.KEEP_OUT, ((0.0, 0.0), (0.0, 90.0), (90.0, 90.0)), 0.0, 500.0)
@@ -58,9 +67,11 @@ ALL: tuple[ToLinkEnd, ...] = (
     Route(1, WAY, 22.0, 5.0),
     Flown(1, 110.0),
     Beat(0, AIRCRAFT),
+    GateIs(1, Gate(ICAROUS, 1, False)),
     Heard(1, 500, SetMode("ACTIVE", 1)),
     Left(1, WAY[1]),
     Heard(1, 500, Heartbeat(sequence=1, time_s=0.5)),
+    GateIs(1, Gate(ICAROUS, 2, True)),
     Heard(1, 900, SetMode("PASSIVE", 2)),
     Unreadable(2, 900, "what?"),
     ZonesKnown((ZONE, replace(ZONE, id=5))),
@@ -98,11 +109,18 @@ def test_a_vehicle_without_an_instance_is_told_nothing() -> None:
     assert END.handle(state, Route(7, WAY, 22.0, 0.0)) == (state, ())
 
 
+TAKEN, OFFERED = Gate(ICAROUS, 1, False), Gate(ICAROUS, 2, True)
+TAKEOVER = (GateIs(1, TAKEN), Heard(1, 500, SetMode("ACTIVE", 1)))
+OFFER = (GateIs(1, OFFERED), Heard(1, 900, SetMode("PASSIVE", 2)))
+
+
 def test_a_takeover_suspends_and_an_offer_is_taken_once() -> None:
-    state, out = after(*ALL[:2], Heard(1, 500, SetMode("ACTIVE", 1)))
+    state, out = after(*ALL[:2], *TAKEOVER)
     assert out == [Suspend(1, 500, SUSPEND)]
-    state, out = after(Heard(1, 900, SetMode("PASSIVE", 2)), state=state)
+    assert after(TAKEOVER[1], state=state) == (state, [])
+    state, out = after(*OFFER, state=state)
     assert out == [TakeBack(1, 900, TAKE_BACK, 2)]
+    assert after(OFFER[1], state=state) == (state, [])
     before = state.peer(1)
     state, out = after(Heard(1, 900, SetMode("ACTIVE", 1)), state=state)
     (said,) = out
@@ -110,10 +128,31 @@ def test_a_takeover_suspends_and_an_offer_is_taken_once() -> None:
     assert state.peer(1) == before
 
 
-def test_a_mode_without_an_epoch_begins_the_next() -> None:
-    state, _ = after(*ALL[:2], Heard(1, 500, SetMode("ACTIVE", None)))
-    _, out = after(Heard(1, 900, SetMode("PASSIVE", None)), state=state)
+def test_a_mode_without_an_epoch_is_of_the_present_one() -> None:
+    state, out = after(*ALL[:2], GateIs(1, TAKEN), Heard(1, 500, SetMode("ACTIVE", None)))
+    assert out == [Suspend(1, 500, SUSPEND)]
+    _, out = after(GateIs(1, OFFERED), Heard(1, 900, SetMode("PASSIVE", None)), state=state)
     assert out == [TakeBack(1, 900, TAKE_BACK, 2)]
+
+
+@pytest.mark.parametrize(
+    ("mode", "epoch", "reason"),
+    [
+        ("ACTIVE", 9_000_000_000, "never given"),
+        ("ACTIVE", 3, "never given"),
+        ("ACTIVE", -1, "never given"),
+        ("PASSIVE", 3, "never given"),
+        ("ACTIVE", 2, "began otherwise"),
+        ("ACTIVE", None, "began otherwise"),
+    ],
+)
+def test_a_mode_that_cannot_be_true_is_refused(mode: str, epoch: int | None, reason: str) -> None:
+    state, _ = after(*ALL[:2], *TAKEOVER, *OFFER)
+    again, (said,) = after(Heard(1, 1000, SetMode(mode, epoch)), state=state)
+    assert type(said.body).__name__ == "ModeRefused"
+    assert (said.body.Epoch, said.body.GateEpoch) == (2 if epoch is None else epoch, 2)
+    assert reason in said.body.Reason
+    assert replace(again.peer(1), heard_ms=900) == state.peer(1)
 
 
 def test_waypoints_are_told_and_reached_once() -> None:
@@ -142,10 +181,11 @@ def test_the_kernel_of_modes_decides_what_is_flown(monkeypatch: pytest.MonkeyPat
     """With a kernel that believes no takeover UxAS never takes the vehicle back in its way."""
     _, log = flown(meeting())
     right, states = link_end.link_mode, repr(of_type(log, "TruthState"))
-    monkeypatch.setattr(link_end, "link_mode", lambda end, active, epoch: Linked(end, 0))
+    monkeypatch.setattr(link_end, "link_mode", lambda end, *_: Linked(end, 0))
     _, log = flown(meeting())
     assert repr(of_type(log, "TruthState")) != states
-    monkeypatch.setattr(link_end, "link_mode", lambda end, active, epoch: right(end, active, 0))
+    untouched = Gate(UXAS, 7, False)
+    monkeypatch.setattr(link_end, "link_mode", lambda end, _, *mode: right(end, untouched, *mode))
     _, log = flown(meeting())
     assert "overtaken" in of_type(log, "BridgeStatus")[-1].Note
 
@@ -154,6 +194,62 @@ def test_the_kernel_of_signs_decides_who_is_alive(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(link_end, "link_sign", lambda end, *_: Linked(end._replace(alive=False), 3))
     _, log = flown(meeting())
     assert not any(s.Alive for s in of_type(log, "BridgeStatus")[1:])
+
+
+def sending(
+    monkeypatch: pytest.MonkeyPatch, change: Callable[[int, Message], tuple[Message, ...]]
+) -> None:
+    """Put in the place of each line that goes up what `change` makes of it, by its number."""
+    send, count = Bridge.to_uxas, itertools.count()
+
+    def changed(bridge: Bridge, vehicle_id: int, message: Message) -> bool:
+        return all(send(bridge, vehicle_id, m) for m in change(next(count), message))
+
+    monkeypatch.setattr(Bridge, "to_uxas", changed)
+
+
+def test_a_forged_mode_takes_no_authority(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At every heartbeat somebody claims a huge epoch: the flight is the same; each claim is refused,
+    counted, and told with the verdict of G4."""
+    right, log = flown(meeting())
+    states = repr(of_type(log, "TruthState"))
+    forged = (SetMode("ACTIVE", 10**14), SetMode("PASSIVE", 10**14))
+    sending(monkeypatch, lambda _, m: (*forged, m) if isinstance(m, Heartbeat) else (m,))
+    mission = meeting()
+    plan, bus, log = make_plan(mission), Bus(lmcp.full_names), list[Any]()
+    monitor = Monitor(mission, plan)
+    bus.tap(monitor.tap)
+    bus.tap(lambda envelope: log.append(envelope.body))
+    result = fly(mission, plan, bus)
+    assert (result.outcome, result.takeovers) == (right.outcome, right.takeovers)
+    assert repr(of_type(log, "TruthState")) == states
+    refused = of_type(log, "ModeRefused", Epoch=10**14)
+    beats = of_type(log, "Heartbeat", Direction=lmcp.enums["Direction"].Up)
+    assert len(refused) == 2 * len(beats)
+    (g4,) = [v for v in monitor.details() if v.requirement == "G4"]
+    assert g4.outcome is Outcome.HOLDS
+    assert f"{len(refused)} modes refused" in g4.note
+
+
+@pytest.mark.parametrize("lost", ["ACTIVE", "PASSIVE"])
+def test_a_mode_that_is_lost_is_said_again(monkeypatch: pytest.MonkeyPatch, lost: str) -> None:
+    """The first line of a takeover, or of an offer, never arrives: UxAS acts a heartbeat later."""
+    dropped = list[Message]()
+
+    def losing(_: int, message: Message) -> tuple[Message, ...]:
+        if isinstance(message, SetMode) and message.mode == lost and not dropped:
+            dropped.append(message)
+            return ()
+        return (message,)
+
+    sending(monkeypatch, losing)
+    result, log = flown(meeting())
+    assert (len(dropped), result.outcome) == (1, "complete")
+    began = of_type(log, "GateState", Epoch=dropped[0].epoch)[0]
+    back = next(g for g in of_type(log, "GateState", Offered=False) if g.Owner.name == "UxAS")
+    assert back.Time >= began.Time
+    if lost == "PASSIVE":
+        assert back.Time - began.Time == 500
 
 
 @pytest.mark.parametrize("when", [40, 41])

@@ -289,3 +289,6 @@ def test_eligibility(tmp_path: Path) -> None:
     assert verdict(1, 3000, [], vehicle_joins=1) == "violated"
     assert verdict(1, 3000, [], task_added=1) == "violated"
     assert verdict(1, 5000, [], task_added=1, vehicle_joins=1) == "holds"
+    # who was lost may join again: what was said last counts
+    assert verdict(1, 5000, [], vehicle_lost=1, vehicle_joins=1) == "holds"
+    assert verdict(1, 5000, [], vehicle_joins=1, vehicle_lost=1) == "violated"

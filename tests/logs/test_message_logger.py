@@ -77,6 +77,8 @@ def test_messages_are_skipped_as_configured(tmp_path: Path) -> None:
         ('<Service>\n<LogMessage MessageType=""/></Service>', 2, "no message type"),
         ('<Service>\n\n<LogMesage MessageType="a"/></Service>', 3, "unknown element"),
         ('<Service LogFileMessageCountLimit="many"/>', 1, "wrong attribute"),
+        ('<Service LogFileName="../up"/>', 1, "no name of a file"),
+        ('<Service LogFileName=".hidden"/>', 1, "no name of a file"),
         ('<Service FilesPerSubDirectory="-1"/>', 1, "wrong attribute"),
         (
             '<Service>\n<LogMessage MessageType="a" NumberMessagesToSkip="1.5"/></Service>',
@@ -114,6 +116,16 @@ def test_text_files_by_count_and_folder(tmp_path: Path) -> None:
     assert text.startswith(f"0 {STATE}$lmcp|{STATE}|||$\n<AirVehicleState Series=")
     assert sum((tmp_path / name).read_text().count("$lmcp|") for name in made) == 12
     logger.close()
+
+
+@pytest.mark.shows("MessageLoggerDataService", "LogFileName")
+def test_the_files_are_called_as_the_configuration_says(tmp_path: Path) -> None:
+    text = '<Service LogFileName="testfile" LogFileMessageCountLimit="9"><LogMessage MessageType="afrl"/></Service>'
+    logger = MessageLogger.from_element(element(text), tmp_path, "cfg.xml")
+    feed(logger, 1)
+    logger.close()
+    made = sorted(p.name for p in tmp_path.rglob("*") if p.is_file())
+    assert made == ["testfile_0.sqlite", "testfile_0_0.txt"]
 
 
 def test_an_older_log_stays(tmp_path: Path) -> None:

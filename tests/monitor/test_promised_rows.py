@@ -226,7 +226,7 @@ def test_a_report_has_every_promised_row(flown: Flown) -> None:
     kept = [row for row in rows if row["item"] != "task 2 served"]
     found = with_promised(kept, seen)
     added = {(row["source"], row["item"]): row for row in found[len(kept) :]}
-    assert added.keys() == {("flight", "task 2 served"), *(("plan", item) for item in PLAN_ROWS)}
+    assert added.keys() == {("flight", "task 2 served"), *(("plan", row.item) for row in PLAN_ROWS)}
     assert {row["verdict"] for row in added.values()} == {"unknown"}
     assert {row["note"] for row in added.values()} == {"not observed"}
     whole = {row["requirement"]: row["verdict"] for row in requirement_rows(found)}

@@ -140,7 +140,7 @@ def test_requests_on_one_bus_have_ids_of_their_own_and_the_newest_certificate() 
     second = make_plan(mission(FOUR[1:2], TWO[1:], relations="p2"), bus)
     assert certificate_of(bus)["sha256"] == second.certificate != first.certificate  # type: ignore[index]
     with pytest.raises(NoPlan):
-        make_plan(mission(relations="|(p1 p2_[0-60000])"), bus)
+        make_plan(mission(relations="|(p1_[0-60000] p2_[0-60000])"), bus)
     assert certificate_of(bus) is None
     assert numbers == [1, 2, 3]
 

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import pytest
 from planning_tools import FOUR, TWO, assert_flyable, box, mission, task, vehicle
@@ -15,7 +16,7 @@ from cratous.services.pipeline.plan import make_plan
 from cratous.services.planning.options import expand
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission import Camera, Position, TaskKind, ZoneKind
-from cratous.spec.mission.plan import Pose
+from cratous.spec.mission.plan import Pose, left_out_of
 
 # ---- whole missions ---------------------------------------------------------------------------
 
@@ -149,12 +150,13 @@ def test_nothing_left_is_an_empty_plan():
 
 
 def test_an_impossible_window_is_named_with_the_earliest_end():
-    with pytest.raises(NoPlan) as error:
-        make_plan(mission(relations="|(p1 p2_[0-60000] p3 p4)"))
-    assert len(error.value.reasons) == 1
-    assert "task 2 must end by 60.000 s" in error.value.reasons[0]
-    assert "p2_[0-60000]" in error.value.reasons[0]
-    earliest_s = float(error.value.reasons[0].split()[-2])
+    plan = make_plan(mission(relations="|(p1 p2_[0-60000] p3 p4)"))
+    assert sorted(item.task_id for item in plan.items) == [1, 3, 4]
+    (left,) = left_out_of(plan)
+    assert (left.task_id, left.instead, left.waiting) == (2, (), ())
+    assert "task 2 must end by 60.000 s" in left.reason
+    assert "p2_[0-60000]" in left.reason
+    earliest_s = float(left.reason.split()[-2])
     alone = make_plan(mission(FOUR[1:2]))
     assert earliest_s == pytest.approx(alone.makespan_ms / 1000, abs=0.1)
 
@@ -165,11 +167,17 @@ def test_windows_that_clash_together_are_all_named():
         task(1, TaskKind.MUST_FLY, (4000.0, 0.0, 0.0)),
         task(2, TaskKind.MUST_FLY, (-4000.0, 0.0, 0.0)),
     )
-    with pytest.raises(NoPlan) as error:
-        make_plan(mission(apart, TWO[:1], relations="|(p1_[0-230000] p2_[0-230000])"))
-    assert len(error.value.reasons) == 2
-    assert "task 1" in error.value.reasons[0]
-    assert "task 2" in error.value.reasons[1]
+    plan = make_plan(mission(apart, TWO[:1], relations="|(p1_[0-230000] p2_[0-230000])"))
+    assert [item.task_id for item in plan.items] == [1]
+    (left,) = left_out_of(plan)
+    assert (left.task_id, left.instead) == (2, (1,))
+    assert left.reason.startswith("not beside task 1: ")
+    assert "task 1 must end by 230.000 s" in left.reason
+    assert "task 2 must end by 230.000 s" in left.reason
+    # what is dearer to the user goes first
+    higher = (apart[0], replace(apart[1], priority=1))
+    plan = make_plan(mission(higher, TWO[:1], relations="|(p1_[0-230000] p2_[0-230000])"))
+    assert [item.task_id for item in plan.items] == [2]
 
 
 def test_a_start_in_a_keep_out_or_outside_a_keep_in_is_bad_input():

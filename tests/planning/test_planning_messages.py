@@ -76,7 +76,7 @@ def test_a_failed_request_ends_in_an_error_status_with_the_reasons():
     said = []
     bus.tap(lambda e: said.append(e.body) if e.topic.endswith("ServiceStatus") else None)
     with pytest.raises(NoPlan) as error:
-        make_plan(mission(relations="|(p1 p2_[0-60000])"), bus)
+        make_plan(mission(relations="|(p1_[0-60000] p2_[0-60000])"), bus)
     assert said[-1].StatusType == lmcp.enums["ServiceStatusType"].Error
     told = [pair.Value for pair in said[-1].Info if pair.Key == "reason"]
     assert tuple(told) == error.value.reasons

@@ -103,8 +103,8 @@ EVERYTHING = {
                           "given = (*self.premises, *self.facts, *self.goals)"),
     "how a kernel is compiled": ("core/readings/machine/compiled.py", "range(out.size)", "range(0)"),
     "how a kernel is marked": ("core/kernel/__init__.py", "old is not None and not", "old is None and not"),
-    "the gate": ("core/ledger/__init__.py", 'if record["status"] != "proved":', "if not record:"),
-    "the ledger's writer": ("proofs/ledger/__init__.py", '"proved" if good else "not proved"', '"proved"'),
+    "the gate": ("core/ledger/__init__.py", 'if not record["proved"]:', "if not record:"),
+    "the ledger's writer": ("proofs/ledger/__init__.py", '"proved": good,', '"proved": True,'),
 }  # fmt: skip
 
 

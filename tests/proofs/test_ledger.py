@@ -86,7 +86,7 @@ ATTACKS = {
         "violation: it was proved but is no longer registered"),
     "how keys are made": ("core/ledger/walks.py", "self.say(unit.digest)", "self.say(unit.name)",
                           "changed since the proof"),
-    "a record": (f"{RECORDS}/kernels/well_clear.now.json", '"status": "proved"', '"status": "Proved"',
+    "a record": (f"{RECORDS}/kernels/well_clear.now.json", '"proved": true', '"proved": false',
                  "was edited"),
     "a record of a theorem": (f"{RECORDS}/theorems/schedule.json", '"status": "proved"', '"status": "Proved"',
                               "was edited"),

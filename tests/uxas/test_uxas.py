@@ -14,6 +14,8 @@ from uxas_tools import LIMIT_S, free_port, process, started, write_cfg
 from cratous.bridge import lmcp
 from cratous.services.cli import main
 from cratous.services.loading.problems import BadMission
+from cratous.services.loading.uxas_settings import read
+from cratous.services.uxas import manager
 from cratous.spec.errors import BadInput
 
 # --- configurations ---------------------------------------------------------------------------
@@ -23,7 +25,6 @@ from cratous.spec.errors import BadInput
     ("body", "root", "line", "text"),
     [
         ('<Service Type="HeloWorld"/>', "", 2, "unknown service type; expected HelloWorld"),
-        ('<Service Type="SteeringService"/>', "", 2, "SteeringService of UxAS is not covered yet"),
         ('<Service Type="HelloWorld" SendPeriod_s="1"/>', "", 2, "expected SendPeriod_ms"),
         ('<Service Type="HelloWorld" SendPeriod_ms="soon"/>', "", 2, "a whole number from 1"),
         ("<Service/>", "", 2, "no Type"),
@@ -31,7 +32,7 @@ from cratous.spec.errors import BadInput
         ('<Service Type="HelloWorld"><Message/></Service>', "", 2, "unknown element"),
         ("", 'EntityId="7"', 1, "unknown attribute; expected EntityID"),
         ("", 'ConsoleLoggerSeverityLevel="LOUD"', 1, "DEBUG or INFO or WARN or ERROR"),
-        ("", 'RunDuration_s="-1"', 1, "a whole number from 0"),
+        ("", 'RunDuration_s="-1"', 1, "a number"),
         ("", 'HubPUB="tcp://127.0.0.1:1"', 1, "half of a pair"),
         ('\n<Bridge Type="TcpBridge"/>', "", 3, "unknown bridge type"),
         ('<Bridge Type="LmcpObjectNetworkTcpBridge" TcpAddress="5555"/>', "", 2, "not an address"),
@@ -77,17 +78,34 @@ def test_a_bad_configuration_is_refused_with_file_and_line(
 
 
 def test_all_problems_are_told_together(tmp_path: Path) -> None:
-    path = write_cfg(tmp_path, '<Service Type="A"/>\n<Bridge Type="B"/>\n<Service Type="C"/>')
+    path = write_cfg(
+        tmp_path,
+        '<Service Type="HeloWorld"/>\n<Bridge Type="B"/>\n<Service Type="TaskManagerServce"/>',
+    )
     with pytest.raises(BadMission) as caught:
         process(path)
     assert [p.where.rpartition(":")[2] for p in caught.value.problems] == ["2", "3", "4"]
 
 
-def test_types_are_left_out_only_if_asked(tmp_path: Path) -> None:
+def test_types_are_left_out_if_asked(tmp_path: Path) -> None:
     path = write_cfg(tmp_path, '<Service Type="SteeringService"/>')
     one, said = process(path, without=frozenset({"SteeringService"}))
     assert said.has("SteeringService is left out, as asked")
+    assert not said.has("no service")
     one.close()
+
+
+@pytest.mark.parametrize("kind", ["SteeringService", "ExampleSparkService"])
+def test_a_service_that_nobody_has_is_a_warning_and_refused_by_strict(
+    tmp_path: Path, kind: str
+) -> None:
+    path = write_cfg(tmp_path, f'<Service Type="{kind}"/>')
+    one, said = process(path)
+    assert said.has(f"WARN {path}:2: no service {kind} here; what it does is not done")
+    assert kind not in one.bus.names()
+    one.close()
+    with pytest.raises(BadInput, match=kind):
+        manager.check(read(path, strict=True))
 
 
 def test_a_bridge_whose_port_is_taken_leaves_nothing_open(tmp_path: Path) -> None:

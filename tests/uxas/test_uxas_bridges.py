@@ -15,6 +15,7 @@ from uxas_tools import Client, free_port, process, until, write_cfg
 
 from cratous.bridge import envelope as wire
 from cratous.bridge import lmcp, sentinel
+from cratous.bridge.zmq_curve import make_keys
 
 STATE = "afrl.cmasi.AirVehicleState"
 BAD = [
@@ -54,7 +55,7 @@ def test_captured_frames_arrive_and_leave_byte_for_byte(
     frames = sorted((shared / "vectors/openuxas/frames").glob("*.tcp.bin"))
     payloads = [sentinel.unframe(f.read_bytes()) for f in frames if "stream" not in f.name]
     assert len(payloads) == 36
-    one, _, port = tcp_server(tmp_path)
+    one, _, port = tcp_server(tmp_path, 'Trust="TRUE"')  # CreateNewService is among them
     opened.append(one)
     messages = seen(one, "LmcpObjectNetworkTcpBridge")
     sender, listener = Client(port), Client(port)
@@ -321,3 +322,42 @@ def test_zyre_bridges_find_each_other_and_tell_who_joins_and_leaves(
     assert not came(at_third, "AirVehicleState", 200)
     second.close()
     until(lambda: any(m.topic.endswith("EntityExit") for m in at_first), first, third)
+
+
+@pytest.mark.parametrize("trust", [False, True])
+def test_only_trusted_peers_make_and_end_services(
+    tmp_path: Path, opened: list[Any], trust: bool
+) -> None:
+    secret = tmp_path / "secret.xml"
+    secret.write_text("<KeyValuePair><Key>of the machine</Key></KeyValuePair>")
+    one, said, port = tcp_server(tmp_path, 'Trust="TRUE"' if trust else "")
+    opened.append(one)
+    before, client, bridge = one.bus.names(), Client(port), one.manager.bridges[51]
+    opened.append(client)
+    reads = f'<Service Type="SendMessagesService"><Message MessageFileName="{secret}"/></Service>'
+    client.send(lmcp.new("CreateNewService", ServiceID=70, XmlConfiguration=reads))
+    client.send(lmcp.new("KillService", ServiceID=-1))
+    client.send(lmcp.new("KeyValuePair", Key="last"))
+    heard = seen(one)
+    until(lambda: any(getattr(e.body, "Key", "") == "last" for e in heard), one)
+    assert one.manager.ended == trust
+    assert (one.bus.names() == before) != trust
+    refused = bridge.port.counts.refused
+    assert sum(n for why, n in refused.items() if "not trusted" in why) == (0 if trust else 2)
+    assert said.has("KillService over a bridge that is not trusted") != trust
+
+
+def test_a_server_with_keys_but_no_list_says_that_anybody_is_let_in(
+    tmp_path: Path, opened: list[Any]
+) -> None:
+    make_keys(tmp_path, "server")
+    ports = [f"tcp://127.0.0.1:{free_port()}" for _ in range(2)]
+    for listed in (False, True):
+        (tmp_path / "known").mkdir(exist_ok=True)
+        keys = 'CurveSecretKeyFile="server.key_secret"' + ' CurveClientKeys="known"' * listed
+        body = PAIR.format(
+            "LmcpObjectNetworkPublishPullBridge", "PUB", ports[0], "PULL", ports[1], keys, ALL
+        )
+        one, said = process(write_cfg(tmp_path, body))
+        one.close()
+        assert said.has("no CurveClientKeys: whoever has any key is let in") != listed

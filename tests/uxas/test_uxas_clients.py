@@ -26,7 +26,7 @@ PIPELINE = "".join(
         "PlanBuilderService",
     )
 )
-LEFT_OUT = ("AutomationDiagramDataService", "MessageLoggerDataService")
+LEFT_OUT = ("MessageLoggerDataService",)
 
 
 def send_one_vehicle_and_its_task(client: Client, shared: Path) -> None:
@@ -47,7 +47,8 @@ def test_the_waterway_mission_for_a_cmasi_client(shared: Path, tmp_path: Path) -
         text = text.replace(old, str(new))
     start, end = text.index('<Service Type="SendMessagesService"'), text.index("</Service>")
     path = tmp_path / "cfg.xml"
-    path.write_text(text[:start] + text[end + len("</Service>") :])
+    text = text[:start] + text[end + len("</Service>") :]
+    path.write_text(text.replace("<Bridge ", '<Bridge Trust="TRUE" '))
     bodies = []
     for name in ("AirVehicleConfiguration_V400", "AirVehicleConfiguration_V500"):
         bodies += lmcp.xml.read_file(folder / f"inputs/{name}.xml", [])
@@ -146,7 +147,7 @@ def test_a_request_without_a_response_is_answered_in_time_and_strays_do_not_end_
         '"AutomationRequestValidatorService"',
         '"AutomationRequestValidatorService" MaxResponseTime_ms="1000"',
     )
-    one, said, port = tcp_server(tmp_path, more=slow)
+    one, said, port = tcp_server(tmp_path, 'Trust="TRUE"', more=slow)
     opened.append(one)
     client = Client(port)
     opened.append(client)

@@ -329,3 +329,29 @@ class MissionChange(LmcpObject):
         What: str = ...,
         Consequence: str = ...,
     ) -> None: ...
+
+class ModeRefused(LmcpObject):
+    """cratous.ModeRefused: CRATOUS type 14."""
+
+    VehicleID: int
+    """int64, default 0."""
+    Time: int
+    """int64 [milliseconds], default 0."""
+    Owner: _cratous.Authority
+    """CRATOUS/Authority, default UxAS."""
+    Epoch: int
+    """int64, default 0."""
+    GateEpoch: int
+    """int64, default 0."""
+    Reason: str
+    """string, default ''."""
+    def __init__(
+        self,
+        *,
+        VehicleID: int = ...,
+        Time: int = ...,
+        Owner: _cratous.Authority | str = ...,
+        Epoch: int = ...,
+        GateEpoch: int = ...,
+        Reason: str = ...,
+    ) -> None: ...

@@ -11,6 +11,7 @@ computes on doubles.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import importlib.util
 import inspect
@@ -57,9 +58,18 @@ class Reading:
         return self.run(*given, **named)
 
 
+PREFIX = "kernels_"
+"""How the folders of compiled text are called in the cache, before the hash of the text."""
+
+
+def folder_name(text: str) -> str:
+    """The folder of the cache that a text is compiled in."""
+    return PREFIX + digest([text])[:32]
+
+
 def load(text: str) -> Any:
     """The module of this text, from the cache folder; numba keeps its machine code beside it."""
-    name = "kernels_" + digest([text])[:32]
+    name = folder_name(text)
     folder = private_cache() / name
     file = folder / f"{name}.py"
     if not file.is_file() or file.read_text(encoding="utf-8") != text:
@@ -67,6 +77,8 @@ def load(text: str) -> Any:
         part = file.with_suffix(f".{os.getpid()}")
         part.write_text(text, encoding="utf-8")
         part.replace(file)
+    with contextlib.suppress(OSError):
+        os.utime(folder)  # when it was used last, for who prunes the cache
     spec = importlib.util.spec_from_file_location(name, file)
     if spec is None or spec.loader is None:
         raise ImportError(f"compiled kernels cannot be loaded from {folder}")
@@ -159,6 +171,15 @@ def machine(function: Callable[..., Any]) -> Callable[..., Any]:
     made = SourceText(FLAGS)
     name = made.add(function)
     return Reading(function, MACHINE, getattr(load(made.text), name))
+
+
+@functools.cache
+def is_kept(function: Callable[..., Any]) -> bool:
+    """Whether `machine` finds this function's machine code in the cache, so that it is quick."""
+    made = SourceText(FLAGS)
+    name = made.add(function)
+    folder = private_cache() / folder_name(made.text) / "__pycache__"
+    return any(folder.glob(f"*.{name}-*.nbi"))
 
 
 def _flat(hint: Any) -> int:

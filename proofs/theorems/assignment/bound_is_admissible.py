@@ -1,6 +1,6 @@
 """If leaving the task after `after` is too late for what follows it, then leaving for the task after
-the kernel's latest departure is too late as well: by induction over the tasks that are left, no
-completion is lost where a vehicle has to leave later than the table says."""
+the kernel's latest departure is too late as well. One step from a task to the one before it; a table of
+such departures is made of these steps from the last task on."""
 
 from cratous.core.assignment.steps import latest_departure
 from cratous.proofs.claim import Claim

@@ -1,5 +1,5 @@
-"""What the search takes for the least of many choices is no more than any of them: whatever vehicle,
-option and place before a completion chooses, it takes at least as long (by induction over the choices)."""
+"""The least of the choices so far and one more is no more than any of them, and is the most of which that
+is so. One step: what the search takes for the least of many choices is made of these, one for each."""
 
 from cratous.core.assignment.lower_bounds import least_of
 from cratous.proofs.claim import Claim

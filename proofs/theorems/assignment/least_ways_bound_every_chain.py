@@ -1,5 +1,6 @@
-"""If no stop is a shortcut then no chain reaches a task sooner than the shortest way from where it began:
-by induction over the stops, a vehicle's start of a task is at least that way after it was free."""
+"""If no stop is a shortcut then a vehicle reaches its first task, and the next one after a task that it
+reached so, no sooner after it was free than the shortest way there takes. The first step and one step on;
+a chain is made of these."""
 
 from cratous.core.assignment.lower_bounds import no_shortcut
 from cratous.core.assignment.steps import Chain, chain_step

@@ -1,6 +1,6 @@
-"""The least work that the search sums up is spent by every completion: each task still to be done moves
-the end of its vehicle's chain by at least its shortest leg and duration, and by induction over tasks
-and vehicles the last ends together are no sooner than the sum says."""
+"""What one more task adds to the least work is spent on it: where the tasks so far have spent what was
+counted of them, this one has too, and it moves the end of its vehicle's chain by at least its
+shortest leg and duration. One step; the sum is made of these, one for each task."""
 
 from cratous.core.assignment.lower_bounds import add_least
 from cratous.core.assignment.steps import Chain, chain_step

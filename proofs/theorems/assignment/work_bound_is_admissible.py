@@ -1,6 +1,6 @@
-"""No completion ends by an instant until which the vehicles lack room for the work that is left: the
-work that a vehicle can do until then, after it is free, is never more than the room that it adds,
-and by induction over the vehicles all of them do no more than all of the room."""
+"""The work that one more vehicle can do until an instant, after it is free, is never more than the room
+that it adds to that of the others, and where the room of all is less than the work some is left. One
+step; the room of all vehicles is made of these, one for each."""
 
 from cratous.core.assignment.steps import lacks_room, room_step
 from cratous.proofs.claim import Claim

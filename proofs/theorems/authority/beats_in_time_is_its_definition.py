@@ -1,5 +1,5 @@
-"""The bridge counts as alive exactly when each heartbeat, and the end, came in time after the one
-before, for every number of heartbeats."""
+"""The bridge counts as alive exactly when each heartbeat, and the end, came in time after the one before,
+so that at no instant the last was too old, for every number of heartbeats."""
 
 from typing import Any
 
@@ -11,11 +11,15 @@ from cratous.spec.authority.timeliness import beats_result, in_time
 def claim(c: Claim) -> None:
     ok, time, bound = c.boolean("all_in_time"), c.integer("time"), c.integer("bound")
     c.premise(bound >= 0)
+    t, before = c.integer("t"), c.integer("before")
+    when_it_comes = c.define(in_time, time, before, time, bound)
+    at_any_instant = c.define(in_time, t, before, time, bound)
+    c.show(c.implies(when_it_comes, at_any_instant), "when it comes decides for every instant")
     acc = Beats(c.whole("last"), c.boolean("ok"))
     model = Beats(c.whole("model_last"), ok)
 
     def model_step(beats: Any, now: Any, longest: Any) -> Any:
-        # at no instant is a message older than when the next one comes
+        # at no instant is a message older than when the next one comes, as was shown
         return Beats(now, in_time(now, beats.last, now, longest) and beats.ok)
 
     def related(one: Any, other: Any) -> Any:

@@ -2,6 +2,7 @@
 nothing, whatever modes and signs of life come; as soon as the last accepted mode says otherwise it is
 not suspended any more."""
 
+from cratous.core.authority.gate import Gate
 from cratous.core.authority.link_end import (
     LinkEnd,
     link_mode,
@@ -10,6 +11,7 @@ from cratous.core.authority.link_end import (
     track_is_told,
 )
 from cratous.proofs.claim import Claim
+from cratous.spec.authority import gate as authority
 from cratous.spec.authority import link_end
 
 
@@ -17,7 +19,9 @@ def claim(c: Claim) -> None:
     end = LinkEnd(c.boolean("active"), c.integer("epoch"), c.boolean("alive"))
     says, began, changed = c.boolean("says"), c.integer("began"), c.boolean("changed")
     suspended = end.active  # so it is at the start, and after each step
-    moved = c.use(link_mode, end, says, began)
+    gate = Gate(c.integer("owner"), c.integer("gate_epoch"), c.boolean("offered"))
+    c.premise(c.define(authority.well_formed, gate))
+    moved = c.use(link_mode, end, gate, says, began)
     after = c.use(suspended_after, suspended, moved.act)
     right = c.define(link_end.is_after_answer, suspended, moved.act, after)
     c.show(right, "its definition")

@@ -1,6 +1,6 @@
-"""On a way each step of which repels vertically, the relative climb rate grows to the side from piece to step
-to piece: with the present flight as the first piece, by induction over the steps, at every later instant an
-intruder that flies on is farther to the other side than it would have been."""
+"""Of a step that repels vertically, from the piece before it and on to the piece after it, the relative climb
+rate grows to the side, from piece to step to piece: at every later instant an intruder that flies on is
+farther to the other side. One step of a way, which is made of such steps."""
 
 from typing import Any
 

@@ -1,7 +1,6 @@
-"""A way of straight pieces, each repelling after the one before it, keeps what the flight before it kept: a
-distance that the old piece, flown on from the step, would keep at all later instants is kept by the new piece
-at all later instants. With the present flight as the first piece, by induction over the steps: no repulsive
-manoeuvre comes nearer to an intruder that flies on than the present flight would have come."""
+"""A step that repels, and the piece after it, keep what the flight before the step kept: a distance that the old
+piece, flown on from the step, would keep at all later instants is kept by them at all later instants. One
+step of a way, which is made of such steps."""
 
 from cratous.core.daa.coordination import repels
 from cratous.proofs.claim import Claim

@@ -1,6 +1,6 @@
-"""Each value that reaches a level is counted once, and no other: so the count after any number of values
-is the number of those that reach it; one more never lowers it, and a higher level is never reached
-more often: M of N is monotone in the values and antitone in M."""
+"""One value more is counted if it reaches the level, and only then; it never lowers the count, a greater value
+never counts less, and a higher level is never reached more often: M of N is monotone in the values and
+antitone in M. One step; a count is made of these, one for each value."""
 
 from cratous.core.daa.history import count_reached, enough
 from cratous.proofs.claim import Claim

@@ -26,7 +26,7 @@ def claim(c: Claim) -> None:
     some = c.when(drifting, straight.first_s <= straight.last_s, turned.first_s <= turned.last_s)
     there = first <= last
     size = {"s": s, "v": v, "es": es, "ev": ev, "dthr": dthr, "end": end}
-    until = c.use(until_left, spare, half, rest, end)
+    until = c.use(until_left, spare, half, rest, end, when=spare > 0)
     for instant in (until.last_s, t):
         c.lemma("daa_uncertain_disc_leaves_last", when=spare > 0, t=instant, **size)
     at = (s, v, es, ev, dthr)

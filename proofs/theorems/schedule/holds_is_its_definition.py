@@ -1,5 +1,5 @@
-"""The schedule checker accepts a schedule exactly when every row holds and every task's times are an
-interval, seen at the instants that decide it: its start and its end; for every number of rows."""
+"""The schedule checker accepts a schedule exactly when every row holds at every instant and every task's
+times are an interval, for every number of rows; a task's start and end are the instants that decide it."""
 
 from typing import Any
 
@@ -15,6 +15,14 @@ def model_step(ok: Any, kind: Any, start: Any, end: Any, ref: Any, lo: Any, hi: 
 
 def claim(c: Claim) -> None:
     values = tuple(c.integer(name) for name in ["kind", "start", "end", "ref", "lo", "hi"])
+    _, start, end, *_ = values
+    t, u, before = c.integer("t"), c.integer("u"), c.boolean("before")
+    seen = c.define(model_step, before, *values)
+    everywhere = c.define(rows_hold_step, start, u, before, *values)
+    c.show(c.implies(seen, everywhere), "what holds at the two instants holds at every one")
+    at_start = c.define(rows_hold_step, t, start, before, *values)
+    at_end = c.define(rows_hold_step, t, end, before, *values)
+    c.show(c.implies(c.all_of(at_start, at_end), seen), "from whatever instant it is seen")
     c.fold(
         schedule_holds,
         acc=c.boolean("ok"),

@@ -1,7 +1,6 @@
 """Raising a start to what a row demands, or to a time before or after another start, never passes a
-schedule that satisfies it, and where nothing rises any more it holds: so times that are raised
-until nothing rises are the earliest in every component, and if they break an upper bound then no
-schedule satisfies all."""
+schedule that satisfies it, and nothing rises exactly where it holds; a start that breaks an upper bound
+breaks it in every schedule above. One raise; times at which nothing rises any more are made of these."""
 
 from cratous.core.assignment.steps import raised
 from cratous.core.schedule.rows import row_holds

@@ -1,0 +1,117 @@
+"""The keys of a home's entries, kept under the hash of all that they are made from.
+
+The walks of `keys` take most of the gate's time and depend on files, versions and the registry alone.
+So their outcome is kept in the private cache, as `tables` keeps what files define; every file is
+still read and hashed at each start, and any difference makes the walks be done anew.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import os
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from cratous.core.files.private_cache import private_cache
+from cratous.core.kernel import Entry, checkers
+from cratous.core.kernel.sources import constants, digest
+from cratous.core.ledger.home import PRODUCT, Home
+from cratous.core.ledger.keys import Keys
+from cratous.core.ledger.parts import MISSING, PARTS, compiler, solver_version
+from cratous.core.ledger.trees import DATA
+
+FOLDERS = ("bridge", "core", "proofs", "services", "spec")
+"""The product's folders with modules; names that lead elsewhere are not kept."""
+KEPT = "keys"
+"""The folder of the cache."""
+
+Found = dict[str, dict[str, str]]
+
+
+def keys_of(home: Home, entries: Mapping[str, Entry], data: Mapping[str, Any]) -> Found:
+    """The parts of the key of each entry that has a record in this ledger, by name."""
+    known = {name: entry for name, entry in entries.items() if name in data["kernels"]}
+    stamp = _stamp(home, known, data)
+    file = private_cache() / KEPT / stamp
+    with contextlib.suppress(OSError, ValueError):
+        found: Found = json.loads(file.read_text(encoding="utf-8"))
+        if _is_found(found, known):
+            return found
+    keys, theorems = Keys(home), data["theorems"]
+    made = {
+        name: keys.of(entry, data["kernels"][name]["theorems"], theorems)
+        for name, entry in known.items()
+    }
+    whole = not any(MISSING in key.values() for key in made.values())
+    # a file that was edited meanwhile may stand in the keys and not in the stamp
+    if whole and not _elsewhere(keys.tree.asked) and _stamp(home, known, data) == stamp:
+        _keep(file, made)
+    return made
+
+
+def _is_found(found: Any, known: Mapping[str, Entry]) -> bool:
+    """What was kept is whole: a key for each entry, a text for each part."""
+    return (
+        isinstance(found, dict)
+        and set(found) == set(known)
+        and all(isinstance(key, dict) and set(key) == set(PARTS) for key in found.values())
+        and all(type(value) is str for key in found.values() for value in key.values())
+    )
+
+
+def _keep(file: Path, made: Found) -> None:
+    with contextlib.suppress(OSError):  # a folder that cannot be written is no error
+        file.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+        part = file.with_name(f"{file.name}.{os.getpid()}")
+        part.write_text(json.dumps(made, separators=(",", ":")), encoding="utf-8")
+        part.replace(file)
+
+
+def _stamp(home: Home, known: Mapping[str, Entry], data: Mapping[str, Any]) -> str:
+    """One hash over all that the keys are made from: files, versions, the registry, the records."""
+    texts = [sys.version, compiler(), solver_version(), home.name]
+    for root, folders in _roots(home):
+        texts += [f"{root.name} {name}" for name in _names(root)]
+        for folder in folders:
+            texts += _files(root, folder)
+    for name, entry in sorted(known.items()):
+        rechecked = checkers(entry) if entry.kind == "driver" else ()
+        texts += [name, entry.kind, str(entry.implements), *constants(entry.function), *rechecked]
+        texts.append(json.dumps(data["kernels"][name]["theorems"]))
+    lemmas = {name: record.get("lemmas", ()) for name, record in data["theorems"].items()}
+    return digest([*texts, json.dumps(lemmas, sort_keys=True)])
+
+
+def _roots(home: Home) -> Iterator[tuple[Path, tuple[str, ...]]]:
+    yield PRODUCT.root, FOLDERS
+    if not home.product:
+        yield home.root, ("",)
+
+
+def _names(root: Path) -> list[str]:
+    """What lies at the top of a package, where a name might lead to it."""
+    return sorted(entry.name for entry in os.scandir(root))
+
+
+def _files(root: Path, folder: str) -> Iterator[str]:
+    """Every folder below, and every module and data file with the hash of what it says."""
+    for place, folders, names in os.walk(root / folder, followlinks=True):
+        folders[:] = sorted(name for name in folders if name != "__pycache__")
+        yield os.path.relpath(place, root)
+        for name in sorted(names):
+            if name.endswith((".py", *DATA)):
+                with open(os.path.join(place, name), "rb") as file:
+                    yield f"{name} {hashlib.sha256(file.read()).hexdigest()}"
+
+
+def _elsewhere(asked: set[str]) -> bool:
+    """A name led to a part of the product that is not hashed."""
+    tops = {module.split(".")[1] for module in asked if module.startswith("cratous.")}
+    return any(
+        (PRODUCT.root / top).exists() or (PRODUCT.root / f"{top}.py").exists()
+        for top in tops - set(FOLDERS)
+    )

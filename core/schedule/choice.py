@@ -1,0 +1,30 @@
+"""Whether what is planned or flown is one choice of a mission's tasks: each task as often as it may be.
+
+Definition: `spec.schedule.flown_as_asked`.
+"""
+
+from cratous.core.kernel import fold, kernel
+
+
+@kernel(implements="schedule.flown_as_asked")
+def as_asked_step(ok: bool, least: int, most: int, times: int) -> bool:
+    """Add one task to whether all so far are there as often as is asked for.
+
+    least, most: how often the task is to be done; times: how often it is, >= 0.
+    """
+    return ok and least <= times and times <= most
+
+
+@kernel(supports="as_asked")
+def as_asked_result(ok: bool) -> bool:
+    """Whether every task was."""
+    return ok
+
+
+as_asked = fold(
+    name="as_asked",
+    implements="schedule.flown_as_asked",
+    step=as_asked_step,
+    start=True,
+    finish=as_asked_result,
+)

@@ -1,0 +1,280 @@
+"""Whether a driver's output goes through a kernel before anyone can use it: read from its text.
+
+A driver is re-checked by a kernel if no value leaves it that the kernel has not said yes to. Each `return`
+gives names that a condition on the way there has put to the kernel, or it refuses: it raises, or
+gives None or a `Refusal`. The condition is a call of the kernel or fold, or of a function of `core` that
+is true only where the kernel said yes. Values are of types that cannot change, so what was put to it
+is what leaves. How the value was found does not count; what yes means says the kernel's definition.
+"""
+
+from __future__ import annotations
+
+import ast
+import dataclasses
+import inspect
+import textwrap
+import types
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, Union, get_args, get_origin, get_type_hints
+
+from cratous.core.kernel import Entry, Refusal, entry_of
+from cratous.core.kernel.sources import ours
+
+Names = frozenset[str]
+Said = Mapping[str, Names]
+"""Who has said yes to the value that a name has now."""
+NOBODY: Names = frozenset()
+DEPTH = 4
+"""So many functions are looked into, one within the other, for who says yes."""
+
+
+def rechecked_by(entry: Entry) -> tuple[str, ...]:
+    """The kernels and folds that each value which a driver returns was put to; none if it is not so."""
+    function = entry.function
+    if entry.kind != "driver" or not isinstance(function, types.FunctionType):
+        return ()
+    node = _definition(function)
+    if node is None or not _is_fixed(_result(function)):
+        return ()
+    reader = _Reader(node, function.__globals__)
+    reader.block(node.body, {})
+    return tuple(sorted(frozenset.intersection(*reader.results))) if reader.results else ()
+
+
+class _Reader:
+    """Follows a driver's statements. results: of each return that claims something, who said yes to it."""
+
+    def __init__(self, node: ast.FunctionDef, scope: Mapping[str, Any]) -> None:
+        arguments, bound = _arguments(node), _bound(node)
+        self.scope = _without(scope, arguments | bound)
+        self.given = arguments - bound
+        self.results: list[Names] = []
+
+    def block(self, body: Iterable[ast.stmt], said: Said) -> Said | None:
+        """Read statements in order; who has said yes after them, None if nothing comes after them."""
+        now: Said = said
+        for statement in body:
+            match statement:
+                case ast.Return(value=value):
+                    self._returned(value, now)
+                    return None
+                case ast.Raise():
+                    return None
+                case ast.If(test=test, body=yes, orelse=no):
+                    ways = (
+                        self.block(yes, _more(now, put_to(test, self.scope))),
+                        self.block(no, _more(now, put_to(_denied(test), self.scope))),
+                    )
+                    open_ways = [way for way in ways if way is not None]
+                    if not open_ways:
+                        return None
+                    now = _common(open_ways)
+                case ast.FunctionDef() | ast.ClassDef():
+                    now = _without(now, {statement.name})
+                case _:
+                    # of a loop's names nothing is known at its beginning
+                    now = _without(now, _bound(statement))
+                    for inner in _bodies(statement):
+                        self.block(inner, now)
+        return now
+
+    def _returned(self, value: ast.expr | None, said: Said) -> None:
+        if value is None or self._refuses(value):
+            return
+        parts = value.elts if isinstance(value, ast.Tuple) else [value]
+        made: list[Names] = []
+        for part in parts:
+            if isinstance(part, ast.Name) and part.id in self.given:
+                continue  # what came in goes out
+            # of a constant, or what is made here, nobody was asked
+            made.append(said.get(part.id, NOBODY) if isinstance(part, ast.Name) else NOBODY)
+        self.results.append(frozenset.intersection(*made) if made else NOBODY)
+
+    def _refuses(self, value: ast.expr) -> bool:
+        match value:
+            case ast.Constant(value=known):
+                return known is None
+            case ast.Call(func=ast.Name(id=name)):
+                kind = self.scope.get(name)
+                return isinstance(kind, type) and issubclass(kind, Refusal)
+        return False
+
+
+def put_to(test: ast.expr, scope: Mapping[str, Any], depth: int = 0) -> dict[str, Names]:
+    """Where a condition is true: the names that were put to kernels which said yes, with those."""
+    match test:
+        case ast.UnaryOp(op=ast.Not(), operand=ast.UnaryOp(op=ast.Not(), operand=inner)):
+            return put_to(inner, scope, depth)
+        case ast.UnaryOp(op=ast.Not(), operand=ast.BoolOp(op=ast.Or(), values=parts)):
+            return _all_put([_denied(part) for part in parts], scope, depth)
+        case ast.BoolOp(op=ast.And(), values=parts):
+            return _all_put(parts, scope, depth)
+        case ast.Call(func=ast.Name(id="bool"), args=[inner], keywords=[]) if "bool" not in scope:
+            return put_to(inner, scope, depth)
+        case ast.Call(
+            func=ast.Name(id="all"),
+            args=[ast.GeneratorExp(elt=each, generators=[ast.comprehension(iter=over, ifs=[])])],
+            keywords=[],
+        ) if "all" not in scope:
+            kernels = frozenset().union(*put_to(each, scope, depth).values())
+            return dict.fromkeys(_names(over), kernels) if kernels else {}
+        case ast.Call(func=ast.Name(id=name), args=args, keywords=[]):
+            kernels = _yes_of(scope.get(name), depth)
+            names = frozenset().union(*map(_names, args))
+            return dict.fromkeys(names, kernels) if kernels else {}
+    return {}
+
+
+def _all_put(parts: Iterable[ast.expr], scope: Mapping[str, Any], depth: int) -> dict[str, Names]:
+    found: dict[str, Names] = {}
+    for part in parts:
+        found = _more(found, put_to(part, scope, depth))
+    return found
+
+
+def _yes_of(value: Any, depth: int) -> Names:
+    """Who said yes where a call of this is true: itself, or those without whom it is not true."""
+    entry = entry_of(value)
+    if entry is not None:
+        return NOBODY if entry.kind == "driver" else frozenset([entry.name])
+    if depth >= DEPTH or not isinstance(value, types.FunctionType) or not _in_core(value):
+        return NOBODY
+    node = _definition(value)
+    if node is None:
+        return NOBODY
+    scope = _without(value.__globals__, _arguments(node) | _bound(node))
+    results = _truths(node.body, NOBODY, scope, depth + 1)
+    return frozenset.intersection(*results) if results else NOBODY
+
+
+def _in_core(function: Callable[..., Any]) -> bool:
+    # a package with kernels of its own has no such folder
+    return ours(function) and function.__module__.split(".")[1:2] != ["spec"]
+
+
+def _truths(
+    body: Iterable[ast.stmt], known: Names, scope: Mapping[str, Any], depth: int
+) -> list[Names]:
+    """For each return of a function that may be true: who has said yes by then.
+
+    known: who has on the way to here.
+    """
+    found: list[Names] = []
+    for statement in body:
+        match statement:
+            case ast.Return(value=value):
+                if not (isinstance(value, ast.Constant) and value.value is False):
+                    found.append(known | _said_in(value, scope, depth))
+                return found
+            case ast.If(test=test, body=yes, orelse=no):
+                found += _truths(yes, known | _said_in(test, scope, depth), scope, depth)
+                found += _truths(no, known, scope, depth)
+                if isinstance(yes[-1], ast.Return | ast.Raise) and not no:
+                    known |= _said_in(_denied(test), scope, depth)
+            case ast.FunctionDef() | ast.ClassDef():
+                pass
+            case _:
+                for inner in _bodies(statement):
+                    found += _truths(inner, known, scope, depth)
+    return found
+
+
+def _said_in(value: ast.expr | None, scope: Mapping[str, Any], depth: int) -> Names:
+    if value is None:
+        return NOBODY
+    return frozenset().union(*put_to(value, scope, depth).values())
+
+
+# ---- types that cannot change ------------------------------------------------------------------
+PLAIN = (int, float, bool, str, type(None))
+
+
+def _result(function: Callable[..., Any]) -> Any:
+    try:
+        return get_type_hints(function).get("return", Any)
+    except (NameError, TypeError):
+        return Any
+
+
+def _is_fixed(kind: Any) -> bool:
+    """No value of this type can change: numbers, and records and tuples of such."""
+    if kind in PLAIN:
+        return True
+    if get_origin(kind) in (Union, types.UnionType):
+        return all(map(_is_fixed, get_args(kind)))
+    if get_origin(kind) is tuple:
+        return all(_is_fixed(part) for part in get_args(kind) if part is not Ellipsis)
+    if not isinstance(kind, type):
+        return False
+    frozen = dataclasses.is_dataclass(kind) and kind.__dataclass_params__.frozen  # type: ignore[attr-defined]
+    if frozen or hasattr(kind, "_fields"):
+        return all(map(_is_fixed, get_type_hints(kind).values()))
+    return False
+
+
+# ---- syntax --------------------------------------------------------------------------------------
+def _definition(function: Callable[..., Any]) -> ast.FunctionDef | None:
+    try:
+        node = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+    except (OSError, SyntaxError):
+        return None
+    if not isinstance(node, ast.FunctionDef):
+        return None
+    return None if any(isinstance(n, ast.Yield | ast.YieldFrom) for n in ast.walk(node)) else node
+
+
+def _arguments(node: ast.FunctionDef) -> Names:
+    a = node.args
+    plain = [*a.posonlyargs, *a.args, *a.kwonlyargs]
+    return frozenset(arg.arg for arg in [*plain, *filter(None, (a.vararg, a.kwarg))])
+
+
+def _bound(node: ast.AST) -> Names:
+    """Names that a statement may bind, to whatever."""
+    found = {
+        n.id for n in ast.walk(node) if isinstance(n, ast.Name) and not isinstance(n.ctx, ast.Load)
+    }
+    for n in ast.walk(node):
+        if n is not node and isinstance(n, ast.FunctionDef | ast.ClassDef):
+            found.add(n.name)
+        elif isinstance(n, ast.Import | ast.ImportFrom):
+            found |= {(alias.asname or alias.name).split(".")[0] for alias in n.names}
+        elif isinstance(n, ast.ExceptHandler | ast.MatchAs | ast.MatchStar) and n.name:
+            found.add(n.name)
+        elif isinstance(n, ast.MatchMapping) and n.rest:
+            found.add(n.rest)
+    return frozenset(found)
+
+
+def _bodies(statement: ast.stmt) -> list[list[ast.stmt]]:
+    """The blocks within a compound statement."""
+    parts: list[Any] = [
+        statement,
+        *getattr(statement, "handlers", ()),
+        *getattr(statement, "cases", ()),
+    ]
+    fields = ("body", "orelse", "finalbody")
+    return [body for part in parts for name in fields if (body := getattr(part, name, None))]
+
+
+def _names(node: ast.AST) -> Names:
+    return frozenset(n.id for n in ast.walk(node) if isinstance(n, ast.Name))
+
+
+def _denied(test: ast.expr) -> ast.expr:
+    return ast.UnaryOp(ast.Not(), test)
+
+
+def _without(said: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
+    gone = set(names)
+    return {name: value for name, value in said.items() if name not in gone}
+
+
+def _more(said: Said, new: Said) -> dict[str, Names]:
+    return {name: said.get(name, NOBODY) | new.get(name, NOBODY) for name in {*said, *new}}
+
+
+def _common(ways: list[Said]) -> dict[str, Names]:
+    """What is so on each of these ways."""
+    shared = set.intersection(*[set(way) for way in ways])
+    return {name: frozenset.intersection(*[way[name] for way in ways]) for name in shared}

@@ -1,0 +1,200 @@
+"""A campaign as data, read from its file (schema `spec/campaign/campaign.schema.json`) or from one mission."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from cratous.services.loading import load
+from cratous.services.loading.document import Document, parse_document, read_document
+from cratous.services.loading.problems import refuse
+from cratous.services.loading.schema import schema_problems
+from cratous.spec.errors import BadInput
+from cratous.spec.files.limits import MISSION_BYTES
+from cratous.spec.files.text_file import text_of
+
+MOST_RUNS = 1_000_000
+ALL = ("G1", "G2", "G3", "G4", "G5")
+
+
+@dataclass(frozen=True)
+class Option:
+    """A way to run each mission: avoidance or not, and values that it changes by their path."""
+
+    name: str = "as-written"
+    daa: bool = True
+    changes: tuple[tuple[str, Any], ...] = ()
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A value of the mission that is drawn for each seed: between two bounds, or one of some values."""
+
+    item: str
+    bounds: tuple[float, float] | None = None
+    values: tuple[Any, ...] = ()
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What an attempt may cost: wall time [s], memory [MB]; and how many attempts a run has."""
+
+    time_s: float = 600.0
+    memory_mb: int = 4096
+    attempts: int = 3
+
+
+@dataclass(frozen=True)
+class Source:
+    """A mission file: its name in tables, its text, and the same as data."""
+
+    name: str
+    text: str
+    document: Document
+
+    @property
+    def varies(self) -> bool:
+        """Whether the mission has variants of its own."""
+        return "variation" in self.document.data
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """All that a campaign file says. seeds: empty if every mission is run once, as it is written."""
+
+    name: str
+    missions: tuple[Source, ...] = ()
+    generator: dict[str, Any] | None = None
+    seeds: range = range(0)
+    vary: tuple[Variable, ...] = ()
+    options: tuple[Option, ...] = (Option(),)
+    requirements: tuple[str, ...] = ALL
+    judge: bool = True
+    limits: Limits = field(default_factory=Limits)
+    description: str = ""
+
+    @property
+    def random(self) -> bool:
+        """Whether its runs are draws of something, so that a rate can be spoken of."""
+        return len(self.seeds) > 0
+
+
+@cache
+def campaign_schema() -> dict[str, Any]:
+    """The published JSON Schema."""
+    text = files("cratous.spec.campaign").joinpath("campaign.schema.json").read_text("utf-8")
+    schema: dict[str, Any] = json.loads(text)
+    return schema
+
+
+def load_campaign(path: Path, seeds: range | None, options: tuple[Option, ...]) -> Campaign:
+    """The campaign in a file, or of one mission file with the seeds and options given.
+
+    BadInput with file, line, item, expected and got.
+    """
+    if path.is_dir() and (path / "mission.yaml").is_file():
+        path = path / "mission.yaml"
+    if path.is_dir() or path.suffix.lower() not in (".yaml", ".yml"):
+        raise BadInput(
+            "a campaign is made of mission files (a UxAS configuration is several files and has no variants)",
+            where=str(path), expected="a campaign or a mission whose name ends in .yaml or .yml",
+            got="a folder" if path.is_dir() else path.suffix or "none",
+        )  # fmt: skip
+    document = read_document(path)
+    data = document.data
+    if isinstance(data, dict) and {"missions", "generator"} & set(data):
+        found = _campaign(document, path.parent, seeds)
+    else:
+        source = _source(path)
+        name = str(data.get("name", path.stem)) if isinstance(data, dict) else path.stem
+        found = Campaign(name, (source,), seeds=seeds or range(0), options=options or (Option(),))
+    _check(found, document)
+    return found
+
+
+def _source(path: Path) -> Source:
+    text = text_of(path, MISSION_BYTES, "a mission file")
+    document = parse_document(text, str(path))
+    load(path)  # what is wrong with it as it is written is said before anything is flown
+    return Source(document.data["name"], text, document)
+
+
+def _campaign(document: Document, folder: Path, seeds: range | None) -> Campaign:
+    refuse(schema_problems(document, campaign_schema()))
+    data = document.data
+    if ("missions" in data) == ("generator" in data):
+        raise _wrong(document, ("generator",), "missions and a generator", "one of the two", "both")
+    if seeds is None and "seeds" in data:
+        first, last = data["seeds"]
+        if first > last:
+            expected = "the first seed, then the last"
+            raise _wrong(document, ("seeds",), "no seeds", expected, f"{first}, {last}")
+        seeds = range(first, last + 1)
+    options = tuple(
+        Option(o["name"], o.get("daa", True), tuple(sorted(o.get("set", {}).items())))
+        for o in data.get("options", [])
+    )
+    return Campaign(
+        name=data["name"],
+        missions=tuple(_source(folder / name) for name in data.get("missions", [])),
+        generator=data.get("generator"),
+        seeds=seeds or range(0),
+        vary=tuple(_variable(document, k, v) for k, v in enumerate(data.get("vary", []))),
+        options=options or (Option(),),
+        requirements=tuple(sorted(set(data.get("requirements", ALL)))),
+        judge=data.get("judge", True),
+        limits=Limits(**data.get("limits", {})),
+        description=data.get("description", ""),
+    )
+
+
+def _variable(document: Document, k: int, data: dict[str, Any]) -> Variable:
+    if "values" in data:
+        return Variable(data["item"], values=tuple(data["values"]))
+    low, high = data["range"]
+    _ordered(document, ("vary", k, "range"), low, high)
+    return Variable(data["item"], (float(low), float(high)))
+
+
+def _ordered(document: Document, key: tuple[str | int, ...], low: float, high: float) -> None:
+    if low > high:
+        expected = "lower bound, then upper bound"
+        raise _wrong(document, key, "an empty range", expected, f"{low:g}, {high:g}")
+
+
+def _check(campaign: Campaign, document: Document) -> None:
+    for name, (low, high) in (campaign.generator or {}).get("ranges", {}).items():
+        _ordered(document, ("generator", "ranges", name), low, high)
+    if (campaign.generator or campaign.vary) and not campaign.seeds:
+        expected = "seeds: [first, last], or --seeds A-B"
+        raise _wrong(document, ("seeds",), "nothing to draw with", expected, "no seeds")
+    for source in campaign.missions:
+        if campaign.seeds and not (source.varies or campaign.vary):
+            raise BadInput(
+                "this mission has no variants", where=source.document.path, item="variation",
+                expected="a variation section, or a campaign that says what varies", got="seeds",
+            )  # fmt: skip
+    for what, names in (
+        ("missions", [source.name for source in campaign.missions]),
+        ("options", [option.name for option in campaign.options]),
+    ):
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise _wrong(document, (what,), "a name is used twice", "names that differ", twice[0])
+    runs = max(1, len(campaign.missions)) * len(campaign.options) * max(1, len(campaign.seeds))
+    if runs > MOST_RUNS:
+        raise _wrong(document, ("seeds",), "too many runs", f"at most {MOST_RUNS}", str(runs))
+
+
+def _wrong(
+    document: Document, key: tuple[str | int, ...], what: str, expected: str, got: str
+) -> BadInput:
+    from cratous.services.loading.document import item_name
+
+    return BadInput(
+        what, where=document.where(key), item=item_name(key), expected=expected, got=got
+    )

@@ -1,0 +1,197 @@
+"""Who makes the attempts: one flier of this process, or the workers of dask.distributed."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import CancelledError
+from contextlib import AbstractContextManager, contextmanager
+from typing import Any, NamedTuple
+
+from cratous.services.campaign import worker
+from cratous.spec.errors import BadInput, Refused
+
+Attempt = dict[str, Any]
+Feed = Callable[[], Attempt | None]
+"""The next attempt to make, None while there is none."""
+WINDOW = 2
+"""Attempts that are under way for each worker, so that none waits for the next."""
+LOOK = 0.5
+"""Seconds after which whoever waits looks up."""
+
+
+class Answer(NamedTuple):
+    """What came of an attempt; died: attempts at it that its engine lost and made again by itself."""
+
+    task: Attempt
+    answer: dict[str, Any]
+    died: int = 0
+
+
+Engine = Callable[[Feed], Iterator[Answer | None]]
+"""Makes attempts as they are fed, and gives answers in any order, None now and then while it waits."""
+
+
+def refuse_other_version(answer: dict[str, Any], who: str) -> None:
+    """Raise if it was another version that was asked."""
+    if "other version" in answer:
+        raise Refused(
+            f"{who} has another version of CRATOUS, Python or its packages "
+            f"({answer['other version'][:12]}): results of two versions are not mixed"
+        )
+
+
+@contextmanager
+def here() -> Iterator[Engine]:
+    """One flier of this process."""
+
+    def made(feed: Feed) -> Iterator[Answer | None]:
+        while (task := feed()) is not None:
+            answer = worker.attempt(task)
+            refuse_other_version(answer, "this machine, whose files have changed since the start,")
+            yield Answer(task, answer)
+
+    try:
+        yield made
+    finally:
+        worker.end()
+
+
+def engine(workers: int, scheduler: str | None) -> AbstractContextManager[Engine]:
+    """The engine for so many local workers, or for the scheduler at an address."""
+    return here() if workers == 1 and scheduler is None else _cluster(workers, scheduler)
+
+
+def _distributed() -> Any:
+    try:
+        import distributed
+    except ImportError:
+        raise BadInput(
+            "dask.distributed is not installed, without which there is one worker",
+            expected="--workers 1, or `pip install cratous[campaign]`",
+        ) from None
+    return distributed
+
+
+@contextmanager
+def _cluster(workers: int, scheduler: str | None) -> Iterator[Engine]:
+    distributed = _distributed()
+    import dask
+
+    settings = {
+        "distributed.scheduler.allowed-failures": 0,
+        "distributed.scheduler.worker-ttl": "60s",
+        "distributed.comm.timeouts.connect": "20s",
+    }
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters is told by us
+    with dask.config.set(settings):
+        cluster = None
+        try:
+            if scheduler is None:
+                cluster = distributed.LocalCluster(
+                    n_workers=workers, threads_per_worker=1, processes=True, host="127.0.0.1",
+                    dashboard_address=None, memory_limit=0, silence_logs="CRITICAL",
+                )  # fmt: skip
+            client = _client(distributed, cluster or scheduler)
+            try:
+                yield lambda feed: _made(distributed, client, scheduler or "local workers", feed)
+            finally:
+                client.close(timeout=5)
+        finally:
+            if cluster is not None:
+                cluster.close(timeout=10)
+
+
+def _client(distributed: Any, address: Any) -> Any:
+    try:
+        return distributed.Client(address, timeout=20)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise BadInput(
+            "there is no scheduler", where=str(address), expected="its address, like tcp://host:8786",
+            got=str(error)[:200],
+        ) from None  # fmt: skip
+
+
+class _Starts:
+    """How often attempts at each key were begun: a worker says so, and a dead one's is begun anew."""
+
+    def __init__(self, client: Any, topic: str) -> None:
+        self.topic, self._begun = topic, dict[str, int]()
+        client.subscribe_topic(topic, self._note)
+
+    def _note(self, event: Any) -> None:
+        key = str(event[1])
+        self._begun[key] = self._begun.get(key, 0) + 1
+
+    def taken(self, key: str) -> int:
+        """Attempts at a key so far, at least one; forgotten then."""
+        return self._begun.pop(key, 1)
+
+
+def announced(topic: str, key: str, task: Attempt) -> dict[str, Any]:
+    """An attempt in a worker of dask, which says first that it begins."""
+    from distributed import get_worker
+
+    get_worker().log_event(topic, key)
+    return worker.attempt(task)
+
+
+def _made(distributed: Any, client: Any, where: str, feed: Feed) -> Iterator[Answer | None]:
+    import uuid
+
+    starts = _Starts(client, f"cratous-{uuid.uuid4().hex}")  # no other client's events
+    running: dict[Any, Attempt] = {}
+    count = 0
+    try:
+        while True:
+            width = WINDOW * max(1, sum(client.nthreads().values()))
+            while len(running) < width and (task := feed()) is not None:
+                count += 1
+                key = f"{starts.topic}-{count}"
+                future = client.submit(announced, starts.topic, key, task, key=key, pure=False)
+                running[future] = task
+            if not running:
+                return
+            for future in _done(distributed, running):
+                task = running.pop(future)
+                yield _answer(future, task, starts, where)
+            yield None
+            if client.status != "running":
+                raise _gone(where)
+    except (CancelledError, OSError, distributed.client.ClosedClientError):
+        raise _gone(where) from None  # all that is under way is cancelled where a scheduler ends
+    finally:
+        if client.status == "running":
+            client.cancel(list(running), force=True)
+
+
+def _done(distributed: Any, running: Iterable[Any]) -> list[Any]:
+    """Those that are done, after a while at most."""
+    futures = list(running)
+    try:
+        distributed.wait(futures, timeout=LOOK, return_when="FIRST_COMPLETED")
+    except TimeoutError:
+        return []
+    return [future for future in futures if future.done()]
+
+
+def _answer(future: Any, task: Attempt, starts: _Starts, where: str) -> Answer:
+    """What became of an attempt at the hands of dask."""
+    if future.status in ("cancelled", "lost"):
+        raise _gone(where)
+    begun = starts.taken(future.key)
+    if future.status == "error":
+        error = future.exception()
+        if type(error).__name__ != "KilledWorker":
+            raise Refused(f"a worker of {where} cannot fly: {type(error).__name__}: {error}"[:500])
+        return Answer(task, {"lost": "its worker died"}, begun - 1)
+    answer = future.result()
+    refuse_other_version(answer, f"a worker of {where}")
+    return Answer(task, answer, begun - 1)
+
+
+def _gone(where: str) -> BadInput:
+    return BadInput(
+        "the scheduler is gone; what is stored stays, and the same command goes on from there",
+        where=where, expected="a scheduler that runs",
+    )  # fmt: skip

@@ -1,0 +1,177 @@
+"""A process that flies one run after another and stays warm, and what becomes of it is said by kind.
+
+A flight may crash its process, hang, or take all memory: that costs the process and one attempt, and
+whoever asked goes on. Between the two go lines of JSON; the function that flies is named by its module.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import select
+import subprocess
+import sys
+import tempfile
+import time
+from contextlib import suppress
+from typing import Any
+
+OUT_OF_MEMORY = "out of memory"
+HUNG = "took longer than its limit"
+DIED = "its process died"
+NO_START = "its process did not start"
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+"""Fliers share the cores among themselves."""
+START = 120.0
+"""Seconds until a process that begins must have said so."""
+
+
+class Flier:
+    """One process; a context manager. Not for several threads."""
+
+    def __init__(self, function: str, memory_mb: int) -> None:
+        """function: `module:name` of what is called with a task and gives plain data."""
+        self._command = [sys.executable, "-m", __name__, function, str(memory_mb)]
+        self._process: subprocess.Popen[bytes] | None = None
+        self._said = tempfile.TemporaryFile()  # noqa: SIM115, closed with the flier
+        self.version = ""
+
+    def __enter__(self) -> Flier:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self.end()
+        self._said.close()
+
+    @property
+    def pid(self) -> int | None:
+        """The number of the process that is there now."""
+        return None if self._process is None else self._process.pid
+
+    def fly(self, task: Any, time_s: float) -> dict[str, Any]:
+        """`{"result": ...}`, or `{"lost": why}` if the process was lost with this task."""
+        lost = self.begin()
+        if lost:
+            return {"lost": lost}
+        assert self._process is not None
+        try:
+            assert self._process.stdin is not None
+            self._process.stdin.write(json.dumps(task).encode() + b"\n")
+            self._process.stdin.flush()
+        except OSError:
+            return {"lost": self._ended(DIED)}
+        answer = self._line(time_s)
+        if not isinstance(answer, dict):
+            return {"lost": self._ended(answer)}
+        if "lost" in answer:
+            self.end()
+        return answer
+
+    def end(self) -> None:
+        """End the process, whatever it is doing."""
+        if self._process is None:
+            return
+        self._process.kill()
+        self._process.wait()
+        for stream in (self._process.stdin, self._process.stdout):
+            if stream is not None:
+                with suppress(OSError):
+                    stream.close()
+        self._process = None
+
+    def begin(self) -> str:
+        """Have a process, and know its version; why not, if it cannot be had."""
+        if self._process is not None and self._process.poll() is None:
+            return ""
+        self.end()
+        self._said.truncate(0)
+        self._process = subprocess.Popen(
+            self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self._said,
+            start_new_session=True, env={**os.environ, **ONE_THREAD},
+        )  # fmt: skip
+        hello = self._line(START)
+        if not isinstance(hello, dict):
+            return self._ended(NO_START)
+        self.version = str(hello["version"])
+        return ""
+
+    def _line(self, seconds: float) -> dict[str, Any] | str:
+        """What it says next, or why there is nothing."""
+        assert self._process is not None
+        assert self._process.stdout is not None
+        handle, until, parts = self._process.stdout.fileno(), time.monotonic() + seconds, b""
+        while not parts.endswith(b"\n"):
+            wait = until - time.monotonic()
+            if wait <= 0 or not select.select([handle], [], [], wait)[0]:
+                return HUNG
+            part = os.read(handle, 1 << 20)
+            if not part:
+                return DIED
+            parts += part
+        found: dict[str, Any] = json.loads(parts)
+        return found
+
+    def _ended(self, why: str) -> str:
+        """The reason, with what the process left: its signal and its last words."""
+        process = self._process
+        if process is None:
+            return why
+        if why != HUNG:
+            with suppress(subprocess.TimeoutExpired):
+                code = process.wait(5)
+                why += f" (signal {-code})" if code < 0 else f" (exit code {code})"
+        self.end()
+        self._said.seek(max(0, self._said.seek(0, os.SEEK_END) - 2000))
+        lines = self._said.read().decode("utf-8", "replace").split("\n")
+        words = next((line.strip() for line in reversed(lines) if line.strip()), "")
+        return f"{why}: {words[:200]}" if words and why != HUNG else why
+
+
+def main(function: str, memory_mb: int) -> None:
+    """What the process does: say the version, then answer each line until there is none."""
+    import importlib
+    import queue
+    import threading
+
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what anything prints goes where errors go
+    _limit_memory(memory_mb)
+    from cratous.services.campaign.identity import version_digest
+
+    module, _, name = function.partition(":")
+    fly = getattr(importlib.import_module(module), name)
+    tasks: queue.Queue[bytes] = queue.Queue()
+
+    def read() -> None:
+        for line in sys.stdin.buffer:
+            tasks.put(line)
+        os._exit(0)  # whoever asked is gone, so nobody waits for what is being flown
+
+    _say(answers, {"version": version_digest()})
+    threading.Thread(target=read, daemon=True).start()
+    while True:
+        task = json.loads(tasks.get())
+        try:
+            answer = {"result": fly(task)}
+        except MemoryError:
+            answer = {"lost": OUT_OF_MEMORY}
+        except OSError as error:
+            answer = {"lost": f"the machine failed it: {error.strerror or error}"}
+        _say(answers, answer)
+
+
+def _say(answers: Any, data: dict[str, Any]) -> None:
+    answers.write(json.dumps(data).encode() + b"\n")
+    answers.flush()
+
+
+def _limit_memory(memory_mb: int) -> None:
+    import resource
+
+    size = memory_mb * 1_000_000
+    with suppress(ValueError, OSError):  # a lower limit of the system's stays
+        resource.setrlimit(resource.RLIMIT_DATA, (size, size))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], int(sys.argv[2]))

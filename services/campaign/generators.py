@@ -1,0 +1,165 @@
+"""Missions that are made: one protected vehicle that flies north, others that meet it, zones about its way.
+
+The vehicle would be at the frame's origin after `time_s`, and goes on to a point as far behind it. An
+intruder's course is `angle_deg` against the vehicle's; it passes the origin at the same instant,
+`miss_m` beside it and `height_m` above. Each parameter of a seed has a draw of its own, so that another
+range of one leaves the others as they were.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import cos, radians, sin
+from random import Random
+from typing import Any
+
+Ranges = dict[str, tuple[float, float]]
+ALTITUDE_M = 300.0
+COMMON: Ranges = {
+    "own_speed_m_s": (18, 28), "speed_m_s": (15, 40), "time_s": (70, 110), "miss_m": (-50, 50),
+    "height_m": (-20, 20), "area_m": (-3000, 3000), "zone_gap_m": (100, 600), "zone_size_m": (200, 600),
+    "zone_place": (-0.6, 0.4),
+}  # fmt: skip
+KINDS: dict[str, Ranges] = {
+    "aimed": {"angle_deg": (0, 360), "miss_m": (0, 0), "height_m": (0, 0)},
+    "converging": {"angle_deg": (30, 150)},
+    "overtaking": {"angle_deg": (-15, 15), "own_speed_m_s": (22, 28), "speed_m_s": (8, 14)},
+    "head_on": {"angle_deg": (165, 195)},
+    "random": {"angle_deg": (0, 360), "height_m": (-150, 150)},
+}
+MIRRORED = ("converging",)
+"""Kinds whose angle may be to either side."""
+
+
+class Draw:
+    """The parameters of one seed, and what was drawn; `given` are not drawn but taken.
+
+    bounds: between which each is drawn, before it is mirrored.
+    """
+
+    def __init__(
+        self, data: dict[str, Any], seed: int, given: Mapping[str, float] | None = None
+    ) -> None:
+        self.kind: str = data["kind"]
+        own = {name: tuple(bounds) for name, bounds in data.get("ranges", {}).items()}
+        self._ranges = {**COMMON, **KINDS[self.kind], **own}
+        self._seed, self._given = seed, given or {}
+        self.drawn: dict[str, float] = {}
+        self.bounds: dict[str, tuple[float, float]] = {}
+
+    def __call__(self, name: str, number: int = 0) -> float:
+        """A parameter; number: of which intruder or zone, from 1, 0 if there is one for all."""
+        low, high = self._ranges[name]
+        key = f"{name}[{number}]" if number else name
+        value = round(Random(f"{self._seed} {key}").uniform(low, high), 3)
+        value = self._given.get(key, value)
+        if name == "angle_deg" and self.kind in MIRRORED:
+            value *= self.side(key)
+        self.drawn[key], self.bounds[key] = value, (low, high)
+        return value
+
+    def side(self, key: str) -> int:
+        """Left (-1) or right (1)."""
+        return Random(f"{self._seed} side {key}").choice((-1, 1))
+
+
+def mission_of(
+    data: dict[str, Any], name: str, seed: int, given: Mapping[str, float] | None = None
+) -> tuple[dict[str, Any], Draw]:
+    """The mission file of a seed as data, and its parameters; those `given` are taken as they are."""
+    draw = Draw(data, seed, given)
+    time, speed = draw("time_s"), draw("own_speed_m_s")
+    way = speed * time
+    vehicles = [_vehicle(1, (-way, 0.0, ALTITUDE_M), 0.0, speed)]
+    tasks = [_task(1, (way, 0.0, ALTITUDE_M))]
+    traffic = []
+    for k in range(1, data.get("intruders", 1) + 1):
+        start, course_deg, fast = _intruder(draw, k, time)
+        if data.get("cooperative", False):
+            vehicles.append(_vehicle(k + 1, start, course_deg, fast))
+            tasks.append(_task(k + 1, _ahead(start, course_deg, 2 * fast * time)))
+        else:
+            traffic.append(
+                {"id": 100 + k, "position": _at(start), "velocity": _over(course_deg, fast)}
+            )
+    mission = {
+        "name": f"{name}-{seed}",
+        "description": f"{draw.kind}, made by a campaign with seed {seed}",
+        "frame": {"latitude_deg": 45.0, "longitude_deg": -120.0},
+        "vehicles": vehicles,
+        "tasks": tasks,
+        "traffic": traffic,
+        "zones": list(_zones(draw, data, way)),
+        "simulation": {"limit_s": round(6 * time)},
+    }
+    return {key: value for key, value in mission.items() if value != []}, draw
+
+
+Point = tuple[float, float, float]
+
+
+def _intruder(draw: Draw, k: int, time: float) -> tuple[Point, float, float]:
+    """Where it starts, its course [degrees] and its speed [m/s]."""
+    course_deg, fast = draw("angle_deg", k), draw("speed_m_s", k)
+    alt = ALTITUDE_M + draw("height_m", k)
+    if draw.kind == "random":
+        draw_north, draw_east = _anywhere(draw, k)
+        passes = (draw_north, draw_east, alt)
+    else:
+        miss = draw("miss_m", k)
+        across = radians(course_deg + 90)
+        passes = (miss * cos(across), miss * sin(across), alt)
+    return _ahead(passes, course_deg, -fast * time), course_deg, fast
+
+
+def _anywhere(draw: Draw, k: int) -> tuple[float, float]:
+    return draw("area_m", 2 * k - 1), draw("area_m", 2 * k)
+
+
+def _zones(draw: Draw, data: dict[str, Any], way: float) -> Iterator[dict[str, Any]]:
+    beside, across = data.get("zones_beside", 0), data.get("zones_across", 0)
+    for k in range(1, beside + across + 1):
+        size, centre = draw("zone_size_m", k), draw("zone_place", k) * way
+        west = -size / 2
+        if k <= beside:
+            gap = draw("zone_gap_m", k)
+            west = gap if draw.side(f"zone {k}") > 0 else -gap - size
+        south, north, east = centre - size / 2, centre + size / 2, west + size
+        corners = [[south, west], [south, east], [north, east], [north, west]]
+        yield {
+            "id": k,
+            "kind": "keep_out",
+            "vertices": [[round(value, 3) for value in corner] for corner in corners],
+        }
+
+
+def _vehicle(number: int, start: Point, course_deg: float, speed: float) -> dict[str, Any]:
+    return {
+        "id": number, "position": _at(start), "heading_deg": _turned(course_deg), "speed_m_s": speed,
+        "min_speed_m_s": round(0.7 * speed, 3), "max_speed_m_s": round(1.4 * speed, 3),
+        "max_bank_deg": 30, "max_climb_m_s": 5,
+    }  # fmt: skip
+
+
+def _turned(course_deg: float) -> float:
+    """The same course between -180 and 180 degrees."""
+    return round((course_deg + 180) % 360 - 180, 3)
+
+
+def _task(number: int, place: Point) -> dict[str, Any]:
+    return {"id": number, "kind": "must_fly", "eligible": [number], "points": [_at(place)]}
+
+
+def _at(place: Point) -> dict[str, float]:
+    north, east, alt = (round(value, 3) for value in place)
+    return {"north_m": north, "east_m": east, "alt_m": alt}
+
+
+def _ahead(place: Point, course_deg: float, distance: float) -> Point:
+    course = radians(course_deg)
+    return place[0] + distance * cos(course), place[1] + distance * sin(course), place[2]
+
+
+def _over(course_deg: float, speed: float) -> dict[str, float]:
+    course = radians(course_deg)
+    return {"north_m_s": round(speed * cos(course), 4), "east_m_s": round(speed * sin(course), 4)}

@@ -1,0 +1,110 @@
+"""What became of a run, in one word, from its result and what the campaign requires."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from cratous.services.campaign.runs import Run
+from cratous.spec.mission.guarantees import Outcome, worst
+
+DISAGREE, LOST = "disagreement", "lost"
+NO_PLAN, IMPOSSIBLE, FAILED = "no plan", "impossible", "failed"
+ORDER = (
+    DISAGREE, str(Outcome.VIOLATED), NO_PLAN, FAILED, LOST, str(Outcome.UNKNOWN),
+    str(Outcome.EXCUSED), IMPOSSIBLE, str(Outcome.HOLDS),
+)  # fmt: skip
+"""The outcomes, the worst first."""
+BAD = (DISAGREE, str(Outcome.VIOLATED), NO_PLAN)
+"""These make a campaign's exit code 1; all others but `holds` make it 3."""
+MEANING = {
+    DISAGREE: "judge and monitor do not say the same: one of them is wrong",
+    "violated": "a requirement is violated",
+    NO_PLAN: "no plan exists, so nothing was flown",
+    FAILED: "an internal error ended it",
+    LOST: "every attempt at it was lost, so it was not flown",
+    "unknown": "a requirement was not decided",
+    "excused": "well clear or a constraint was lost where no way out existed",
+    IMPOSSIBLE: "the mission is refused as it was made, so nothing was flown",
+    "holds": "every requirement holds",
+}
+
+
+@dataclass(frozen=True)
+class Row:
+    """A run and its result (None: every attempt was lost), and what became of it."""
+
+    run: Run
+    result: dict[str, Any] | None
+    outcome: str
+
+    @property
+    def flown(self) -> bool:
+        """Whether it was flown to an end."""
+        return self.result is not None and self.result["kind"] == "flown"
+
+    def requirement(self, name: str) -> dict[str, Any] | None:
+        """Verdict, margin and place of a requirement; None unless it was flown."""
+        if self.result is None or not self.flown:
+            return None
+        found: dict[str, Any] | None = self.result["requirements"].get(name)
+        return found
+
+    @property
+    def drawn(self) -> dict[str, Any]:
+        """What was drawn for it, by the campaign or by the mission's own variants."""
+        own = self.result.get("drawn", {}) if self.result else {}
+        return {**self.run.drawn, **own}
+
+    @property
+    def why(self) -> str:
+        """Why it does not hold, in words."""
+        result = self.result or {}
+        if "why" in result:
+            return "; ".join(result["why"])
+        judge = result.get("judge") or {}
+        said = [
+            f"{d['guarantee']} {d['item']}: judge {d['judge']}, monitor {d['monitor']}"
+            for d in judge.get("disagreements", [])
+        ]
+        if "refused" in judge:
+            said.append(f"the judge cannot read its log: {judge['refused']}")
+        for name, row in result.get("requirements", {}).items():
+            if row["verdict"] != Outcome.HOLDS:
+                said.append(f"{name} {row['verdict']}: {row['item']}: {row.get('note', '')}")
+        return "; ".join(said) + ("; kernels without proof" * (not result.get("proved", True)))
+
+
+def row_of(run: Run, result: dict[str, Any] | None, requirements: tuple[str, ...]) -> Row:
+    """The row of a run."""
+    return Row(run, result, outcome_of(result, requirements))
+
+
+def outcome_of(result: dict[str, Any] | None, requirements: tuple[str, ...]) -> str:
+    """The outcome of a result: what is not decided is never called holding."""
+    if result is None:
+        return LOST
+    if result["kind"] != "flown":
+        return str(result["kind"])
+    judge = result["judge"]
+    if judge is not None and _disagrees(judge, requirements):
+        return DISAGREE
+    found = [Outcome.HOLDS if result["proved"] else Outcome.UNKNOWN]
+    for name in requirements:
+        verdict = Outcome(result["requirements"][name]["verdict"])
+        if judge is not None and verdict is Outcome.HOLDS:
+            verdict = Outcome(judge.get("guarantees", {}).get(name, Outcome.UNKNOWN))
+        found.append(verdict)
+    return str(worst(found))
+
+
+def _disagrees(judge: dict[str, Any], requirements: tuple[str, ...]) -> bool:
+    """Whether it does so on what is required, or on which log it is."""
+    return any(d["guarantee"] in ("", *requirements) for d in judge.get("disagreements", []))
+
+
+def code_of(outcomes: set[str]) -> int:
+    """The exit code: 0 if every run holds, 1 if something is violated, 3 if something is not known."""
+    if outcomes & set(BAD):
+        return 1
+    return 0 if outcomes == {str(Outcome.HOLDS)} else 3

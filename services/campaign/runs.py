@@ -1,0 +1,135 @@
+"""The runs of a campaign: each with the text of its mission, its seed and its options, and a name from these."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from random import Random
+from typing import Any
+
+from cratous.services.campaign.definition import Campaign, Option, Source, Variable
+from cratous.services.campaign.generators import mission_of
+from cratous.services.campaign.identity import fingerprint
+from cratous.services.loading.document import item_key
+from cratous.spec.errors import BadInput
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run. id: a digest of all that decides its result, `decides`.
+
+    decides: mission (text of the file), seed (of the mission's own variants, 0 for none), daa,
+    allow_unproved, judge, version. drawn: what was drawn for it, by name.
+    """
+
+    id: str
+    mission: str
+    option: str
+    seed: int
+    decides: dict[str, Any]
+    drawn: dict[str, Any]
+
+    @property
+    def name(self) -> str:
+        """A name for people and folders; unique in the campaign."""
+        return f"{self.mission}-{self.option}" + (f"-seed{self.seed}" if self.seed else "")
+
+
+def runs_of(campaign: Campaign, version: str, allow_unproved: bool) -> Iterator[Run]:
+    """All runs, in the order of missions, seeds and options."""
+    for seed in campaign.seeds or (0,):
+        for source in campaign.missions or (None,):
+            for option in campaign.options:
+                data = Made(campaign, source, option, seed)
+                yield data.run(version, allow_unproved)
+
+
+class Made:
+    """The mission file of one seed under one option, and what was drawn for it.
+
+    given: values of numbers that would be drawn, by name, which are taken instead. bounds: between
+    which each number of `drawn` was drawn.
+    """
+
+    def __init__(
+        self,
+        campaign: Campaign,
+        source: Source | None,
+        option: Option,
+        seed: int,
+        given: Mapping[str, float] | None = None,
+    ) -> None:
+        self._option, self._judge, self._seed = option, campaign.judge, seed
+        self.drawn: dict[str, Any] = {}
+        self.bounds: dict[str, tuple[float, float]] = {}
+        self._name, self._own_seed, self._text = campaign.name, 0, ""
+        if source is None:
+            self.data, draw = mission_of(campaign.generator or {}, campaign.name, seed, given)
+            self.drawn, self.bounds = dict(draw.drawn), dict(draw.bounds)
+        else:
+            self._name, self._own_seed = source.name, seed if source.varies else 0
+            unchanged = not campaign.vary and not option.changes
+            self._text = source.text if unchanged else ""
+            self.data = copy.deepcopy(source.document.data)
+        for variable in campaign.vary:
+            value = (given or {}).get(variable.item, _drawn(variable, seed))
+            self.drawn[variable.item] = value
+            if variable.bounds is not None:
+                self.bounds[variable.item] = variable.bounds
+            put(self.data, variable.item, value)
+        for item, value in option.changes:
+            put(self.data, item, value)
+
+    def of(self, data: dict[str, Any]) -> Made:
+        """The same with another mission file."""
+        other = copy.copy(self)
+        other.data, other._text = data, ""
+        return other
+
+    def run(self, version: str, allow_unproved: bool) -> Run:
+        """The run of the mission as it is now."""
+        decides = {
+            "mission": self._text or _text(self.data), "seed": self._own_seed, "daa": self._option.daa,
+            "judge": self._judge, "allow_unproved": allow_unproved, "version": version,
+        }  # fmt: skip
+        option, drawn = self._option.name, self.drawn
+        return Run(fingerprint(decides), self._name, option, self._seed, decides, drawn)
+
+
+def _text(data: dict[str, Any]) -> str:
+    import yaml
+
+    dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # the first is libyaml: ten times faster
+    text: str = yaml.dump(data, Dumper=dumper, sort_keys=False, allow_unicode=True, width=100)
+    return text
+
+
+def _drawn(variable: Variable, seed: int) -> Any:
+    """The value for a seed; each item has draws of its own."""
+    random = Random(f"{seed} {variable.item}")
+    if variable.bounds is None:
+        return random.choice(variable.values)
+    return round(random.uniform(*variable.bounds), 6)
+
+
+def put(data: Any, item: str, value: Any) -> None:
+    """Set a value of a mission by its path; a mapping on the way is made if it is not there."""
+    *way, last = item_key(item) or ("",)
+    at = data
+    for k, part in enumerate((*way, last)):
+        if isinstance(part, int):
+            known = isinstance(at, list) and part < len(at)
+        else:
+            known = isinstance(at, dict)
+        if not known:
+            raise BadInput(
+                "the mission has no such value", item=item, expected="a path into the mission file",
+                got=str(part),
+            )  # fmt: skip
+        if k == len(way):
+            at[part] = copy.deepcopy(value)
+        elif isinstance(part, int):
+            at = at[part]
+        else:
+            at = at.setdefault(part, {})

@@ -1,0 +1,167 @@
+"""Towards small margins: which values of what is drawn make a requirement fail, and how small a mission does.
+
+Cross entropy: a batch of missions is drawn, the best of all so far (those with the least margins) say
+around which values the next batch is drawn, with a spread that is theirs. A batch is complete before
+the next begins, and its draws follow from its number, so that workers and losses change nothing.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from random import Random
+from statistics import fmean, pstdev
+from typing import Any
+
+from cratous.services.campaign.definition import Campaign
+from cratous.services.campaign.outcomes import Row
+from cratous.services.campaign.runs import Made, Run
+from cratous.spec.errors import BadInput
+from cratous.spec.mission.guarantees import Outcome
+
+BATCH, ELITE = 20, 4
+LEAST_SPREAD = 0.03
+"""Share of a range that the spread keeps at least, so that the search goes on."""
+UNIFORM = 4
+"""In each batch so many are drawn from the whole space, so that no part of it is given up."""
+DIGITS = (-1, 0, 1, 2)
+PARTS = ("traffic", "zones", "changes")
+
+Fly = Callable[[Iterable[Run]], list[Row]]
+"""Flies runs and gives their rows in order."""
+
+
+@dataclass
+class Found:
+    """What a search came to: every point with its margin, and the failing run if there is one."""
+
+    requirement: str
+    points: list[dict[str, Any]] = field(default_factory=list)
+    failing: Row | None = None
+    small: dict[str, Any] | None = None
+    """The mission of the failing run, made smaller: it fails as well."""
+
+
+class Search:
+    """One search: for a requirement, under the first option, over the first mission or the generator."""
+
+    def __init__(
+        self, campaign: Campaign, requirement: str, version: str, allow_unproved: bool
+    ) -> None:
+        if len(campaign.missions) > 1 or len(campaign.options) > 1:
+            raise BadInput(
+                "a search is in one space", item="missions, options",
+                expected="one mission or a generator, and one option",
+                got=f"{len(campaign.missions)} missions, {len(campaign.options)} options",
+            )  # fmt: skip
+        self._campaign, self._requirement = campaign, requirement
+        self._version, self._allow_unproved = version, allow_unproved
+        bounds = self._made(1, {}).bounds
+        self._space = {
+            name: (low, high) for name, (low, high) in sorted(bounds.items()) if low < high
+        }
+        if not self._space:
+            raise BadInput(
+                "nothing to search in",
+                item="vary",
+                expected="a generator, or values with a range in `vary`",
+            )
+
+    def _made(self, number: int, point: dict[str, float]) -> Made:
+        source = self._campaign.missions[0] if self._campaign.missions else None
+        return Made(self._campaign, source, self._campaign.options[0], number, point)
+
+    def run(self, fly: Fly, budget: int) -> Found:
+        """Search with at most so many runs, then make what fails small with half as many more."""
+        found = Found(self._requirement)
+        while len(found.points) < budget and found.failing is None:
+            numbers = range(len(found.points) + 1, min(budget, len(found.points) + BATCH) + 1)
+            points = [self._point(number, found) for number in numbers]
+            made = [self._made(n, p) for n, p in zip(numbers, points, strict=True)]
+            rows = fly(one.run(self._version, self._allow_unproved) for one in made)
+            for point, row in zip(points, rows, strict=True):
+                entry = {"run": row.run.name, "outcome": row.outcome, "values": point}
+                found.points.append({**entry, "margin": margin(row, self._requirement)})
+            bad = [k for k, row in enumerate(rows) if fails(row, self._requirement)]
+            if bad:
+                worst = min(bad, key=lambda k: _rank(found.points[k - len(rows)]))
+                found.failing = rows[worst]
+                found.small = self._small(
+                    fly, made[worst], points[worst], numbers[worst], budget // 2
+                )
+        return found
+
+    def _point(self, number: int, found: Found) -> dict[str, float]:
+        """The values of a point: of a batch, around the best so far."""
+        batch, place = divmod(number - 1, BATCH)
+        told = [p for p in found.points[: batch * BATCH] if p["margin"] is not None]
+        elite = sorted(told, key=_rank)[:ELITE]
+        point = {}
+        for name, (low, high) in self._space.items():
+            random = Random(f"search {number} {name}")
+            value = random.uniform(low, high)
+            if elite and place >= UNIFORM:
+                values = [p["values"][name] for p in elite]
+                spread = max(pstdev(values), LEAST_SPREAD * (high - low))
+                value = min(high, max(low, random.gauss(fmean(values), spread)))
+            point[name] = round(value, 3)
+        return point
+
+    def _small(
+        self, fly: Fly, made: Made, point: dict[str, float], number: int, budget: int
+    ) -> dict[str, Any]:
+        """The failing mission with rounder values and less in it, as long as it fails."""
+        left = [budget]
+
+        def still(one: Made) -> bool:
+            left[0] -= 1
+            (row,) = fly([one.run(self._version, self._allow_unproved)])
+            return fails(row, self._requirement)
+
+        for name in self._space:
+            for digits in DIGITS:
+                value = float(round(point[name], digits))
+                rounder = {**point, name: value}
+                low, high = self._space[name]
+                if value == point[name] or left[0] <= 0 or not low <= value <= high:
+                    continue
+                one = self._made(number, rounder)
+                if still(one):
+                    made, point = one, rounder
+                    break
+        for part in PARTS:
+            for k in reversed(range(len(made.data.get(part, [])))):
+                one = made.of(_without(made.data, part, k))
+                if left[0] > 0 and still(one):
+                    made = one
+        return made.data
+
+
+def _without(mission: dict[str, Any], part: str, k: int) -> dict[str, Any]:
+    """The mission without one thing."""
+    data = copy.deepcopy(mission)
+    del data[part][k]
+    if not data[part]:
+        del data[part]
+    return data
+
+
+def margin(row: Row, requirement: str) -> float | None:
+    """How far a run is from failing; None where it was not flown or nothing was measured."""
+    found = row.requirement(requirement)
+    return None if found is None else found["margin"]
+
+
+def fails(row: Row, requirement: str) -> bool:
+    """Whether a run was flown and violates the requirement, or judge and monitor disagree on it."""
+    found = row.requirement(requirement)
+    if found is None:
+        return False
+    judge = (row.result or {}).get("judge") or {}
+    disputed = any(d["guarantee"] == requirement for d in judge.get("disagreements", []))
+    return found["verdict"] == Outcome.VIOLATED or disputed
+
+
+def _rank(point: dict[str, Any]) -> float:
+    return float("inf") if point["margin"] is None else point["margin"]

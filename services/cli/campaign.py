@@ -1,0 +1,248 @@
+"""`cratous campaign`: many runs on one engine, judged, counted, resumable."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+
+from cratous.services.cli.show import progress, say, table
+
+Tell = Callable[[str], None]
+ALL = ("G1", "G2", "G3", "G4", "G5")
+EVERY = 10.0
+"""Seconds between two lines of progress where no terminal shows them."""
+
+
+def seed_range(_ctx: Any, _param: Any, value: str | None) -> range | None:
+    """`1-50` as a range, both ends included."""
+    import re
+
+    if value is None:
+        return None
+    match = re.fullmatch(r"([1-9]\d{0,8})-([1-9]\d{0,8})", value)
+    if not match or int(match[1]) > int(match[2]):
+        raise click.BadParameter(f"expected A-B with 1 <= A <= B, for example 1-50; got {value!r}")
+    return range(int(match[1]), int(match[2]) + 1)
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--seeds", callback=seed_range, metavar="A-B", help="Seeds, instead of the file's.")
+@click.option("--workers", type=click.IntRange(1, 1024), default=1, help="Local processes. [1]")
+@click.option("--scheduler", metavar="ADDRESS", help="A scheduler of dask.distributed to use.")
+@click.option("-o", "--out", type=click.Path(path_type=Path), help="Folder. [out/campaigns/NAME]")
+@click.option("--no-daa", is_flag=True, help="Of a mission: switch avoidance off.")
+@click.option("--allow-unproved", is_flag=True, help="Fly kernels without proof (recorded).")
+@click.option(
+    "--reports", type=click.IntRange(0, 10), default=10, help="Worst flights to keep. [10]"
+)
+@click.option("--find", type=click.Choice(ALL), help="Search for a run that fails this, instead.")
+@click.option(
+    "--budget", type=click.IntRange(1, 100_000), default=200, help="Runs of a search. [200]"
+)
+@click.option("--json", "as_json", is_flag=True, help="Print campaign.json, or what was found.")
+@click.option("--quiet", is_flag=True, help="No progress, only the result.")
+def campaign(
+    file: Path, seeds: range | None, workers: int, scheduler: str | None, out: Path | None, no_daa: bool,
+    allow_unproved: bool, reports: int, find: str | None, budget: int, as_json: bool, quiet: bool,
+) -> int:  # fmt: skip
+    """Fly and judge all runs of a campaign FILE, or all variants of a mission FILE.
+
+    A run is named by a digest of all that decides it and stored once, so a campaign that was
+    interrupted goes on, and a changed option flies only what it changes. campaign.json is the same
+    whatever the workers, their order and what was lost on the way.
+
+    \b
+    Examples:  cratous campaign examples/campaigns/options.yaml --workers 2
+               cratous campaign examples/crossing/mission.yaml --seeds 1-1000
+               cratous campaign examples/campaigns/traffic.yaml --find G2
+
+    Exit codes: 0 all runs hold, 1 something is violated, without a plan, or judge and monitor
+    disagree, 2 bad input, 3 something is unknown, excused, impossible or lost.
+    """
+    from cratous.services.campaign.definition import load_campaign
+
+    found = load_campaign(file, seeds, (option_of(not no_daa),))
+    place = out or Path("out") / "campaigns" / found.name
+    how = {"workers": workers, "scheduler": scheduler, "allow_unproved": allow_unproved}
+    with progress(quiet or as_json) as tell:
+        if find is not None:
+            from cratous.services.cli.campaign_find import searched, show_found
+
+            data = searched(found, place, how, find, budget, tell)
+            show_found(data, place, as_json)
+            return int(data["exit_code"])
+        summary = conducted(found, place, how, reports, tell)
+    if as_json:
+        click.echo(json.dumps(summary, indent=1, sort_keys=True))
+    else:
+        show(summary)
+        say(f"summary: {place / 'campaign.html'}")
+    return int(summary["exit_code"])
+
+
+def option_of(daa: bool) -> Any:
+    """The one option of a campaign that is made of a mission."""
+    from cratous.services.campaign.definition import Option
+
+    return Option(daa=daa) if daa else Option("without-daa", daa=False)
+
+
+def conducted(
+    campaign: Any, place: Path, how: dict[str, Any], reports: int, tell: Tell
+) -> dict[str, Any]:
+    """Fly what is missing, write the summary into a folder, and return it."""
+    from cratous.core import ledger
+    from cratous.services.campaign.campaign import Conduct, Course
+    from cratous.services.campaign.engine import engine
+    from cratous.services.campaign.identity import version_digest
+    from cratous.services.campaign.store import Store
+    from cratous.services.campaign.summary import build
+    from cratous.services.cli.campaign_flight import FUNCTION
+
+    ledger.require(allow_unproved=how["allow_unproved"])  # before any process is begun
+    version = version_digest()
+    with Store(place) as store:
+        conduct = Conduct(campaign, store, FUNCTION, version, how["allow_unproved"])
+        seeds, missions = max(1, len(campaign.seeds)), max(1, len(campaign.missions))
+        course = Course(seeds * missions * len(campaign.options))
+        with engine(how["workers"], how["scheduler"]) as made:
+            conduct.fly(made, course, paced(tell))
+        tell(course.line())
+        rows = list(conduct.rows())
+        lost = [(row.run.name, why) for row in rows for why in store.lost(row.run.id)]
+        for name, why in lost[:20]:
+            tell(f"attempt lost: {name}: {why}")
+        summary = build(campaign, rows, version)
+        _write(summary, place, _reports(conduct, rows, campaign, place, reports, tell))
+    return summary
+
+
+def paced(tell: Tell) -> Tell:
+    """Progress: passing lines on a terminal, else one now and then."""
+    last = [time.monotonic()]
+
+    def now_and_then(text: str) -> None:
+        if sys.stderr.isatty():
+            tell(f"\r{text}")
+        elif time.monotonic() - last[0] > EVERY:
+            last[0] = time.monotonic()
+            tell(text)
+
+    return now_and_then
+
+
+def _reports(
+    conduct: Any, rows: list[Any], campaign: Any, place: Path, count: int, tell: Tell
+) -> dict[str, str]:
+    """Fly the worst again, keep their reports, and hold each against what was stored; links by name."""
+    from cratous.core.files.whole_file import write_atomically
+    from cratous.services.campaign import worker
+    from cratous.services.campaign.summary import worst
+    from cratous.services.results.names import HTML_NAME
+    from cratous.spec.errors import Refused
+
+    links = {}
+    try:
+        for row in worst(rows, campaign.requirements)[:count]:
+            folder = place / "flights" / row.run.name
+            link = f"flights/{row.run.name}/{HTML_NAME}"
+            stored = row.result or {}
+            if _is_kept(folder, stored.get("log", "")):
+                links[row.run.name] = link
+                continue
+            tell(f"report of {row.run.name}")
+            answer = worker.attempt(conduct.task(row.run, keep=str(folder)))
+            if "lost" in answer:
+                tell(f"no report of {row.run.name}: {answer['lost']}")
+                continue
+            if answer.get("result") != stored:
+                raise Refused(
+                    f"{row.run.name} flown again gives another result: {_other(answer, stored)}; "
+                    "the stored results of this version are not to be trusted"
+                )
+            links[row.run.name] = link
+            mission = folder.parent / f"{row.run.name}.yaml"
+            write_atomically(mission, row.run.decides["mission"])
+    finally:
+        worker.end()
+    return links
+
+
+def _other(answer: dict[str, Any], stored: dict[str, Any]) -> str:
+    got = answer.get("result") or {}
+    return ", ".join(sorted(key for key in stored if got.get(key) != stored[key]))
+
+
+def _is_kept(folder: Path, digest: str) -> bool:
+    """Whether the report of a flight is there already."""
+    try:
+        report = json.loads((folder / "report.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False
+    return isinstance(report, dict) and report.get("log", {}).get("digest") == digest
+
+
+def _write(summary: dict[str, Any], place: Path, links: dict[str, str]) -> None:
+    from cratous.core.files.whole_file import write_atomically
+    from cratous.services.campaign.pages import page
+    from cratous.services.campaign.summary import text_of
+    from cratous.services.campaign.tables import csv_text, junit_text
+
+    texts = {
+        "campaign.html": page(summary, links), "runs.csv": csv_text(summary),
+        "junit.xml": junit_text(summary), "campaign.json": text_of(summary),
+    }  # fmt: skip
+    for name, text in texts.items():
+        write_atomically(place / name, text, "the summary")
+
+
+def table_of_runs(summary: dict[str, Any]) -> None:
+    """A line for each run."""
+    rows = []
+    for run in summary["runs"]:
+        result = run["result"] or {}
+        apart = result.get("separation_m")
+        least = "-" if apart is None else f"{apart:.0f} m"
+        row = [run["name"], str(result.get("takeovers", 0)), least, run["outcome"], run["why"]]
+        rows.append(row)
+    table(["run", "takeovers", "least separation", "outcome", "why"], rows, verdict_column=3)
+
+
+def show(summary: dict[str, Any]) -> None:
+    """The summary for people; disagreement of judge and monitor comes first."""
+    from cratous.services.campaign.pages import share
+
+    if summary["disagreements"]:
+        say(f"DISAGREEMENT of judge and monitor in {summary['disagreements']} runs")
+    head = ["mission", "option", "runs", "flown", "violated", "not holding"]
+    rows = []
+    for group in summary["groups"]:
+        bad = [
+            f"{name} {found['violated']['count']}"
+            for name, found in group["requirements"].items()
+            if found["violated"]["count"]
+        ]
+        row = [group["mission"], group["option"], str(group["runs"]), str(group["flown"])]
+        rows.append([*row, ", ".join(bad) or "-", share(group["not_holding"])])
+    table(head, rows)
+    for one in summary["comparisons"]:
+        for name, found in one["requirements"].items():
+            if found["first_only"] or found["second_only"]:
+                chance = f", p {found['p_value']:.2g}" if "p_value" in found else ""
+                say(
+                    f"{name}: of {found['pairs']} pairs {found['first_only']} hold under {one['first']} "
+                    f"alone, {found['second_only']} under {one['second']} alone{chance}"
+                )
+    for reason in summary["reasons"][:5]:
+        say(f"{reason['outcome']}, {reason['count']} runs: {reason['why']}")
+    for line in summary["limits"]:
+        say(line)
+    counts = ", ".join(f"{count} {name}" for name, count in summary["outcomes"].items())
+    say(f"{summary['runs_in_all']} runs: {counts}; exit code {summary['exit_code']}")

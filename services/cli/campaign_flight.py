@@ -1,0 +1,143 @@
+"""One run of a campaign, flown and judged in a process that stays warm."""
+
+from __future__ import annotations
+
+import shlex
+from functools import cache
+from math import degrees
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from cratous.services.cli.job import Settings, fly_mission
+from cratous.spec.errors import BadInput, CratousError, NoPlan, Refused
+from cratous.spec.mission.guarantees import Outcome
+
+FUNCTION = f"{__name__}:fly_run"
+FLOWN, NO_PLAN, IMPOSSIBLE, FAILED = "flown", "no plan", "impossible", "failed"
+
+
+def fly_run(task: dict[str, Any]) -> dict[str, Any]:
+    """The result of a run, as plain data that follows from `task` alone.
+
+    task: `decides` of a run (mission, seed, daa, allow_unproved, judge), and `keep`: a folder for its
+    results, None if only the result is wanted.
+    """
+    keep = task.get("keep")
+    with TemporaryDirectory(prefix="cratous-") as scratch:
+        file = Path(scratch) / "mission.yaml"
+        file.write_text(task["mission"], encoding="utf-8")
+        try:
+            return _flown(file, task, Path(scratch) if keep is None else Path(keep))
+        except NoPlan as error:
+            return {"kind": NO_PLAN, "why": list(error.reasons)}
+        except Refused as error:
+            return {"kind": "refused", "why": [str(error)]}
+        except CratousError as error:
+            return {"kind": IMPOSSIBLE, "why": [_plain(error, file)]}
+        except (MemoryError, OSError):
+            raise  # the machine's, not the mission's
+        except Exception as error:  # a defect is a result as well: it follows from the run
+            return {"kind": FAILED, "why": [f"{type(error).__name__}: {error}"[:500]]}
+
+
+def _plain(error: CratousError, file: Path) -> str:
+    return str(error).replace(str(file), file.name)
+
+
+@cache
+def _standing(allow_unproved: bool) -> Any:
+    """The gate, once for this process: what it has loaded does not change."""
+    from cratous.core import ledger
+
+    return ledger.require(allow_unproved=allow_unproved)
+
+
+def _flown(file: Path, task: dict[str, Any], out: Path) -> dict[str, Any]:
+    from cratous.services.loading import load
+
+    mission = load(file, task["seed"])
+    standing = _standing(task["allow_unproved"])
+    settings = Settings(task["daa"], task["allow_unproved"], command(task))
+    if task.get("keep") is not None:
+        from cratous.services.certify.report import write_report
+        from cratous.services.results.folder import results_folder
+
+        with results_folder(out) as folder:
+            report = fly_mission(mission, folder, settings, standing)
+            write_report(report, folder)
+            return _result(mission, report, folder, task)
+    report = fly_mission(mission, out, settings, standing)
+    return _result(mission, report, out, task)
+
+
+def command(task: dict[str, Any]) -> str:
+    """What flies the run alone, once its mission is a file."""
+    parts = ["cratous", "run", "mission.yaml"]
+    parts += ["--seed", str(task["seed"])] if task["seed"] else []
+    parts += ["--no-daa"] * (not task["daa"]) + ["--allow-unproved"] * task["allow_unproved"]
+    return shlex.join(parts)
+
+
+def _result(
+    mission: Any, report: dict[str, Any], folder: Path, task: dict[str, Any]
+) -> dict[str, Any]:
+    from cratous.services.certify.charts import separation_view
+
+    view = separation_view(report)
+    return {
+        "kind": FLOWN,
+        "proved": not report["proofs"]["problems"],
+        "requirements": {row["requirement"]: _requirement(row) for row in report["requirements"]},
+        "takeovers": len(report["flight"]["takeovers"]),
+        "outcome": report["flight"]["outcome"],
+        "end_ms": report["flight"]["end_ms"],
+        "separation_m": None if view is None else min(c["least_m"] for c in view["curves"]),
+        "log": report["log"]["digest"],
+        "mission_hash": report["mission_hash"],
+        "drawn": _drawn(mission) if task["seed"] else {},
+        "judge": _judged(report, folder) if task["judge"] else None,
+    }
+
+
+def _requirement(row: dict[str, Any]) -> dict[str, Any]:
+    found = {key: row[key] for key in ("verdict", "margin", "unit", "time_ms", "item")}
+    if row["verdict"] != Outcome.HOLDS:
+        found["note"] = row["note"]
+    return found
+
+
+def _drawn(mission: Any) -> dict[str, float]:
+    """What the mission's own variants draw: courses and speeds."""
+    found = {}
+    for vehicle in mission.vehicles[:4]:
+        course = degrees(vehicle.heading_rad) % 360
+        found[f"vehicle {vehicle.id} course_deg"] = round(course, 3)
+        found[f"vehicle {vehicle.id} speed_m_s"] = round(vehicle.speed_m_s, 3)
+    return found
+
+
+def _judged(report: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """What the judge says of the log beside the report that the monitor's verdicts stand in."""
+    from cratous.services.certify.report import report_text
+    from cratous.services.cli.judge import judgement
+    from cratous.services.results.names import REPORT_NAME
+
+    file = folder / REPORT_NAME
+    if not file.exists():
+        file.write_text(report_text(report), encoding="utf-8")
+    try:
+        found = judgement(folder).data()
+    except BadInput as error:
+        return {"refused": error.what}
+    return {
+        "verdict": found["verdict"],
+        "guarantees": found["guarantees"],
+        "disagreements": [
+            {key: d[key] for key in ("guarantee", "item", "judge", "monitor", "note")}
+            for d in found["differences"]
+            if d["kind"] == "disagree"
+        ],
+        "differences": len(found["differences"]),
+        "rows": len(found["rows"]),
+    }

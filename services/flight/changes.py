@@ -1,0 +1,125 @@
+"""What becomes known in flight: told, watched for, and planned for at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from cratous.services.flight.dynamics import limits_of
+from cratous.services.flight.executive_state import Asked, Config, Out, State
+from cratous.services.flight.messages import AskPlan, LimitsAre, Say, ZonesKnown
+from cratous.services.flight.notices import mission_change, plan_accepted
+from cratous.services.flight.passing import begin, give_up, progress
+from cratous.services.flight.telling import command_all
+from cratous.services.flight.touched import handed_over, left_by, nobody_may, touched_by
+from cratous.services.mission.taking_part import absent
+from cratous.services.mission.wind import all_in_wind, in_wind, known_at, told, wind_at
+from cratous.services.planning.zones import hard_zones
+from cratous.spec.executive import FOR_CHANGE
+from cratous.spec.mission import Change
+from cratous.spec.mission.asked import asked
+from cratous.spec.mission.changes import split, words
+from cratous.spec.mission.plan import Plan
+
+NAME = "uxas"
+"""The sender of what is said of mission and plan."""
+
+
+def known_from_the_start(config: Config, state: State, out: Out) -> State:
+    """The changes that are known when the mission begins, and the plan that was made with them."""
+    state, blown = blow(config, state, out)
+    begun_with, _ = split(config.mission.changes, state.now_ms)
+    if begun_with:
+        what = "; ".join(words(change) for change in begun_with)
+        answer = "; ".join(filter(None, ("planned with it", blown)))
+        out.append(Say(mission_change(state.now_ms, what, answer), NAME))
+    accept(state, out)
+    return state
+
+
+def blow(config: Config, state: State, out: Out) -> tuple[State, str]:
+    """Let the wind of this instant bind all vehicles; what it changes, empty if nothing."""
+    before, now = state.wind, wind_at(config.mission, state.now_ms)
+    if now == before:
+        return state, ""
+    for vehicle in config.mission.vehicles:
+        out.append(LimitsAre(vehicle.id, limits_of(in_wind(vehicle, now) or vehicle)))
+    state = replace(state, wind=now, mission=all_in_wind(config.mission, now))
+    return state, told(config.mission, before, now)
+
+
+def accept(state: State, out: Out) -> None:
+    """Say by which plan is flown from now on."""
+    done = frozenset(dict(state.ends))
+    out.append(Say(plan_accepted(state.now_ms, state.plan, done), NAME))
+
+
+def change(config: Config, state: State, due: Sequence[Change], out: Out) -> State:
+    """These changes are known now; if they ask for another plan, that is asked for."""
+    known = known_at(config.mission, state.now_ms, dict(state.ends))
+    state, blown = blow(config, replace(state, known=known), out)
+    zones = hard_zones(tuple(c.zone for c in due if c.zone is not None))
+    # ICAROUS is told every way anew: its own zones bind it too
+    chains = tuple(replace(chain, told_version=-1) for chain in state.chains)
+    state = replace(state, zones=(*state.zones, *zones), chains=chains)
+    out.append(ZonesKnown(state.zones))
+    what = "; ".join(words(c) for c in due)
+    touched = touched_by(due, zones, state.by_vehicle(), dict(state.ends), dict(state.aircraft))
+    why = "; ".join(text for text in (blown, touched) if text)
+    if not why:
+        _tell(state, what, "the plan holds as it is", out)
+        return state
+    return replace(state, asked=Asked(FOR_CHANGE, what, why))
+
+
+def ask(config: Config, state: State) -> AskPlan:
+    """A plan for what is left, from where all are."""
+    here = {vehicle.id for vehicle in state.known.vehicles}
+    starts, ends = dict(state.starts), dict(state.ends)
+    return AskPlan(
+        state.now_ms,
+        state.known,
+        tuple((vid, air.pose) for vid, air in state.aircraft if vid in here),
+        tuple((task, starts[task], ends[task]) for task in sorted(ends)),
+        tuple(absent(config.mission, state.now_ms).items()),
+        state.failed,
+        tuple(sorted(starts.keys() - ends.keys())),
+    )
+
+
+def planned(config: Config, state: State, plan: Plan, asked_for: Asked, out: Out) -> State:
+    """Fly another plan from here on. The change is known before anything is done about it."""
+    if asked_for.kind == FOR_CHANGE:
+        moved = handed_over(left_by(state.by_vehicle()), plan)
+        why = "; ".join(filter(None, (asked_for.why, moved)))
+        _tell(state, asked_for.what, f"planned anew: {why}", out)
+    state = replace(state, plan=plan, replans=state.replans + 1)
+    accept(state, out)
+    note = f"planned anew, because of {asked_for.what or asked_for.why}"
+    out.extend(
+        progress(chain, state.now_ms, "Planned", note)
+        for chain in state.chains
+        if chain.item is not None and chain.item.task_id in plan.chosen
+    )
+    return begin(config, state, out)
+
+
+def unplanned(config: Config, state: State, no_plan: str, asked_for: Asked, out: Out) -> State:
+    """After a change nothing that is left can be done."""
+    todo = left(state)
+    none = nobody_may(state.known, todo, absent(config.mission, state.now_ms))
+    why = "; ".join(filter(None, (asked_for.why, none)))
+    _tell(state, asked_for.what, f"no plan for what is left ({no_plan}): {why}", out)
+    state = give_up(config, state, f"{asked_for.what}: {no_plan}", todo, out)
+    return command_all(config, state, out)
+
+
+def left(state: State) -> list[int]:
+    """The tasks that are asked for and not done."""
+    ends = dict(state.ends).keys()
+    accepted = ends | {item.task_id for item in state.plan.items}
+    return [task for task in asked(state.known, ends, accepted) if task not in ends]
+
+
+def _tell(state: State, what: str, answer: str, out: Out) -> None:
+    out.append(Say(mission_change(state.now_ms, what, answer), NAME))

@@ -1,0 +1,136 @@
+"""What the executive remembers, and what does not change about it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple, TypeVar
+
+from cratous.services.flight.chain import Chain
+from cratous.services.flight.dynamics import AirState
+from cratous.services.flight.messages import FromExecutive
+from cratous.services.flight.ways import Ways
+from cratous.services.mission.frames import Projection
+from cratous.services.mission.wind import CALM, Wind, known_at
+from cratous.services.planning.zones import hard_zones
+from cratous.spec.constraint_rows import Row
+from cratous.spec.mission import Change, Mission, Zone
+from cratous.spec.mission.changes import split
+from cratous.spec.mission.plan import Plan
+
+Out = list[FromExecutive]
+"""What a step has to send so far; it lives for one step."""
+Times = tuple[tuple[int, int], ...]
+"""Instants by task [ms]."""
+V = TypeVar("V")
+
+
+class Asked(NamedTuple):
+    """A plan has been asked for. kind: see `spec.executive`; what: the change, in words; why it, or the
+    row that cannot be kept, asks for a plan; late: the tasks that are late, the one of now first, each
+    with its row; versions: of the tracks at the beginning of the step, by vehicle."""
+
+    kind: int
+    what: str
+    why: str
+    late: tuple[tuple[int, Row], ...] = ()
+    versions: tuple[tuple[int, int], ...] = ()
+
+
+@dataclass(frozen=True)
+class Config:
+    """mission: all of it, changes included; instances: the vehicles with an ICAROUS instance."""
+
+    mission: Mission
+    projection: Projection
+    instances: tuple[int, ...]
+    # the routers by zones: what they remember only saves time
+    _ways: dict[tuple[Zone, ...], Ways] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def dt_s(self) -> float:
+        """A step of the flight [s]."""
+        return self.mission.simulation.step_ms / 1000
+
+    def ways(self, zones: tuple[Zone, ...]) -> Ways:
+        """Tracks around these zones."""
+        if zones not in self._ways:
+            self._ways.clear()
+            self._ways[zones] = Ways(zones, self.dt_s)
+        return self._ways[zones]
+
+
+@dataclass(frozen=True)
+class State:
+    """known: the mission as it is known now; mission: all of it in the wind of now; zones: those that
+    bind, with their padding turned into vertices; to_come: changes that nobody knows of yet; aircraft
+    and epochs: of the vehicles, as told last; starts, ends: real ones; failed: tasks with the reason; left_out:
+    those that the plan in force leaves out, with the reason;
+    commands, replans, finished: counts; hurry: some deadline is near; asked: for which plan."""
+
+    known: Mission
+    mission: Mission
+    zones: tuple[Zone, ...]
+    plan: Plan
+    to_come: tuple[Change, ...] = ()
+    wind: Wind = CALM
+    now_ms: int = 0
+    aircraft: tuple[tuple[int, AirState], ...] = ()
+    epochs: tuple[tuple[int, int], ...] = ()
+    chains: tuple[Chain, ...] = ()
+    starts: Times = ()
+    ends: Times = ()
+    failed: tuple[tuple[int, str], ...] = ()
+    left_out: tuple[tuple[int, str], ...] = ()
+    commands: int = 0
+    replans: int = 0
+    finished: int = 0
+    hurry: bool = False
+    asked: Asked | None = None
+
+    def find(self, vehicle_id: int) -> Chain | None:
+        """The chain of a vehicle, if it has one yet."""
+        return next((c for c in self.chains if c.vehicle.id == vehicle_id), None)
+
+    def chain(self, vehicle_id: int) -> Chain:
+        """The chain of a vehicle."""
+        return next(c for c in self.chains if c.vehicle.id == vehicle_id)
+
+    def air(self, vehicle_id: int) -> AirState:
+        """Where a vehicle is."""
+        return dict(self.aircraft)[vehicle_id]
+
+    def by_vehicle(self) -> dict[int, Chain]:
+        """The chains by vehicle."""
+        return {chain.vehicle.id: chain for chain in self.chains}
+
+    def put(self, chain: Chain) -> State:
+        """From now on this is the chain of its vehicle."""
+        vid = chain.vehicle.id
+        if self.find(vid) is None:
+            return replace(self, chains=(*self.chains, chain))
+        chains = tuple(chain if c.vehicle.id == vid else c for c in self.chains)
+        return replace(self, chains=chains)
+
+    def begun(self, task_id: int, at_ms: int) -> State:
+        """A task has begun."""
+        return replace(self, starts=_with(dict(self.starts), task_id, at_ms))
+
+    def ended(self, task_id: int, at_ms: int) -> State:
+        """A task has ended."""
+        return replace(self, ends=_with(dict(self.ends), task_id, at_ms))
+
+    def has_failed(self, task_id: int, why: str) -> State:
+        """A task has failed."""
+        return replace(self, failed=_with(dict(self.failed), task_id, why))
+
+
+def first_state(mission: Mission, plan: Plan) -> State:
+    """Before the mission begins."""
+    known = known_at(mission, 0)
+    _, to_come = split(mission.changes, 0)
+    return State(known, mission, hard_zones(known.zones), plan, tuple(to_come))
+
+
+def _with(table: Mapping[int, V], key: int, value: V) -> tuple[tuple[int, V], ...]:
+    return tuple({**table, key: value}.items())

@@ -1,0 +1,62 @@
+"""ICAROUS takes a vehicle and offers it back: what becomes of its chain."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from cratous.core.authority.link_end import suspended_after
+from cratous.core.executive.steps import way_act
+from cratous.services.flight.ahead import leaving_m
+from cratous.services.flight.chain import Chain, Phase
+from cratous.services.flight.executive_state import Config, Out, State
+from cratous.services.flight.messages import Left, Suspend, TakeBack
+from cratous.services.flight.passing import NO_WAY, fail, progress
+from cratous.services.flight.telling import command, route
+from cratous.spec.executive import FAIL_TASK
+from cratous.spec.mission import Position
+
+NAME = "uxas/ics"
+"""The sender of what the bridge has led to."""
+
+
+def suspend(state: State, message: Suspend, out: Out) -> State:
+    """ICAROUS has taken over: where the path was left, if a task was active."""
+    chain = state.chain(message.vehicle_id)
+    was, chain = (
+        chain,
+        replace(chain, suspended=suspended_after(chain.suspended, message.act)),
+    )
+    left = _resume_point(chain)
+    if left is not None:
+        out.append(Left(message.vehicle_id, left))
+        if not was.suspended and not was.away:
+            note = f"left the path at {chain.path_flown_m():.0f} m"
+            said = progress(chain, message.now_ms, "Suspended", note, chain.served())
+            out.append(said._replace(source=NAME))
+    return state.put(chain)
+
+
+def _resume_point(chain: Chain) -> Position | None:
+    """Where the path was left, if a task was active: the sensor misses nothing."""
+    return chain.track.at(leaving_m(chain)) if chain.phase is Phase.TASK else None
+
+
+def take_back(config: Config, state: State, message: TakeBack, out: Out) -> State:
+    """ICAROUS hands back: route to the resume point, then along the rest of the path. Where no way
+    there keeps the zones, its task fails and the next one is made for; the vehicle circles after its last."""
+    vid, now_ms = message.vehicle_id, message.now_ms
+    chain = state.chain(vid)
+    chain = replace(chain, suspended=suspended_after(chain.suspended, message.act))
+    ways, air = config.ways(state.zones), state.air(vid)
+    back = ways.back(chain, air)
+    act = way_act(back is not None, chain.item is not None)
+    if act == FAIL_TASK and chain.item is not None:
+        state = fail(config, state.put(chain), chain.item.task_id, NO_WAY, out)
+    elif back is None:
+        state = state.put(chain.enter(chain.phase, ways.last(chain, air, 0.0), now_ms))
+    else:
+        entered = chain.enter(chain.phase, back.track, now_ms)
+        if chain.phase is Phase.TASK:
+            entered = replace(entered, join_m=back.join_m, base_m=back.flown_m, away=True)
+        state = state.put(entered)
+    return command(config, route(state, vid, out), vid, message.epoch, out, NAME)

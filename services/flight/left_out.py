@@ -1,0 +1,59 @@
+"""Tasks that a plan leaves out, in flight: each fails by name when it is first left out, with the reason.
+
+A later plan may take such a task up again (a vehicle joins, the wind calms down): it is not given up for
+good, as one that ended undone is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from cratous.services.flight.chain import Chain
+from cratous.services.flight.commands import task_progress
+from cratous.services.flight.lives import fails
+from cratous.spec.mission.plan import LeftOut, PartialPlan, Plan, left_out_of, partial
+
+NOBODY = 0
+"""The vehicle of a task that was given to none."""
+
+
+def leave_out(
+    plan: Plan,
+    settled: tuple[Container[int], Container[int], Mapping[int, str]],
+    before: Mapping[int, str],
+    chains: Mapping[int, Chain],
+    now_ms: int,
+) -> tuple[dict[int, str], list[Any]]:
+    """The tasks that are left out from now on, with reasons, and a TaskProgress for those that are new.
+
+    settled: tasks that have begun, ended and failed; before: those left out until now; chains: of the
+    plan before.
+    """
+    starts, ends, failed = settled
+    found, said = {}, []
+    for one in left_out_of(plan):
+        task, why = one.task_id, f"left out: {one.reason}"
+        if task in before:
+            found[task] = before[task]
+        elif fails(task, starts, ends, failed):
+            found[task] = why
+            vehicle, served = _flown_by(task, chains)
+            said.append(task_progress(task, vehicle, now_ms, "Failed", served, why))
+    return found, said
+
+
+def _flown_by(task: int, chains: Mapping[int, Chain]) -> tuple[int, float]:
+    """Whose task it was, and how much of it had been flown."""
+    for number, chain in sorted(chains.items()):
+        left = [item.task_id for item in chain.items[max(chain.k, 0) :]]
+        if task in left:
+            return number, chain.served() if left[0] == task else 0.0
+    return NOBODY, 0.0
+
+
+def nothing_of(plan: Plan, tasks: Iterable[int], why: str) -> PartialPlan:
+    """A plan by which nobody does anything any more, and why."""
+    empty = replace(plan, items=(), rows=(), chosen=())
+    return partial(empty, tuple(LeftOut(task, why) for task in tasks), True)

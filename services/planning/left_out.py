@@ -1,0 +1,133 @@
+"""The best part of a mission, assigned and certified; and why each task that it leaves out cannot be done."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from cratous.core.assignment.problem import Assignment
+from cratous.services.planning import mission_assign, reasons
+from cratous.services.planning.assign import Limits
+from cratous.services.planning.mission_assign import Found
+from cratous.services.planning.partial import PROBES, Part, Parts, restricted
+from cratous.spec.algebra.meaning import rows, tasks
+from cratous.spec.algebra.partial import only, waits_for
+from cratous.spec.assignment.search import AssignmentProblem
+from cratous.spec.mission.plan import LeftOut
+
+MORE = 100
+"""Further questions for finding reasons."""
+TOLD_MAX = 3
+"""So many constraints that clash are told of a task."""
+
+
+def assign_part(
+    problem: AssignmentProblem,
+    limits: Limits,
+    where: reasons.Places,
+    all_of: Parts,
+    unable: Mapping[int, str],
+) -> Found:
+    """The best assignment of the part that leaves out least; none if nothing can be done.
+
+    unable: why no vehicle can do a task at all.
+    """
+    chosen = all_of.choose()
+    terms = [only(all_of.branches[k], kept) for k, kept in chosen.parts]
+    made = restricted(problem, list(dict.fromkeys(term for term in terms if term is not None)))
+    if not chosen.parts:
+        return Found(None, None)
+    nodes = None if limits.nodes is None else max(limits.nodes, PROBES)
+    found = mission_assign.assign(made, replace(limits, nodes=nodes), where)
+    if found.assignment is None:
+        return found
+    done = set(found.assignment.branch.tasks)
+    part = next(part for part in chosen.parts if part[1] == done)
+    left = _Reasons(all_of, part, unable, where).all()
+    assignment = _numbered(found.assignment, made, problem)
+    return replace(found, assignment=assignment, left_out=left, sure=chosen.sure)
+
+
+def _numbered(found: Assignment, made: AssignmentProblem, whole: AssignmentProblem) -> Assignment:
+    """The assignment in the indices of the whole problem."""
+    number = {(c.task_id, c.option_id): k for k, c in enumerate(whole.choices)}
+    at = [number[c.task_id, c.option_id] for c in made.choices]
+    placed = tuple(one._replace(candidate=at[one.candidate]) for one in found.placed)
+    return replace(found, placed=placed)
+
+
+class _Reasons:
+    """Why the tasks that a part leaves out cannot be done beside it."""
+
+    def __init__(
+        self, all_of: Parts, part: Part, unable: Mapping[int, str], where: reasons.Places
+    ) -> None:
+        self.all_of, self.part, self.unable, self.where = all_of, part, unable, where
+        self.branch = all_of.branches[part[0]]
+        self.limit = all_of.asked + MORE
+
+    def all(self) -> tuple[LeftOut, ...]:
+        """A reason for each; what waits for another one is told with that."""
+        left = self.all_of.left(self.part)
+        waits = {task: self._awaited(task) for task in left if task in self.all_of.able}
+        found = []
+        for task in left:
+            waiting = tuple(other for other in left if task in _chain(waits, other))
+            if task not in self.all_of.able:
+                why = self.unable.get(task, "no vehicle can do it")
+                found.append(LeftOut(task, why, waiting))
+            elif waits[task]:
+                found.append(LeftOut(task, self._waits_text(task), waiting))
+            else:
+                found.append(self._clash(task, waiting))
+        return tuple(found)
+
+    def _awaited(self, task: int) -> tuple[int, ...]:
+        """The tasks left out that a task would have to wait for."""
+        kept = self.part[1]
+        found: dict[int, None] = {}
+        for row in rows(self.branch):
+            if row.i == task and task not in self.all_of.begun and waits_for(row, kept):
+                found.update(dict.fromkeys(t for t in row.group if t not in kept))
+        return tuple(found)
+
+    def _waits_text(self, task: int) -> str:
+        row = next(r for r in rows(self.branch) if r.i == task and waits_for(r, self.part[1]))
+        return f"it must wait for what is not done: {row.text}"
+
+    def _clash(self, task: int, waiting: Iterable[int]) -> LeftOut:
+        """A task that has no schedule beside those that are planned, and which of these are to blame."""
+        all_of, (k, kept) = self.all_of, self.part
+        want = kept | all_of.needed(k, task)
+        clash = next((c for c in all_of.conflicts.get(k, ()) if task in c and c <= want), None) or (
+            all_of.conflict((k, want)) if all_of.asked < self.limit else None
+        )
+        if clash is None or task not in clash:
+            why = "no schedule was found for it beside what is planned"
+            return LeftOut(task, why, tuple(waiting))
+        need = all_of.needed(k, task)
+        instead = tuple(t for t in tasks(self.branch) if t in clash - need)
+        asked = all_of.question((k, clash))
+        said = reasons.timing_reasons(asked, all_of.solve((k, clash)), self.where)
+        why = "; ".join(said[:TOLD_MAX])
+        if reasons.is_wayless(asked):
+            why = "there is no way from task to task"
+        if instead:
+            why = f"not beside {_names(instead)}: {why}"
+        return LeftOut(task, why, tuple(waiting), instead)
+
+
+def _names(numbers: tuple[int, ...]) -> str:
+    return f"task{'' if len(numbers) == 1 else 's'} {', '.join(map(str, numbers))}"
+
+
+def _chain(waits: Mapping[int, tuple[int, ...]], task: int) -> set[int]:
+    """All that a task waits for, what these wait for included."""
+    found: set[int] = set()
+    todo = list(waits.get(task, ()))
+    while todo:
+        one = todo.pop()
+        if one not in found:
+            found.add(one)
+            todo += waits.get(one, ())
+    return found

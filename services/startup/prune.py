@@ -1,0 +1,57 @@
+"""Old machine code leaves the cache: folders of compiled kernels that nothing has used for days.
+
+Only what is surely ours is removed: a folder of the private cache whose name is the hash of the text
+in it. What is removed is compiled anew when it is needed.
+"""
+
+from __future__ import annotations
+
+import shutil
+import stat
+import time
+from pathlib import Path
+
+from cratous.core.files.private_cache import private_cache
+from cratous.core.ledger.kept_keys import KEPT
+from cratous.core.readings.machine.compiled import PREFIX, folder_name
+
+DAY_S = 86_400.0
+
+
+def prune(days: float) -> tuple[int, int]:
+    """Remove compiled kernels, and keys of the gate, unused for so many days; (how many, bytes)."""
+    before_s = time.time() - days * DAY_S
+    cache = private_cache()
+    old = [f for f in cache.glob(f"{PREFIX}*") if _is_ours(f) and f.lstat().st_mtime < before_s]
+    freed = sum(_size(folder) for folder in old)
+    for folder in old:
+        shutil.rmtree(folder)
+    files = [f for f in (cache / KEPT).glob("*") if _is_old_file(f, before_s)]
+    freed += sum(file.stat().st_size for file in files)
+    for file in files:
+        file.unlink()
+    return len(old) + len(files), freed
+
+
+def _is_old_file(file: Path, before_s: float) -> bool:
+    found = file.lstat()
+    return stat.S_ISREG(found.st_mode) and found.st_mtime < before_s
+
+
+def _is_ours(folder: Path) -> bool:
+    """A folder, no link, with the text that its name is the hash of, and nothing of others beside it."""
+    if not stat.S_ISDIR(folder.lstat().st_mode):
+        return False
+    source = folder / f"{folder.name}.py"
+    try:
+        if source.is_symlink() or folder_name(source.read_text(encoding="utf-8")) != folder.name:
+            return False
+    except (OSError, UnicodeDecodeError):
+        return False
+    beside = [f for f in folder.iterdir() if f.name not in (source.name, "__pycache__")]
+    # what a write that was cut off has left
+    return all(f.name.startswith(f"{folder.name}.") and f.is_file() for f in beside)
+
+
+def _size(folder: Path) -> int:
+    return sum(file.lstat().st_size for file in folder.rglob("*"))

@@ -1,0 +1,21 @@
+"""What UxAS has and we do not have yet, by name, so that it is told from a name that nobody knows."""
+
+from __future__ import annotations
+
+SERVICES = (
+    "OsmPlannerService",
+    "RoutePlannerService",
+    "SerialAutomationRequestTestService",
+    "SteeringService",
+)
+"""Services of UxAS that we do not have; a configuration that names one is warned, or refused if strict."""
+
+TASKS = (
+    "afrl.impact.BlockadeTask",
+    "afrl.impact.CommRelayTask",
+    "afrl.impact.CordonTask",
+    "afrl.impact.EscortTask",
+    "afrl.impact.MultiVehicleWatchTask",
+    "uxas.messages.task.AssignmentCoordinatorTask",
+    "uxas.messages.task.RendezvousTask",
+)

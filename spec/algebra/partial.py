@@ -1,0 +1,182 @@
+"""What a term permits when some of its tasks are not done: what is done of it, and what must wait.
+
+A task that ended undone, or was never begun, satisfies nothing. So a later operand of `.` may have a
+task done only if the operand before it was done whole (`.(p1 p2)`: without p1 no p2); a later operand of
+`~` only if some task of the one before it was begun. Under `|` the others go on. Of `+` still at most
+one operand is begun. Order and timing hold for what was done as they do for all: of a relative timing
+the operand before counts with those of its tasks that ran.
+
+`permits` says that of composites and times; `may_be_done` the same of sets of tasks, where only the
+order of things matters. `kept_rows` gives the constraints on times, `only` the term that is left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Set
+from dataclasses import replace
+from itertools import pairwise, product
+
+from cratous.spec.algebra import ALTERNATIVE, PARALLEL, SEQUENTIAL, TILDE, Atom, Op, Suffix, Term
+from cratous.spec.algebra.meaning import bounds_all, rows, tasks
+from cratous.spec.constraint_rows import AFTER_END, AFTER_START, WITHIN_END, WITHIN_START, Row
+
+Times = Mapping[int, tuple[int, int]]
+ORDERED = (SEQUENTIAL, TILDE)
+
+
+def is_whole(term: Term, done: Set[int]) -> bool:
+    """Whether a term is done whole if just these tasks are done."""
+    if isinstance(term, Atom):
+        return term.task in done
+    if term.op == ALTERNATIVE:
+        mine = done & set(tasks(term))
+        return any(mine <= set(tasks(part)) and is_whole(part, done) for part in term.operands)
+    return all(is_whole(part, done) for part in term.operands)
+
+
+def may_be_done(term: Term, done: Set[int]) -> bool:
+    """Whether just these tasks of a term may be done, the others left undone."""
+    if isinstance(term, Atom):
+        return True
+    if term.op == ALTERNATIVE:
+        mine = done & set(tasks(term))
+        return any(mine <= set(tasks(part)) and may_be_done(part, done) for part in term.operands)
+    if not all(may_be_done(part, done) for part in term.operands):
+        return False
+    return term.op not in ORDERED or all(
+        not done & set(tasks(later)) or _opens(term.op, before, done)
+        for before, later in pairwise(term.operands)
+    )
+
+
+def _opens(op: str, before: Term, done: Set[int]) -> bool:
+    """Whether what was done of an operand lets the one after it begin."""
+    return is_whole(before, done) if op == SEQUENTIAL else bool(done & set(tasks(before)))
+
+
+# ---- times ------------------------------------------------------------------------------------
+
+
+def permits(term: Term, times: Times) -> bool:
+    """Whether a term permits that just these of its tasks ran, from start to end [ms].
+
+    Written from the definition on composites, on purpose without `branches` and `rows`.
+    """
+    ran = [times[task] for task in tasks(term) if task in times]
+    return all(start <= end for start, end in ran) and bool(_ways(term, times))
+
+
+def _ways(term: Term, times: Times) -> set[frozenset[int]]:
+    """The ways in which a part of the term has been done: for each, its tasks that no timing bounds yet."""
+    began = set(tasks(term)) & set(times)
+    if isinstance(term, Atom):
+        parts = [{frozenset(began)}]
+    elif term.op == ALTERNATIVE:
+        fitting = (part for part in term.operands if began <= set(tasks(part)))
+        parts = [set().union(*(_ways(part, times) for part in fitting))]
+    else:
+        parts = [_ways(part, times) for part in term.operands]
+    if not all(parts):
+        return set()
+    windows: list[tuple[set[frozenset[int]], int]] = []
+    if isinstance(term, Op) and term.op in ORDERED:
+        for k, (before, later) in enumerate(pairwise(term.operands), 1):
+            spans = [times[task] for task in tasks(later) if task in times]
+            if not spans:
+                continue
+            if not _opens(term.op, before, began):
+                return set()
+            moment = _moment(term.op, before, times)
+            if min(spans)[0] < moment:
+                return set()
+            windows.append((parts[k], moment))
+    if term.suffix is None:
+        return {frozenset().union(*choice) for choice in product(*parts)}
+    if bounds_all(term):
+        fits = all(_fits(part, times, 0, term.suffix) for part in parts)
+        return {frozenset()} if fits else set()
+    fits = all(_fits(part, times, moment, term.suffix) for part, moment in windows)
+    return parts[0] if fits else set()
+
+
+def _moment(op: str, before: Term, times: Times) -> int:
+    """The latest end, or the earliest start, of what ran of an operand."""
+    ran = [times[task] for task in tasks(before) if task in times]
+    return max(end for _, end in ran) if op == SEQUENTIAL else min(start for start, _ in ran)
+
+
+def _fits(ways: set[frozenset[int]], times: Times, moment: int, window: Suffix) -> bool:
+    """Whether in one of the ways all tasks still unbounded lie in the window after `moment`."""
+    first, last = moment + window.t1_ms, moment + window.t2_ms
+    return any(all(first <= times[x][0] and times[x][1] <= last for x in way) for way in ways)
+
+
+# ---- rows and terms ---------------------------------------------------------------------------
+
+
+def waits_for(row: Row, kept: Set[int]) -> bool:
+    """Whether a row forbids its task for ever, if just the kept tasks are ever done: it waits for the
+    end of one that is not, or for the start of tasks none of which is."""
+    if row.kind == AFTER_END:
+        return not set(row.group) <= kept
+    return row.kind == AFTER_START and not set(row.group) & kept
+
+
+def largest_part(branch: Term, able: Set[int], begun: Set[int] = frozenset()) -> frozenset[int]:
+    """The tasks of a term without `+` that may be done, if only the able ones can: all that wait for
+    nothing that is left out. It has every set of able tasks in it that may be done.
+
+    begun: tasks that were begun already, which no order holds back any more.
+    """
+    kept = set(tasks(branch)) & able
+    order = [row for row in rows(branch) if row.kind in (AFTER_END, AFTER_START)]
+    while True:
+        held = {row.i for row in order if row.i in kept - begun and waits_for(row, kept)}
+        if not held:
+            return frozenset(kept)
+        kept -= held
+
+
+def kept_rows(branch: Term, kept: Set[int]) -> tuple[Row, ...]:
+    """The constraint rows of a term without `+` on the times of the kept tasks.
+
+    A row speaks of those tasks of its group that are kept; one that has none is void.
+    """
+    found = []
+    for row in rows(branch):
+        group = tuple(task for task in row.group if task in kept)
+        refers = row.kind in (AFTER_END, AFTER_START, WITHIN_END, WITHIN_START)
+        if row.i in kept and (group or not refers):
+            found.append(row._replace(group=group))
+    return tuple(found)
+
+
+def only(branch: Term, kept: Set[int]) -> Term | None:
+    """The term without `+` with the kept tasks alone; None if there are none.
+
+    For tasks that `may_be_done` it has the rows `kept_rows`.
+    """
+    if isinstance(branch, Atom):
+        return branch if branch.task in kept else None
+    parts = tuple(part for part in (only(a, kept) for a in branch.operands) if part is not None)
+    if not parts:
+        return None
+    if only(branch.operands[0], kept) is None and not bounds_all(branch) and branch.suffix:
+        # what was begun before may stand alone: its relative timing refers to nothing any more
+        return Op(PARALLEL, parts, None, branch.span)
+    return replace(branch, operands=parts)
+
+
+def after_choices(term: Term, begun: Set[int]) -> Term:
+    """The term with those operands of each `+` alone that have all tasks of it that were begun.
+
+    Where no operand has all of them the `+` stays as it is.
+    """
+    if isinstance(term, Atom):
+        return term
+    operands = term.operands
+    if term.op == ALTERNATIVE:
+        mine = begun & set(tasks(term))
+        fitting = tuple(part for part in operands if mine <= set(tasks(part)))
+        operands = fitting or operands
+    return replace(term, operands=tuple(after_choices(part, begun) for part in operands))

@@ -1,0 +1,71 @@
+"""`cratous campaign` on the command line: what is refused, and how."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from campaign_child import written
+
+from cratous.services.cli import main
+
+ROOT = Path(__file__).resolve().parents[2]
+CROSSING = ROOT / "examples" / "crossing" / "mission.yaml"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (["nowhere.yaml"], "no such file"),
+        ([str(CROSSING), "--seeds", "5-1"], "1-50"),
+        ([str(CROSSING), "--seeds", "0-3"], "1-50"),
+        ([str(CROSSING), "--workers", "0"], "workers"),
+        ([str(CROSSING), "--find", "G9"], "G9"),
+        ([str(CROSSING.parent.parent / "relations" / "mission.yaml"), "--seeds", "1-2"], "no variants"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_named_and_nothing_is_written(
+    arguments: list[str], named: str, tmp_path: Path, capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    assert main(["campaign", *arguments]) == 2
+    assert named in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_search_without_a_space_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, out = written(tmp_path, {"plain": ""}, ""), tmp_path / "out"
+    code = main(
+        ["campaign", str(file), "--find", "G2", "--allow-unproved", "--json", "-o", str(out)]
+    )
+    assert code == 2
+    assert "nothing to search" in json.loads(capsys.readouterr().out)["error"]
+    assert not out.exists()
+
+
+@pytest.mark.slow
+def test_found_is_a_mission_that_fails_alone(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, out = tmp_path / "c.yaml", tmp_path / "out"
+    file.write_text(
+        "name: bare\ngenerator: {kind: head_on}\nseeds: [1, 1]\noptions: [{name: bare, daa: false}]\n"
+    )
+    proofs = "--allow-unproved"
+    assert (
+        main(["campaign", str(file), "--find", "G2", "--budget", "1", proofs, "-o", str(out)]) == 1
+    )
+    assert "G2 fails in bare-bare-seed1, after 1 runs" in capsys.readouterr().out
+    case = str(out / "found-G2.yaml")
+    assert main(["run", case, "--no-daa", proofs, "--json", "--out", str(tmp_path / "f")]) == 1
+    found = json.loads(capsys.readouterr().out)
+    stored = json.loads((out / "search.json").read_text())
+    (row,) = [row for row in found["requirements"] if row["requirement"] == "G2"]
+    assert row["verdict"] == "violated"
+    assert row["margin"] == stored["points"][0]["margin"], (
+        "nothing was made smaller with this budget"
+    )

@@ -1,0 +1,88 @@
+"""Missions that are made: they are missions, they meet as they say, and they fly alone to the same digest."""
+
+from __future__ import annotations
+
+import json
+from math import atan2, degrees, hypot
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cratous.services.campaign.definition import Campaign
+from cratous.services.campaign.generators import KINDS, mission_of
+from cratous.services.campaign.runs import Run, runs_of
+from cratous.services.cli import main
+from cratous.services.cli.campaign_flight import fly_run
+from cratous.services.loading import load
+
+
+def made(generator: dict[str, Any], seeds: range) -> list[Run]:
+    return list(runs_of(Campaign("made", generator=generator, seeds=seeds), "v", True))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("cooperative", [False, True])
+def test_they_load_and_meet(kind: str, cooperative: bool, tmp_path: Path) -> None:
+    data = {"kind": kind, "intruders": 2, "cooperative": cooperative, "zones_beside": 1}
+    for run in made(data, range(1, 6)):
+        file = tmp_path / f"{run.name}.yaml"
+        file.write_text(run.decides["mission"])
+        mission = load(file)
+        assert (len(mission.vehicles), len(mission.traffic)) == ((3, 0) if cooperative else (1, 2))
+        time_s = run.drawn["time_s"]
+        own = mission.vehicles[0]
+        assert own.position.north_m + own.speed_m_s * time_s == pytest.approx(0, abs=0.1)
+        for k, other in enumerate(mission.traffic, 1):
+            north = other.position.north_m + other.velocity.north_m_s * time_s
+            east = other.position.east_m + other.velocity.east_m_s * time_s
+            if kind == "random":
+                expected = hypot(run.drawn[f"area_m[{2 * k - 1}]"], run.drawn[f"area_m[{2 * k}]"])
+            else:
+                expected = abs(run.drawn[f"miss_m[{k}]"])
+            assert hypot(north, east) == pytest.approx(expected, abs=0.1)
+            course = degrees(atan2(other.velocity.east_m_s, other.velocity.north_m_s))
+            assert (course - run.drawn[f"angle_deg[{k}]"]) % 360 == pytest.approx(0, abs=0.01) or (
+                course - run.drawn[f"angle_deg[{k}]"]
+            ) % 360 == pytest.approx(360, abs=0.01)
+
+
+def test_a_zone_lies_beside_or_across() -> None:
+    for seed in range(1, 20):
+        data, draw = mission_of({"kind": "aimed", "zones_beside": 1, "zones_across": 1}, "z", seed)
+        beside, across = ([east for _, east in zone["vertices"]] for zone in data["zones"])
+        nearest = min(abs(min(beside)), abs(max(beside)))
+        assert nearest == pytest.approx(draw.drawn["zone_gap_m[1]"])
+        assert min(beside) * max(beside) > 0
+        assert min(across) < 0 < max(across)
+
+
+def test_another_range_leaves_the_other_draws() -> None:
+    _, draw = mission_of({"kind": "converging"}, "a", 7)
+    _, other = mission_of({"kind": "converging", "ranges": {"time_s": [50, 60]}}, "a", 7)
+    assert 50 <= other.drawn.pop("time_s") <= 60
+    assert other.drawn.items() <= draw.drawn.items()
+
+
+def test_an_impossible_mission_says_why() -> None:
+    ranges = {"zone_place": [-1, -1], "zone_gap_m": [0, 0], "zone_size_m": [400, 400]}
+    (run,) = made({"kind": "aimed", "zones_across": 1, "ranges": ranges}, range(1, 2))
+    found = fly_run(run.decides)
+    assert found["kind"] == "impossible"
+    assert "inside keep-out zone" in found["why"][0]
+    assert "cratous-" not in found["why"][0], "no path of a machine"
+
+
+def test_one_flies_alone_to_the_same_digest(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (run,) = made({"kind": "head_on"}, range(3, 4))
+    found = fly_run(run.decides)
+    file = tmp_path / "mission.yaml"
+    file.write_text(run.decides["mission"])
+    main(["run", str(file), "--allow-unproved", "--json", "--out", str(tmp_path / "out")])
+    alone = json.loads(capsys.readouterr().out)
+    assert found["log"] == alone["digest"]
+    assert found["mission_hash"] == alone["mission_hash"]
+    assert found["judge"]["disagreements"] == []
+    assert found["takeovers"] == alone["takeovers"] >= 1

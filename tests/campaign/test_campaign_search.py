@@ -1,0 +1,94 @@
+"""The search: it needs fewer runs than sampling, what it finds fails and is small, and it is the same again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import campaign_child
+import pytest
+from campaign_child import written
+
+from cratous.services.campaign.definition import Campaign, load_campaign
+from cratous.services.campaign.outcomes import Row, row_of
+from cratous.services.campaign.runs import Run
+from cratous.services.campaign.search import Search
+from cratous.spec.errors import BadInput
+
+RARE = "seeds: [1, 1]\nvary: [{item: 'vehicles[0].speed_m_s', range: [1, %s]}]\n"
+
+
+class Flights:
+    """Flights that are counted."""
+
+    def __init__(self, result: Any = campaign_child.fly) -> None:
+        self.count, self._result = 0, result
+
+    def __call__(self, runs: Iterable[Run]) -> list[Row]:
+        some = list(runs)
+        self.count += len(some)
+        return [row_of(run, self._result(run.decides), ("G2",)) for run in some]
+
+
+def rare(tmp_path: Path, top: float) -> Campaign:
+    """Speeds above 30 fail."""
+    return load_campaign(written(tmp_path, {"plain": ""}, RARE % top), None, ())
+
+
+def test_it_finds_what_sampling_seldom_does(tmp_path: Path) -> None:
+    campaign = rare(tmp_path, 30.05)  # one draw in 580 fails
+    found = Search(campaign, "G2", "v", False).run(Flights(), 100)
+    assert found.failing is not None
+    assert len(found.points) <= 80
+    again = Search(campaign, "G2", "v", False).run(Flights(), 100)
+    assert (again.points, again.small) == (found.points, found.small)
+
+
+def test_what_fails_is_made_small_and_fails(tmp_path: Path) -> None:
+    generator = {"kind": "converging", "intruders": 3, "zones_beside": 2}
+    campaign = Campaign("made", generator=generator, seeds=range(1, 2))
+
+    def result(task: dict[str, Any]) -> dict[str, Any]:
+        import yaml
+
+        data = yaml.safe_load(task["mission"])
+        guilty = [t for t in data.get("traffic", []) if t["id"] == 102]
+        return campaign_child.flown({"G2": -1.0 if guilty else 1.0})
+
+    fly = Flights(result)
+    found = Search(campaign, "G2", "v", False).run(fly, 200)
+    assert found.small is not None
+    assert [t["id"] for t in found.small["traffic"]] == [102]
+    assert "zones" not in found.small
+    assert found.small["vehicles"][0]["speed_m_s"] in range(18, 29), "a whole number"
+    assert fly.count <= 20 + 100
+
+
+def test_nothing_found_is_no_find(tmp_path: Path) -> None:
+    found = Search(rare(tmp_path, 25), "G2", "v", False).run(Flights(), 30)
+    assert (found.failing, found.small, len(found.points)) == (None, None, 30)
+
+
+def test_disagreement_is_a_find_and_what_was_not_flown_is_none(tmp_path: Path) -> None:
+    def disputed(task: dict[str, Any]) -> dict[str, Any]:
+        result = campaign_child.flown({"G2": 5.0})
+        result["judge"]["disagreements"] = [
+            {"guarantee": "G2", "item": "", "judge": "violated", "monitor": "holds", "note": ""}
+        ]
+        return result
+
+    assert Search(rare(tmp_path, 25), "G2", "v", False).run(Flights(disputed), 20).failing
+    lost = Flights(lambda _task: {"kind": "no plan", "why": ["x"]})
+    found = Search(rare(tmp_path, 25), "G2", "v", False).run(lost, 40)
+    assert found.failing is None
+    assert {p["margin"] for p in found.points} == {None}
+
+
+def test_a_search_is_in_one_space(tmp_path: Path) -> None:
+    options = "options: [{name: a}, {name: b, daa: false}]\n"
+    campaign = load_campaign(written(tmp_path, {"plain": ""}, RARE % 9 + options), None, ())
+    with pytest.raises(BadInput, match="one space"):
+        Search(campaign, "G2", "v", False)
+    with pytest.raises(BadInput, match="nothing to search"):
+        Search(load_campaign(written(tmp_path, {"plain": ""}, ""), None, ()), "G2", "v", False)

@@ -1,0 +1,113 @@
+"""Ways made in flight keep the zones, by the kernels of legs; where there is none, a task fails by name."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from flight_tools import meeting, of_type
+
+from cratous.bridge import lmcp
+from cratous.core.authority.gate import UXAS, Gate
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.services.flight import interruption, passing
+from cratous.services.flight.autopilot import Follow
+from cratous.services.flight.chain import Phase
+from cratous.services.flight.commands import decode
+from cratous.services.flight.dynamics import AirState
+from cratous.services.flight.executive import Executive
+from cratous.services.flight.executive_state import Config, State, first_state
+from cratous.services.flight.messages import Begin, Say, SetOut, Suspend, TakeBack, Tick
+from cratous.services.flight.rejoining import Router
+from cratous.services.mission.frames import Projection
+from cratous.services.pipeline.plan import make_plan
+from cratous.spec.authority.link_end import SUSPEND, TAKE_BACK
+from cratous.spec.executive import FAIL_TASK
+from cratous.spec.mission import Position, Zone, ZoneKind
+from cratous.spec.mission.plan import Pose
+
+
+def box(kind: ZoneKind, south: float, north: float, half: float, zid: int = 4) -> Zone:
+    corners = ((south, -half), (south, half), (north, half), (north, -half))
+    return Zone(zid, kind, corners, 0.0, 1000.0)
+
+
+CAGE = box(ZoneKind.KEEP_IN, 1000.0, 3000.0, 1000.0)
+HERE = AirState(Position(2000.0, 300.0, 300.0), 0.0, 22.0, 0.0)
+RADIUS_M = 80.0
+
+
+def test_no_way_leads_out_of_a_cage() -> None:
+    router = Router((CAGE,))
+    assert router.way_to(HERE, RADIUS_M, Pose(6000.0, 0.0, 300.0, 0.0)) == ()
+    inside = router.way_to(HERE, RADIUS_M, Pose(2700.0, -200.0, 300.0, 0.0))
+    assert inside
+    assert first_bad_leg(inside, (CAGE,)) is None
+
+
+def test_a_zone_that_was_entered_is_left_for_good_and_the_others_are_kept() -> None:
+    entered = box(ZoneKind.KEEP_OUT, 1900.0, 2200.0, 900.0)
+    other = box(ZoneKind.KEEP_OUT, 3000.0, 3400.0, 1500.0, 5)
+    router = Router((entered, other))
+    way = router.way_to(HERE, RADIUS_M, Pose(5000.0, 0.0, 300.0, 0.0))
+    assert first_bad_leg(way, (other,)) is None
+    inside = [first_bad_leg(leg, (entered,)) is not None for leg in itertools.pairwise(way)]
+    assert inside[0]
+    assert inside == sorted(inside, reverse=True)
+    assert not inside[-1]
+    # its own zone holds the place: no way comes out of it
+    assert router.way_to(HERE, RADIUS_M, Pose(2100.0, 0.0, 300.0, 0.0)) == ()
+
+
+def handed_back(zones: tuple[Zone, ...], phase: Phase = Phase.TRANSIT) -> tuple[State, list[Any]]:
+    """What the executive says when a vehicle is offered back at HERE, with these zones."""
+    mission = replace(meeting(), traffic=())
+    actor = Executive(Config(mission, Projection(mission.frame), (1,)))
+    state = first_state(mission, make_plan(mission))
+    start = AirState(Position(0.0, 0.0, 300.0), 0.0, 22.0, 0.0)
+    gates = ((1, Gate(UXAS, 0, False)),)
+    state, _ = actor.handle(state, Begin(0, ((1, start),)))
+    state, _ = actor.handle(state, SetOut())
+    state, _ = actor.handle(state, Tick(250, ((1, HERE),), gates))
+    state, _ = actor.handle(state, Suspend(1, 500, SUSPEND))
+    state = replace(state.put(replace(state.chain(1), phase=phase)), zones=zones)
+    state, out = actor.handle(state, TakeBack(1, 500, TAKE_BACK, 2))
+    return state, [said.body for said in out if isinstance(said, Say)]
+
+
+def commanded(said: list[Any]) -> tuple[Position, ...]:
+    (command,) = of_type(said, "GatedCommand", Epoch=2)
+    flown = decode(Projection(meeting().frame), command.Command, 0.0)
+    assert isinstance(flown, Follow)
+    return flown.track.points
+
+
+@pytest.mark.parametrize("phase", [Phase.TRANSIT, Phase.TASK])
+def test_where_no_way_back_keeps_the_zones_the_task_fails_and_nothing_else_is_flown(
+    phase: Phase,
+) -> None:
+    state, said = handed_back((CAGE,), phase)
+    (failed,) = of_type(said, "TaskProgress")
+    assert (failed.Phase, failed.Note) == (lmcp.enums["TaskPhase"].Failed, passing.NO_WAY)
+    assert dict(state.failed) == {1: passing.NO_WAY}
+    assert not state.chain(1).suspended
+    assert first_bad_leg((HERE.position, *commanded(said)), (CAGE,)) is None
+
+
+def test_a_way_back_that_keeps_the_zones_is_flown() -> None:
+    wall = box(ZoneKind.KEEP_OUT, 2600.0, 2700.0, 600.0)
+    state, said = handed_back((wall,))
+    assert (of_type(said, "TaskProgress"), state.failed) == ([], ())
+    points = commanded(said)
+    assert first_bad_leg(points, (wall,)) is None
+    assert points[-1][:2] == pytest.approx((6000.0, 0.0), abs=20.0)
+
+
+def test_the_kernel_says_what_the_search_for_a_way_leads_to(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(interruption, "way_act", lambda *_: FAIL_TASK)
+    state, _ = handed_back(())
+    assert dict(state.failed) == {1: passing.NO_WAY}

@@ -1,0 +1,142 @@
+"""The part of a mission that leaves out least: against trying everything, and through the services."""
+
+from __future__ import annotations
+
+from itertools import chain, combinations
+from random import Random
+
+import pytest
+from planning_tools import FOUR, TWO, mission
+
+from cratous.bridge import lmcp
+from cratous.services.bus import Bus
+from cratous.services.monitor.plan_check import PART, WHOLE, check_plan
+from cratous.services.pipeline.plan import make_plan
+from cratous.services.planning.assign import Limits, search
+from cratous.services.planning.assign_problem import parts
+from cratous.services.planning.partial import Parts, part_problem, restricted
+from cratous.spec.algebra.meaning import tasks
+from cratous.spec.algebra.partial import may_be_done, only
+from cratous.spec.assignment.search import AssignmentProblem, Choice
+from cratous.spec.errors import NoPlan
+from cratous.spec.mission.guarantees import Outcome
+from cratous.spec.mission.plan import PartialPlan, left_out_of
+
+RELATIONS = (
+    "|(p1_[0-30] p2_[0-30] p3_[0-30] p4)",
+    "|(.(p1 p2) .(p3 p4)_[0-25])",
+    "+(.(p1 p2_[0-12]) |(p3 p4_[0-9]))",
+    ".(p1 +(p2_[0-20] .(p3 p4)_[0-40]))",
+    "~(p1_[5-22] p2 |(p3 p4))-[0-30]",
+    ".(|(p1 p2) p3_[0-33] p4)",
+)
+
+
+def random_problem(random: Random, relations: str) -> AssignmentProblem:
+    """Four tasks for two vehicles; every task to every vehicle or to one, or to none."""
+    who = [(1, 2), (1,), (2,), ()]
+    choices = tuple(
+        Choice(t, 1, random.randrange(2, 9), random.choice(who[: 4 if t == 2 else 3]))
+        for t in (1, 2, 3, 4)
+    )
+    travel = tuple(
+        tuple(
+            tuple(random.randrange(1, 15) if v in c.vehicles else None for c in choices)
+            for _ in range(5)
+        )
+        for v in (1, 2)
+    )
+    return AssignmentProblem("random", (1, 2), (0, 0), choices, travel, relations)
+
+
+def least_left_out(problem: AssignmentProblem, ranking: Parts) -> tuple[tuple[int, ...], int]:
+    """By trying every set of tasks of every branch."""
+    found = []
+    for k, branch in enumerate(ranking.branches):
+        names = tasks(branch)
+        sets = chain(*(combinations(names, n) for n in range(1, len(names) + 1)))
+        for kept in map(frozenset, sets):
+            if not (may_be_done(branch, kept) and kept <= ranking.able):
+                continue
+            term = only(branch, kept)
+            assert term is not None
+            asked = restricted(problem, [term])
+            if search(asked, Limits(nodes=20_000), *parts(asked)).cost is not None:
+                found.append(ranking.rank((k, kept)))
+    return min(found)
+
+
+@pytest.mark.parametrize("relations", RELATIONS)
+@pytest.mark.parametrize("seed", range(4))
+def test_the_part_leaves_out_least_of_all(relations: str, seed: int) -> None:
+    random = Random(seed)
+    problem = random_problem(random, relations)
+    priority = {t: random.randrange(0, 3) for t in (1, 2, 3, 4)}
+    all_of = Parts(problem, priority)
+    chosen = all_of.choose()
+    assert chosen.sure
+    if not chosen.parts:
+        with pytest.raises(ValueError, match="empty"):
+            least_left_out(problem, all_of)
+        return
+    assert {all_of.rank(part) for part in chosen.parts} == {least_left_out(problem, all_of)}
+    for part in chosen.parts:
+        assert may_be_done(all_of.branches[part[0]], part[1])
+
+
+def test_with_few_questions_the_higher_priorities_go_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    from cratous.services.planning import partial
+
+    problem = random_problem(Random(2), "|(p1_[0-9] p2_[0-9] p3_[0-9] p4_[0-9])")
+    monkeypatch.setattr(partial, "ASKED_MAX", 0)
+    all_of = Parts(problem, {1: 0, 2: 0, 3: 5, 4: 0})
+    chosen = all_of.choose()
+    assert not chosen.sure
+    alone = Parts(problem, {})
+    assert len(chosen.parts) == 1
+    assert (3 in chosen.parts[0][1]) == bool(alone.ask((0, frozenset({3}))))
+
+
+def test_a_part_that_others_chose_has_a_problem_of_its_own() -> None:
+    problem = random_problem(Random(0), ".(p1 +(p2 .(p3 p4)))")
+    assert part_problem(problem, {1, 3, 4}) is problem
+    assert part_problem(problem, {1, 3}).tasks == (1, 3)
+    assert part_problem(problem, {3}) is problem, "3 must wait for 1: this is no part"
+
+
+def test_the_plan_of_a_part_is_checked_and_its_answer_names_what_is_left_out() -> None:
+    of = mission(relations="|(.(p1_[0-9] p2) p3 p4)")
+    bus, said = Bus(lmcp.full_names), []
+    bus.tap(lambda e: said.append(e.body) if e.topic.endswith(".AutomationResponse") else None)
+    plan = make_plan(of, bus)
+    assert isinstance(plan, PartialPlan)
+    assert plan.sure
+    assert sorted(item.task_id for item in plan.items) == [3, 4]
+    one, two = left_out_of(plan)
+    assert (one.task_id, one.waiting) == (1, (2,))
+    assert two.reason == (
+        "it must wait for what is not done: `.(p1_[0-9] p2)`: p2 starts no earlier than p1 ends"
+    )
+    told = [pair.Value for pair in said[-1].Info]
+    assert [text.split(" (")[0] for text in told] == ["left out: task 1", "left out: task 2"]
+    checks = {check.item: check for check in check_plan(of, plan)}
+    assert checks[WHOLE].outcome is Outcome.VIOLATED
+    assert checks[WHOLE].note.endswith("left out: 1, 2")
+    assert checks[PART].outcome is Outcome.HOLDS
+    # a plan that does a task whose predecessor it leaves out is no part
+    wrong = mission(FOUR, TWO, relations=".(p1 p2 p3 p4)")
+    found = {check.item: check.outcome for check in check_plan(wrong, plan)}
+    assert PART not in found
+    assert found[WHOLE] is Outcome.VIOLATED
+
+
+def test_undone_tasks_stay_undone_and_begun_ones_make_the_choice() -> None:
+    of = mission(relations="|(.(p1 p2) +(p3 p4))")
+    plan = make_plan(of, undone={1: "its window was missed"})
+    assert sorted(item.task_id for item in plan.items) in ([3], [4])
+    assert [left.task_id for left in left_out_of(plan)] == [1, 2]
+    assert left_out_of(plan)[0].reason == "it ended undone: its window was missed"
+    plan = make_plan(of, undone={4: "why"}, begun=[4])
+    assert {left.task_id for left in left_out_of(plan)} == {4}, "p3 is of another choice"
+    with pytest.raises(NoPlan):
+        make_plan(mission(FOUR[:1], relations="p1_[0-9]"))
