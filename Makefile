@@ -38,13 +38,13 @@ demo: venv
 	@echo "open out/crossing/report.html in a browser"
 
 test: venv
-	$(BIN)/python -m pytest -n auto --dist loadfile -m "not long"
+	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder -m "not long"
 
 test-long: venv
 	$(BIN)/python -m pytest -m long
 
 test-fast: venv
-	$(BIN)/python -m pytest -n auto --dist loadfile -m "not slow and not long"
+	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder -m "not slow and not long"
 
 lint: venv
 	$(BIN)/ruff check .

@@ -3,8 +3,10 @@ closed when a test ends."""
 
 from __future__ import annotations
 
+import fcntl
+import hashlib
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +22,12 @@ ROOT = Path(__file__).resolve().parent.parent
 SHARED = ROOT.parent / "shared"
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Files with slow tests come first, so that no process is left alone with one at the end."""
+    slow = {item.path for item in items if item.get_closest_marker("slow")}
+    items.sort(key=lambda item: item.path not in slow)
+
+
 @pytest.fixture(scope="session")
 def shared() -> Path:
     """The folder of reference vectors and examples; skips where it is absent."""
@@ -32,6 +40,33 @@ def shared() -> Path:
 def root() -> Path:
     """The repository."""
     return ROOT
+
+
+@pytest.fixture(scope="session")
+def fly_once(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Path], Path]:
+    """Results of `cratous run MISSION --allow-unproved --quiet`, flown once for all processes of a run.
+
+    Whoever changes anything in the folder copies it first.
+    """
+    shared_by_all = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        shared_by_all = shared_by_all.parent
+
+    def results(mission: Path) -> Path:
+        from cratous.services.cli import main
+
+        home = shared_by_all / "flown" / hashlib.sha256(str(mission).encode()).hexdigest()[:16]
+        home.mkdir(parents=True, exist_ok=True)
+        with (home / "lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not (home / "done").exists():
+                words = ["run", str(mission), "--allow-unproved", "--quiet"]
+                main([*words, "--out", str(home / "out")])
+                (home / "done").touch()
+        (folder,) = (home / "out").iterdir()
+        return folder
+
+    return results
 
 
 @pytest.fixture

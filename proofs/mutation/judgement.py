@@ -249,16 +249,15 @@ def _other_starts(start: Any) -> Iterator[tuple[str, Any]]:
         yield from ((str(start + step), start + step) for step in (1, -1))
 
 
-def faults(original: Any) -> list[Mutant]:
+def faults(original: Any) -> Iterator[Mutant]:
     """Every mutant of a function, or every other start of a fold, in a fixed order."""
     if not isinstance(original, Fold):
-        return mutants(original)
-    found = []
+        yield from mutants(original)
+        return
     for text, start in _other_starts(original.start):
         other: Any = dataclasses.replace(original, start=start)
         diff = f"- start={original.start} + start={text}"
-        found.append(Mutant("start", 0, diff, other, text))
-    return found
+        yield Mutant("start", 0, diff, other, text)
 
 
 def judge_target(

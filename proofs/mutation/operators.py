@@ -59,8 +59,8 @@ class Mutant:
     text: str
 
 
-def mutants(function: Callable[..., Any]) -> list[Mutant]:
-    """Every mutant of a function, in the order of its source."""
+def mutants(function: Callable[..., Any]) -> Iterator[Mutant]:
+    """Every mutant of a function, in the order of its source; each is made when it is asked for."""
     source, first = inspect.getsourcelines(function)
     tree = ast.parse(textwrap.dedent("".join(source)))
     node = tree.body[0]
@@ -70,7 +70,6 @@ def mutants(function: Callable[..., Any]) -> list[Mutant]:
     original = ast.unparse(node)
     types = _Types(function, node)
     seen = {original}
-    made = []
     places = [n for statement in node.body for n in ast.walk(statement)]
     for number, place in enumerate(places):
         for name, change in _variants(place, types, node):
@@ -80,8 +79,7 @@ def mutants(function: Callable[..., Any]) -> list[Mutant]:
             seen.add(text)
             line = first + getattr(place, "lineno", 1) - 1
             diff, faulty = _diff(original, text), _function(function, changed)
-            made.append(Mutant(name, line, diff, faulty, text))
-    return made
+            yield Mutant(name, line, diff, faulty, text)
 
 
 def _bare(node: ast.FunctionDef) -> None:

@@ -165,7 +165,7 @@ def summary(counts: dict[str, int]) -> str:
 
 @functools.cache
 def _has_faults(function: Any) -> bool:
-    return bool(faults(function))
+    return any(True for _ in faults(function))
 
 
 # -- the document ---------------------------------------------------------------------------------

@@ -115,7 +115,7 @@ def plot(
     from cratous.services.daa.plot import draw
 
     target = out or Path(file.stem + ".svg")
-    draw(list(_steps(file, config, ownship, (0, 1, 2, 3), urgency, urgent)), target)
+    draw(_steps(file, config, ownship, (0, 1, 2, 3), urgency, urgent), target)
     say(f"{target} written")
     return 0
 

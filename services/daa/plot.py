@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from cratous.core.files.whole_file import replacing
@@ -20,8 +20,11 @@ AXES = {
 LEVELS = ("#d9ead3", "#fff2cc", "#f6b26b", "#cc0000", "#7f0000")
 
 
-def draw(steps: Sequence[Step], file: Path) -> None:
-    """Draw all steps into an SVG or PNG file; raises BadInput for another kind of file."""
+def draw(instants: Iterable[Step], file: Path) -> None:
+    """Draw all steps into an SVG or PNG file; raises BadInput for another kind of file.
+
+    Steps are computed only when it is known that they can be drawn.
+    """
     if file.suffix not in (".svg", ".png"):
         raise BadInput(
             "a picture of an unknown kind",
@@ -29,13 +32,15 @@ def draw(steps: Sequence[Step], file: Path) -> None:
             expected=".svg or .png",
             got=file.suffix,
         )
-    if not steps:
-        raise BadInput("there is nothing to draw", where=str(file), expected="at least one step")
     with told():
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.collections import PolyCollection
         from matplotlib.figure import Figure
         from matplotlib.patches import Patch
+
+    steps = list(instants)
+    if not steps:
+        raise BadInput("there is nothing to draw", where=str(file), expected="at least one step")
 
     times = [s.instant.time_s for s in steps]
     width = times[1] - times[0] if len(times) > 1 else 1.0

@@ -15,6 +15,8 @@ EXTRAS = {
     "lz4": ("lz4", "wires"),
     "zstandard": ("zstandard", "wires"),
     "cvc5": ("cvc5", "prove"),
+    "dask": ("dask", "campaign"),
+    "distributed": ("distributed", "campaign"),
 }
 """By the name that is imported: the library, and the extra of `pyproject.toml`."""
 

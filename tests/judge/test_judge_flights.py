@@ -25,16 +25,9 @@ def fly(mission: Path, out: Path, *options: str) -> Path:
 
 
 @pytest.fixture(scope="session")
-def flown(tmp_path_factory: pytest.TempPathFactory) -> Flown:
+def flown(fly_once: Callable[[Path], Path]) -> Flown:
     """Folders of flown examples, each flown when it is asked for first."""
-    known: dict[str, Path] = {}
-
-    def get(name: str) -> Path:
-        if name not in known:
-            known[name] = fly(EXAMPLES[name], tmp_path_factory.mktemp(name))
-        return known[name]
-
-    return get
+    return lambda name: fly_once(EXAMPLES[name])
 
 
 MARKS = {"popup": pytest.mark.slow, "relations": pytest.mark.slow, "search": pytest.mark.long}

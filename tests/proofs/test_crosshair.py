@@ -6,6 +6,8 @@ import importlib.util
 import inspect
 import math
 import random
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -66,3 +68,29 @@ def test_contract_holds_on_random_values(contract: Callable[..., Any]) -> None:
             if looked_at >= 300:
                 break
     assert looked_at >= 20, "hardly any value satisfies what may be assumed"
+
+
+FALSE = """
+import math
+from cratous.services.mission.frames import compass
+
+
+def a_compass_heading_is_below_180(heading_rad: float) -> None:
+    assert math.isfinite(heading_rad)
+    degrees = compass(heading_rad)
+    assert degrees < 180
+"""
+
+
+def test_a_false_contract_fails_the_gate(root: Path, tmp_path: Path) -> None:
+    """With the very options of `make crosshair`, and in the time that `.ci/run` gives it."""
+    line = next(
+        one for one in (root / "Makefile").read_text().splitlines() if "-m crosshair" in one
+    )
+    (tmp_path / "wrong.py").write_text(FALSE)
+    options = line.split("-m crosshair ")[1].replace("$(EACH_S)", "2").split()[:-1]
+    command = [sys.executable, "-m", "crosshair", *options, str(tmp_path / "wrong.py")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 1, done.stderr
+    assert "a_compass_heading_is_below_180" in done.stdout
+    assert "crosshair EACH_S=2" in (root / ".ci" / "run").read_text()

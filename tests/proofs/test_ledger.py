@@ -12,6 +12,7 @@ import pytest
 from ledger_tools import RESEAL, check, copied, prove
 
 from cratous.core import ledger
+from cratous.core.ledger import parts, records
 
 
 @pytest.fixture(scope="module")
@@ -317,3 +318,31 @@ def test_the_gate_is_quick(product: Path) -> None:
     done = check(product, code)
     assert done.returncode == 0, done.stdout + done.stderr
     assert float(done.stdout.split("took ")[1].split()[0]) < 3
+
+
+@pytest.mark.parametrize(("name", "refused"), [("z3-solver", ""), ("numba", "the compiler flags")])
+def test_another_solver_is_no_reason_to_refuse_another_compiler_is(
+    name: str, refused: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real = parts.version
+    monkeypatch.setattr(parts, "version", lambda n: "9.9" if n == name else real(n))
+    problems = [p.what for p in ledger.check().problems]
+    assert bool(problems) == bool(refused)
+    assert all(f"changed since the proof: {refused}" in what for what in problems)
+
+
+def test_records_that_differ_by_the_solver_alone_are_the_same_proofs() -> None:
+    data = ledger.read()
+    for kind in records.KINDS:
+        for name, record in data[kind].items():
+            if kind == "kernels":
+                record["key"]["solver"] = "z3 9.9"
+            data[kind][name] = records.sealed(name, record)
+    said = records.texts(data)
+    folder = ledger.PRODUCT.records
+    kernels = [place for place in said if place.startswith("kernels/")]
+    assert records.differing(said, folder) == kernels
+    assert records.differing(said, folder, provenance=False) == []
+    assert records.solvers(data) == ["z3 9.9"]
+    said[kernels[0]] = said[kernels[0]].replace('"status": "proved"', '"status": "assumed"', 1)
+    assert records.differing(said, folder, provenance=False) == kernels[:1]

@@ -14,7 +14,6 @@ from cratous.proofs.mutation.results import PremiseResult, Result
 
 gate.load_all()
 KEYS = Keys()
-FAULTLESS = mutation_record.fresh(mutation_record.EMPTY, KEYS)
 
 
 def result(verdict, kind="kernel"):
@@ -62,7 +61,8 @@ def test_the_record_tells_what_holds_for_the_code_as_it_is():
     report = MutationReport((survivor,), (premise,), (theorem, bare))
     data = mutation_record.merged(mutation_record.EMPTY, report, KEYS)
     assert data["premises"][bare]["rows"] == []
-    assert mutation_record.fresh(data, KEYS) - FAULTLESS == {name, theorem, bare}
+    faultless = mutation_record.fresh(mutation_record.EMPTY, KEYS)
+    assert mutation_record.fresh(data, KEYS) - faultless == {name, theorem, bare}
     assert mutation_record.survivors(data, {name}) == [(name, "kernel", "- a + -a")]
     assert mutation_record.survivors(data, {theorem}) == []
     open_ = mutation_record.stale_premises(data, KEYS)
@@ -70,8 +70,8 @@ def test_the_record_tells_what_holds_for_the_code_as_it_is():
     assert not {theorem, bare} & set(open_)
     data["premises"][theorem]["key"] = "of other code"
     assert theorem in mutation_record.stale_premises(data, KEYS)
-    assert mutation_record.fresh(data, KEYS) - FAULTLESS == {name, bare}
-    assert "cratous.core.geofence.distance.distance_result" in FAULTLESS, (
+    assert mutation_record.fresh(data, KEYS) - faultless == {name, bare}
+    assert "cratous.core.geofence.distance.distance_result" in faultless, (
         "it hands on what it is given"
     )
     text = mutation_record.document(data, KEYS)
