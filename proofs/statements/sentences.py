@@ -6,6 +6,7 @@ stay closed, so it names them as the statement uses them; the author's words are
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -63,7 +64,14 @@ class Stated(NamedTuple):
 
 
 def sentence(stated: Stated) -> str:
-    """The statement in one line."""
+    """The statement in one line; `UNREAD` for one that is nested too deeply, or no term of the subset."""
+    try:
+        return _sentence(stated)
+    except (RecursionError, ctypes.ArgumentError, z3.Z3Exception):
+        return UNREAD  # ctypes, which z3 is called through, gives too deep a call another type
+
+
+def _sentence(stated: Stated) -> str:
     text = _Text(stated.calls)
     parts = [f"for any {_values(stated.kinds)}"]
     said: list[z3.BoolRef] = []

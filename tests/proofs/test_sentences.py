@@ -69,3 +69,12 @@ def test_what_is_cut_says_so() -> None:
     assert len(said) < sentences.CLAUSE_MAX + 100
     every = sentences._listed([f"x > {k}" for k in range(50)], " and ")
     assert every.endswith(f"and {50 - sentences.CLAUSES_MAX} more")
+
+
+def test_what_cannot_be_read_says_so() -> None:
+    x = z3.Int("x")
+    deep = x > 0
+    for k in range(20_000):
+        deep = z3.Or(z3.Not(deep), x > k)
+    assert _one(deep) == sentences.UNREAD
+    assert _one(z3.ForAll([x], x > 0)) == sentences.UNREAD
