@@ -36,7 +36,7 @@ from cratous.spec.algebra.partial import waits_for
 from cratous.spec.constraint_rows import Row
 from cratous.spec.executive import GO_ON, LAP, LAST_LAP, PLAN_ANEW, STANDS_BY, START
 from cratous.spec.mission import Mission, Position, Zone
-from cratous.spec.mission.plan import Plan, PlanItem
+from cratous.spec.mission.plan import Plan, PlanItem, left_out_of
 
 AHEAD_S = 30
 """Waypoints are told at least this much farther than the look-ahead [s]."""
@@ -305,8 +305,9 @@ class Executive:
             return False
         self.plan = made
         self.replans += 1
+        gone = {one.task_id for one in left_out_of(made)}
         for chain in self.chains.values():
-            if chain.item is not None and chain.item.task_id in made.chosen:
+            if chain.item is not None and chain.item.task_id not in gone:
                 note = f"planned anew, because of {why}"
                 out.append(self._progress(chain, now_ms, "Planned", 0.0, note))
         out.extend(self.begin(states, now_ms))
