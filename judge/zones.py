@@ -128,7 +128,8 @@ def _row(vehicle: int, zone: Zone, track: Track) -> Row:
     item = f"zone: {kind} {zone.id}, flight of vehicle {vehicle}"
     # what becomes known between two states is known at the second
     first = track.from_index(zone.from_ms)
-    if first == len(track.states):
+    # nobody flies after the last state: what becomes known with it binds no way
+    if first == len(track.states) - (zone.from_ms > 0):
         if track.states and not track.doubt:
             return Row("G1", subject, item, HOLDS, "the zone did not become known in flight")
         return Row("G1", subject, item, UNKNOWN, track.doubt or "no position was logged")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -20,16 +21,25 @@ from cratous.spec.mission.guarantees import exit_code
     default=None,
     help="Write what proves the assignment, for `cratous certify-plan`.",
 )
+@click.option("--why", "task", type=click.IntRange(1), help="Why this vehicle does task N.")
 @click.option("--allow-unproved", is_flag=True, help="Plan with kernels that have no proof.")
 def plan(
-    mission: Path, seed: int, as_json: bool, certificate: Path | None, allow_unproved: bool
+    mission: Path,
+    seed: int,
+    as_json: bool,
+    certificate: Path | None,
+    task: int | None,
+    allow_unproved: bool,
 ) -> int:
     """Plan a MISSION and check the plan with the proved kernels; nothing flies.
 
     Example:  cratous plan examples/relations/mission.yaml
 
-    Exit codes: 0 the plan satisfies all its constraints, 1 it does not or no plan exists, 2 bad
-    input, 3 something is unknown.
+    Where not all tasks can be done, the plan is of those that can, by priority, and the others are
+    named with the reasons.
+
+    Exit codes: 0 the plan satisfies all its constraints, 1 it does not, leaves tasks out or does
+    not exist, 2 bad input, 3 something is unknown.
     """
     from cratous.services.loading import load
 
@@ -58,6 +68,7 @@ def plan(
         bus.tap(planning_told(wait.at, len(loaded.tasks)))
         with counted() as calls:
             made, checks = plan_and_check(loaded, bus)
+            instead = None if task is None else reasons_of(loaded, made, task)
         wait.at("gathering the evidence")
         evidence = inventory(standing, calls.data())
     if certificate is not None:
@@ -75,6 +86,8 @@ def plan(
             "evidence": evidence,
             "exit_code": code,
         }
+        if instead is not None:
+            data["why"] = {"task": task, "vehicles": [one._asdict() for one in instead]}
         click.echo(json.dumps(data, indent=1))
         return code
     table(
@@ -108,6 +121,35 @@ def plan(
         say(f"note: {note}")
     for line in (plan_line(made, checks), *left_out_lines(made), *absent_lines(loaded)):
         click.echo(line)
+    if task is not None and instead:
+        for one in why_lines(made, task, instead):
+            click.echo(one)
     click.echo(f"proofs: {standing.line}")
     click.echo(f"evidence: {summary(evidence)}")
     return code
+
+
+def reasons_of(mission: Any, made: Any, task: int) -> tuple[Any, ...]:
+    """For each vehicle what the plan would cost with it."""
+    from cratous.services.mission.taking_part import absent
+    from cratous.services.mission.wind import known_at
+    from cratous.services.planning.why import why
+
+    return why(known_at(mission, 0), made, task, absent(mission, 0))
+
+
+def why_lines(made: Any, task: int, instead: tuple[Any, ...]) -> list[str]:
+    """In words: what the plan costs, and with the task for each other vehicle."""
+    from cratous.services.pipeline.plan import cost_of
+
+    who, cost = next(i.vehicle_id for i in made.items if i.task_id == task), cost_of(made)
+    lines = [f"task {task} is given to vehicle {who}: the plan costs {cost / 1000:.1f} s"]
+    for one in instead:
+        if one.vehicle == who:
+            continue
+        told = one.reason
+        if one.cost_ms is not None:
+            doubt = "" if one.sure else ", or less"
+            told = f"the best plan would cost {one.cost_ms / 1000:.1f} s{doubt}"
+        lines.append(f"  with vehicle {one.vehicle}: {told}")
+    return lines

@@ -19,7 +19,7 @@ from cratous.spec.executive import FOR_CHANGE
 from cratous.spec.mission import Change
 from cratous.spec.mission.asked import asked
 from cratous.spec.mission.changes import split, words
-from cratous.spec.mission.plan import Plan
+from cratous.spec.mission.plan import Plan, left_out_of
 
 NAME = "uxas"
 """The sender of what is said of mission and plan."""
@@ -96,10 +96,11 @@ def planned(config: Config, state: State, plan: Plan, asked_for: Asked, out: Out
     state = replace(state, plan=plan, replans=state.replans + 1)
     accept(state, out)
     note = f"planned anew, because of {asked_for.what or asked_for.why}"
+    gone = {one.task_id for one in left_out_of(plan)}
     out.extend(
         progress(chain, state.now_ms, "Planned", note)
         for chain in state.chains
-        if chain.item is not None and chain.item.task_id in plan.chosen
+        if chain.item is not None and chain.item.task_id not in gone
     )
     return begin(config, state, out)
 

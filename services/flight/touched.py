@@ -40,15 +40,13 @@ def handed_over(before: Mapping[int, list[int]], plan: Plan) -> str:
     to: dict[int, list[int]] = {}
     out: list[int] = []
     for vehicle, tasks in sorted(before.items()):
-        for task in tasks:
-            if task not in who and task not in gone:
+        for task in (t for t in tasks if t not in gone):
+            if task not in who:
                 out.append(task)
-            elif task in gone:
-                continue
             elif who[task] != vehicle:
                 to.setdefault(who[task], []).append(task)
     parts = [f"{tasks_text(tasks)} to vehicle {vehicle}" for vehicle, tasks in sorted(to.items())]
-    parts += [f"{tasks_text(out)} no longer asked for"] if out else []
+    parts += [f"{tasks_text(out)} left out"] if out else []
     return "; ".join(filter(None, (*parts, left_out_text(plan))))
 
 

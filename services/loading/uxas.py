@@ -17,6 +17,7 @@ from cratous.services.loading.checks import too_many_instances
 from cratous.services.loading.document import item_key
 from cratous.services.loading.places import Places
 from cratous.services.loading.polygons import one_region
+from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.uxas_cfg import Configuration, Sent, read_all, scenario_states
 from cratous.services.loading.uxas_tasks import Interests
 from cratous.services.loading.uxas_tasks import task as read_task
@@ -88,7 +89,9 @@ def mission_of(cfg: Configuration, source: str) -> Mission:
                 return sources[name]
         return str(cfg.path)
 
-    return finish(mission, where)
+    mission = finish(mission, where)
+    notes = [f"{problem.what}" for problem in close_starts(mission, where)]
+    return replace(mission, notes=(*mission.notes, *notes))
 
 
 def surroundings_of(cfg: Configuration, source: str) -> Mission:

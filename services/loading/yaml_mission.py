@@ -24,6 +24,7 @@ from cratous.services.loading.places import Places
 from cratous.services.loading.polygons import padded
 from cratous.services.loading.problems import refuse
 from cratous.services.loading.schema import schema_problems
+from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.yaml_task import yaml_task
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import (
@@ -62,7 +63,9 @@ def load(path: Path, seed: int = 0) -> Mission:
         from cratous.services.loading.variation import vary
 
         mission = vary(mission, document, seed)
-    return finish(mission, where)
+    mission = finish(mission, where)
+    refuse(list(close_starts(mission, where)))
+    return mission
 
 
 def finish(mission: Mission, where: Any) -> Mission:
@@ -226,7 +229,8 @@ def _traffic(data: dict[str, Any], places: Places) -> Traffic:
 def _daa(data: dict[str, Any]) -> Daa:
     volume = {name: float(value) for name, value in data.get("well_clear", {}).items()}
     rest = {name: float(data[name]) for name in ("lookahead_s", "buffer") if name in data}
-    return Daa(well_clear=replace(DEFAULT_WELL_CLEAR, **volume), **rest)
+    close = bool(data.get("close_starts", False))
+    return Daa(replace(DEFAULT_WELL_CLEAR, **volume), **rest, close_starts=close)
 
 
 def _simulation(data: dict[str, Any]) -> Simulation:

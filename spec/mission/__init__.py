@@ -224,11 +224,15 @@ class WellClear:
 
 @dataclass(frozen=True)
 class Daa:
-    """How ICAROUS detects and avoids: the volume it keeps and how far it looks ahead."""
+    """How ICAROUS detects and avoids: the volume it keeps and how far it looks ahead.
+
+    close_starts: vehicles may start inside each other's volume.
+    """
 
     well_clear: WellClear
     lookahead_s: float = 60.0
     buffer: float = 1.25
+    close_starts: bool = False
 
 
 @dataclass(frozen=True)

@@ -66,7 +66,7 @@ def test_each_change_is_planned_for_and_its_reason_is_told(popup: Any) -> None:
     assert [body.Time for body in told] == [15_000, 60_000, 100_000]
     assert told[0].Consequence == "planned anew: the way of vehicle 1 breaks keep-out zone 9 (fire)"
     assert told[1].Consequence == (
-        "planned anew: vehicle 2 leaves tasks 4, 2; task 2 to vehicle 1; task 4 no longer asked for"
+        "planned anew: vehicle 2 leaves tasks 4, 2; task 2 to vehicle 1; task 4 left out"
     )
     assert result.outcome == "complete"
     assert result.replans == 3

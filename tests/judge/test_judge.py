@@ -105,6 +105,18 @@ def test_a_gap_is_no_violation_either(tmp_path: Path) -> None:
     assert rows["task 1 served"] == "unknown"
 
 
+def test_a_zone_that_is_known_with_the_last_state_binds_no_way(tmp_path: Path) -> None:
+    def found(at_ms: int) -> str:
+        late = zone(7, "keep_out", (-900, -900), (-900, 900), (900, 900), (900, -900))
+        change = {"at_ms": at_ms, "vehicle": 0, "task": 0, "zone": late, "kind": "zone"}
+        scene = Scene(tasks=[], changes=[change]).straight(1, (0, 0, 300), NORTH)
+        last = max(m.body["Time"] for m in scene.messages if m.kind == "TruthState")
+        change["at_ms"] += last
+        return one(tmp_path, scene, "zone: keep_out 7, flight of vehicle 1")
+
+    assert (found(0), found(-3000)) == ("holds", "violated")
+
+
 def test_what_is_missing_may_be_among_what_was_lost(tmp_path: Path) -> None:
     there = zone(7, "keep_out", (90, -5), (90, 5), (110, 5), (110, -5))
     scene = Scene(zones=[there], tasks=[task(1, "must_fly", (100, 0))], instances=[1])

@@ -102,9 +102,9 @@ CASES = {
         (1, 2), (3,), ("no vehicle that takes part may do task 3",),
         ("  - {at_s: 120, vehicle_lost: 1}", "  - {at_s: 150, task_added: 3}"), ("[1]", "[2]", "[1]"),
     ),
-    "a task is withdrawn": Case((1, 2), (), ("task 3 no longer asked for",), ("  - {at_s: 5, task_removed: 3}",)),
+    "a task is withdrawn": Case((1, 2), (), ("task 3 left out",), ("  - {at_s: 5, task_removed: 3}",)),
     "all tasks are withdrawn": Case(
-        (), (), ("no longer asked for",), tuple(f"  - {{at_s: 5, task_removed: {k}}}" for k in (1, 2, 3))
+        (), (), ("left out",), tuple(f"  - {{at_s: 5, task_removed: {k}}}" for k in (1, 2, 3))
     ),
     "a zone on a task": Case((1, 2), (3,), ("keep-out zone 7",), (ring(10, 1800),), OWN),
     "a zone on the way": Case((1, 2, 3), (), ("planned anew",), (ring(10, 1400),), OWN),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import chain, combinations
 from random import Random
 
@@ -10,15 +11,17 @@ from planning_tools import FOUR, TWO, mission
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus
+from cratous.services.cli.plan import why_lines
 from cratous.services.monitor.plan_check import PART, WHOLE, check_plan
 from cratous.services.pipeline.plan import make_plan
 from cratous.services.planning.assign import Limits, search
 from cratous.services.planning.assign_problem import parts
 from cratous.services.planning.partial import Parts, part_problem, restricted
+from cratous.services.planning.why import why
 from cratous.spec.algebra.meaning import tasks
 from cratous.spec.algebra.partial import may_be_done, only
 from cratous.spec.assignment.search import AssignmentProblem, Choice
-from cratous.spec.errors import NoPlan
+from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission.guarantees import Outcome
 from cratous.spec.mission.plan import PartialPlan, left_out_of
 
@@ -140,3 +143,26 @@ def test_undone_tasks_stay_undone_and_begun_ones_make_the_choice() -> None:
     assert {left.task_id for left in left_out_of(plan)} == {4}, "p3 is of another choice"
     with pytest.raises(NoPlan):
         make_plan(mission(FOUR[:1], relations="p1_[0-9]"))
+
+
+def test_why_this_vehicle_is_told_for_each_other_one() -> None:
+    plan_of = mission((FOUR[0], replace(FOUR[1], eligible=(2,))), relations="|(p1 p2_[0-900000])")
+    plan = make_plan(plan_of)
+    who = {item.task_id: item.vehicle_id for item in plan.items}
+    assert who == {1: 1, 2: 2}
+    own, other = why(plan_of, plan, 1, {})
+    assert (own.vehicle, own.cost_ms, own.reason) == (1, plan.makespan_ms, "")
+    # with the other vehicle the whole plan costs what a plan with that vehicle alone does
+    alone = make_plan(replace(plan_of, tasks=(replace(FOUR[0], eligible=(2,)), plan_of.tasks[1])))
+    assert (other.vehicle, other.cost_ms, other.reason) == (2, alone.makespan_ms, "")
+    assert why_lines(plan, 1, (own, other)) == [
+        f"task 1 is given to vehicle 1: the plan costs {plan.makespan_ms / 1000:.1f} s",
+        f"  with vehicle 2: the best plan would cost {alone.makespan_ms / 1000:.1f} s"
+        + ("" if other.sure else ", or less"),
+    ]
+    refused = why(plan_of, plan, 2, {3: "it was lost at 0.00 s"})
+    assert [one.reason for one in refused] == [
+        "the task does not name it eligible", "", "it was lost at 0.00 s"
+    ]  # fmt: skip
+    with pytest.raises(BadInput, match="no such task in the plan"):
+        why(plan_of, plan, 9, {})

@@ -1,0 +1,73 @@
+"""Why a task is given to this vehicle and not to that one: what the plan would cost with each other vehicle.
+
+For each vehicle the same problem is solved anew with the task for it alone; of a plan that leaves tasks
+out, the problem of what is planned.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from cratous.services.planning import mission_assign, stages
+from cratous.services.planning.assign import search
+from cratous.services.planning.assign_problem import parts
+from cratous.services.planning.inputs import Inputs
+from cratous.services.planning.partial import part_problem
+from cratous.spec.assignment.search import AssignmentProblem
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Mission
+from cratous.spec.mission.plan import Plan, left_out_of
+
+
+class Instead(NamedTuple):
+    """What it would mean to give a task to a vehicle. cost_ms: of the whole plan, None if there is none;
+    reason: why not, empty if it could be; sure: nothing cheaper, as far as is proved."""
+
+    vehicle: int
+    cost_ms: int | None
+    reason: str
+    sure: bool = True
+
+
+def why(mission: Mission, plan: Plan, task: int, absent: dict[int, str]) -> tuple[Instead, ...]:
+    """For each vehicle of a mission what the plan would cost if it did the task; none if it is left out.
+
+    BadInput if the mission has no such task, or another choice of the relations is planned.
+    """
+    if any(one.task_id == task for one in left_out_of(plan)):
+        return ()
+    planned = {item.task_id for item in plan.items}
+    if task not in planned:
+        raise BadInput(
+            "no such task in the plan",
+            item="--why",
+            expected="one of " + ", ".join(map(str, sorted(planned))),
+            got=str(task),
+        )
+    inputs = Inputs(mission, stages.start_poses(mission), absent=absent)
+    problem = part_problem(inputs.problem(inputs.routes.travel_ms), planned)
+    found = [_with(mission, problem, inputs, task, vehicle.id) for vehicle in mission.vehicles]
+    return (*found, *(Instead(vehicle, None, reason) for vehicle, reason in absent.items()))
+
+
+def _with(
+    mission: Mission, problem: AssignmentProblem, inputs: Inputs, task: int, vehicle: int
+) -> Instead:
+    """The plan with a task for one vehicle alone."""
+    choices = tuple(
+        choice
+        if choice.task_id != task
+        else replace(choice, vehicles=tuple(v for v in choice.vehicles if v == vehicle))
+        for choice in problem.choices
+    )
+    if not any(choice.vehicles for choice in choices if choice.task_id == task):
+        said = [d.reason for d in inputs.dropped if d.task_id == task and vehicle in d.vehicles]
+        return Instead(vehicle, None, "; ".join(dict.fromkeys(said)) or "it is not eligible")
+    asked = replace(problem, choices=choices)
+    solved = search(asked, mission_assign.limits_of(mission), *parts(asked))
+    if solved.cost is None:
+        certain = solved.status == "infeasible"
+        none = "there is no schedule with it" if certain else "no schedule was found with it"
+        return Instead(vehicle, None, none, certain)
+    return Instead(vehicle, solved.cost, "", solved.bound >= solved.cost)
