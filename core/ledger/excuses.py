@@ -58,6 +58,7 @@ EXCUSES: dict[str, tuple[tuple[str, ...], str]] = {
     "proofs.engine.plain_numbers._together": (("__globals__",), READ),
     "proofs.engine.plain_numbers._used": (("__globals__", "vars"), READ),
     "proofs.engine.plain_numbers.hold": (("__globals__",), READ),
+    "proofs.engine.closed._called": (("__globals__",), READ),
     "proofs.engine.subset.lint": (("__globals__",), READ),
     "proofs.engine.subset._head": (("__globals__",), READ),
     "proofs.engine.subset.identity": (("__globals__", "vars"), READ),

@@ -40,7 +40,9 @@ FACTS_RLIMIT = 3_000_000
 PATH_RLIMIT = 1_000_000
 STATE_CPU_S = 300
 """CPU seconds after which a statement is ended: many times what any takes."""
-THEIRS = (ValueError, TypeError, LiftError, AttributeError, NameError, LookupError, OSError)
+THEIRS = (
+    ArithmeticError, AttributeError, LiftError, LookupError, NameError, OSError, TypeError, ValueError,
+)  # fmt: skip
 """Errors that a theorem, a definition or a kernel brings up when it is stated."""
 _KEY = object()
 _NO_CACHE = Cache(None)

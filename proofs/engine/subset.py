@@ -18,7 +18,7 @@ import inspect
 import sys
 import textwrap
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import dataclass
 from typing import Any, get_type_hints
 
@@ -280,10 +280,12 @@ def _stored(name: ast.Name) -> bool:
     return isinstance(name.ctx, ast.Store)
 
 
-def lint_all() -> list[Finding]:
-    """Lint every registered kernel, and every step and finish of a fold."""
+def lint_all(names: Container[str] | None = None) -> list[Finding]:
+    """Lint every registered kernel, and every step and finish of a fold; names: only these."""
     found = []
     for entry in REGISTRY.values():
+        if names is not None and entry.name not in names:
+            continue
         if entry.kind == "kernel":
             found += lint(entry.function)
         if isinstance(entry.function, Fold):

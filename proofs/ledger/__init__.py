@@ -166,8 +166,8 @@ def prove_all(
     theorems = [kept[name] for name in wanted]
     named = {kernel for theorem in theorems for kernel in theorem.kernels}
     bare = [n for n, e in entries.items() if e.kind != "driver" and n not in named]
-    findings = [f for f in lint_all() if f.kernel in entries]
-    return Inventory(tuple(theorems), tuple(findings), tuple(bare), tuple(problems(entries, home)))
+    findings = tuple(lint_all(entries))
+    return Inventory(tuple(theorems), findings, tuple(bare), tuple(problems(entries, home)))
 
 
 def problems(entries: dict[str, Entry], home: Home = PRODUCT) -> list[str]:

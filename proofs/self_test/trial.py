@@ -12,7 +12,7 @@ import os
 import resource
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -90,24 +90,30 @@ def _begin(folder: Path) -> None:
     resource.setrlimit(resource.RLIMIT_CPU, (CPU_S, CPU_S))
 
 
-def _proved(package: str, folder: Path) -> tuple[str, str]:
-    """The verdict on a package that lies in this folder, and the reason; writes its ledger."""
+def _proved(package: str, folder: Path) -> tuple[str, str, bool]:
+    """The verdict on a package that lies in this folder, the reason, whether a ledger could vouch.
+
+    A ledger is written only where it could: one that says of a kernel of the package that it is not
+    proved vouches for none, whatever its keys are.
+    """
     _begin(folder)
     try:
         home = gate.package(package)
-        gate.load_all(home)
+        entries = gate.load_all(home)
         names = list(prover.theorem_files(prover.home_folder(home)))
         if not names:
             raise BadInput("the package has no theorems", where=home.name)
         found = judge(names, home, jobs=1)
-        if found.binds:
+        refuted = {k for t in found.inventory.theorems if not t.proved for k in t.kernels}
+        could = found.binds and refuted.isdisjoint(entries)
+        if could:
             said = ledger.text(found.inventory, home, found.grounds, found.statements)
             records.write(said, home.records)
-        return ("accepted" if found.holds else "refused"), _reason(found)
+        return ("accepted" if found.holds else "refused"), _reason(found), could
     except CratousError as error:
-        return "refused", str(error)
+        return "refused", str(error), True  # it may have written one itself
     except BaseException as error:  # a case may raise whatever it likes
-        return "broken", f"{type(error).__name__}: {error}"
+        return "broken", f"{type(error).__name__}: {error}", True
 
 
 def attempt(case: Case) -> Trial:
@@ -117,20 +123,21 @@ def attempt(case: Case) -> Trial:
         folder = Path(made).resolve()
         case.write(folder, package)
         try:
-            verdict, reason = forked.call(partial(_proved, package, folder))
+            verdict, reason, could = forked.call(partial(_proved, package, folder))
             written = any((folder / package / "ledger").rglob("*.json"))
-            vouched = written and forked.call(partial(_vouches, package, folder))
+            vouched = could and written and forked.call(partial(_vouches, package, folder))
         except Exception as error:  # it ended its process, or the gate met what it does not expect
             return Trial(case, "broken", f"{type(error).__name__}: {error}", False)
         # as the case calls it: the package's long name has words of its own
         return Trial(case, verdict, reason.replace(package, "pkg"), vouched)
 
 
-def attempts(cases: Iterable[Case]) -> Iterator[Trial]:
-    """Try these cases, one after the other."""
+def attempts(cases: Sequence[Case], jobs: int = 1) -> Iterator[Trial]:
+    """Try these cases, so many at once; the trials come as they are done."""
     prepare()
-    for case in cases:
-        yield attempt(case)
+    tried: Sequence[Callable[[], Trial]] = [partial(attempt, case) for case in cases]
+    for _, trial in forked.each(tried, jobs):
+        yield trial
 
 
 @functools.cache

@@ -166,7 +166,7 @@ def prove(
     if self_test:
         if only or changed or check or recheck or new or mutate or package_name:
             raise BadInput("--self-test goes with no other choice", item="cratous prove")
-        sys.exit(0 if tried(as_json, verbose) else 1)
+        sys.exit(0 if tried(as_json, verbose, jobs) else 1)
     if sum((bool(only), changed, check)) > 1:
         raise BadInput("--only, --changed and --check exclude each other", item="cratous prove")
     if package_name:

@@ -11,8 +11,9 @@ import click
 from cratous.services.cli.progress import Bar
 
 
-def self_test(as_json: bool, verbose: bool) -> bool:
+def self_test(as_json: bool, verbose: bool, jobs: int | None) -> bool:
     """Try every case, print by kind what came of it; True iff each is judged as it must be."""
+    from cratous.proofs.ledger import jobs_default
     from cratous.proofs.self_test.case import cases
     from cratous.proofs.self_test.trial import Trial, attempts
 
@@ -20,9 +21,10 @@ def self_test(as_json: bool, verbose: bool) -> bool:
     chosen = list(cases())
     trials: list[Trial] = []
     with Bar("trying", len(chosen), not as_json and sys.stderr.isatty()) as bar:
-        for trial in attempts(chosen):
+        for trial in attempts(chosen, jobs or jobs_default()):
             trials.append(trial)
             bar.step(trial.case.id, 1, 1)
+    trials.sort(key=lambda trial: trial.case.id)
     wrong = [trial for trial in trials if trial.wrong]
     seconds = time.monotonic() - begun
     if as_json:

@@ -1,0 +1,143 @@
+"""What a theorem owes where it does not look into a function, and what its premises leave of arguments."""
+
+from math import sqrt
+
+import pytest
+import z3
+
+from cratous.proofs.claim import Claim
+from cratous.proofs.engine import closed, reached
+from cratous.proofs.engine.cache import Cache
+from cratous.proofs.engine.counterexample import Watched
+from cratous.proofs.engine.merkle import Hasher
+from cratous.proofs.engine.prover import _satisfiable
+
+
+def inverse(x: float) -> float:
+    """Not at 0."""
+    return 1 / x
+
+
+def total(x: float) -> float:
+    """Everywhere."""
+    return 1 / (x * x + 1) + sqrt(x * x - x + 1)
+
+
+def of_both(x: float) -> float:
+    """Total, but for one that is not."""
+    return total(x) + inverse(x)
+
+
+def guarded(x: float) -> float:
+    """Calls the inverse of what is not 0 alone."""
+    if x == 0:
+        return x
+    return inverse(x)
+
+
+def two(x: float, n: int) -> bool:
+    """Whatever."""
+    return x > n * 0 or n > 3
+
+
+@pytest.mark.parametrize(
+    ("function", "count"), [(inverse, None), (total, 2), (of_both, None), (guarded, 1)]
+)
+def test_what_is_owed_everywhere(function, count):
+    found = closed.everywhere(function, machine=True)
+    assert (None if found is None else len(found.owed)) == count
+
+
+def _owed(state) -> list[tuple[str, bool]]:
+    """What a claim owes for the calls of closed functions, and whether it holds."""
+    claim = Claim()
+    state(claim)
+    before = len(claim.obligations)
+    claim.settle()
+    claim.settle()
+    found = []
+    for one in claim.obligations[before:]:
+        solver = z3.Solver()
+        solver.add(*one.given, z3.Not(one.goal))
+        found.append((one.text, solver.check() == z3.unsat))
+    return found
+
+
+def test_a_call_owes_what_the_function_owes_there():
+    def state(c: Claim) -> None:
+        x = c.real("x")
+        c.opaque(inverse, total)
+        c.define(guarded, x)
+        c.define(inverse, x)
+        c.premise(x > 1)
+        c.define(inverse, x - 1)
+        c.define(total, x)
+
+    zero = "inverse, which is closed: no division by zero"
+    everywhere = "total, which is closed: it is defined everywhere"
+    assert sorted(_owed(state)) == sorted(
+        [(zero, True), (zero, False), (zero, True), (everywhere, True)]
+    )
+
+
+def test_where_a_use_does_not_count_it_owes_nothing():
+    def state(c: Claim) -> None:
+        x = c.real("x")
+        c.opaque(inverse)
+        c.use(inverse, x, when=x > 1)
+
+    assert [holds for _, holds in _owed(state)] == [True]
+
+
+def test_what_a_lemma_looks_into_it_has_shown_under_its_premises():
+    def lemma(c: Claim) -> None:
+        x = c.real("x")
+        c.premise(x != 0)
+        c.show(c.use(inverse, x) * x == 1)
+
+    def state(c: Claim, **how: object) -> None:
+        x, y = c.real("x"), c.real("y")
+        c.opaque(inverse)
+        c.load = lambda name: lemma
+        c.use(inverse, x)
+        c.lemma("of it", x=y if how.get("other") else x, when=how.get("when", True))
+
+    assert _owed(state) == []
+    assert [holds for _, holds in _owed(lambda c: state(c, other=True))] == [False]
+    assert [holds for _, holds in _owed(lambda c: state(c, when=False))] == [False]
+
+
+def _how(state) -> list[str]:
+    claim, hasher = Watched(), Hasher()
+    state(claim)
+    ask = lambda terms: _satisfiable(terms, 100_000, Cache(None), hasher)  # noqa: E731
+    return [how for _, how in reached.varied(claim, ask)]
+
+
+def test_how_arguments_vary():
+    def state(c: Claim) -> None:
+        x, n = c.real("x"), c.integer("n")
+        c.use(two, x, n)
+        c.use(two, x, 3)
+        c.use(two, 3, n)
+        c.use(two, x - x, n)
+        c.premise(n * n <= 0)
+
+    assert _how(state) == [reached.NOT, "3", reached.NOT, reached.NOT]
+    assert _how(lambda c: c.use(two, c.real("x"), c.integer("n"))) == [reached.ALL]
+
+
+@pytest.mark.parametrize(
+    ("how", "more"),
+    [
+        ([], False),
+        (["not", "all"], True),
+        (["3"], False),
+        (["3", "3"], False),
+        (["3", "4"], True),
+        (["3, 1", "4, 1"], False),
+        (["3, 1", "4, 2"], True),
+    ],
+)
+def test_more_than_one_value(how, more):
+    assert reached.of_more_than_one(how) is more
