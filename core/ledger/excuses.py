@@ -33,6 +33,8 @@ EXCUSES: dict[str, tuple[tuple[str, ...], str]] = {
         ("import_module", "importlib"),
         "the package with its kernels has a ledger of its own",
     ),
+    "core.ledger.kept_keys.keys_of": (("read_text",), CACHE),
+    "core.ledger.kept_keys._files": (("open",), "it hashes what the keys are made from"),
     "core.ledger.parts.version": (("importlib",), "the versions are parts of each key"),
     "core.ledger.records.read": (("read_text",), "it reads what the keys are held against"),
     "core.ledger.syntax_text._Reader.plain": (("getattr",), TABLE),
