@@ -74,7 +74,7 @@ def _refuse(problems: list[str]) -> None:
     raise BadInput(
         f"{what} ({len(problems)} such places)" if len(problems) > 1 else what,
         where=where,
-        expected="every kernel proved and every driver re-checked; the ledger is not written",
+        expected="every kernel proved, and drivers that call what they name; the ledger is not written",
     )
 
 
