@@ -124,4 +124,4 @@ def test_examples_are_listed_and_others_refused(capsys: pytest.CaptureFixture[st
     shown = capsys.readouterr().out
     assert all(str(file) in shown for file in missions().values())
     assert main(["demo", "nosuch"]) == 2
-    assert "expected crossing, popup, relations, search; got nosuch" in capsys.readouterr().err
+    assert f"expected {', '.join(missions())}; got nosuch" in capsys.readouterr().err
