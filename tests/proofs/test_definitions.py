@@ -13,6 +13,7 @@ from cratous.core import ledger
 from cratous.core.kernel import REGISTRY, Entry, named, supported
 from cratous.core.ledger import PRODUCT
 from cratous.proofs.engine import prover
+from cratous.proofs.engine.reached import ALL, NOT
 from cratous.proofs.statements.definitions import (
     Proofs,
     definition,
@@ -41,10 +42,14 @@ def test_every_kernel_of_the_product_has_a_definition_or_is_a_step_of_one_that_h
 @pytest.mark.slow  # it reads the statement of each theorem
 def test_each_definition_is_used_and_related_by_a_theorem() -> None:
     data = ledger.read()["theorems"]
+    related = {name: relations(name) for name in prover.theorem_files()}
+    # that their arguments vary is asked when they are proved
+    varied = {name: {use[2:]: ALL for use in one.uses} for name, one in related.items()}
     proofs = Proofs(
         {name: tuple(record["kernels"]) for name, record in data.items()},
         frozenset(name for name, record in data.items() if record["status"] == "proved"),
-        {name: relations(name) for name in prover.theorem_files()},
+        related,
+        varied,
     )
     assert problems(ENTRIES, PRODUCT, proofs) == []
 
@@ -56,12 +61,20 @@ def _said(entry: Entry, proofs: Proofs) -> str:
     return found[0]
 
 
-def _proofs(name: str, uses: str = "", *, proved: bool = True, lemma: str = "") -> Proofs:
-    """One theorem about a kernel; it, or its lemma, uses a definition."""
+def _proofs(
+    name: str, uses: str = "", *, proved: bool = True, lemma: str = "", how: str = ALL
+) -> Proofs:
+    """One theorem about a kernel; it, or its lemma, uses a definition. how: the arguments vary."""
     full = "nobody" if name == "nobody" else named(name).name
-    using = replace(NOTHING, definitions=frozenset([uses]), together=frozenset([(full, uses)]))
+    using = replace(
+        NOTHING,
+        definitions=frozenset([uses]),
+        together=frozenset([(full, uses)]),
+        uses=frozenset([(full, uses, full, 0)]),
+    )
     said = {"one": using} if not lemma else {"one": replace(NOTHING, lemmas=(lemma,)), lemma: using}
-    return Proofs({"one": (full,)}, frozenset(["one"] if proved else []), said)
+    varied = {theorem: {(full, 0): how} for theorem in said}
+    return Proofs({"one": (full,)}, frozenset(["one"] if proved else []), said, varied)
 
 
 def test_a_definition_that_is_not_there() -> None:
@@ -83,6 +96,9 @@ def test_a_definition_that_no_theorem_uses() -> None:
     for idle in (_proofs("later", "cratous.spec.schedule.earlier_of"), _proofs("earlier", used)):
         assert "which none of its theorems uses" in _said(later, idle)
     assert problems({"later": later}, PRODUCT, _proofs("later", used, lemma="two")) == []
+    for fixed in (NOT, "3"):
+        said = _said(later, _proofs("later", used, how=fixed))
+        assert "holds it against for more than one value of each argument" in said
 
 
 def test_a_definition_that_no_theorem_holds_it_against() -> None:
