@@ -23,6 +23,9 @@ CLAUSE_MAX, SENTENCE_MAX = 400, 1500
 UNREAD = (
     "no sentence could be made from its statement, which looks into its functions: read its file"
 )
+VALUES_MAX, OBLIGATIONS_MAX = 200, 300
+"""A statement of more than these is about many functions at once, and would change with each of them."""
+MANY = "no sentence could be made from its statement, which is about many functions at once: read its file"
 JOINED = {
     z3.Z3_OP_OR: (" or ", 1), z3.Z3_OP_AND: (" and ", 2), z3.Z3_OP_ADD: (" + ", 5),
     z3.Z3_OP_SUB: (" - ", 5), z3.Z3_OP_MUL: (" * ", 6), z3.Z3_OP_DIV: (" / ", 6),
@@ -64,7 +67,10 @@ class Stated(NamedTuple):
 
 
 def sentence(stated: Stated) -> str:
-    """The statement in one line; `UNREAD` for one that is nested too deeply, or no term of the subset."""
+    """The statement in one line; `UNREAD` for one that is nested too deeply, or no term of the subset, and
+    `MANY` for one about many functions at once."""
+    if len(stated.kinds) > VALUES_MAX or len(stated.obligations) > OBLIGATIONS_MAX:
+        return MANY
     try:
         return _sentence(stated)
     except (RecursionError, ctypes.ArgumentError, z3.Z3Exception):
