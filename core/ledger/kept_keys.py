@@ -21,7 +21,7 @@ from cratous.core.kernel import Entry, checkers
 from cratous.core.kernel.sources import constants, digest
 from cratous.core.ledger.home import PRODUCT, Home
 from cratous.core.ledger.keys import Keys
-from cratous.core.ledger.parts import MISSING, PARTS, compiler, solver_version
+from cratous.core.ledger.parts import MISSING, PARTS, PROVENANCE, compiler, solver_version
 from cratous.core.ledger.trees import DATA
 
 FOLDERS = ("bridge", "core", "proofs", "services", "spec")
@@ -58,7 +58,7 @@ def _is_found(found: Any, known: Mapping[str, Entry]) -> bool:
     return (
         isinstance(found, dict)
         and set(found) == set(known)
-        and all(isinstance(key, dict) and set(key) == set(PARTS) for key in found.values())
+        and all(isinstance(key, dict) and set(key) == {*PARTS, *PROVENANCE} for key in found.values())
         and all(type(value) is str for key in found.values() for value in key.values())
     )
 

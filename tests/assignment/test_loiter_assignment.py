@@ -128,7 +128,6 @@ def test_what_is_not_flown_voids_nothing(tmp_path: Path) -> None:
     [
         ("|(p5 p6_[0-5000])", (), "p6_[0-5000]"),
         (".(p6 p5)_[0-20000]", (), "_[0-20000]"),
-        ("|(p5 p6)", ((1, 5, 0),), "no branch of the relations"),
         ("|(p5 p6)", ((1, 5, 0), (1, 5, 0)), "no branch of the relations"),
         ("|(p5 p6)", ((1, 5, 0), (3, 6, 0)), "an assignment of what is not there"),
         ("|(p5 p6)", ((1, 5, 0), (1, 6, 0)), "not eligible"),
@@ -145,6 +144,22 @@ def test_an_assignment_without_times_ends_its_request(
     assert words in text
     assert rig.got("VehicleActionCommand") == []
     assert rig.bus.state(LOITER).work == {}
+
+
+def test_an_assignment_of_a_part_that_the_relations_permit_is_one(tmp_path: Path) -> None:
+    rig = assigned(tmp_path, "|(p5 p6)", (1, 5, 0), after=(response(2),))
+    rig.wait(2_000_000)
+    assert rig.reasons() == []
+    assert rig.bus.state(LOITER).work == {}
+
+
+def test_an_assignment_of_what_must_wait_for_what_is_left_out_ends_its_request(
+    tmp_path: Path,
+) -> None:
+    rig = assigned(tmp_path, ".(p5 p6)", (2, 6, 0), after=(response(2),))
+    rig.wait(2_000_000)
+    (text,) = rig.reasons()
+    assert "no branch of the relations" in text
 
 
 def test_an_assignment_before_its_costs_is_an_error(tmp_path: Path) -> None:

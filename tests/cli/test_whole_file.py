@@ -175,7 +175,7 @@ KEPT = {
     "proofs/engine/cache.py": "solver answers, renamed when whole, in the private cache",
     "proofs/mutation/keys.py": "verdicts, renamed when whole, in the private cache",
     "proofs/ledger/recall.py": "theorems, renamed when whole, in the private cache",
-    "proofs/statements/relations.py": "what statements relate, renamed when whole, in the private cache",
+    "proofs/statements/kept.py": "what statements relate, renamed when whole, in the private cache",
     "proofs/self_test/case.py": "packages of the self-test, in a temporary folder",
     "proofs/ledger/remembered.py": "texts, renamed when whole, in the private cache",
     "services/startup/warm.py": "a mission in a temporary folder",
@@ -191,6 +191,9 @@ KEPT = {
     "docs/tools/geofence_pictures.py": "inside `replacing`",
     "docs/tools/pictures_well_clear.py": "into memory",
     "services/results/former.py": "opened for reading",
+    "services/campaign/store.py": "results in SQLite, in transactions",
+    "services/cli/campaign_flight.py": "a mission in a temporary folder",
+    "services/uxas/diagram.py": "inside a hidden folder of this process, renamed when whole",
 }
 WRITES = {"write_text", "write_bytes", "savefig"}
 

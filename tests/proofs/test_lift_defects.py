@@ -150,7 +150,7 @@ DEFECTS = {
     "an induction without base": [(Claim, "_owe", _owe_all_but("base"))],
     "an induction without step": [(Claim, "_owe", _owe_all_but("step"))],
     "an induction without use": [(Claim, "_owe", _owe_all_but("use"))],
-    "an induction over chosen accumulators": [(Claim, "_arbitrary", _nothing)],
+    "an induction over chosen accumulators": [(claim_module, "arbitrary", _nothing)],
 }
 
 
