@@ -58,7 +58,9 @@ def _is_found(found: Any, known: Mapping[str, Entry]) -> bool:
     return (
         isinstance(found, dict)
         and set(found) == set(known)
-        and all(isinstance(key, dict) and set(key) == {*PARTS, *PROVENANCE} for key in found.values())
+        and all(
+            isinstance(key, dict) and set(key) == {*PARTS, *PROVENANCE} for key in found.values()
+        )
         and all(type(value) is str for key in found.values() for value in key.values())
     )
 
