@@ -24,7 +24,7 @@ def self_test(as_json: bool, verbose: bool, jobs: int | None) -> bool:
         for trial in attempts(chosen, jobs or jobs_default()):
             trials.append(trial)
             bar.step(trial.case.id, 1, 1)
-    trials.sort(key=lambda trial: trial.case.id)
+    trials.sort(key=lambda trial: (trial.case.id, trial.case.verdict))
     wrong = [trial for trial in trials if trial.wrong]
     seconds = time.monotonic() - begun
     if as_json:

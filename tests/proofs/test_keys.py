@@ -130,8 +130,8 @@ def test_a_way_of_stating_makes_stale_what_theorems_state_so(stale: Stale) -> No
     """`Claim.congruence` is used by some theorems, not by the prover itself."""
     found = stale(
         "proofs/engine/claim.py",
-        "stub = self.stubs[function]\n        equal",
-        "stub = None\n        equal",
+        "stub = self.stubs[function]\n        fact",
+        "stub = None\n        fact",
     )
     users = {
         f.stem for f in (ROOT / "proofs/theorems").rglob("*.py") if "c.congruence(" in f.read_text()
