@@ -27,6 +27,7 @@ def claim(c: Claim) -> None:
     # once, where it is asked for once; twice; not at all; and where it is not asked for
     c.show(c.define(flown_as_asked, 1, True, 1, 1, 1), "an example: once")
     c.show(c.negation(c.define(flown_as_asked, 2, True, 1, 1, 2)), "an example: twice")
+    c.show(c.define(flown_as_asked, 1, True, 0, 1, 2), "an example: the first of two is no fault")
     c.show(c.negation(c.define(flown_as_asked, 1, True, 1, 1, 0)), "an example: left out")
     c.show(c.negation(c.define(flown_as_asked, 1, True, 0, 0, 1)), "an example: not asked for")
     c.fold(
