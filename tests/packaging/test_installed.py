@@ -108,7 +108,15 @@ def test_the_installed_package_flies_and_proves(installed: Run, tmp_path: Path) 
 def _pythons() -> list[str]:
     """This interpreter, and those of other minor versions that the path has."""
     others = [f"python3.{minor}" for minor in (11, 12, 13) if minor != sys.version_info.minor]
-    return [sys.executable, *(found for name in others if (found := shutil.which(name)))]
+    return [
+        sys.executable,
+        *(path for name in others if (path := shutil.which(name)) and _runs(path)),
+    ]
+
+
+def _runs(python: str) -> bool:
+    """A name on the path may lead to no interpreter, as pyenv's does where that version is not chosen."""
+    return not subprocess.run([python, "--version"], capture_output=True, timeout=60).returncode
 
 
 @pytest.mark.long
