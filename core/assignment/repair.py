@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from cratous.core.assignment.compiled import machine_for
-from cratous.core.assignment.instance import FAR, Instance, instance
+from cratous.core.assignment.instance import FAR, Fleet, Instance, instance
 from cratous.core.assignment.large_neighbourhoods import time_chains
 from cratous.core.assignment.layers import refute
 from cratous.core.kernel import driver
@@ -131,8 +131,8 @@ def neighbourhood(i: Instance, now: Chains, windows: dict[int, tuple[int, int]])
     ]
     made = instance(
         range(len(groups)), rows,
-        [(g, long[g] if g in last else int(i.duration[o])) for g, o in options], may, travel,
-        added, ready, (int(i.weight[0]) * share, int(i.weight[1]) * share + 1), bool(i.waits),
+        [(g, long[g] if g in last else int(i.duration[o])) for g, o in options],
+        Fleet(ready, may, travel, added), (int(i.weight[0]) * share, int(i.weight[1]) * share + 1), bool(i.waits),
     )  # fmt: skip
     return Small(made, picked, tuple(groups), tuple(o for _, o in options))
 
