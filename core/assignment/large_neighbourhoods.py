@@ -14,12 +14,12 @@ from __future__ import annotations
 import numpy as np
 
 from cratous.core.assignment.instance import Instance
-from cratous.core.assignment.search_records import Chains, Times
+from cratous.core.assignment.search_records import ChainArrays, Times
 from cratous.core.assignment.steps import earliest_start, weighted
 
 
 def time_chains(
-    chains: Chains, times: Times, order: np.ndarray, next_of: np.ndarray, i: Instance
+    chains: ChainArrays, times: Times, order: np.ndarray, next_of: np.ndarray, i: Instance
 ) -> int:
     """The cost of chains, of some tasks alone maybe, with times and order; 2**60: they block.
 
@@ -133,7 +133,7 @@ def rebuild(
     spare, spare_of, spare_how = chain.copy(), length.copy(), how.copy()
     best_how = how.copy()
     out, hit = np.zeros(n, np.int64), np.zeros(vehicles, np.int64)
-    chains, times = Chains(chain, length, how, there), Times(starts, ends, free)
+    chains, times = ChainArrays(chain, length, how, there), Times(starts, ends, free)
     top_key, top = np.zeros(3, np.int64), np.zeros((3, 3), np.int64)
     share = 6 * vehicles
     now = time_chains(chains, times, made, next_of, i)

@@ -78,7 +78,7 @@ class Times(NamedTuple):
     free: np.ndarray
 
 
-class Chains(NamedTuple):
+class ChainArrays(NamedTuple):
     """Which tasks each vehicle does in which order: chain [V, n], length [V]; how [n]: by which option;
     there [n]: 1 for tasks in chains."""
 
