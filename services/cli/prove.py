@@ -8,7 +8,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
 
@@ -78,6 +78,17 @@ def _refuse(problems: list[str]) -> None:
     )
 
 
+class Output(NamedTuple):
+    """What is printed and written where, and in how many processes."""
+
+    as_json: bool
+    junit: Path | None
+    sarif: Path | None
+    smt2_folder: Path | None
+    jobs: int | None
+    verbose: bool
+
+
 @click.command()
 @click.option(
     "--only",
@@ -127,12 +138,7 @@ def prove(
     mutate: bool,
     self_test: bool,
     package_name: str | None,
-    as_json: bool,
-    junit: Path | None,
-    sarif: Path | None,
-    smt2_folder: Path | None,
-    jobs: int | None,
-    verbose: bool,
+    **output: Any,
 ) -> None:
     """Prove every kernel against its definition and write the ledger.
 
@@ -160,6 +166,7 @@ def prove(
     from cratous.proofs.ledger.remembered import Remembered
     from cratous.proofs.lint import decisions
 
+    as_json, junit, sarif, smt2_folder, jobs, verbose = Output(**output)
     # thousands of syntax trees live to the end: looking for garbage in them is a third of a warm run
     gc.set_threshold(200_000, 20, 100)
     begun = time.monotonic()

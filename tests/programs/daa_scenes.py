@@ -1,6 +1,6 @@
 """Random and degenerate encounters for detect and avoid, and what must hold of every answer.
 
-Run as a program: `python tests/daa_scenes.py COUNT [SEED [SECONDS]]` (see `make daa-fuzz`).
+Run as a program: `python tests/programs/daa_scenes.py COUNT [SEED [SECONDS]]` (see `make daa-fuzz`).
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ exception but BadInput, a case that takes seconds, memory that grows, a message 
 object which is not written as the same bytes, two readers that do not agree, or frames whose bytes
 are not all accounted for.
 
-    python tests/fuzz_lmcp.py --count 1000000 --seed 1
+    python tests/programs/fuzz_lmcp.py --count 1000000 --seed 1
 """
 
 from __future__ import annotations
