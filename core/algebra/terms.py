@@ -30,6 +30,7 @@ from cratous.spec.errors import BadInput
 Times = Mapping[int, tuple[int, int]]
 
 TASK, ALTERNATIVE = 0, 4
+CODES, TIMINGS = range(5), range(3)
 """Codes of `spec.algebra.operators`."""
 TIME_LIMIT_MS = 2**61
 """Every time and bound lies within this: the range of the proofs."""
@@ -58,8 +59,15 @@ def operands_of(nodes: Sequence[Node]) -> tuple[tuple[int, ...], ...]:
     found: list[tuple[int, ...]] = []
     open_terms: list[int] = []
     for place, node in enumerate(nodes):
-        least = 0 if node.op == TASK else 1
-        if node.arity not in range(least, len(open_terms) + 1) or (not least and node.arity):
+        if node.op not in CODES or node.timing not in TIMINGS:
+            raise BadInput(
+                "a node of a term has a code that means nothing",
+                item=f"node {place}",
+                expected="operator 0 to 4, timing 0 to 2",
+                got=f"operator {node.op}, timing {node.timing}",
+            )
+        least, most = (0, 0) if node.op == TASK else (1, len(open_terms))
+        if node.arity not in range(least, most + 1):
             raise BadInput(
                 "a node of a term has not its operands before it",
                 item=f"node {place}",
