@@ -21,7 +21,7 @@ from cratous.spec.constraint_rows import AFTER_END
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.asked import asked, term_of
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
-from cratous.spec.mission.plan import Plan, PlanItem
+from cratous.spec.mission.plan import Plan, PlanItem, in_part_of
 
 Path = tuple[Position, ...]
 
@@ -55,7 +55,10 @@ def _complete(mission: Mission, plan: Plan) -> Iterator[Verdict]:
     alike = is_choice(mission, chosen)
     wanted = chosen if alike else _first_choice(mission)
     known = sorted({*planned, *(task.id for task in mission.tasks), *wanted})
-    counts = [(int(t in wanted), int(t in wanted), planned.count(t)) for t in known]
+    in_part = {one.task_id: one for one in in_part_of(plan)}
+    # what is done in part is not done as it is asked
+    whole = {t: 0 if t in in_part else planned.count(t) for t in known}
+    counts = [(int(t in wanted), int(t in wanted), whole[t]) for t in known]
     twice = sorted({task for task in planned if planned.count(task) > 1})
     note = f"tasks planned: {', '.join(map(str, planned)) or 'none'}"
     if twice:
@@ -66,6 +69,9 @@ def _complete(mission: Mission, plan: Plan) -> Iterator[Verdict]:
         note += f"; left out: {', '.join(map(str, left))}"
     elif not alike:
         note += "; they are no complete choice of the mission's relations"
+    if in_part:
+        part = part or alike
+        note += f"; in part: {'; '.join(one.text for one in in_part.values())}"
     decided = (qualified(as_asked), *by_term(mission))
     yield _verdict(
         WHOLE, bool(as_asked(counts)), note, "as_asked", checks=len(known), kernels=decided
