@@ -272,4 +272,8 @@ def compare(
     except (KeyError, TypeError, NameError, AttributeError) as error:
         why = f"no arguments can be made for its types: {error!r}"
         return Compared(qualified(function), (), (), (why,))
-    return _Comparison(function, masks, rows).compare(machine)
+    try:
+        return _Comparison(function, masks, rows).compare(machine)
+    except (TypeError, AttributeError, NameError, LookupError) as error:
+        why = f"{qualified(function)}: a reading of it ends in {type(error).__name__}: {error}"
+        return Compared(qualified(function), (why,), ())

@@ -78,9 +78,9 @@ def _ran(
             if len(found) < ENOUGH:
                 found.append(f"run as Python: {error}: {_numbers(on.shown)}")
         except NotRun as error:
-            return Ran(0, (), str(error))
+            return Ran(points, tuple(found), str(error))
         except (TypeError, AttributeError) as error:
-            return Ran(0, (), f"{type(error).__name__}: {error}")
+            return Ran(points, tuple(found), f"{type(error).__name__}: {error}")
         else:
             points += 1
     return Ran(points, tuple(found))
