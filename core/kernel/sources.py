@@ -226,3 +226,8 @@ def _as_written(function: types.FunctionType, code: types.CodeType) -> bool:
         if file not in (base.with_suffix(".py"), base / "__init__.py"):
             return False
     return _written(file).get(_name(code)) == _hash(code)
+
+
+def runs_as_written(function: types.FunctionType) -> bool:
+    """A function runs what the file of its module says."""
+    return _as_written(function, function.__code__)
