@@ -38,7 +38,9 @@ def flown_of(
     command = entry("command", lambda value: isinstance(value, str), "")
     avoidance = entry("avoidance", lambda value: isinstance(value, bool), True)
     around = entry("environment", _is_environment, environment())
-    if around.get("code", {}).get("digest") != running_code()["digest"]:
+    if "code" not in around:
+        unchecked["environment.code"] = SILENT
+    elif around["code"]["digest"] != running_code()["digest"]:
         unchecked["environment.code"] = "services or bridge are other code than at the flight"
     calls = meta.get("calls")
     if calls is None:
