@@ -83,6 +83,13 @@ def test_where_rows_and_relations_differ_nothing_is_known(
     assert outcome_of(kept) is Outcome.UNKNOWN
 
 
+def test_times_that_no_kernel_is_proved_for_make_nothing_known():
+    kept = branch_rows(of(".(p1 p2)", 2), frozenset({1, 2}), {1: (0, 10), 2: (10, 2**62)})
+    assert kept is not None
+    assert "out of range" in kept.doubt
+    assert outcome_of(kept) is Outcome.UNKNOWN
+
+
 @pytest.mark.parametrize(
     ("text", "chosen", "choice", "part"),
     [
