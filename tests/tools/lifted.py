@@ -6,6 +6,11 @@ from cratous.proofs.running import lifted
 SAMPLES = 2000
 MASKS = {
     "eligible": {0, 1},
+    "tasks_with": {0, 1},
+    "operand_fits": {0, 1, 2},
+    "stands_in": {0, 1},
+    "stands_in_one_of": {0, 1, 2},
+    "none_beside": {0, 1, 2, 3},
     "opened": {0, 1},
     "all_needed_done": {0, 1},
     "vehicle_is_eligible": {0, 1, 2},
