@@ -18,7 +18,7 @@ from cratous.services.monitor.samples import Sample
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
-ACTIVE, COMPLETE = "Active", "Complete"
+ACTIVE, COMPLETE, FAILED = "Active", "Complete", "Failed"
 
 
 @dataclass
@@ -39,6 +39,7 @@ class ConstraintWatch:
         self._starts: dict[int, int] = {}
         self._ends: dict[int, int] = {}
         self._who: dict[int, list[int]] = {}
+        self._failed: set[int] = set()
         self._fences: dict[tuple[int, int], Fence] = {}
         self._tracks: dict[int, list[Position]] = {}
         self.violations: list[Verdict] = []
@@ -52,6 +53,8 @@ class ConstraintWatch:
                 flown_by.append(body.VehicleID)
         elif body.Phase.name == COMPLETE:
             self._ends[body.TaskID] = body.Time
+        elif body.Phase.name == FAILED:
+            self._failed.add(body.TaskID)
 
     def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
         """Check the leg of every protected vehicle of ours against every zone that is known."""
@@ -94,7 +97,7 @@ class ConstraintWatch:
     def verdicts(self, seen: Watched, ending: Ending) -> list[Verdict]:
         """One verdict for each fence, row and assignment that something was seen of."""
         zones, relations = self._zones(seen, ending), self._relations(seen, ending)
-        return [*zones, *relations, *self._eligibility(seen)]
+        return [*zones, *relations, *self._eligibility(seen), *self._never_begun(seen, ending)]
 
     def _zones(self, seen: Watched, ending: Ending) -> Iterator[Verdict]:
         for zone, since_ms in zones_of(self._mission, seen.end_ms):
@@ -152,3 +155,12 @@ class ConstraintWatch:
                 method="eligible",
                 kernels=(qualified(eligible),),
             )
+
+    def _never_begun(self, seen: Watched, ending: Ending) -> Iterator[Verdict]:
+        """Tasks that are said to have failed before anybody began them: nobody did them who may not."""
+        for task in sorted(self._failed & set(seen.tasks)):
+            if ending.over and task not in self._who and task not in self._ends:
+                note = "nobody began it"
+                yield Verdict(
+                    "G1", eligible_item(task), Outcome.HOLDS, Kind.OBSERVED, note, checks=1
+                )
