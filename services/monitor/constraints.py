@@ -97,7 +97,12 @@ class ConstraintWatch:
     def verdicts(self, seen: Watched, ending: Ending) -> list[Verdict]:
         """One verdict for each fence, row and assignment that something was seen of."""
         zones, relations = self._zones(seen, ending), self._relations(seen, ending)
-        return [*zones, *relations, *self._eligibility(seen), *self._never_begun(seen, ending)]
+        return [
+            *zones,
+            *relations,
+            *self._eligibility(seen, ending),
+            *self._never_begun(seen, ending),
+        ]
 
     def _zones(self, seen: Watched, ending: Ending) -> Iterator[Verdict]:
         for zone, since_ms in zones_of(self._mission, seen.end_ms):
@@ -132,7 +137,7 @@ class ConstraintWatch:
             note = f"not judged: task {', '.join(map(str, missing))} was not flown to its end"
             yield Verdict("G1", f"flight: {row.text}", Outcome.UNKNOWN, Kind.OBSERVED, note)
 
-    def _eligibility(self, seen: Watched) -> Iterator[Verdict]:
+    def _eligibility(self, seen: Watched, ending: Ending) -> Iterator[Verdict]:
         known = {task.id: task for task in self._mission.tasks}
         for task, flown_by in sorted(self._who.items()):
             if task not in known:
@@ -142,7 +147,8 @@ class ConstraintWatch:
             good = all(eligible(mask, self._bits.get(vehicle, 0)) for vehicle in flown_by)
             outcome, note = Outcome.HOLDS if good else Outcome.VIOLATED, "flown by vehicle "
             note += ", ".join(map(str, flown_by))
-            if good and task in seen.tasks and task not in self._ends:
+            given_up = ending.over and task in self._failed
+            if good and task in seen.tasks and task not in self._ends and not given_up:
                 outcome, note = Outcome.UNKNOWN, f"{note}, not to its end"
             yield Verdict(
                 "G1",
