@@ -117,8 +117,10 @@ def _require_proofs(config: Any, log: Any, allow_unproved: bool) -> None:
 
     if any(KINDS[e.type].plans for e in config.entries if e.type in KINDS):
         from cratous.core.ledger import require
+        from cratous.services.cli.progress import waiting
 
-        standing = require(allow_unproved=allow_unproved)
+        with waiting("holding the code against its proofs"):
+            standing = require(allow_unproved=allow_unproved)
         log("WARN" if standing.problems else "INFO", f"proofs: {standing.line}")
 
 
