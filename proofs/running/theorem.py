@@ -45,6 +45,8 @@ def run(name: str, claim: Claim, folder: Path) -> tuple[Ran, Functions]:
         if _is_compared(function):
             key = (function.__module__, function.__qualname__)
             bits = {k for k, arg in enumerate(visit.args) if isinstance(arg, SymMask)}
+            # a whole number beside a mask is one too
+            bits |= {k for k, arg in enumerate(visit.args) if bits and type(arg) is int}
             masks[key] = masks.get(key, frozenset()) | bits
     return ran, Functions(masks, {key: tuple(rows) for key, rows in called.items() if key in masks})
 
