@@ -30,8 +30,8 @@ INTEGERS = (
     -EXACT - 1, 2**60, 2**61, -(2**61),
 )  # fmt: skip
 MASKS = (0, 1, 2, 3, 1 << 62, (1 << 62) - 1, 1 << 63, (1 << 64) - 1)
-GRID, MIXED, EQUAL, WILD = 60, 80, 1, 40
-"""So many rows of each kind: small grids, special numbers by chance, each for all, random doubles."""
+GRID, MIXED, WILD = 40, 40, 20
+"""So many rows of each kind: small grids, special numbers among plain ones, random doubles."""
 
 
 def leaves_of(kinds: list[Any]) -> list[Any]:

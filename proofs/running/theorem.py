@@ -17,7 +17,7 @@ from cratous.proofs.running.copies import Undecided
 from cratous.proofs.running.points import witnesses
 from cratous.proofs.running.statement import False_, NotRun, OnNumbers, Outside, Values
 
-DRAWN = 60
+DRAWN = 40
 """So many points are drawn beside the witnesses."""
 ENOUGH = 3
 """So many differences of a theorem are told."""
