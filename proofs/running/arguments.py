@@ -6,6 +6,7 @@ All reals are doubles, so that each reading is given the same numbers. Drawn in 
 from __future__ import annotations
 
 import inspect
+import math
 import random
 import sys
 import types
@@ -29,8 +30,8 @@ INTEGERS = (
     -EXACT - 1, 2**60, 2**61, -(2**61),
 )  # fmt: skip
 MASKS = (0, 1, 2, 3, 1 << 62, (1 << 62) - 1, 1 << 63, (1 << 64) - 1)
-GRID, MIXED, EQUAL, WILD = 60, 80, 1, 40
-"""So many rows of each kind: small grids, special numbers by chance, each for all, random doubles."""
+GRID, MIXED, WILD = 40, 40, 20
+"""So many rows of each kind: small grids, special numbers among plain ones, random doubles."""
 
 
 def leaves_of(kinds: list[Any]) -> list[Any]:
@@ -68,8 +69,6 @@ def written(function: Callable[..., Any]) -> tuple[list[float], list[int]]:
 
 
 def _after(value: float) -> float:
-    import math
-
     return math.nextafter(value, math.inf)
 
 
@@ -108,8 +107,22 @@ def rows(
         made.append([_wild(kind, k in at_mask, rng) for k, kind in enumerate(flat)])
     found = [shaped(kinds, iter(row)) for row in made]
     found += inputs(function, masks, GRID)
-    found += [row for row in more if len(row) == len(kinds)]
+    found += [row for given in more for row in _in_doubles(given, len(kinds))]
     return found
+
+
+def _in_doubles(row: Row, size: int) -> list[Row]:
+    """The row with each rational rounded to a double, if all reach that far."""
+    try:
+        return [tuple(map(_double, row))] if len(row) == size else []
+    except OverflowError:
+        return []
+
+
+def _double(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return type(value)(*map(_double, value))
+    return float(value) if isinstance(value, Fraction) else value
 
 
 def _positions(kinds: list[Any], masks: frozenset[int]) -> set[int]:

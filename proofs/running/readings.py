@@ -93,7 +93,7 @@ class _Comparison:
         """Hold the lifted term against CPython; for each row whether all that is owed holds."""
         try:
             term = lifted.term_of(self.function, self.masks)
-        except (LiftError, KeyError, RecursionError) as error:
+        except (LiftError, KeyError, RecursionError, TypeError) as error:
             self.left_out.append(f"{TERM}: {error}")
             return [False] * len(rows)
         for row, got, wanted in lifted.differences(self.function, rows, self.masks, term):

@@ -17,7 +17,7 @@ from cratous.proofs.running.copies import Undecided
 from cratous.proofs.running.points import witnesses
 from cratous.proofs.running.statement import False_, NotRun, OnNumbers, Outside, Values
 
-DRAWN = 60
+DRAWN = 40
 """So many points are drawn beside the witnesses."""
 ENOUGH = 3
 """So many differences of a theorem are told."""
@@ -45,6 +45,8 @@ def run(name: str, claim: Claim, folder: Path) -> tuple[Ran, Functions]:
         if _is_compared(function):
             key = (function.__module__, function.__qualname__)
             bits = {k for k, arg in enumerate(visit.args) if isinstance(arg, SymMask)}
+            # a whole number beside a mask is one too
+            bits |= {k for k, arg in enumerate(visit.args) if bits and type(arg) is int}
             masks[key] = masks.get(key, frozenset()) | bits
     return ran, Functions(masks, {key: tuple(rows) for key, rows in called.items() if key in masks})
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import functools
 import gc
+import importlib
 import os
 import resource
 import sys
@@ -156,5 +157,6 @@ def prepare() -> None:
     """Read what every ledger hashes, and wake the solver, so that forked processes find it done."""
     gate.check()
     z3.Solver(ctx=z3.main_ctx()).check()
+    importlib.import_module("numba")  # as long as several cases
     gc.collect()
     gc.freeze()  # else each process copies what its collector looks at

@@ -92,6 +92,14 @@ def test_special_numbers_are_among_the_arguments():
     assert any(a == b for a, b in rows(function, frozenset()))
 
 
+def test_arguments_of_theorems_are_made_doubles():
+    function = named("vertical_interval").function
+    size = len(rows(function, frozenset())[0])
+    given = ((Fraction(2**53 + 1),) * size, (Fraction(10) ** 400,) * size, (Fraction(1),))
+    assert rows(function, frozenset(), given)[-1] == (float(2**53),) * size
+    assert compare(function, more=given, machine=False).differences == ()
+
+
 doubles = st.floats(-1e12, 1e12) | st.integers(-20, 20).map(float)
 operations = st.sampled_from([operator.add, operator.sub, operator.mul, operator.truediv])
 
