@@ -358,11 +358,11 @@ class Communication:
     def _hold(self, state: State, vid: int, out: list[Out], why: str) -> Step:
         craft = state.craft(vid)
         text = f"vehicle {vid} holds: {why}"
-        out = [*out, Say(status(0, "Error", [("reason", text)]), self.name)]
+        said = Say(status(0, "Error", [("reason", text)]), self.name)
         if craft.air is None or state.frame is None:
-            return state, out
+            return state, [*out, said]
         state, command = self._command(state, vid, hold(craft.air, plane(state.frame)))
-        return state.put(vid, replace(craft, holds=True)), [*out, command]
+        return state.put(vid, replace(craft, holds=True)), [*out, command, said]
 
     def _free(self, state: State, vid: int) -> State:
         """It is heard: what made the vehicle hold is over."""
