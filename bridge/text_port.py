@@ -22,8 +22,14 @@ from cratous.bridge.text_protocol.handshake import (
     Handshake,
     ServerHandshake,
 )
-from cratous.bridge.text_protocol.layouts import Limits
-from cratous.bridge.text_protocol.messages import Direction, Heartbeat, Hello, Message
+from cratous.bridge.text_protocol.layouts import ORIGINAL_LIMITS, Limits
+from cratous.bridge.text_protocol.messages import (
+    Direction,
+    FenceVertex,
+    Heartbeat,
+    Hello,
+    Message,
+)
 from cratous.bridge.text_protocol.parser import Record, StreamParser, WireError
 from cratous.spec.errors import BadInput
 
@@ -154,7 +160,8 @@ class TextPort:
     ) -> None:
         """server: UxAS's end, which listens (BadInput if it cannot); else ICAROUS's, see `dial`.
 
-        original: the peers are the original's: no HELLO and HBEAT, its number formats.
+        original: the peers are the original's: no HELLO and HBEAT, its number formats, no count above
+        what its arrays hold.
         """
         self.where, self._server, self._original = where, server, original
         self._bounds, self._secret, self._report = bounds or Bounds(), secret, report
@@ -221,8 +228,11 @@ class TextPort:
             return False
         if self._original and isinstance(message, Hello | Heartbeat):
             return True
+        # the original writes fences in a form of which its own client misreads those of ten vertices
+        original = self._original and not isinstance(message, FenceVertex)
+        limits = ORIGINAL_LIMITS if self._original else PROGRAM_LIMITS
         try:
-            data = encode(message, original=self._original, limits=PROGRAM_LIMITS)
+            data = encode(message, original=original, limits=limits)
         except BadInput as error:
             self._tally.lose("message has no form on the wire", str(error))
             return False

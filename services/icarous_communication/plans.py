@@ -29,7 +29,7 @@ class Plan(NamedTuple):
     (START) if that is known, and a way back; where each is, and which point of the track it is; goal: index
     of the one that the vehicle makes for; since_ms: given at; settled: the vehicle flies it; back: index of
     the last that is none of the mission's (-1: they all are); resume: where it comes back to its way, if
-    that is where it was left.
+    that is where it was left; told: point of the track with which what is told to its ICAROUS begins.
     """
 
     command: Any
@@ -42,11 +42,27 @@ class Plan(NamedTuple):
     settled: bool = False
     back: int = -1
     resume: Position | None = None
+    told: int = 0
 
     @property
     def speed_m_s(self) -> float:
         """Planned on it [m/s]."""
         return float(self.waypoints[0].Speed)
+
+
+def part(plan: Plan, most: int | None) -> tuple[Position, ...]:
+    """What is told of a plan: all of it, or from `told` on as much as a peer can hold."""
+    points = plan.track.points[plan.told :]
+    return points if most is None else points[:most]
+
+
+def next_part(plan: Plan, most: int, spare: int) -> Plan:
+    """The plan as it is to be told, when the vehicle has no more than `spare` points of its part ahead: from
+    the point that it has passed last; the same plan otherwise, and where the part holds the end already."""
+    at = plan.marks[plan.goal]
+    if plan.told + most - at > spare or plan.told + most >= len(plan.track.points):
+        return plan
+    return plan._replace(told=max(at - 1, 0))
 
 
 class Away(NamedTuple):

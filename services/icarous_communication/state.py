@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+from cratous.bridge.text_protocol import Message, SoftReset
 from cratous.services.flight import link_end
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.messages import Down, Say
@@ -112,3 +113,14 @@ def moved(air: AirState, late_s: float) -> AirState:
         p.alt_m - v.down_m_s * late_s,
     )
     return air._replace(position=place)
+
+
+def placed(state: State, vid: int, line: Message) -> Message:
+    """The original's client cannot read a RESET_SFT without a place: it gets where the vehicle is."""
+    if not isinstance(line, SoftReset) or line.lat_deg is not None:
+        return line
+    air = state.craft(vid).air
+    if air is None or state.frame is None:
+        return SoftReset(0.0, 0.0, 0.0)  # as the original's service has it before a mission
+    lat, long = plane(state.frame).to_geodetic(air.position.north_m, air.position.east_m)
+    return SoftReset(lat, long, air.position.alt_m)

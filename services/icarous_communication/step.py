@@ -13,7 +13,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.bridge.text_protocol import Heartbeat, Message, SetMode
+from cratous.bridge.text_protocol import (
+    ORIGINAL_LIMITS,
+    GoToWaypoint,
+    Heartbeat,
+    Message,
+    SetMode,
+)
 from cratous.core.authority.gate import (
     ICAROUS,
     UXAS,
@@ -30,6 +36,7 @@ from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.link_end import UxasEnd
 from cratous.services.flight.messages import (
     Connected,
+    Down,
     Flown,
     GateIs,
     Heard,
@@ -47,7 +54,10 @@ from cratous.services.flight.messages import (
 from cratous.services.flight.notices import authority_change, gate_state
 from cratous.services.icarous_communication.plans import (
     Away,
+    Plan,
     deviates,
+    next_part,
+    part,
     plan_of,
     resume_point,
     resumed,
@@ -61,6 +71,7 @@ from cratous.services.icarous_communication.state import (
     State,
     air_state,
     moved,
+    placed,
     plane,
     turn_radius_of,
 )
@@ -71,6 +82,8 @@ from cratous.spec.authority.link_end import OVERTAKEN, REFUSED
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame, Position
 
+SPARE_WAYPOINTS = 10
+"""The original's client is told the next part of a plan when it has no more than these ahead."""
 SETTLES_MS = 2000
 """After this a vehicle that does not show the first waypoint of a new plan is on a later one [ms]."""
 NO_EPOCH = -1
@@ -124,6 +137,8 @@ class Communication:
         state = self._free(state, vehicle_id)
         if isinstance(line, Heartbeat):
             state = state.put(vehicle_id, replace(state.craft(vehicle_id), handed=False))
+        if self.original and isinstance(line, GoToWaypoint):
+            return state, [*out, Refuse("GOTOWP of the original: its number is noise", str(line))]
         craft, peer = state.craft(vehicle_id), state.link.peer(vehicle_id)
         if craft.air is None or peer is None or state.frame is None:
             return state, out
@@ -217,11 +232,23 @@ class Communication:
             state, more = self._deviation(state, vid, craft.away, craft, air)
             out += more
         elif craft.plan is not None:
-            reached = craft.plan.marks[craft.plan.goal]
-            if reached:
-                state, more = self._end(state, Flown(vid, craft.plan.track.s_m[reached - 1]))
-                out += more
+            state, more = self._reached(state, vid, craft.plan)
+            out += more
         state, more = self._end(state, self._seen(state, vid, body, now_ms))
+        return state, [*out, *more]
+
+    def _reached(self, state: State, vid: int, plan: Plan) -> Step:
+        """The waypoints that are behind, and, to a peer that holds a part alone, the next part."""
+        out: list[Out] = []
+        if self.original:
+            onward = next_part(plan, ORIGINAL_LIMITS.waypoints, SPARE_WAYPOINTS)
+            if onward is not plan:
+                state = state.put(vid, replace(state.craft(vid), plan=onward))
+                state, out = self._route(state, vid)
+        reached = plan.marks[plan.goal]
+        if not reached:
+            return state, out
+        state, more = self._end(state, Flown(vid, plan.track.s_m[reached - 1]))
         return state, [*out, *more]
 
     def _seen(self, state: State, vid: int, body: Any, now_ms: int) -> Seen:
@@ -262,6 +289,8 @@ class Communication:
                 case TakeBack(vid, now_ms, _, epoch):
                     state, more = self._take_back(state, vid, epoch, now_ms)
                     out += more
+                case Down(vid, lines) if self.original:
+                    out.append(Down(vid, tuple(placed(state, vid, line) for line in lines)))
                 case _:
                     out.append(answer)
         return state, out
@@ -315,7 +344,9 @@ class Communication:
         plan = state.craft(vid).plan
         if plan is None or state.link.peer(vid) is None:
             return state, []
-        return self._end(state, Route(vid, plan.positions, plan.speed_m_s, 0.0))
+        points = part(plan, ORIGINAL_LIMITS.waypoints if self.original else None)
+        from_m = plan.track.s_m[plan.told]
+        return self._end(state, Route(vid, points, plan.speed_m_s, from_m))
 
     def _held(self, state: State, vid: int, out: list[Out]) -> Step:
         """A vehicle that ICAROUS has and whose ICAROUS is not heard holds where it is."""
@@ -327,11 +358,11 @@ class Communication:
     def _hold(self, state: State, vid: int, out: list[Out], why: str) -> Step:
         craft = state.craft(vid)
         text = f"vehicle {vid} holds: {why}"
-        out = [*out, Say(status(0, "Error", [("reason", text)]), self.name)]
+        said = Say(status(0, "Error", [("reason", text)]), self.name)
         if craft.air is None or state.frame is None:
-            return state, out
+            return state, [*out, said]
         state, command = self._command(state, vid, hold(craft.air, plane(state.frame)))
-        return state.put(vid, replace(craft, holds=True)), [*out, command]
+        return state.put(vid, replace(craft, holds=True)), [*out, command, said]
 
     def _free(self, state: State, vid: int) -> State:
         """It is heard: what made the vehicle hold is over."""

@@ -93,7 +93,7 @@ def test_what_stands_on_the_wire_decides_and_a_cut_link_comes_again(
         # a cut while ICAROUS has the vehicle: it holds, and ICAROUS comes again
         proxy.cut()
         assert sim.wait(lambda: any("not heard" in text for text in reasons(sim)), 30.0)
-        assert type(sim.own.flies).__name__ == "Circle"
+        assert sim.wait(lambda: type(sim.own.flies).__name__ == "Circle", 30.0)
         again = "connected again"
         assert sim.wait(lambda: any(b.Note == again for b in sim.all("BridgeStatus")), 60.0)
         assert sim.fly(5, lambda: type(sim.own.flies).__name__ == "Fly"), said(tmp_path)
@@ -101,7 +101,7 @@ def test_what_stands_on_the_wire_decides_and_a_cut_link_comes_again(
         proxy.change = rubbish
         assert any(not sim.beat(3.0) for _ in range(4))  # answers of before may still come
         assert sim.wait(lambda: len(reasons(sim)) == 2, 30.0)
-        assert type(sim.own.flies).__name__ == "Circle"
+        assert sim.wait(lambda: type(sim.own.flies).__name__ == "Circle", 30.0)
     assert "POSTN that this airframe cannot fly" in said(tmp_path)
 
 

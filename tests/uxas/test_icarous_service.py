@@ -4,6 +4,7 @@ whose SETMOD is believed, and what cannot be honoured."""
 from __future__ import annotations
 
 import contextlib
+import math
 import socket
 import time
 from pathlib import Path
@@ -246,6 +247,53 @@ def test_the_original_s_modes_have_no_epochs(tmp_path: Path, opened: list[Any]) 
     rig.until(lambda: rig.got("MissionCommand"))
     assert len(rig.got("VehicleActionCommand")) == 1
     assert [c.Owner.name for c in rig.got("AuthorityChange")] == ["ICAROUS", "UxAS"]
+
+
+def test_the_original_s_client_gets_what_it_can_hold(tmp_path: Path, opened: list[Any]) -> None:
+    """Long plans in parts of 50, fences of ten vertices with `vertIndex1.0`, resets with a place."""
+    rig = Rig(tmp_path, 'NumberOfUAVs="1" Dialect="original"', opened)
+    one = rig.fake()
+    fence = zone("KeepInZone", 1)
+    corners = [(9000 * math.cos(k / 2), 9000 * math.sin(k / 2)) for k in range(12)]
+    places = [PLANE.to_geodetic(*corner) for corner in corners]
+    fence.Boundary.BoundaryPoints = [
+        lmcp.new("Location3D", Latitude=lat, Longitude=lon) for lat, lon in places
+    ]
+    own = Aircraft(1, 0.0, 0.0, 0.0)
+    rig.tell(fence, own.state(0))
+    rig.until(lambda: one.all(tp.OwnPosition) or rig.tell(own.state(0)))
+    rig.tell(way(*((100.0 * k, 0.0) for k in range(1, 121))))
+    for number in range(1, 121):
+        own.waypoint = number
+        rig.tell(own.state(500 * number))
+    last = PLANE.to_geodetic(12_000.0, 0.0)[0]
+    rig.until(lambda: any(w.lat_deg == pytest.approx(last) for w in one.all(tp.Waypoint)))
+    assert len(one.all(tp.FenceVertex)) == 12
+    assert b"vertIndex12.0," in one.raw
+    assert not [m for m in one.got if isinstance(m, tp.WireError)]
+    resets = one.all(tp.SoftReset)
+    assert len(resets) == 3
+    assert all(reset.lat_deg == pytest.approx(45.0, abs=1e-4) for reset in resets)
+    parts: list[list[float]] = []
+    for line in one.got:
+        if isinstance(line, tp.Waypoint):
+            if line.index == 0:
+                parts.append([])
+            parts[-1].append(line.lat_deg)
+            assert (line.index, line.total) == (len(parts[-1]) - 1, len(parts[-1]))
+    assert max(map(len, parts)) == 50
+    seen = sorted({lat for part in parts for lat in part})
+    assert len(seen) == 121  # the vehicle's place and all waypoints, none lost
+    # each WPRCH is of a waypoint of the part in force, in ascending order
+    count, held = 0, 0
+    for line in one.got:
+        if isinstance(line, tp.StartMission):
+            count = 0
+        elif isinstance(line, tp.Waypoint):
+            held = line.total
+        elif isinstance(line, tp.WaypointReached):
+            assert line.index == count < held
+            count += 1
 
 
 @pytest.mark.shows(SERVICE, "RoutePlannerUsed")
