@@ -46,7 +46,11 @@ def along_items(
     readers = [c.use] * len(runs) + [c.define] * len(models)
     arbitrary(c.premises, tuple(accumulators), (item, tuple(contexts)))
     # base and use hold of no item at all, so nothing may be given about one
-    arbitrary(c.premises, item, tuple(contexts))
+    arbitrary([], item, tuple(contexts))
+    for premise in c.premises:
+        shared = sorted(free_names(premise) & names_in(item))
+        if shared:
+            raise ValueError(f"a premise restricts the item's {shared[0]}: put it into `each`")
     for fold in folds[: len(runs)]:
         if qualified(fold) not in c.kernels:
             c.kernels.append(qualified(fold))

@@ -16,6 +16,8 @@ from cratous.core.permit.remainder import hold_at, traffic_permits, zones_permit
 from cratous.services.icarous.messages import Sensed
 from cratous.spec.mission import WellClear
 
+TRACKING_S = 1.0
+"""A circle is flown to less than what the vehicle flies in this time [s]."""
 HOLD_RADII = 2.0
 """A loiter that touches the end of the way is within this many of its radii of it."""
 
@@ -39,8 +41,8 @@ def with_hold(way: Way, sensed: Sensed, scene: Scene, own: WellClear, margin: fl
     beyond, motion = way.beyond, sensed.motion
     if way.pieces:
         radius_m = margin * motion.speed_m_s / sensed.ability.turn_rate_rad_s
-        # the circle, and as far off it as the vehicle flies in a second
-        hold_m = HOLD_RADII * radius_m + motion.speed_m_s
+        # the circle, and how far off it the vehicle may be
+        hold_m = HOLD_RADII * radius_m + TRACKING_S * motion.speed_m_s
         place = beyond.position
         held = (*way.pieces, hold_at(place, beyond.start_s, beyond.start_s + beyond.duration_s))
         free = zones_permit(place, scene.zones, hold_m)

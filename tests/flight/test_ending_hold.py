@@ -20,7 +20,7 @@ from cratous.core.permit.remainder import STANDING, traffic_permits, zones_permi
 from cratous.core.routing.polylines import Track
 from cratous.services.flight.ahead import points_ahead
 from cratous.services.flight.chain import Chain, Phase
-from cratous.services.icarous.ending import with_hold
+from cratous.services.icarous.ending import HOLD_RADII, TRACKING_S, with_hold
 from cratous.services.icarous.messages import Sensed
 from cratous.services.loading import load
 from cratous.services.pipeline.plan import make_plan
@@ -28,7 +28,7 @@ from cratous.spec.mission import Position, Task, TaskKind, Velocity, Zone, ZoneK
 
 MISSION = Path(__file__).resolve().parents[1] / "missions" / "hovering_behind.yaml"
 GOAL = Position(600.0, 0.0, 300.0)
-HOLD_M = 2 * 1.1 * 22.0 / 0.26 + 22.0
+HOLD_M = HOLD_RADII * 1.1 * 22.0 / 0.26 + TRACKING_S * 22.0
 
 
 def standing(north_m: float, east_m: float = 0.0, alt_m: float = 300.0) -> Intruder:
