@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import json
+import threading
 from pathlib import Path
 from typing import Any
 
 import click
+
+
+PATIENCE_S, DOING = 1.0, "judging the flight from its log"
+"""What is done is said once it has taken so long [s]."""
 
 
 def _say(text: str) -> None:
@@ -35,10 +40,16 @@ def judge(log: Path, mission: Path | None, as_json: bool, every: bool) -> int:
     3 something is unknown.
     """
     from cratous.judge.verdict import GUARANTEES, HOLDS
-    from cratous.services.cli.progress import waiting
 
-    with waiting("judging the flight from its log", as_json):
+    # a line of its own: this command imports nothing of the judged
+    told = threading.Timer(PATIENCE_S, click.echo, (DOING,), {"err": True})
+    told.daemon = True
+    if not as_json:
+        told.start()
+    try:
         found = judgement(log, mission)
+    finally:
+        told.cancel()
     if as_json:
         click.echo(json.dumps(found.data(), indent=1))
         return found.exit_code

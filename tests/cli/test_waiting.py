@@ -107,6 +107,7 @@ def test_commands_that_read_a_log_tell_what_they_do(
         called.append(told)
         raise BadInput("held up", expected="", got="")
 
+    monkeypatch.setattr("cratous.services.cli.judge.PATIENCE_S", 0.05)
     monkeypatch.setattr("cratous.judge.judge", held)
     monkeypatch.setattr("cratous.services.cli.log._missing", held)
     monkeypatch.setattr("cratous.services.logs.export.export", held)
