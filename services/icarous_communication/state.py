@@ -57,7 +57,7 @@ class Craft:
 @dataclass(frozen=True)
 class State:
     """link: what the end remembers; frame: the plane, None before anything has a place; zones and crafts
-    by id; commands: given so far; fresh: vehicles whose instance has not yet said which epoch it is in."""
+    by id; commands: given so far; fresh: vehicles whose instance has not yet said which epoch it is in; stale: who is not told as traffic."""
 
     link: link_end.State = field(default_factory=link_end.State)
     frame: Frame | None = None
@@ -65,6 +65,7 @@ class State:
     crafts: Mapping[int, Craft] = field(default_factory=dict)
     commands: int = 0
     fresh: frozenset[int] = frozenset()
+    stale: frozenset[int] = frozenset()
 
     def craft(self, vehicle_id: int) -> Craft:
         """What is known of a vehicle."""

@@ -30,7 +30,7 @@ from cratous.core.authority.gate import (
     gate_takeover,
 )
 from cratous.core.authority.link_end import link_mode
-from cratous.core.authority.timeliness import lasted
+from cratous.core.authority.timeliness import in_time, lasted
 from cratous.core.avoidance.manoeuvre import Motion
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.link_end import UxasEnd
@@ -82,6 +82,8 @@ from cratous.spec.authority.link_end import OVERTAKEN, REFUSED
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame, Position
 
+TRAFFIC_KEPT_MS = 5000
+"""An aircraft whose state is of a time farther than this [ms] from another's is not told to that one."""
 SPARE_WAYPOINTS = 10
 """The original's client is told the next part of a plan when it has no more than these ahead."""
 SETTLES_MS = 2000
@@ -121,7 +123,7 @@ class Communication:
         body = state.craft(vehicle_id).body
         if body is None:
             return state, out
-        state, more = self._end(state, self._seen(state, vehicle_id, body, now_ms))
+        state, more = self._seen(state, vehicle_id, body, now_ms)
         return state, [*out, *more]
 
     def lost(self, state: State, message: Lost) -> Step:
@@ -234,7 +236,7 @@ class Communication:
         elif craft.plan is not None:
             state, more = self._reached(state, vid, craft.plan)
             out += more
-        state, more = self._end(state, self._seen(state, vid, body, now_ms))
+        state, more = self._seen(state, vid, body, now_ms)
         return state, [*out, *more]
 
     def _reached(self, state: State, vid: int, plan: Plan) -> Step:
@@ -251,15 +253,28 @@ class Communication:
         state, more = self._end(state, Flown(vid, plan.track.s_m[reached - 1]))
         return state, [*out, *more]
 
-    def _seen(self, state: State, vid: int, body: Any, now_ms: int) -> Seen:
-        """Everybody at the time of this vehicle's state."""
-        aircraft = []
+    def _seen(self, state: State, vid: int, body: Any, now_ms: int) -> Step:
+        """Everybody at the time of this vehicle's state, to its instance; who cannot be, is said once."""
+        aircraft, stale = [], set[int]()
         for other, craft in sorted(state.crafts.items()):
-            if craft.air is not None:
-                late_s = (body.Time - craft.body.Time) / 1000
-                aircraft.append((other, moved(craft.air, late_s)))
+            if craft.air is None:
+                continue
+            times = sorted((int(craft.body.Time), int(body.Time)))
+            if in_time(*times, TRAFFIC_KEPT_MS):
+                aircraft.append((other, moved(craft.air, (body.Time - craft.body.Time) / 1000)))
+            else:
+                stale.add(other)
         roll, pitch = math.radians(body.Roll), math.radians(body.Pitch)
-        return Seen(vid, now_ms, int(body.Time), tuple(aircraft), roll, pitch)
+        seen = Seen(vid, now_ms, int(body.Time), tuple(aircraft), roll, pitch)
+        notes: list[Out] = [
+            Note(
+                "WARN",
+                f"vehicle {other}: no state within {TRAFFIC_KEPT_MS} ms; not told as traffic",
+            )
+            for other in sorted(stale - state.stale)
+        ]
+        state, out = self._end(replace(state, stale=frozenset(stale)), seen)
+        return state, [*notes, *out]
 
     def _deviation(self, state: State, vid: int, away: Away, craft: Craft, air: AirState) -> Step:
         """Tasks pause when the vehicle is farther from its leg than is allowed, once a takeover."""

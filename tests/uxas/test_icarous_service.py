@@ -150,6 +150,21 @@ def test_instances_without_a_hello_get_the_lowest_ids_in_the_order_of_arrival(
     assert rig.said.has("more instances than NumberOfUAVs = 2")
 
 
+def test_an_aircraft_of_another_time_is_no_traffic_and_that_is_said(
+    tmp_path: Path, opened: list[Any]
+) -> None:
+    rig = Rig(tmp_path, 'NumberOfUAVs="1"', opened)
+    one = rig.fake(hello=1)
+    rig.tell(state(9, 500.0, 10_000), state(8, 700.0, 1000), state(1, 0.0, 11_000))
+    rig.until(lambda: one.all(tp.Traffic))
+    (other,) = one.all(tp.Traffic)
+    assert other.index == 9
+    # flown on to the time of the vehicle's own state: 22 m in a second
+    assert PLANE.to_local(other.lat_deg, other.long_deg)[0] == pytest.approx(522.0, abs=0.01)
+    rig.tell(state(1, 11.0, 11_500))
+    assert len([line for line in rig.said if "vehicle 8: no state within 5000 ms" in line]) == 1
+
+
 def test_two_instances_for_one_vehicle_and_a_stranger_are_refused(
     tmp_path: Path, opened: list[Any]
 ) -> None:
