@@ -259,8 +259,8 @@ class Communication:
         for other, craft in sorted(state.crafts.items()):
             if craft.air is None:
                 continue
-            times = sorted((int(craft.body.Time), int(body.Time)))
-            if in_time(*times, TRAFFIC_KEPT_MS):
+            first, last = sorted((int(craft.body.Time), int(body.Time)))
+            if in_time(first, last, TRAFFIC_KEPT_MS):
                 aircraft.append((other, moved(craft.air, (body.Time - craft.body.Time) / 1000)))
             else:
                 stale.add(other)
