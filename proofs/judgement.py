@@ -10,14 +10,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from cratous.core import ledger as gate
-from cratous.core.ledger.home import Home
+from cratous.core.ledger.package_home import Home
 from cratous.core.ledger.status import Grounds
 from cratous.proofs import ledger
 from cratous.proofs.engine.cache import Cache
-from cratous.proofs.ledger.recall import Recall
+from cratous.proofs.ledger.proof_recall import Recall
 from cratous.proofs.statements import definitions
-from cratous.proofs.statements.grounds import grounds
-from cratous.proofs.statements.kept import Kept
+from cratous.proofs.statements.relation_cache import Kept
+from cratous.proofs.statements.status_evidence import grounds
 
 
 @dataclass(frozen=True)

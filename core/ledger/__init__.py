@@ -20,7 +20,10 @@ from typing import Any
 from cratous.core.kernel import REGISTRY, Entry, Fold, named
 from cratous.core.kernel.names import short
 from cratous.core.kernel.sources import altered, position, stands_for_itself
-from cratous.core.ledger.home import (
+from cratous.core.ledger.kept_keys import keys_of
+from cratous.core.ledger.key_parts import MISSING, PARTS, compiler, solver_version
+from cratous.core.ledger.keys import Keys
+from cratous.core.ledger.package_home import (
     PRODUCT,
     Home,
     package,
@@ -28,9 +31,6 @@ from cratous.core.ledger.home import (
     theorem_home,
     theorem_name,
 )
-from cratous.core.ledger.kept_keys import keys_of
-from cratous.core.ledger.keys import Keys
-from cratous.core.ledger.parts import MISSING, PARTS, compiler, solver_version
 from cratous.core.ledger.records import read
 from cratous.spec.errors import BadInput, Refused
 

@@ -21,18 +21,18 @@ import z3
 
 from cratous.core.kernel import entry_of, qualified
 from cratous.core.kernel.sources import altered, ours, place, position
-from cratous.core.ledger.home import Home
-from cratous.proofs.engine import definition_subset, plain_numbers, reached
+from cratous.core.ledger.package_home import Home
+from cratous.proofs.engine import definition_subset, plain_numbers, reachable_paths
 from cratous.proofs.engine.cache import Answer, Cache
 from cratous.proofs.engine.claim import Claim, Obligation
 from cratous.proofs.engine.counterexample import Model, Watched, story, telling
 from cratous.proofs.engine.cpu_limit import OutOfTime, cpu_limit
-from cratous.proofs.engine.ladder import check, solvers
 from cratous.proofs.engine.lemma_calls import hangs_on_calls
 from cratous.proofs.engine.lift import LiftError
-from cratous.proofs.engine.merkle import Hasher
+from cratous.proofs.engine.obligation_hash import Hasher
 from cratous.proofs.engine.outcomes import Outcome, Owed, Ran, restored
 from cratous.proofs.engine.smtlib import logic_of, question, smt2, sorts
+from cratous.proofs.engine.solver_order import check, solvers
 from cratous.proofs.engine.theorem_files import FOLDER, find, load_claim, load_lemma, theorem_files
 from cratous.spec.errors import BadInput
 
@@ -54,7 +54,7 @@ class Theorem:
     """A claim with its outcomes. Only `prove` can make one.
 
     paths: of every kernel that it is about, which paths some values reach under the premises; varied:
-    how the arguments of every use of a kernel, in order, vary under them (see `reached`); ran: what came
+    how the arguments of every use of a kernel, in order, vary under them (see `reachable_paths`); ran: what came
     of running it on numbers, None where it was not run.
     """
 
@@ -88,7 +88,7 @@ class Theorem:
 
     @property
     def uses(self) -> dict[tuple[str, int], str]:
-        """How the arguments vary in each use of a kernel, numbered for each kernel (see `reached`)."""
+        """How the arguments vary in each use of a kernel, numbered for each kernel (see `reachable_paths`)."""
         counted: dict[str, int] = {}
         found = {}
         for name, how in self.varied:
@@ -108,7 +108,7 @@ class Theorem:
 
 
 def restore(data: dict[str, Any]) -> Theorem:
-    """A theorem from its fields as they were kept (`proofs.ledger.recall`).
+    """A theorem from its fields as they were kept (`proofs.ledger.proof_recall`).
 
     Raises KeyError, TypeError or ValueError for data that are not a theorem's.
     """
@@ -249,8 +249,8 @@ def prove(
         tuple(outcomes),
         tuple(claim.assumptions),
         _KEY,
-        reached.paths(claim, possible),
-        reached.varied(claim, possible),
+        reachable_paths.paths(claim, possible),
+        reachable_paths.varied(claim, possible),
     )
 
 

@@ -21,13 +21,13 @@ from cratous.core import ledger as gate
 from cratous.core.kernel import REGISTRY, Entry, checkers, entry_of, supported
 from cratous.core.kernel.names import short
 from cratous.core.kernel.sources import altered, position, reached
-from cratous.core.ledger.home import PRODUCT, Home
+from cratous.core.ledger.package_home import PRODUCT, Home
 from cratous.core.ledger.records import seal, sealed, texts
 from cratous.core.ledger.status import Grounds, status_of
 from cratous.proofs.engine import prover
 from cratous.proofs.engine.cache import Cache
 from cratous.proofs.engine.subset import Finding, lint_all
-from cratous.proofs.ledger.recall import Recall
+from cratous.proofs.ledger.proof_recall import Recall
 from cratous.proofs.running.all import compare_all, told
 from cratous.proofs.running.theorem import Functions, run
 
@@ -265,7 +265,7 @@ def records(
 ) -> dict[str, Any]:
     """The ledger as data.
 
-    grounds: by kernel, fold or driver, of `proofs.statements.grounds`; without them nothing is said to
+    grounds: by kernel, fold or driver, of `proofs.statements.status_evidence`; without them nothing is said to
     be proved against a definition, or to be re-checked. statements: by theorem, what it says as a
     sentence made from its claim.
     """

@@ -27,8 +27,8 @@ from typing import Any
 from cratous.core import ledger as gate
 from cratous.core.files.private_cache import private_cache
 from cratous.core.kernel.names import fits
-from cratous.core.ledger.home import Home
-from cratous.proofs.engine import cache, forked, prover
+from cratous.core.ledger.package_home import Home
+from cratous.proofs.engine import cache, prover, worker_processes
 from cratous.proofs.mutation.judgement import judge_target
 from cratous.proofs.mutation.keys import Keys, Store
 from cratous.proofs.mutation.premises import judge_premises
@@ -92,7 +92,7 @@ def _chosen(
         return {k: users for k, (_, users) in there.items() if named(k) or k in mine}, near
 
     # in a process of its own, so that every judgement starts from a state without terms
-    return forked.call(look)
+    return worker_processes.call(look)
 
 
 def run(
@@ -131,7 +131,7 @@ def run(
     for name in weighed:
         calls.append((name, partial(judge_premises, name, effort[name], keys, known)))
     rows: dict[str, list[Any]] = {}
-    for number, found in forked.each([call for _, call in calls], jobs):
+    for number, found in worker_processes.each([call for _, call in calls], jobs):
         rows[calls[number][0]] = found
         if tell is not None:
             tell(calls[number][0], found)
@@ -168,7 +168,7 @@ def _effort(names: list[str], home: Home, jobs: int) -> dict[str, int]:
     """What each theorem took to prove; all must hold as they stand."""
     kept = cache.standard()
     calls = [partial(prover.prove_file, n, folder=home.theorems, cache=kept) for n in names]
-    proved = {names[number]: theorem for number, theorem in forked.each(calls, jobs)}
+    proved = {names[number]: theorem for number, theorem in worker_processes.each(calls, jobs)}
     broken = [name for name in names if not proved[name].proved]
     if broken:
         raise ValueError(f"not proved as they stand, so no mutant can be judged: {broken}")

@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 
 from cratous.core.kernel.sources import ours
-from cratous.proofs.engine import forked
+from cratous.proofs.engine import worker_processes
 from cratous.proofs.engine.outcomes import Ran
 from cratous.proofs.engine.prover import Theorem
 from cratous.proofs.running.readings import Compared, Row, compare
@@ -32,7 +32,9 @@ def compare_all(
     parts = [names[k::jobs] for k in range(min(jobs, len(names)))]
     # a process for many: each imports the compiler
     tasks = [partial(_some, part, masks, rows, machine) for part in parts]
-    return {key: found for _, some in forked.each(tasks, jobs) for key, found in some.items()}
+    return {
+        key: found for _, some in worker_processes.each(tasks, jobs) for key, found in some.items()
+    }
 
 
 def _some(

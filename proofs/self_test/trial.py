@@ -23,9 +23,9 @@ import z3
 from cratous.core import ledger as gate
 from cratous.core.ledger import records
 from cratous.proofs import ledger
-from cratous.proofs.engine import definition_subset, forked, prover, symbolic
+from cratous.proofs.engine import definition_subset, prover, symbolic, worker_processes
 from cratous.proofs.judgement import Judgement, judge
-from cratous.proofs.ledger.formats import failure_text
+from cratous.proofs.ledger.report_formats import failure_text
 from cratous.proofs.self_test.case import Case
 from cratous.spec.errors import BadInput, CratousError
 
@@ -135,9 +135,13 @@ def attempt(case: Case) -> Trial:
         folder = Path(made).resolve()
         case.write(folder, package)
         try:
-            verdict, reason, could = forked.call(partial(_proved, package, folder, case.without))
+            verdict, reason, could = worker_processes.call(
+                partial(_proved, package, folder, case.without)
+            )
             written = any((folder / package / "ledger").rglob("*.json"))
-            vouched = could and written and forked.call(partial(_vouches, package, folder))
+            vouched = (
+                could and written and worker_processes.call(partial(_vouches, package, folder))
+            )
         except Exception as error:  # it ended its process, or the gate met what it does not expect
             return Trial(case, "broken", f"{type(error).__name__}: {error}", False)
         # as the case calls it: the package's long name has words of its own
@@ -148,7 +152,7 @@ def attempts(cases: Sequence[Case], jobs: int = 1) -> Iterator[Trial]:
     """Try these cases, so many at once; the trials come as they are done."""
     prepare()
     tried: Sequence[Callable[[], Trial]] = [partial(attempt, case) for case in cases]
-    for _, trial in forked.each(tried, jobs):
+    for _, trial in worker_processes.each(tried, jobs):
         yield trial
 
 

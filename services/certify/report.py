@@ -21,7 +21,7 @@ from cratous.services.certify.timeline import bars, read_flight
 from cratous.services.certify.verdicts import requirement_rows, with_promised
 from cratous.services.logs.log import read_digest, read_log
 from cratous.services.logs.records import fingerprint, to_data
-from cratous.services.monitor.promises import watched
+from cratous.services.monitor.required_rows import watched
 from cratous.services.results.names import FORMAT, HTML_NAME, LOG_NAME, MAP_NAME, REPORT_NAME
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Outcome, exit_code, worst

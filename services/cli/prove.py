@@ -20,7 +20,7 @@ from cratous.spec.errors import BadInput
 
 
 def _show(theorem: Any, verbose: bool, statement: str) -> None:
-    from cratous.proofs.ledger.formats import failure_text
+    from cratous.proofs.ledger.report_formats import failure_text
 
     mark = (
         click.style("proved    ", fg="green")
@@ -71,7 +71,7 @@ def _export(theorems: list[Any], folder: Path, theorem_folder: Path) -> int:
     """Write each obligation as SMT-LIB; returns how many files."""
     from functools import partial
 
-    from cratous.proofs.engine import forked, prover
+    from cratous.proofs.engine import prover, worker_processes
 
     def texts(name: str) -> list[str]:
         claim, sentence = prover.state(name, theorem_folder)
@@ -81,7 +81,7 @@ def _export(theorems: list[Any], folder: Path, theorem_folder: Path) -> int:
     folder.mkdir(parents=True, exist_ok=True)
     written = 0
     for theorem in theorems:
-        for number, text in enumerate(forked.call(partial(texts, theorem.name)), 1):
+        for number, text in enumerate(worker_processes.call(partial(texts, theorem.name)), 1):
             write_atomically(folder / f"{theorem.name}-{number:02d}.smt2", text)
             written += 1
     return written
@@ -182,9 +182,9 @@ def prove(
     from cratous.proofs import ledger
     from cratous.proofs.engine import cache, prover
     from cratous.proofs.judgement import judge
-    from cratous.proofs.ledger import formats
-    from cratous.proofs.ledger.recall import Recall
-    from cratous.proofs.ledger.remembered import Remembered
+    from cratous.proofs.ledger import report_formats
+    from cratous.proofs.ledger.proof_recall import Recall
+    from cratous.proofs.ledger.text_cache import Remembered
     from cratous.proofs.lint import decisions
 
     as_json, junit, sarif, smt2_folder, jobs, verbose = Output(**output)
@@ -248,8 +248,8 @@ def prove(
         for theorem in theorems:
             _show(theorem, verbose, judged.statements.get(theorem.name, ""))
     outputs: list[tuple[Path | None, Callable[[list[str]], str]]] = [
-        (junit, lambda found: formats.junit(theorems, found)),
-        (sarif, lambda found: formats.sarif(theorems, found, home)),
+        (junit, lambda found: report_formats.junit(theorems, found)),
+        (sarif, lambda found: report_formats.sarif(theorems, found, home)),
     ]
     problems = judged.problems
     if whole and home.product:
@@ -283,7 +283,7 @@ def prove(
             records.write(said, home.records)
     for path, make in outputs:
         if path is not None:
-            formats.write(path, make(problems))
+            report_formats.write(path, make(problems))
     dead = ledger.dead_paths(theorems) if whole else []
     second = data.get("recheck", {}).get("theorems", {})
     assumed = sum(len(t.assumptions) for t in theorems)
@@ -293,7 +293,7 @@ def prove(
             "statuses": statuses,
             "theorems": [
                 {
-                    **formats.theorem_data(t, second.get(t.name)),
+                    **report_formats.theorem_data(t, second.get(t.name)),
                     "statement": judged.statements.get(t.name, ""),
                 }
                 for t in theorems

@@ -29,7 +29,7 @@ from cratous.bridge.text_protocol import (
 from cratous.core.authority.gate import UXAS, Gate
 from cratous.core.authority.link_end import LinkEnd, link_mode, link_sign
 from cratous.core.routing.polylines import Track
-from cratous.services.flight import lines
+from cratous.services.flight import link_lines
 from cratous.services.flight.messages import (
     Beat,
     Connected,
@@ -151,7 +151,7 @@ class UxasEnd:
             case Seen():
                 return self._seen(peer, message)
             case Left(_, position):
-                return peer, _down(peer, [lines.reset_to(position, self.projection)])
+                return peer, _down(peer, [link_lines.reset_to(position, self.projection)])
             case Heard(_, now_ms, line):
                 return _heard(peer, line, now_ms)
             case GateIs(_, gate):
@@ -189,29 +189,31 @@ class UxasEnd:
     def _fences(self, zones: tuple[Zone, ...], known: int) -> list[Message]:
         """The zones after the first `known`, as lines."""
         fresh = list(enumerate(zones, 1))[known:]
-        return [m for number, zone in fresh for m in lines.fence(zone, number, self.projection)]
+        return [
+            m for number, zone in fresh for m in link_lines.fence(zone, number, self.projection)
+        ]
 
     def _route(self, peer: Peer, route: Route) -> tuple[Peer, tuple[FromLinkEnd, ...]]:
         track = Track(route.points)
-        told = lines.way(track.points, route.speed_m_s, self.projection)
+        told = link_lines.way(track.points, route.speed_m_s, self.projection)
         after = replace(peer, marks_m=track.s_m, from_m=route.from_m, reached=0, way=tuple(told))
         return after, _down(peer, told)
 
     def _seen(self, peer: Peer, seen: Seen) -> OfOne:
         """POSTN, ATTUD and OBJCT to one instance."""
-        places = lines.places_of(seen.aircraft, self.projection)
+        places = link_lines.places_of(seen.aircraft, self.projection)
         attitude = Attitude(math.degrees(seen.roll_rad), math.degrees(seen.pitch_rad), 0.0)
-        told = lines.states(peer.vehicle_id, seen.aircraft, places, seen.time_ms, attitude)
+        told = link_lines.states(peer.vehicle_id, seen.aircraft, places, seen.time_ms, attitude)
         after = replace(peer, down=peer.down + peer.open)
         beat = (_heartbeat(after, seen.now_ms, "Down", after.down),) if peer.open else ()
         return after, (*_down(peer, told), *beat)
 
     def _beat(self, state: State, beat: Beat) -> Step:
         """POSTN, ATTUD and OBJCT to every instance; what to publish of it."""
-        places = lines.places_of(beat.aircraft, self.projection)
+        places = link_lines.places_of(beat.aircraft, self.projection)
         peers, out = list[Peer](), list[FromLinkEnd]()
         for peer in state.peers:
-            told = lines.states(peer.vehicle_id, beat.aircraft, places, beat.now_ms)
+            told = link_lines.states(peer.vehicle_id, beat.aircraft, places, beat.now_ms)
             count = peer.down + peer.open
             peers.append(replace(peer, down=count))
             out += _down(peer, told)

@@ -16,10 +16,10 @@ from cratous.core.tasks.coverage_steps import enough_seen
 from cratous.core.tasks.service import Watched as Seen
 from cratous.core.tasks.service import service_verdict
 from cratous.services.monitor.coverage import CoverageWatch
-from cratous.services.monitor.presence import Ending, Presence
-from cratous.services.monitor.promises import END, Watched, served_item
-from cratous.services.monitor.prospects import prospects
+from cratous.services.monitor.observation import Ending, Presence
+from cratous.services.monitor.required_rows import END, Watched, served_item
 from cratous.services.monitor.samples import Sample
+from cratous.services.monitor.serviceability import prospects
 from cratous.spec.constraint_rows import AFTER_END
 from cratous.spec.executive import COMPLETE, FAILED_FLIGHT
 from cratous.spec.mission import AREAS, SEARCHES, Loiter, Mission, Position, Task, TaskKind

@@ -10,9 +10,15 @@ from cratous.core.kernel import qualified
 from cratous.core.schedule.choice import as_asked
 from cratous.core.schedule.rows import eligible, runs_forward
 from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok
-from cratous.services.monitor.presence import Ending, Presence
-from cratous.services.monitor.promises import CHOICE, Watched, eligible_item, fence_item, zones_of
+from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.relations import branch_rows, by_term, is_choice
+from cratous.services.monitor.required_rows import (
+    CHOICE,
+    Watched,
+    eligible_item,
+    fence_item,
+    zones_of,
+)
 from cratous.services.monitor.samples import Sample
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict

@@ -26,7 +26,7 @@ from cratous.services.pipeline import (
 )
 from cratous.services.pipeline.contexts import Contexts
 from cratous.services.pipeline.validator import AutomationRequestValidatorService
-from cratous.services.uxas import batch, diagram, leash, regions, small, tracker, waypoints
+from cratous.services.uxas import basic_services, batch, diagram, leash, regions, tracker, waypoints
 from cratous.services.uxas.daidalus import detection, response
 from cratous.services.uxas.daidalus import parameters as daidalus
 from cratous.services.uxas.frame import Host
@@ -105,20 +105,20 @@ def _task_manager(host: Host, entry: Entry, v: dict[str, Any], name: str, number
 
 
 def _messages(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return small.send_messages(host, entry, v, name)
+    return basic_services.send_messages(host, entry, v, name)
 
 
 def _time(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return small.SimulationTime(name, host.clock, host.log)
+    return basic_services.SimulationTime(name, host.clock, host.log)
 
 
 def _hello(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return small.HelloWorld(name, number, v["StringToSend"], v["SendPeriod_ms"], host)
+    return basic_services.HelloWorld(name, number, v["StringToSend"], v["SendPeriod_ms"], host)
 
 
 def _report(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
     vehicle = host.entity_id if v["VehicleID"] is None else v["VehicleID"]
-    return small.StatusReportService(
+    return basic_services.StatusReportService(
         name, vehicle, v["ReportPeriod_ms"], v["StaleStateTime_ms"], v["KeepAliveExpiration_ms"]
     )
 

@@ -15,7 +15,7 @@ from cratous.services.pipeline import (
     tasks,
 )
 from cratous.services.pipeline.validator import AutomationRequestValidatorService
-from cratous.services.uxas import batch, diagram, leash, regions, small, tracker, waypoints
+from cratous.services.uxas import basic_services, batch, diagram, leash, regions, tracker, waypoints
 from cratous.services.uxas.daidalus import detection, response
 from cratous.services.uxas.registry import VALIDATOR
 
@@ -78,10 +78,10 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
         response.DaidalusResponse, ("VehicleActionCommand", "MissionCommand", "ServiceStatus")
     ),
     "AutomationDiagramDataService": (diagram.AutomationDiagramDataService, ("ServiceStatus",)),
-    "SendMessagesService": (small.SendMessagesService, ()),
+    "SendMessagesService": (basic_services.SendMessagesService, ()),
     "MessageLoggerDataService": (MessageLogger, ()),
-    "Test_SimulationTime": (small.SimulationTime, ()),
-    "HelloWorld": (small.HelloWorld, ("KeyValuePair",)),
-    "StatusReportService": (small.StatusReportService, ("OnboardStatusReport",)),
+    "Test_SimulationTime": (basic_services.SimulationTime, ()),
+    "HelloWorld": (basic_services.HelloWorld, ("KeyValuePair",)),
+    "StatusReportService": (basic_services.StatusReportService, ("OnboardStatusReport",)),
 }  # fmt: skip
 """Of each service its class, which says what it subscribes to, and the messages that it sends."""

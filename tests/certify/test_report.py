@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cratous.services.certify.charts import FEW, altitude_view, separation_view
-from cratous.services.certify.comparing import differences, text_difference
+from cratous.services.certify.differences import differences, text_difference
 from cratous.services.certify.html import margin, render, seconds
 from cratous.services.certify.picture import map_view, time_view
 from cratous.services.certify.timeline import bars, read_flight

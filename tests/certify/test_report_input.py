@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cratous.services.certify.reading import read_report
+from cratous.services.certify.report_input import read_report
 from cratous.spec.errors import BadInput
 
 BAD = {

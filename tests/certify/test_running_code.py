@@ -9,7 +9,7 @@ from types import CodeType
 import pytest
 
 from cratous.services.certify import running_code as module
-from cratous.services.certify.recorded import _is_code
+from cratous.services.certify.flight_record import _is_code
 from cratous.services.certify.report import environment
 from cratous.services.certify.running_code import NO_RELEASE, against, running_code
 from cratous.services.logs import records

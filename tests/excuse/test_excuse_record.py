@@ -14,8 +14,8 @@ from cratous.bridge import lmcp
 from cratous.core.daa.state import DIMENSIONS
 from cratous.core.excuse.record import ACCELERATION_M_S2, Record, Scene, judge_loss, modelled
 from cratous.core.excuse.state import FREE, NO_WAY, REFUSED, UNDECIDED, WAY_OUT
-from cratous.services.certify.again import certify_again
 from cratous.services.certify.html import losses
+from cratous.services.certify.rejudge import certify_again
 from cratous.services.certify.verdicts import constraint_rows, requirement_rows
 from cratous.services.cli import main as run_command
 from cratous.services.flight.dynamics import MAX_ACCELERATION_M_S2

@@ -18,8 +18,8 @@ from cratous.core.avoidance.prediction import Intruder
 from cratous.core.avoidance.resolution import Scene
 from cratous.core.permit.remainder import STANDING, traffic_permits, zones_permit
 from cratous.core.routing.polylines import Track
-from cratous.services.flight.ahead import points_ahead
 from cratous.services.flight.chain import Chain, Phase
+from cratous.services.flight.remaining_path import points_ahead
 from cratous.services.icarous.ending import HOLD_RADII, TRACKING_S, with_hold
 from cratous.services.icarous.messages import Sensed
 from cratous.services.loading import load

@@ -17,12 +17,12 @@ from cratous.proofs.engine.lift import REPLACED
 from cratous.proofs.engine.symbolic import wrap
 from cratous.proofs.mutation import judgement as mutation_judge
 from cratous.proofs.mutation import mutate
-from cratous.proofs.mutation.asking import ask
 from cratous.proofs.mutation.inputs import compare, inputs, run
 from cratous.proofs.mutation.keys import Keys, Store
 from cratous.proofs.mutation.operators import mutants
 from cratous.proofs.mutation.premises import judge_premises
 from cratous.proofs.mutation.report import MutationReport
+from cratous.proofs.mutation.solver_queries import ask
 from cratous.proofs.mutation.statements import targets
 from cratous.proofs.mutation.terms import equal, with_values
 from cratous.spec.errors import BadInput

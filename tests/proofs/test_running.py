@@ -17,7 +17,7 @@ from cratous.core.ledger import load_all
 from cratous.proofs import ledger
 from cratous.proofs.engine import prover
 from cratous.proofs.engine.prover import Outcome, Owed, restore
-from cratous.proofs.ledger.formats import failure_text
+from cratous.proofs.ledger.report_formats import failure_text
 from cratous.proofs.running.arguments import rows
 from cratous.proofs.running.copies import Undecided, rational_root
 from cratous.proofs.running.readings import MACHINE, compare

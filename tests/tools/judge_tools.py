@@ -87,7 +87,7 @@ def edited(source: Path, target: Path, edit: Edit) -> Path:
 
 def with_monitor(log: Path) -> Path:
     """The folder of a log, with what the flight's monitor says of it as its report."""
-    from cratous.services.certify.again import watch
+    from cratous.services.certify.rejudge import watch
     from cratous.services.certify.verdicts import constraint_rows
 
     return with_report(log, constraint_rows(watch(log), "flight"))

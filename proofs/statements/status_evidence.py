@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from cratous.core.kernel import Entry
-from cratous.core.ledger.home import Home
+from cratous.core.ledger.package_home import Home
 from cratous.core.ledger.status import Grounds
 from cratous.proofs.statements.definitions import Proofs, relating
 from cratous.proofs.statements.rechecked import rechecked_by

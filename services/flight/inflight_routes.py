@@ -13,10 +13,10 @@ from typing import NamedTuple
 from cratous.core.routing.dubins import STRAIGHT, pose_after
 from cratous.core.routing.polylines import Track
 from cratous.services.flight import chain as chains
-from cratous.services.flight.ahead import join_in_transit, leaving_m
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.rejoining import Router
+from cratous.services.flight.remaining_path import join_in_transit, leaving_m
 from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import PlanItem, Pose
 

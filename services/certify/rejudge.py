@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from cratous.services.certify.comparing import differences
-from cratous.services.certify.reading import read_report
-from cratous.services.certify.recorded import flown_of
+from cratous.services.certify.differences import differences
+from cratous.services.certify.flight_record import flown_of
 from cratous.services.certify.report import build_report, mission_hash, plan_hash, report_text
+from cratous.services.certify.report_input import read_report
+from cratous.services.certify.result_files import Files
 from cratous.services.certify.verdicts import constraint_rows, plan_rows
-from cratous.services.certify.written import Files
 from cratous.services.logs.log import read_envelopes, read_log, read_meta
 from cratous.services.logs.records import from_data
 from cratous.services.logs.sqlite_log import SqliteLog

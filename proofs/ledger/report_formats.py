@@ -15,7 +15,7 @@ from typing import Any
 from cratous.core.files.whole_file import write_atomically
 from cratous.core.kernel import REGISTRY
 from cratous.core.kernel.sources import place, position
-from cratous.core.ledger.home import PRODUCT, Home
+from cratous.core.ledger.package_home import PRODUCT, Home
 from cratous.proofs.engine.prover import Outcome, Theorem, theorem_files
 
 

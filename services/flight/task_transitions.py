@@ -13,15 +13,15 @@ from cratous.core.authority.timeliness import too_early
 from cratous.core.executive.steps import end_passed, falls_with, may_begin, way_act
 from cratous.core.routing.polylines import Track
 from cratous.services.flight import chain as chains
-from cratous.services.flight.ahead import last_lap
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import task_progress
 from cratous.services.flight.dynamics import turn_radius_m
 from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.left_out import leave_out, nothing_of
-from cratous.services.flight.lives import life
 from cratous.services.flight.messages import Say
 from cratous.services.flight.notices import mission_change
+from cratous.services.flight.remaining_path import last_lap
+from cratous.services.flight.task_states import life
 from cratous.services.flight.timing import closed_by
 from cratous.spec.algebra.partial import waits_for
 from cratous.spec.constraint_rows import Row

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from cratous.core.schedule.rows import runs_forward
-from cratous.services.mission.taking_part import absent
+from cratous.services.mission.availability import absent
 from cratous.services.monitor.outside import outside_zones
 from cratous.spec.mission import Mission, Task
 from cratous.spec.mission.changes import TASK_ADDED, split

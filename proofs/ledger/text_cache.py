@@ -16,7 +16,7 @@ from pathlib import Path
 
 from cratous.core import ledger as gate
 from cratous.core.kernel.sources import ROOT, digest, place
-from cratous.core.ledger.home import Home
+from cratous.core.ledger.package_home import Home
 
 PARTS = ("spec", "core", "proofs", "services", "bridge")
 INPUTS = (".py", ".lark")

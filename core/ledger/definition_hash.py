@@ -14,8 +14,8 @@ import hashlib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
+from cratous.core.ledger.module_trees import Place, Target, Tree
 from cratous.core.ledger.syntax_text import ANY_ATTRIBUTE, ANYTHING, EVERY, REGISTERED
-from cratous.core.ledger.trees import Place, Target, Tree
 
 CLOSED = frozenset(
     {

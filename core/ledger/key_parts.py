@@ -46,7 +46,7 @@ REMEMBERS = (
     "proofs.engine.counterexample.story",
     "proofs.engine.counterexample.telling",
     "proofs.engine.prover._slip",
-    "proofs.ledger.recall.Recall",
+    "proofs.ledger.proof_recall.Recall",
 )
 """What only prints or remembers: a prover with an empty cache decides the same without it."""
 COMPILER = ("numba", "llvmlite", "numpy")

@@ -13,7 +13,7 @@ from typing import Any
 
 import z3
 
-from cratous.proofs.engine.ladder import check, solvers
+from cratous.proofs.engine.solver_order import check, solvers
 
 _CONTEXTS: list[z3.Context] = []
 _REALS: dict[int, tuple[z3.ExprRef, bool]] = {}

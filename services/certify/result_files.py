@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from cratous.core.files.whole_file import write_atomically
-from cratous.services.certify.comparing import text_difference
+from cratous.services.certify.differences import text_difference
 from cratous.services.certify.report import pages, report_text
 from cratous.services.results.names import CERTIFICATE_NAME, MANIFEST_NAME, NAMES, REPORT_NAME
 from cratous.services.results.ownership import digest_of, is_plain, manifest_text, read_manifest

@@ -20,9 +20,9 @@ from typing import Any
 
 from cratous.core import ledger as gate
 from cratous.core.kernel.sources import digest
-from cratous.core.ledger.home import PRODUCT, Home
+from cratous.core.ledger.key_parts import MISSING
 from cratous.core.ledger.keys import Keys
-from cratous.core.ledger.parts import MISSING
+from cratous.core.ledger.package_home import PRODUCT, Home
 from cratous.proofs.engine.prover import RLIMIT, Theorem, restore
 
 

@@ -10,8 +10,8 @@ from collections.abc import Collection, Iterable, Iterator, Set
 from typing import NamedTuple
 
 from cratous.core.schedule.rows import runs_forward
+from cratous.services.monitor.observation import Span, in_the_air
 from cratous.services.monitor.plan_check import WHOLE
-from cratous.services.monitor.presence import Span, in_the_air
 from cratous.services.monitor.relations import first_choices
 from cratous.spec.mission import Mission, Zone
 from cratous.spec.mission.asked import asked

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from cratous.core.kernel.sources import digest
-from cratous.core.ledger.home import Home
-from cratous.proofs.ledger.recall import Recall
-from cratous.proofs.ledger.remembered import named
+from cratous.core.ledger.package_home import Home
+from cratous.proofs.ledger.proof_recall import Recall
+from cratous.proofs.ledger.text_cache import named
 from cratous.proofs.statements import relations, sentences
 from cratous.proofs.statements.relations import Relations
 

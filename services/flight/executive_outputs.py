@@ -6,14 +6,14 @@ from dataclasses import replace
 
 from cratous.core.authority.gate import UXAS
 from cratous.core.authority.link_end import track_is_told
-from cratous.services.flight.ahead import points_ahead, points_left
 from cratous.services.flight.chain import Phase
 from cratous.services.flight.commands import gated, path_command
 from cratous.services.flight.deadlines import opens
 from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.messages import Flown, Look, Route, Say
-from cratous.services.flight.passing import NAME
+from cratous.services.flight.remaining_path import points_ahead, points_left
 from cratous.services.flight.sensing import looks
+from cratous.services.flight.task_transitions import NAME
 
 AHEAD_S = 30
 """Waypoints are told at least this much farther than the look-ahead [s]."""

@@ -19,8 +19,8 @@ import z3
 
 from cratous.proofs.engine.lift import Visit
 from cratous.proofs.engine.terms import free_values, known
-from cratous.proofs.mutation.asking import number
 from cratous.proofs.mutation.inputs import shaped
+from cratous.proofs.mutation.solver_queries import number
 from cratous.proofs.mutation.terms import flat
 
 TRIES, KEPT = 60, 25
