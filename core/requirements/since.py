@@ -24,6 +24,12 @@ class Broken(NamedTuple):
 
 
 @kernel(supports="since_holds")
+def is_due(time: int, at: int, low: int) -> bool:
+    """True iff a sample is old enough for the since at `at`. low: the lower bound, >= 0."""
+    return at - time >= low
+
+
+@kernel(supports="since_holds")
 def since_found(found: Found, time: int, psi: int) -> Found:
     """A sample more that is old enough. time: of it; psi: the verdict there."""
     if psi == 2:
@@ -66,9 +72,7 @@ class Since(NamedTuple):
 
 
 @kernel(supports="since_holds")
-def since_next(
-    so_far: Since, time: int, phi: int, psi: int, at: int, low: int, high: int
-) -> Since:
+def since_next(so_far: Since, time: int, phi: int, psi: int, at: int, low: int, high: int) -> Since:
     """A sample more; one that is not later than the last, or later than `at`, does not count.
 
     time: of the sample; phi, psi: verdicts there; at: of the sample whose since it is; low, high: bounds,
@@ -77,7 +81,7 @@ def since_next(
     if time <= so_far.last or time > at:
         return so_far
     found = so_far.found
-    if at - time >= low:
+    if is_due(time, at, low):
         found = since_found(so_far.found, time, psi)
     broken = since_broken(so_far.broken, time, phi)
     return Since(time, found, broken, since_decided(found, broken, at, high))

@@ -18,9 +18,7 @@ class Times(NamedTuple):
 
 
 @kernel(supports="until_holds")
-def until_decided(
-    times: Times, time: int, phi: int, psi: int, at: int, low: int, high: int
-) -> int:
+def until_decided(times: Times, time: int, phi: int, psi: int, at: int, low: int, high: int) -> int:
     """What a sample more decides for the one at `at`: 0 false, 1 unknown for good, 2 true, 3 it waits.
 
     times: of the samples before it; time: of the new sample, not before `at`; phi, psi: verdicts there;
@@ -64,9 +62,7 @@ class Until(NamedTuple):
 
 
 @kernel(supports="until_holds")
-def until_next(
-    so_far: Until, time: int, phi: int, psi: int, at: int, low: int, high: int
-) -> Until:
+def until_next(so_far: Until, time: int, phi: int, psi: int, at: int, low: int, high: int) -> Until:
     """A sample more; one that is not later than the last is none of the trace. Arguments: until_decided."""
     if time <= so_far.last:
         return so_far

@@ -58,9 +58,7 @@ class Meant(NamedTuple):
     value: int
 
 
-def until_step(
-    meant: Meant, time: int, phi: int, psi: int, at: int, low: int, high: int
-) -> Meant:
+def until_step(meant: Meant, time: int, phi: int, psi: int, at: int, low: int, high: int) -> Meant:
     """A sample more of `phi U[low,high] psi` at the sample at time `at`.
 
     The value is the greatest, over the samples from `at` on whose distance to it lies in the bounds, of
@@ -75,9 +73,7 @@ def until_step(
     return Meant(time, min(meant.hold, phi), max(meant.value, here))
 
 
-def since_step(
-    meant: Meant, time: int, phi: int, psi: int, at: int, low: int, high: int
-) -> Meant:
+def since_step(meant: Meant, time: int, phi: int, psi: int, at: int, low: int, high: int) -> Meant:
     """A sample more of `phi S[low,high] psi` at the sample at time `at`.
 
     The value is the greatest, over the samples up to `at` whose distance to it lies in the bounds, of the
