@@ -26,6 +26,7 @@ SUITES = {
     "lmcp": "LMCP messages in binary and XML, both ways, and malformed ones.",
     "frames": "Captured sentinel frames and envelopes, and what breaks a TCP bridge.",
     "detect-and-avoid": "Alerts, bands, recovery, last times and resolutions of DAIDALUS.",
+    "monitor": "Requirements over time: verdicts of R2U2 on its traces and suites.",
     "assignment": "Optimal assignments: recorded optima, and best costs of OpenUxAS.",
 }
 

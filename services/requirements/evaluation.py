@@ -125,9 +125,28 @@ class _Until(_Paired):
         super().__init__(formula)
         self.times = Times(NEVER, NEVER)
         self.undecided: deque[int] = deque()
+        self.joined = NEVER
+
+    def take(self, side: int, got: Decided) -> Decided:
+        out = super().take(side, got)
+        if not self.waiting[0] and self.waiting[1]:
+            # psi may decide before phi is known (`requirements_until_is_decided_ahead_of_phi`)
+            time, psi = self.waiting[1][0]
+            self._join(time)
+            self._decide(time, TRUE, psi, out)
+        return out
 
     def step(self, time: int, phi: int, psi: int, out: Decided) -> None:
-        self.undecided.append(time)
+        self._join(time)
+        self._decide(time, phi, psi, out)
+        self.times = until_times(self.times, time, phi, psi)
+
+    def _join(self, time: int) -> None:
+        if time != self.joined:
+            self.undecided.append(time)
+            self.joined = time
+
+    def _decide(self, time: int, phi: int, psi: int, out: Decided) -> None:
         while self.undecided:
             at = self.undecided[0]
             verdict = until_decided(self.times, time, phi, psi, at, self.low, self.high)
@@ -135,7 +154,6 @@ class _Until(_Paired):
                 break
             self.undecided.popleft()
             out.append((at, verdict))
-        self.times = until_times(self.times, time, phi, psi)
 
     @property
     def size(self) -> int:
