@@ -9,7 +9,6 @@ at most 1e-5: a difference that vanishes when they are made equal is a knife edg
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
@@ -17,6 +16,7 @@ from typing import Any
 
 from cratous.services.conform import Result, edge, failed, not_covered, passed
 from cratous.services.requirements import c2po
+from cratous.services.requirements.csv_trace import Sample, TraceOfChanges, samples
 from cratous.services.requirements.evaluation import Evaluation
 from cratous.services.requirements.formula import Formula, Reaches, parts, signals
 from cratous.spec.errors import BadInput
@@ -26,9 +26,11 @@ from cratous.spec.files.text_file import lines_of, text_of
 VERDICTS = ".r2u2-verdicts.json.gz"
 WORDS = {"F": 0, "T": 2}
 LETTERS = "F?T"
+OPEN = "?"
+"""R2U2 has no verdict of the sample before the trace ends."""
 MOST_SAMPLES = 1_000_000
 TOLERANCE = 1e-5
-Trace = tuple[dict[str, float], ...]
+Trace = tuple[Sample, ...]
 
 
 def cases(file: Path) -> Iterator[tuple[int, dict[str, Any]]]:
@@ -45,9 +47,9 @@ def cases(file: Path) -> Iterator[tuple[int, dict[str, Any]]]:
         expected = f"NAME{VERDICTS} or suites/NAME.json"
         raise BadInput("this is no file of verdicts", where=str(file), expected=expected)
     for number, (name, requirement, told) in enumerate(rows, 1):
-        if not isinstance(told, str) or not set(told) <= set(WORDS):
-            raise BadInput("verdicts are T or F", where=str(file), item=requirement)
-        verdicts = {time: WORDS[letter] for time, letter in enumerate(told)}
+        if not isinstance(told, str) or not set(told) <= {*WORDS, OPEN}:
+            raise BadInput("verdicts are T, F or ?", where=str(file), item=requirement)
+        verdicts = {time: WORDS[letter] for time, letter in enumerate(told) if letter != OPEN}
         yield number, _case(f"{name} {requirement}", requirement, beside, verdicts)
 
 
@@ -113,38 +115,11 @@ def _specification(file: Path) -> c2po.Specification:
 
 @lru_cache(2)
 def _trace(file: Path) -> Trace | None:
-    """The samples of a CSV file whose first line names the signals, with or without `# ` before it.
-
-    None for a trace of changes (`@time ...`) in place of samples.
-    """
-    rows: list[dict[str, float]] = []
-    names: list[str] = []
-    for number, line in lines_of(file):
-        cells = [cell.strip() for cell in next(csv.reader([line.lstrip("# ")]), [])]
-        if not names:
-            names = cells
-            continue
-        if not any(cells):
-            continue
-        if cells[0].startswith("@"):
-            return None
-        if len(cells) != len(names):
-            got = f"{len(cells)} cells"
-            expected = f"{len(names)} cells"
-            raise BadInput("a sample", where=f"{file}:{number}", expected=expected, got=got)
-        rows.append(
-            {n: _number(c, f"{file}:{number}", n) for n, c in zip(names, cells, strict=True)}
-        )
-    return tuple(rows)
-
-
-def _number(cell: str, where: str, name: str) -> float:
+    """The samples of a CSV file; None for a trace of changes in place of samples."""
     try:
-        return float(cell)
-    except ValueError:
-        raise BadInput(
-            "this is no number", where=where, item=name, expected="a number", got=cell[:40]
-        ) from None
+        return tuple(row for _, row in samples(file))
+    except TraceOfChanges:
+        return None
 
 
 def judge(case: dict[str, Any]) -> Result:
@@ -210,6 +185,8 @@ def _equalised(formula: Formula, trace: Trace) -> Trace:
         near = dict(row)
         for one in sorted(compared, key=str):
             left, right = (near[s] if isinstance(s, str) else s for s in (one.left, one.right))
+            if left is None or right is None:
+                continue
             name, value = (one.left, right) if isinstance(one.left, str) else (one.right, left)
             if isinstance(name, str) and abs(left - right) <= TOLERANCE:
                 near[name] = value

@@ -50,17 +50,21 @@ ONE_SIDED: dict[str, Callable[[Formula, int, int], Formula]] = {
 
 
 class NotRead(BadInput):
-    """A requirement outside of the part of C2PO that is read. caret: its line, and ^ below the place."""
+    """A requirement outside of the part of C2PO that is read."""
 
     def __init__(
         self, what: str, where: str, caret: str, *, expected: str = "", got: str = ""
     ) -> None:
-        self.caret = caret
+        self._caret = caret
         super().__init__(what, where=where, expected=expected, got=got)
+
+    def caret(self) -> str:
+        """The line of the requirement (a window of it if it is long), and ^ below the place."""
+        return self._caret
 
     def data(self) -> dict[str, str]:
         """As for every `BadInput`, and the caret."""
-        return {**super().data(), "caret": self.caret}
+        return {**super().data(), "caret": self._caret}
 
 
 @dataclass(frozen=True)
@@ -87,7 +91,7 @@ def read(text: str, where: str = "C2PO") -> Specification:
     types: dict[str, str] = {}
     found: list[tuple[int, str]] = []
     marks = list(SECTION.finditer(text))
-    for mark, following in zip(marks, [*marks[1:], None], strict=True):
+    for mark, following in zip(marks, [*marks[1:], None][: len(marks)], strict=True):
         end = following.start() if following else len(text)
         if mark.group(1) == "INPUT":
             _declare(text, mark.end(), end, types, where)
@@ -151,6 +155,8 @@ def _formula(piece: str, types: dict[str, str]) -> tuple[str, Formula]:
         offset = error.pos_in_stream if error.pos_in_stream is not None else len(piece)
         offset = len(piece) if offset < 0 else offset
         token = None if isinstance(error, UnexpectedCharacters) else getattr(error, "token", None)
+        if token is not None and token.type == "$END":
+            offset, token = len(piece), None
         got = str(token or piece[offset : offset + 1]) or "the end of the requirement"
         raise _Wrong(
             "this is not in the part of C2PO that is read", offset, "a formula", got[:30]

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Mapping
 from itertools import count
+from math import isfinite
 
 from cratous.core.requirements.since import (
     Broken,
@@ -55,8 +56,8 @@ class _Leaf:
             return [(time, one.verdict)]
         left = values.get(one.left) if isinstance(one.left, str) else one.left
         right = values.get(one.right) if isinstance(one.right, str) else one.right
-        # what is missing or no number is not known
-        if left is None or right is None or left != left or right != right:
+        # what is missing, no number or infinite is not known
+        if left is None or right is None or not (isfinite(left) and isfinite(right)):
             return [(time, UNKNOWN)]
         return [(time, TRUE if reaches(left, right) else FALSE)]
 
@@ -213,8 +214,8 @@ class Evaluation:
     def sample(self, time: int, values: Mapping[str, float | None]) -> Decided:
         """The verdicts that this sample decides: (time of the sample that each is of, 0, 1 or 2).
 
-        time: later than that of the sample before, in time units; values: of the signals; None, NaN and
-        a signal that is not there are unknown. Raises BadInput for a time that is not later.
+        time: later than that of the sample before, in time units; values: of the signals; None, what is not
+        finite and a signal that is not there are unknown. Raises BadInput for a time that is not later.
         """
         if not self.last < time <= MAX_TIME:
             raise BadInput(

@@ -9,8 +9,6 @@ def claim(c: Claim) -> None:
     time, phi, psi = c.integer("time"), c.integer("phi"), c.integer("psi")
     at, low, high = c.integer("at"), c.integer("low"), c.integer("high")
     times = Times(c.integer("tainted"), c.integer("candidate"))
-    c.premise(low >= 0)
-    c.premise(low <= high)
     ahead = c.use(until_decided, times, time, 2, psi, at, low, high)
     known = c.use(until_decided, times, time, phi, psi, at, low, high)
     c.show(c.implies(ahead != 3, c.same(ahead, known)), "phi changes nothing")
