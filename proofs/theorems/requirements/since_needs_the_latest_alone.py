@@ -16,7 +16,7 @@ def claim(c: Claim) -> None:
     time, phi, psi = c.integer("time"), c.integer("phi"), c.integer("psi")
     at, later, low, high = (c.integer(name) for name in ("at", "later", "low", "high"))
     older = c.integer("older")
-    found = Found(c.integer("true"), c.integer("candidate"))
+    found = Found(c.integer("latest_true"), c.integer("candidate"))
     broken = Broken(c.integer("tainted"), c.integer("broken"))
     for verdict in (phi, psi):
         c.premise(verdict >= 0)

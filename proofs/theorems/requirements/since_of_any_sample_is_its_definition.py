@@ -20,7 +20,7 @@ def claim(c: Claim) -> None:
     c.premise(low <= high)
     acc = Since(
         c.whole("last"),
-        Found(c.whole("true"), c.whole("candidate")),
+        Found(c.whole("latest_true"), c.whole("candidate")),
         Broken(c.whole("tainted"), c.whole("broken")),
         c.whole("verdict"),
     )
