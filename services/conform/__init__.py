@@ -27,6 +27,7 @@ SUITES = {
     "frames": "Captured sentinel frames and envelopes, and what breaks a TCP bridge.",
     "detect-and-avoid": "Alerts, bands, recovery, last times and resolutions of DAIDALUS.",
     "bridge": "Lines and recorded sessions of the CRATOUS text protocol, whole and cut at every place.",
+    "monitor": "Requirements over time: verdicts of R2U2 on its traces and suites.",
     "assignment": "Optimal assignments: recorded optima, and best costs of OpenUxAS.",
 }
 

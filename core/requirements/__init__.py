@@ -1,0 +1,1 @@
+"""Requirements over time, decided sample by sample."""

@@ -1,0 +1,56 @@
+"""For a trace of any length and any one of its samples, bounded since as it is decided step by step is what
+its definition says of the samples up to that one."""
+
+from typing import Any
+
+from cratous.core.requirements.since import Broken, Found, Since, since_holds
+from cratous.proofs.claim import Claim
+from cratous.spec.requirements.operators import Meant, meant, since_step
+
+START = -(2**62)
+
+
+def claim(c: Claim) -> None:
+    time, phi, psi = c.integer("time"), c.integer("phi"), c.integer("psi")
+    at, low, high = c.integer("at"), c.integer("low"), c.integer("high")
+    for verdict in (phi, psi):
+        c.premise(verdict >= 0)
+        c.premise(verdict <= 2)
+    c.premise(low >= 0)
+    c.premise(low <= high)
+    acc = Since(
+        c.whole("last"),
+        Found(c.whole("latest_true"), c.whole("candidate")),
+        Broken(c.whole("tainted"), c.whole("broken")),
+        c.whole("verdict"),
+    )
+    model = Meant(c.whole("model_last"), c.whole("hold"), c.whole("value"))
+
+    def related(s: Any, m: Any) -> Any:
+        ranged = c.all_of(s.last >= START, s.last <= 2**61, c.same(s.last, m.last))
+        found = c.all_of(
+            s.found.true >= START - 1,
+            s.found.true <= s.found.candidate,
+            s.found.candidate <= s.last,
+        )
+        broken = c.all_of(
+            s.broken.broken >= START,
+            s.broken.broken <= s.broken.tainted,
+            s.broken.tainted <= s.last,
+        )
+        true = c.all_of(s.found.true >= at - high, s.found.true >= s.broken.tainted)
+        open_ = c.all_of(s.found.candidate >= at - high, s.found.candidate >= s.broken.broken)
+        word = c.when(true, 2, c.when(open_, 1, 0))
+        return c.all_of(ranged, found, broken, s.verdict == word, c.same(s.verdict, m.value))
+
+    c.fold(
+        since_holds,
+        acc=acc,
+        model=model,
+        item=(time, phi, psi),
+        context=(at, low, high),
+        model_start=Meant(START, 2, 0),
+        model_step=since_step,
+        model_finish=lambda m: meant(m.value),
+        relation=related,
+    )

@@ -1,0 +1,273 @@
+"""Import of requirements in C2PO, the language of R2U2: the part that both have. Grammar: `c2po.lark`.
+
+A time unit is one sample. Mission-time logic counts phi of `phi U[a,b] psi` from the lower bound on only, so
+it is read as `F[a,a](phi U[0,b-a] psi)`. What C2PO has beyond (structures, sets, definitions, arithmetic,
+contracts, since from a lower bound above 0) is refused, one requirement at a time.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cratous.services.requirements.formula import (
+    FALSE,
+    TRUE,
+    Bounded,
+    Formula,
+    Join,
+    Not,
+    Reaches,
+    eventually,
+    globally,
+    historically,
+    iff,
+    implies,
+    once,
+)
+from cratous.spec.errors import BadInput
+from cratous.spec.files.limits import CONFIG_BYTES, at_most, integer_of
+
+if TYPE_CHECKING:
+    from lark import Lark
+
+MAX_BOUND = 10**9
+NESTED = 200
+SECTION = re.compile(r"^[ \t]*(INPUT|FTSPEC|PTSPEC|DEFINE|STRUCT|ENUM|ATOMIC)\b", re.MULTILINE)
+DECLARED = re.compile(
+    r"\s*([A-Za-z_]\w*(?:\s*,\s*[A-Za-z_]\w*)*)\s*:\s*(bool|int|float)\s*", re.ASCII
+)
+ONE_SIDED: dict[str, Callable[[Formula, int, int], Formula]] = {
+    "G": globally,
+    "F": eventually,
+    "H": historically,
+    "O": once,
+}
+
+
+class NotRead(BadInput):
+    """A requirement outside of the part of C2PO that is read."""
+
+    def __init__(
+        self, what: str, where: str, caret: str, *, expected: str = "", got: str = ""
+    ) -> None:
+        self._caret = caret
+        super().__init__(what, where=where, expected=expected, got=got)
+
+    def caret(self) -> str:
+        """The line of the requirement (a window of it if it is long), and ^ below the place."""
+        return self._caret
+
+    def data(self) -> dict[str, str]:
+        """As for every `BadInput`, and the caret."""
+        return {**super().data(), "caret": self._caret}
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """One requirement of a file. name: its own, else its number; formula: or why it is not read."""
+
+    name: str
+    text: str
+    formula: Formula | NotRead
+
+
+@dataclass(frozen=True)
+class Specification:
+    """The requirements of a file in order, and the type of each declared signal: bool, int, float."""
+
+    types: dict[str, str]
+    requirements: tuple[Requirement, ...]
+
+
+def read(text: str, where: str = "C2PO") -> Specification:
+    """The requirements of a text. Raises BadInput for one that has none, or declares a signal twice."""
+    at_most(len(text.encode()), CONFIG_BYTES, "the requirements are too long", where)
+    text = re.sub(r"--[^\n]*", lambda m: " " * len(m.group()), text)
+    types: dict[str, str] = {}
+    found: list[tuple[int, str]] = []
+    marks = list(SECTION.finditer(text))
+    for mark, following in zip(marks, [*marks[1:], None][: len(marks)], strict=True):
+        end = following.start() if following else len(text)
+        if mark.group(1) == "INPUT":
+            _declare(text, mark.end(), end, types, where)
+        elif mark.group(1) in ("FTSPEC", "PTSPEC"):
+            found += _pieces(text, mark.end(), end)
+    if not found:
+        raise BadInput("there is no requirement", where=where, expected="FTSPEC or PTSPEC")
+    made = [_requirement(n, at, piece, text, types, where) for n, (at, piece) in enumerate(found)]
+    return Specification(types, tuple(made))
+
+
+def _pieces(text: str, start: int, end: int) -> Iterator[tuple[int, str]]:
+    """(offset, text) of what semicolons end; what stands behind the last one too."""
+    for piece in text[start:end].split(";"):
+        if piece.strip():
+            yield start + len(piece) - len(piece.lstrip()), piece.strip()
+        start += len(piece) + 1
+
+
+def _declare(text: str, start: int, end: int, types: dict[str, str], where: str) -> None:
+    for _, piece in _pieces(text, start, end):
+        found = DECLARED.fullmatch(piece)
+        if not found:
+            continue  # of another type: what uses it is not read
+        for name in re.split(r"\s*,\s*", found.group(1)):
+            if name in types:
+                raise BadInput("a signal is declared twice", where=where, item=name)
+            types[name] = found.group(2)
+
+
+def _requirement(
+    number: int, at: int, piece: str, text: str, types: dict[str, str], where: str
+) -> Requirement:
+    try:
+        name, formula = _formula(piece, types)
+        return Requirement(name or str(number), piece, formula)
+    except _Wrong as no:
+        line = text.count("\n", 0, at + no.offset) + 1
+        begin = text.rfind("\n", 0, at + no.offset) + 1
+        column = at + no.offset - begin
+        shown = text.split("\n")[line - 1]
+        window = max(0, column - 60)
+        caret = f"{shown[window : window + 90]}\n{' ' * (column - window)}^"
+        place = f"{where}, line {line}, column {column + 1}"
+        refused = NotRead(no.what, place, caret, expected=no.expected, got=no.got)
+        return Requirement(str(number), piece, refused)
+
+
+class _Wrong(Exception):
+    def __init__(self, what: str, offset: int, expected: str = "", got: str = "") -> None:
+        self.what, self.offset, self.expected, self.got = what, offset, expected, got
+
+
+def _formula(piece: str, types: dict[str, str]) -> tuple[str, Formula]:
+    from lark.exceptions import UnexpectedCharacters, UnexpectedInput, VisitError
+
+    try:
+        tree = _parser().parse(piece)
+        return _build(tree, types)
+    except UnexpectedInput as error:
+        offset = error.pos_in_stream if error.pos_in_stream is not None else len(piece)
+        offset = len(piece) if offset < 0 else offset
+        token = None if isinstance(error, UnexpectedCharacters) else getattr(error, "token", None)
+        if token is not None and token.type == "$END":
+            offset, token = len(piece), None
+        got = str(token or piece[offset : offset + 1]) or "the end of the requirement"
+        raise _Wrong(
+            "this is not in the part of C2PO that is read", offset, "a formula", got[:30]
+        ) from None
+    except VisitError as error:
+        if isinstance(error.orig_exc, _Wrong):
+            raise error.orig_exc from None
+        raise
+
+
+def _build(tree: Any, types: dict[str, str]) -> tuple[str, Formula]:
+    made: list[Any] = []
+    for node in tree.iter_subtrees():  # parts before the whole
+        node.made = _made(node, types)
+        made.append(node)
+    result: tuple[str, Formula] = tree.made
+    return result
+
+
+def _made(node: Any, types: dict[str, str]) -> Any:
+    got = [getattr(child, "made", child) for child in node.children]
+    kind = str(node.data)
+    if kind == "start":
+        return (str(got[0]) if len(got) > 1 else "", got[-1])
+    if kind == "bounds":
+        return _bounds(got)
+    if kind in ("signal", "truth"):
+        return _signal(got[0], kind == "truth", types)
+    if kind in ("number", "negative"):
+        return _number(got[0], kind == "negative")
+    if kind == "constant":
+        return TRUE if got[0] == "true" else FALSE
+    if kind == "compare":
+        return _compared(*got)
+    if kind == "negation":
+        return Not(got[0])
+    if kind == "unary":
+        return ONE_SIDED[str(got[0])](got[2], *got[1])
+    if kind == "binary":
+        return _two_sided(*got)
+    if kind in ("either", "both"):
+        return Join(got[0], got[1], kind == "both")
+    return (iff if kind == "iff" else implies)(got[0], got[1])
+
+
+def _bounds(tokens: list[Any]) -> tuple[int, int]:
+    values = []
+    for token in tokens:
+        value = integer_of(str(token), 0, MAX_BOUND)
+        if value is None:
+            raise _Wrong(
+                "a bound is too large", token.start_pos, f"up to {MAX_BOUND}", str(token)[:30]
+            )
+        values.append(value)
+    low, high = values if len(values) > 1 else (0, values[0])
+    if low > high:
+        got = f"[{low},{high}]"
+        raise _Wrong("these bounds are empty", tokens[0].start_pos, "the lower first", got)
+    return low, high
+
+
+def _signal(token: Any, truth: bool, types: dict[str, str]) -> Any:
+    kind = types.get(str(token))
+    wanted = "a signal that INPUT declares as " + ("bool" if truth else "int or float")
+    if kind is None or (kind == "bool") != truth:
+        raise _Wrong("this is no such signal", token.start_pos, wanted, str(token)[:30])
+    return Reaches(str(token), 1.0) if truth else str(token)
+
+
+def _number(token: Any, negative: bool) -> float:
+    value = float(str(token)) if len(token) <= 300 else float("inf")
+    if value == float("inf"):
+        raise _Wrong("the number is too large", token.start_pos, "a double", str(token)[:30])
+    return -value if negative else value
+
+
+def _compared(left: str | float, relation: Any, right: str | float) -> Formula:
+    above, below = Reaches(left, right), Reaches(right, left)
+    made: dict[str, Formula] = {
+        ">=": above,
+        "<=": below,
+        ">": Not(below),
+        "<": Not(above),
+        "==": Join(above, below, True),
+        "!=": Not(Join(above, below, True)),
+    }
+    return made[str(relation)]
+
+
+def _two_sided(phi: Formula, operator: Any, bounds: tuple[int, int], psi: Formula) -> Formula:
+    low, high = bounds
+    if operator in ("R", "T"):  # the duals
+        phi, psi = Not(phi), Not(psi)
+    if operator in ("U", "R"):
+        made: Formula = Bounded(phi, psi, 0, high - low, False)
+        made = eventually(made, low, low) if low else made
+    elif low:
+        raise _Wrong(
+            "a since from a lower bound above 0 is not read: phi may count from it or from 0",
+            operator.start_pos,
+            f"{operator}[0,{high}]",
+            f"{operator}[{low},{high}]",
+        )
+    else:
+        made = Bounded(phi, psi, 0, high, True)
+    return Not(made) if operator in ("R", "T") else made
+
+
+@cache
+def _parser() -> Lark:
+    from lark import Lark
+
+    grammar = Path(__file__).with_name("c2po.lark").read_text(encoding="utf-8")
+    return Lark(grammar, parser="lalr", propagate_positions=False, maybe_placeholders=False)

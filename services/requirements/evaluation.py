@@ -1,0 +1,247 @@
+"""Evaluation of a formula sample by sample: queues between operators, in which proved kernels decide.
+
+Every operator takes the verdicts of its parts in the order of the samples and gives its own in that order,
+each at the first sample that decides it. The cost of a sample is constant on average at any horizon: the
+oldest waiting sample is asked first, and where it waits all wait (`requirements_until_waits_in_order`).
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Mapping
+from itertools import count
+from math import isfinite
+
+from cratous.core.requirements.since import (
+    Broken,
+    Found,
+    is_due,
+    since_broken,
+    since_decided,
+    since_found,
+)
+from cratous.core.requirements.until import Times, until_decided, until_times
+from cratous.core.requirements.verdict import both, either, negated, reaches
+from cratous.services.requirements.formula import (
+    MAX_TIME,
+    Always,
+    Bounded,
+    Formula,
+    Join,
+    Not,
+    Reaches,
+    parts,
+)
+from cratous.spec.errors import BadInput
+
+Decided = list[tuple[int, int]]
+"""Verdicts with the time of the sample that each is of, in order."""
+FALSE, UNKNOWN, TRUE, WAITS = range(4)
+NEVER = -(2**62)
+
+
+class TooManyWait(BadInput):
+    """More samples wait for a verdict than were allowed for: the trace is denser than was declared."""
+
+
+class _Leaf:
+    """A constant, or a comparison of signals."""
+
+    def __init__(self, formula: Always | Reaches) -> None:
+        self.formula = formula
+
+    def sample(self, time: int, values: Mapping[str, float | None]) -> Decided:
+        one = self.formula
+        if isinstance(one, Always):
+            return [(time, one.verdict)]
+        left = values.get(one.left) if isinstance(one.left, str) else one.left
+        right = values.get(one.right) if isinstance(one.right, str) else one.right
+        # what is missing, no number or infinite is not known
+        if left is None or right is None or not (isfinite(left) and isfinite(right)):
+            return [(time, UNKNOWN)]
+        return [(time, TRUE if reaches(left, right) else FALSE)]
+
+
+class _Not:
+    def take(self, side: int, got: Decided) -> Decided:
+        return [(time, negated(phi)) for time, phi in got]
+
+
+class _Join:
+    """And, or: decided by one side alone where that suffices."""
+
+    def __init__(self, formula: Join) -> None:
+        self.join, self.alone = (both, FALSE) if formula.is_and else (either, TRUE)
+        self.waiting: tuple[deque[tuple[int, int]], ...] = (deque(), deque())
+        self.behind = [0, 0]
+        """Of each side, how many verdicts come that are not needed any more."""
+
+    def take(self, side: int, got: Decided) -> Decided:
+        skipped = min(self.behind[side], len(got))
+        self.behind[side] -= skipped
+        self.waiting[side].extend(got[skipped:])
+        out: Decided = []
+        left, right = self.waiting
+        while left or right:
+            if left and right:
+                (time, phi), (_, psi) = left.popleft(), right.popleft()
+                out.append((time, self.join(phi, psi)))
+                continue
+            given = 0 if left else 1
+            time, verdict = self.waiting[given][0]
+            if verdict != self.alone:
+                break
+            self.waiting[given].popleft()
+            self.behind[1 - given] += 1
+            out.append((time, verdict))
+        return out
+
+    @property
+    def size(self) -> int:
+        return max(len(self.waiting[0]), len(self.waiting[1]))
+
+
+class _Paired:
+    """An operator that needs both parts at a sample."""
+
+    def __init__(self, formula: Bounded) -> None:
+        self.low, self.high = formula.low, formula.high
+        self.waiting: tuple[deque[tuple[int, int]], ...] = (deque(), deque())
+
+    def take(self, side: int, got: Decided) -> Decided:
+        self.waiting[side].extend(got)
+        out: Decided = []
+        left, right = self.waiting
+        while left and right:
+            (time, phi), (_, psi) = left.popleft(), right.popleft()
+            self.step(time, phi, psi, out)
+        return out
+
+    def step(self, time: int, phi: int, psi: int, out: Decided) -> None:
+        raise NotImplementedError
+
+
+class _Until(_Paired):
+    def __init__(self, formula: Bounded) -> None:
+        super().__init__(formula)
+        self.times = Times(NEVER, NEVER)
+        self.undecided: deque[int] = deque()
+        self.joined = NEVER
+
+    def take(self, side: int, got: Decided) -> Decided:
+        out = super().take(side, got)
+        if not self.waiting[0] and self.waiting[1]:
+            # psi may decide before phi is known (`requirements_until_is_decided_ahead_of_phi`)
+            time, psi = self.waiting[1][0]
+            self._join(time)
+            self._decide(time, TRUE, psi, out)
+        return out
+
+    def step(self, time: int, phi: int, psi: int, out: Decided) -> None:
+        self._join(time)
+        self._decide(time, phi, psi, out)
+        self.times = until_times(self.times, time, phi, psi)
+
+    def _join(self, time: int) -> None:
+        if time != self.joined:
+            self.undecided.append(time)
+            self.joined = time
+
+    def _decide(self, time: int, phi: int, psi: int, out: Decided) -> None:
+        while self.undecided:
+            at = self.undecided[0]
+            verdict = until_decided(self.times, time, phi, psi, at, self.low, self.high)
+            if verdict == WAITS:
+                break
+            self.undecided.popleft()
+            out.append((at, verdict))
+
+    @property
+    def size(self) -> int:
+        return max(len(self.undecided), len(self.waiting[0]), len(self.waiting[1]))
+
+
+class _Since(_Paired):
+    def __init__(self, formula: Bounded) -> None:
+        super().__init__(formula)
+        self.found, self.broken = Found(NEVER - 1, NEVER - 1), Broken(NEVER, NEVER)
+        self.young: deque[tuple[int, int]] = deque()
+        """Samples that are not old enough yet, with their psi."""
+
+    def step(self, time: int, phi: int, psi: int, out: Decided) -> None:
+        self.young.append((time, psi))
+        while self.young and is_due(self.young[0][0], time, self.low):
+            self.found = since_found(self.found, *self.young.popleft())
+        self.broken = since_broken(self.broken, time, phi)
+        out.append((time, since_decided(self.found, self.broken, time, self.high)))
+
+    @property
+    def size(self) -> int:
+        return max(len(self.young), len(self.waiting[0]), len(self.waiting[1]))
+
+
+class Evaluation:
+    """One formula over one trace.
+
+    most: how many samples may wait in any one queue; a sample that makes it more raises TooManyWait.
+    """
+
+    def __init__(self, formula: Formula, most: int = 1_000_000) -> None:
+        self.formula, self.most = formula, most
+        self.last = -MAX_TIME - 1
+        self.nodes: list[_Leaf | _Not | _Join | _Until | _Since] = []
+        self.parents: list[list[tuple[int, int]]] = []
+        number = count()
+        places: dict[int, int] = {}
+        for part in parts(formula):
+            mine = places[id(part)] = next(number)
+            self.parents.append([])
+            if isinstance(part, Always | Reaches):
+                self.nodes.append(_Leaf(part))
+                continue
+            if isinstance(part, Not):
+                self.nodes.append(_Not())
+                self.parents[places[id(part.phi)]].append((mine, 0))
+                continue
+            if isinstance(part, Join):
+                self.nodes.append(_Join(part))
+            else:
+                self.nodes.append(_Since(part) if part.past else _Until(part))
+            self.parents[places[id(part.phi)]].append((mine, 0))
+            self.parents[places[id(part.psi)]].append((mine, 1))
+        self.leaves = [n for n, node in enumerate(self.nodes) if isinstance(node, _Leaf)]
+
+    def sample(self, time: int, values: Mapping[str, float | None]) -> Decided:
+        """The verdicts that this sample decides: (time of the sample that each is of, 0, 1 or 2).
+
+        time: later than that of the sample before, in time units; values: of the signals; None, what is not
+        finite and a signal that is not there are unknown. Raises BadInput for a time that is not later.
+        """
+        if not self.last < time <= MAX_TIME:
+            raise BadInput(
+                "a sample is out of order",
+                item="time",
+                expected=f"above {self.last}, up to {MAX_TIME}",
+                got=str(time),
+            )
+        self.last = time
+        # parts stand before the whole, so that one pass brings every verdict to the top
+        pending: list[list[tuple[int, Decided]]] = [[] for _ in self.nodes]
+        out: Decided = []
+        for place, node in enumerate(self.nodes):
+            if isinstance(node, _Leaf):
+                got = node.sample(time, values)
+            else:
+                got = [row for side, rows in pending[place] for row in node.take(side, rows)]
+                if isinstance(node, _Join | _Until | _Since) and node.size > self.most:
+                    raise TooManyWait(
+                        "more samples wait for a verdict than were allowed for",
+                        item=f"time {time}",
+                        expected=f"at most {self.most}",
+                        got=str(node.size),
+                    )
+            if place == len(self.nodes) - 1:
+                out = got
+            for parent, side in self.parents[place] if got else ():
+                pending[parent].append((side, got))
+        return out

@@ -1,0 +1,149 @@
+"""Formulas of bounded metric temporal logic over named signals. Semantics: `spec.requirements.operators`.
+
+Times are integers of one unit that the trace chooses: milliseconds, or one a sample. Other operators are made
+of these: `F phi = true U phi`, `G phi = not F not phi`, `once = true S`, `historically = not once not`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from cratous.spec.errors import BadInput
+
+MAX_TIME = 2**60
+"""Bounds and time stamps lie within this, so that no sum leaves 62 bits."""
+
+
+@dataclass(frozen=True)
+class Always:
+    """A constant: 0 false, 2 true."""
+
+    verdict: int
+
+
+@dataclass(frozen=True)
+class Reaches:
+    """Left is at least right; each the name of a signal, or a number, in one unit."""
+
+    left: str | float
+    right: str | float
+
+
+@dataclass(frozen=True)
+class Not:
+    """Not phi."""
+
+    phi: Formula
+
+
+@dataclass(frozen=True)
+class Join:
+    """Phi and psi, or phi or psi."""
+
+    phi: Formula
+    psi: Formula
+    is_and: bool
+
+
+@dataclass(frozen=True)
+class Bounded:
+    """`phi U[low,high] psi`, or with `past` `phi S[low,high] psi`; 0 <= low <= high, in time units."""
+
+    phi: Formula
+    psi: Formula
+    low: int
+    high: int
+    past: bool
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.low <= self.high <= MAX_TIME:
+            raise BadInput(
+                "these are no bounds of time",
+                item="U" if not self.past else "S",
+                expected=f"0 <= low <= high <= {MAX_TIME}",
+                got=f"[{self.low},{self.high}]",
+            )
+
+
+Formula: TypeAlias = Always | Reaches | Not | Join | Bounded
+
+TRUE, FALSE = Always(2), Always(0)
+
+
+def eventually(phi: Formula, low: int, high: int) -> Formula:
+    """Phi at some sample between low and high ahead."""
+    return Bounded(TRUE, phi, low, high, False)
+
+
+def globally(phi: Formula, low: int, high: int) -> Formula:
+    """Phi at every sample between low and high ahead."""
+    return Not(eventually(Not(phi), low, high))
+
+
+def once(phi: Formula, low: int, high: int) -> Formula:
+    """Phi at some sample between low and high ago."""
+    return Bounded(TRUE, phi, low, high, True)
+
+
+def historically(phi: Formula, low: int, high: int) -> Formula:
+    """Phi at every sample between low and high ago."""
+    return Not(once(Not(phi), low, high))
+
+
+def implies(phi: Formula, psi: Formula) -> Formula:
+    """If phi then psi."""
+    return Join(Not(phi), psi, False)
+
+
+def iff(phi: Formula, psi: Formula) -> Formula:
+    """Phi exactly where psi."""
+    return Join(implies(phi, psi), implies(psi, phi), True)
+
+
+def parts(formula: Formula) -> Iterator[Formula]:
+    """Every distinct part once, parts before the whole; without recursion, so depth is no matter."""
+    done: set[int] = set()
+    todo: list[tuple[Formula, bool]] = [(formula, False)]
+    while todo:
+        one, ready = todo.pop()
+        if id(one) in done:
+            continue
+        if ready:
+            done.add(id(one))
+            yield one
+            continue
+        todo.append((one, True))
+        todo += [(child, False) for child in children(one)]
+
+
+def children(formula: Formula) -> tuple[Formula, ...]:
+    """The parts directly below a formula."""
+    if isinstance(formula, Not):
+        return (formula.phi,)
+    if isinstance(formula, Join | Bounded):
+        return (formula.phi, formula.psi)
+    return ()
+
+
+def horizon(formula: Formula) -> int:
+    """How long after a sample the formula is decided there at the latest, in time units."""
+    longest: dict[int, int] = {}
+    for part in parts(formula):
+        below = max((longest[id(child)] for child in children(part)), default=0)
+        ahead = part.high if isinstance(part, Bounded) and not part.past else 0
+        longest[id(part)] = below + ahead
+    return longest[id(formula)]
+
+
+def signals(formula: Formula) -> tuple[str, ...]:
+    """The names of the signals that it reads, in order."""
+    found = {
+        side
+        for part in parts(formula)
+        if isinstance(part, Reaches)
+        for side in (part.left, part.right)
+        if isinstance(side, str)
+    }
+    return tuple(sorted(found))

@@ -1,0 +1,1 @@
+"""What a requirement over time means."""
