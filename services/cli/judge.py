@@ -9,7 +9,6 @@ from typing import Any
 
 import click
 
-
 PATIENCE_S, DOING = 1.0, "judging the flight from its log"
 """What is done is said once it has taken so long [s]."""
 
