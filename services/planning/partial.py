@@ -59,6 +59,8 @@ class Parts:
 
     def __post_init__(self) -> None:
         self.flown = frozenset(task for task, _, _ in self.problem.done)
+        # what has been flown is done, whatever became of that which it followed
+        self.begun |= self.flown
         able = {choice.task_id for choice in self.problem.choices if choice.vehicles}
         self.able = frozenset(able | self.flown)
         made = _branches(self.problem)

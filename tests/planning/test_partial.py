@@ -23,7 +23,7 @@ from cratous.spec.algebra.partial import may_be_done, only
 from cratous.spec.assignment.search import AssignmentProblem, Choice
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission.guarantees import Outcome
-from cratous.spec.mission.plan import PartialPlan, left_out_of
+from cratous.spec.mission.plan import PartialPlan, Pose, left_out_of
 
 RELATIONS = (
     "|(p1_[0-30] p2_[0-30] p3_[0-30] p4)",
@@ -143,6 +143,18 @@ def test_undone_tasks_stay_undone_and_begun_ones_make_the_choice() -> None:
     assert {left.task_id for left in left_out_of(plan)} == {4}, "p3 is of another choice"
     with pytest.raises(NoPlan):
         make_plan(mission(FOUR[:1], relations="p1_[0-9]"))
+
+
+def test_what_was_flown_stays_done_whatever_became_of_what_it_followed() -> None:
+    """Of `~(p2 p1)` p2 was begun and given up, p1 flown; the window of p3 cannot be kept: nothing is left, no error."""
+    of = mission(FOUR[:3], relations="|(~(p2 p1) p3_[0-9])")
+    starts = {v.id: Pose(*v.position, v.heading_rad) for v in of.vehicles}
+    with pytest.raises(NoPlan, match="given up"):
+        make_plan(of, starts=starts, done=[(1, 0, 5000)], now_ms=6000, undone={2: "given up"})
+    of = mission(FOUR, relations="|(~(p2 p1) p3_[0-9] p4)")
+    plan = make_plan(of, starts=starts, done=[(1, 0, 5000)], now_ms=6000, undone={2: "given up"})
+    assert [item.task_id for item in plan.items] == [4]
+    assert [left.task_id for left in left_out_of(plan)] == [2, 3]
 
 
 def test_why_this_vehicle_is_told_for_each_other_one() -> None:
