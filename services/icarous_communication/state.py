@@ -9,6 +9,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from cratous.bridge.text_protocol import Message, SoftReset
+from cratous.core.authority.timeliness import in_time
 from cratous.services.flight import link_end
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.messages import Down, Say
@@ -17,6 +18,8 @@ from cratous.services.icarous_communication.plans import Away, Plan, position_of
 from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Frame, Position
 
+TRAFFIC_KEPT_MS = 5000
+"""An aircraft whose state is of a time farther than this [ms] from another's is not told to that one."""
 MOST_BANK_RAD = math.radians(80.0)
 DEFAULT_BANK_RAD = math.radians(30.0)
 """How far a vehicle banks of which no configuration is known, or one that says nothing of it."""
@@ -103,6 +106,22 @@ def turn_radius_of(craft: Craft, air: AirState) -> float:
     bank = 0.0 if profile is None else math.radians(profile.MaxBankAngle)
     bank = min(bank, MOST_BANK_RAD) or DEFAULT_BANK_RAD
     return TURN_MARGIN * turn_radius_m(air.speed_m_s, bank)
+
+
+def at_the_time_of(
+    body: Any, crafts: Mapping[int, Craft]
+) -> tuple[tuple[tuple[int, AirState], ...], frozenset[int]]:
+    """Everybody flown on to the time of a state, by id; and who is not, because his own is too far from it."""
+    aircraft, stale = [], set[int]()
+    for other, craft in sorted(crafts.items()):
+        if craft.air is None:
+            continue
+        first, last = sorted((int(craft.body.Time), int(body.Time)))
+        if in_time(first, last, TRAFFIC_KEPT_MS):
+            aircraft.append((other, moved(craft.air, (body.Time - craft.body.Time) / 1000)))
+        else:
+            stale.add(other)
+    return tuple(aircraft), frozenset(stale)
 
 
 def moved(air: AirState, late_s: float) -> AirState:

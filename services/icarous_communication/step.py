@@ -30,7 +30,7 @@ from cratous.core.authority.gate import (
     gate_takeover,
 )
 from cratous.core.authority.link_end import link_mode
-from cratous.core.authority.timeliness import in_time, lasted
+from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Motion
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.link_end import UxasEnd
@@ -64,13 +64,14 @@ from cratous.services.icarous_communication.plans import (
     shown,
 )
 from cratous.services.icarous_communication.state import (
+    TRAFFIC_KEPT_MS,
     Craft,
     Note,
     Out,
     Refuse,
     State,
     air_state,
-    moved,
+    at_the_time_of,
     placed,
     plane,
     turn_radius_of,
@@ -82,8 +83,6 @@ from cratous.spec.authority.link_end import OVERTAKEN, REFUSED
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame, Position
 
-TRAFFIC_KEPT_MS = 5000
-"""An aircraft whose state is of a time farther than this [ms] from another's is not told to that one."""
 SPARE_WAYPOINTS = 10
 """The original's client is told the next part of a plan when it has no more than these ahead."""
 SETTLES_MS = 2000
@@ -255,17 +254,9 @@ class Communication:
 
     def _seen(self, state: State, vid: int, body: Any, now_ms: int) -> Step:
         """Everybody at the time of this vehicle's state, to its instance; who cannot be, is said once."""
-        aircraft, stale = [], set[int]()
-        for other, craft in sorted(state.crafts.items()):
-            if craft.air is None:
-                continue
-            first, last = sorted((int(craft.body.Time), int(body.Time)))
-            if in_time(first, last, TRAFFIC_KEPT_MS):
-                aircraft.append((other, moved(craft.air, (body.Time - craft.body.Time) / 1000)))
-            else:
-                stale.add(other)
+        aircraft, stale = at_the_time_of(body, state.crafts)
         roll, pitch = math.radians(body.Roll), math.radians(body.Pitch)
-        seen = Seen(vid, now_ms, int(body.Time), tuple(aircraft), roll, pitch)
+        seen = Seen(vid, now_ms, int(body.Time), aircraft, roll, pitch)
         notes: list[Out] = [
             Note(
                 "WARN",
@@ -273,7 +264,7 @@ class Communication:
             )
             for other in sorted(stale - state.stale)
         ]
-        state, out = self._end(replace(state, stale=frozenset(stale)), seen)
+        state, out = self._end(replace(state, stale=stale), seen)
         return state, [*notes, *out]
 
     def _deviation(self, state: State, vid: int, away: Away, craft: Craft, air: AirState) -> Step:
