@@ -66,13 +66,13 @@ mutate: venv
 # seconds for each function
 EACH_S ?= 10
 crosshair: venv
-	$(BIN)/python -m crosshair check --analysis_kind=asserts --per_condition_timeout=$(EACH_S) tests/crosshair_targets.py
+	$(BIN)/python -m crosshair check --analysis_kind=asserts --per_condition_timeout=$(EACH_S) tests/programs/crosshair_targets.py
 
 fuzz: venv
-	$(BIN)/python tests/fuzz_lmcp.py --count 1000000
+	$(BIN)/python tests/programs/fuzz_lmcp.py --count 1000000
 
 daa-fuzz: venv
-	$(BIN)/python tests/daa_scenes.py 100000
+	$(BIN)/python tests/programs/daa_scenes.py 100000
 
 bench: venv
 	$(BIN)/python bench/run.py

@@ -66,7 +66,7 @@ def alerts_per_s(encounters: int = 200_000, intruders: int = 3) -> float:
     levels = np.zeros(pairs, dtype=np.int64)
     run = machine(raw_levels)
     errors = np.zeros((pairs, 6))
-    arguments = (t.counts, t.kinds, t.volumes, t.alerting_s, parameters.lookahead_time_s)
+    arguments = (t, parameters.lookahead_time_s)
     run(relative[:10], errors[:10], alerter[:10], *arguments, levels[:10])
     best = float("inf")
     for _ in range(5):

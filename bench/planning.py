@@ -46,8 +46,9 @@ def run(function: Callable[..., None], roadmap: Roadmap, count: int) -> tuple[fl
     seen = np.zeros((len(rings), rings.shape[1], rings.shape[1]), np.int8)
     begin = time.process_time()
     function(
-        ends[0], ends[1], 80.0, np.inf, 0.5, table(roadmap.zones), rings, sizes, seen,
-        codes, metres, links, np.zeros((1, routing.LINKS_MOST + 2, 4)),
+        ends[0], ends[1], routing.Turning(80.0, np.inf, 0.5), table(roadmap.zones),
+        routing.Rings(rings, sizes, seen),
+        routing.Routed(codes, metres, links, np.zeros((1, routing.LINKS_MOST + 2, 4))),
     )  # fmt: skip
     return time.process_time() - begin, metres
 

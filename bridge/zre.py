@@ -9,7 +9,7 @@ another version or is one too many is refused with a reason. Compatible with C Z
 from __future__ import annotations
 
 import uuid as uuids
-from typing import Any
+from typing import Any, NamedTuple
 
 import zmq
 
@@ -23,6 +23,14 @@ _EVASIVE_S, _EXPIRED_S = 5.0, 30.0
 _BATCH = 2000
 
 
+class Beacons(NamedTuple):
+    """How a node makes itself known: on which network device and UDP port, and how often [s]."""
+
+    device: str = "lo"
+    port: int = BEACON_PORT
+    interval_s: float = 1.0
+
+
 class ZreNode:
     """One peer; see the module."""
 
@@ -31,10 +39,8 @@ class ZreNode:
         context: zmq.Context[Any],
         name: str,
         *,
-        device: str = "lo",
         headers: dict[str, str] | None = None,
-        beacon_port: int = BEACON_PORT,
-        interval_s: float = 1.0,
+        beacons: Beacons = Beacons(),
         limits: Limits | None = None,
         report: Report = lambda _severity, _text: None,
         where: str = "",
@@ -44,7 +50,7 @@ class ZreNode:
         self._headers = dict(headers or {})
         self._limits = limits or Limits()
         self._report = report
-        self._interval_s = interval_s
+        self._interval_s = beacons.interval_s
         self._uuid = uuids.uuid4().bytes
         self._peers: dict[bytes, Peer] = {}
         self._groups: list[str] = []
@@ -55,7 +61,7 @@ class ZreNode:
         self._closed = False
         self._tally = Tally(f"zyre {name}", report)
         self.counts = self._tally.counts
-        self._beacon = Beacon(device, beacon_port, self._uuid, self._tally, where)
+        self._beacon = Beacon(beacons.device, beacons.port, self._uuid, self._tally, where)
         self._inbox = context.socket(zmq.ROUTER)
         try:
             self._inbox.linger = 0
@@ -67,7 +73,7 @@ class ZreNode:
             self._beacon.close()
             self._inbox.close()
             raise BadInput(
-                f"cannot listen ({error})", where=where, item="NetworkDevice", got=device
+                f"cannot listen ({error})", where=where, item="NetworkDevice", got=beacons.device
             ) from None
         self._port = int(port)
 

@@ -10,14 +10,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from cratous.core import ledger as gate
-from cratous.core.ledger.home import Home
+from cratous.core.ledger.package_home import Home
 from cratous.core.ledger.status import Grounds
 from cratous.proofs import ledger
 from cratous.proofs.engine.cache import Cache
-from cratous.proofs.ledger.recall import Recall
+from cratous.proofs.ledger.proof_recall import Recall
 from cratous.proofs.statements import definitions
-from cratous.proofs.statements.grounds import grounds
-from cratous.proofs.statements.kept import Kept
+from cratous.proofs.statements.relation_cache import Kept
+from cratous.proofs.statements.status_evidence import grounds
 
 
 @dataclass(frozen=True)
@@ -61,13 +61,17 @@ def judge(
     cache: Cache | None = None,
     recall: Recall | None = None,
     keep: Path | None = None,
+    machine: bool = True,
 ) -> Judgement:
     """Prove these theorems of a home, and look at its kernels and definitions.
 
-    whole: they are all that it has; keep: folder in which relations are kept from run to run.
+    whole: they are all that it has; keep: folder in which relations are kept from run to run;
+    machine: compare kernels with their machine code too.
     Raises BadInput for a theorem that cannot be stated.
     """
-    inventory = ledger.prove_all(names, tell, home=home, jobs=jobs, cache=cache, recall=recall)
+    inventory = ledger.prove_all(
+        names, tell, home=home, jobs=jobs, cache=cache, recall=recall, machine=machine
+    )
     findings = [str(finding) for finding in inventory.findings]
     # what is outside of the subset is not read any further
     read = {} if findings else Kept(keep, home).all(t.name for t in inventory.theorems)

@@ -25,7 +25,7 @@ from typing import Any
 
 from cratous.core.files.whole_file import write_atomically
 from cratous.core.kernel.sources import ROOT, digest
-from cratous.proofs.engine import forked, prover
+from cratous.proofs.engine import prover, worker_processes
 from cratous.proofs.engine.smtlib import Seen
 from cratous.proofs.mutation.keys import Store
 from cratous.spec.errors import BadInput
@@ -251,7 +251,9 @@ def recheck(
 
     wanted: list[_Job] = []
     stated: dict[int, list[_Job]] = dict(
-        forked.each([partial(_jobs, theorem, folder, set(known)) for theorem in theorems], jobs)
+        worker_processes.each(
+            [partial(_jobs, theorem, folder, set(known)) for theorem in theorems], jobs
+        )
     )
     for number in sorted(stated):
         wanted += stated[number]

@@ -29,7 +29,9 @@ class LmcpObject:
     """Base of every message and part of a message."""
 
     __slots__ = ("_raw",)
-    _raw: tuple[bytes, str]  # only of the lazy classes of `lmcp.lazily`: the message, and where
+    _raw: tuple[
+        bytes, str
+    ]  # only of the lazy classes of `lmcp.lazy_messages`: the message, and where
     series: ClassVar[str] = ""
     type_name: ClassVar[str] = ""  # as in `CMASI/AirVehicleState`
     type_id: ClassVar[int] = 0

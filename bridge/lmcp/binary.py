@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from cratous.bridge.bytesum import byte_sum
-from cratous.bridge.lmcp import careful, compiled, lazily, model
+from cratous.bridge.lmcp import careful, compiled, lazy_messages, model
 from cratous.bridge.lmcp.careful import MAX_DEPTH, MAX_ELEMENTS
 from cratous.bridge.lmcp.objects import LmcpObject
 from cratous.spec.errors import BadInput
@@ -102,7 +102,7 @@ def lazy(data: bytes, where: str = "message") -> Any:
             return careful.read(data, _AT, len(data) - 4, where)
         if not found.names:
             return unpack(data, where)
-        cls = _lazy_classes[head] = lazily.class_of(found, _fill)
+        cls = _lazy_classes[head] = lazy_messages.class_of(found, _fill)
     obj = _new(cls)
     _set_raw(obj, "_raw", (data, where))
     return obj

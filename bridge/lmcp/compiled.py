@@ -96,7 +96,7 @@ def functions(cls: Any) -> tuple[Reads, Writes]:
     """(what reads the fields behind the header, what writes header and fields) of a class."""
     found = _made.get(cls)
     if found is None:
-        real = cls.__dict__.get("real_class")  # of a class of `lmcp.lazily`
+        real = cls.__dict__.get("real_class")  # of a class of `lmcp.lazy_messages`
         found = _made[cls] = _Maker(cls).functions() if real is None else _of_lazy(real)
     return found
 

@@ -10,22 +10,25 @@ from __future__ import annotations
 
 import numpy as np
 
+from cratous.core.assignment.instance import Instance
+from cratous.core.assignment.search_records import Times
 from cratous.core.assignment.steps import earliest_start, weighted
 
 
 def decode(
-    order: np.ndarray, who: np.ndarray, how: np.ndarray, starts: np.ndarray, ends: np.ndarray,
-    free: np.ndarray, at: np.ndarray,
-    travel: np.ndarray, added: np.ndarray, duration: np.ndarray, ready: np.ndarray,
-    release: np.ndarray, due: np.ndarray, ref_kind: np.ndarray, member_first: np.ndarray,
-    member: np.ndarray, row_first: np.ndarray, row_ref: np.ndarray, row_lo: np.ndarray,
-    weight: np.ndarray, waits: int, stop: int,
+    order: np.ndarray, who: np.ndarray, how: np.ndarray, times: Times, at: np.ndarray,
+    i: Instance, stop: int,
 ) -> int:  # fmt: skip
     """The cost of a solution, with its times; 2**60 if the order or a way does not exist.
 
     A latest end that is missed costs 1000 for each ms, so that a search can find its way back.
-    Gives up where the cost reaches `stop`. free: [V + 1], at the end the sum of last ends.
+    Gives up where the cost reaches `stop`. at [V]: the last option of each vehicle.
     """
+    starts, ends, free = times.starts, times.ends, times.free
+    travel, added, duration, ready = i.travel, i.added, i.duration, i.ready
+    release, due, ref_kind, member_first = i.release, i.due, i.ref_kind, i.member_first
+    member, row_first, row_ref, row_lo = i.member, i.row_first, i.row_ref, i.row_lo
+    weight, waits = i.weight, i.waits
     n, vehicles, options = order.size, ready.size, duration.size
     for v in range(vehicles):
         free[v] = ready[v]
@@ -80,17 +83,16 @@ def decode(
     return weighted(last, team, legs, weight[0], weight[1]) + late * 1000
 
 
-def leaf(
-    order: np.ndarray, who: np.ndarray, how: np.ndarray, salt: int,
-    travel: np.ndarray, added: np.ndarray, duration: np.ndarray, task: np.ndarray,
-    may: np.ndarray, ready: np.ndarray, release: np.ndarray, due: np.ndarray,
-    ref_kind: np.ndarray, member_first: np.ndarray, member: np.ndarray, row_first: np.ndarray,
-    row_ref: np.ndarray, row_lo: np.ndarray, weight: np.ndarray, waits: int,
-) -> int:  # fmt: skip
+def leaf(order: np.ndarray, who: np.ndarray, how: np.ndarray, i: Instance) -> int:
     """The first leaf: always the child of least cost so far, then of the earliest end. Nodes.
 
     -1: it ends in a state from which some task cannot be done.
     """
+    travel, added, duration, ready = i.travel, i.added, i.duration, i.ready
+    release, due, ref_kind, member_first = i.release, i.due, i.ref_kind, i.member_first
+    member, row_first, row_ref, row_lo = i.member, i.row_first, i.row_ref, i.row_lo
+    weight, waits = i.weight, i.waits
+    task, may = i.task, i.may
     n, vehicles, options = release.size, ready.size, duration.size
     free, at = ready.copy(), np.full(vehicles, options, np.int64)
     starts, ends = np.zeros(n, np.int64), np.full(n, -1, np.int64)
@@ -150,25 +152,20 @@ def leaf(
 
 def anneal(
     order: np.ndarray, who: np.ndarray, how: np.ndarray, steps: int, seed: int, hot: float,
-    travel: np.ndarray, added: np.ndarray, duration: np.ndarray, task: np.ndarray,
-    may: np.ndarray, ready: np.ndarray, release: np.ndarray, due: np.ndarray,
-    ref_kind: np.ndarray, member_first: np.ndarray, member: np.ndarray, row_first: np.ndarray,
-    row_ref: np.ndarray, row_lo: np.ndarray, weight: np.ndarray, waits: int,
+    i: Instance,
 ) -> int:  # fmt: skip
     """Improve a solution in place for so many steps; the cost of the best, which is left there.
 
     hot: first temperature, as a share of the cost. One step takes a task out, or exchanges the
     places of two, and is kept by the rule of threshold accepting.
     """
-    n, vehicles, options = order.size, ready.size, duration.size
+    task, may = i.task, i.may
+    n, vehicles, options = order.size, i.ready.size, i.duration.size
     free, at = np.zeros(vehicles + 1, np.int64), np.zeros(vehicles, np.int64)
-    starts, ends = np.zeros(n, np.int64), np.zeros(n, np.int64)
+    times = Times(np.zeros(n, np.int64), np.zeros(n, np.int64), free)
     trial, trial_who, trial_how = order.copy(), who.copy(), how.copy()
     best_order, best_who, best_how = order.copy(), who.copy(), how.copy()
-    now = decode(
-        order, who, how, starts, ends, free, at, travel, added, duration, ready, release, due,
-        ref_kind, member_first, member, row_first, row_ref, row_lo, weight, waits, 1 << 60,
-    )  # fmt: skip
+    now = decode(order, who, how, times, at, i, 1 << 60)
     best = now
     share = 6 * vehicles
     smooth = now + free[vehicles] // share
@@ -219,11 +216,7 @@ def anneal(
         left = 1.0 - step / steps
         slack = now * hot * left * left * (((x >> 20) & 0xFFF) / 4096.0)
         stop = smooth + int(slack)
-        cost = decode(
-            trial, trial_who, trial_how, starts, ends, free, at, travel, added, duration, ready,
-            release, due, ref_kind, member_first, member, row_first, row_ref, row_lo, weight,
-            waits, stop + 1,
-        )  # fmt: skip
+        cost = decode(trial, trial_who, trial_how, times, at, i, stop + 1)
         if cost >= 1 << 60:
             continue
         if cost < best:

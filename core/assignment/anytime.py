@@ -18,7 +18,6 @@ from cratous.core.assignment.compiled import machine_for
 from cratous.core.assignment.instance import FAR, TASKS_MAX, Instance
 from cratous.core.assignment.large_neighbourhoods import rebuild
 from cratous.core.assignment.layers import (
-    Ahead,
     Outcome,
     first_state,
     look_ahead,
@@ -27,6 +26,7 @@ from cratous.core.assignment.layers import (
 )
 from cratous.core.assignment.lower_bounds import heads, least_until, least_work
 from cratous.core.assignment.refutation import bound
+from cratous.core.assignment.search_records import Ahead
 from cratous.core.assignment.steps import earliest_start, raised, soonest_end, weighted
 from cratous.core.kernel import driver
 from cratous.core.schedule.rows import later
@@ -54,7 +54,7 @@ def greedy(instance: Instance) -> tuple[int, Moves | None]:
     """(nodes, the first leaf's moves, or None if it ends in a dead end)."""
     i, n = instance, instance.tasks
     order, who, how = np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64)
-    nodes = int(machine_for(i, leaf)(order, who, how, 0, *_parts(i)))
+    nodes = int(machine_for(i, leaf)(order, who, how, i))
     if nodes < 0:
         return n, None
     return nodes, tuple((int(who[j]), int(how[j])) for j in order)
@@ -72,7 +72,7 @@ def improve(
     who, how = np.zeros(n, np.int64), np.zeros(n, np.int64)
     for v, o in moves:
         who[i.task[o]], how[i.task[o]] = v, o
-    cost = int(machine_for(i, anneal)(order, who, how, steps, seed, hot, *_parts(i)))
+    cost = int(machine_for(i, anneal)(order, who, how, steps, seed, hot, i))
     found = tuple((int(who[j]), int(how[j])) for j in order)
     late = cost >= NONE or any(end > i.due[i.task[o]] for _, o, _, _, end in timed(i, found))
     return NONE if late else cost, found
@@ -97,7 +97,7 @@ def rebuilt(
             j, k = i.task[a], i.task[b]
             apart[j, k] = min(apart[j, k], ways[a, b]) if j != k else -1
     near = np.argsort(apart, axis=1, kind="stable")
-    cost = int(machine_for(i, rebuild)(order, who, how, rounds, seed, hot, near, *_parts(i)))
+    cost = int(machine_for(i, rebuild)(order, who, how, rounds, seed, hot, near, i))
     found = tuple((int(who[j]), int(how[j])) for j in order)
     late = cost >= NONE or any(end > i.due[i.task[o]] for _, o, _, _, end in timed(i, found))
     return NONE if late else cost, found
@@ -129,35 +129,20 @@ def timed(instance: Instance, moves: Moves) -> list[tuple[int, int, int, int, in
     return found
 
 
-def _parts(i: Instance) -> tuple[object, ...]:
-    return (
-        i.travel, i.added, i.duration, i.task, i.may, i.ready, i.release, i.due, i.ref_kind,
-        i.member_first, i.member, i.row_first, i.row_ref, i.row_lo, i.weight, i.waits,
-    )  # fmt: skip
-
-
 def estimate(instance: Instance, ahead: Ahead | None = None) -> int:
     """A bound that takes no search: the first state's, or above 62 tasks `rough_bound`."""
-    i, n = instance, instance.tasks
-    if n > TASKS_MAX:
+    i = instance
+    if i.tasks > TASKS_MAX:
         return rough_bound(i)
     ahead = look_ahead(i) if ahead is None else ahead
-    return int(
-        machine_for(i, bound)(
-            first_state(i), n, i.vehicles, i.duration.size, ahead.to_task, ahead.to_task_added,
-            ahead.apart, ahead.apart_added, ahead.least, ahead.head, ahead.tail, i.due, i.weight,
-        )
-    )  # fmt: skip
+    return int(machine_for(i, bound)(first_state(i), i, ahead))
 
 
 def rough_bound(instance: Instance) -> int:
     """The longest path through the rows, and the least work of all tasks shared by all vehicles."""
     i = instance
-    head, least, tail = machine_for(i, heads)(
-        i.travel, i.duration, i.task, i.may, i.ready, i.release, i.ref_kind, i.member_first,
-        i.member, i.row_first, i.row_ref, i.row_lo, i.waits, shortest(i, i.may),
-    )  # fmt: skip
-    work, legs = machine_for(i, least_work)(i.travel, i.added, i.duration, i.task, i.may, i.tasks)
+    head, least, tail = machine_for(i, heads)(i, shortest(i, i.may))
+    work, legs = machine_for(i, least_work)(i)
     last = int(machine_for(i, least_until)(int(work), i.ready))
     for j in range(i.tasks):
         last = later(last, soonest_end(int(head[j]), int(head[j]), int(least[j])) + int(tail[j]))

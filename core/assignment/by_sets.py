@@ -12,7 +12,8 @@ import numpy as np
 
 from cratous.core.assignment.compiled import machine_for
 from cratous.core.assignment.instance import TABLE_MAX_MS, Instance, horizon
-from cratous.core.assignment.layers import Ahead, look_ahead
+from cratous.core.assignment.layers import look_ahead
+from cratous.core.assignment.search_records import Ahead
 from cratous.core.assignment.tables import CELLS_MAX, latest_tables
 from cratous.core.kernel import driver
 
@@ -72,10 +73,9 @@ def by_sets(
     latest = np.empty((kinds, i.duration.size, 1 << n), np.int32)
     start = np.empty((i.vehicles, 1 << n), np.int32)
     before = all_before(i)
-    machine_for(i, latest_tables)(
-        i.travel, i.duration, i.task, i.may, before, i.release * 0,
-        np.full(n, HORIZON, np.int64), ahead.kind_of, kinds, ahead.leader, latest, start,
-    )  # fmt: skip
+    due = np.full(n, HORIZON, np.int64)
+    relaxed = i._replace(need=before, release=i.release * 0, due=due)
+    machine_for(i, latest_tables)(relaxed, ahead.kind_of, ahead.leader, latest, start)
     # a shared table lets any option be flown: sets that a vehicle may not do are struck out here
     sets = np.arange(1 << n)
     for v in range(i.vehicles):

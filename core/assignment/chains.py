@@ -19,8 +19,9 @@ import numpy as np
 
 from cratous.core.assignment.compiled import machine_for
 from cratous.core.assignment.instance import Instance
-from cratous.core.assignment.layers import EFFORT, Ahead, first_state, look_ahead, tables
+from cratous.core.assignment.layers import first_state, look_ahead, search_below
 from cratous.core.assignment.refutation import bound, place
+from cratous.core.assignment.search_records import Ahead, Search
 from cratous.core.assignment.steps import opened
 from cratous.core.assignment.tables import deals
 from cratous.core.kernel import driver
@@ -34,14 +35,7 @@ LEAF, EMPTY, TIRED = 1, 0, 2
 
 def descend(
     stack: np.ndarray, kids: np.ndarray, count: np.ndarray, turn: np.ndarray, control: np.ndarray,
-    limit: int, budget: int, use_deals: int, effort: int, able: np.ndarray, kind_of: np.ndarray,
-    latest: np.ndarray, start: np.ndarray, to_task: np.ndarray, to_task_added: np.ndarray,
-    apart: np.ndarray, apart_added: np.ndarray, least: np.ndarray, head: np.ndarray,
-    tail: np.ndarray,
-    travel: np.ndarray, added: np.ndarray, duration: np.ndarray, task: np.ndarray,
-    may: np.ndarray, release: np.ndarray, due: np.ndarray, need: np.ndarray,
-    ref_kind: np.ndarray, ref_group: np.ndarray, ref_user: np.ndarray, row_first: np.ndarray,
-    row_ref: np.ndarray, row_lo: np.ndarray, twin: np.ndarray, weight: np.ndarray, waits: int,
+    limit: int, budget: int, search: Search,
 ) -> int:  # fmt: skip
     """Go on to the next complete list of moves: 1 found, 0 there is none, 2 the budget is spent.
 
@@ -49,11 +43,11 @@ def descend(
     turn [n]: how many, and which is next; control: depth, nodes, and whether the children of this
     depth are made.
     """
+    i = search.instance
+    may, task, twin, waits = i.may, i.task, i.twin, i.waits
     vehicles, options = may.shape
-    n = release.size
-    child = np.zeros(stack.shape[1], np.int64)
-    line, tight = np.zeros(64, np.int64), np.zeros(64, np.int64)
-    parts, turns = np.zeros(64, np.int64), np.zeros(64, np.int64)
+    n = i.release.size
+    child, scratch = np.zeros(stack.shape[1], np.int64), np.zeros((4, 64), np.int64)
     everything = (1 << n) - 1
     spent = 0
     while control[0] >= 0:
@@ -76,30 +70,21 @@ def descend(
                         w = kids[d - 1, turn[d - 1] - 1, 1]
                         if v < w:
                             done = stack[d - 1][0]
-                            before = opened(done, need[j])
-                            for p in range(row_first[j], row_first[j + 1]):
-                                r = row_ref[p]
-                                if ref_kind[r] == 2 and (ref_group[r] & done) == 0:
+                            before = opened(done, i.need[j])
+                            for p in range(i.row_first[j], i.row_first[j + 1]):
+                                r = i.row_ref[p]
+                                if i.ref_kind[r] == 2 and (i.ref_group[r] & done) == 0:
                                     before = False
                             if before:
                                 continue
-                    if not place(
-                        state, child, v, o, waits, travel, added, duration, task, release, due,
-                        need, ref_kind, ref_group, ref_user, row_first, row_ref, row_lo, waits,
-                    ):  # fmt: skip
+                    if not place(state, child, v, o, i, waits):
                         continue
                     spent += 1
-                    low = bound(
-                        child, n, vehicles, options, to_task, to_task_added, apart, apart_added,
-                        least, head, tail, due, weight,
-                    )  # fmt: skip
+                    low = bound(child, i, search.ahead)
                     if low >= limit:
                         continue
-                    if d + 1 < n and use_deals and not deals(
-                        everything & ~child[0], child[1 : 1 + vehicles],
-                        child[1 + vehicles : 1 + 2 * vehicles], able, kind_of, latest, start,
-                        options, effort, line, tight, turns, parts,
-                    ):  # fmt: skip
+                    asked = d + 1 < n and search.deals
+                    if asked and not deals(everything & ~child[0], child, search, scratch):
                         continue
                     p = many
                     while p > 0 and kids[d, p - 1, 0] > low:
@@ -119,10 +104,7 @@ def descend(
             continue
         v, o = kids[d, turn[d], 1], kids[d, turn[d], 2]
         turn[d] += 1
-        place(
-            state, stack[d + 1], v, o, waits, travel, added, duration, task, release, due, need,
-            ref_kind, ref_group, ref_user, row_first, row_ref, row_lo, waits,
-        )  # fmt: skip
+        place(state, stack[d + 1], v, o, i, waits)
         if d + 1 == n:
             control[1] += spent
             return 1
@@ -164,7 +146,7 @@ def chains_below(
     """
     i, n = instance, instance.tasks
     ahead = look_ahead(i) if ahead is None else ahead
-    looked = tables(i, ahead, limit)
+    search = search_below(i, ahead, limit)
     first = first_state(i)
     stack = np.zeros((n + 1, first.size), np.int64)
     stack[0] = first
@@ -175,14 +157,7 @@ def chains_below(
         left = nodes - int(control[1])
         if left <= 0 or (stop is not None and stop(int(control[1]))):
             return Listed(limit, best, False, int(control[1]), leaves)
-        found = run(
-            stack, kids, count, turn, control, limit, min(left, 20_000), looked.used, EFFORT,
-            ahead.able, ahead.kind_of, looked.latest, looked.start, ahead.to_task,
-            ahead.to_task_added, ahead.apart, ahead.apart_added, ahead.least, ahead.head,
-            ahead.tail, i.travel, i.added, i.duration, i.task, i.may, i.release, looked.due,
-            i.need, i.ref_kind, i.ref_group, i.ref_user, i.row_first, i.row_ref, i.row_lo, i.twin,
-            i.weight, i.waits,
-        )  # fmt: skip
+        found = run(stack, kids, count, turn, control, limit, min(left, 20_000), search)
         if found == EMPTY:
             return Listed(limit, best, True, int(control[1]), leaves)
         if found == TIRED:

@@ -72,23 +72,31 @@ def is_plain(rows: Sequence[Row]) -> bool:
     return all(row.kind in (AFTER_END, AFTER_START, NOT_BEFORE, NOT_AFTER) for row in rows)
 
 
+class Fleet(NamedTuple):
+    """When vehicles are ready [V, ms], what they may do and what their legs take and cost, as arrays of
+    `Instance` or what makes them."""
+
+    ready: Sequence[int]
+    may: Any
+    travel: Any
+    added: Any
+
+
 def instance(
     tasks: Sequence[int],
     rows: Sequence[Row],
     options: Sequence[tuple[int, int]],
-    may: Any,
-    travel: Any,
-    added: Any,
-    ready: Sequence[int],
+    fleet: Fleet,
     weight: tuple[int, int],
     waits: bool,
 ) -> Instance:
     """The arrays of one branch. options: (task id, duration) of those of its tasks.
 
-    may, travel, added: arrays as in `Instance`, over these options. Tasks are numbered in the
-    order given; rows must be plain. A task that no row precedes has an empty `need`.
+    fleet: over these options. Tasks are numbered in the order given; rows must be plain. A task that
+    no row precedes has an empty `need`.
     """
     number = {task: k for k, task in enumerate(tasks)}
+    ready = fleet.ready
     n, vehicles = len(tasks), len(ready)
     release, due = np.zeros(n, np.int64), np.full(n, FAR, np.int64)
     need = np.zeros(n, np.int64)
@@ -113,9 +121,9 @@ def instance(
             if masks:
                 users[place] |= 1 << i
             listed[i].append((place, row.lo))
-    travel = np.ascontiguousarray(travel, np.int64)
-    may = np.ascontiguousarray(may, np.uint8)
-    added = np.ascontiguousarray(added, np.int64)
+    travel = np.ascontiguousarray(fleet.travel, np.int64)
+    may = np.ascontiguousarray(fleet.may, np.uint8)
+    added = np.ascontiguousarray(fleet.added, np.int64)
     twin = np.arange(vehicles)
     for v in range(vehicles):
         for w in range(v):

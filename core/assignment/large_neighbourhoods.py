@@ -13,23 +13,25 @@ from __future__ import annotations
 
 import numpy as np
 
+from cratous.core.assignment.instance import Instance
+from cratous.core.assignment.search_records import ChainArrays, Times
 from cratous.core.assignment.steps import earliest_start, weighted
 
 
 def time_chains(
-    chain: np.ndarray, length: np.ndarray, how: np.ndarray, there: np.ndarray,
-    starts: np.ndarray, ends: np.ndarray, order: np.ndarray, next_of: np.ndarray,
-    free: np.ndarray, travel: np.ndarray, added: np.ndarray, duration: np.ndarray,
-    ready: np.ndarray, release: np.ndarray, due: np.ndarray, ref_kind: np.ndarray,
-    member_first: np.ndarray, member: np.ndarray, row_first: np.ndarray, row_ref: np.ndarray,
-    row_lo: np.ndarray, weight: np.ndarray, waits: int,
-) -> int:  # fmt: skip
+    chains: ChainArrays, times: Times, order: np.ndarray, next_of: np.ndarray, i: Instance
+) -> int:
     """The cost of chains, of some tasks alone maybe, with times and order; 2**60: they block.
 
-    chain [V, n], length [V]: tasks of each vehicle; there [n]: 1 for tasks in chains; rows about
-    others say nothing. Always the task that can start first comes next. free [V + 1], at the end
-    the sum of last ends. A latest end that is missed costs 1000 for each ms.
+    Rows about tasks that are in no chain say nothing. Always the task that can start first comes
+    next. next_of [V]: scratch. A latest end that is missed costs 1000 for each ms.
     """
+    chain, length, how, there = chains.chain, chains.length, chains.how, chains.there
+    starts, ends, free = times.starts, times.ends, times.free
+    travel, added, duration, ready = i.travel, i.added, i.duration, i.ready
+    release, due, ref_kind, member_first = i.release, i.due, i.ref_kind, i.member_first
+    member, row_first, row_ref, row_lo = i.member, i.row_first, i.row_ref, i.row_lo
+    weight, waits = i.weight, i.waits
     vehicles, options, n = ready.size, duration.size, starts.size
     total = 0
     for v in range(vehicles):
@@ -61,16 +63,16 @@ def time_chains(
                 at_ref = 0 if ref_kind[r] == 1 else 1 << 40
                 any_there = False
                 for m in range(member_first[r], member_first[r + 1]):
-                    i = member[m]
-                    if there[i] == 0:
+                    k = member[m]
+                    if there[k] == 0:
                         continue
                     any_there = True
                     if ref_kind[r] == 1:
-                        if ends[i] < 0:
+                        if ends[k] < 0:
                             open_now = False
-                        at_ref = max(at_ref, ends[i])
-                    elif ends[i] >= 0:
-                        at_ref = min(at_ref, starts[i])
+                        at_ref = max(at_ref, ends[k])
+                    elif ends[k] >= 0:
+                        at_ref = min(at_ref, starts[k])
                 if any_there and at_ref == 1 << 40:
                     open_now = False
                 if any_there and waits and open_now:
@@ -106,17 +108,18 @@ def time_chains(
 
 def rebuild(
     order: np.ndarray, who: np.ndarray, how: np.ndarray, rounds: int, seed: int, hot: float,
-    near: np.ndarray,
-    travel: np.ndarray, added: np.ndarray, duration: np.ndarray, task: np.ndarray,
-    may: np.ndarray, ready: np.ndarray, release: np.ndarray, due: np.ndarray,
-    ref_kind: np.ndarray, member_first: np.ndarray, member: np.ndarray, row_first: np.ndarray,
-    row_ref: np.ndarray, row_lo: np.ndarray, weight: np.ndarray, waits: int,
+    near: np.ndarray, i: Instance,
 ) -> int:  # fmt: skip
     """Take out and put in again for so many rounds; the cost of the best, which is left in place.
 
     near [n, n]: for each task all tasks, the nearest first; hot: first temperature, as a share of
     the cost.
     """
+    travel, added, duration, ready = i.travel, i.added, i.duration, i.ready
+    release, due, ref_kind, member_first = i.release, i.due, i.ref_kind, i.member_first
+    member, row_first, row_ref, row_lo = i.member, i.row_first, i.row_ref, i.row_lo
+    weight, waits = i.weight, i.waits
+    task, may = i.task, i.may
     n, vehicles, options = order.size, ready.size, duration.size
     chain, length = np.zeros((vehicles, n), np.int64), np.zeros(vehicles, np.int64)
     for p in range(n):
@@ -130,13 +133,10 @@ def rebuild(
     spare, spare_of, spare_how = chain.copy(), length.copy(), how.copy()
     best_how = how.copy()
     out, hit = np.zeros(n, np.int64), np.zeros(vehicles, np.int64)
+    chains, times = ChainArrays(chain, length, how, there), Times(starts, ends, free)
     top_key, top = np.zeros(3, np.int64), np.zeros((3, 3), np.int64)
     share = 6 * vehicles
-    now = time_chains(
-        chain, length, how, there, starts, ends, made, next_of, free, travel, added, duration,
-        ready, release, due, ref_kind, member_first, member, row_first, row_ref, row_lo, weight,
-        waits,
-    )  # fmt: skip
+    now = time_chains(chains, times, made, next_of, i)
     best = 1 << 60
     if now < 1 << 60:
         best = now
@@ -194,11 +194,7 @@ def rebuild(
                 while q > 0 and duration[how[out[q - 1]]] < duration[how[out[q]]]:
                     out[q - 1], out[q] = out[q], out[q - 1]
                     q -= 1
-        cost = time_chains(
-            chain, length, how, there, starts, ends, made, next_of, free, travel, added, duration,
-            ready, release, due, ref_kind, member_first, member, row_first, row_ref, row_lo,
-            weight, waits,
-        )  # fmt: skip
+        cost = time_chains(chains, times, made, next_of, i)
         for a in range(count):
             if cost >= 1 << 60:
                 break
@@ -217,15 +213,15 @@ def rebuild(
                                 ref = max(ref, ends[member[m]] + row_lo[place])
             # the first start of what has to follow: a later end puts that off
             follows = 1 << 60
-            for i in range(n):
-                if there[i] == 0 or waits == 0:
+            for k in range(n):
+                if there[k] == 0 or waits == 0:
                     continue
-                for place in range(row_first[i], row_first[i + 1]):
+                for place in range(row_first[k], row_first[k + 1]):
                     r = row_ref[place]
                     if ref_kind[r] == 1:
                         for m in range(member_first[r], member_first[r + 1]):
                             if member[m] == j:
-                                follows = min(follows, starts[i] - row_lo[place])
+                                follows = min(follows, starts[k] - row_lo[place])
             for t in range(3):
                 top_key[t] = 1 << 60
             for o in range(options):
@@ -294,11 +290,7 @@ def rebuild(
                     chain[v, q] = chain[v, q - 1]
                 chain[v, p] = j
                 length[v] += 1
-                got = time_chains(
-                    chain, length, how, there, starts, ends, made, next_of, free, travel, added,
-                    duration, ready, release, due, ref_kind, member_first, member, row_first,
-                    row_ref, row_lo, weight, waits,
-                )  # fmt: skip
+                got = time_chains(chains, times, made, next_of, i)
                 if t == 3:
                     break
                 got_smooth = got + free[vehicles] // share if got < 1 << 60 else got

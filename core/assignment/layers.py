@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +23,7 @@ from cratous.core.assignment.lower_bounds import (
     ways_to_tasks,
 )
 from cratous.core.assignment.refutation import cost_now, expand, place, rehash
+from cratous.core.assignment.search_records import Ahead, Layer, Search, Tables
 from cratous.core.assignment.tables import CELLS_MAX, latest_tables
 from cratous.core.kernel import driver
 
@@ -36,30 +36,6 @@ CHUNK = 32
 """Rows of a layer that are expanded before anybody is asked whether to stop."""
 ROOM_BYTES = 50_000_000
 """What the states of one layer may take."""
-
-
-class Ahead(NamedTuple):
-    """What the search looks ahead with; the same for every limit, but for the tables."""
-
-    to_task: np.ndarray
-    to_task_added: np.ndarray
-    apart: np.ndarray
-    apart_added: np.ndarray
-    least: np.ndarray
-    head: np.ndarray
-    tail: np.ndarray
-    able: np.ndarray
-    kind_of: np.ndarray
-    leader: np.ndarray
-
-
-class Tables(NamedTuple):
-    """Latest departures for one limit, or empty arrays."""
-
-    used: int
-    due: np.ndarray
-    latest: np.ndarray
-    start: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -85,10 +61,7 @@ def look_ahead(instance: Instance) -> Ahead:
     """Shortest ways, heads and tails, and which vehicles share a table."""
     i = instance
     reach = shortest(i, i.may)
-    head, least, tail = machine_for(i, heads)(
-        i.travel, i.duration, i.task, i.may, i.ready, i.release, i.ref_kind, i.member_first,
-        i.member, i.row_first, i.row_ref, i.row_lo, i.waits, reach,
-    )  # fmt: skip
+    head, least, tail = machine_for(i, heads)(i, reach)
     able = np.zeros(i.vehicles, np.int64)
     for v in range(i.vehicles):
         for o in range(i.duration.size):
@@ -137,11 +110,16 @@ def tables(instance: Instance, ahead: Ahead, limit: int) -> Tables:
     latest = np.empty((kinds, i.duration.size, 1 << n), np.int32)
     start = np.empty((i.vehicles, 1 << n), np.int32)
     anywhere = shortest(i, np.ones_like(i.may))
-    machine_for(i, latest_tables)(
-        anywhere, i.duration, i.task, i.may, i.need if i.waits else i.need * 0, ahead.head, due,
-        ahead.kind_of, kinds, ahead.leader, latest, start,
-    )  # fmt: skip
+    need = i.need if i.waits else i.need * 0
+    relaxed = i._replace(travel=anywhere, need=need, release=ahead.head, due=due)
+    machine_for(i, latest_tables)(relaxed, ahead.kind_of, ahead.leader, latest, start)
     return Tables(1, due, latest, start)
+
+
+def search_below(instance: Instance, ahead: Ahead, limit: int) -> Search:
+    """The search for what costs less than the limit."""
+    looked = tables(instance, ahead, limit)
+    return Search(instance._replace(due=looked.due), ahead, looked, looked.used, EFFORT)
 
 
 def first_state(instance: Instance) -> np.ndarray:
@@ -171,7 +149,7 @@ def refute(
     """
     i = instance
     ahead = look_ahead(i) if ahead is None else ahead
-    looked = tables(i, ahead, limit)
+    search = search_below(i, ahead, limit)
     run, again = machine_for(i, expand), machine_for(i, rehash)
     layer, ranks = first_state(i)[None, :], np.zeros(1, np.int64)
     counts, known = np.zeros(4, np.int64), limit
@@ -179,20 +157,17 @@ def refute(
     states, fan = 1, i.vehicles * i.duration.size
     most = max(4 * fan, min(4 * width, ROOM_BYTES // (8 * (layer.shape[1] + 6))))
     for depth in range(i.tasks):
+        if depth + 1 == i.tasks:
+            search = search._replace(deals=0)
         room, first, kept, halted = min(most, 1024 + 2 * fan), 0, 0, False
         into, origin = np.empty((room, layer.shape[1]), np.int64), np.empty((room, 3), np.int64)
         rank, chain = np.empty(room, np.int64), np.empty(room, np.int64)
         table = np.full(2048, -1, np.int64)
         while first < len(layer) and not halted:
+            made = Layer(into, origin, rank, table, chain)
             kept, first = run(
-                layer, first, min(len(layer), first + CHUNK), kept, into, origin, rank, table,
-                chain, limit, i.waits, looked.used if depth + 1 < i.tasks else 0, EFFORT,
-                ahead.able, ahead.kind_of, looked.latest, looked.start, ahead.to_task,
-                ahead.to_task_added, ahead.apart, ahead.apart_added, ahead.least, ahead.head,
-                ahead.tail, i.travel, i.added, i.duration, i.task, i.may, i.release, looked.due,
-                i.need, i.ref_kind, i.ref_group, i.ref_user, i.row_first, i.row_ref, i.row_lo,
-                i.twin, i.weight, i.waits, counts,
-            )  # fmt: skip
+                layer, first, min(len(layer), first + CHUNK), kept, made, limit, search, counts
+            )
             halted = stop is not None and stop(int(counts[0]))
             if kept + fan > room and first < len(layer):
                 if room >= most:
@@ -245,10 +220,7 @@ def replay(instance: Instance, moves: tuple[tuple[int, int], ...]) -> list[np.nd
     states = [state]
     for v, o in moves:
         child = np.zeros_like(state)
-        if not i.may[v, o] or not place(
-            state, child, v, o, i.waits, i.travel, i.added, i.duration, i.task, i.release, i.due,
-            i.need, i.ref_kind, i.ref_group, i.ref_user, i.row_first, i.row_ref, i.row_lo, i.waits,
-        ):  # fmt: skip
+        if not i.may[v, o] or not place(state, child, v, o, i, i.waits):
             raise ValueError("the moves are not possible in this order")
         state = child
         states.append(state)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from cratous.core.assignment.instance import Instance
 from cratous.core.assignment.steps import lacks_room, raised, room_step
 from cratous.core.kernel import kernel
 
@@ -161,16 +162,14 @@ def ways_between_tasks(
     return brief, extra
 
 
-def heads(
-    travel: np.ndarray, duration: np.ndarray, task: np.ndarray, may: np.ndarray,
-    ready: np.ndarray, release: np.ndarray, ref_kind: np.ndarray, member_first: np.ndarray,
-    member: np.ndarray, row_first: np.ndarray, row_ref: np.ndarray, row_lo: np.ndarray,
-    waits: int, reach: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
+def heads(i: Instance, reach: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Per task: earliest start, shortest duration, and the least time after its end [ms].
 
     reach: [V, K + 1, K], the shortest time from one option's end to another's start by any way.
     """
+    duration, task, may, ready, release = i.duration, i.task, i.may, i.ready, i.release
+    ref_kind, member_first, member = i.ref_kind, i.member_first, i.member
+    row_first, row_ref, row_lo = i.row_first, i.row_ref, i.row_lo
     n, vehicles, options = release.size, ready.size, duration.size
     head, least = release.copy(), np.full(n, 1 << 40, np.int64)
     for k in range(options):
@@ -184,20 +183,20 @@ def heads(
     for j in range(n):
         head[j] = raised(head[j], first[j], 0)
     tail = np.zeros(n, np.int64)
-    if waits == 0:
+    if i.waits == 0:
         return head, least, tail
     for _ in range(n):
         changed = False
-        for i in range(n):
-            for place in range(row_first[i], row_first[i + 1]):
+        for k in range(n):
+            for place in range(row_first[k], row_first[k + 1]):
                 r = row_ref[place]
                 lag = row_lo[place]
-                higher = head[i]
+                higher = head[k]
                 if ref_kind[r] == 1:
                     for m in range(member_first[r], member_first[r + 1]):
                         j = member[m]
                         higher = raised(higher, head[j] + least[j], lag)
-                        after = tail_step(tail[j], lag, least[i], tail[i])
+                        after = tail_step(tail[j], lag, least[k], tail[k])
                         if after > tail[j]:
                             tail[j] = after
                             changed = True
@@ -206,20 +205,19 @@ def heads(
                     for m in range(member_first[r], member_first[r + 1]):
                         at = least_of(at, True, head[member[m]])
                     higher = raised(higher, at, lag)
-                if higher > head[i]:
-                    head[i] = higher
+                if higher > head[k]:
+                    head[k] = higher
                     changed = True
         if not changed:
             break
     return head, least, tail
 
 
-def least_work(
-    travel: np.ndarray, added: np.ndarray, duration: np.ndarray, task: np.ndarray, may: np.ndarray,
-    n: int,
-) -> tuple[int, int]:  # fmt: skip
+def least_work(i: Instance) -> tuple[int, int]:
     """What all tasks take at least, together: leg and duration [ms]; and what their legs cost."""
+    travel, added, duration, task, may = i.travel, i.added, i.duration, i.task, i.may
     vehicles, options = may.shape
+    n = i.release.size
     brief, cheap = np.full(n, 1 << 40, np.int64), np.full(n, 1 << 40, np.int64)
     for o in range(options):
         j = task[o]

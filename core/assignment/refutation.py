@@ -14,7 +14,9 @@ from typing import Any
 
 import numpy as np
 
+from cratous.core.assignment.instance import Instance
 from cratous.core.assignment.lower_bounds import add_least, least_of, least_until
+from cratous.core.assignment.search_records import Ahead, Layer, Search
 from cratous.core.assignment.steps import (
     covers_step,
     earliest_start,
@@ -27,36 +29,31 @@ from cratous.core.assignment.tables import deals
 from cratous.core.schedule.rows import later
 
 
-def place(
-    state: np.ndarray, child: np.ndarray, v: int, o: int, floors: int,
-    travel: np.ndarray, added: np.ndarray, duration: np.ndarray, task: np.ndarray,
-    release: np.ndarray, due: np.ndarray, need: np.ndarray, ref_kind: np.ndarray,
-    ref_group: np.ndarray, ref_user: np.ndarray, row_first: np.ndarray, row_ref: np.ndarray,
-    row_lo: np.ndarray, waits: int,
-) -> bool:  # fmt: skip
+def place(state: np.ndarray, child: np.ndarray, v: int, o: int, i: Instance, floors: int) -> bool:
     """Write into `child` the state after vehicle v does option o next; False: it cannot.
 
     A state: done, V x last option (K: none), V x free, floor, added, R references. A reference
     that no task left reads is 0; one of which nothing is done is -1.
     """
+    travel, ref_kind, ref_group = i.travel, i.ref_kind, i.ref_group
     vehicles = travel.shape[0]
     done = state[0]
-    j = task[o]
+    j = i.task[o]
     way = travel[v, state[1 + v], o]
-    if (done >> j) & 1 or not opened(done, need[j]) or way >= 1 << 40:
+    if (done >> j) & 1 or not opened(done, i.need[j]) or way >= 1 << 40:
         return False
     base = 3 + 2 * vehicles
-    ref = release[j]
-    for p in range(row_first[j], row_first[j + 1]):
-        r = row_ref[p]
+    ref = i.release[j]
+    for p in range(i.row_first[j], i.row_first[j + 1]):
+        r = i.row_ref[p]
         if ref_kind[r] == 2 and (ref_group[r] & done) == 0:
             return False
-        if waits:
-            ref = raised(ref, state[base + r], row_lo[p])
+        if i.waits:
+            ref = raised(ref, state[base + r], i.row_lo[p])
     floor = state[1 + 2 * vehicles] if floors else 0
     begin = earliest_start(state[1 + vehicles + v], way, floor, ref)
-    end = begin + duration[o]
-    if end > due[j]:
+    end = begin + i.duration[o]
+    if end > i.due[j]:
         return False
     for c in range(state.size):
         child[c] = state[c]
@@ -65,12 +62,12 @@ def place(
     child[1 + vehicles + v] = end
     if floors:
         child[1 + 2 * vehicles] = begin
-    child[2 + 2 * vehicles] = state[2 + 2 * vehicles] + added[v, state[1 + v], o]
+    child[2 + 2 * vehicles] = state[2 + 2 * vehicles] + i.added[v, state[1 + v], o]
     for r in range(ref_kind.size):
         c = base + r
-        if (ref_user[r] & ~child[0]) == 0:
+        if (i.ref_user[r] & ~child[0]) == 0:
             child[c] = 0
-        elif waits and (ref_group[r] >> j) & 1:
+        elif i.waits and (ref_group[r] >> j) & 1:
             if ref_kind[r] == 1:
                 child[c] = max(child[c], end)
             elif state[c] < 0:
@@ -91,16 +88,12 @@ def cost_now(state: np.ndarray, vehicles: int, options: int, weight: np.ndarray)
     return weighted(last, team, state[2 + 2 * vehicles], weight[0], weight[1])
 
 
-def bound(
-    state: np.ndarray, n: int, vehicles: int, options: int, to_task: np.ndarray,
-    to_task_added: np.ndarray, apart: np.ndarray, apart_added: np.ndarray, least: np.ndarray,
-    head: np.ndarray, tail: np.ndarray, due: np.ndarray, weight: np.ndarray,
-) -> int:  # fmt: skip
-    """No completion of the state costs less. 2**60: there is none.
-
-    to_task [V, K + 1, n]: least time from a stop to a task's end; apart [n, n]: from one task's end
-    to another's; to_task_added, apart_added: likewise of what legs cost.
-    """
+def bound(state: np.ndarray, i: Instance, ahead: Ahead) -> int:
+    """No completion of the state costs less. 2**60: there is none."""
+    vehicles, options = i.may.shape
+    n, due, weight = i.release.size, i.due, i.weight
+    to_task, to_task_added = ahead.to_task, ahead.to_task_added
+    apart, apart_added = ahead.apart, ahead.apart_added
     done = state[0]
     last = 0
     team = 0
@@ -121,14 +114,14 @@ def bound(
             soonest = least_of(soonest, True, state[1 + vehicles + v] + to_task[v, at, j])
             brief = least_of(brief, True, to_task[v, at, j])
             extra = least_of(extra, True, to_task_added[v, at, j])
-        for i in range(n):
-            counts = (done >> i) & 1 == 0 and i != j
-            brief = least_of(brief, counts, apart[i, j])
-            extra = least_of(extra, counts, apart_added[i, j])
-        end = soonest_end(soonest, head[j], least[j])
+        for k in range(n):
+            counts = (done >> k) & 1 == 0 and k != j
+            brief = least_of(brief, counts, apart[k, j])
+            extra = least_of(extra, counts, apart_added[k, j])
+        end = soonest_end(soonest, ahead.head[j], ahead.least[j])
         if end > due[j] or brief >= 1 << 40:
             return 1 << 60
-        last = later(last, end + tail[j])
+        last = later(last, end + ahead.tail[j])
         work = add_least(work, True, brief)
         legs = add_least(legs, True, extra)
     if work > 0:
@@ -159,33 +152,25 @@ def key_of(state: np.ndarray, vehicles: int, size: int) -> Any:
 
 
 def expand(
-    layer: np.ndarray, first: int, count: int, kept: int, into: np.ndarray, origin: np.ndarray,
-    rank: np.ndarray, table: np.ndarray, chain: np.ndarray, limit: int, floors: int, use_deals: int,
-    effort: int, able: np.ndarray, kind_of: np.ndarray, latest: np.ndarray, start: np.ndarray,
-    to_task: np.ndarray, to_task_added: np.ndarray, apart: np.ndarray, apart_added: np.ndarray,
-    least: np.ndarray, head: np.ndarray, tail: np.ndarray,
-    travel: np.ndarray, added: np.ndarray, duration: np.ndarray, task: np.ndarray,
-    may: np.ndarray, release: np.ndarray, due: np.ndarray, need: np.ndarray,
-    ref_kind: np.ndarray, ref_group: np.ndarray, ref_user: np.ndarray, row_first: np.ndarray,
-    row_ref: np.ndarray, row_lo: np.ndarray, twin: np.ndarray, weight: np.ndarray, waits: int,
-    counts: np.ndarray,
+    parents: np.ndarray, first: int, count: int, kept: int, layer: Layer, limit: int,
+    search: Search, counts: np.ndarray,
 ) -> tuple[int, int]:  # fmt: skip
-    """The children of layer[first:count] that could cost less than `limit`: (how many, next row).
+    """The children of parents[first:count] that could cost less than `limit`: (how many, next row).
 
-    into, origin [m, 3] (parent, vehicle, option), rank: filled up to `kept`; table, chain: hash
-    heads and links. Stops before a row whose children might not fit into `into`. counts: nodes, pruned by bound, by dealing, covered.
+    layer: filled up to `kept`. Stops before a row whose children might not fit into it. counts:
+    nodes, pruned by bound, by dealing, covered.
     """
+    i, into, origin, rank = search.instance, layer.states, layer.origin, layer.rank
+    table, chain = layer.table, layer.chain
+    may, task, twin, n = i.may, i.task, i.twin, i.release.size
     vehicles, options = may.shape
-    n = release.size
-    child = np.zeros(layer.shape[1], np.int64)
-    line, tight = np.zeros(64, np.int64), np.zeros(64, np.int64)
-    turn, parts = np.zeros(64, np.int64), np.zeros(64, np.int64)
+    child, scratch = np.zeros(parents.shape[1], np.int64), np.zeros((4, 64), np.int64)
     size = table.size
     everything = (1 << n) - 1
     for p in range(first, count):
         if kept + vehicles * options > into.shape[0]:
             return kept, p
-        state = layer[p]
+        state = parents[p]
         for o in range(options):
             if (state[0] >> task[o]) & 1:
                 continue
@@ -195,16 +180,10 @@ def expand(
                 # a vehicle that is as good as one before it, and as unused, waits its turn
                 if twin[v] != v and state[1 + v] == options and state[1 + twin[v]] == options:
                     continue
-                if not place(
-                    state, child, v, o, floors, travel, added, duration, task, release, due, need,
-                    ref_kind, ref_group, ref_user, row_first, row_ref, row_lo, waits,
-                ):  # fmt: skip
+                if not place(state, child, v, o, i, i.waits):
                     continue
                 counts[0] += 1
-                low = bound(
-                    child, n, vehicles, options, to_task, to_task_added, apart, apart_added, least,
-                    head, tail, due, weight,
-                )  # fmt: skip
+                low = bound(child, i, search.ahead)
                 if low >= limit:
                     counts[1] += 1
                     continue
@@ -219,11 +198,7 @@ def expand(
                 if hidden:
                     counts[3] += 1
                     continue
-                if use_deals and not deals(
-                    everything & ~child[0], child[1 : 1 + vehicles],
-                    child[1 + vehicles : 1 + 2 * vehicles], able, kind_of, latest, start, options,
-                    effort, line, tight, turn, parts,
-                ):  # fmt: skip
+                if search.deals and not deals(everything & ~child[0], child, search, scratch):
                     counts[2] += 1
                     continue
                 other = table[place_in]
@@ -253,14 +228,7 @@ def rehash(
 
 def closed(
     parents: np.ndarray, origin: np.ndarray, into: np.ndarray, table: np.ndarray,
-    chain: np.ndarray, limit: int, floors: int, use_deals: int, effort: int, able: np.ndarray,
-    kind_of: np.ndarray, latest: np.ndarray, start: np.ndarray, to_task: np.ndarray,
-    to_task_added: np.ndarray, apart: np.ndarray, apart_added: np.ndarray, least: np.ndarray,
-    head: np.ndarray, tail: np.ndarray,
-    travel: np.ndarray, added: np.ndarray, duration: np.ndarray, task: np.ndarray,
-    may: np.ndarray, release: np.ndarray, due: np.ndarray, need: np.ndarray,
-    ref_kind: np.ndarray, ref_group: np.ndarray, ref_user: np.ndarray, row_first: np.ndarray,
-    row_ref: np.ndarray, row_lo: np.ndarray, twin: np.ndarray, weight: np.ndarray, waits: int,
+    chain: np.ndarray, limit: int, search: Search,
 ) -> int:  # fmt: skip
     """Whether a layer lists all children of `parents` that could cost less than `limit`.
 
@@ -269,21 +237,17 @@ def closed(
     dealing of tasks rules it out. -1: yes; else the number of a parent with a missing child, or
     -2 - k if entry k is no possible move.
     """
+    i = search.instance
+    may, twin, n = i.may, i.twin, i.release.size
     vehicles, options = may.shape
-    n = release.size
-    child = np.zeros(parents.shape[1], np.int64)
-    line, tight = np.zeros(64, np.int64), np.zeros(64, np.int64)
-    turn, parts = np.zeros(64, np.int64), np.zeros(64, np.int64)
+    child, scratch = np.zeros(parents.shape[1], np.int64), np.zeros((4, 64), np.int64)
     table[:] = -1
     size = table.size
     for k in range(origin.shape[0]):
         p, v, o = origin[k, 0], origin[k, 1], origin[k, 2]
         if p < 0 or p >= parents.shape[0] or v < 0 or v >= vehicles or o < 0 or o >= options:
             return -2 - k
-        if may[v, o] == 0 or not place(
-            parents[p], child, v, o, floors, travel, added, duration, task, release, due, need,
-            ref_kind, ref_group, ref_user, row_first, row_ref, row_lo, waits,
-        ):  # fmt: skip
+        if may[v, o] == 0 or not place(parents[p], child, v, o, i, i.waits):
             return -2 - k
         into[k] = child
         place_in = key_of(child, vehicles, size)
@@ -298,10 +262,7 @@ def closed(
                     continue
                 if twin[v] != v and state[1 + v] == options and state[1 + twin[v]] == options:
                     continue
-                if not place(
-                    state, child, v, o, floors, travel, added, duration, task, release, due, need,
-                    ref_kind, ref_group, ref_user, row_first, row_ref, row_lo, waits,
-                ):  # fmt: skip
+                if not place(state, child, v, o, i, i.waits):
                     continue
                 other = table[key_of(child, vehicles, size)]
                 there = False
@@ -312,17 +273,10 @@ def closed(
                     other = chain[other]
                 if there:
                     continue
-                low = bound(
-                    child, n, vehicles, options, to_task, to_task_added, apart, apart_added, least,
-                    head, tail, due, weight,
-                )  # fmt: skip
+                low = bound(child, i, search.ahead)
                 if low >= limit:
                     continue
-                if use_deals and not deals(
-                    everything & ~child[0], child[1 : 1 + vehicles],
-                    child[1 + vehicles : 1 + 2 * vehicles], able, kind_of, latest, start, options,
-                    effort, line, tight, turn, parts,
-                ):  # fmt: skip
+                if search.deals and not deals(everything & ~child[0], child, search, scratch):
                     continue
                 return p
     return -1

@@ -13,7 +13,7 @@ import numpy as np
 
 from cratous.core.assignment.compiled import machine_for
 from cratous.core.assignment.instance import Instance
-from cratous.core.assignment.layers import EFFORT, first_state, look_ahead, tables
+from cratous.core.assignment.layers import first_state, look_ahead, search_below
 from cratous.core.assignment.refutation import closed, cost_now
 from cratous.core.kernel import driver
 
@@ -27,8 +27,8 @@ from cratous.core.kernel import driver
 )  # fmt: skip
 def least_cost(instance: Instance, limit: int, origins: Sequence[np.ndarray]) -> tuple[int, str]:
     """(no completion costs less than this, what is wrong): the first counts if the second is ""."""
-    i, ahead = instance, look_ahead(instance)
-    looked = tables(i, ahead, limit)
+    i = instance
+    search = search_below(i, look_ahead(i), limit)
     layer = first_state(i)[None, :]
     for depth in range(i.tasks):
         if len(layer) == 0:
@@ -38,14 +38,11 @@ def least_cost(instance: Instance, limit: int, origins: Sequence[np.ndarray]) ->
         origin = np.ascontiguousarray(origins[depth], np.int64).reshape(-1, 3)
         into = np.empty((len(origin), layer.shape[1]), np.int64)
         table = np.empty(1 << max(4, (2 * len(origin)).bit_length()), np.int64)
+        if depth + 1 == i.tasks:
+            search = search._replace(deals=0)
         found = machine_for(i, closed)(
-            layer, origin, into, table, np.empty(len(origin), np.int64), limit, i.waits,
-            looked.used if depth + 1 < i.tasks else 0, EFFORT, ahead.able, ahead.kind_of,
-            looked.latest, looked.start, ahead.to_task, ahead.to_task_added, ahead.apart,
-            ahead.apart_added, ahead.least, ahead.head, ahead.tail, i.travel, i.added, i.duration,
-            i.task, i.may, i.release, looked.due, i.need, i.ref_kind, i.ref_group, i.ref_user,
-            i.row_first, i.row_ref, i.row_lo, i.twin, i.weight, i.waits,
-        )  # fmt: skip
+            layer, origin, into, table, np.empty(len(origin), np.int64), limit, search
+        )
         if found >= 0:
             return 0, f"layer {depth + 1}: a child of state {found} is missing"
         if found < -1:

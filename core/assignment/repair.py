@@ -17,9 +17,10 @@ from typing import NamedTuple
 import numpy as np
 
 from cratous.core.assignment.compiled import machine_for
-from cratous.core.assignment.instance import FAR, Instance, instance
+from cratous.core.assignment.instance import FAR, Fleet, Instance, instance
 from cratous.core.assignment.large_neighbourhoods import time_chains
 from cratous.core.assignment.layers import refute
+from cratous.core.assignment.search_records import ChainArrays, Times
 from cratous.core.kernel import driver
 from cratous.spec.constraint_rows import AFTER_END, NOT_AFTER, NOT_BEFORE, Row
 
@@ -56,14 +57,10 @@ def timed_chains(i: Instance, of: list[list[int]], how: np.ndarray) -> Chains | 
     for v, tasks in enumerate(of):
         chain[v, : len(tasks)], length[v] = tasks, len(tasks)
     starts, ends, order = (np.zeros(n, np.int64) for _ in range(3))
-    cost = int(
-        machine_for(i, time_chains)(
-            chain, length, how, np.ones(n, np.int64), starts, ends, order,
-            np.zeros(vehicles, np.int64), np.zeros(vehicles + 1, np.int64), i.travel, i.added,
-            i.duration, i.ready, i.release, i.due, i.ref_kind, i.member_first, i.member,
-            i.row_first, i.row_ref, i.row_lo, i.weight, i.waits,
-        )
-    )  # fmt: skip
+    chains = ChainArrays(chain, length, how, np.ones(n, np.int64))
+    times = Times(starts, ends, np.zeros(vehicles + 1, np.int64))
+    next_of = np.zeros(vehicles, np.int64)
+    cost = int(machine_for(i, time_chains)(chains, times, order, next_of, i))
     if cost >= 1 << 60 or (ends > i.due).any():
         return None
     return Chains(of, how, starts, ends, cost, order)
@@ -131,8 +128,8 @@ def neighbourhood(i: Instance, now: Chains, windows: dict[int, tuple[int, int]])
     ]
     made = instance(
         range(len(groups)), rows,
-        [(g, long[g] if g in last else int(i.duration[o])) for g, o in options], may, travel,
-        added, ready, (int(i.weight[0]) * share, int(i.weight[1]) * share + 1), bool(i.waits),
+        [(g, long[g] if g in last else int(i.duration[o])) for g, o in options],
+        Fleet(ready, may, travel, added), (int(i.weight[0]) * share, int(i.weight[1]) * share + 1), bool(i.waits),
     )  # fmt: skip
     return Small(made, picked, tuple(groups), tuple(o for _, o in options))
 

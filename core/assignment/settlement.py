@@ -121,9 +121,4 @@ class Settler:
             state[1 + i.vehicles + v] = start[k] + visits[k].duration_ms
             state[2 + 2 * i.vehicles] += int(i.added[v, at[v], o])
             state[1 + v] = at[v] = o
-        a = self.ahead
-        low = machine_for(i, bound)(
-            state, i.tasks, i.vehicles, i.duration.size, a.to_task, a.to_task_added, a.apart,
-            a.apart_added, a.least, a.head, a.tail, i.due, i.weight,
-        )  # fmt: skip
-        return int(low) >= limit
+        return int(machine_for(i, bound)(state, i, self.ahead)) >= limit

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from cratous.core.assignment.instance import Instance
+from cratous.core.assignment.search_records import Search
 from cratous.core.assignment.steps import keeps_step, latest_departure
 
 CELLS_MAX = 48_000_000
@@ -17,20 +19,20 @@ CELLS_MAX = 48_000_000
 
 
 def latest_tables(
-    travel: np.ndarray, duration: np.ndarray, task: np.ndarray, may: np.ndarray,
-    need: np.ndarray, release: np.ndarray, due: np.ndarray, kind_of: np.ndarray, kinds: int,
-    leader: np.ndarray, latest: np.ndarray, start: np.ndarray,
-) -> None:  # fmt: skip
+    i: Instance, kind_of: np.ndarray, leader: np.ndarray, latest: np.ndarray, start: np.ndarray
+) -> None:
     """Fill latest [kinds, K, 2**n] and start [V, 2**n].
 
     kind_of: [V] which vehicles share a table; leader: [kinds] a vehicle of each kind, whose ways
-    between options are those of all of them. travel: shortest ways through any options, so that
+    between options are those of all of them. i.travel: shortest ways through any options, so that
     whoever is late for some tasks is late for more. A shared table lets any option be flown: which
     vehicle may is asked in `start` and in `deals`.
     """
+    travel, duration, task, may = i.travel, i.duration, i.task, i.may
+    need, release, due = i.need, i.release, i.due
     n, options, vehicles = need.size, duration.size, may.shape[0]
     never = -1073741824
-    for g in range(kinds):
+    for g in range(leader.size):
         v = leader[g]
         alone = 0
         for w in range(vehicles):
@@ -78,19 +80,19 @@ def latest_tables(
             start[v, chosen] = best
 
 
-def deals(
-    left: int, at: np.ndarray, free: np.ndarray, able: np.ndarray, kind_of: np.ndarray,
-    latest: np.ndarray, start: np.ndarray, options: int, effort: int, line: np.ndarray,
-    tight: np.ndarray, turn: np.ndarray, parts: np.ndarray,
-) -> bool:  # fmt: skip
+def deals(left: int, state: np.ndarray, search: Search, scratch: np.ndarray) -> bool:
     """Whether the tasks left can be dealt out so that every vehicle leaves in time.
 
-    at, free: per vehicle its last option (`options`: none yet) and when it is free; able: masks of
-    the tasks that it may do; line, tight, turn, parts: scratch of length 64. Tasks are dealt one
-    by one, those with the least room first; a vehicle that is late for some is late for more.
-    Gives up after `effort` steps with True, which prunes nothing.
+    state: as in `core.assignment.refutation`: of each vehicle its last option (K: none yet) and when
+    it is free; scratch: [4, 64]. Tasks are dealt one by one, those with the least room first; a
+    vehicle that is late for some is late for more. Gives up after `search.effort` steps with True,
+    which prunes nothing.
     """
-    vehicles = at.size
+    able, kind_of = search.ahead.able, search.ahead.kind_of
+    latest, start = search.tables.latest, search.tables.start
+    vehicles, options = search.instance.may.shape
+    at, free = state[1 : 1 + vehicles], state[1 + vehicles : 1 + 2 * vehicles]
+    line, tight, turn, parts = scratch[0], scratch[1], scratch[2], scratch[3]
     count = 0
     for j in range(62):
         if (left >> j) & 1 == 0:
@@ -134,7 +136,7 @@ def deals(
                     dealt = True
                     break
             v += 1
-        if steps > effort:
+        if steps > search.effort:
             return True
         if dealt:
             parts[v] |= 1 << j

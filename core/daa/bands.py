@@ -14,6 +14,7 @@ import numpy as np
 
 from cratous.core.daa.grid import SLACK, Grid, grid, own_value, sides_in, value_range
 from cratous.core.daa.guidance import guide, last_time
+from cratous.core.daa.records import Guided, Intruders, Manoeuvres, RecoverySizes, Regions
 from cratous.core.daa.state import (
     ALT,
     DIMENSIONS,
@@ -171,6 +172,13 @@ class Raw(NamedTuple):
     state: np.ndarray
 
 
+def manoeuvres(g: Grid, piece_s: float) -> Manoeuvres:
+    """The manoeuvres of a grid; piece_s: how long the piece after each step is looked at [s]."""
+    return Manoeuvres(
+        g.right, g.left, g.step_s, piece_s, g.targets, g.rate_m_s, g.accel_m_s2, SAMPLE_S
+    )
+
+
 def raw_bands(
     p: Parameters,
     own: Aircraft,
@@ -198,14 +206,18 @@ def raw_bands(
     recovery, state = np.zeros(5), np.zeros(5, dtype=np.int64)
     radius, half = _recovery_size(p, own.alt_m)
     if n:
-        swift(guide, n * g.values // 3)(
-            g.right, g.left, g.step_s, g.targets, g.rate_m_s, g.accel_m_s2, SAMPLE_S,
+        regions = Regions(
             traffic.states, traffic.mapped, traffic.conflict, traffic.kinds, traffic.volumes,
             traffic.alerting_s, sides * p.conflict_crit, sides * p.recovery_crit,
-            p.lookahead_time_s, p.bands_add_time_to_maneuver, p.corrective_region, recover, radius,
-            half, p.horizontal_nmac_m, p.vertical_nmac_m,
-            p.ca_bands, p.ca_factor, p.recovery_stability_time_s, safe_r, safe_l, peripheral,
-            recovery, state,
+        )  # fmt: skip
+        sizes = RecoverySizes(
+            radius, half, p.horizontal_nmac_m, p.vertical_nmac_m, p.ca_bands, p.ca_factor,
+            p.recovery_stability_time_s,
+        )  # fmt: skip
+        swift(guide, n * g.values // 3)(
+            manoeuvres(g, g.step_s), regions, p.lookahead_time_s, p.bands_add_time_to_maneuver,
+            p.corrective_region, recover, sizes,
+            Guided(safe_r, safe_l, peripheral, recovery, state),
         )  # fmt: skip
     saturated = bool(recovery[0])
     said = Recovery()
@@ -260,11 +272,13 @@ def last_times(
         g = grid(p, own, dimension)
         safe_r = np.ones(len(g.targets) or len(g.right), dtype=np.bool_)
         safe_l = np.ones(len(g.left), dtype=np.bool_)
+        intruders = Intruders(
+            traffic.states, traffic.kinds[region], traffic.volumes[region],
+            traffic.alerting_s[region].copy(), np.zeros((len(traffic.states), 2), dtype=np.int64),
+        )  # fmt: skip
         time_s = swift(last_time, g.values // 3)(
-            g.right, g.left, g.step_s, g.step_s if exact else 0.0, g.targets, g.rate_m_s, g.accel_m_s2, SAMPLE_S,
-            traffic.states, i, traffic.kinds[region], traffic.volumes[region],
-            p.lookahead_time_s, p.bands_add_time_to_maneuver, entry_s,
-            traffic.alerting_s[region].copy(), safe_r, safe_l,
+            manoeuvres(g, g.step_s if exact else 0.0), intruders, i, p.lookahead_time_s,
+            p.bands_add_time_to_maneuver, entry_s, safe_r, safe_l,
         )  # fmt: skip
         found.append(None if time_s < 0 else float(time_s))
     return tuple(found)

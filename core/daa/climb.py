@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from cratous.core.daa.records import Intruders, Looked, Looking, Manoeuvres, Regaining, Relative
 from cratous.core.daa.steps import until
 from cratous.core.daa.uncertainty import lost
 from cratous.core.kernel import Vec2, driver, kernel
@@ -91,25 +92,30 @@ def height(
 
 @driver(checked_by=("in_conflict", "climb", "height", "until"))
 def altitude_conflict(
-    own, other, kind, w, target_m, rate_m_s, accel_m_s2, sample_s,
-    from_s, horizon_s, lookahead_s, counted, whole, project_s,
+    ways: Manoeuvres, target_m: float, other: np.ndarray, kind: int, w: np.ndarray, span: Looked,
+    looking: Looking,
 ):  # fmt: skip
-    """Whether the change to target_m conflicts with one intruder at from_s or later.
+    """Whether the change to target_m conflicts with one intruder at span.from_s or later.
 
-    Sampled every sample_s while the vertical speed changes, exact while it is constant; rate or
-    accel 0: at once. whole: until horizon_s in all phases (the recovery cylinder); else horizon_s
-    counts from the end of each phase's manoeuvre, unless counted.
+    Sampled every ways.sample_s while the vertical speed changes, exact while it is constant; rate
+    or accel 0: at once. other: (6,) state of the intruder now; kind, w: its volume, as in `lost`.
     """
+    own, rate_m_s, accel_m_s2, sample_s = (
+        ways.right[0],
+        ways.rate_m_s,
+        ways.accel_m_s2,
+        ways.sample_s,
+    )
+    from_s, horizon_s, whole = span.from_s, span.until_s, span.whole
+    lookahead_s, counted, project_s = looking.lookahead_s, looking.counted, looking.project_s
     z0 = own[2] + own[5] * project_s
     x0 = own[0] - other[0] + (own[3] - other[3]) * project_s
     y0 = own[1] - other[1] + (own[4] - other[4]) * project_s
     h0 = other[2] + other[5] * project_s
     v = Vec2(own[3] - other[3], own[4] - other[4])
     if rate_m_s == 0 or accel_m_s2 == 0:
-        return lost(
-            kind, Vec2(x0, y0), v, target_m - h0, 0.0 - other[5], w, 0.0, from_s,
-            min(lookahead_s, horizon_s),
-        )  # fmt: skip
+        level = Relative(Vec2(x0, y0), v, target_m - h0, 0.0 - other[5])
+        return lost(kind, level, w, 0.0, from_s, min(lookahead_s, horizon_s))
     t1, t2, t3, rate = climb(z0, own[5], target_m, rate_m_s, accel_m_s2)
     level_s = t3 + sample_s
     cruise_s = horizon_s
@@ -118,19 +124,20 @@ def altitude_conflict(
         cruise_s = until(lookahead_s, horizon_s, t1, counted)
         final_s = until(lookahead_s, horizon_s, level_s, counted)
     # straight on at the new altitude
+    level = Relative(
+        Vec2(x0 + v.x * level_s, y0 + v.y * level_s), v,
+        target_m - h0 - other[5] * level_s, 0.0 - other[5],
+    )  # fmt: skip
     if max(from_s, level_s) <= final_s and lost(
-        kind, Vec2(x0 + v.x * level_s, y0 + v.y * level_s), v,
-        target_m - h0 - other[5] * level_s, 0.0 - other[5], w, level_s,
-        max(from_s - level_s, 0.0), final_s - level_s,
-    ):  # fmt: skip
+        kind, level, w, level_s, max(from_s - level_s, 0.0), final_s - level_s
+    ):
         return True
     if t2 > t1 and max(from_s, t1) <= min(cruise_s, t2):
         z1, _ = height(z0, own[5], target_m, accel_m_s2, t1, t2, t3, rate, t1)
-        if lost(
-            kind, Vec2(x0 + v.x * t1, y0 + v.y * t1), v, z1 - h0 - other[5] * t1,
-            rate - other[5], w, t1,
-            max(from_s - t1, 0.0), min(cruise_s, t2) - t1,
-        ):  # fmt: skip
+        cruise = Relative(
+            Vec2(x0 + v.x * t1, y0 + v.y * t1), v, z1 - h0 - other[5] * t1, rate - other[5]
+        )
+        if lost(kind, cruise, w, t1, max(from_s - t1, 0.0), min(cruise_s, t2) - t1):
             return True
     for phase in range(2):
         begin, end = 0.0, t1
@@ -139,10 +146,10 @@ def altitude_conflict(
         t = max(begin, math.ceil(from_s / sample_s) * sample_s)
         while t <= end and t <= final_s:
             zt, vt = height(z0, own[5], target_m, accel_m_s2, t1, t2, t3, rate, t)
-            if lost(
-                kind, Vec2(x0 + v.x * t, y0 + v.y * t), v, zt - h0 - other[5] * t,
-                vt - other[5], w, t, 0.0, 0.0,
-            ):  # fmt: skip
+            there = Relative(
+                Vec2(x0 + v.x * t, y0 + v.y * t), v, zt - h0 - other[5] * t, vt - other[5]
+            )
+            if lost(kind, there, w, t, 0.0, 0.0):
                 return True
             t += sample_s
     return False
@@ -150,19 +157,25 @@ def altitude_conflict(
 
 @driver(checked_by=("in_conflict", "climb", "height", "until"))
 def safe_altitudes(
-    own, targets, rate_m_s, accel_m_s2, sample_s, others, chosen, kinds, volumes, horizons,
-    begin_s, radius_m, half_m, recovering, lookahead_s, counted, project_s, early,
-    single, safe,
+    ways: Manoeuvres, intruders: Intruders, chosen: np.ndarray, regaining: Regaining,
+    looking: Looking, safe: np.ndarray,
 ):  # fmt: skip
     """Which target altitudes are free of conflict with all chosen intruders, into `safe`.
 
-    Arguments as for `safe_steps`; own: (6,) state now; targets: altitudes [m].
-    Returns whether two neighbouring altitudes are safe, or any one if single.
+    Arguments as for `safe_steps`. Returns whether two neighbouring altitudes are safe, or any one if
+    single.
     """
+    targets, others, kinds, volumes = (
+        ways.targets,
+        intruders.states,
+        intruders.kinds,
+        intruders.volumes,
+    )
+    horizons, begin_s = intruders.horizons, regaining.begin_s
     found = False
     lead = 0
     cylinder = np.zeros(11)
-    cylinder[0], cylinder[1] = radius_m, half_m
+    cylinder[0], cylinder[1] = regaining.radius_m, regaining.half_m
     for k in range(targets.size):
         red = False
         for c in range(chosen.size):
@@ -174,21 +187,18 @@ def safe_altitudes(
             i = chosen[q]
             if begin_s <= horizons[i]:
                 red = altitude_conflict(
-                    own, others[i], kinds[i], volumes[i], targets[k], rate_m_s, accel_m_s2, sample_s,
-                    begin_s, horizons[i], lookahead_s, counted, False, project_s,
+                    ways, targets[k], others[i], kinds[i], volumes[i],
+                    Looked(begin_s, horizons[i], False), looking,
                 )  # fmt: skip
-            if recovering and not red:
-                red = altitude_conflict(
-                    own, others[i], 3, cylinder, targets[k], rate_m_s,
-                    accel_m_s2, sample_s, 0.0, min(begin_s, horizons[i]), lookahead_s, counted,
-                    begin_s <= horizons[i], project_s,
-                )  # fmt: skip
+            if regaining.recovering and not red:
+                held = Looked(0.0, min(begin_s, horizons[i]), begin_s <= horizons[i])
+                red = altitude_conflict(ways, targets[k], others[i], 3, cylinder, held, looking)
             if red:
                 lead = q
                 break
         safe[k] = not red
-        if safe[k] and (single or (k > 0 and safe[k - 1])):
+        if safe[k] and (looking.single or (k > 0 and safe[k - 1])):
             found = True
-            if early:
+            if looking.early:
                 break
     return found

@@ -16,6 +16,7 @@ import numpy as np
 
 from cratous.core.daa.alerting import level_times, raw_levels
 from cratous.core.daa.bands import Raw, Traffic, last_times, out_of_range, raw_bands
+from cratous.core.daa.records import Tables
 from cratous.core.daa.spread import spread_conflict
 from cratous.core.daa.state import HDIR, Aircraft, Coordination, LevelTimes
 from cratous.core.daa.urgency import coordination, sides
@@ -31,17 +32,6 @@ from cratous.spec.daa.parameters import (
     Volume,
     sensitivity,
 )
-
-
-class Tables(NamedTuple):
-    """The levels of all alerters as arrays: counts (A), kinds, alerting and early times (A, L),
-    volumes (A, L, 5)."""
-
-    counts: np.ndarray
-    kinds: np.ndarray
-    volumes: np.ndarray
-    alerting_s: np.ndarray
-    early_s: np.ndarray
 
 
 def thresholds(volume: Volume, alt_m: float) -> Volume:
@@ -164,13 +154,8 @@ def look(
     width = t.kinds.shape[1] if len(t.counts) else 0
     first, last = np.full((n, width), math.nan), np.full((n, width), math.nan)
     if n and width:
-        swift(raw_levels, n)(
-            relative, errors, judged, t.counts, t.kinds, t.volumes, t.alerting_s,
-            p.lookahead_time_s, levels,
-        )  # fmt: skip
-        swift(level_times, n)(
-            relative, errors, judged, t.counts, t.kinds, t.volumes, p.lookahead_time_s, first, last
-        )
+        swift(raw_levels, n)(relative, errors, judged, t, p.lookahead_time_s, levels)
+        swift(level_times, n)(relative, errors, judged, t, p.lookahead_time_s, first, last)
     for i, a in enumerate(index):
         for k in range(len(p.alerters[a].levels) if a >= 0 else 0, int(levels[i]), -1):
             level = p.alerters[a].levels[k - 1]

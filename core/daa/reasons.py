@@ -10,11 +10,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cratous.core.daa.bands import SAMPLE_S, Raw
+from cratous.core.daa.bands import Raw, manoeuvres
 from cratous.core.daa.climb import altitude_conflict
 from cratous.core.daa.coordination import step_is_repulsive
 from cratous.core.daa.engine import Seen
 from cratous.core.daa.grid import sides_in
+from cratous.core.daa.records import Looked, Looking, Relative
 from cratous.core.daa.steps import piece_counts, straight_from, until
 from cratous.core.daa.uncertainty import lost, lost_span
 from cratous.core.kernel import Vec2, driver
@@ -108,8 +109,12 @@ def step_reasons(p: Parameters, seen: Seen, raw: Raw, side: int, k: int) -> list
                 relative = path[j, :6] - traffic.states[i]
                 relative[:3] -= at_s * traffic.states[i, 3:]
                 state: Any = (
-                    kind, Vec2(relative[0], relative[1]), Vec2(relative[3], relative[4]),
-                    relative[2], relative[5], volume, at_s,
+                    kind,
+                    Relative(
+                        Vec2(relative[0], relative[1]), Vec2(relative[3], relative[4]),
+                        relative[2], relative[5],
+                    ),
+                    volume, at_s,
                 )  # fmt: skip
                 violated: Any = lost
                 times_of: Any = lost_span
@@ -145,6 +150,7 @@ def step_reasons(p: Parameters, seen: Seen, raw: Raw, side: int, k: int) -> list
 def altitude_reasons(p: Parameters, seen: Seen, raw: Raw, k: int) -> list[Reason]:
     """What is in the way of target altitude k, most severe first; the times are not computed."""
     g, traffic = raw.grid, seen.traffic
+    looking = Looking(p.lookahead_time_s, p.bands_add_time_to_maneuver, 0.0, False, False)
     found: list[Reason] = []
     for region in range(NEAR, 0, -1):
         if not raw.state[region]:
@@ -157,9 +163,8 @@ def altitude_reasons(p: Parameters, seen: Seen, raw: Raw, k: int) -> list[Reason
                 horizon_s = min(horizon_s, float(traffic.alerting_s[region, i]))
             volume = traffic.volumes[region, i]
             if swift(altitude_conflict)(
-                g.right[0], traffic.states[i], traffic.kinds[region, i], volume, g.targets[k],
-                g.rate_m_s, g.accel_m_s2, SAMPLE_S, 0.0, horizon_s, p.lookahead_time_s,
-                p.bands_add_time_to_maneuver, False, 0.0,
+                manoeuvres(g, g.step_s), g.targets[k], traffic.states[i], traffic.kinds[region, i],
+                volume, Looked(0.0, horizon_s, False), looking,
             ):  # fmt: skip
                 found.append(
                     Reason(

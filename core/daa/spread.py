@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from cratous.core.daa.bands import SAMPLE_S
+from cratous.core.daa.bands import manoeuvres
 from cratous.core.daa.grid import Grid, grid, sides_in
 from cratous.core.daa.guidance import evaluate
+from cratous.core.daa.records import Intruders, Looking, Regaining
 from cratous.core.daa.state import ALT, Aircraft
 from cratous.core.kernel import driver
 from cratous.core.readings.tiered import swift
@@ -44,13 +45,15 @@ def spread_conflict(
             continue
         safe_r = np.ones(len(g.targets) or len(g.right), dtype=np.bool_)
         safe_l = np.ones(len(g.left), dtype=np.bool_)
-        swift(evaluate, g.values // 3)(
-            g.right, g.left, g.step_s, g.step_s, g.targets, g.rate_m_s, g.accel_m_s2, SAMPLE_S,
-            other.reshape(1, 6), np.zeros(1, dtype=np.int64),
-            np.array([kind], dtype=np.int64), volume.reshape(1, 11),
+        intruder = Intruders(
+            other.reshape(1, 6), np.array([kind], dtype=np.int64), volume.reshape(1, 11),
             np.array([min(p.lookahead_time_s, level.alerting_time_s)]),
-            sides_in(dimension, sides.reshape(1, 2)), 0.0, 0.0, 0.0, False,
-            p.lookahead_time_s, p.bands_add_time_to_maneuver, 0.0, False, False, safe_r, safe_l,
+            sides_in(dimension, sides.reshape(1, 2)),
+        )  # fmt: skip
+        looking = Looking(p.lookahead_time_s, p.bands_add_time_to_maneuver, 0.0, False, False)
+        swift(evaluate, g.values // 3)(
+            manoeuvres(g, g.step_s), intruder, np.zeros(1, dtype=np.int64),
+            Regaining(0.0, 0.0, 0.0, False), looking, safe_r, safe_l,
         )  # fmt: skip
         if not safe_r.all() or not safe_l.all():
             return True

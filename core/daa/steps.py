@@ -7,7 +7,10 @@ the straight flight from step k on within the horizon. Recovery asks for another
 cylinder) before the instant begin_s, and for the volume itself only from then on.
 """
 
+import numpy as np
+
 from cratous.core.daa.coordination import step_is_repulsive
+from cratous.core.daa.records import Intruders, Looking, Manoeuvres, Regaining, Relative
 from cratous.core.daa.uncertainty import lost
 from cratous.core.daa.volume import in_conflict
 from cratous.core.kernel import Vec2, driver, fold, kernel
@@ -63,20 +66,20 @@ def until(lookahead_s: float, horizon_s: float, manoeuvre_s: float, counted: boo
     )
 )  # fmt: skip
 def safe_steps(
-    own, step_s, piece_s, others, chosen, kinds, volumes, horizons, sides, begin_s, radius_m, half_m,
-    recovering, lookahead_s, counted, project_s, early, single, safe,
+    own: np.ndarray, ways: Manoeuvres, intruders: Intruders, chosen: np.ndarray,
+    regaining: Regaining, looking: Looking, safe: np.ndarray,
 ):  # fmt: skip
     """Which steps of one side are free of conflict with all chosen intruders, into `safe`.
 
-    own: (K + 1, 11) positions [m] and velocities [m/s] at the steps, the velocity east and north before
-    the manoeuvre, and the mean velocity from the step to the next one; piece_s: how long a piece is
-    looked at, step_s, or 0 to sample the way at the steps; others: (n, 6) states now; chosen: indices;
-    kinds: (n), volumes: (n, 11) as in `lost`, horizons: (n) [s] of each; sides: (n, 2) that the
-    manoeuvre has to keep to, horizontal and vertical, 0: none; recovering: the cylinder (radius_m,
-    half_m) is to be avoided before begin_s; project_s: the manoeuvre begins after so much straight
-    flight; early: stop as soon as two neighbours are safe.
-    Returns whether two neighbouring steps are safe.
+    own: the steps of that side, `ways.right` or `ways.left`; chosen: indices of intruders.
+    Returns whether two neighbouring steps are safe, or any one if single.
     """
+    step_s, piece_s = ways.step_s, ways.piece_s
+    others, kinds, volumes = intruders.states, intruders.kinds, intruders.volumes
+    horizons, sides = intruders.horizons, intruders.sides
+    begin_s, radius_m, half_m = regaining.begin_s, regaining.radius_m, regaining.half_m
+    recovering, lookahead_s, counted = regaining.recovering, looking.lookahead_s, looking.counted
+    project_s, early, single = looking.project_s, looking.early, looking.single
     last = own.shape[0] - 1
     found = False
     first = 0
@@ -112,13 +115,13 @@ def safe_steps(
             v = Vec2(own[k, 3] - others[i, 3], own[k, 4] - others[i, 4])
             sz = sz0 - others[i, 2] - others[i, 5] * t
             vz = own[k, 5] - others[i, 5]
+            state = Relative(s, v, sz, vz)
             clear = True
             end_s = until(lookahead_s, horizons[i], at_s, counted)
             if begin_s <= horizons[i] and (not red or step_s > 0):
                 clear = not lost(
-                    kinds[i], s, v, sz, vz, volumes[i], at_s, straight_from(at_s, begin_s),
-                    end_s - at_s,
-                )  # fmt: skip
+                    kinds[i], state, volumes[i], at_s, straight_from(at_s, begin_s), end_s - at_s
+                )
             # a piece within a clear straight flight is clear
             covered = clear and begin_s <= min(at_s, horizons[i]) and at_s + step_s <= end_s
             if step_s > 0 and not covered:
@@ -127,9 +130,7 @@ def safe_steps(
                     final_s = horizons[i]
                 # recovery later than the horizon: until there only the cylinder counts
                 looked = begin_s <= horizons[i] and piece_counts(at_s, begin_s, final_s)
-                on_piece = looked and lost(
-                    kinds[i], s, v, sz, vz, volumes[i], at_s, 0.0, piece_s
-                )  # fmt: skip
+                on_piece = looked and lost(kinds[i], state, volumes[i], at_s, 0.0, piece_s)
                 blocked = lost_before(blocked, on_piece)
             if recovering and not blocked:
                 # kept clear until begin_s, or to the horizon as any volume where that is sooner

@@ -10,6 +10,9 @@ The volume is the one by tau_mod. Source: RTCA DO-365B, appendix on SUM; the DAI
 
 from math import sqrt
 
+import numpy as np
+
+from cratous.core.daa.records import Relative
 from cratous.core.daa.turn import turned
 from cratous.core.daa.volume import conflict_span, in_conflict
 from cratous.core.kernel import Vec2, driver, kernel
@@ -203,12 +206,13 @@ def speed_error(range_m: float, near_m_s: float, far_m_s: float, distance_m: flo
 
 
 @driver(checked_by=("in_conflict", "uncertain_conflict", "speed_error"))
-def lost(kind, s, v, sz, vz, w, at_s, b_s, t_s):
+def lost(kind: int, state: Relative, w: np.ndarray, at_s: float, b_s: float, t_s: float):
     """Whether the volume w of that kind is, or may be, violated at some instant of [b_s, t_s].
 
     w: dthr, zthr, tthr, tcoa, vmod; and for SUM the uncertainties: position, altitude, climb rate,
     velocity near and far, and the distance that is far. They hold at_s seconds before the state.
     """
+    s, v, sz, vz = state.s, state.v, state.sz, state.vz
     if kind == SUM_KIND:
         back = Vec2(s.x - at_s * v.x, s.y - at_s * v.y)
         es, ez, ew = w[5], w[6], w[7]
@@ -224,8 +228,9 @@ def lost(kind, s, v, sz, vz, w, at_s, b_s, t_s):
 
 
 @driver(checked_by=("conflict_span", "uncertain_span", "speed_error"))
-def lost_span(kind, s, v, sz, vz, w, at_s, b_s, t_s):
+def lost_span(kind: int, state: Relative, w: np.ndarray, at_s: float, b_s: float, t_s: float):
     """First and last such instant; first > last if there is none. Arguments as for `lost`."""
+    s, v, sz, vz = state.s, state.v, state.sz, state.vz
     if kind == SUM_KIND:
         back = Vec2(s.x - at_s * v.x, s.y - at_s * v.y)
         es, ez, ew = w[5], w[6], w[7]

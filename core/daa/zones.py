@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cratous.core.daa.engine import Seen, errors_of, region_level, tables_at
+from cratous.core.daa.records import Relative
 from cratous.core.daa.state import Aircraft
 from cratous.core.daa.uncertainty import lost, lost_span
 from cratous.core.kernel import Vec2, driver
@@ -92,7 +93,8 @@ def contours(p: Parameters, seen: Seen, i: int) -> list[Polygon]:
     for k in range(-count, count + 1):
         angle = track + math.radians(k)
         e, n = speed * math.sin(angle), speed * math.cos(angle)
-        state: Any = (kind, s, Vec2(e - other.ve_m_s, n - other.vn_m_s), sz, vz, limits, 0.0)
+        moving = Relative(s, Vec2(e - other.ve_m_s, n - other.vn_m_s), sz, vz)
+        state: Any = (kind, moving, limits, 0.0)
         within: Any = lost
         times: Any = lost_span
         if not within(*state, 0.0, p.lookahead_time_s):

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -26,15 +27,25 @@ from cratous.core.readings.tiered import swift
 from cratous.spec.daa.parameters import Parameters
 
 
+class Pieces(NamedTuple):
+    """Straight pieces in order of time, (P, 8): begin, end [s], position [m] and velocity [m/s] at the
+    begin; those of manoeuvre or aircraft n from first[n] to first[n + 1]."""
+
+    rows: np.ndarray
+    first: np.ndarray
+
+
 @driver(checked_by=("piece_lost", "after_piece", "conflict_span"))
-def judge_pieces(pieces, first, others, begins, kinds, volumes, less, answers, by, facts):
+def judge_pieces(
+    own: Pieces, traffic: Pieces, kinds: np.ndarray, volumes: np.ndarray, less: float,
+    answers: np.ndarray, by: np.ndarray, facts: np.ndarray,
+):  # fmt: skip
     """Judge manoeuvres; answers: of each 1 free, 0 open, -1 refused.
 
-    pieces: (P, 8) of all manoeuvres, those of manoeuvre m from first[m] to first[m + 1]; others: (Q, 8),
-    those of aircraft n from begins[n] to begins[n + 1], both in order of time; kinds: (n), volumes:
-    (n, 5); less: the factor of thresholds for what is surely lost. by: who refuses; facts: (m, 3) when,
+    own: of the manoeuvres; traffic: of the other aircraft; kinds: (n), volumes: (n, 5); less: the factor of thresholds for what is surely lost. by: who refuses; facts: (m, 3) when,
     and the distances then.
     """
+    pieces, first, others, begins = own.rows, own.first, traffic.rows, traffic.first
     for m in range(first.size - 1):
         so_far = answers[m]
         for p in range(first[m], first[m + 1]):
@@ -158,7 +169,7 @@ def judge(
     answers = np.full(count, manoeuvre_judged.start, dtype=np.int64)
     by, facts = np.full(count, -1, dtype=np.int64), np.zeros((count, 3))
     swift(judge_pieces, len(pieces) * len(flown) // 15)(
-        np.ascontiguousarray(pieces), first, np.ascontiguousarray(flown), begins,
+        Pieces(np.ascontiguousarray(pieces), first), Pieces(np.ascontiguousarray(flown), begins),
         np.array([o.kind for o in others], dtype=np.int64),
         np.array([o.thresholds for o in others], dtype=np.float64).reshape(-1, 5),
         1 - SURELY, answers, by, facts,

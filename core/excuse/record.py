@@ -151,16 +151,24 @@ def lost_now(own: Aircraft, other: Other) -> bool:
     )
 
 
+class Record(NamedTuple):
+    """Scenes in order of time. after_ms: the end of the loss before, if there was one; earlier: who is
+    known to have been in the air before the first scene."""
+
+    scenes: Sequence[Scene]
+    after_ms: int | None = None
+    earlier: frozenset[int] = frozenset()
+
+
 def window(
-    scenes: Sequence[Scene], k: int, own: int, other: int, after_ms: int | None, lookahead_s: float,
-    earlier: frozenset[int] = frozenset(),
-) -> tuple[list[int], str]:  # fmt: skip
+    record: Record, k: int, own: int, other: int, lookahead_s: float
+) -> tuple[list[int], str]:
     """The scenes before the loss, in step k, from which it could have been avoided; and what is missing.
 
-    They reach back to the look-ahead, to the end of the loss before (after_ms), to where one of the two
-    came to be, or to the begin of the mission; a record that begins later leaves it undecided.
-    earlier: who is known to have been in the air before the first scene.
+    They reach back to the look-ahead, to the end of the loss before, to where one of the two came to
+    be, or to the begin of the mission; a record that begins later leaves it undecided.
     """
+    scenes, after_ms, earlier = record
     earliest_ms = scenes[k].time_ms - round(lookahead_s * 1000)
     first = k
     while first > 0:
@@ -178,23 +186,21 @@ def window(
 
 
 def judge_loss(
-    scenes: Sequence[Scene],
+    record: Record,
     k: int,
     vehicle: Vehicle,
     other: int,
     volume: WellClear,
     lookahead_s: float,
     floor_m: float,
-    after_ms: int | None = None,
-    earlier: frozenset[int] = frozenset(),
 ) -> Loss:
     """Whether the vehicle could have avoided the loss of well clear of `other` in step k of the record.
 
     Who well clear is lost of already at an instant is no reason against a manoeuvre from there, unless
     it is `other`; who is not in the air then is not known yet.
     """
-    own_id = vehicle.id
-    indices, why = window(scenes, k, own_id, other, after_ms, lookahead_s, earlier)
+    own_id, scenes = vehicle.id, record.scenes
+    indices, why = window(record, k, own_id, other, lookahead_s)
     limits = (volume.dthr_m, volume.zthr_m, volume.tthr_s, volume.tcoa_s, 0.0)
     moments: list[Moment] = []
     for i in indices:

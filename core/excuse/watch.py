@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from cratous.core.excuse.record import Loss, Scene, judge_loss
+from cratous.core.excuse.record import Loss, Record, Scene, judge_loss
 from cratous.core.excuse.way_out import is_excused, way_out
 from cratous.spec.mission import Vehicle, WellClear
 
@@ -74,8 +74,8 @@ class LossWatch:
             if own in self._protected:
                 found.append(
                     judge_loss(
-                        self._scenes, k, self._protected[own], other, self._volume,
-                        self._lookahead_s, self._floor_m, one.after_ms, self._earlier,
+                        Record(self._scenes, one.after_ms, self._earlier), k,
+                        self._protected[own], other, self._volume, self._lookahead_s, self._floor_m,
                     )
                 )  # fmt: skip
                 if not found[-1].excused:

@@ -19,10 +19,10 @@ from typing import Any
 from cratous.core.files.private_cache import private_cache
 from cratous.core.kernel import Entry, checkers
 from cratous.core.kernel.sources import constants, digest
-from cratous.core.ledger.home import PRODUCT, Home
+from cratous.core.ledger.key_parts import MISSING, PARTS, PROVENANCE, compiler, solver_version
 from cratous.core.ledger.keys import Keys
-from cratous.core.ledger.parts import MISSING, PARTS, PROVENANCE, compiler, solver_version
-from cratous.core.ledger.trees import DATA
+from cratous.core.ledger.module_trees import DATA
+from cratous.core.ledger.package_home import PRODUCT, Home
 
 FOLDERS = ("bridge", "core", "proofs", "services", "spec")
 """The product's folders with modules; names that lead elsewhere are not kept."""

@@ -2,7 +2,7 @@
 
 A key has parts: the entry's own definition with all that it calls; the definition in `spec`; its
 theorems with their sentences and lemmas; the prover; the readings; the versions. Each is a walk from
-definition to definition (`walks`), so what nothing uses is in no key, and no hash knows where things
+definition to definition (`definition_hash`), so what nothing uses is in no key, and no hash knows where things
 stand: a move changes none. The prover and the readings are walked once; other walks end there.
 """
 
@@ -15,9 +15,8 @@ from typing import Any
 
 from cratous.core.kernel import Entry, checkers
 from cratous.core.kernel.sources import constants, digest
-from cratous.core.ledger.excuses import EXCUSED
-from cratous.core.ledger.home import PRODUCT, Home, theorem_home, theorem_names, theorems
-from cratous.core.ledger.parts import (
+from cratous.core.ledger.definition_hash import Border, Walk, walk
+from cratous.core.ledger.key_parts import (
     MISSING,
     PROVER,
     READINGS,
@@ -25,8 +24,9 @@ from cratous.core.ledger.parts import (
     compiler,
     solver_version,
 )
-from cratous.core.ledger.trees import Place, Tree
-from cratous.core.ledger.walks import Border, Walk, walk
+from cratous.core.ledger.lookup_exceptions import EXCUSED
+from cratous.core.ledger.module_trees import Place, Tree
+from cratous.core.ledger.package_home import PRODUCT, Home, theorem_home, theorem_names, theorems
 
 
 class Keys:
@@ -70,7 +70,7 @@ class Keys:
             places = self.places(f"cratous.{name}")
             if not places:
                 raise LookupError(
-                    f"core/ledger/parts.py names {name}, and there is nothing so called"
+                    f"core/ledger/key_parts.py names {name}, and there is nothing so called"
                 )
             found += places
         return found

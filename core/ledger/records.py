@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from cratous.core.kernel.sources import digest
-from cratous.core.ledger.home import PRODUCT, Home, theorem_file
-from cratous.core.ledger.parts import PROVENANCE
+from cratous.core.ledger.key_parts import PROVENANCE
+from cratous.core.ledger.package_home import PRODUCT, Home, theorem_file
 from cratous.core.ledger.status import status_of
 from cratous.spec.errors import Refused
 

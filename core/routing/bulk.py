@@ -8,6 +8,7 @@ stand; `core.readings.machine.compiled.machine` compiles the same text.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,21 +23,62 @@ FOUND, BAD_START, BAD_END, NO_WAY = 0, 1, 2, 3
 UNKNOWN, FREE, BLOCKED = 0, 1, 2
 
 
+class Turning(NamedTuple):
+    """How a vehicle flies: turn radius [m], steepest climb (metres per metre flown, > 0), and how far
+    chords may lie from their arc [m]."""
+
+    r: float
+    slope: float
+    chord_error: float
+
+
+class Rings(NamedTuple):
+    """Via points (g, m, 2) per ring, their sizes (g), and which of them see each other at the altitude of
+    all starts (g, m, m), 0 if not known yet."""
+
+    points: np.ndarray
+    sizes: np.ndarray
+    seen: np.ndarray
+
+
+class Sights(NamedTuple):
+    """Which nodes see each other, filled in as it is asked: two points of a ring (m, m); the start and a
+    point or, at the end, the end (m + 1); a point and the end (m)."""
+
+    between: np.ndarray
+    from_start: np.ndarray
+    to_end: np.ndarray
+
+
+class Word(NamedTuple):
+    """Kinds and lengths [m] of words (WORDS_MOST, 3), to work in; row 0 holds the word that is allowed."""
+
+    kinds: np.ndarray
+    lengths: np.ndarray
+
+
+class Routed(NamedTuple):
+    """Routes in bulk: FOUND or why not, lengths [m], links or the zone, the poses between links."""
+
+    codes: np.ndarray
+    metres: np.ndarray
+    links: np.ndarray
+    poses: np.ndarray
+
+
 def piece(
     start: np.ndarray,
     end: np.ndarray,
-    r: float,
-    slope: float,
-    chord_error: float,
+    turning: Turning,
     zones: tuple[np.ndarray, ...],
-    kinds: np.ndarray,
-    lengths: np.ndarray,
+    word: Word,
 ) -> tuple[bool, float, int]:
     """The shortest allowed word from start to end: (allowed, length [m], zone of the shortest).
 
-    kinds, lengths: (WORDS_MOST, 3), to work in; row 0 holds the word that is allowed. Full turns are put
-    in front where the way is too short for the climb; slope: metres of climb per metre flown.
+    Full turns are put in front where the way is too short for the climb.
     """
+    r, slope, chord_error = turning.r, turning.slope, turning.chord_error
+    kinds, lengths = word.kinds, word.lengths
     count = words(end[0] - start[0], end[1] - start[1], start[3], end[3], r, kinds, lengths)
     totals = np.empty(count)
     for w in range(count):
@@ -87,11 +129,8 @@ def chain(
     start: np.ndarray,
     end: np.ndarray,
     ring: np.ndarray,
-    seen: np.ndarray,
-    from_start: np.ndarray,
-    to_end: np.ndarray,
+    sights: Sights,
     struck: np.ndarray,
-    struck_count: int,
     zones: tuple[np.ndarray, ...],
     found: np.ndarray,
 ) -> int:
@@ -140,16 +179,16 @@ def chain(
             if longer >= best[to]:
                 continue
             gone = False
-            for k in range(struck_count):
+            for k in range(len(struck)):
                 gone = gone or (struck[k, 0] == at and struck[k, 1] == to)
             if gone:
                 continue
             if at == here:
-                known, k = from_start, (m if to == there else to)
+                known, k = sights.from_start, (m if to == there else to)
             elif to == there:
-                known, k = to_end, at
+                known, k = sights.to_end, at
             else:
-                known, k = seen[min(at, to)], max(at, to)
+                known, k = sights.between[min(at, to)], max(at, to)
             if free(
                 place[at, 0], place[at, 1], place[to, 0], place[to, 1], start[2], known, k, zones
             ):
@@ -160,15 +199,11 @@ def chain(
 def fly_chain(
     start: np.ndarray,
     end: np.ndarray,
-    r: float,
-    slope: float,
-    chord_error: float,
+    turning: Turning,
     nodes: np.ndarray,
-    count: int,
     ring: np.ndarray,
     zones: tuple[np.ndarray, ...],
-    kinds: np.ndarray,
-    lengths: np.ndarray,
+    word: Word,
     poses: np.ndarray,
 ) -> tuple[int, float]:
     """The shortest allowed Dubins chain through the via points: (0, its length), poses filled.
@@ -176,6 +211,7 @@ def fly_chain(
     Or (index of the link that is refused, 0). At a via point three headings are tried: halfway
     between the legs, along the first, along the second.
     """
+    count = len(nodes)
     place, run = np.empty((count, 2)), np.zeros(count)
     for k in range(count):
         if k == 0:
@@ -210,9 +246,7 @@ def fly_chain(
             for s in range(3):
                 if cost[k - 1, s] == math.inf:
                     continue
-                allowed, length, _ = piece(
-                    states[k - 1, s], states[k, t], r, slope, chord_error, zones, kinds, lengths
-                )
+                allowed, length, _ = piece(states[k - 1, s], states[k, t], turning, zones, word)
                 if allowed and cost[k - 1, s] + length < cost[k, t]:
                     cost[k, t], come[k, t] = cost[k - 1, s] + length, s
                     any_reached = True
@@ -229,18 +263,15 @@ def fly_chain(
 def one_route(
     start: np.ndarray,
     end: np.ndarray,
-    r: float,
-    slope: float,
-    chord_error: float,
+    turning: Turning,
     zones: tuple[np.ndarray, ...],
-    rings: np.ndarray,
-    sizes: np.ndarray,
-    seen: np.ndarray,
+    rings: Rings,
     poses: np.ndarray,
 ) -> tuple[int, float, int, int]:
     """One route: (FOUND, length, links, 0) with the poses between links; or why not, and the zone."""
-    kinds, lengths = np.empty((WORDS_MOST, 3), np.int64), np.empty((WORDS_MOST, 3))
-    allowed, flown, blocked = piece(start, end, r, slope, chord_error, zones, kinds, lengths)
+    r, kinds, lengths = turning.r, np.empty((WORDS_MOST, 3), np.int64), np.empty((WORDS_MOST, 3))
+    word = Word(kinds, lengths)
+    allowed, flown, blocked = piece(start, end, turning, zones, word)
     for j in range(4):
         poses[0, j], poses[1, j] = start[j], end[j]
     if allowed:
@@ -256,18 +287,18 @@ def one_route(
         if zone >= 0:
             return name, 0.0, 0, zone
     best, links = (flown, 1) if allowed else (math.inf, 0)
-    for g in range(len(sizes)):
-        ring = rings[g, : sizes[g]]
+    for g in range(len(rings.sizes)):
+        ring = rings.points[g, : rings.sizes[g]]
         struck, nodes = np.empty((CHAINS_MOST, 2), np.int64), np.empty(LINKS_MOST + 2, np.int64)
-        from_start, to_end = np.zeros(len(ring) + 1, np.int8), np.zeros(len(ring), np.int8)
+        sights = Sights(
+            rings.seen[g], np.zeros(len(ring) + 1, np.int8), np.zeros(len(ring), np.int8)
+        )
         tried = np.empty((LINKS_MOST + 2, 4))
         for k in range(CHAINS_MOST):
-            count = chain(start, end, ring, seen[g], from_start, to_end, struck, k, zones, nodes)
+            count = chain(start, end, ring, sights, struck[:k], zones, nodes)
             if count == 0:
                 break
-            bad, length = fly_chain(
-                start, end, r, slope, chord_error, nodes, count, ring, zones, kinds, lengths, tried
-            )
+            bad, length = fly_chain(start, end, turning, nodes[:count], ring, zones, word, tried)
             if bad == 0:
                 if length < best:
                     best, links = length, count - 1
@@ -283,49 +314,36 @@ def one_route(
 def route_many(
     starts: np.ndarray,
     ends: np.ndarray,
-    r: float,
-    slope: float,
-    chord_error: float,
+    turning: Turning,
     zones: tuple[np.ndarray, ...],
-    rings: np.ndarray,
-    sizes: np.ndarray,
-    seen: np.ndarray,
-    codes: np.ndarray,
-    metres: np.ndarray,
-    links: np.ndarray,
-    poses: np.ndarray,
+    rings: Rings,
+    found: Routed,
 ) -> None:
     """A short flyable route for each pair of poses (n, 4), every leg of which obeys the zones.
 
-    r: turn radius; slope: steepest climb, metres per metre flown, > 0; zones: `leg_arrays.table`;
-    rings (g, m, 2) with their sizes (g): via points; seen (g, m, m) int8: which of them see each
-    other at the altitude that all starts have, 0 if not known yet. Filled: codes (n) and links (n)
-    int64, metres (n), poses (k, LINKS_MOST + 2, 4), k = n, or 1 where only lengths matter. With a
-    code other than FOUND, links holds the zone. The route is the shortest that was found, not the
+    zones: `leg_arrays.table`; rings.seen: int8. Filled: codes (n) and links (n) int64, metres (n),
+    poses (k, LINKS_MOST + 2, 4), k = n, or 1 where only lengths matter. With a code other than
+    FOUND, links holds the zone. The route is the shortest that was found, not the
     shortest that exists.
     """
     for i in range(len(starts)):
-        at = poses[min(i, len(poses) - 1)]
-        code, length, count, zone = one_route(
-            starts[i], ends[i], r, slope, chord_error, zones, rings, sizes, seen, at
-        )
-        codes[i], metres[i] = code, length
-        links[i] = count if code == FOUND else zone
+        at = found.poses[min(i, len(found.poses) - 1)]
+        code, length, count, zone = one_route(starts[i], ends[i], turning, zones, rings, at)
+        found.codes[i], found.metres[i] = code, length
+        found.links[i] = count if code == FOUND else zone
 
 
 def route_points(
     poses: np.ndarray,
     links: int,
-    r: float,
-    slope: float,
-    chord_error: float,
+    turning: Turning,
     zones: tuple[np.ndarray, ...],
 ) -> np.ndarray:
     """The polyline (n, 3) through the poses of a route that was found."""
     kinds, lengths = np.empty((WORDS_MOST, 3), np.int64), np.empty((WORDS_MOST, 3))
     parts = np.empty((0, 3))
     for k in range(links):
-        piece(poses[k], poses[k + 1], r, slope, chord_error, zones, kinds, lengths)
-        points = legs(poses[k], poses[k + 1], kinds[0], lengths[0], r, chord_error)
+        piece(poses[k], poses[k + 1], turning, zones, Word(kinds, lengths))
+        points = legs(poses[k], poses[k + 1], kinds[0], lengths[0], turning.r, turning.chord_error)
         parts = points if k == 0 else np.concatenate((parts, points[1:]))
     return parts

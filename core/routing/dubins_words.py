@@ -25,22 +25,18 @@ def put(
     kinds: np.ndarray,
     lengths: np.ndarray,
     count: int,
-    one: int,
-    middle: int,
-    two: int,
-    p: float,
-    q: float,
-    s: float,
+    kind: tuple[int, int, int],
+    length: tuple[float, float, float],
 ) -> int:
     """Put a word among the `count` shorter and longer ones; the new count."""
-    total, k = p + q + s, count
+    total, k = length[0] + length[1] + length[2], count
     while k > 0 and lengths[k - 1, 0] + lengths[k - 1, 1] + lengths[k - 1, 2] > total:
         for j in range(3):
             kinds[k, j] = kinds[k - 1, j]
             lengths[k, j] = lengths[k - 1, j]
         k -= 1
-    kinds[k, 0], kinds[k, 1], kinds[k, 2] = one, middle, two
-    lengths[k, 0], lengths[k, 1], lengths[k, 2] = p, q, s
+    for j in range(3):
+        kinds[k, j], lengths[k, j] = kind[j], length[j]
     return count + 1
 
 
@@ -71,7 +67,7 @@ def words(
                 if gap < 1e-9 * r:
                     bearing = a
                 first, last = turned(one * (bearing - a)), turned(one * (b - bearing))
-                count = put(kinds, lengths, count, one, 0, two, first * r, gap, last * r)
+                count = put(kinds, lengths, count, (one, 0, two), (first * r, gap, last * r))
                 if gap < 4 * r:
                     bend = math.acos(gap / (4 * r))
                     for side in (1, -1):
@@ -82,18 +78,18 @@ def words(
                             kinds,
                             lengths,
                             count,
-                            one,
-                            -one,
-                            one,
-                            turned(one * (h1 - a)) * r,
-                            turned(one * (h1 - h2)) * r,
-                            turned(one * (b - h2)) * r,
+                            (one, -one, one),
+                            (
+                                turned(one * (h1 - a)) * r,
+                                turned(one * (h1 - h2)) * r,
+                                turned(one * (b - h2)) * r,
+                            ),
                         )
             elif gap >= 2 * r:
                 heading = bearing + one * math.asin(2 * r / gap)
                 run = math.sqrt(gap * gap - 4 * r * r)
                 first, last = turned(one * (heading - a)), turned(two * (b - heading))
-                count = put(kinds, lengths, count, one, 0, two, first * r, run, last * r)
+                count = put(kinds, lengths, count, (one, 0, two), (first * r, run, last * r))
     return count
 
 

@@ -16,7 +16,17 @@ import numpy as np
 
 from cratous.core.geofence.mission_leg_arrays import table
 from cratous.core.readings.tiered import swift
-from cratous.core.routing.bulk import BAD_START, FOUND, LINKS_MOST, NO_WAY, route_many, route_points
+from cratous.core.routing.bulk import (
+    BAD_START,
+    FOUND,
+    LINKS_MOST,
+    NO_WAY,
+    Rings,
+    Routed,
+    Turning,
+    route_many,
+    route_points,
+)
 from cratous.core.routing.dubins import RIGHT, pose_after
 from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import Pose
@@ -56,15 +66,6 @@ class Roadmap:
         return rings, sizes
 
 
-class Routed(NamedTuple):
-    """Routes in bulk: FOUND or why not, lengths [m], links or the zone, the poses between links."""
-
-    codes: np.ndarray
-    metres: np.ndarray
-    links: np.ndarray
-    poses: np.ndarray
-
-
 def routes(
     starts: np.ndarray,
     ends: np.ndarray,
@@ -84,16 +85,15 @@ def routes(
         np.empty((n if ways else 1, LINKS_MOST + 2, 4)),
     )  # fmt: skip
     run = swift(route_many, n * (1 + 20 * bool(roadmap.zones)))
-    rings, sizes = roadmap.ring_arrays
+    turning = Turning(float(radius_m), float(max_slope), float(roadmap.chord_error_m))
     zones = table(roadmap.zones)
     altitudes = np.unique(starts[:, 2])
     for alt in altitudes:
         at = np.arange(n) if len(altitudes) == 1 else np.flatnonzero(starts[:, 2] == alt)
         some = Routed(*(part[at] if len(part) == n else part for part in found))
         run(
-            np.ascontiguousarray(starts[at]), np.ascontiguousarray(ends[at]), float(radius_m),
-            float(max_slope), float(roadmap.chord_error_m), zones, rings, sizes,
-            roadmap.seen(float(alt)), *some,
+            np.ascontiguousarray(starts[at]), np.ascontiguousarray(ends[at]), turning, zones,
+            Rings(*roadmap.ring_arrays, roadmap.seen(float(alt))), some,
         )  # fmt: skip
         for part, filled in zip(found, some, strict=True):
             if len(part) == n:
@@ -131,7 +131,8 @@ def route(
     if found.codes[0] != FOUND:
         return Route((), 0.0, why_not(int(found.codes[0]), roadmap.zones[links]))
     points = swift(route_points, 1 + 20 * bool(roadmap.zones))(
-        found.poses[0], links, float(radius_m), float(max_slope), float(roadmap.chord_error_m),
+        found.poses[0], links,
+        Turning(float(radius_m), float(max_slope), float(roadmap.chord_error_m)),
         table(roadmap.zones),
     )  # fmt: skip
     inner = [Position(*point) for point in points[1:-1].tolist()]

@@ -16,13 +16,13 @@ from pathlib import Path
 
 from cratous.core.files.private_cache import private_cache
 from cratous.core.kernel.sources import digest
+from cratous.core.ledger.key_parts import solver_version
 from cratous.core.ledger.keys import Keys
-from cratous.core.ledger.parts import solver_version
 
 ASKING = (
     "proofs.engine.prover._ask",
     "proofs.engine.smtlib.question",
-    "proofs.engine.merkle.Hasher.key",
+    "proofs.engine.obligation_hash.Hasher.key",
 )
 """What decides how a question is put, and what its answer is."""
 

@@ -19,11 +19,11 @@ from typing import Any
 from cratous.core.kernel import entry_of, qualified
 from cratous.core.kernel.sources import ours
 from cratous.proofs.engine.expressions import Kinds, Refused
-from cratous.proofs.engine.kinds import Kind, Literal, is_kind, merged, shown
 from cratous.proofs.engine.lift import Visit
+from cratous.proofs.engine.module_source import NOTHING, constant
 from cratous.proofs.engine.subset import Body, Finding, hints, identity, lint, syntax
 from cratous.proofs.engine.terms import leaves
-from cratous.proofs.engine.written import NOTHING, constant
+from cratous.proofs.engine.value_kinds import Kind, Literal, is_kind, merged, shown
 
 MORE = (ast.Mod, ast.LShift, ast.RShift)
 

@@ -9,7 +9,7 @@ import math
 from typing import Any, get_type_hints
 
 from cratous.core.kernel import entry_of
-from cratous.proofs.engine.kinds import INT64, Kind, Literal, fits, is_record, merged, shown
+from cratous.proofs.engine.value_kinds import INT64, Kind, Literal, fits, is_record, merged, shown
 
 INSTEAD: dict[type[ast.AST], str] = {
     ast.Lambda: "name a kernel instead of a lambda",

@@ -24,8 +24,8 @@ from typing import Any, get_type_hints
 
 from cratous.core.kernel import REGISTRY, Fold, entry_of, kernel, qualified
 from cratous.proofs.engine.expressions import Kinds, Refused
-from cratous.proofs.engine.kinds import Kind, Literal, fits, is_kind, merged, shown
-from cratous.proofs.engine.written import is_top
+from cratous.proofs.engine.module_source import is_top
+from cratous.proofs.engine.value_kinds import Kind, Literal, fits, is_kind, merged, shown
 
 STATEMENTS = "a kernel has assignments to names, `if` and `return`"
 INSTEAD: dict[type[ast.AST], str] = {

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from cratous.core.kernel.names import near
 from cratous.core.kernel.sources import place
-from cratous.core.ledger.home import PRODUCT, theorem_name
+from cratous.core.ledger.package_home import PRODUCT, theorem_name
 from cratous.proofs.engine import theorem_subset, theorem_values
 from cratous.proofs.engine.claim import Claim
 from cratous.spec.errors import BadInput

@@ -20,7 +20,7 @@ from cratous.core.kernel.sources import PACKAGES, ours, place
 from cratous.proofs.engine import definition_subset, theorem_subset
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.definition_subset import of_theorems
-from cratous.proofs.engine.kinds import is_record
+from cratous.proofs.engine.value_kinds import is_record
 from cratous.spec.errors import BadInput
 
 TOOLS = {

@@ -11,8 +11,8 @@ import z3
 from cratous.proofs.engine.lift import LiftError, Visit, lift
 from cratous.proofs.engine.symbolic import SymMask, _raw
 from cratous.proofs.engine.terms import free_names, fresh, known
-from cratous.proofs.mutation.asking import ask, values
 from cratous.proofs.mutation.inputs import shaped
+from cratous.proofs.mutation.solver_queries import ask, values
 from cratous.proofs.mutation.statements import claim_of, in_place
 from cratous.proofs.mutation.terms import FAR, NEAR, SAME, flat, is_free, premise_text
 

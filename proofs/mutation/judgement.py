@@ -18,16 +18,16 @@ import z3
 from cratous.core import ledger as gate
 from cratous.core.kernel import Fold, entry_of, qualified
 from cratous.core.kernel.sources import position
-from cratous.proofs.engine import forked
+from cratous.proofs.engine import worker_processes
 from cratous.proofs.engine.lift import Visit
-from cratous.proofs.mutation.asking import ask, renew
 from cratous.proofs.mutation.equivalence import EVERYWHERE, Equality
 from cratous.proofs.mutation.inputs import SAMPLES, compare, inputs
 from cratous.proofs.mutation.inputs import run as run_once
 from cratous.proofs.mutation.keys import Keys, Store
 from cratous.proofs.mutation.operators import Mutant, mutants
-from cratous.proofs.mutation.points import Point, points
 from cratous.proofs.mutation.results import Result
+from cratous.proofs.mutation.sample_inputs import Point, points
+from cratous.proofs.mutation.solver_queries import ask, renew
 from cratous.proofs.mutation.statements import (
     Stillborn,
     claim_of,
@@ -288,7 +288,7 @@ def judge_target(
         name = keys.mutant(base, mutant.text)
         kept = store.get(name)
         if kept is None:
-            result = forked.call(partial(ask_anew, mutant))
+            result = worker_processes.call(partial(ask_anew, mutant))
             store.put(name, {"verdict": result.verdict, "by": result.by, "note": result.note})
         else:
             place = f"{target.place}:{mutant.line}" if mutant.line else target.place

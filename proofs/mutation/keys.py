@@ -19,8 +19,8 @@ from typing import Any
 from cratous.core.kernel import REGISTRY
 from cratous.core.kernel.sources import constants, digest
 from cratous.core.ledger import keys as ledger_keys
-from cratous.core.ledger.home import PRODUCT, Home
-from cratous.core.ledger.parts import solver_version
+from cratous.core.ledger.key_parts import solver_version
+from cratous.core.ledger.package_home import PRODUCT, Home
 from cratous.proofs.engine.theorem_files import theorem_files
 
 GENERATED = "filter_*"

@@ -8,9 +8,9 @@ from typing import Any
 import z3
 
 from cratous.core import ledger as gate
-from cratous.proofs.mutation.asking import ask, renew
 from cratous.proofs.mutation.keys import Keys, Store
 from cratous.proofs.mutation.results import PremiseResult
+from cratous.proofs.mutation.solver_queries import ask, renew
 from cratous.proofs.mutation.statements import state, stated, theorems_from
 from cratous.proofs.mutation.terms import budget, premise_text
 

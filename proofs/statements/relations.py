@@ -26,8 +26,8 @@ from cratous.proofs.engine.symbolic import SymBool, SymInt, SymMask, SymReal, _r
 from cratous.proofs.engine.terms import free_names, free_values, fresh, known, leaves
 from cratous.proofs.engine.theorem_files import FOLDER, load_claim
 from cratous.proofs.statements import sentences
+from cratous.proofs.statements.premise_and_goal import sides, signs
 from cratous.proofs.statements.sentences import UNREAD, Call, Stated
-from cratous.proofs.statements.sides import sides, signs
 
 SAYS_RLIMIT = 200_000
 KINDS = {SymReal: "real number", SymInt: "integer", SymBool: "truth value", SymMask: "64-bit mask"}

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from cratous.services.monitor.plan_check import PART, WHOLE
-from cratous.services.monitor.promises import PLAN_ROWS, Row, Watched, missing, promised
+from cratous.services.monitor.required_rows import PLAN_ROWS, Row, Watched, missing, promised
 from cratous.spec.mission.guarantees import REQUIREMENTS, Outcome, Verdict, worst
 
 

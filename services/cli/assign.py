@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import click
 
@@ -13,6 +14,15 @@ from cratous.spec.assignment.search import CUMULATIVE, MINMAX, AssignmentProblem
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import json_of
 from cratous.spec.files.text_file import bytes_of
+
+
+class Output(NamedTuple):
+    """What is written where, and what is printed."""
+
+    certificate: Path | None
+    svg: Path | None
+    progress: bool
+    as_json: bool
 
 
 @click.command()
@@ -34,7 +44,7 @@ from cratous.spec.files.text_file import bytes_of
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def assign(
     file: Path, semantics: str, cost: str, seconds: float | None, nodes: int | None, gap: float,
-    seed: int, certificate: Path | None, svg: Path | None, progress: bool, as_json: bool,
+    seed: int, **output: Any,
 ) -> int:  # fmt: skip
     """Solve an assignment problem.
 
@@ -52,6 +62,7 @@ def assign(
     from cratous.services.planning.assign_solvers import why_infeasible
     from cratous.services.planning.assign_vectors import read
 
+    certificate, svg, progress, as_json = Output(**output)
     require()
     data = json_of(bytes_of(file, expected="an assignment problem"), str(file))
     try:

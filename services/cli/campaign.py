@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
 
@@ -29,6 +29,16 @@ def seed_range(_ctx: Any, _param: Any, value: str | None) -> range | None:
     return range(int(match[1]), int(match[2]) + 1)
 
 
+class Wanted(NamedTuple):
+    """What is to come of it: flights kept, or a search for a run that fails `find`; what is printed."""
+
+    reports: int
+    find: str | None
+    budget: int
+    as_json: bool
+    quiet: bool
+
+
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--seeds", callback=seed_range, metavar="A-B", help="Seeds, instead of the file's.")
@@ -47,8 +57,8 @@ def seed_range(_ctx: Any, _param: Any, value: str | None) -> range | None:
 @click.option("--json", "as_json", is_flag=True, help="Print campaign.json, or what was found.")
 @click.option("--quiet", is_flag=True, help="No progress, only the result.")
 def campaign(
-    file: Path, seeds: range | None, workers: int, scheduler: str | None, out: Path | None, no_daa: bool,
-    allow_unproved: bool, reports: int, find: str | None, budget: int, as_json: bool, quiet: bool,
+    file: Path, seeds: range | None, workers: int, scheduler: str | None, out: Path | None,
+    no_daa: bool, allow_unproved: bool, **wanted: Any,
 ) -> int:  # fmt: skip
     """Fly and judge all runs of a campaign FILE, or all variants of a mission FILE.
 
@@ -66,6 +76,7 @@ def campaign(
     """
     from cratous.services.campaign.definition import load_campaign
 
+    reports, find, budget, as_json, quiet = Wanted(**wanted)
     found = load_campaign(file, seeds, (option_of(not no_daa),))
     place = out or Path("out") / "campaigns" / found.name
     how = {"workers": workers, "scheduler": scheduler, "allow_unproved": allow_unproved}

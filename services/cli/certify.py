@@ -38,7 +38,7 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool) -> int:
     Exit codes: as of the flight if the report is confirmed (0, 1 or 3); 1 if it is not, with the
     differences named, or if something is missing in a trace; 2 bad input.
     """
-    from cratous.services.certify.again import certify_again
+    from cratous.services.certify.rejudge import certify_again
     from cratous.services.certify.trace import lines, traced
     from cratous.services.cli.progress import waiting
     from cratous.services.cli.show import requirement_table, say

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from cratous.services.mission.taking_part import absent
+from cratous.services.mission.availability import absent
 from cratous.services.mission.wind import known_at
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Mission

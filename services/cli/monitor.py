@@ -23,9 +23,9 @@ def monitor(log: Path, as_json: bool, allow_unproved: bool) -> int:
     unknown or excused.
     """
     from cratous.core import ledger
-    from cratous.services.certify.again import watch
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory, summary
+    from cratous.services.certify.rejudge import watch
     from cratous.services.certify.verdicts import constraint_rows, requirement_rows
     from cratous.services.cli.progress import waiting
     from cratous.services.cli.show import requirement_table

@@ -133,7 +133,7 @@ def plan(
 
 def reasons_of(mission: Any, made: Any, task: int) -> tuple[Any, ...]:
     """For each vehicle what the plan would cost with it."""
-    from cratous.services.mission.taking_part import absent
+    from cratous.services.mission.availability import absent
     from cratous.services.mission.wind import known_at
     from cratous.services.planning.why import why
 

@@ -8,7 +8,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
 
@@ -20,7 +20,7 @@ from cratous.spec.errors import BadInput
 
 
 def _show(theorem: Any, verbose: bool, statement: str) -> None:
-    from cratous.proofs.ledger.formats import failure_text
+    from cratous.proofs.ledger.report_formats import failure_text
 
     mark = (
         click.style("proved    ", fg="green")
@@ -38,6 +38,27 @@ def _show(theorem: Any, verbose: bool, statement: str) -> None:
         click.echo(f"           {line}")
 
 
+def _tell_ran(theorems: list[Any], verbose: bool) -> None:
+    """What was run on numbers of what is proved, and what could not be."""
+    ran = [(t.name, t.ran) for t in theorems if t.ran is not None]
+    held = [one for _, one in ran if one.points]
+    left = sorted({text for _, one in ran for text in one.left_out})
+    click.echo(
+        f"{len(held)} of {len(theorems)} theorems run as Python, at {sum(o.points for o in held)} points; "
+        f"{len(left)} readings could not be compared"
+    )
+    if verbose:
+        for name, one in ran:
+            if not one.points:
+                why = (
+                    one.not_run
+                    or "no point was found at which its premises hold and all is rational"
+                )
+                click.echo(f"not run: {name}: {why}")
+        for text in left:
+            click.echo(f"not compared: {text}")
+
+
 def _statuses(said: dict[str, str]) -> dict[str, int]:
     """How many kernels, folds and drivers a ledger has of each status."""
     from cratous.core.ledger.status import counts
@@ -50,7 +71,7 @@ def _export(theorems: list[Any], folder: Path, theorem_folder: Path) -> int:
     """Write each obligation as SMT-LIB; returns how many files."""
     from functools import partial
 
-    from cratous.proofs.engine import forked, prover
+    from cratous.proofs.engine import prover, worker_processes
 
     def texts(name: str) -> list[str]:
         claim, sentence = prover.state(name, theorem_folder)
@@ -60,7 +81,7 @@ def _export(theorems: list[Any], folder: Path, theorem_folder: Path) -> int:
     folder.mkdir(parents=True, exist_ok=True)
     written = 0
     for theorem in theorems:
-        for number, text in enumerate(forked.call(partial(texts, theorem.name)), 1):
+        for number, text in enumerate(worker_processes.call(partial(texts, theorem.name)), 1):
             write_atomically(folder / f"{theorem.name}-{number:02d}.smt2", text)
             written += 1
     return written
@@ -76,6 +97,17 @@ def _refuse(problems: list[str]) -> None:
         where=where,
         expected="every kernel proved, and drivers that call what they name; the ledger is not written",
     )
+
+
+class Output(NamedTuple):
+    """What is printed and written where, and in how many processes."""
+
+    as_json: bool
+    junit: Path | None
+    sarif: Path | None
+    smt2_folder: Path | None
+    jobs: int | None
+    verbose: bool
 
 
 @click.command()
@@ -127,12 +159,7 @@ def prove(
     mutate: bool,
     self_test: bool,
     package_name: str | None,
-    as_json: bool,
-    junit: Path | None,
-    sarif: Path | None,
-    smt2_folder: Path | None,
-    jobs: int | None,
-    verbose: bool,
+    **output: Any,
 ) -> None:
     """Prove every kernel against its definition and write the ledger.
 
@@ -155,11 +182,12 @@ def prove(
     from cratous.proofs import ledger
     from cratous.proofs.engine import cache, prover
     from cratous.proofs.judgement import judge
-    from cratous.proofs.ledger import formats
-    from cratous.proofs.ledger.recall import Recall
-    from cratous.proofs.ledger.remembered import Remembered
+    from cratous.proofs.ledger import report_formats
+    from cratous.proofs.ledger.proof_recall import Recall
+    from cratous.proofs.ledger.text_cache import Remembered
     from cratous.proofs.lint import decisions
 
+    as_json, junit, sarif, smt2_folder, jobs, verbose = Output(**output)
     # thousands of syntax trees live to the end: looking for garbage in them is a third of a warm run
     gc.set_threshold(200_000, 20, 100)
     begun = time.monotonic()
@@ -220,8 +248,8 @@ def prove(
         for theorem in theorems:
             _show(theorem, verbose, judged.statements.get(theorem.name, ""))
     outputs: list[tuple[Path | None, Callable[[list[str]], str]]] = [
-        (junit, lambda found: formats.junit(theorems, found)),
-        (sarif, lambda found: formats.sarif(theorems, found, home)),
+        (junit, lambda found: report_formats.junit(theorems, found)),
+        (sarif, lambda found: report_formats.sarif(theorems, found, home)),
     ]
     problems = judged.problems
     if whole and home.product:
@@ -255,7 +283,7 @@ def prove(
             records.write(said, home.records)
     for path, make in outputs:
         if path is not None:
-            formats.write(path, make(problems))
+            report_formats.write(path, make(problems))
     dead = ledger.dead_paths(theorems) if whole else []
     second = data.get("recheck", {}).get("theorems", {})
     assumed = sum(len(t.assumptions) for t in theorems)
@@ -265,7 +293,7 @@ def prove(
             "statuses": statuses,
             "theorems": [
                 {
-                    **formats.theorem_data(t, second.get(t.name)),
+                    **report_formats.theorem_data(t, second.get(t.name)),
                     "statement": judged.statements.get(t.name, ""),
                 }
                 for t in theorems
@@ -290,6 +318,7 @@ def prove(
         )
         click.secho(f"{assumed} assumptions", fg="red" if assumed else None, nl=False)
         click.echo(f", {gate.solver_version()}")
+        _tell_ran(theorems, verbose)
         if statuses:
             click.echo("; ".join(f"{number} {status}" for status, number in statuses.items()))
         before = [

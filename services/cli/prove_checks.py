@@ -102,7 +102,7 @@ def mutation(
 
     data = mutation_record.read() if new and home.product else mutation_record.EMPTY
     known = mutation_record.fresh(data, keys) if new else set()
-    report = mutate.run(patterns, tell, jobs, about=about, home=home, skip=known)
+    report = mutate.run(patterns, tell, jobs, about=about, keys=keys, skip=known)
     recorded = mutation_record.survivors(data, known)
     listed = {v: report.of(v) for v in ("survived", "undecided")}
     if not as_json:

@@ -55,7 +55,8 @@ def uxas(
 
     Example:  cratous uxas -cfgPath cfg.xml -runUntil 60
 
-    Exit codes: 0 it ran to its end, 2 the configuration is refused.
+    Exit codes: 0 it ran to its end, 2 the configuration is refused, 3 ICAROUS instances that it waits for
+    have not come.
     """
     from cratous.services.loading.uxas_settings import read
     from cratous.services.uxas.logs import Logs

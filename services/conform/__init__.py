@@ -26,6 +26,7 @@ SUITES = {
     "lmcp": "LMCP messages in binary and XML, both ways, and malformed ones.",
     "frames": "Captured sentinel frames and envelopes, and what breaks a TCP bridge.",
     "detect-and-avoid": "Alerts, bands, recovery, last times and resolutions of DAIDALUS.",
+    "bridge": "Lines and recorded sessions of the CRATOUS text protocol, whole and cut at every place.",
     "assignment": "Optimal assignments: recorded optima, and best costs of OpenUxAS.",
 }
 

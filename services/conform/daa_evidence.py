@@ -12,15 +12,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from types import FunctionType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from cratous.core.daa.bands import SAMPLE_S, Traffic, last_free
+from cratous.core.daa.bands import Traffic, last_free, manoeuvres
 from cratous.core.daa.climb import altitude_conflict, safe_altitudes
 from cratous.core.daa.frame import RADIUS_M, project
 from cratous.core.daa.grid import grid
 from cratous.core.daa.guidance import evaluate
+from cratous.core.daa.records import Intruders, Looking, Regaining
 from cratous.core.daa.state import Aircraft
 from cratous.core.daa.steps import safe_steps
 from cratous.core.daa.uncertainty import lost
@@ -54,24 +55,31 @@ def exact_evaluate() -> Callable[..., bool]:
     return made
 
 
-def has_way(
-    p: Parameters,
-    own: Aircraft,
-    traffic: Traffic,
-    i: int,
-    dimension: int,
-    judge: Callable[..., bool],
-) -> bool:
-    """Whether some grid value of the dimension is free of conflict with intruder i now."""
+class Asked(NamedTuple):
+    """Which last time to manoeuvre is asked for: out of conflict with intruder i, in one dimension."""
+
+    p: Parameters
+    own: Aircraft
+    traffic: Traffic
+    i: int
+    dimension: int
+
+
+def has_way(asked: Asked, judge: Callable[..., bool]) -> bool:
+    """Whether some grid value of the dimension is free of conflict with the intruder now."""
+    p, own, traffic, i, dimension = asked
     g, region = grid(p, own, dimension), p.corrective_region
     horizons = np.full(len(traffic.ids), p.lookahead_time_s)
     safe_r = np.ones(len(g.targets) or len(g.right), dtype=np.bool_)
     safe_l = np.ones(len(g.left), dtype=np.bool_)
+    intruders = Intruders(
+        traffic.states, traffic.kinds[region], traffic.volumes[region], horizons,
+        np.zeros_like(traffic.sides),
+    )  # fmt: skip
+    looking = Looking(p.lookahead_time_s, p.bands_add_time_to_maneuver, 0.0, True, True)
+    always = Regaining(0.0, 0.0, 0.0, False)
     found = judge(
-        g.right, g.left, g.step_s, 0.0, g.targets, g.rate_m_s, g.accel_m_s2, SAMPLE_S,
-        traffic.states, np.array([i]), traffic.kinds[region], traffic.volumes[region], horizons,
-        np.zeros_like(traffic.sides), 0.0, 0.0, 0.0, False, p.lookahead_time_s, p.bands_add_time_to_maneuver, 0.0, True, True,
-        safe_r, safe_l,
+        manoeuvres(g, 0.0), intruders, np.array([i]), always, looking, safe_r, safe_l
     )  # fmt: skip
     return bool(found)
 
@@ -93,16 +101,9 @@ def _moved(state: dict[str, Any], lat0: float, lon0: float, t_s: float) -> tuple
     return (local.east_m, local.north_m, alt, local.ve_m_s, local.vn_m_s, vu)
 
 
-def along_great_circles(
-    p: Parameters,
-    out: dict[str, Any],
-    own: Aircraft,
-    traffic: Traffic,
-    i: int,
-    dimension: int,
-    entry_s: float,
-) -> float | None:
+def along_great_circles(asked: Asked, out: dict[str, Any], entry_s: float) -> float | None:
     """The last time to manoeuvre if both move along great circles until then [s]; None: none."""
+    own, traffic, i = asked.own, asked.traffic, asked.i
     state, other = out["own"], out["traffic"][i]["state"]
     lat0, lon0 = finite(state["lat_rad"], "lat_rad"), finite(state["lon_rad"], "lon_rad")
 
@@ -111,27 +112,24 @@ def along_great_circles(
         there[i] = _moved(other, lat0, lon0, t_s)
         e, n, alt, ve, vn, vu = _moved(state, lat0, lon0, t_s)
         moved = Aircraft(own.id, e, n, alt, ve, vn, vu, own.alerter)
-        return has_way(p, moved, traffic._replace(states=there), i, dimension, machine(evaluate))
+        then = asked._replace(own=moved, traffic=traffic._replace(states=there))
+        return has_way(then, machine(evaluate))
 
     return last_free(free, entry_s)
 
 
 def explained(
-    p: Parameters,
+    asked: Asked,
     out: dict[str, Any],
-    own: Aircraft,
-    traffic: Traffic,
-    i: int,
-    dimension: int,
     ours: float | None,
     theirs: float | None,
     entry_s: float | None,
 ) -> str:
     """Which known way of the other system explains the difference; "" if none is shown to."""
-    if ours == 0 and theirs is None and has_way(p, own, traffic, i, dimension, exact_evaluate()):
+    if ours == 0 and theirs is None and has_way(asked, exact_evaluate()):
         return "last time 0"
     if "lat_rad" in out["own"] and entry_s is not None:
-        again = along_great_circles(p, out, own, traffic, i, dimension, entry_s)
+        again = along_great_circles(asked, out, entry_s)
         if again is None or theirs is None:
             return "great circle" if again is theirs else ""
         return "great circle" if abs(again - theirs) <= 1e-4 else ""

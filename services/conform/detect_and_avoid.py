@@ -26,7 +26,7 @@ from cratous.core.daa.engine import look
 from cratous.core.daa.session import Instant, Session
 from cratous.core.daa.state import DIMENSIONS, HDIR, Aircraft, Guidance, Sigma
 from cratous.services.conform import Result, edge, failed, not_covered, passed
-from cratous.services.conform.daa_evidence import explained
+from cratous.services.conform.daa_evidence import Asked, explained
 from cratous.services.conform.values import finite, identity, numbers
 from cratous.spec.daa.parameters import REGIONS, Parameters
 from cratous.spec.daa.presets import preset
@@ -252,10 +252,8 @@ class Differences:
             why = ""
             if not good and ours is not None and value != "inf":
                 seen = self.instant.seen
-                why = explained(
-                    self.p, self.out, seen.own, seen.traffic, i, d, ours[d], _time(value),
-                    alert.to_corrective_s,
-                )  # fmt: skip
+                asked = Asked(self.p, seen.own, seen.traffic, i, d)
+                why = explained(asked, self.out, ours[d], _time(value), alert.to_corrective_s)
             self.note("last time to manoeuvre", good,
                       f"{alert.id} {DIMENSIONS[d]}: last time expected {value}, got {got}", d, why)  # fmt: skip
 

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from cratous.services.flight.dynamics import limits_of
+from cratous.services.flight.executive_outputs import command_all
 from cratous.services.flight.executive_state import Asked, Config, Out, State
 from cratous.services.flight.messages import AskPlan, LimitsAre, Say, ZonesKnown
 from cratous.services.flight.notices import mission_change, plan_accepted
-from cratous.services.flight.passing import begin, give_up, progress
-from cratous.services.flight.telling import command_all
-from cratous.services.flight.touched import handed_over, left_by, nobody_may, touched_by
-from cratous.services.mission.taking_part import absent
+from cratous.services.flight.replan_triggers import handed_over, left_by, nobody_may, touched_by
+from cratous.services.flight.task_transitions import begin, give_up, progress
+from cratous.services.mission.availability import absent
 from cratous.services.mission.wind import all_in_wind, in_wind, known_at, told, wind_at
 from cratous.services.planning.zones import hard_zones
 from cratous.spec.executive import FOR_CHANGE

@@ -8,8 +8,8 @@ from cratous.core.executive.steps import late_act
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.executive_state import Asked, Config, Out, State
 from cratous.services.flight.expectation import expected_times
-from cratous.services.flight.pace import FASTEST, broken_rows, trimmed_speed_m_s
-from cratous.services.flight.passing import fail
+from cratous.services.flight.speed_control import FASTEST, broken_rows, trimmed_speed_m_s
+from cratous.services.flight.task_transitions import fail
 from cratous.services.flight.timing import opens_ms
 from cratous.spec.constraint_rows import Row
 from cratous.spec.executive import FOR_DEADLINE, PLAN_ANEW, STANDS_BY

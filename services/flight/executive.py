@@ -15,7 +15,13 @@ from dataclasses import dataclass, replace
 from cratous.core.authority.gate import UXAS
 from cratous.core.authority.link_end import track_is_told
 from cratous.core.executive.steps import answered, flight_outcome, rejoined
-from cratous.services.flight import changes, deadlines, interruption, passing, telling
+from cratous.services.flight import (
+    changes,
+    deadlines,
+    executive_outputs,
+    interruption,
+    task_transitions,
+)
 from cratous.services.flight.executive_state import Asked, Config, Out, State
 from cratous.services.flight.messages import (
     Begin,
@@ -88,16 +94,16 @@ class Executive:
         now_ms, aircraft = message
         state = replace(state, now_ms=now_ms, aircraft=aircraft)
         state = changes.known_from_the_start(self.config, state, out)
-        state = passing.begin(self.config, state, out)
+        state = task_transitions.begin(self.config, state, out)
         out.append(ZonesKnown(state.zones))
         return state
 
     def _set_out(self, state: State, out: Out) -> State:
         """The first ways, and the first commands: no gate has been in another epoch than 0."""
         for vid in self.config.instances:
-            state = telling.route(state, vid, out)
+            state = executive_outputs.route(state, vid, out)
         for vid, _ in state.aircraft:
-            state = telling.command(self.config, state, vid, 0, out)
+            state = executive_outputs.command(self.config, state, vid, 0, out)
         return state
 
     # a step of the flight ----------------------------------------------------------------------
@@ -120,7 +126,7 @@ class Executive:
     def _events(self, state: State, out: Out) -> State:
         """Ends of tracks, then deadlines; the rest of the step unless a plan is asked for."""
         versions = tuple((chain.vehicle.id, chain.version) for chain in state.chains)
-        state = passing.settle(self.config, state, out)
+        state = task_transitions.settle(self.config, state, out)
         if not self._beats(state):
             return self._commands(state, versions, out)
         state, late = deadlines.watch(state)
@@ -140,10 +146,12 @@ class Executive:
             chain = state.chain(vid)
             if rejoined(chain.away, chain.suspended, chain.s_m, chain.join_m):
                 note = "back on the path"
-                out.append(passing.progress(chain, state.now_ms, "Active", note, chain.served()))
+                out.append(
+                    task_transitions.progress(chain, state.now_ms, "Active", note, chain.served())
+                )
                 state = state.put(replace(chain, away=False))
             if track_is_told(chain.suspended, chain.version != before[vid]):
-                state = telling.command(self.config, state, vid, epochs[vid], out)
+                state = executive_outputs.command(self.config, state, vid, epochs[vid], out)
         return state
 
     def _beats(self, state: State) -> bool:
@@ -164,7 +172,7 @@ class Executive:
         if act == FLY_PLAN and isinstance(message, Planned):
             state = changes.planned(self.config, state, message.plan, asked, out)
             if asked.kind == FOR_CHANGE:
-                state = telling.command_all(self.config, state, out)
+                state = executive_outputs.command_all(self.config, state, out)
                 return self._events(state, out)
             return self._commands(state, asked.versions, out)
         if act == DROP_LEFT and isinstance(message, NotPlanned):
@@ -179,9 +187,11 @@ class Executive:
 
     def _report(self, state: State, now_ms: int, out: Out) -> State:
         """Where the cameras look; how far everybody is, for those with an instance."""
-        out.extend(telling.look(self.config, state, vid, now_ms) for vid, _ in state.aircraft)
+        out.extend(
+            executive_outputs.look(self.config, state, vid, now_ms) for vid, _ in state.aircraft
+        )
         for vid in self.config.instances:
-            state = telling.report(state, vid, out)
+            state = executive_outputs.report(state, vid, out)
         return state
 
     def _close(self, state: State, message: Closing, out: Out) -> None:
@@ -194,4 +204,4 @@ class Executive:
         todo = len(changes.left(state)) if not flying else 0  # while some fly it is no matter
         how = OUTCOMES[flight_outcome(flying, away, expected, todo, now_ms, limit_ms)]
         if how:
-            out += [Say(mission_end(now_ms, how), passing.NAME), Over(how)]
+            out += [Say(mission_end(now_ms, how), task_transitions.NAME), Over(how)]

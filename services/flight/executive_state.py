@@ -8,8 +8,8 @@ from typing import NamedTuple, TypeVar
 
 from cratous.services.flight.chain import Chain
 from cratous.services.flight.dynamics import AirState
+from cratous.services.flight.inflight_routes import Ways
 from cratous.services.flight.messages import FromExecutive
-from cratous.services.flight.ways import Ways
 from cratous.services.mission.frames import Projection
 from cratous.services.mission.wind import CALM, Wind, known_at
 from cratous.services.planning.zones import hard_zones

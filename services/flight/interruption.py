@@ -6,12 +6,12 @@ from dataclasses import replace
 
 from cratous.core.authority.link_end import suspended_after
 from cratous.core.executive.steps import way_act
-from cratous.services.flight.ahead import leaving_m
 from cratous.services.flight.chain import Chain, Phase
+from cratous.services.flight.executive_outputs import command, route
 from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.messages import Left, Suspend, TakeBack
-from cratous.services.flight.passing import NO_WAY, circling, fail, progress
-from cratous.services.flight.telling import command, route
+from cratous.services.flight.remaining_path import leaving_m
+from cratous.services.flight.task_transitions import NO_WAY, circling, fail, progress
 from cratous.spec.executive import FAIL_TASK
 from cratous.spec.mission import Position
 

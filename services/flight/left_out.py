@@ -12,7 +12,7 @@ from typing import Any
 
 from cratous.services.flight.chain import Chain
 from cratous.services.flight.commands import task_progress
-from cratous.services.flight.lives import fails
+from cratous.services.flight.task_states import fails
 from cratous.spec.mission.plan import LeftOut, PartialPlan, Plan, left_out_of, partial
 
 NOBODY = 0

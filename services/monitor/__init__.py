@@ -15,8 +15,8 @@ from cratous.services.monitor.authority import AuthorityWatch
 from cratous.services.monitor.bridge import BridgeWatch
 from cratous.services.monitor.completion import CompletionWatch
 from cratous.services.monitor.constraints import ConstraintWatch
-from cratous.services.monitor.presence import Ending, Presence
-from cratous.services.monitor.promises import missing, promised, watched
+from cratous.services.monitor.observation import Ending, Presence
+from cratous.services.monitor.required_rows import missing, promised, watched
 from cratous.services.monitor.samples import Sample, Sampler
 from cratous.services.monitor.separation import SeparationWatch
 from cratous.spec.mission import Mission

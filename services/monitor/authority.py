@@ -21,7 +21,7 @@ from cratous.core.authority.gate import (
     gate_takeover,
 )
 from cratous.core.kernel import qualified
-from cratous.services.monitor.promises import authority_item
+from cratous.services.monitor.required_rows import authority_item
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from cratous.core.authority.timeliness import Beats, beats_in_time
 from cratous.core.kernel import qualified
-from cratous.services.monitor.promises import WAYS, beat_item
+from cratous.services.monitor.required_rows import WAYS, beat_item
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 

@@ -21,8 +21,8 @@ from cratous.core.excuse.way_out import is_excused, way_out
 from cratous.core.kernel import Vec2, qualified
 from cratous.core.well_clear import violation_within
 from cratous.services.monitor.excuses import evidence, sentence
-from cratous.services.monitor.presence import Ending, Presence
-from cratous.services.monitor.promises import Watched, alone_item, pair_item, pairs_of
+from cratous.services.monitor.observation import Ending, Presence
+from cratous.services.monitor.required_rows import Watched, alone_item, pair_item, pairs_of
 from cratous.services.monitor.samples import Sample
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict

@@ -19,6 +19,7 @@ from cratous.core.assignment.instance import (
     FAR,
     TASKS_MAX,
     TIME_MAX_MS,
+    Fleet,
     Instance,
     instance,
     is_plain,
@@ -286,9 +287,8 @@ def arrays(problem: AssignmentProblem, part: Part) -> Instance:
         if is_plain((row,))
         and (k < part.orders or p.semantics == TIME or row.kind in (NOT_BEFORE, NOT_AFTER))
     ]
-    return instance(
-        part.tasks, plain, options, may, travel, added, p.ready_ms, weight, p.semantics == TIME
-    )
+    fleet = Fleet(p.ready_ms, may, travel, added)
+    return instance(part.tasks, plain, options, fleet, weight, p.semantics == TIME)
 
 
 def is_exact(problem: AssignmentProblem, part: Part) -> bool:

@@ -28,7 +28,7 @@ from cratous.services.loading.uxas_settings import (
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import TASKS, TaskService
 from cratous.services.pipeline.world import World
-from cratous.services.uxas import bridge_kinds, not_covered, own, registry
+from cratous.services.uxas import bridge_kinds, not_covered, registry, user_services
 from cratous.services.uxas.bridge_entry import Given
 from cratous.services.uxas.bridges import CREATE, KILL, Bridge
 from cratous.services.uxas.frame import Host
@@ -146,7 +146,7 @@ class ServiceManager:
         if item.kind == "Bridge":
             self._make_bridge(item, number)
             return
-        kind = own.kind_of(item.type)
+        kind = user_services.kind_of(item.type)
         assert kind is not None, item.type
         problems: list[BadInput] = []
         known = {**kind.attributes, **_COMMON}
@@ -159,6 +159,9 @@ class ServiceManager:
         name = self._name(item.type, number)
         service = kind.make(self._host, item, values, name, number)
         self._add(service, number, values["MessageGroup"])
+        if hasattr(service, "pump"):  # it has a port of its own
+            self.bridges[number] = service
+            self.on_change()
 
     def _make_bridge(self, item: Entry, number: int) -> None:
         kind = bridge_kinds.BRIDGES[item.type]
@@ -247,7 +250,7 @@ def check(
     """
     entries = [e for e in config.entries if e.type not in without]
     problems: list[BadInput] = []
-    own.load(config, problems)
+    user_services.load(config, problems)
     refuse(problems)
     said = list(config.notes)
     if not config.strict:
@@ -270,7 +273,7 @@ def _check(item: Entry, entries: list[Entry], problems: list[BadInput]) -> None:
             return
         bridge_kinds.check(item, kind, problems)
         return
-    service = own.kind_of(item.type)
+    service = user_services.kind_of(item.type)
     if service is None:
         problems.append(_unknown(item, registry.KINDS))
         return
@@ -335,7 +338,7 @@ def _nobody_has(kind: str) -> bool:
     """True for a service of UxAS that is not covered, and for one of a name like no other's."""
     known = [*registry.KINDS, *TASKS, *bridge_kinds.BRIDGES]
     slip = get_close_matches(kind, known, 1, SLIP) or ":" in kind
-    return own.kind_of(kind) is None and (kind in not_covered.SERVICES or not slip)
+    return user_services.kind_of(kind) is None and (kind in not_covered.SERVICES or not slip)
 
 
 def _unknown(item: Entry, known: Any) -> BadInput:

@@ -12,7 +12,7 @@ from typing import Any
 
 from cratous.bridge import lmcp, sentinel
 from cratous.bridge.port import Incoming
-from cratous.bridge.zre import ZreNode
+from cratous.bridge.zre import Beacons, ZreNode
 from cratous.bridge.zre_peer import Event
 from cratous.services.bus import Envelope
 from cratous.services.uxas.bridge_entry import Given
@@ -118,9 +118,8 @@ def zyre_bridge(given: Given) -> ZyreBridge:
     node = ZreNode(
         given.context,
         str(host.entity_id),
-        device=v["NetworkDevice"],
         headers=headers,
-        beacon_port=v["BeaconPort"],
+        beacons=Beacons(v["NetworkDevice"], v["BeaconPort"]),
         limits=given.limits(),
         report=host.log,
         where=given.entry.where,

@@ -118,10 +118,7 @@ def test_masks_open_what_the_derivatives_allow() -> None:
             allowed = algebra_runs.next_actions(term, done)
             for o in range(count):
                 child = np.zeros_like(state)
-                can = place(
-                    state, child, 0, o, 0, i.travel, i.added, i.duration, i.task, i.release, i.due,
-                    i.need, i.ref_kind, i.ref_group, i.ref_user, i.row_first, i.row_ref, i.row_lo, 1,
-                )  # fmt: skip
+                can = place(state, child, 0, o, i._replace(waits=1), 0)
                 task = part.tasks[int(i.task[o])]
                 assert can == (task in allowed), (text, done, task)
                 if can:
@@ -358,10 +355,7 @@ def test_the_bound_takes_the_least_of_every_option_of_every_task() -> None:
                 at = [o for o in range(options) if i.may[v, o] and done[i.task[o]]]
                 if at and rng.random() < 0.7:
                     state[1 + v], state[1 + vehicles + v] = rng.choice(at), rng.integers(0, 500)
-            found = bound(
-                state, n, vehicles, options, ahead.to_task, ahead.to_task_added, ahead.apart,
-                ahead.apart_added, ahead.least, ahead.head, ahead.tail, i.due, np.array([0, 1]),
-            )  # fmt: skip
+            found = bound(state, i._replace(weight=np.array([0, 1])), ahead)
             assert found == least_sum(i, state)
 
 

@@ -19,7 +19,7 @@ from cratous.spec.errors import BadInput
 
 @pytest.fixture(scope="module")
 def fuzz() -> ModuleType:
-    file = Path(__file__).parents[1] / "fuzz_lmcp.py"
+    file = Path(__file__).parents[1] / "programs" / "fuzz_lmcp.py"
     spec = importlib.util.spec_from_file_location("fuzz_lmcp", file)
     assert spec
     assert spec.loader

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from cratous.bridge import zre_wire as wire
 from cratous.bridge.port import Limits
-from cratous.bridge.zre import ZreNode
+from cratous.bridge.zre import Beacons, ZreNode
 from cratous.bridge.zre_beacon import interface
 from cratous.bridge.zre_peer import Event
 from cratous.spec.errors import BadInput
@@ -104,8 +104,7 @@ class Net:
         made = ZreNode(
             self.context,
             name,
-            beacon_port=self.port,
-            interval_s=0.05,
+            beacons=Beacons(port=self.port, interval_s=0.05),
             report=lambda _s, text: self.reports.append(text),
             **more,
         )

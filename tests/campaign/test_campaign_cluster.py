@@ -30,7 +30,7 @@ VARIED = "seeds: [1, 10]\nvary: [{item: 'vehicles[0].speed_m_s', range: [10, 40]
 
 @pytest.fixture(autouse=True)
 def _child(monkeypatch: pytest.MonkeyPatch, root: Path) -> None:
-    monkeypatch.setenv("PYTHONPATH", f"{root / 'tests'}:{root / 'src'}")
+    monkeypatch.setenv("PYTHONPATH", f"{root / 'tests' / 'children'}:{root / 'src'}")
 
 
 @contextlib.contextmanager

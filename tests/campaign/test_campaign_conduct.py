@@ -31,7 +31,7 @@ OPTIONS = "options: [{name: a}, {name: b, daa: false}]\n"
 
 @pytest.fixture(autouse=True)
 def _child(monkeypatch: pytest.MonkeyPatch, root: Path) -> None:
-    monkeypatch.setenv("PYTHONPATH", f"{root / 'tests'}:{root / 'src'}")
+    monkeypatch.setenv("PYTHONPATH", f"{root / 'tests' / 'children'}:{root / 'src'}")
 
 
 def at_once(feed: Any) -> Any:

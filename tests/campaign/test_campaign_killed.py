@@ -68,7 +68,7 @@ def gone(pid: int) -> bool:
 def test_it_goes_on_after_kill_9(
     tmp_path: Path, root: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv("PYTHONPATH", f"{root / 'tests'}:{root / 'src'}")
+    monkeypatch.setenv("PYTHONPATH", f"{root / 'tests' / 'children'}:{root / 'src'}")
     file, folder = written(tmp_path, {"plain": "sleep"}, VARIED), tmp_path / "out"
     command = [sys.executable, "-c", PROGRAM, str(file), str(folder), str(Path(__file__).parent)]
     first = subprocess.Popen(command, start_new_session=True)

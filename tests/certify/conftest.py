@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from certify_tools import ROOT, Run
 
-from cratous.services.certify import again, recorded, report, written
+from cratous.services.certify import flight_record, rejudge, report, result_files
 from cratous.services.cli import main
 from cratous.services.logs.sqlite_log import SqliteLog
 
@@ -55,14 +55,14 @@ def judged(flown: Path) -> Iterator[None]:
         patch.setattr(place, name, call)
 
     once(SqliteLog, "digest", lambda log: log.path.stat().st_mtime_ns)
-    once(again, "watch")
-    once(again, "_certificate")
-    once(recorded, "inventory", lambda _standing, calls: json.dumps(calls))
-    once(recorded.ledger, "require")
+    once(rejudge, "watch")
+    once(rejudge, "_certificate")
+    once(flight_record, "inventory", lambda _standing, calls: json.dumps(calls))
+    once(flight_record.ledger, "require")
     once(report, "read_flight")
     once(report, "read_digest", lambda path: path.stat().st_mtime_ns)
-    rows = list(again.read_log(flown / "log.sqlite"))
-    patch.setattr(again, "read_log", lambda _path: rows)
-    once(written, "pages", report.report_text)
+    rows = list(rejudge.read_log(flown / "log.sqlite"))
+    patch.setattr(rejudge, "read_log", lambda _path: rows)
+    once(result_files, "pages", report.report_text)
     yield
     patch.undo()

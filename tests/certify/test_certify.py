@@ -14,7 +14,7 @@ from certify_tools import Run, edited, read
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from cratous.services.certify import again, report, written
+from cratous.services.certify import rejudge, report, result_files
 from cratous.services.cli import main
 
 FEW = 2
@@ -92,15 +92,15 @@ def test_every_edit_of_every_entry_is_found(
     """Of lists of many the first and last; each kind of place gets every edit, and is then deleted."""
     folder = edited(flown, tmp_path)
     file, whole = folder / "report.json", read(folder)
-    full, silent, wrong = again.rebuilt(folder / "log.sqlite", whole)
+    full, silent, wrong = rejudge.rebuilt(folder / "log.sqlite", whole)
     assert same(full, whole)
     # judged once, and short of the many entries of long lists: what follows only compares
     whole = short(whole)
     rebuilt = (copy.deepcopy(whole), silent, wrong)
     texts = report.pages(full)
-    monkeypatch.setattr(again, "rebuilt", lambda *_log: copy.deepcopy(rebuilt))
-    monkeypatch.setattr(written, "pages", lambda _report: dict(texts))
-    monkeypatch.setattr(again, "subject", functools.cache(again.subject))
+    monkeypatch.setattr(rejudge, "rebuilt", lambda *_log: copy.deepcopy(rebuilt))
+    monkeypatch.setattr(result_files, "pages", lambda _report: dict(texts))
+    monkeypatch.setattr(rejudge, "subject", functools.cache(rejudge.subject))
     tried = 0
     for path in list(places(whole)):
         holder, value = at(whole, path[:-1]), at(whole, path)
@@ -112,7 +112,7 @@ def test_every_edit_of_every_entry_is_found(
             else:
                 holder[path[-1]] = new
             tried += 1
-            found = again.differences(whole, rebuilt[0])
+            found = rejudge.differences(whole, rebuilt[0])
             holder[path[-1]] = value
             assert found, (path, new)
             assert all(len(line) < 400 for line in found)

@@ -24,7 +24,7 @@ from cratous.services.results.names import FORMAT, NAMES
 from cratous.services.results.ownership import look
 from cratous.spec.errors import BadInput
 
-CHILD = Path(__file__).parents[1] / "results_child.py"
+CHILD = Path(__file__).parents[1] / "children" / "results_child.py"
 
 
 def fill(target: Path, text: str, names: tuple[str, ...] = ("report.json", "log.sqlite")) -> None:

@@ -15,8 +15,10 @@ from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cratous.core.daa.bands import manoeuvres
 from cratous.core.daa.grid import grid
 from cratous.core.daa.guidance import evaluate
+from cratous.core.daa.records import Intruders, Looking, Regaining
 from cratous.core.daa.state import ALT, DIMENSIONS, Aircraft, Sigma
 from cratous.core.excuse import bands as excuse_bands
 from cratous.core.excuse import exhaustive_check as excuse_check
@@ -133,12 +135,13 @@ def test_on_straight_traffic_the_answers_are_those_of_the_bands(p: Parameters) -
         for dimension in range(ALT):
             g = grid(p, own, dimension)
             safe_r, safe_l = np.ones(len(g.right), np.bool_), np.ones(len(g.left), np.bool_)
+            intruder = Intruders(
+                np.array([state]), np.array([kind]), np.array([[*limits, *[0.0] * 6]]),
+                np.array([90.0]), np.zeros((1, 2), np.int64),
+            )  # fmt: skip
             machine(evaluate)(
-                g.right, g.left, g.step_s, g.step_s, g.targets, g.rate_m_s, g.accel_m_s2, 1.0,
-                np.array([state]), np.array([0]), np.array([kind]),
-                np.array([[*limits, *[0.0] * 6]]), np.array([90.0]), np.zeros((1, 2), np.int64), 0.0, 0.0,
-                0.0, False, 90.0,
-                True, 0.0, False, True, safe_r, safe_l,
+                manoeuvres(g, g.step_s), intruder, np.array([0]),
+                Regaining(0.0, 0.0, 0.0, False), Looking(90.0, True, 0.0, False, True), safe_r, safe_l,
             )  # fmt: skip
             mine = [t.answer == FREE for t in tried if t.dimension == DIMENSIONS[dimension]]
             width_r, width_l = g.high - g.own, g.own - g.low

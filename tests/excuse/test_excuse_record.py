@@ -12,10 +12,10 @@ import pytest
 
 from cratous.bridge import lmcp
 from cratous.core.daa.state import DIMENSIONS
-from cratous.core.excuse.record import ACCELERATION_M_S2, Scene, judge_loss, modelled
+from cratous.core.excuse.record import ACCELERATION_M_S2, Record, Scene, judge_loss, modelled
 from cratous.core.excuse.state import FREE, NO_WAY, REFUSED, UNDECIDED, WAY_OUT
-from cratous.services.certify.again import certify_again
 from cratous.services.certify.html import losses
+from cratous.services.certify.rejudge import certify_again
 from cratous.services.certify.verdicts import constraint_rows, requirement_rows
 from cratous.services.cli import main as run_command
 from cratous.services.flight.dynamics import MAX_ACCELERATION_M_S2
@@ -74,7 +74,8 @@ def loss_at(scenes: list[Scene]) -> int:
 
 
 def judge(scenes: list[Scene], **more: Any) -> Any:
-    return judge_loss(scenes, loss_at(scenes), vehicle(1), 9, VOLUME, 15.0, 0.0, **more)
+    record = Record(scenes, **more)
+    return judge_loss(record, loss_at(scenes), vehicle(1), 9, VOLUME, 15.0, 0.0)
 
 
 def test_traffic_that_pops_up_too_near_excuses_and_every_manoeuvre_says_why() -> None:
@@ -116,7 +117,7 @@ def test_the_own_values_must_be_those_of_the_model() -> None:
     scenes = [
         Scene(s.time_ms, {**s.places, 1: (0.0, 0.04 * s.time_ms, 300.0)}) for s in head_on(9000)
     ]
-    found = judge_loss(scenes, loss_at(scenes), vehicle(1), 9, VOLUME, 15.0, 0.0)
+    found = judge_loss(Record(scenes), loss_at(scenes), vehicle(1), 9, VOLUME, 15.0, 0.0)
     assert found.answer == UNDECIDED
     assert "own hs 40 is outside of [15, 30]" in found.why
 

@@ -12,13 +12,19 @@ from flight_tools import flown, meeting, of_type, with_deadline
 from cratous.bridge import lmcp
 from cratous.core.executive.steps import Answered
 from cratous.core.routing.polylines import Track
-from cratous.services.flight import deadlines, executive, lives, passing, touched
+from cratous.services.flight import (
+    deadlines,
+    executive,
+    replan_triggers,
+    task_states,
+    task_transitions,
+)
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.executive import Executive
 from cratous.services.flight.executive_state import Config, first_state
 from cratous.services.flight.messages import NotPlanned, Planned, ToExecutive, ToVehicle
-from cratous.services.flight.touched import touched_by
+from cratous.services.flight.replan_triggers import touched_by
 from cratous.services.flight.vehicle import VehicleNode
 from cratous.services.mission.frames import Projection
 from cratous.spec.executive import (
@@ -54,15 +60,15 @@ def alone(limit_ms: int = 400_000) -> Mission:
 def test_what_has_become_of_a_task(
     ended: tuple[int, ...], failed: tuple[int, ...], expected: int
 ) -> None:
-    assert lives.life(7, (8,), ended, failed) == expected
-    assert lives.life(7, (7,), ended, failed) == (BEGUN if expected == LEFT else expected)
+    assert task_states.life(7, (8,), ended, failed) == expected
+    assert task_states.life(7, (7,), ended, failed) == (BEGUN if expected == LEFT else expected)
 
 
 def test_no_task_begins_that_may_not(monkeypatch: pytest.MonkeyPatch) -> None:
     result, log = flown(alone())
     assert result.outcome == "complete"
     begun = result.starts[1]
-    monkeypatch.setattr(passing, "may_begin", lambda *_: False)
+    monkeypatch.setattr(task_transitions, "may_begin", lambda *_: False)
     result, log = flown(alone(begun + 60_000))
     assert (result.outcome, result.starts, result.ends) == ("limit", {}, {})
     phases = [p.Phase.name for p in of_type(log, "TaskProgress", TaskID=1)]
@@ -141,7 +147,7 @@ def test_a_settled_task_does_not_fail_again(monkeypatch: pytest.MonkeyPatch) -> 
     result, log = flown(mission)
     assert list(result.failed) == [1]
     assert len(of_type(log, "TaskProgress", Phase=lmcp.enums["TaskPhase"].Failed)) == 1
-    monkeypatch.setattr(lives, "task_after", lambda before, event: before)
+    monkeypatch.setattr(task_states, "task_after", lambda before, event: before)
     result, _ = flown(mission)
     assert list(result.failed) == []
 
@@ -161,7 +167,7 @@ def test_which_changes_ask_for_another_plan(
     monkeypatch: pytest.MonkeyPatch, change: Change, why: str
 ) -> None:
     assert touched_by([change], (), {}, {2}, {}) == why
-    monkeypatch.setattr(touched, "change_counts", lambda *_: False)
+    monkeypatch.setattr(replan_triggers, "change_counts", lambda *_: False)
     assert touched_by([change], (), {}, {2}, {}) == ""
 
 

@@ -18,7 +18,7 @@ from cratous.services.flight.chain import Phase
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.executive_state import Config, first_state
 from cratous.services.flight.loop import fly
-from cratous.services.flight.passing import _may_begin, begin
+from cratous.services.flight.task_transitions import _may_begin, begin
 from cratous.services.loading import load
 from cratous.services.mission.frames import Projection
 from cratous.services.monitor import Monitor

@@ -12,7 +12,7 @@ from flight_tools import meeting, of_type
 from cratous.bridge import lmcp
 from cratous.core.authority.gate import UXAS, Gate
 from cratous.core.geofence.mission_legs import first_bad_leg
-from cratous.services.flight import ahead, interruption, passing
+from cratous.services.flight import interruption, remaining_path, task_transitions
 from cratous.services.flight.autopilot import Follow
 from cratous.services.flight.chain import Phase
 from cratous.services.flight.commands import decode
@@ -91,8 +91,8 @@ def test_where_no_way_back_keeps_the_zones_the_task_fails_and_nothing_else_is_fl
 ) -> None:
     state, said = handed_back((CAGE,), phase)
     (failed,) = of_type(said, "TaskProgress")
-    assert (failed.Phase, failed.Note) == (lmcp.enums["TaskPhase"].Failed, passing.NO_WAY)
-    assert dict(state.failed) == {1: passing.NO_WAY}
+    assert (failed.Phase, failed.Note) == (lmcp.enums["TaskPhase"].Failed, task_transitions.NO_WAY)
+    assert dict(state.failed) == {1: task_transitions.NO_WAY}
     assert not state.chain(1).suspended
     assert first_bad_leg((HERE.position, *commanded(said)), (CAGE,)) is None
 
@@ -111,7 +111,7 @@ def test_the_kernel_says_what_the_search_for_a_way_leads_to(
 ) -> None:
     monkeypatch.setattr(interruption, "way_act", lambda *_: FAIL_TASK)
     state, _ = handed_back(())
-    assert dict(state.failed) == {1: passing.NO_WAY}
+    assert dict(state.failed) == {1: task_transitions.NO_WAY}
 
 
 def ended_at_here(zones: tuple[Zone, ...]) -> tuple[State, list[Any]]:
@@ -121,7 +121,7 @@ def ended_at_here(zones: tuple[Zone, ...]) -> tuple[State, list[Any]]:
     plan = make_plan(mission)
     state = replace(first_state(mission, replace(plan, items=())), zones=zones)
     out: list[Any] = []
-    state = passing.begin(config, replace(state, aircraft=((1, HERE),)), out)
+    state = task_transitions.begin(config, replace(state, aircraft=((1, HERE),)), out)
     return state, [said.body for said in out if isinstance(said, Say)]
 
 
@@ -135,7 +135,7 @@ def test_who_ends_where_no_circle_keeps_the_zones_goes_where_one_does() -> None:
     track = state.chain(1).track
     assert track.points[0] == HERE.position
     assert first_bad_leg(track.points, walls) is None
-    assert first_bad_leg(ahead.last_lap(state.chain(1)), walls) is None
+    assert first_bad_leg(remaining_path.last_lap(state.chain(1)), walls) is None
     assert of_type(said, "MissionChange") == []
 
 
@@ -143,7 +143,7 @@ def test_who_can_circle_nowhere_says_so() -> None:
     cage = box(ZoneKind.KEEP_IN, 1950.0, 2050.0, 1000.0)
     state, said = ended_at_here((cage,))
     (told,) = of_type(said, "MissionChange")
-    assert told.Consequence == passing.NO_CIRCLE
+    assert told.Consequence == task_transitions.NO_CIRCLE
     assert first_bad_leg(state.chain(1).track.points, (cage,)) is not None
 
 
@@ -152,7 +152,7 @@ def test_a_task_before_which_no_wait_keeps_the_zones_fails_by_name() -> None:
     config, plan = Config(mission, Projection(mission.frame), (1,)), make_plan(mission)
     start = AirState(Position(0.0, 0.0, 300.0), 0.0, 22.0, 0.0)
     state = replace(first_state(mission, plan), aircraft=((1, start),))
-    state = passing.begin(config, state, [])
+    state = task_transitions.begin(config, state, [])
     chain = state.chain(1)
     item = replace(chain.items[0], hold=None)
     pose = item.path[0]
@@ -168,5 +168,5 @@ def test_a_task_before_which_no_wait_keeps_the_zones_fails_by_name() -> None:
     assert config.ways(()).lap(state.chain(1), item) is not None
     late = replace(state.plan, rows=(Row(NOT_BEFORE, item.task_id, (), 9_000_000, 0, "late"),))
     out: list[Any] = []
-    after = passing._on_end(config, replace(state, plan=late), state.chain(1), 500, out)
-    assert dict(after.failed) == {item.task_id: passing.NO_HOLD}
+    after = task_transitions._on_end(config, replace(state, plan=late), state.chain(1), 500, out)
+    assert dict(after.failed) == {item.task_id: task_transitions.NO_HOLD}

@@ -14,7 +14,7 @@ BATCH = 50  # of log_crash_child.py
 
 
 def kill_writers(folder: Path, rounds: int, seed: str) -> list[dict[str, object]]:
-    child = Path(__file__).parents[1] / "log_crash_child.py"
+    child = Path(__file__).parents[1] / "children" / "log_crash_child.py"
     done = subprocess.run(
         [sys.executable, str(child), str(folder), str(rounds), seed],
         capture_output=True,

@@ -18,7 +18,7 @@ from cratous.services.cli.job import plan_and_check
 from cratous.services.flight.loop import fly
 from cratous.services.loading import load
 from cratous.services.monitor import Monitor
-from cratous.services.monitor.promises import PLAN_ROWS, promised, watched
+from cratous.services.monitor.required_rows import PLAN_ROWS, promised, watched
 from cratous.spec.mission import Change, Mission, changes
 from cratous.spec.mission.guarantees import Outcome, Verdict
 from cratous.spec.mission.plan import Plan

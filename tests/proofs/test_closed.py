@@ -6,10 +6,10 @@ import pytest
 import z3
 
 from cratous.proofs.claim import Claim
-from cratous.proofs.engine import closed, reached
+from cratous.proofs.engine import closed, reachable_paths
 from cratous.proofs.engine.cache import Cache
 from cratous.proofs.engine.counterexample import Watched
-from cratous.proofs.engine.merkle import Hasher
+from cratous.proofs.engine.obligation_hash import Hasher
 from cratous.proofs.engine.prover import _satisfiable
 
 
@@ -111,7 +111,7 @@ def _how(state) -> list[str]:
     claim, hasher = Watched(), Hasher()
     state(claim)
     ask = lambda terms: _satisfiable(terms, 100_000, Cache(None), hasher)  # noqa: E731
-    return [how for _, how in reached.varied(claim, ask)]
+    return [how for _, how in reachable_paths.varied(claim, ask)]
 
 
 def test_how_arguments_vary():
@@ -123,8 +123,8 @@ def test_how_arguments_vary():
         c.use(two, x - x, n)
         c.premise(n * n <= 0)
 
-    assert _how(state) == [reached.NOT, "3", reached.NOT, reached.NOT]
-    assert _how(lambda c: c.use(two, c.real("x"), c.integer("n"))) == [reached.ALL]
+    assert _how(state) == [reachable_paths.NOT, "3", reachable_paths.NOT, reachable_paths.NOT]
+    assert _how(lambda c: c.use(two, c.real("x"), c.integer("n"))) == [reachable_paths.ALL]
 
 
 @pytest.mark.parametrize(
@@ -140,4 +140,4 @@ def test_how_arguments_vary():
     ],
 )
 def test_more_than_one_value(how, more):
-    assert reached.of_more_than_one(how) is more
+    assert reachable_paths.of_more_than_one(how) is more

@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-FILE = Path(__file__).parents[1] / "crosshair_targets.py"
+FILE = Path(__file__).parents[1] / "programs" / "crosshair_targets.py"
 _spec = importlib.util.spec_from_file_location("crosshair_targets", FILE)
 assert _spec is not None
 assert _spec.loader is not None

@@ -13,7 +13,7 @@ from cratous.core import ledger
 from cratous.core.kernel import REGISTRY, Entry, named, supported
 from cratous.core.ledger import PRODUCT
 from cratous.proofs.engine import prover
-from cratous.proofs.engine.reached import ALL, NOT
+from cratous.proofs.engine.reachable_paths import ALL, NOT
 from cratous.proofs.statements.definitions import (
     Proofs,
     definition,

@@ -10,9 +10,9 @@ import pytest
 from cratous.core import ledger
 from cratous.core.kernel.sources import ROOT
 from cratous.core.ledger import kept_keys
-from cratous.core.ledger.home import PRODUCT
+from cratous.core.ledger.key_parts import MISSING
 from cratous.core.ledger.keys import Keys
-from cratous.core.ledger.parts import MISSING
+from cratous.core.ledger.package_home import PRODUCT
 
 DATA = ledger.read()
 NAME = sorted(DATA["kernels"])[0]

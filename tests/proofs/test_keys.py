@@ -11,12 +11,12 @@ import pytest
 
 from cratous.core import ledger
 from cratous.core.kernel.sources import ROOT, reached
+from cratous.core.ledger import key_parts
 from cratous.core.ledger import keys as keys_module
-from cratous.core.ledger import parts
-from cratous.core.ledger.excuses import EXCUSED, EXCUSES
+from cratous.core.ledger.definition_hash import Walk
+from cratous.core.ledger.key_parts import MISSING, PROVER, READINGS, REMEMBERS
 from cratous.core.ledger.keys import Keys
-from cratous.core.ledger.parts import MISSING, PROVER, READINGS, REMEMBERS
-from cratous.core.ledger.walks import Walk
+from cratous.core.ledger.lookup_exceptions import EXCUSED, EXCUSES
 
 ENTRIES = ledger.load_all()
 DATA = ledger.read()
@@ -84,8 +84,8 @@ NOTHING = {
     "how answers are remembered": (
         "proofs/engine/cache.py", "self.hits += 1", "self.hits += 2"),
     "how theorems are remembered": (
-        "proofs/ledger/recall.py", "if file.is_file():", "if file.exists():"),
-    "how results are printed": _added("proofs/ledger/formats.py"),
+        "proofs/ledger/proof_recall.py", "if file.is_file():", "if file.exists():"),
+    "how results are printed": _added("proofs/ledger/report_formats.py"),
     "a theorem about another kernel": _added("proofs/theorems/well_clear/violation_is_symmetric.py"),
 }  # fmt: skip
 
@@ -98,7 +98,7 @@ def test_what_no_proof_uses_makes_nothing_stale(what: str, stale: Stale) -> None
 EVERYTHING = {
     "the prover": ("proofs/engine/prover.py", '"unsat": "proved"', '"sat": "proved"'),
     "the lifter": ("proofs/engine/symbolic.py", "lambda x, y: x <= y", "lambda x, y: x < y"),
-    "a way of solving": ("proofs/engine/ladder.py", "SEEDS = (0, 1, 2)", "SEEDS = (0, 1)"),
+    "a way of solving": ("proofs/engine/solver_order.py", "SEEDS = (0, 1, 2)", "SEEDS = (0, 1)"),
     "what a claim owes": ("proofs/engine/claim.py", "given = (*self.premises, *self.facts)",
                           "given = (*self.premises, *self.facts, *self.goals)"),
     "how a kernel is compiled": ("core/readings/machine/compiled.py", "range(out.size)", "range(0)"),
@@ -327,9 +327,9 @@ def _recorded_as_missing() -> dict:
 
 @pytest.mark.parametrize("name", ["z3-solver", "numba", "llvmlite", "numpy"])
 def test_another_version_of_a_tool_is_noticed(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    real, other = parts.version, Keys()
+    real, other = key_parts.version, Keys()
     other.shared  # noqa: B018  (read before the version changes)
-    monkeypatch.setattr(parts, "version", lambda n: "9.9" if n == name else real(n))
+    monkeypatch.setattr(key_parts, "version", lambda n: "9.9" if n == name else real(n))
     now = Keys().shared
     changed = {part for part in now if now[part] != other.shared[part]}
     assert changed == {"solver" if name == "z3-solver" else "flags"}

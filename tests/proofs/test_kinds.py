@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import pytest
 
-from cratous.proofs.engine.kinds import is_record
+from cratous.proofs.engine.value_kinds import is_record
 
 
 class Plain(NamedTuple):

@@ -17,12 +17,12 @@ from cratous.proofs.engine.lift import REPLACED
 from cratous.proofs.engine.symbolic import wrap
 from cratous.proofs.mutation import judgement as mutation_judge
 from cratous.proofs.mutation import mutate
-from cratous.proofs.mutation.asking import ask
 from cratous.proofs.mutation.inputs import compare, inputs, run
 from cratous.proofs.mutation.keys import Keys, Store
 from cratous.proofs.mutation.operators import mutants
 from cratous.proofs.mutation.premises import judge_premises
 from cratous.proofs.mutation.report import MutationReport
+from cratous.proofs.mutation.solver_queries import ask
 from cratous.proofs.mutation.statements import targets
 from cratous.proofs.mutation.terms import equal, with_values
 from cratous.spec.errors import BadInput
@@ -117,7 +117,8 @@ def by_diff(report, end):
 
 def test_faults_are_killed_by_the_theorem_that_they_break():
     report = mutate.run(
-        ["vertical_violation"], theorems=["well_clear_vertical_violation_is_its_definition"]
+        ["vertical_violation"],
+        keys=Keys(theorems=["well_clear_vertical_violation_is_its_definition"]),
     )
     kernel = [
         r for r in report.results if r.target == "cratous.core.well_clear.now.vertical_violation"
@@ -136,7 +137,9 @@ def test_faults_are_killed_by_the_theorem_that_they_break():
 
 
 def test_a_missing_theorem_shows_as_a_survivor_with_its_diff_and_a_witness():
-    weak = mutate.run(["gives_way"], theorems=["authority_exactly_one_gives_way"], premises=False)
+    weak = mutate.run(
+        ["gives_way"], keys=Keys(theorems=["authority_exactly_one_gives_way"]), premises=False
+    )
     survivor = by_diff(weak, "+ return own_id < intruder_id")
     assert survivor.verdict == "survived"
     assert survivor.diff == "- return own_id > intruder_id + return own_id < intruder_id"
@@ -144,7 +147,7 @@ def test_a_missing_theorem_shows_as_a_survivor_with_its_diff_and_a_witness():
     assert survivor.note.startswith("differs at ")
     assert not weak.holds
     both = ["authority_exactly_one_gives_way", "authority_the_greater_id_gives_way"]
-    strong = mutate.run(["gives_way"], theorems=both, premises=False)
+    strong = mutate.run(["gives_way"], keys=Keys(theorems=both), premises=False)
     assert by_diff(strong, "+ return own_id < intruder_id").verdict == "killed"
     assert strong.of("survived") == ()
 
@@ -258,7 +261,7 @@ def test_a_premise_that_matters_is_noticed():
 
 def test_a_theorem_made_from_the_kernel_itself_never_kills():
     theorems = ["authority_exactly_one_gives_way", "filter_graphs_are_the_kernels"]
-    report = mutate.run(["gives_way"], theorems=theorems, premises=False)
+    report = mutate.run(["gives_way"], keys=Keys(theorems=theorems), premises=False)
     assert {r.by for r in report.of("killed")} == {"authority_exactly_one_gives_way"}
 
 
@@ -268,34 +271,40 @@ def test_no_mutant_is_judged_by_a_theorem_that_does_not_hold(monkeypatch):
 
     monkeypatch.setattr(prover, "load_claim", lambda name, *more: (claim, "A sentence."))
     with pytest.raises(ValueError, match="not proved as they stand"):
-        mutate.run(["gives_way"], theorems=["authority_exactly_one_gives_way"], premises=False)
+        mutate.run(
+            ["gives_way"], keys=Keys(theorems=["authority_exactly_one_gives_way"]), premises=False
+        )
 
 
 def test_what_is_skipped_is_not_judged():
     theorems = ["authority_exactly_one_gives_way", "authority_the_greater_id_gives_way"]
-    whole = mutate.run(["gives_way"], theorems=theorems, store=NOWHERE)
+    whole = mutate.run(["gives_way"], keys=Keys(theorems=theorems), store=NOWHERE)
     assert whole.judged == tuple(theorems)
     premises = mutate.run(
         ["gives_way"],
-        theorems=theorems,
+        keys=Keys(theorems=theorems),
         store=NOWHERE,
         skip={"cratous.core.authority.gate.gives_way"},
     )
     assert premises.judged == tuple(theorems)
     assert premises.premises == whole.premises
     assert not premises.results
-    mutants = mutate.run(["gives_way"], theorems=theorems, store=NOWHERE, skip=set(theorems))
+    mutants = mutate.run(
+        ["gives_way"], keys=Keys(theorems=theorems), store=NOWHERE, skip=set(theorems)
+    )
     assert mutants.results == whole.results
     assert not mutants.judged
     everything = {"cratous.core.authority.gate.gives_way", *theorems}
-    nothing = mutate.run(["gives_way"], theorems=theorems, store=NOWHERE, skip=everything)
+    nothing = mutate.run(
+        ["gives_way"], keys=Keys(theorems=theorems), store=NOWHERE, skip=everything
+    )
     assert nothing == MutationReport((), ())
 
 
 def test_premises_count_where_a_theorem_looks_into_nothing():
     """All that it is about is opaque, so it meets no mutant; its premises may be idle all the same."""
     name = "well_clear_tep_is_convex"
-    report = mutate.run(["violation_tep_at"], theorems=[name], store=NOWHERE)
+    report = mutate.run(["violation_tep_at"], keys=Keys(theorems=[name]), store=NOWHERE)
     assert not report.results
     assert report.judged == (name,)
     assert len(report.premises) > 3
@@ -311,7 +320,7 @@ def test_a_mutant_that_python_cannot_compute_is_told(monkeypatch):
     ):
         mutate.run(
             ["gives_way"],
-            theorems=["authority_exactly_one_gives_way"],
+            keys=Keys(theorems=["authority_exactly_one_gives_way"]),
             premises=False,
             store=NOWHERE,
         )

@@ -18,8 +18,8 @@ from cratous.proofs.claim import Claim
 from cratous.proofs.engine import counterexample, prover, theorem_files
 from cratous.proofs.engine.cache import Answer, Cache
 from cratous.proofs.engine.counterexample import Watched, meanings, number_text
-from cratous.proofs.engine.merkle import Hasher
-from cratous.proofs.ledger import formats
+from cratous.proofs.engine.obligation_hash import Hasher
+from cratous.proofs.ledger import report_formats
 from cratous.spec import well_clear as meaning
 from cratous.spec.errors import BadInput
 
@@ -214,7 +214,7 @@ def test_a_counterexample_speaks_of_positions_and_speeds():
     assert "(confirmed: the functions, run on these numbers, say the same)" in text
     assert "?" not in text
     assert "/" not in text.replace("m/s", "")
-    assert "strict_violation says clear" in formats.failure_text(theorem)
+    assert "strict_violation says clear" in report_formats.failure_text(theorem)
 
 
 def test_an_opaque_function_makes_a_counterexample_unconfirmed():
@@ -369,10 +369,10 @@ def test_junit_and_sarif_say_what_failed_and_where():
     good = prover.prove_file("geofence_straddles_is_its_definition")
     bad = prover.prove("geofence_orient_is_the_turn", _broken_claim(), "Broken.")
     problem = "core/authority/gate.py:24: gate_takeover: no theorem is about this kernel"
-    suite = ET.fromstring(formats.junit([good, bad], [problem]).encode())
+    suite = ET.fromstring(report_formats.junit([good, bad], [problem]).encode())
     assert (suite.get("tests"), suite.get("failures")) == ("3", "2")
     assert "relative position" in "".join(suite.itertext())
-    data = json.loads(formats.sarif([good, bad], [problem]))
+    data = json.loads(report_formats.sarif([good, bad], [problem]))
     first, second = data["runs"][0]["results"]
     uri = first["locations"][0]["physicalLocation"]["artifactLocation"]["uri"]
     assert uri == "proofs/theorems/geofence/orient_is_the_turn.py"

@@ -8,14 +8,14 @@ import pytest
 
 from cratous.core import ledger as gate
 from cratous.core.kernel.sources import ROOT
-from cratous.core.ledger import parts
+from cratous.core.ledger import key_parts
 from cratous.core.ledger.keys import Keys
 from cratous.proofs import ledger
 from cratous.proofs.claim import Claim
 from cratous.proofs.engine import prover
-from cratous.proofs.ledger import recall, remembered
-from cratous.proofs.ledger.recall import Recall
-from cratous.proofs.ledger.remembered import Remembered
+from cratous.proofs.ledger import proof_recall, text_cache
+from cratous.proofs.ledger.proof_recall import Recall
+from cratous.proofs.ledger.text_cache import Remembered
 from cratous.spec.errors import BadInput
 
 NAME = "daa_height_follows_the_climb"
@@ -84,7 +84,7 @@ def test_a_change_of_what_is_behind_it_is_another_theorem(place, old, new, plain
         ("core/authority/gate.py", "gate.epoch + 1", "gate.epoch + 2"),
         ("spec/authority/gate.py", "return ", "return 0 or "),
         ("core/daa/climb.py", "\n\n\n", "\n\n\nUNUSED = 1\n\n\n"),
-        ("proofs/ledger/recall.py", "file.is_file()", "file.exists()"),
+        ("proofs/ledger/proof_recall.py", "file.is_file()", "file.exists()"),
     ],
 )
 def test_a_change_elsewhere_is_none(place, old, new, plain):
@@ -120,9 +120,9 @@ def test_a_theorem_that_asks_for_more_than_it_names_depends_on_everything(line):
 def test_another_version_is_another_theorem(what, monkeypatch, plain):
     before = plain.key(NAME)
     if what == "python_version":
-        monkeypatch.setattr(recall.platform, what, lambda: "0.0")
+        monkeypatch.setattr(proof_recall.platform, what, lambda: "0.0")
     else:
-        monkeypatch.setattr(parts, "version", lambda name: "0.0")
+        monkeypatch.setattr(key_parts, "version", lambda name: "0.0")
     assert Recall(None).key(NAME) != before
 
 
@@ -190,8 +190,8 @@ def test_a_remembered_text_is_made_again_when_its_inputs_change(tmp_path):
 
 def test_what_is_remembered_depends_on_every_file_of_the_product(monkeypatch):
     hashed = set()
-    monkeypatch.setattr(remembered, "named", lambda file: hashed.add(file) or str(file))
-    remembered.product.__wrapped__(gate.PRODUCT)
+    monkeypatch.setattr(text_cache, "named", lambda file: hashed.add(file) or str(file))
+    text_cache.product.__wrapped__(gate.PRODUCT)
     assert {file.name for file in hashed} >= {
         "polygon.py",
         "decisions.json",

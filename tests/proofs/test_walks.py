@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from cratous.core.ledger.trees import Tree
-from cratous.core.ledger.walks import Border, walk
+from cratous.core.ledger.definition_hash import Border, walk
+from cratous.core.ledger.module_trees import Tree
 
 ROOT = "pkg.use.root"
 FILES = {

@@ -40,14 +40,15 @@ def poses(count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
 
 def arguments(roadmap: Roadmap, starts: np.ndarray, ends: np.ndarray):
     count = len(starts)
-    out = (
+    out = routing.Routed(
         np.zeros(count, np.int64), np.zeros(count), np.zeros(count, np.int64),
         np.zeros((count, routing.LINKS_MOST + 2, 4)),
     )  # fmt: skip
     rings, sizes = roadmap.ring_arrays
     seen = np.zeros((len(rings), rings.shape[1], rings.shape[1]), np.int8)
     table = leg_arrays.table(roadmap.zones)
-    return (starts, ends, 100.0, 0.2, 0.5, table, rings, sizes, seen), out
+    turning, points = routing.Turning(100.0, 0.2, 0.5), routing.Rings(rings, sizes, seen)
+    return (starts, ends, turning, table, points), out
 
 
 def test_compiled_routes_are_those_of_cpython_bit_by_bit():
@@ -55,9 +56,9 @@ def test_compiled_routes_are_those_of_cpython_bit_by_bit():
     starts[:, 2] = 400.0
     roadmap = roadmaps(ZONES, 100.0)[0]
     given, plain = arguments(roadmap, starts, ends)
-    routing.route_many(*given, *plain)
+    routing.route_many(*given, plain)
     given, fast = arguments(roadmap, starts, ends)
-    machine(routing.route_many)(*given, *fast)
+    machine(routing.route_many)(*given, fast)
     for one, other in zip(plain, fast, strict=True):
         assert np.array_equal(one, other)
     assert set(plain[0]) > {FOUND}, "some ends lie in the wall"

@@ -161,23 +161,27 @@ def _record(shape: Any, arrays: list[Any]) -> Any:
 
 
 # -- the function's own source ------------------------------------------------------------
+def _entry_text(function: Callable[..., Any]) -> tuple[SourceText, str]:
+    made = SourceText(FLAGS)
+    made.add_arguments(function)
+    return made, made.add(function)
+
+
 @functools.cache
 def machine(function: Callable[..., Any]) -> Callable[..., Any]:
     """A function with loops in machine code, as written, with all that it calls (`source_text`).
 
-    Arguments are numbers and arrays of float64, int64 or bool. CPython runs the same function, and
-    gives the same results.
+    Arguments are numbers, arrays of float64, int64 or bool, and records of these, which the function's
+    annotations name. CPython runs the same function, and gives the same results.
     """
-    made = SourceText(FLAGS)
-    name = made.add(function)
+    made, name = _entry_text(function)
     return Reading(function, MACHINE, getattr(load(made.text), name))
 
 
 @functools.cache
 def is_kept(function: Callable[..., Any]) -> bool:
     """Whether `machine` finds this function's machine code in the cache, so that it is quick."""
-    made = SourceText(FLAGS)
-    name = made.add(function)
+    made, name = _entry_text(function)
     folder = private_cache() / folder_name(made.text) / "__pycache__"
     return any(folder.glob(f"*.{name}-*.nbi"))
 

@@ -50,6 +50,14 @@ class SourceText:
             self.parts.append(make(item, name))
         return name
 
+    def add_arguments(self, function: Callable[..., Any]) -> None:
+        """Say which fields the records have that a function takes from outside.
+
+        Machine code reads them by position, so what was made for other fields must not be found.
+        """
+        hints = get_type_hints(inspect.unwrap(function))
+        self.parts += sorted({line for kind in hints.values() for line in _fields(kind)})
+
     def _name(self, where: str, value: Any) -> tuple[str, bool]:
         """The unique name of what is called so, and whether it is new; two values are an error."""
         if where in self._names:
@@ -190,6 +198,15 @@ def _definition(function: Callable[..., Any]) -> ast.FunctionDef:
     if ast.get_docstring(node) is not None:
         node.body = node.body[1:] or [ast.Pass()]
     return node
+
+
+def _fields(kind: Any) -> list[str]:
+    """A line for a record and for each record in it; nothing for what is no record."""
+    if not (inspect.isclass(kind) and hasattr(kind, "_fields")):
+        return []
+    parts = get_type_hints(kind)
+    inner = [line for part in parts.values() for line in _fields(part)]
+    return [f"# {kind.__module__}.{kind.__qualname__}: {', '.join(kind._fields)}", *inner]
 
 
 def _codes(code: types.CodeType) -> list[types.CodeType]:

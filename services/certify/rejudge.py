@@ -1,0 +1,171 @@
+"""Judge a finished flight again: from its log alone, then against all that is written of it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Container
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from cratous.services.certify.differences import differences
+from cratous.services.certify.flight_record import flown_of
+from cratous.services.certify.report import build_report, mission_hash, plan_hash, report_text
+from cratous.services.certify.report_input import read_report
+from cratous.services.certify.result_files import Files
+from cratous.services.certify.verdicts import constraint_rows, plan_rows
+from cratous.services.logs.log import read_envelopes, read_log, read_meta
+from cratous.services.logs.records import from_data
+from cratous.services.logs.sqlite_log import SqliteLog
+from cratous.services.mission.wind import known_at
+from cratous.services.results.names import CERTIFICATE_NAME, FORMER, LOG_NAME
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Mission
+from cratous.spec.mission.guarantees import Verdict
+from cratous.spec.mission.plan import Plan
+
+ACCEPTED = "cratous.PlanAccepted"
+
+
+def subject(log: Path) -> tuple[Mission, Plan]:
+    """The mission and the plan that a log was made for."""
+    meta = read_meta(log)
+    for key in ("mission", "plan"):
+        if key not in meta:
+            raise BadInput(
+                "the log does not say what was flown",
+                where=str(log),
+                item=f"meta.{key}",
+                expected=f"the {key}",
+                got="nothing",
+            )
+    try:
+        return from_data(Mission, meta["mission"]), from_data(Plan, meta["plan"])
+    except BadInput as error:
+        error.where = error.where or f"{log}, meta"
+        raise
+
+
+def watch(log: Path) -> list[Verdict]:
+    """The verdicts of a fresh monitor that sees the messages of a log."""
+    from cratous.services.monitor import Monitor
+
+    monitor = Monitor(*subject(log))
+    for envelope in read_envelopes(log):
+        monitor.tap(envelope)
+    return monitor.verdicts()
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What certifying found. report: as the log gives it; found: what is not so (nothing: confirmed).
+
+    unchecked: what neither the log nor this program can vouch for, with the reason; rewritten: files
+    made anew because the user asked for it.
+    """
+
+    report: dict[str, Any]
+    found: list[str]
+    unchecked: list[str] = field(default_factory=list)
+    rewritten: list[str] = field(default_factory=list)
+
+
+def certify_again(folder: Path, *, rewrite: bool = False) -> Judgement:
+    """Judge the flight in a folder again and hold every file of it against what was found.
+
+    rewrite: files that are made from report.json are made anew where they differ, if all else is
+    confirmed; without it nothing is written.
+    """
+    written = read_report(folder)
+    log = folder / LOG_NAME
+    wrong = log_faults(log, written)
+    if wrong:
+        return Judgement({}, wrong, ["all else: the log is not the one of the report"])
+    report, silent, found = rebuilt(log, written)
+    left = {key: value for key, value in silent.items() if "." not in key}
+    former = written["format"] == FORMER
+    found += differences(_compared(written, left, former), _compared(report, left, former))
+    _, plan = subject(log)
+    files = Files(folder, report, read_meta(log), same=not found)
+    found += _certificate(plan, folder) + files.wrong
+    unchecked = [f"{key}: {why}" for key, why in sorted(silent.items())] + files.unchecked
+    if rewrite and files.differing and not found:
+        return Judgement(report, [], unchecked, files.rewrite())
+    return Judgement(report, found + files.differing, unchecked)
+
+
+def _compared(report: dict[str, Any], left: Container[str], former: bool) -> dict[str, Any]:
+    """What is compared of a report: without some entries, in the former format without kernels."""
+    found = {key: value for key, value in report.items() if key not in left}
+    rows = found.get("constraints")
+    if former and isinstance(rows, list):
+        found["constraints"] = [
+            {key: value for key, value in row.items() if key != "kernels"}
+            if isinstance(row, dict)
+            else row
+            for row in rows
+        ]
+    return found
+
+
+def log_faults(log: Path, written: dict[str, Any]) -> list[str]:
+    """What shows that the log is not as it was written, or not the one that the report is about."""
+    meta = read_meta(log)
+    mission, plan = subject(log)
+    with SqliteLog(log) as source:
+        digest, closing = source.digest(), source.closing()
+        ended = source.old or closing is not None
+    found = []
+    if not ended:
+        found.append(f"{LOG_NAME}: its writer never said that it is whole")
+    if closing is not None and closing.digest != digest:
+        found.append(f"{LOG_NAME}: digest at its end {closing.digest}, of its messages {digest}")
+    of_report = written.get("log")
+    stated = of_report.get("digest") if isinstance(of_report, dict) else None
+    found += differences(stated, digest, "log.digest")
+    if "mission_hash" in meta and meta["mission_hash"] != mission_hash(mission):
+        found.append(f"{LOG_NAME}: meta.mission is not the mission that was flown")
+    if found:
+        return found  # nothing can be relied on any more
+    accepted = next((row for row in read_log(log) if row.topic == ACCEPTED), None)
+    if accepted is not None and json.loads(accepted.body)["PlanHash"] != plan_hash(plan):
+        found.append(f"{LOG_NAME}: meta.plan is not the plan that was accepted")
+    return found
+
+
+def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[str, str], list[str]]:
+    """The report as the log gives it, what of it could not be checked, and what is wrong.
+
+    The proof inventory is made anew if the ledger is still the one of the flight, else held against
+    the digest in the log.
+    """
+    from cratous.services.monitor.plan_check import check_plan
+
+    mission, plan = subject(log)
+    flown, silent, wrong = flown_of(read_meta(log), written, str(log))
+    rows = plan_rows(check_plan(known_at(mission, 0), plan))
+    rows += constraint_rows(watch(log), "flight")
+    report = json.loads(report_text(build_report(mission, plan, rows, log, flown)))
+    if wrong:  # one sentence says it; what differs in detail says no more
+        report["proofs"] = written.get("proofs")
+    return report, silent, wrong
+
+
+def _certificate(plan: Plan, folder: Path) -> list[str]:
+    """What is wrong with the certificate that the plan names."""
+    from cratous.services.planning.assign_certificate import read, verify
+
+    if not plan.certificate:
+        return []
+    try:
+        body = read(folder / CERTIFICATE_NAME)
+    except BadInput as error:
+        return [f"{CERTIFICATE_NAME}: {error}"]
+    if body.get("sha256") != plan.certificate:
+        return [f"{CERTIFICATE_NAME}: it is not the one that the plan names"]
+    verdict = verify(body)
+    if verdict.wrong:
+        return [f"{CERTIFICATE_NAME}: {verdict.wrong}"]
+    if (verdict.status, verdict.bound) != (plan.status, plan.bound):
+        return [f"{CERTIFICATE_NAME}: the plan claims something else than it"]
+    return []

@@ -1,0 +1,116 @@
+"""Lines of the CRATOUS text protocol, whole and cut at every place, and recorded sessions of the original.
+
+A case with `line` and `direction` is held against `strict` (`accept` or `reject`): how it is cut must change
+nothing, and one of kind `valid` is written again byte for byte. An event `send` of a session holds whole
+messages. What tells of the original's own behaviour (its publications, exits, formulas) is not covered.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cratous.bridge.text_protocol import (
+    ORIGINAL_LIMITS,
+    Direction,
+    Message,
+    StreamParser,
+    WireError,
+    encode,
+)
+from cratous.bridge.text_protocol.handshake import ACCEPT, HELLO, REFUSE, ClientHandshake
+from cratous.bridge.text_protocol.parser import Record
+from cratous.services.conform import Result, edge, failed, not_covered, passed
+from cratous.spec.errors import BadInput
+
+ITS_OWN = ("split", "bug")
+"""Kinds of cases where the original reads wrongly what is right: cut in pieces, or by a fault of its own."""
+WHOLE_BYTES = 65535
+"""A line that the file gives shortened is so long."""
+
+
+def judge(case: dict[str, Any]) -> Result:
+    """One line, or one event of a session."""
+    if "line" in case and "direction" in case:
+        return _line(case)
+    if case.get("ev") == "send":
+        return _sent(case)
+    return not_covered(str(case.get("n", case.get("test", "?"))), "the original's own behaviour")
+
+
+def _line(case: dict[str, Any]) -> Result:
+    name, text = str(case.get("n", "?")), case["line"]
+    if not isinstance(text, str) or case.get("strict") not in ("accept", "reject"):
+        raise BadInput("not a case", item=name, expected="a text `line`, `strict` accept or reject")
+    if case.get("kind") == "handshake":
+        return _handshake(name, text.encode())
+    try:
+        direction = Direction(case["direction"])
+    except ValueError:
+        expected = " or ".join(d.value for d in Direction)
+        raise BadInput("not a direction", item=name, expected=expected) from None
+    data = text.encode()
+    if case.get("kind") == "overlong" and "shortened" in str(case.get("note", "")):
+        data = data[:1] * WHOLE_BYTES
+    whole = _records(direction, data)
+    wrong = _cut(direction, data, whole)
+    if wrong:
+        return failed(name, "another reading when cut", wrong)
+    refused = [record for record in whole if isinstance(record, WireError)]
+    if bool(refused) != (case["strict"] == "reject"):
+        if not refused and case.get("kind") in ITS_OWN:
+            return edge(name, "right, and read wrongly by the original", str(case.get("note", "")))
+        got = "; ".join(map(str, refused)) or "accepted"
+        return failed(name, "another verdict", f"expected {case['strict']}, got {got}")
+    if case.get("kind") == "valid" and case["strict"] == "accept":
+        written = b"".join(
+            encode(one, original=True, limits=ORIGINAL_LIMITS)
+            for one in whole
+            if isinstance(one, Message)
+        )
+        if written != data:
+            return failed(name, "written otherwise", f"expected {data!r}, got {written!r}")
+    return passed(name, len(data))
+
+
+def _sent(case: dict[str, Any]) -> Result:
+    name, data = f"at {case.get('t', '?')} s", str(case.get("data", "")).encode()
+    direction = Direction.DOWN if case.get("who") == "ICS" else Direction.UP
+    whole = _records(direction, data, original=True)
+    wrong = _cut(direction, data, whole, original=True)
+    if wrong:
+        return failed(name, "another reading when cut", wrong)
+    bad = [str(record) for record in whole if not isinstance(record, Message)]
+    if bad or not whole:
+        return failed(name, "a message of the original's is not read", "; ".join(bad) or "nothing")
+    return passed(name, len(whole))
+
+
+def _records(direction: Direction, *pieces: bytes, original: bool = False) -> list[Record]:
+    parser, found = StreamParser(direction, original_peer=original), list[Record]()
+    for piece in pieces:
+        found += parser.feed(piece)
+    return found + parser.finish()
+
+
+def _cut(direction: Direction, data: bytes, whole: list[Record], original: bool = False) -> str:
+    """The first place where cutting the bytes changes what they say; empty if there is none."""
+    for at in range(1, len(data)):
+        found = _records(direction, data[:at], data[at:], original=original)
+        if found != whole:
+            return f"cut after byte {at}: {found}, whole: {whole}"[:300]
+    return ""
+
+
+def _handshake(name: str, data: bytes) -> Result:
+    """What the server says, at a client, in one piece and cut."""
+    if data not in (HELLO, ACCEPT, REFUSE):
+        return not_covered(name, "a secret that is not given")
+    for at in range(len(data)):
+        client = ClientHandshake()
+        told = client.feed(b"" if data == HELLO else HELLO)
+        for piece in (data[:at], data[at:]):
+            told += client.feed(piece)
+        right = {HELLO: not client.failed, ACCEPT: client.done, REFUSE: bool(client.failed)}[data]
+        if not right or told != client.secret.encode():
+            return failed(name, "handshake", f"cut after byte {at}: {client.failed or 'not done'}")
+    return passed(name, len(data))

@@ -1,0 +1,134 @@
+"""What UxAS tells an ICAROUS instance, as lines of the text protocol: zones, ways, states."""
+
+from __future__ import annotations
+
+import math
+
+from cratous.bridge.text_protocol import (
+    Attitude,
+    FenceDone,
+    FenceVertex,
+    Message,
+    OwnPosition,
+    SoftReset,
+    StartMission,
+    Traffic,
+    Waypoint,
+)
+from cratous.services.flight.dynamics import AirState
+from cratous.services.mission.frames import Projection
+from cratous.spec.mission import Position, Zone, ZoneKind
+
+FAR_M = 1e6
+"""Altitudes beyond this are sent as this [m]: no aircraft is there."""
+
+Aircraft = tuple[tuple[int, AirState], ...]
+Places = dict[int, tuple[float, float]]
+"""Latitude and longitude by aircraft [deg]."""
+
+
+def fence(zone: Zone, number: int, projection: Projection) -> list[Message]:
+    """A zone as GEOFN lines and GEOFN_SEND; zones are numbered from 1 on the wire."""
+    if zone.padding_m != 0:
+        raise ValueError(f"zone {zone.id}: padding must be turned into vertices first")
+    kind = "KEEPIN" if zone.kind is ZoneKind.KEEP_IN else "KEEPOUT"
+    messages: list[Message] = []
+    for k, (north, east) in enumerate(zone.vertices, 1):
+        lat, lon = projection.to_geodetic(north, east)
+        messages.append(
+            FenceVertex(
+                fence=kind,
+                total=len(zone.vertices),
+                vertex=k,
+                lat_deg=lat,
+                long_deg=lon,
+                floor_m=_reachable_m(zone.floor_m),
+                ceiling_m=_reachable_m(zone.ceiling_m),
+                zone=number,
+            )
+        )
+    messages.append(FenceDone(zone=number))
+    return messages
+
+
+def _reachable_m(alt_m: float) -> float:
+    """An altitude as the text protocol can send it: beyond FAR_M nobody flies, so it says the same."""
+    return max(-FAR_M, min(FAR_M, alt_m))
+
+
+def way(points: tuple[Position, ...], speed_m_s: float, projection: Projection) -> list[Message]:
+    """A way as RESET_SFT, its WAYPTs and START_MISSION."""
+    lats, lons = projection.to_geodetic_many(
+        [p.north_m for p in points], [p.east_m for p in points]
+    )
+    waypoints = [
+        Waypoint(
+            total=k + 1,
+            speed_mps=speed_m_s,
+            lat_deg=float(lat),
+            long_deg=float(lon),
+            alt_m=p.alt_m,
+            index=k,
+        )
+        for k, (p, lat, lon) in enumerate(zip(points, lats, lons, strict=True))
+    ]
+    return [SoftReset(), *waypoints, StartMission()]
+
+
+def reset_to(p: Position, projection: Projection) -> SoftReset:
+    """The point at which the path is resumed, as RESET_SFT."""
+    lat, lon = projection.to_geodetic(p.north_m, p.east_m)
+    return SoftReset(lat_deg=lat, long_deg=lon, alt_m=p.alt_m)
+
+
+def places_of(aircraft: Aircraft, projection: Projection) -> Places:
+    """Where everybody is [deg]."""
+    return {
+        vid: projection.to_geodetic(s.position.north_m, s.position.east_m) for vid, s in aircraft
+    }
+
+
+def climbing(s: AirState) -> Attitude:
+    """The attitude of an aircraft of which only the flight path is known: level wings, nose along it."""
+    pitch = math.degrees(math.atan2(s.climb_m_s, s.speed_m_s))
+    return Attitude(roll_deg=0.0, pitch_deg=pitch, yaw_deg=0.0)
+
+
+def states(
+    vehicle_id: int,
+    aircraft: Aircraft,
+    places: Places,
+    now_ms: int,
+    attitude: Attitude | None = None,
+) -> list[Message]:
+    """POSTN and ATTUD of a vehicle, and an OBJCT of each other aircraft. attitude: None for `climbing`."""
+    out: list[Message] = []
+    for vid, s in aircraft:
+        v, (lat, lon) = s.velocity, places[vid]
+        if vid == vehicle_id:
+            own = OwnPosition(
+                time_s=now_ms / 1000,
+                lat_deg=lat,
+                long_deg=lon,
+                alt_abs_m=s.position.alt_m,
+                alt_rel_m=s.position.alt_m,
+                north_mps=v.north_m_s,
+                east_mps=v.east_m_s,
+                down_mps=v.down_m_s,
+                vehicle_id=vid,
+            )
+            out[:0] = [own, attitude or climbing(s)]
+        else:
+            out.append(
+                Traffic(
+                    what="TRAFFIC",
+                    lat_deg=lat,
+                    long_deg=lon,
+                    alt_m=s.position.alt_m,
+                    north_mps=v.north_m_s,
+                    east_mps=v.east_m_s,
+                    down_mps=v.down_m_s,
+                    index=vid,
+                )
+            )
+    return out

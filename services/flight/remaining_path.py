@@ -1,0 +1,82 @@
+"""What lies ahead of a vehicle on its chain: where it left, where it joins, which points follow."""
+
+from __future__ import annotations
+
+import math
+
+from cratous.core.avoidance.manoeuvre import Motion
+from cratous.core.routing.dubins import polyline_length_m
+from cratous.services.flight import chain as chains
+from cratous.services.flight.chain import Chain, Phase
+from cratous.services.flight.dynamics import AirState, turn_radius_m
+from cratous.services.icarous.return_to_path import goal_index
+from cratous.spec.mission import Position
+
+OVERLAP_S = 1.0
+"""An interrupted task goes on this much before the place where it was left [s of flight]."""
+
+
+def leaving_m(chain: Chain) -> float:
+    """Arc length at which the path was left, and a little before, so that the sensor overlaps."""
+    return max(chain.s_m - OVERLAP_S * chain.speed_m_s, chain.join_m)
+
+
+def join_in_transit(chain: Chain, state: AirState) -> float:
+    """Arc length of the waypoint ahead at which the way goes on, as ICAROUS chooses it."""
+    track, p = chain.track, state.position
+    near = track.nearest(p, chain.s_m, track.length_m)
+    index = 0
+    while index < len(track.s_m) - 1 and track.s_m[index] <= near.s_m:
+        index += 1
+    motion = Motion(p, state.heading_rad, state.speed_m_s, state.climb_m_s)
+    radius = turn_radius_m(state.speed_m_s, chain.vehicle.max_bank_rad)
+    return track.s_m[goal_index(motion, radius, track.points, index)]
+
+
+def points_left(chain: Chain) -> tuple[Position, ...]:
+    """The present track from here on."""
+    points = chain.track.rest(chain.s_m)
+    if len(points) > 1:
+        return points
+    (p,), h = points, chain.track.heading_rad(chain.s_m)
+    # one point alone has no direction: a metre more gives it the track's
+    return (p, Position(p.north_m + math.cos(h), p.east_m + math.sin(h), p.alt_m))
+
+
+def last_lap(chain: Chain) -> tuple[Position, ...]:
+    """One more lap of the final loiter, level, at the height that was reached."""
+    points = chain.track.points
+    lap = points[-chains.LAP_LEGS - 1 :]
+    return tuple(p._replace(alt_m=points[-1].alt_m) for p in lap)
+
+
+def points_ahead(chain: Chain, opens_ms: int, ahead_m: float) -> tuple[Position, ...]:
+    """The present track and, beyond it, at least ahead_m of what follows if all goes well, or all of it.
+
+    opens_ms: when the next task is expected to begin [ms].
+    """
+    points = list(chain.track.rest(chain.s_m))
+    item = chain.item
+    more: list[Position] = []
+    after = chain.items[chain.k + 1 :]
+    if item is None:
+        more = list(last_lap(chain)) * 4
+    elif chain.phase is not Phase.TASK:
+        more = list(laps_expected(chain, opens_ms, ahead_m)) + list(item.path)
+    # where the way ends before it is long enough, nothing follows: ICAROUS takes it for the end
+    for following in after:
+        if polyline_length_m((points[-1], *more)) >= ahead_m:
+            break
+        more += [*following.transit, *following.path]
+    return tuple(points + more)
+
+
+def laps_expected(chain: Chain, opens_ms: int, ahead_m: float) -> tuple[Position, ...]:
+    """The laps of the hold that will be flown until the task opens, no more than ahead_m asks for."""
+    item = chain.item
+    if item is None or item.hold is None:
+        return ()
+    wait_m = (opens_ms - chain.since_ms) / 1000 * chain.speed_m_s - chain.left_m()
+    lap = 2 * math.pi * item.hold.radius_m
+    laps = max(0, min(round(wait_m / lap), math.ceil(ahead_m / lap)))
+    return chains.lap_points(item.hold, item.path[0]) * laps

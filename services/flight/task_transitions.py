@@ -1,0 +1,215 @@
+"""Events of the chains: how each begins, what happens at the end of a track, and how a task fails.
+
+Each function gives the executive's state as it is afterwards, and adds what is to be sent to `out`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+
+from cratous.core.authority.timeliness import too_early
+from cratous.core.executive.steps import end_passed, falls_with, may_begin, way_act
+from cratous.core.routing.polylines import Track
+from cratous.services.flight import chain as chains
+from cratous.services.flight.chain import Chain, Phase
+from cratous.services.flight.commands import task_progress
+from cratous.services.flight.dynamics import turn_radius_m
+from cratous.services.flight.executive_state import Config, Out, State
+from cratous.services.flight.left_out import leave_out, nothing_of
+from cratous.services.flight.messages import Say
+from cratous.services.flight.notices import mission_change
+from cratous.services.flight.remaining_path import last_lap
+from cratous.services.flight.task_states import life
+from cratous.services.flight.timing import closed_by
+from cratous.spec.algebra.partial import waits_for
+from cratous.spec.constraint_rows import Row
+from cratous.spec.executive import FAIL_TASK, GO_ON, LAP, LAST_LAP, START
+from cratous.spec.mission import Vehicle
+from cratous.spec.mission.plan import PlanItem, in_part_of
+
+EARLY_MS = 500
+"""A planned wait may end this much early; the rows themselves are never bent."""
+NO_WAY = "no way there keeps the zones"
+NO_HOLD = "it would have to wait, and no circle at its start keeps the zones"
+NO_CIRCLE = "no circle there or near keeps the zones: it circles across them"
+NAME = "uxas/executive"
+"""The sender of what the executive says of itself."""
+
+
+def progress(chain: Chain, at_ms: int, phase: str, note: str = "", served: float = 0.0) -> Say:
+    """How far the present task of a chain is. served: share of its path that has been flown."""
+    assert chain.item is not None
+    task, vid = chain.item.task_id, chain.vehicle.id
+    return Say(task_progress(task, vid, at_ms, phase, served, note), NAME)
+
+
+def begin(config: Config, state: State, out: Out) -> State:
+    """Set every vehicle on its way by the plan in force. What that leaves out fails by name."""
+    settled = (dict(state.starts), dict(state.ends), dict(state.failed))
+    before, chains = dict(state.left_out), state.by_vehicle()
+    left, said = leave_out(state.plan, settled, before, chains, state.now_ms)
+    out.extend(Say(body, NAME) for body in said)
+    state = replace(state, left_out=tuple(left.items()))
+    for vehicle in state.mission.vehicles:
+        air, items = state.air(vehicle.id), _items(state, vehicle)
+        track = Track((air.position,), air.heading_rad)
+        chain = Chain(vehicle, items, -1, Phase.DONE, track, air.speed_m_s)
+        old = state.find(vehicle.id)
+        if old is not None:
+            chain = replace(chain, version=old.version, suspended=old.suspended)
+        state = next_item(config, state.put(chain), chain, state.now_ms, out)
+    return settle(config, state, out)
+
+
+def _items(state: State, vehicle: Vehicle) -> tuple[PlanItem, ...]:
+    radius = chains.ROUTE_MARGIN * turn_radius_m(vehicle.speed_m_s, vehicle.max_bank_rad)
+    items = state.plan.chain(vehicle.id)
+    return tuple(chains.with_hold(item, radius, state.zones) for item in items)
+
+
+def settle(config: Config, state: State, out: Out) -> State:
+    """Handle every passing of an end up to now, the earliest first."""
+    passed, tracks = dict[int, int | None](), dict[int, int]()
+    new = sorted(c.vehicle.id for c in state.chains)
+    while True:
+        for vid in new:
+            if not state.chain(vid).suspended:
+                state, passed[vid] = _measure(config, state, vid)
+                tracks[vid] = state.chain(vid).version
+        due = [(at, vid) for vid, at in passed.items() if at is not None]
+        if not due:
+            return state
+        at, vid = min(due)
+        state = _on_end(config, state, state.chain(vid), at, out)
+        # a failure can put others on new tracks: they have passed the end of none yet
+        new = [v for v in tracks if v == vid or state.chain(v).version != tracks[v]]
+
+
+def _measure(config: Config, state: State, vehicle_id: int) -> tuple[State, int | None]:
+    """With the progress of a vehicle; and the instant at which the end of a track was passed, if it was."""
+    air = state.air(vehicle_id)
+    chain, at_ms = state.chain(vehicle_id).measure(air, state.now_ms, config.dt_s)
+    return state.put(chain), at_ms
+
+
+def _on_end(config: Config, state: State, chain: Chain, at_ms: int, out: Out) -> State:
+    """The end of the present track has been passed: what the kernel `end_passed` answers."""
+    item = chain.item
+    row, opens = _may_begin(state, chain, at_ms)
+    more = chain.next_k(dict(state.failed)) < len(chain.items)
+    moved = end_passed(chain.phase, chain.suspended, opens, more)
+    if item is None or moved.act == LAST_LAP:
+        return state.put(chain.enter(Phase(moved.phase), Track(last_lap(chain)), at_ms))
+    if moved.act == GO_ON:
+        share, told = next(
+            (
+                (math.floor(1000 * p.share) / 1000, f"in part: {p.text}")
+                for p in in_part_of(state.plan)
+                if p.task_id == item.task_id
+            ),
+            (1.0, ""),
+        )
+        out.append(progress(chain, at_ms, "Complete", told, share))
+        return next_item(config, state.ended(item.task_id, at_ms), chain, at_ms, out)
+    if moved.act == START:
+        return _start(state, chain, item, at_ms, out)
+    if moved.act == LAP:
+        lap = config.ways(state.zones).lap(chain, item)
+        if lap is None:
+            return fail(config, state, item.task_id, NO_HOLD, out)
+        entered = chain.enter(Phase.WAIT, lap, at_ms)
+        if chain.phase is not Phase.WAIT:
+            note = row.text if row is not None else f"planned start at {item.start_ms} ms"
+            out.append(progress(entered, at_ms, "Waiting", note))
+        return state.put(entered)
+    return state
+
+
+def _may_begin(state: State, chain: Chain, at_ms: int) -> tuple[Row | None, bool]:
+    """Whether the task of a vehicle at its start pose may begin, and a row that forbids it."""
+    item = chain.item
+    if item is None or chain.phase is Phase.TASK:
+        return None, False
+    starts, ends, failed = dict(state.starts), dict(state.ends), dict(state.failed)
+    row = closed_by(item.task_id, at_ms, state.plan.rows, state.counted_starts(), ends)
+    early = item.wait_ms != 0 and too_early(at_ms, item.start_ms, EARLY_MS)
+    return row, may_begin(life(item.task_id, starts, ends, failed), row is None, early)
+
+
+def _start(state: State, chain: Chain, item: PlanItem, at_ms: int, out: Out) -> State:
+    """At the start pose: begin the task."""
+    track = Track(item.path, chains.start_pose(item).heading_rad)
+    chain = replace(chain, speed_m_s=item.speed_m_s).enter(Phase.TASK, track, at_ms)
+    out.append(progress(chain, at_ms, "Active"))
+    return state.begun(item.task_id, at_ms).put(chain)
+
+
+def next_item(config: Config, state: State, chain: Chain, at_ms: int, out: Out) -> State:
+    """On the way to the next item of a chain that has not failed; circling where there is none. An item
+    to which no way keeps the zones fails."""
+    chain = replace(chain, k=chain.next_k(dict(state.failed)))
+    state = state.put(chain)
+    item, air = chain.item, state.air(chain.vehicle.id)
+    if item is None:
+        return _loiter(config, state, chain, at_ms, out)
+    chain = replace(chain, speed_m_s=item.speed_m_s)
+    way = config.ways(state.zones).transit(chain, air)
+    if way is None or way_act(way is not None, True) == FAIL_TASK:
+        state = state.put(replace(chain, phase=Phase.TRANSIT))
+        return fail(config, state, item.task_id, NO_WAY, out)
+    chain = chain.enter(Phase.TRANSIT, way, at_ms)
+    out.append(progress(chain, at_ms, "Transit"))
+    return state.put(chain)
+
+
+def _loiter(config: Config, state: State, chain: Chain, at_ms: int, out: Out) -> State:
+    """Circle at the end of the chain; raised to a layer of its own while others still fly.
+
+    The layer is one and a half buffered vertical thresholds per vehicle, in the order of
+    finishing, so that one who has finished is in nobody's way.
+    """
+    finished, vid = state.finished + 1, chain.vehicle.id
+    others = any(c.item is not None for c in state.chains if c.vehicle.id != vid)
+    daa = state.mission.daa
+    layer = 1.5 * daa.buffer * daa.well_clear.zthr_m * finished
+    track = circling(config, state, chain, layer if others else 0.0, out)
+    return replace(state.put(chain.enter(Phase.DONE, track, at_ms)), finished=finished)
+
+
+def circling(config: Config, state: State, chain: Chain, layer_m: float, out: Out) -> Track:
+    """A vehicle's track with nothing left to fly, raised by a layer. If its circle breaks a zone, that is said."""
+    vid = chain.vehicle.id
+    last = config.ways(state.zones).last(chain, state.air(vid), layer_m)
+    if not last.kept:
+        what = f"vehicle {vid} has nothing left to fly"
+        out.append(Say(mission_change(state.now_ms, what, NO_CIRCLE), NAME))
+    return last.track
+
+
+def fail(config: Config, state: State, task_id: int, why: str, out: Out) -> State:
+    """Name the failure of a task, and of those that can now never begin."""
+    state, now_ms = state.has_failed(task_id, why), state.now_ms
+    for vid in sorted(c.vehicle.id for c in state.chains):
+        chain = state.chain(vid)
+        item = chain.item
+        if task_id not in [i.task_id for i in chain.items]:
+            continue
+        served = chain.served() if item and item.task_id == task_id else 0.0
+        out.append(Say(task_progress(task_id, vid, now_ms, "Failed", served, why), NAME))
+        if item is not None and item.task_id == task_id:
+            state = next_item(config, state, chain, now_ms, out)
+    for row in state.plan.rows:
+        failed = dict(state.failed)
+        lived = life(row.i, dict(state.starts), dict(state.ends), failed)
+        waits = task_id in row.group and waits_for(row, set(row.group) - failed.keys())
+        if falls_with(row.kind, waits, lived):
+            state = fail(config, state, row.i, f"{row.text}: task {task_id} failed", out)
+    return state
+
+
+def give_up(config: Config, state: State, why: str, asked: Iterable[int], out: Out) -> State:
+    """Nothing that is left can be done: nobody flies any of it, and all that is asked for fails by
+    name."""
+    return begin(config, replace(state, plan=nothing_of(state.plan, asked, why)), out)

@@ -1,0 +1,165 @@
+"""The rows that each requirement promises for a mission, and those of them that are missing.
+
+They follow from the mission and from how long its flight was watched, never from what a planner
+accepted or a log happens to show. A row that nobody wrote is unknown: not observed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Set
+from typing import NamedTuple
+
+from cratous.core.schedule.rows import runs_forward
+from cratous.services.monitor.observation import Span, in_the_air
+from cratous.services.monitor.plan_check import WHOLE
+from cratous.services.monitor.relations import first_choices
+from cratous.spec.mission import Mission, Zone
+from cratous.spec.mission.asked import asked
+from cratous.spec.mission.changes import asked_by
+from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
+
+CHOICE = "flight: no task of another choice of the relations"
+END = "end of mission"
+WAYS = {"Down": "to", "Up": "from"}
+
+
+class Row(NamedTuple):
+    """A promised row: of which requirement, on what, about which of our vehicles."""
+
+    requirement: str
+    item: str
+    vehicles: tuple[int, ...] = ()
+
+
+PLAN_ROWS = (Row("G1", WHOLE), Row("G1", "plan: all order and timing rows at once"))
+"""What the check of the plan before the flight says of every plan."""
+
+
+class Watched(NamedTuple):
+    """What the promises depend on: the tasks asked for, their mission, and the flight's length."""
+
+    mission: Mission
+    asked: Mission
+    tasks: tuple[int, ...]
+    end_ms: int
+
+
+def watched(mission: Mission, end_ms: int, done: Set[int], accepted: Set[int]) -> Watched:
+    """What is judged of a flight that lasted until `end_ms`: done are the tasks flown to their end,
+    accepted those of the last plan, which only says which branch of a `+` was chosen."""
+    wanted = asked_by(mission, end_ms, done)
+    return Watched(mission, wanted, asked(wanted, done, accepted), end_ms)
+
+
+def fence_item(zone: Zone, vehicle: int) -> str:
+    """The row on a zone and a vehicle."""
+    return f"zone: {zone.kind.value} {zone.id}, flight of vehicle {vehicle}"
+
+
+def eligible_item(task: int) -> str:
+    """The row on who flew a task."""
+    return f"eligibility: task {task} in flight"
+
+
+def pair_item(own: int, other: int) -> str:
+    """The row on two aircraft."""
+    return f"well clear of {own} and {other}"
+
+
+def alone_item(own: int) -> str:
+    """The row on a vehicle that has nobody to keep clear of."""
+    return f"well clear of {own}"
+
+
+def served_item(task: int) -> str:
+    """The row on a task."""
+    return f"task {task} served"
+
+
+def authority_item(vehicle: int) -> str:
+    """The row on who commands a vehicle."""
+    return f"authority over vehicle {vehicle}"
+
+
+def beat_item(vehicle: int, way: str) -> str:
+    """The row on the heartbeats of a vehicle in one direction, `Down` or `Up`."""
+    return f"heartbeat {WAYS[way]} the ICAROUS instance of {vehicle}"
+
+
+def zones_of(mission: Mission, end_ms: int) -> list[tuple[Zone, int]]:
+    """The zones that are known before an instant, each with since when [ms].
+
+    What becomes known between two instants of the simulation binds from the later one on.
+    """
+    step_ms = mission.simulation.step_ms
+    late = [(c.zone, -(-c.at_ms // step_ms) * step_ms) for c in mission.changes if c.zone]
+    return [(z, 0) for z in mission.zones] + [
+        (z, at) for z, at in late if not runs_forward(end_ms, at)
+    ]
+
+
+def pairs_of(mission: Mission, end_ms: int) -> dict[tuple[int, int], Span]:
+    """The pairs of aircraft of which one is protected, each with when both are in the air."""
+    step_ms = mission.simulation.step_ms
+    ours = {v.id: v.protected for v in mission.vehicles}
+    others: dict[int, Span] = dict.fromkeys(ours, (0, end_ms))
+    for one in mission.traffic:
+        there = in_the_air(one, step_ms, end_ms)
+        if there is not None:
+            others[one.id] = there
+    return {
+        (own, other): span
+        for own in sorted(n for n, protected in ours.items() if protected)
+        for other, span in sorted(others.items())
+        if other != own and not (ours.get(other, False) and other < own)
+    }
+
+
+def relation_items(seen: Watched, present: Collection[str]) -> list[str]:
+    """The rows on order and timing: those of one branch of the tasks asked for.
+
+    Where several branches have these tasks, it is the one of which the fewest rows are missing among
+    the present items.
+    """
+    best: list[str] | None = None
+    for rows in first_choices(seen.asked, frozenset(seen.tasks)):
+        items = [f"flight: {row.text}" for row in rows]
+        lacking = set(items) - set(present)
+        if not lacking:
+            return items
+        if best is None or len(lacking) < len(set(best) - set(present)):
+            best = items
+    return best or []
+
+
+def promised(seen: Watched, present: Collection[str] = ()) -> Iterator[Row]:
+    """Every row that a judged flight must have; present: items of G1 that it has."""
+    mission, guarded = seen.mission, [v.id for v in seen.mission.vehicles if v.protected]
+    for zone, _ in zones_of(mission, seen.end_ms):
+        yield from (Row("G1", fence_item(zone, vehicle), (vehicle,)) for vehicle in guarded)
+    yield Row("G1", CHOICE)
+    yield from (Row("G1", item) for item in relation_items(seen, present))
+    for task in seen.tasks:
+        yield Row("G1", eligible_item(task))
+    pairs = pairs_of(mission, seen.end_ms)
+    yield from (Row("G2", pair_item(*pair), pair) for pair in pairs)
+    met = {number for pair in pairs for number in pair}
+    yield from (Row("G2", alone_item(own), (own,)) for own in guarded if own not in met)
+    yield from (Row("G3", served_item(task)) for task in seen.tasks)
+    yield Row("G3", END)
+    for vehicle in guarded:
+        yield Row("G4", authority_item(vehicle), (vehicle,))
+        yield from (Row("G5", beat_item(vehicle, way), (vehicle,)) for way in WAYS)
+
+
+def missing(rows: Iterable[Row], present: Iterable[tuple[str, str]]) -> list[Verdict]:
+    """An unknown verdict for each promised row that is not among (requirement, item)."""
+    there = set(present)
+    return [
+        Verdict(
+            row.requirement, row.item, Outcome.UNKNOWN, Kind.OBSERVED, "not observed",
+            vehicles=row.vehicles,
+        )
+        for row in rows
+        if (row.requirement, row.item) not in there
+    ]  # fmt: skip

@@ -1,0 +1,43 @@
+"""`cratous conform bridge`: the published lines and sessions, and what must not pass."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from cratous.services.cli import main
+from cratous.services.conform import bridge
+from cratous.spec.errors import BadInput
+
+VECTORS = Path(__file__).resolve().parents[3] / "shared" / "vectors" / "cratous"
+GOOD = {"n": 1, "direction": "ICAROUS->UxAS", "line": "GOTOWP,id3,\n", "strict": "accept"}
+
+
+def test_a_case_with_another_verdict_or_another_form_fails() -> None:
+    assert bridge.judge({**GOOD, "kind": "valid"}).status == "passed"
+    assert bridge.judge({**GOOD, "strict": "reject"}).label == "another verdict"
+    assert bridge.judge({**GOOD, "line": "GOTOWP,idx,\n"}).label == "another verdict"
+    spaced = {**GOOD, "line": "SETVEL,north1,east2.0,down3.0,\n".replace("1,", "1.0,")}
+    assert bridge.judge({**spaced, "kind": "valid"}).label == "written otherwise"
+    assert bridge.judge({"ev": "send", "who": "ICS", "data": "POSTN,\n"}).status == "failed"
+    assert bridge.judge({"ev": "publish"}).status == "not covered"
+    hello = {"n": 2, "direction": "UxAS->ICAROUS", "strict": "reject", "kind": "handshake"}
+    assert bridge.judge({**hello, "line": "ok "}).status == "passed"
+    assert bridge.judge({**hello, "line": "okay"}).status == "not covered"
+
+
+@pytest.mark.parametrize("wrong", [{"strict": "maybe"}, {"line": 5}, {"direction": "sideways"}])
+def test_what_is_no_case_is_refused(wrong: dict[str, object]) -> None:
+    with pytest.raises(BadInput):
+        bridge.judge({**GOOD, **wrong})
+
+
+@pytest.mark.skipif(not VECTORS.is_dir(), reason="no ../shared/vectors/cratous")
+def test_the_published_lines_and_sessions(capsys: pytest.CaptureFixture[str]) -> None:
+    files = [str(VECTORS / "examples.jsonl"), str(VECTORS / "sessions")]
+    assert main(["conform", "bridge", *files, "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    assert (report["failed"], report["passed"]) == (0, 67 + 155)
+    assert report["knife_edges"] == 8

@@ -1,0 +1,34 @@
+"""Results of a flight to edit: their folder, their report, and what their log recorded."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sqlite3
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+Run = Callable[..., tuple[int, str, str]]
+
+
+def edited(flown: Path, tmp_path: Path) -> Path:
+    folder = tmp_path / "edited"
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(flown, folder)
+    return folder
+
+
+def read(folder: Path) -> dict[str, Any]:
+    return dict(json.loads((folder / "report.json").read_text(encoding="utf-8")))
+
+
+def meta(folder: Path, key: str, value: Any) -> None:
+    """Edit (or, with None, forget) what the log recorded; no digest covers it."""
+    database = sqlite3.connect(folder / "log.sqlite")
+    with database:
+        database.execute("DELETE FROM meta WHERE key = ?", (key,))
+        if value is not None:
+            database.execute("INSERT INTO meta VALUES(?, ?)", (key, json.dumps(value)))
+    database.close()
