@@ -20,7 +20,7 @@ OLD = ("seq", "time_ms", "source", "topic", "body")
 NEW = (*OLD, "address", "sender_group", "entity_id", "service_id", "content_type")
 KINDS = (
     "TruthState", "AirVehicleState", "TaskProgress", "MissionEnd", "GateState", "GatedCommand",
-    "CommandDropped", "AuthorityChange", "Heartbeat", "BridgeStatus",
+    "CommandDropped", "AuthorityChange", "Heartbeat", "BridgeStatus", "PlanAccepted",
 )  # fmt: skip
 PHASES = ("Planned", "Transit", "Waiting", "Active", "Suspended", "Complete", "Failed")
 SIDES = ("UxAS", "ICAROUS")
@@ -87,7 +87,7 @@ class Bridge(NamedTuple):
 
 @dataclass
 class Log:
-    """What the judge takes from a log. doubts: why nothing in it can be said to hold; lossy: why
+    """What the judge takes from a log. planned: the tasks of the last plan; doubts: why nothing in it can be said to hold; lossy: why
     nothing can be said to be missing from it."""
 
     path: Path
@@ -100,6 +100,7 @@ class Log:
     beats: dict[tuple[int, str], list[Beat]] = field(default_factory=dict)
     bridges: dict[int, list[Bridge]] = field(default_factory=dict)
     ends: list[tuple[int, str]] = field(default_factory=list)
+    planned: frozenset[int] = frozenset()
     doubts: list[str] = field(default_factory=list)
     lossy: str = ""
     digest: str = ""
@@ -291,6 +292,10 @@ def _progress(log: Log, body: Node, time_ms: int) -> None:
     )  # fmt: skip
 
 
+def _plan(log: Log, body: Node, _time_ms: int) -> None:
+    log.planned = frozenset(task.whole for task in body["Tasks"])
+
+
 def _end(log: Log, body: Node, _time_ms: int) -> None:
     log.ends.append((body["Time"].whole, body["Outcome"].text))
 
@@ -319,6 +324,7 @@ _READERS = {
     "AirVehicleState": _looks,
     "TaskProgress": _progress,
     "MissionEnd": _end,
+    "PlanAccepted": _plan,
     "GateState": _owner("state", "Owner"),
     "GatedCommand": _owner("command", "Sender"),
     "CommandDropped": _owner("drop", "Sender"),

@@ -214,11 +214,16 @@ class _Way:
         self.found.append(Found("timing", text, verdict, note, start))
 
 
-def best_way(term: Term, done: dict[int, Deed], served: set[int]) -> tuple[Term, list[Found], bool]:
-    """The way that fits best: its term, its constraints, and whether all ways were looked at."""
+def best_way(
+    term: Term, done: dict[int, Deed], served: set[int], planned: frozenset[int] = frozenset()
+) -> tuple[Term, list[Found], bool]:
+    """The way that fits best: its term, its constraints, and whether all ways were looked at.
+
+    Of ways that fit alike it is the one most like the last plan, `planned`.
+    """
     started = {t for t, deed in done.items() if deed.active}
     order = (HOLDS, UNKNOWN, VIOLATED)
-    best: tuple[tuple[int, int, int], Term, list[Found]] | None = None
+    best: tuple[tuple[int, ...], Term, list[Found]] | None = None
     count = 0
     for one, said in islice(ways(term, started), WAYS):
         count += 1
@@ -227,7 +232,11 @@ def best_way(term: Term, done: dict[int, Deed], served: set[int]) -> tuple[Term,
         found = [*said, *way.found]
         verdict = worst([f.verdict for f in found]) if found else HOLDS
         missing = len(set(one.tasks()) - served)
-        rank = (order.index(verdict), missing, sum(f.verdict != HOLDS for f in found))
+        mine = set(one.tasks())
+        unlike = -len(mine & planned), len(mine - planned)
+        rank = (
+            order.index(verdict), missing, sum(f.verdict != HOLDS for f in found), *unlike,
+        )  # fmt: skip
         if best is None or rank < best[0]:
             best = (rank, one, found)
     assert best is not None
@@ -238,14 +247,22 @@ def rows(mission: Mission, log: Log, done: dict[int, Deed], served: set[int]) ->
     """Order, timing and choice, then eligibility."""
     term = asked(mission, done, log.end_ms)
     if term is not None:
-        yield from _relation_rows(term, done, served)
+        yield from _relation_rows(term, done, served, log.planned)
     for task, deed in sorted(done.items()):
         if deed.active:
             yield _eligible(mission, task, deed)
+    for task in sorted(mission.tasks):
+        deed = done.get(task, Deed())
+        if not deed.active and deed.complete_ms is None and log.end_ms is not None:
+            subject, item = ("eligible", str(task)), f"eligibility: task {task} in flight"
+            verdict, note = (UNKNOWN, log.lossy) if log.lossy else (HOLDS, "nobody began it")
+            yield Row("G1", subject, item, verdict, note, None, 1)
 
 
-def _relation_rows(term: Term, done: dict[int, Deed], served: set[int]) -> Iterator[Row]:
-    _, found, whole = best_way(term, done, served)
+def _relation_rows(
+    term: Term, done: dict[int, Deed], served: set[int], planned: frozenset[int]
+) -> Iterator[Row]:
+    _, found, whole = best_way(term, done, served, planned)
     faults = [done[t].fault for t in term.tasks() if t in done and done[t].fault]
     merged: dict[tuple[str, str], list[Found]] = {}
     for one in found:

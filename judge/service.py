@@ -42,7 +42,7 @@ def rows(flight: Flight, found: dict[int, Service]) -> Iterator[Row]:
     term = asked(flight.mission, flight.done, flight.log.end_ms)
     if term is not None:
         good = {t for t, (verdict, *_) in found.items() if verdict == HOLDS}
-        for task in sorted(best_way(term, flight.done, good)[0].tasks()):
+        for task in sorted(best_way(term, flight.done, good, flight.log.planned)[0].tasks()):
             verdict, note, at = found[task]
             row = Row("G3", ("served", str(task)), f"task {task} served", verdict, note, at, 1)
             yield doubted(row, flight.doubt(task))

@@ -142,7 +142,10 @@ def test_every_task_of_a_mission_with_changes_is_accounted_for(seed: int, tmp_pa
             continue
         assert row["verdict"] in ("holds", "violated"), row
         entry = served[int(item.split()[1])]
-        if row["verdict"] == "violated":
+        if row["verdict"] == "violated" and entry["phase"] == "Complete":
+            # a search flown to its end, of which zones or the wind left too little to see: how much is told
+            assert "the footprint covered" in row["note"], row
+        elif row["verdict"] == "violated":
             assert (entry["phase"], bool(entry["note"])) == ("Failed", True), entry
         else:
             assert entry["phase"] == "Complete"

@@ -15,6 +15,7 @@ from cratous.core.routing.polylines import Track
 from cratous.services.pipeline.plan import make_plan
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Camera, Loiter, Pattern, Position, Task, TaskKind, Vehicle, View
+from cratous.spec.mission.plan import in_part_of
 
 # ---- areas and patterns --------------------------------------------------------------------------
 
@@ -53,8 +54,10 @@ def test_a_zone_in_the_area_drops_its_lanes_with_the_reason() -> None:
     found, dropped = options(area(), zones=(zone,))
     assert all(first_bad_leg(option.path, (zone,)) is None for option in found)
     assert any("breaks keep-out zone 7" in d.reason for d in dropped)
+    (part,) = in_part_of(make_plan(mission(area(), zones=(keep_out(300.0, 100.0, 800.0, 700.0),))))
+    assert 0 < part.outside < part.share < 0.99
     with pytest.raises(NoPlan, match="breaks keep-out zone 7"):
-        make_plan(mission(area(), zones=(keep_out(300.0, 100.0, 800.0, 700.0),)))
+        make_plan(mission(area(), zones=(keep_out(-900.0, -900.0, 3000.0, 3000.0),)))
 
 
 def test_turns_go_around_zones_beside_the_area() -> None:
