@@ -75,7 +75,7 @@ NOTHING = {
     "a comment in the prover": (
         "proofs/engine/prover.py", "def _rlimit_count(", "# what z3 counts\ndef _rlimit_count("),
     "a docstring in the prover": (
-        "proofs/engine/prover.py", '"""What the solver said of one obligation', '"""What was said of one'),
+        "proofs/engine/prover.py", '"""The answer of the first solver that decides', '"""What the first solver said that decides'),
     "what is told of a refutation": (
         "proofs/engine/counterexample.py", "def story(", "def _more() -> int:\n    return 2\n\n\ndef story("),
     "how a refutation is told": (

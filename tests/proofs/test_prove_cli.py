@@ -126,7 +126,7 @@ def test_mutation_is_reported(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Ca
     result = mutate.Result("f", "kernel", "op", "core/x.py:1", "a -> b", "survived")
     asked, kept = [], []
 
-    def run(names, tell, jobs, *, about, home, skip):
+    def run(names, tell, jobs, *, about, keys, skip):
         asked.append((names, about))
         assert not skip
         tell("cratous.core.m.f", [result])
@@ -197,7 +197,7 @@ def test_mutation_of_functions_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
     """A pattern that only functions match proves and mutates what meets them."""
     asked = []
 
-    def run(names, tell, jobs, *, about, home, skip):
+    def run(names, tell, jobs, *, about, keys, skip):
         asked.append((names, about))
         return mutate.MutationReport((), ())
 
@@ -219,7 +219,7 @@ def test_only_what_the_record_does_not_know_is_mutated(
     data = {"targets": {kernel: row}, "premises": {}}
     skipped = []
 
-    def run(names, tell, jobs, *, about, home, skip):
+    def run(names, tell, jobs, *, about, keys, skip):
         skipped.append(skip)
         return mutate.MutationReport((), (), (theorem,))
 

@@ -167,7 +167,7 @@ def claim(c: Claim) -> None:
 
 
 def test_a_process_that_dies_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(prover, "prove_file", lambda *_a, **_k: os._exit(9))
+    monkeypatch.setattr(prover, "state", lambda *_a: os._exit(9))
     with pytest.raises(RuntimeError, match="dies ended without an answer"):
         ledger.prove_theorems(["dies"], folder=tmp_path, jobs=1)
 
