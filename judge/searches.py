@@ -11,6 +11,7 @@ from cratous.judge.coverage import area_m2, area_seen, footprints, line_seen, ou
 from cratous.judge.earth import ACCURACY_M, to_local
 from cratous.judge.log import Look
 from cratous.judge.mission import Point, Task
+from cratous.judge.shares import forbidden_note
 from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED
 from cratous.judge.work import Flight, nearest_m
 
@@ -25,6 +26,8 @@ def searched(flight: Flight, task: Task) -> tuple[str, str]:
     """Verdict and note on a search."""
     judge = {"line_search": _line, "point_search": _point}.get(task.kind, _area)
     verdict, note = judge(flight, task)
+    if verdict == VIOLATED:
+        note += forbidden_note(flight, task)
     if verdict != VIOLATED and task.gsd_m and not _resolves(flight, task):
         return UNKNOWN, f"{note}; how many pixels the camera has is not known"
     return verdict, note

@@ -12,7 +12,7 @@ from cratous.services.mission.wind import known_at
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Outcome, Verdict, worst
-from cratous.spec.mission.plan import PartialPlan, Plan, left_out_of
+from cratous.spec.mission.plan import PartialPlan, Plan, in_part_of, left_out_of
 
 Tell = Callable[[str], None]
 
@@ -148,7 +148,8 @@ def fly_mission(
         with counted() as calls:
             plan, checks = plan_and_check(mission, bus)
             said = (plan_line(plan, checks), *left_out_lines(plan), *absent_lines(mission))
-            tell("\n".join(said))
+            for line in said:
+                tell(line)
             refuse_bad_plan(checks)
             if plan.certificate:
                 write_certificate(bus, folder / CERTIFICATE_NAME)
@@ -199,7 +200,7 @@ def plan_line(plan: Plan, checks: list[Verdict]) -> str:
         chains.append(f"vehicle {vehicle}: {tasks}")
     outcome = worst([check.outcome for check in checks])
     good = sum(check.outcome is Outcome.HOLDS for check in checks)
-    part = "a part of what is asked for, " if left_out_of(plan) else ""
+    part = "a part of what is asked for, " if left_out_of(plan) or in_part_of(plan) else ""
     return (
         f"plan: {'; '.join(chains)}; {part}"
         f"{plan.makespan_ms / 1000:.1f} s, {standing(plan)}; "
@@ -208,9 +209,10 @@ def plan_line(plan: Plan, checks: list[Verdict]) -> str:
 
 
 def left_out_lines(plan: Plan) -> list[str]:
-    """A line for each task that a plan leaves out, and whether no more could be done."""
+    """A line for each task that a plan leaves out or does in part, and whether no more could be done."""
     left = left_out_of(plan)
-    lines = [f"left out: {one.text}" for one in left]
+    lines = [f"in part: {one.text}" for one in in_part_of(plan)]
+    lines += [f"left out: {one.text}" for one in left]
     if left and not (isinstance(plan, PartialPlan) and plan.sure):
         lines.append("whether more could be done is not certain")
     return lines

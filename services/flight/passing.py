@@ -5,6 +5,7 @@ Each function gives the executive's state as it is afterwards, and adds what is 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import replace
 
@@ -25,7 +26,7 @@ from cratous.spec.algebra.partial import waits_for
 from cratous.spec.constraint_rows import Row
 from cratous.spec.executive import FAIL_TASK, GO_ON, LAP, LAST_LAP, START
 from cratous.spec.mission import Vehicle
-from cratous.spec.mission.plan import PlanItem
+from cratous.spec.mission.plan import PlanItem, in_part_of
 
 EARLY_MS = 500
 """A planned wait may end this much early; the rows themselves are never bent."""
@@ -99,7 +100,15 @@ def _on_end(config: Config, state: State, chain: Chain, at_ms: int, out: Out) ->
     if item is None or moved.act == LAST_LAP:
         return state.put(chain.enter(Phase(moved.phase), Track(last_lap(chain)), at_ms))
     if moved.act == GO_ON:
-        out.append(progress(chain, at_ms, "Complete", served=1.0))
+        share, told = next(
+            (
+                (math.floor(1000 * p.share) / 1000, f"in part: {p.text}")
+                for p in in_part_of(state.plan)
+                if p.task_id == item.task_id
+            ),
+            (1.0, ""),
+        )
+        out.append(progress(chain, at_ms, "Complete", told, share))
         return next_item(config, state.ended(item.task_id, at_ms), chain, at_ms, out)
     if moved.act == START:
         return _start(state, chain, item, at_ms, out)

@@ -13,6 +13,8 @@ from cratous.core.kernel import Vec2, qualified
 from cratous.core.routing.dubins import turn_radius_m
 from cratous.core.schedule.rows import row_holds
 from cratous.core.tasks.coverage_steps import enough_seen
+from cratous.core.tasks.service import Watched as Seen
+from cratous.core.tasks.service import service_verdict
 from cratous.services.monitor.coverage import CoverageWatch
 from cratous.services.monitor.presence import Ending, Presence
 from cratous.services.monitor.promises import END, Watched, served_item
@@ -26,8 +28,8 @@ from cratous.spec.mission.plan import Plan
 
 SERVED = 0.99
 """The fraction of a search from which the kernel `enough_seen` takes it to be served: the margin's zero."""
-
-
+OUTCOMES = (Outcome.VIOLATED, Outcome.HOLDS, Outcome.UNKNOWN)
+"""What the verdicts of `service_verdict` mean, by number."""
 BANK_RESERVE = 1.1
 """A loiter without a radius is flown this much wider than the vehicle's tightest turn."""
 CAPTURE_M = 50.0
@@ -155,22 +157,19 @@ class CompletionWatch:
     def _task_verdict(self, task: int, seen: Watched) -> Verdict:
         doing = self._tasks[task]
         covered = self._coverage.fraction(task)
-        outcome, margin = Outcome.HOLDS, None
-        note = "flown to its end"
-        if doing.complete_ms is None:
-            outcome = Outcome.VIOLATED if self._outcome is not None else Outcome.UNKNOWN
-            note = doing.failed or "not flown to its end"
+        missed, unseen = self._missed(task), self._unseen(task)
+        short = covered is not None and not self._coverage.served(task)
+        ended, over = doing.complete_ms is not None, self._outcome is not None
+        told = service_verdict(Seen(ended, over, bool(unseen), short, doing.too_near, bool(missed)))
+        outcome, margin = OUTCOMES[told], None
+        note = "flown to its end" if ended else doing.failed or "not flown to its end"
         if covered is not None:
             margin = 100 * (covered - SERVED)
             note += f"; the footprint covered {100 * covered:.2f} % of it"
-            if not self._coverage.served(task) and outcome is Outcome.HOLDS:
-                outcome = Outcome.VIOLATED
-        missed = self._missed(task)
-        if missed and outcome is Outcome.HOLDS:
-            outcome, note = Outcome.VIOLATED, missed
-        unseen = self._unseen(task)
-        if unseen and not doing.too_near and (outcome is Outcome.HOLDS or missed):
-            outcome, note = Outcome.UNKNOWN, unseen
+        if missed and (doing.too_near or (ended and not short)):
+            note = missed
+        if unseen and outcome is Outcome.UNKNOWN:
+            note = unseen
         evidence = None
         if outcome is Outcome.VIOLATED:
             could, evidence = prospects(self._mission, self._kinds[task], seen.end_ms)
@@ -192,7 +191,7 @@ class CompletionWatch:
         )
 
     def _kernels(self, task: int) -> tuple[str, ...]:
-        """The kernels that were asked about a task; none where messages alone say what became of it."""
+        """The kernels that were asked about a task."""
         doing, kind = self._tasks[task], self._kinds[task].kind
         asked: list[Callable[..., Any]] = [edge_against] if doing.judged_near else []
         if kind is TaskKind.LOITER and doing.touched and not doing.too_near:
@@ -200,7 +199,7 @@ class CompletionWatch:
         if kind in SEARCHES:
             asked.append(enough_seen)
         seen = self._coverage.kernels.get(task)
-        return (*([seen] if seen is not None else []), *map(qualified, asked))
+        return (*([seen] if seen is not None else []), *map(qualified, [*asked, service_verdict]))
 
     def _unseen(self, number: int) -> str:
         """What was not seen of the flight of a complete task that is judged by places; empty if nothing."""

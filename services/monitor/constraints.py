@@ -9,11 +9,10 @@ from typing import Any
 from cratous.core.kernel import qualified
 from cratous.core.schedule.choice import as_asked
 from cratous.core.schedule.rows import eligible, runs_forward
-from cratous.services.mission.times import row_verdict
 from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok
-from cratous.services.monitor.plan_check import term_rows
 from cratous.services.monitor.presence import Ending, Presence
 from cratous.services.monitor.promises import CHOICE, Watched, eligible_item, fence_item, zones_of
+from cratous.services.monitor.relations import branch_rows, by_term, is_choice
 from cratous.services.monitor.samples import Sample
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
@@ -116,15 +115,19 @@ class ConstraintWatch:
         begun = [(0, int(t in seen.tasks), int(t in self._starts)) for t in sorted(wanted)]
         outcome = Outcome.HOLDS if ending.over else Outcome.UNKNOWN
         outcome = outcome if as_asked(begun) else Outcome.VIOLATED
+        chosen = frozenset(seen.tasks)
+        if not is_choice(seen.asked, chosen):
+            outcome, note = Outcome.UNKNOWN, f"{note}, which are no choice of the relations"
         yield Verdict(
             "G1", CHOICE, outcome, Kind.EXACT, note, checks=len(begun), method="as_asked",
-            kernels=(qualified(as_asked),),
+            kernels=(qualified(as_asked), *by_term(seen.asked)),
         )  # fmt: skip
         times = {t: (self._starts[t], self._ends[t]) for t in self._starts if t in self._ends}
-        for row in term_rows(seen.asked, frozenset(seen.tasks), times) or ():
+        kept = branch_rows(seen.asked, chosen, times)
+        for row in kept.rows if kept is not None else ():
             missing = [t for t in (row.i, *row.group) if t not in times]
-            if not missing:
-                yield row_verdict(row, times, "flight")
+            if kept is not None and not missing:
+                yield kept.verdict(row, times, "flight")
                 continue
             note = f"not judged: task {', '.join(map(str, missing))} was not flown to its end"
             yield Verdict("G1", f"flight: {row.text}", Outcome.UNKNOWN, Kind.OBSERVED, note)

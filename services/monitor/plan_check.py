@@ -8,22 +8,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
-from itertools import islice, pairwise
+from itertools import pairwise
 
 from cratous.core.kernel import qualified
 from cratous.core.schedule.choice import as_asked
 from cratous.core.schedule.rows import eligible, row_holds, schedule_holds
-from cratous.services.mission.times import Times, all_hold, row_verdict
+from cratous.services.mission.times import all_hold
 from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok
-from cratous.spec.algebra import ALTERNATIVE, Atom, Term
-from cratous.spec.algebra.meaning import branches, rows, tasks
-from cratous.spec.algebra.partial import after_choices, kept_rows, may_be_done
-from cratous.spec.constraint_rows import AFTER_END, Row
+from cratous.services.monitor.relations import branch_rows, by_term, is_choice, is_part
+from cratous.spec.algebra.meaning import branches, tasks
+from cratous.spec.constraint_rows import AFTER_END
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.asked import asked, term_of
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
-from cratous.spec.mission.plan import Plan, PlanItem
+from cratous.spec.mission.plan import Plan, PlanItem, in_part_of
 
 Path = tuple[Position, ...]
 
@@ -31,8 +29,6 @@ WHOLE = "plan: every task of one choice, once"
 PART = "plan: a part that the relations permit"
 """A plan that leaves tasks out has this row as well. Of a flight the tasks served are judged instead of the first
 one: a later plan may do what the first leaves out, or it may be withdrawn."""
-CHOICES_MAX = 4096
-"""So many branches of the same tasks are looked at for one whose rows hold."""
 SPEED_TOLERANCE_MS = 2
 """Rounding of a route's flight time to whole milliseconds, at both of its ends."""
 
@@ -47,72 +43,6 @@ def check_plan(mission: Mission, plan: Plan) -> list[Verdict]:
     return found
 
 
-def row_choices(mission: Mission, chosen: frozenset[int]) -> Iterator[tuple[Row, ...]]:
-    """The constraint rows of each branch that consists of the chosen tasks, in the order of the text.
-
-    Several branches may have the same tasks, as in `+(.(p1 p2) .(p2 p1))`; no more than CHOICES_MAX
-    of them are looked at. Nothing comes where no branch has these tasks.
-    """
-    term = term_of(mission)
-    if term is None:
-        yield from () if chosen else ((),)
-        return
-    within = _within(term, chosen)
-    made = branches(within) if within is not None else iter(())
-    alike = (branch for branch in made if frozenset(tasks(branch)) == chosen)
-    yield from (rows(branch) for branch in islice(alike, CHOICES_MAX))
-
-
-def _within(term: Term, chosen: frozenset[int]) -> Term | None:
-    """The term without the operands of `+` that need another task; None if nothing is left.
-
-    So no branch is made that cannot consist of the chosen tasks: of twenty choices between two tasks
-    one branch is left of a million.
-    """
-    if isinstance(term, Atom):
-        return term if term.task in chosen else None
-    inside = [_within(operand, chosen) for operand in term.operands]
-    kept = tuple(operand for operand in inside if operand is not None)
-    if not kept or (term.op != ALTERNATIVE and len(kept) < len(inside)):
-        return None
-    return replace(term, operands=kept)
-
-
-def part_choices(mission: Mission, chosen: frozenset[int]) -> Iterator[tuple[Row, ...]]:
-    """The rows on the chosen tasks of each branch that permits that just these of its tasks are done.
-
-    No more than CHOICES_MAX branches are looked at.
-    """
-    term = term_of(mission)
-    if term is None or not chosen:
-        return
-    for branch in islice(branches(after_choices(term, chosen)), CHOICES_MAX):
-        if chosen <= set(tasks(branch)) and may_be_done(branch, chosen):
-            yield kept_rows(branch, chosen)
-
-
-def term_rows(mission: Mission, chosen: frozenset[int], times: Times) -> tuple[Row, ...] | None:
-    """The constraint rows of the chosen tasks; None if no branch consists of them.
-
-    Of several branches with these tasks it is the first whose rows hold of the times (ms), as far
-    as their tasks have times; else the first of those with the fewest broken rows.
-    """
-    return _best_rows(row_choices(mission, chosen), times)
-
-
-def _best_rows(choices: Iterator[tuple[Row, ...]], times: Times) -> tuple[Row, ...] | None:
-    best: tuple[Row, ...] | None = None
-    least = math.inf
-    for choice in choices:
-        known = [row for row in choice if all(t in times for t in (row.i, *row.group))]
-        broken = sum(row_verdict(row, times, "").outcome is not Outcome.HOLDS for row in known)
-        if broken < least:
-            best, least = choice, broken
-        if broken == 0:
-            break
-    return best
-
-
 def _verdict(item: str, good: bool, note: str, method: str, **more: object) -> Verdict:
     outcome = Outcome.HOLDS if good else Outcome.VIOLATED
     return Verdict("G1", item, outcome, Kind.EXACT, note, method=method, **more)  # type: ignore[arg-type]
@@ -122,26 +52,33 @@ def _complete(mission: Mission, plan: Plan) -> Iterator[Verdict]:
     """Every task of one branch is planned exactly once, and no other; if not, whether it is a part."""
     planned = sorted(item.task_id for item in plan.items)
     chosen = frozenset(planned)
-    alike = any(True for _ in row_choices(mission, chosen))
+    alike = is_choice(mission, chosen)
     wanted = chosen if alike else _first_choice(mission)
     known = sorted({*planned, *(task.id for task in mission.tasks), *wanted})
-    counts = [(int(t in wanted), int(t in wanted), planned.count(t)) for t in known]
+    in_part = {one.task_id: one for one in in_part_of(plan)}
+    # what is done in part is not done as it is asked
+    whole = {t: 0 if t in in_part else planned.count(t) for t in known}
+    counts = [(int(t in wanted), int(t in wanted), whole[t]) for t in known]
     twice = sorted({task for task in planned if planned.count(task) > 1})
     note = f"tasks planned: {', '.join(map(str, planned)) or 'none'}"
     if twice:
         note += f"; planned twice: {', '.join(map(str, twice))}"
-    part = not alike and any(True for _ in part_choices(mission, chosen))
+    part = not alike and is_part(mission, chosen)
     if part:
         left = [t for t in asked(mission, frozenset(), chosen) if t not in chosen]
         note += f"; left out: {', '.join(map(str, left))}"
     elif not alike:
         note += "; they are no complete choice of the mission's relations"
-    decided = (qualified(as_asked),)
+    if in_part:
+        part = part or alike
+        note += f"; in part: {'; '.join(one.text for one in in_part.values())}"
+    decided = (qualified(as_asked), *by_term(mission))
     yield _verdict(
         WHOLE, bool(as_asked(counts)), note, "as_asked", checks=len(known), kernels=decided
     )
     if part:
-        yield _verdict(PART, not twice, note, "may_be_done", checks=1)
+        once = bool(as_asked([(0, 1, planned.count(t)) for t in known]))
+        yield _verdict(PART, once, note, "as_asked", checks=len(known), kernels=decided)
 
 
 def _first_choice(mission: Mission) -> frozenset[int]:
@@ -227,20 +164,23 @@ def _chains(mission: Mission, plan: Plan) -> Iterator[Verdict]:
 
 def _relations(mission: Mission, plan: Plan) -> Iterator[Verdict]:
     times = {item.task_id: (item.start_ms, item.end_ms) for item in plan.items}
-    wanted = term_rows(mission, frozenset(times), times)
-    if wanted is None:
-        wanted = _best_rows(part_choices(mission, frozenset(times)), times)
-    if wanted is None:
+    chosen = frozenset(times)
+    kept = branch_rows(mission, chosen, times)
+    if kept is None:
+        kept = branch_rows(mission, chosen, times, part=True)
+    if kept is None:
         return
-    for row in wanted:
-        yield row_verdict(row, times, "plan")
-    yield _verdict(
-        "plan: all order and timing rows at once",
-        all_hold(wanted, times),
-        f"{len(wanted)} rows",
-        "schedule_holds",
-        checks=len(wanted),
-        kernels=(qualified(schedule_holds),),
+    for row in kept.rows:
+        yield kept.verdict(row, times, "plan")
+    yield kept.judged(
+        _verdict(
+            "plan: all order and timing rows at once",
+            all_hold(kept.rows, times),
+            f"{len(kept.rows)} rows",
+            "schedule_holds",
+            checks=len(kept.rows),
+            kernels=(qualified(schedule_holds), *kept.kernels),
+        )
     )
 
 

@@ -10,8 +10,9 @@ from collections.abc import Collection, Iterable, Iterator, Set
 from typing import NamedTuple
 
 from cratous.core.schedule.rows import runs_forward
-from cratous.services.monitor.plan_check import WHOLE, row_choices
+from cratous.services.monitor.plan_check import WHOLE
 from cratous.services.monitor.presence import Span, in_the_air
+from cratous.services.monitor.relations import first_choices
 from cratous.spec.mission import Mission, Zone
 from cratous.spec.mission.asked import asked
 from cratous.spec.mission.changes import asked_by
@@ -121,7 +122,7 @@ def relation_items(seen: Watched, present: Collection[str]) -> list[str]:
     the present items.
     """
     best: list[str] | None = None
-    for rows in row_choices(seen.asked, frozenset(seen.tasks)):
+    for rows in first_choices(seen.asked, frozenset(seen.tasks)):
         items = [f"flight: {row.text}" for row in rows]
         lacking = set(items) - set(present)
         if not lacking:

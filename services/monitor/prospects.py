@@ -10,6 +10,7 @@ from typing import Any
 
 from cratous.core.schedule.rows import runs_forward
 from cratous.services.mission.taking_part import absent
+from cratous.services.monitor.outside import outside_zones
 from cratous.spec.mission import Mission, Task
 from cratous.spec.mission.changes import TASK_ADDED, split
 
@@ -28,7 +29,12 @@ def prospects(mission: Mission, task: Task, end_ms: int) -> tuple[str, dict[str,
     if able:
         names = ", ".join(f"vehicle {number}" for number in able)
         text = f"{names} could do it at the end; whether a way and the time were left is {OPEN}"
-        return text, {"could_be_served": OPEN, "since_ms": None, "vehicles": vehicles}
+        found = {"could_be_served": OPEN, "since_ms": None, "vehicles": vehicles}
+        cut = outside_zones(mission, task, end_ms)
+        return "; ".join((text, *cut.words)), {
+            **found,
+            "outside_zones": cut.data,
+        } if cut.data else found
     since_ms, asked_ms = _since(mission, task, end_ms), _asked(mission, task)
     said = "; ".join(f"vehicle {v['vehicle']}: {v['unable']}" for v in vehicles)
     never = runs_forward(since_ms, asked_ms)

@@ -7,7 +7,7 @@ The search is that of `services.planning.mission_assign`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from cratous.bridge import lmcp
@@ -19,6 +19,7 @@ from cratous.services.pipeline.offers import OPTIONS, Offered, Told, read, trave
 from cratous.services.pipeline.status import status
 from cratous.services.planning import mission_assign, without_vehicles
 from cratous.services.planning.left_out import assign_part
+from cratous.services.planning.options import Option
 from cratous.services.planning.partial import Parts
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 
@@ -104,6 +105,7 @@ class AssignmentTreeBranchBoundService:
         out += [
             status(key, "Information", facts(result)),
             *_left_out(key, context.assigned),
+            *_in_part(key, inputs.options, result),
             summary,
         ]
 
@@ -142,6 +144,23 @@ def _left_out(key: int, found: mission_assign.Found) -> list[Any]:
     return [
         status(key, "Warning", [("TaskID", str(left.task_id)), ("reason", left.text)])
         for left in found.left_out
+    ]
+
+
+def _in_part(key: int, options: Sequence[Option], result: Assignment) -> list[Any]:
+    """A warning for each task that is done in part, with its TaskID, its share, and the zones."""
+    return [
+        status(
+            key,
+            "Warning",
+            [
+                ("TaskID", str(part.task_id)),
+                ("share", f"{part.share:.4f}"),
+                ("zones", " ".join(map(str, part.zones))),
+                ("reason", part.text),
+            ],
+        )
+        for part in mission_assign.parts_in(options, result)
     ]
 
 

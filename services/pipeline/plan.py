@@ -26,6 +26,7 @@ from cratous.services.pipeline.tasks import TaskService
 from cratous.services.pipeline.validator import AutomationRequestValidatorService
 from cratous.services.planning import stages, without_vehicles
 from cratous.services.planning.inputs import Inputs
+from cratous.services.planning.mission_assign import parts_in
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission import Mission
 from cratous.spec.mission.changes import with_choices
@@ -176,8 +177,10 @@ def _answered(requests: MissionRequests, contexts: Contexts) -> Plan:
     context = contexts.of(unique.RequestID)
     plan = _exact(context, requests.newest("TaskAssignmentSummary"))
     assert context.assigned is not None
-    if context.assigned.left_out:
-        plan = partial(plan, context.assigned.left_out, context.assigned.sure)
+    found = context.assigned
+    in_part = tuple(parts_in(context.inputs.options, found.assignment))
+    if found.left_out or in_part:
+        plan = partial(plan, found.left_out, found.sure, in_part)
     said = {c.VehicleID: _order(c) for c in commands}
     flown = {v: [item.task_id for item in plan.chain(v)] for v in said}
     if said != flown or len(plan.items) != sum(map(len, said.values())):

@@ -148,13 +148,14 @@ class AutomationRequestValidatorService:
         return _done(state, ticket)
 
     def _noted(self, state: Requests, body: Any) -> Requests:
-        """A warning that a task of the request in the pipeline is left out goes into its answer."""
+        """A warning that a task of the request in the pipeline is left out, or done in part, goes into its answer."""
         facts = {pair.Key: pair.Value for pair in body.Info}
         if body.StatusType.name != "Warning" or "TaskID" not in facts or not state.work:
             return state
         if facts.get("RequestID") != str(state.work):
             return state
-        return state._replace(notes=(*state.notes, f"left out: {facts.get('reason', '')}"))
+        kind = "in part" if "share" in facts else "left out"
+        return state._replace(notes=(*state.notes, f"{kind}: {facts.get('reason', '')}"))
 
     def _fail(self, state: Requests, body: Any, out: list[Any], now_ms: int) -> Requests:
         """An error ends the request that it names; without a name, the one in the pipeline."""

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.routing.dubins import polyline_length_m
 from cratous.core.routing.visibility import Roadmap, name_of
 from cratous.core.tasks.coverage import (
     area_m2,
@@ -40,6 +41,7 @@ from cratous.core.tasks.sweep import (
     unjoined_m,
 )
 from cratous.services.mission.sensor import elevation_rad, footprints, looks_over, sample_line
+from cratous.services.planning.cut_ways import cut
 from cratous.services.planning.flyers import HEADING_STEP_DEG, Flyer, Way, flight_ms, no_way
 from cratous.services.planning.smoothing import MARGIN
 from cratous.services.planning.zones import roadmaps
@@ -85,11 +87,7 @@ def area_ways(
     task: Task, flyer: Flyer, camera: Camera, zones: Sequence[Zone], terrain_m: float
 ) -> Iterator[Way]:
     """A few ways over the area for each wanted view, shortest first, and those not offered."""
-    vertices = outline(task)
-    height_m = flyer.alt_m - terrain_m
-    side_m = square_side_m(vertices)
-    squares = functools.cache(functools.partial(square_array, vertices, side_m))
-    site = _Site(task, flyer, camera, height_m, vertices, side_m, squares)
+    site = _site(task, flyer, camera, terrain_m)
     maps = roadmaps(zones, flyer.radius_m)
     views = (task.view, *task.views)
     for view in views[:VIEWS_MOST]:
@@ -113,6 +111,44 @@ def area_ways(
                 yield way
     if len(views) > VIEWS_MOST:
         yield no_way("", f"only the first {VIEWS_MOST} directions of view are offered")
+
+
+def area_parts(
+    task: Task, flyer: Flyer, camera: Camera, maps: Sequence[Roadmap], terrain_m: float
+) -> Iterator[Way]:
+    """For each wanted view the shortest ways over an area, without what the zones forbid of them."""
+    site = _site(task, flyer, camera, terrain_m)
+    for view in (task.view, *task.views)[:VIEWS_MOST]:
+        made = _candidates(site, view, LEADS[1] * flyer.radius_m)
+        if isinstance(made, str):
+            yield no_way("", made)
+            continue
+        for candidate in sorted(made, key=lambda c: c.length_m)[:OPTIONS_MOST]:
+            paths = [piece.points for piece in candidate.pieces]
+            left = cut(paths, flyer.radius_m, maps, in_order=False)
+            label = f"{candidate.label}, in part"
+            if not left.points:
+                yield no_way(label, "no part of it outside of the zones has room to turn")
+                continue
+            yield Way(
+                label,
+                left.start,
+                left.end,
+                left.points,
+                flight_ms(polyline_length_m(left.points), flyer.speed_m_s),
+                _share(site, view, left.points, None),
+                "",
+                elevation_rad(camera, view),
+                view.azimuth_rad if view is not None else 0.0,
+                left.zones,
+            )
+
+
+def _site(task: Task, flyer: Flyer, camera: Camera, terrain_m: float) -> _Site:
+    vertices = outline(task)
+    side_m = square_side_m(vertices)
+    squares = functools.cache(functools.partial(square_array, vertices, side_m))
+    return _Site(task, flyer, camera, flyer.alt_m - terrain_m, vertices, side_m, squares)
 
 
 def _tighter(
@@ -164,15 +200,17 @@ def _share(
     site: _Site,
     view: View | None,
     points: tuple[Position, ...],
+    most: int | None = MEASURED_MOST,
 ) -> float | None:
     """The share of the area that a flight along the points sees, with a margin for its wobble.
 
-    None where measuring it would take long: the lanes are made to cover, the flight is measured.
+    None where measuring it would take more than so many footprints: the lanes are made to cover, the
+    flight is measured.
     """
     import numpy as np
 
     places = sample_line(points, max(10.0, site.flyer.speed_m_s / 2))
-    if len(places) > MEASURED_MOST:
+    if most is not None and len(places) > most:
         return None
     looks = looks_over(places, view, site.height_m)
     centres = site.squares()

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from cratous.core.routing.dubins import pose_after, turn_radius_m
 from cratous.core.routing.visibility import start_point
-from cratous.spec.mission import Camera, Position, Task, Vehicle
+from cratous.spec.mission import Camera, Position, Task, Vehicle, Zone
 from cratous.spec.mission.plan import Pose
 
 BANK_RESERVE = 1.1
@@ -33,6 +33,7 @@ class Way(NamedTuple):
 
     coverage: the fraction of what has to be seen that the camera sees, None: not asked.
     elevation_rad, azimuth_rad: where the camera has to point; None: the task does not say.
+    zones: what they forbid of the path was cut from it.
     """
 
     label: str
@@ -44,6 +45,7 @@ class Way(NamedTuple):
     reason: str = ""
     elevation_rad: float | None = None
     azimuth_rad: float = 0.0
+    zones: tuple[Zone, ...] = ()
 
 
 def no_way(label: str, reason: str) -> Way:

@@ -7,7 +7,7 @@ certificate has been checked; a plan is called optimal only by that.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,7 @@ from cratous.spec.algebra import Term, format_term
 from cratous.spec.algebra.meaning import tasks as tasks_of
 from cratous.spec.assignment.search import CUMULATIVE, MINMAX, AssignmentProblem, Choice, Solution
 from cratous.spec.mission import Mission
-from cratous.spec.mission.plan import LeftOut
+from cratous.spec.mission.plan import InPart, LeftOut
 
 NODES = 1_000_000
 """Nodes of a mission's search where it gives no limit, some seconds at most."""
@@ -128,6 +128,14 @@ def indexed(problem: AssignmentProblem, solution: Solution, digest: str) -> Assi
         Branch(tasks, binding(problem, part)), tuple(placed), solution.cost, solution.bound,
         solution.status, solution.nodes, digest,
     )  # fmt: skip
+
+
+def parts_in(options: Sequence[Option], assignment: Assignment | None) -> Iterator[InPart]:
+    """What an assignment does in part, by task."""
+    placed = () if assignment is None else assignment.placed
+    for option in sorted((options[one.candidate] for one in placed), key=lambda o: o.task_id):
+        if option.part is not None:
+            yield option.part
 
 
 def places_in(mission: Mission) -> reasons.Places:

@@ -8,14 +8,16 @@ reason kept for the user.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.routing.visibility import circle, name_of
-from cratous.services.mission.sensor import sample_distance_m, zoomed
-from cratous.services.planning.area_ways import area_ways
+from cratous.core.tasks.coverage import outline
+from cratous.core.tasks.outside import area_outside, points_outside
+from cratous.services.mission.sensor import sample_distance_m, sample_line, zoomed
+from cratous.services.planning.area_ways import area_parts, area_ways
 from cratous.services.planning.flyers import Flyer as Flyer
 from cratous.services.planning.flyers import Way, camera_for
 from cratous.services.planning.flyers import flight_ms as flight_ms
@@ -27,6 +29,7 @@ from cratous.services.planning.point_ways import (
     point_ways,
 )
 from cratous.services.planning.smoothing import ENOUGH
+from cratous.services.planning.zones import roadmaps
 from cratous.spec.mission import (
     AREAS,
     SEARCHES,
@@ -37,7 +40,7 @@ from cratous.spec.mission import (
     TaskKind,
     Zone,
 )
-from cratous.spec.mission.plan import Pose
+from cratous.spec.mission.plan import InPart, Pose
 
 SEEN = {
     TaskKind.LINE_SEARCH: "the line",
@@ -45,6 +48,10 @@ SEEN = {
     TaskKind.AREA_SEARCH: "the area",
     TaskKind.PATTERN_SEARCH: "the area",
 }
+CUT = (TaskKind.LINE_SEARCH, *AREAS)
+"""Of these a part is offered where zones forbid the whole."""
+ALIKE = 0.01
+"""Of ways over a part those are offered that do no less of the task than this below the most."""
 HOLD_FACTORS = (2.0, 1.5, 1.2, 1.0)
 """Largest hold circles that are tried at a start pose, in turn radii."""
 
@@ -58,7 +65,8 @@ class HoldRoom(NamedTuple):
 
 @dataclass(frozen=True)
 class Option:
-    """One way to fly one task, for the vehicles named. Times in ms; coverage None: not asked."""
+    """One way to fly one task, for the vehicles named. Times in ms; coverage None: not asked; part: which
+    part of the task it does, None: all of it."""
 
     task_id: int
     option_id: int
@@ -73,6 +81,7 @@ class Option:
     coverage: float | None = None
     view_elevation_rad: float | None = None
     view_azimuth_rad: float = 0.0
+    part: InPart | None = None
 
     @property
     def lap_ms(self) -> int:
@@ -109,20 +118,23 @@ def expand(
     options: list[Option] = []
     dropped: list[Dropped] = []
     for task in tasks:
-        number = 1
+        may: dict[Flyer, tuple[int, ...]] = {}
         for flyer, ids in classes.items():
             able = tuple(v for v in ids if not task.eligible or v in task.eligible)
             unable = tuple(v for v in ids if v not in able)
             if unable:
                 dropped.append(Dropped(task.id, unable, "", "the task does not name it eligible"))
-            if not able:
-                continue
-            for made in _options(task, flyer, able, zones, mission.frame.terrain_m):
-                if isinstance(made, Option):
-                    options.append(replace(made, option_id=number))
-                    number += 1
-                else:
-                    dropped.append(made)
+            if able:
+                may[flyer] = able
+        made = [
+            one
+            for flyer, able in may.items()
+            for one in _options(task, flyer, able, zones, mission.frame.terrain_m)
+        ]
+        offered = [one for one in made if isinstance(one, Option)]
+        offered = offered or parts_of(task, may, zones, mission.frame.terrain_m)
+        options += [replace(one, option_id=k) for k, one in enumerate(offered, 1)]
+        dropped += [one for one in made if isinstance(one, Dropped)]
     return tuple(options), tuple(dropped)
 
 
@@ -157,6 +169,57 @@ def _options(
             hold_rooms(way.start, flyer.radius_m, zones), way.label, way.coverage,
             way.elevation_rad, way.azimuth_rad,
         )  # fmt: skip
+
+
+def parts_of(
+    task: Task, may: Mapping[Flyer, tuple[int, ...]], zones: Sequence[Zone], terrain_m: float
+) -> list[Option]:
+    """Ways over what zones leave of a line or an area; none that do less than others by more than ALIKE of it.
+
+    may: who may do the task, by class.
+    """
+    found = []
+    for flyer, able in may.items() if task.kind in CUT and zones else ():
+        camera = camera_for(task, flyer.cameras)
+        if camera is not None:
+            camera = zoomed(camera, task, flyer.alt_m - terrain_m)
+        if _unfit(task, flyer, camera, terrain_m):
+            continue
+        maps = roadmaps(zones, flyer.radius_m)
+        ways = (
+            line_ways(task, flyer, camera, terrain_m, maps)
+            if task.kind is TaskKind.LINE_SEARCH or camera is None
+            else area_parts(task, flyer, camera, maps, terrain_m)
+        )
+        for way in ways:
+            # a way that no zone cuts is refused for another reason
+            if not way.zones or not way.coverage or first_bad_leg(way.points, zones) is not None:
+                continue
+            found.append(
+                Option(
+                    task.id, 0, able, flyer, way.start, way.end, way.points, way.duration_ms,
+                    hold_rooms(way.start, flyer.radius_m, zones), way.label, way.coverage,
+                    way.elevation_rad, way.azimuth_rad, _part(task, way, flyer, zones),
+                )
+            )  # fmt: skip
+    most = max((option.coverage or 0.0 for option in found), default=0.0)
+    return [option for option in found if (option.coverage or 0.0) >= most - ALIKE]
+
+
+def _part(task: Task, way: Way, flyer: Flyer, zones: Sequence[Zone]) -> InPart | None:
+    """Which part of a task a way does; None if it sees enough to serve it."""
+    assert way.coverage is not None
+    if camera_for(task, flyer.cameras) is not None and way.coverage >= ENOUGH:
+        return None
+    cutting = [zone for zone in zones if zone.id in {z.id for z in way.zones}]
+    if task.kind in AREAS:
+        outside = area_outside(outline(task), flyer.alt_m, cutting)
+    else:
+        points = [(float(n), float(e)) for n, e in sample_line(task.points)]
+        outside = points_outside(points, flyer.alt_m, cutting)
+    ids = tuple(zone.id for zone in cutting)
+    names = ", ".join(name_of(zone) for zone in cutting)
+    return InPart(task.id, way.coverage, outside, ids, names)
 
 
 def _unfit(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float) -> str:

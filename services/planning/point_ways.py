@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from cratous.core.routing.dubins import LEFT, RIGHT
+from cratous.core.routing.dubins import LEFT, RIGHT, polyline_length_m
 from cratous.core.routing.laps import flown, lap_length_m, lap_of
+from cratous.core.routing.visibility import Roadmap
 from cratous.services.mission.sensor import coverage, elevation_rad, share_seen, view_distance_m
+from cratous.services.planning.cut_ways import cut
 from cratous.services.planning.flyers import (
     HEADING_STEP_DEG,
     MOMENT_MS,
@@ -42,8 +44,17 @@ def views_of(task: Task) -> tuple[View | None, ...]:
     return (task.view, *task.views)
 
 
-def line_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float) -> Iterator[Way]:
-    """Both directions of a line for each wanted view, offset to where that view looks at it."""
+def line_ways(
+    task: Task,
+    flyer: Flyer,
+    camera: Camera | None,
+    terrain_m: float,
+    roadmaps: Sequence[Roadmap] | None = None,
+) -> Iterator[Way]:
+    """Both directions of a line for each wanted view, offset to where that view looks at it.
+
+    roadmaps: those ways that cover the line are cut where their zones forbid it, and what is left is joined.
+    """
     views = tilted(task, camera) or views_of(task)
     for number, view in enumerate(views[:VIEWS_MOST], 1):
         for label, points in (("forward", task.points), ("backward", task.points[::-1])):
@@ -53,8 +64,33 @@ def line_ways(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float)
             duration = flight_ms(made.length_m, flyer.speed_m_s)
             named = label if len(views) == 1 else f"{label}, view {number}"
             way = Way(named, made.start, made.end, made.points, duration, seen)
+            if roadmaps is not None:
+                way = _cut(way, line, flyer, camera, terrain_m, roadmaps)
             yield _looking(way, camera, view)
     yield from _left_out(len(views))
+
+
+def _cut(
+    way: Way,
+    line: Task,
+    flyer: Flyer,
+    camera: Camera | None,
+    terrain_m: float,
+    roadmaps: Sequence[Roadmap],
+) -> Way:
+    """A way along a line without what the zones forbid of it; its coverage is then that of the whole line."""
+    if way.coverage is not None and way.coverage < ENOUGH:
+        return way
+    left = cut([way.points], flyer.radius_m, roadmaps, in_order=True)
+    if not left.points:
+        return no_way(way.label, "no part of it outside of the zones has room to turn")
+    length_m = polyline_length_m(left.points)
+    seen = length_m / polyline_length_m(way.points)
+    if camera is not None:
+        seen = coverage(left.points, line, camera, terrain_m)
+    duration = flight_ms(length_m, flyer.speed_m_s)
+    label = f"{way.label}, in part"
+    return Way(label, left.start, left.end, left.points, duration, seen, zones=left.zones)
 
 
 def tilted(task: Task, camera: Camera | None) -> tuple[View, ...]:

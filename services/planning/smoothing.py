@@ -101,11 +101,11 @@ def fly(
         _, j, path = min(options, key=lambda option: option[0])
         points.extend(cut(path, poses[j])[1:])
         i = j
-    flown = _without_collinear(points)
+    flown = without_collinear(points)
     return poses[0], poses[-1], flown, polyline_length_m(flown)
 
 
-def _without_collinear(points: list[Position]) -> tuple[Position, ...]:
+def without_collinear(points: list[Position]) -> tuple[Position, ...]:
     """The polyline without inner points that lie on the straight leg between their neighbours."""
     kept = points[:1]
     for point, after in pairwise(points[1:]):

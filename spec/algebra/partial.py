@@ -4,7 +4,8 @@ A task that ended undone, or was never begun, satisfies nothing. So a later oper
 task done only if the operand before it was done whole (`.(p1 p2)`: without p1 no p2); a later operand of
 `~` only if some task of the one before it was begun. Under `|` the others go on. Of `+` still at most
 one operand is begun. Order and timing hold for what was done as they do for all: of a relative timing
-the operand before counts with those of its tasks that ran.
+the operand before counts with those of its tasks that ran. A line or an area of which a part was flown, since
+zones cover the rest, is done here: the part is what can be done (whether that serves it is judged apart).
 
 `permits` says that of composites and times; `may_be_done` the same of sets of tasks, where only the
 order of things matters. `kept_rows` gives the constraints on times, `only` the term that is left.

@@ -7,6 +7,7 @@ task itself. Polylines are what is flown: arcs are already cut into short legs.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields
 from typing import NamedTuple
 
@@ -99,22 +100,59 @@ class LeftOut(NamedTuple):
         return f"task {self.task_id} ({self.reason}{waiting if self.waiting else ''})"
 
 
+class InPart(NamedTuple):
+    """A line or an area of which a part is planned, since zones cover the rest.
+
+    share: how much of it the planned way sees, at least, from 0 to 1 (without a camera: how much of its length
+    is flown); outside: how much of it lies outside of the zones at the vehicle's altitude, at least;
+    zones: their ids; names: the zones in words.
+    """
+
+    task_id: int
+    share: float
+    outside: float
+    zones: tuple[int, ...]
+    names: str
+
+    @property
+    def text(self) -> str:
+        """In words: the task, the shares, and because of which zones."""
+        return (
+            f"task {self.task_id} (planned: {percent(self.share)} of it; "
+            f"{percent(self.outside)} of it lies outside of {self.names}; "
+            "for the rest no way was found that keeps the zones)"
+        )
+
+
+def percent(share: float) -> str:
+    """A share in per cent, rounded down to a tenth."""
+    return f"{math.floor(1000 * share + 1e-9) / 10:.1f} %"
+
+
 @dataclass(frozen=True)
 class PartialPlan(Plan):
     """A plan of a part of what is asked for: what can be done of it.
 
-    chosen: the tasks of that part; sure: no more can be done, as far as was searched.
+    chosen: the tasks of that part; sure: no more can be done, as far as was searched; in_part: those of
+    the planned tasks of which only a part is done.
     """
 
     left_out: tuple[LeftOut, ...] = ()
     sure: bool = True
+    in_part: tuple[InPart, ...] = ()
 
 
-def partial(plan: Plan, left_out: tuple[LeftOut, ...], sure: bool) -> PartialPlan:
-    """A plan that leaves these tasks out."""
-    return PartialPlan(
-        **{f.name: getattr(plan, f.name) for f in fields(Plan)}, left_out=left_out, sure=sure
-    )
+def partial(
+    plan: Plan, left_out: tuple[LeftOut, ...], sure: bool, in_part: tuple[InPart, ...] = ()
+) -> PartialPlan:
+    """A plan that leaves these tasks out, and does those in part."""
+    known = {f.name: getattr(plan, f.name) for f in fields(Plan)}
+    return PartialPlan(**known, left_out=left_out, sure=sure, in_part=in_part)
+
+
+def in_part_of(plan: Plan) -> tuple[InPart, ...]:
+    """The tasks that a plan does in part; none of a plan of all that is asked for."""
+    return plan.in_part if isinstance(plan, PartialPlan) else ()
 
 
 def left_out_of(plan: Plan) -> tuple[LeftOut, ...]:
@@ -123,9 +161,10 @@ def left_out_of(plan: Plan) -> tuple[LeftOut, ...]:
 
 
 def left_out_text(plan: Plan) -> str:
-    """In one line which tasks a plan leaves out and why; empty if none."""
+    """In one line which tasks a plan leaves out or does in part, and why; empty if none."""
     said = [left.text for left in left_out_of(plan)]
-    if not said:
-        return ""
-    doubt = "" if isinstance(plan, PartialPlan) and plan.sure else "; more may be possible"
-    return f"left out: {'; '.join(said)}{doubt}"
+    told = [f"in part: {'; '.join(one.text for one in in_part_of(plan))}"] * bool(in_part_of(plan))
+    if said:
+        doubt = "" if isinstance(plan, PartialPlan) and plan.sure else "; more may be possible"
+        told.insert(0, f"left out: {'; '.join(said)}{doubt}")
+    return "; ".join(told)

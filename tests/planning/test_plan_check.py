@@ -7,7 +7,8 @@ from typing import Any
 
 import pytest
 
-from cratous.services.monitor.plan_check import check_plan, row_choices
+from cratous.services.monitor.plan_check import check_plan
+from cratous.services.monitor.relations import row_choices
 from cratous.spec.mission import (
     Daa,
     Frame,

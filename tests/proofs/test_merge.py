@@ -18,7 +18,7 @@ def _git(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
 
 
 CHANGES = {
-    "now": ("core/well_clear/now.py", "    if ss <= dd:", "    if 0 + ss <= dd:"),
+    "early": ("core/authority/timeliness.py", "return at + margin < planned", "return margin + at < planned"),
     "gate": ("core/authority/gate.py", "Gate(1, gate.epoch + 1, False)", "Gate(1, 1 + gate.epoch, False)"),
     "wind": ("core/routing/wind.py", "most_m_s - ground_m_s", "0 + most_m_s - ground_m_s"),
     "again": ("core/authority/gate.py", "Gate(1, gate.epoch + 1, False)", "Gate(1, gate.epoch + 1 + 0, False)"),
@@ -56,7 +56,7 @@ def branches(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.parametrize(("one", "other"), [("now", "gate"), ("gate", "wind"), ("wind", "now")])
+@pytest.mark.parametrize(("one", "other"), [("early", "gate"), ("gate", "wind"), ("wind", "early")])
 def test_two_branches_that_change_two_kernels_merge_and_pass(
     one: str, other: str, branches: Path
 ) -> None:
@@ -79,16 +79,16 @@ def test_a_merge_that_took_the_record_of_one_and_the_kernel_of_another_is_refuse
     branches: Path,
 ) -> None:
     assert _git(branches, "checkout", "-q", "-B", "merged", "gate").returncode == 0
-    _git(branches, "checkout", "now", "--", f"cratous/{CHANGES['now'][0]}")
+    _git(branches, "checkout", "early", "--", f"cratous/{CHANGES['early'][0]}")
     done = check(branches)
     _git(branches, "reset", "-q", "--hard")
     assert done.returncode == 1
-    assert "horizontal_violation: changed since the proof: its source" in done.stdout
+    assert "too_early: changed since the proof: its source" in done.stdout
 
 
 @pytest.mark.slow
 def test_what_was_merged_is_what_a_proof_of_it_writes(branches: Path) -> None:
-    assert _git(branches, "checkout", "-q", "-B", "merged", "now").returncode == 0
+    assert _git(branches, "checkout", "-q", "-B", "merged", "early").returncode == 0
     assert _git(branches, "merge", "-q", "--no-edit", "wind").returncode == 0
     done = prove(branches, "--check")
     assert done.returncode == 0, done.stdout + done.stderr

@@ -1,0 +1,106 @@
+"""Induction on a term of the process algebra: a task, or an operator over one or more operands.
+
+The rule. Let a kernel give every term a value and a definition give it a meaning: a task its own, an
+operator what comes of its operands, one after the other. If value and meaning of any task are related
+(task); if those of no operand yet are (none); if one operand more keeps that, for any operand whose
+own value and meaning are related (operand); and if value and meaning of the whole are related wherever
+those of its operands are (whole), then they are related for every term: by induction on the number of its
+nodes, and for each operator on the number of its operands. What else an operator has (its code, its
+timing, when its operands ran) may be anything, and another at each node.
+
+This needs that the relation is one and the same at every node, that what is known of operands is arbitrary
+but for the relation, that nothing about a task rests on premises about operators or the other way, and that the definition's side depends on meanings alone, never on a kernel's value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import z3
+
+from cratous.proofs.claim import Claim
+from cratous.proofs.engine.induction import arbitrary, names_in, spread
+from cratous.proofs.engine.terms import free_names, statement
+
+Pair = tuple[Any, Any]
+"""On the kernel's side, and on the definition's."""
+
+
+def every_term(
+    c: Claim,
+    *,
+    task: Pair,
+    none: Pair,
+    so_far: Pair,
+    operand: Pair,
+    add: tuple[Callable[[Any, Any], Any], Callable[[Any, Any], Any]],
+    whole: tuple[Callable[[Any], Any], Callable[[Any], Any]],
+    related: Callable[[Any, Any], Any],
+    alike: Callable[[Any, Any], Any],
+    node: tuple[Any, ...],
+    text: str,
+) -> None:
+    """Show that value and meaning of every term are related.
+
+    Pairs of the kernel's side and the definition's. task: of an arbitrary task; none: before the first
+    operand; so_far, operand: arbitrary values of what came before and of one operand; add(so_far,
+    operand): with that operand; whole(so_far): of the term, after its last operand. related(value,
+    meaning): of a term; alike(value, meaning): of its operands so far; node: what a node has beside
+    its operands, arbitrary values, another at each node.
+    """
+    if c.prefix:
+        return  # used as a lemma, an induction has no goals to offer, as with `Claim.fold`
+    arbitrary(c.premises, (so_far, operand), node)
+    premises = list(c.premises)
+    of_task, of_node = spread(names_in(task), c), spread(names_in(node), c)
+    with _without(c, of_node):
+        c._owe("base", f"{text}: a task", statement(related(*task)))
+    before = statement(alike(*so_far))
+    one = statement(related(*operand))
+    for term in (before, one):
+        if shared := sorted(free_names(term) & of_node):
+            raise ValueError(
+                f"the relation depends on {shared[0]} of one node: it has to hold at every node"
+            )
+    of_kernel = spread(names_in((so_far[0], operand[0])), c)
+    of_operands = of_kernel | spread(names_in((so_far[1], operand[1])), c)
+    for what, values in (("a task", task), ("no operand", none)):
+        _apart(f"the value or meaning of {what}", values, of_operands)
+    with _without(c, of_task):
+        c._owe("base", f"{text}: no operand yet", statement(alike(*none)))
+        # the steps are run only where the relations hold, so what they owe is owed there
+        kept = len(c.facts)
+        c._grant(z3.And(before, one))
+        after, meant = add[0](so_far[0], operand[0]), add[1](so_far[1], operand[1])
+        c._owe("step", f"{text}: one operand more", statement(alike(after, meant)))
+        c.facts = c.facts[:kept]
+        c._grant(before)
+        value, meaning = whole[0](so_far[0]), whole[1](so_far[1])
+        c._owe("use", f"{text}: the whole term", statement(related(value, meaning)))
+        c.facts, c.granted = c.facts[:kept], ()
+    for what, result in (("with an operand more", meant), ("of the whole", meaning)):
+        _apart(f"the meaning {what}", result, of_kernel)
+    if len(c.premises) != len(premises):
+        raise ValueError("an induction's relation and steps state no premises")
+
+
+@contextmanager
+def _without(c: Claim, names: set[str]) -> Iterator[None]:
+    """What is owed in here is owed without the premises on these values: there may be none."""
+    premises, facts = c.premises, c.facts
+    c.premises = [p for p in premises if not free_names(p) & names]
+    # what was shown before may rest on the premises that are left out
+    c.facts = [*c.roots, *c.congruences]
+    kept = len(c.facts)
+    try:
+        yield
+    finally:
+        c.premises, c.facts = premises, [*facts, *c.facts[kept:]]
+
+
+def _apart(what: str, value: Any, others: set[str]) -> None:
+    shared = sorted(names_in(value) & others)
+    if shared:
+        raise ValueError(f"{what} depends on {shared[0]}")
