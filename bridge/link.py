@@ -9,6 +9,7 @@ went away.
 
 from __future__ import annotations
 
+import itertools
 import select
 import socket
 import time
@@ -67,6 +68,19 @@ class Link:
         host, port = self._sock.getpeername()[:2]
         return host, port
 
+    @property
+    def remote_name(self) -> str:
+        """The other end's address as text, also when it has gone already."""
+        try:
+            return ":".join(map(str, self.remote))
+        except OSError:
+            return "a peer that is gone"
+
+    @property
+    def waiting(self) -> int:
+        """Bytes that the system has not taken yet."""
+        return len(self._out)
+
     def send(self, data: bytes) -> bool:
         """Queue bytes, and hand to the system what it takes now; False if the link is dead."""
         if not self.alive:
@@ -93,10 +107,15 @@ class Link:
         del self._out[:count]
         return count > 0
 
-    def drain(self) -> bool:
-        """Take all that has arrived into the inbox; True if anything did, the end included."""
+    def drain(self, chunks: int | None = None) -> bool:
+        """Take all that has arrived into the inbox; True if anything did, the end included.
+
+        chunks: at most so many reads, so that a fast peer leaves time for others.
+        """
         moved = False
-        while self.alive and self.expects_more():
+        for _ in itertools.count() if chunks is None else range(chunks):
+            if not (self.alive and self.expects_more()):
+                break
             try:
                 data = self._sock.recv(_CHUNK)
             except (BlockingIOError, InterruptedError):
@@ -182,6 +201,10 @@ class Listener:
     def wait(self, timeout_s: float) -> bool:
         """True as soon as a connection waits, False when the time is over."""
         return bool(select.select([self._sock], [], [], timeout_s)[0])
+
+    def fileno(self) -> int:
+        """For select and poll."""
+        return self._sock.fileno()
 
     def close(self) -> None:
         """Stop listening."""

@@ -61,13 +61,17 @@ def judge(
     cache: Cache | None = None,
     recall: Recall | None = None,
     keep: Path | None = None,
+    machine: bool = True,
 ) -> Judgement:
     """Prove these theorems of a home, and look at its kernels and definitions.
 
-    whole: they are all that it has; keep: folder in which relations are kept from run to run.
+    whole: they are all that it has; keep: folder in which relations are kept from run to run;
+    machine: compare kernels with their machine code too.
     Raises BadInput for a theorem that cannot be stated.
     """
-    inventory = ledger.prove_all(names, tell, home=home, jobs=jobs, cache=cache, recall=recall)
+    inventory = ledger.prove_all(
+        names, tell, home=home, jobs=jobs, cache=cache, recall=recall, machine=machine
+    )
     findings = [str(finding) for finding in inventory.findings]
     # what is outside of the subset is not read any further
     read = {} if findings else Kept(keep, home).all(t.name for t in inventory.theorems)

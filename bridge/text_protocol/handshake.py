@@ -7,8 +7,11 @@ only tells a wrong program from the right one: it travels in clear and is no sec
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from hmac import compare_digest
+
+from cratous.spec.errors import BadInput
 
 HELLO = b"ICAROUS-UxAS_LMCP"
 ACCEPT = b"ok "
@@ -16,6 +19,26 @@ REFUSE = b"error"
 SECRET_LENGTH = 64
 # A constant of this product; not a security measure, see above.
 DEFAULT_SECRET = "c7a705" + "0a11ce5afe" * 5 + "facade42"
+SECRET_VARIABLE = "CRATOUS_BRIDGE_SECRET"
+"""The variable of the environment that holds another secret than the product's."""
+
+
+def secret_of_environment() -> str:
+    """The secret of the environment, or the product's; BadInput if it is none (it is never shown)."""
+    text = os.environ.get(SECRET_VARIABLE, DEFAULT_SECRET)
+    if not is_secret(text):
+        raise BadInput(
+            "not a secret of the handshake",
+            item=SECRET_VARIABLE,
+            expected=f"{SECRET_LENGTH} hexadecimal characters",
+            got=f"{len(text)} characters",
+        )
+    return text
+
+
+def is_secret(text: str) -> bool:
+    """True for 64 hexadecimal characters."""
+    return len(text) == SECRET_LENGTH and set(text) <= set("0123456789abcdefABCDEF")
 
 
 @dataclass
@@ -28,8 +51,7 @@ class Handshake:
     rest: bytes = b""
 
     def __post_init__(self) -> None:
-        text = self.secret
-        if len(text) != SECRET_LENGTH or not set(text) <= set("0123456789abcdefABCDEF"):
+        if not is_secret(self.secret):
             raise ValueError(f"a secret is {SECRET_LENGTH} hexadecimal characters")
 
     def start(self) -> bytes:

@@ -140,6 +140,7 @@ class StreamParser:
             self._dropping = True
 
     def _parse(self, line: bytes, records: list[Record]) -> None:
+        line = line.removesuffix(b"\r")  # a peer that ends its lines with CR LF
         try:
             if not _PRINTABLE.match(line):
                 at = next(i for i, byte in enumerate(line) if not 0x20 <= byte <= 0x7E)

@@ -8,7 +8,7 @@ is enumerated: of a `+` every operand is judged once, however many choices there
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import reduce
 from typing import NamedTuple
 
@@ -102,8 +102,8 @@ def term_parts(nodes: Sequence[Node], times: Times, needed: bool) -> tuple[Part,
     """
     _in_range(nodes, times)
     inside = operands_of(nodes)
-    masks = _masks(nodes, inside)
-    begun = _of(nodes, frozenset(times))
+    places = _places(nodes)
+    masks, begun = _masks(nodes, inside, places), _of(places, times)
     ran: list[Ran] = []
     for node, operands in zip(nodes, inside, strict=True):
         own = Ran(True, *times[node.task]) if not operands and node.task in times else NO_RUN
@@ -139,18 +139,32 @@ def _in_range(nodes: Sequence[Node], times: Times) -> None:
             )
 
 
-def _of(nodes: Sequence[Node], tasks: frozenset[int]) -> list[int]:
+def _places(nodes: Sequence[Node]) -> dict[int, int]:
+    """The tasks of a term, each with its place among them."""
+    found: dict[int, int] = {}
+    for node in nodes:
+        if node.op == TASK:
+            found.setdefault(node.task, len(found))
+    return found
+
+
+def _of(places: Mapping[int, int], tasks: Iterable[int]) -> list[int]:
     """A set of tasks of a term as masks; a task has the bit of its place among them."""
-    every = list(dict.fromkeys(node.task for node in nodes if node.op == TASK))
-    groups = [every[k : k + MASK_BITS] for k in range(0, len(every), MASK_BITS)]
-    return [sum(1 << k for k, task in enumerate(group) if task in tasks) for group in groups]
+    masks = [0] * (len(places) // MASK_BITS + 1)
+    for task in tasks:
+        if task in places:
+            group, bit = divmod(places[task], MASK_BITS)
+            masks[group] += 1 << bit
+    return masks
 
 
-def _masks(nodes: Sequence[Node], inside: Sequence[tuple[int, ...]]) -> list[list[int]]:
+def _masks(
+    nodes: Sequence[Node], inside: Sequence[tuple[int, ...]], places: Mapping[int, int]
+) -> list[list[int]]:
     """The tasks that stand in each node."""
     masks: list[list[int]] = []
     for node, operands in zip(nodes, inside, strict=True):
-        own = _of(nodes, frozenset({node.task} if node.op == TASK else ()))
+        own = _of(places, () if operands else (node.task,))
         for k in operands:
             own = [tasks_with(one, other) for one, other in zip(own, masks[k], strict=True)]
         masks.append(own)

@@ -92,10 +92,18 @@ def fly_to(
     return tuple(pieces)
 
 
-def along(
+class Way(NamedTuple):
+    """Flight through points. pieces: up to the last point, or as far as is looked; beyond: straight on
+    from there, None where the points are not all reached by then."""
+
+    pieces: tuple[Piece, ...]
+    beyond: Piece | None
+
+
+def way_along(
     now: Motion, points: Sequence[Position], horizon_s: float, start_s: float = 0.0
-) -> tuple[Piece, ...]:
-    """Fly from the present position through points at the present speed, then straight on."""
+) -> Way:
+    """Fly from the present position through points at the present speed."""
     pieces: list[Piece] = []
     p, t = now.position, start_s
     last = velocity_of(now.heading_rad, now.speed_m_s, 0.0)
@@ -112,6 +120,13 @@ def along(
         last = v._replace(down_m_s=0.0)
         p = q
         if t >= horizon_s:
-            return tuple(pieces)
-    pieces.append(Piece(t, horizon_s - t, p, last))
-    return tuple(pieces)
+            return Way(tuple(pieces), None)
+    return Way(tuple(pieces), Piece(t, horizon_s - t, p, last))
+
+
+def along(
+    now: Motion, points: Sequence[Position], horizon_s: float, start_s: float = 0.0
+) -> tuple[Piece, ...]:
+    """The same, then straight on, as pieces."""
+    way = way_along(now, points, horizon_s, start_s)
+    return way.pieces if way.beyond is None else (*way.pieces, way.beyond)

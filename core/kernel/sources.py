@@ -99,18 +99,35 @@ def reached(item: Any) -> dict[str, Any]:
             file = str(sys.modules[value.__module__].__file__)
             todo += [f for f in own if f.__code__.co_filename == file]
             continue
-        scope = value.__globals__
-        for used in _names(value.__code__):
+        held = _held(value)
+        scope = {**value.__globals__, **held}
+        for used in (*_names(value.__code__), *held):
             found = scope.get(used)
             callee = ours(found) and (inspect.isfunction(found) or inspect.isclass(found))
             if callee or isinstance(found, Fold):
                 todo.append(found)
             elif used in scope and isinstance(found, CONSTANTS):
-                seen[f"{value.__module__}.{used}"] = found
+                owner = f"{name} " if used in held else f"{value.__module__}."
+                seen[f"{owner}{used}"] = found
         # a record that only stands in an annotation still gives its fields their order
         hints = get_type_hints(value).values()
         todo += [hint for hint in hints if inspect.isclass(hint) and ours(hint)]
     return seen
+
+
+def _held(function: types.FunctionType) -> dict[str, Any]:
+    """What a function holds by itself, beside its module: closure, defaults, what it wraps."""
+    code, defaults = function.__code__, function.__defaults__ or ()
+    named = code.co_varnames[: code.co_argcount]
+    held = dict(zip(named[len(named) - len(defaults) :], defaults, strict=True))
+    held |= function.__kwdefaults__ or {}
+    held = {f"{name} by default": value for name, value in held.items()}
+    for name, cell in zip(code.co_freevars, function.__closure__ or (), strict=True):
+        with contextlib.suppress(ValueError):  # it is empty yet
+            held[name] = cell.cell_contents
+    if "__wrapped__" in vars(function):
+        held["__wrapped__"] = function.__wrapped__  # type: ignore[attr-defined]
+    return held
 
 
 def _names(code: types.CodeType) -> Iterator[str]:
@@ -180,6 +197,13 @@ def _hash(code: types.CodeType) -> str:
     return digest(parts)
 
 
+def stands_for_itself(function: Callable[..., Any]) -> bool:
+    """A function of a module is what the module calls so: callers reach it, and no wrapper of it."""
+    if "." in function.__qualname__:
+        return True
+    return vars(sys.modules[function.__module__]).get(function.__name__) is function
+
+
 def altered(item: Callable[..., Any] | Fold[Any]) -> list[str]:
     """Functions that do not run what their source file says, of `item` and all it rests on."""
     return sorted(
@@ -202,3 +226,8 @@ def _as_written(function: types.FunctionType, code: types.CodeType) -> bool:
         if file not in (base.with_suffix(".py"), base / "__init__.py"):
             return False
     return _written(file).get(_name(code)) == _hash(code)
+
+
+def runs_as_written(function: types.FunctionType) -> bool:
+    """A function runs what the file of its module says."""
+    return _as_written(function, function.__code__)

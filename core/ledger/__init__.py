@@ -17,9 +17,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from cratous.core.kernel import REGISTRY, Entry, named
+from cratous.core.kernel import REGISTRY, Entry, Fold, named
 from cratous.core.kernel.names import short
-from cratous.core.kernel.sources import altered, position
+from cratous.core.kernel.sources import altered, position, stands_for_itself
 from cratous.core.ledger.home import (
     PRODUCT,
     Home,
@@ -108,6 +108,9 @@ def _problems(home: Home, entries: dict[str, Entry], data: dict[str, Any]) -> It
         record = data["kernels"].get(name)
         if record is None:
             yield Problem(name, "it is not in the ledger")
+            continue
+        if not isinstance(entry.function, Fold) and not stands_for_itself(entry.function):
+            yield Problem(name, "its module calls something else so, which would run in its place")
             continue
         if not record["proved"]:
             yield Problem(name, f"it is {record['status']}")

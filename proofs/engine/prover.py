@@ -13,7 +13,7 @@ import sys
 import time
 import traceback
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +31,7 @@ from cratous.proofs.engine.ladder import check, solvers
 from cratous.proofs.engine.lemma_calls import hangs_on_calls
 from cratous.proofs.engine.lift import LiftError
 from cratous.proofs.engine.merkle import Hasher
+from cratous.proofs.engine.outcomes import Outcome, Owed, Ran, restored
 from cratous.proofs.engine.smtlib import logic_of, question, smt2, sorts
 from cratous.proofs.engine.theorem_files import FOLDER, find, load_claim, load_lemma, theorem_files
 from cratous.spec.errors import BadInput
@@ -49,38 +50,12 @@ _NO_CACHE = Cache(None)
 
 
 @dataclass(frozen=True)
-class Owed:
-    """What was owed: its kind (goal, defined, base, step, use, lemma) and its text."""
-
-    kind: str
-    text: str
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What the solver said of one obligation: proved, refuted, unknown; the effort it took.
-
-    key: structural hash of the obligation; counterexample: the values of a refutation by name;
-    story: the same in the user's terms; seconds: CPU, not in the ledger.
-    """
-
-    obligation: Owed
-    status: str
-    rlimit: int
-    logic: str
-    counterexample: tuple[tuple[str, str], ...] = ()
-    key: str = ""
-    story: tuple[str, ...] = ()
-    seconds: float = 0.0
-
-
-@dataclass(frozen=True)
 class Theorem:
     """A claim with its outcomes. Only `prove` can make one.
 
     paths: of every kernel that it is about, which paths some values reach under the premises; varied:
-    how the
-    arguments of every use of a kernel, in order, vary under them (see `reached`).
+    how the arguments of every use of a kernel, in order, vary under them (see `reached`); ran: what came
+    of running it on numbers, None where it was not run.
     """
 
     name: str
@@ -93,15 +68,23 @@ class Theorem:
     _key: Any = field(default=None, compare=False, repr=False)
     paths: tuple[tuple[str, tuple[bool, ...]], ...] = ()
     varied: tuple[tuple[str, str], ...] = ()
+    ran: Ran | None = None
 
     def __post_init__(self) -> None:
         if self._key is not _KEY:
             raise TypeError("only the prover makes theorems")
 
+    def after(self, ran: Ran) -> Theorem:
+        """The same theorem, run."""
+        return replace(self, ran=ran, _key=_KEY)
+
     @property
     def proved(self) -> bool:
-        """True iff the premises are satisfiable and every obligation is proved."""
-        return self.premises == "satisfiable" and all(o.status == "proved" for o in self.outcomes)
+        """True iff the premises are satisfiable, every obligation is proved, and none was false when run."""
+        decided = all(o.status == "proved" for o in self.outcomes)
+        return (
+            self.premises == "satisfiable" and decided and not (self.ran and self.ran.differences)
+        )
 
     @property
     def uses(self) -> dict[tuple[str, int], str]:
@@ -146,6 +129,7 @@ def restore(data: dict[str, Any]) -> Theorem:
         _KEY,
         tuple((str(name), tuple(map(bool, seen))) for name, seen in data["paths"]),
         tuple((str(name), str(how)) for name, how in data["varied"]),
+        restored(data["ran"]),
     )
 
 
@@ -180,11 +164,7 @@ def _ask(given: list[z3.BoolRef], rlimit: int) -> tuple[Answer, z3.ModelRef | No
 
 
 def _rlimit_count(solver: z3.Solver) -> int:
-    statistics = solver.statistics()
-    for key, value in statistics:
-        if key == "rlimit count":
-            return int(value)
-    return 0
+    return next((int(value) for key, value in solver.statistics() if key == "rlimit count"), 0)
 
 
 def _decide(

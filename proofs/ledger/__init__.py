@@ -12,6 +12,7 @@ import multiprocessing
 import os
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any
@@ -27,6 +28,8 @@ from cratous.proofs.engine import prover
 from cratous.proofs.engine.cache import Cache
 from cratous.proofs.engine.subset import Finding, lint_all
 from cratous.proofs.ledger.recall import Recall
+from cratous.proofs.running.all import compare_all, told
+from cratous.proofs.running.theorem import Functions, run
 
 
 @dataclass(frozen=True)
@@ -50,12 +53,16 @@ class Inventory:
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a theorem is: obligations done, of how many; at the end the theorem itself."""
+    """How far a theorem is: obligations done, of how many; at the end the theorem itself.
+
+    functions: what it looked into, where its functions are yet to be compared.
+    """
 
     name: str
     done: int
     of: int
     theorem: prover.Theorem | None = None
+    functions: Functions | None = None
 
 
 Listener = Callable[[Progress], None]
@@ -66,15 +73,20 @@ def jobs_default() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+def _tell(name: str, out: Connection, done: int, of: int) -> None:
+    out.send(Progress(name, done, of))
+
+
 def _work(name: str, folder: Path, cache: Cache, out: Connection) -> None:
     try:
-        theorem = prover.prove_file(
-            name,
-            folder=folder,
-            cache=cache,
-            tell=lambda done, of: out.send(Progress(name, done, of)),
-        )
-        out.send(Progress(name, 1, 1, theorem))
+        claim, sentence = prover.state(name, folder)
+        tell = partial(_tell, name, out)
+        theorem = prover.prove(name, claim, sentence, cache=cache, tell=tell)
+        functions = None
+        if theorem.proved:
+            ran, functions = run(name, claim, folder)
+            theorem = theorem.after(ran)
+        out.send(Progress(name, 1, 1, theorem, functions))
     except Exception as error:
         out.send(error)
     finally:
@@ -88,15 +100,18 @@ def prove_theorems(
     jobs: int | None = None,
     cache: Cache | None = None,
     tell: Listener | None = None,
+    machine: bool = True,
 ) -> list[prover.Theorem]:
-    """Prove these theorems on several cores; the result is in the order of the names.
+    """Prove these theorems on several cores, and run what is proved; in the order of the names.
 
-    Raises whatever a theorem file raises, for the first such file in that order.
+    machine: compare the functions' readings with machine code too. Raises whatever a theorem file
+    raises, for the first such file in that order.
     """
     wanted = list(names)
     store = cache or Cache(None)
     fork = multiprocessing.get_context("fork")
     results: dict[str, prover.Theorem | Exception] = {}
+    looked_into: dict[str, Functions] = {}
     running: dict[Connection, tuple[str, Any]] = {}
     queue = list(reversed(wanted))
     while queue or running:
@@ -120,6 +135,8 @@ def prove_theorems(
             if isinstance(message, Progress):
                 if message.theorem is not None:
                     results[name] = message.theorem
+                    if message.functions is not None:
+                        looked_into[name] = message.functions
                 if tell is not None:
                     tell(message)
                 if message.theorem is None:
@@ -135,7 +152,13 @@ def prove_theorems(
         if isinstance(result, Exception):
             raise result
         proved.append(result)
-    return proved
+    compared = compare_all(looked_into.values(), jobs or jobs_default(), machine=machine)
+    return [
+        told(theorem, looked_into[theorem.name], compared)
+        if theorem.name in looked_into
+        else theorem
+        for theorem in proved
+    ]
 
 
 def prove_all(
@@ -146,10 +169,12 @@ def prove_all(
     jobs: int | None = None,
     cache: Cache | None = None,
     recall: Recall | None = None,
+    machine: bool = True,
 ) -> Inventory:
     """Prove these theorems, and look for whatever the ledger could not vouch for.
 
-    cache: solver answers; recall: theorems proved before, whose files are the same.
+    cache: solver answers; recall: theorems proved before, whose files are the same; machine: see
+    `prove_theorems`.
     """
     entries = gate.load_all(home)
     folder = prover.home_folder(home)
@@ -160,7 +185,7 @@ def prove_all(
         if tell is not None:
             tell(Progress(name, 1, 1, theorem))
     rest = [name for name in wanted if name not in kept]
-    anew = prove_theorems(rest, folder=folder, jobs=jobs, cache=cache, tell=tell)
+    anew = prove_theorems(rest, folder=folder, jobs=jobs, cache=cache, tell=tell, machine=machine)
     memory.put(anew)
     kept |= {theorem.name: theorem for theorem in anew}
     theorems = [kept[name] for name in wanted]

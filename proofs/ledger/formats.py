@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +42,7 @@ def theorem_data(theorem: Theorem, second: str | None = None) -> dict[str, Any]:
         "kernels": sorted(theorem.kernels),
         "lemmas": sorted(set(theorem.lemmas)),
         "premises": theorem.premises,
+        "ran": None if theorem.ran is None else asdict(theorem.ran),
         "assumptions": [list(a) for a in theorem.assumptions],
         "rlimit": theorem.rlimit,
         "seconds": round(theorem.seconds, 3),
@@ -60,6 +62,7 @@ def failure_text(theorem: Theorem) -> str:
         if outcome.status != "proved":
             lines.append(f"{outcome.status}: {outcome.obligation.kind}: {outcome.obligation.text}")
             lines += [f"  {line}" for line in example(outcome)]
+    lines += theorem.ran.differences if theorem.ran is not None else ()
     return "\n".join(lines)
 
 

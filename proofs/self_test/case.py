@@ -2,7 +2,8 @@
 
 A file begins with `verdict: refused`, `accepted` or `open` (a known hole: it ought to be refused), `because:` (one plain sentence) and, if
 it is to be refused, `says:` (what the refusal must contain: words separated by commas, each with
-its alternatives separated by `|`). Then the package's files follow, each after a line such as
+its alternatives separated by `|`). `without: subset` leaves out the list of permitted syntax, so that what
+else would notice is tried. Then the package's files follow, each after a line such as
 `== spec/meaning.py`. The package is called `pkg` in them.
 """
 
@@ -19,6 +20,7 @@ CASES = Path(__file__).resolve().parent / "cases"
 SECTION = re.compile(r"^== (\S+)\n", re.M)
 PACKAGE = re.compile(r"\bpkg\b")
 VERDICTS = ("refused", "accepted", "open")
+WITHOUT = ("", "subset")
 EMPTY = {"__init__.py": "", "spec/__init__.py": ""}
 
 
@@ -26,7 +28,8 @@ EMPTY = {"__init__.py": "", "spec/__init__.py": ""}
 class Case:
     """A package, by the text of each file, with the verdict that it must get and why.
 
-    says: all of these must be in the refusal, of each at least one alternative.
+    says: all of these must be in the refusal, of each at least one alternative; without: what of the
+    prover is left out.
     """
 
     kind: str
@@ -35,6 +38,7 @@ class Case:
     because: str
     says: tuple[tuple[str, ...], ...]
     files: tuple[tuple[str, str], ...]
+    without: str = ""
 
     @property
     def id(self) -> str:
@@ -65,14 +69,16 @@ def read(file: Path) -> Case:
     files = tuple(zip(parts[1::2], parts[2::2], strict=True))
     ways = (word.split("|") for word in head.get("says", "").lower().split(",") if word.strip())
     says = tuple(tuple(way.strip() for way in way_of_it) for way_of_it in ways)
-    good = head.get("verdict") in VERDICTS and head.get("because") and files
+    known = head.get("verdict") in VERDICTS and head.get("without", "") in WITHOUT
+    good = known and head.get("because") and files
     if not good or (bool(says) != (head["verdict"] == "refused") and head["verdict"] != "open"):
         raise BadInput(
             "this is no case of the self-test",
             where=f"{file.parent.name}/{file.name}",
             expected="verdict, because and, if refused, says; then `== file` and its text",
         )
-    return Case(file.parent.name, file.stem, head["verdict"], head["because"], says, files)
+    verdict, because, without = head["verdict"], head["because"], head.get("without", "")
+    return Case(file.parent.name, file.stem, verdict, because, says, files, without)
 
 
 def cases(folder: Path = CASES) -> Iterator[Case]:

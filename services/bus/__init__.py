@@ -215,6 +215,12 @@ class Bus:
                 self._hand(service, envelope)
         return delivered
 
+    def call(self, name: str, step: Callable[[Any], tuple[Any, Iterable[Any]]]) -> None:
+        """A step of a service that no message has caused (its port has something): `step(state)` gives what
+        a handler gives, and is treated as one."""
+        state = self._states[name]
+        self._step(self._services[name], None, lambda: step(state))
+
     def next_wake_ms(self) -> int | None:
         """When the next wake is due, or None."""
         return self._wakes[0][0] if self._wakes else None

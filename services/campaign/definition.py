@@ -9,6 +9,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from cratous.services.campaign.generators import CHANGES
 from cratous.services.loading import load
 from cratous.services.loading.document import Document, parse_document, read_document
 from cratous.services.loading.problems import refuse
@@ -167,7 +168,19 @@ def _ordered(document: Document, key: tuple[str | int, ...], low: float, high: f
 
 
 def _check(campaign: Campaign, document: Document) -> None:
-    for name, (low, high) in (campaign.generator or {}).get("ranges", {}).items():
+    made = campaign.generator or {"kind": ""}
+    for item in sorted(made.keys() - {"kind"}):
+        if (item == "most_changes") != (made["kind"] == CHANGES):
+            expected = f"most_changes under the kind {CHANGES}, the others under the other kinds"
+            key = ("generator", item)
+            raise _wrong(
+                document,
+                key,
+                f"a generator of kind {made['kind']} has no such item",
+                expected,
+                item,
+            )
+    for name, (low, high) in made.get("ranges", {}).items():
         _ordered(document, ("generator", "ranges", name), low, high)
     if (campaign.generator or campaign.vary) and not campaign.seeds:
         expected = "seeds: [first, last], or --seeds A-B"

@@ -1,4 +1,4 @@
-"""Missions that are made: one protected vehicle that flies north, others that meet it, zones about its way.
+"""Missions that are made, of most kinds: one protected vehicle that flies north, others that meet it, zones about its way.
 
 The vehicle would be at the frame's origin after `time_s`, and goes on to a point as far behind it. An
 intruder's course is `angle_deg` against the vehicle's; it passes the origin at the same instant,
@@ -12,6 +12,8 @@ from collections.abc import Iterator, Mapping
 from math import cos, radians, sin
 from random import Random
 from typing import Any
+
+from cratous.services.campaign.changing import changing_mission
 
 Ranges = dict[str, tuple[float, float]]
 ALTITUDE_M = 300.0
@@ -27,6 +29,8 @@ KINDS: dict[str, Ranges] = {
     "head_on": {"angle_deg": (165, 195)},
     "random": {"angle_deg": (0, 360), "height_m": (-150, 150)},
 }
+CHANGES, MOST_CHANGES = "changes", 6
+"""The kind of `services.campaign.changing`, which has no ranges; it draws so many changes at most."""
 MIRRORED = ("converging",)
 """Kinds whose angle may be to either side."""
 
@@ -42,7 +46,7 @@ class Draw:
     ) -> None:
         self.kind: str = data["kind"]
         own = {name: tuple(bounds) for name, bounds in data.get("ranges", {}).items()}
-        self._ranges = {**COMMON, **KINDS[self.kind], **own}
+        self._ranges = {**COMMON, **KINDS.get(self.kind, {}), **own}
         self._seed, self._given = seed, given or {}
         self.drawn: dict[str, float] = {}
         self.bounds: dict[str, tuple[float, float]] = {}
@@ -68,6 +72,10 @@ def mission_of(
 ) -> tuple[dict[str, Any], Draw]:
     """The mission file of a seed as data, and its parameters; those `given` are taken as they are."""
     draw = Draw(data, seed, given)
+    if draw.kind == CHANGES:
+        made = changing_mission(name, seed, data.get("most_changes", MOST_CHANGES))
+        draw.drawn = {what: len(made[what]) for what in ("vehicles", "tasks", "changes")}
+        return made, draw
     time, speed = draw("time_s"), draw("own_speed_m_s")
     way = speed * time
     vehicles = [_vehicle(1, (-way, 0.0, ALTITUDE_M), 0.0, speed)]

@@ -14,6 +14,7 @@ from cratous.services.certify.proofs import statuses
 from cratous.services.certify.trace import chains
 from cratous.spec.algebra import parse
 from cratous.spec.files.printable import printable
+from cratous.spec.mission.plan import cost_text, percent
 
 MAP = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {{ map.width }} {{ map.height }}" \
 width="{{ map.width }}" height="{{ map.height }}" role="img" aria-label="Map of the flight">
@@ -37,6 +38,8 @@ def _environment() -> Any:
     )  # fmt: skip
     environment.filters["seconds"] = seconds
     environment.filters["margin"] = margin
+    environment.filters["percent"] = percent
+    environment.filters["cost"] = lambda value, kind: cost_text(kind, value)
     return environment
 
 

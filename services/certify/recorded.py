@@ -8,6 +8,7 @@ from cratous.core import ledger
 from cratous.services.certify.evidence import is_data
 from cratous.services.certify.proofs import inventory
 from cratous.services.certify.report import PROOFS_KEPT, Flown, environment
+from cratous.services.certify.running_code import running_code
 from cratous.services.logs.records import fingerprint
 from cratous.services.results.names import FORMER
 from cratous.spec.errors import BadInput
@@ -37,6 +38,10 @@ def flown_of(
     command = entry("command", lambda value: isinstance(value, str), "")
     avoidance = entry("avoidance", lambda value: isinstance(value, bool), True)
     around = entry("environment", _is_environment, environment())
+    if "code" not in around:
+        unchecked["environment.code"] = SILENT
+    elif around["code"]["digest"] != running_code()["digest"]:
+        unchecked["environment.code"] = "services or bridge are other code than at the flight"
     calls = meta.get("calls")
     if calls is None:
         unchecked["proofs.calls"] = SILENT
@@ -54,11 +59,23 @@ def flown_of(
 def _is_environment(data: Any) -> bool:
     return (
         isinstance(data, dict)
-        and set(data) == {"python", "system", "packages"}
+        and set(data) - {"code"} == {"python", "system", "packages"}
+        and _is_code(data.get("code"))
         and isinstance(data["python"], str)
         and isinstance(data["system"], str)
         and isinstance(data["packages"], dict)
         and all(isinstance(version, str) for version in data["packages"].values())
+    )
+
+
+def _is_code(data: Any) -> bool:
+    """What `running_code` gives, or nothing, as in what was made before it was recorded."""
+    if data is None:
+        return True
+    return (
+        isinstance(data, dict)
+        and set(data) == {"digest", "running", "release"}
+        and all(isinstance(text, str) for text in data.values())
     )
 
 
@@ -88,6 +105,7 @@ def _proofs(
     if "sha256" in kept:
         found = fingerprint(written)
         if found == kept["sha256"] and isinstance(written, dict):
+            unchecked["proofs.seal"] = "the ledger is another than at the flight"
             return written, []
         text = f"SHA-256 of the log {kept['sha256']}, of what is written {found}"
         return today, [f"proofs: not the inventory of the flight ({text})"]

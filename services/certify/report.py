@@ -16,6 +16,7 @@ from typing import Any
 
 from cratous import __version__
 from cratous.core.files.whole_file import write_atomically
+from cratous.services.certify.running_code import running_code
 from cratous.services.certify.timeline import bars, read_flight
 from cratous.services.certify.verdicts import requirement_rows, with_promised
 from cratous.services.logs.log import read_digest, read_log
@@ -178,7 +179,7 @@ def _scale(mission: Mission) -> str:
 
 
 def environment() -> dict[str, Any]:
-    """Python, system and the versions of what decides: recorded, but no part of any digest."""
+    """Python, system, versions of what decides, code of services and bridge: in no other digest."""
     import platform
     from importlib.metadata import PackageNotFoundError, version
 
@@ -192,6 +193,7 @@ def environment() -> dict[str, Any]:
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.machine()}",
         "packages": packages,
+        "code": running_code(),
     }
 
 

@@ -44,6 +44,7 @@ COMMANDS = {
     "log": "List, filter, follow, export, import and replay message logs.",
     "lmcp": "Read, write, explain and compare LMCP messages.",
     "uxas": "Run a UxAS configuration: services and bridges.",
+    "icarous": "Avoid for one vehicle, over the CRATOUS bridge to UxAS.",
     "algebra": "Check, draw or enumerate a process-algebra text.",
     "warm": "Compile ahead what commands would compile when they need it.",
     "version": "Print the version.",

@@ -12,7 +12,14 @@ from cratous.services.mission.wind import known_at
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Outcome, Verdict, worst
-from cratous.spec.mission.plan import PartialPlan, Plan, in_part_of, left_out_of
+from cratous.spec.mission.plan import (
+    COST_UNITS,
+    PartialPlan,
+    Plan,
+    cost_text,
+    in_part_of,
+    left_out_of,
+)
 
 Tell = Callable[[str], None]
 
@@ -147,7 +154,7 @@ def fly_mission(
         bus.tap(planning_told(_passing(tell), len(mission.tasks)))
         with counted() as calls:
             plan, checks = plan_and_check(mission, bus)
-            said = (plan_line(plan, checks), *left_out_lines(plan), *absent_lines(mission))
+            said = (plan_line(mission, plan, checks), *left_out_lines(plan), *absent_lines(mission))
             for line in said:
                 tell(line)
             refuse_bad_plan(checks)
@@ -192,7 +199,7 @@ def _progress(tell: Tell) -> Callable[[int, str], None]:
     return show
 
 
-def plan_line(plan: Plan, checks: list[Verdict]) -> str:
+def plan_line(mission: Mission, plan: Plan, checks: list[Verdict]) -> str:
     """One line on a plan and on what its check says."""
     chains = []
     for vehicle in dict.fromkeys(item.vehicle_id for item in plan.items):
@@ -203,7 +210,7 @@ def plan_line(plan: Plan, checks: list[Verdict]) -> str:
     part = "a part of what is asked for, " if left_out_of(plan) or in_part_of(plan) else ""
     return (
         f"plan: {'; '.join(chains)}; {part}"
-        f"{plan.makespan_ms / 1000:.1f} s, {standing(plan)}; "
+        f"{plan.makespan_ms / 1000:.1f} s, {_cost(mission, plan)}{standing(mission, plan)}; "
         f"{good} of {len(checks)} constraints hold ({outcome})"
     )
 
@@ -212,13 +219,24 @@ def left_out_lines(plan: Plan) -> list[str]:
     """A line for each task that a plan leaves out or does in part, and whether no more could be done."""
     left = left_out_of(plan)
     lines = [f"in part: {one.text}" for one in in_part_of(plan)]
-    lines += [f"left out: {one.text}" for one in left]
+    for one in left:
+        lines.append(f"left out: {one.text}")
+        lines += [f"  task {one.task_id} could be done: {r.text}" for r in one.remedies if r.tried]
     if left and not (isinstance(plan, PartialPlan) and plan.sure):
         lines.append("whether more could be done is not certain")
     return lines
 
 
-def standing(plan: Plan) -> str:
+def _cost(mission: Mission, plan: Plan) -> str:
+    """What it costs, where that is not a time."""
+    from cratous.services.pipeline.plan import cost_of
+
+    if COST_UNITS[plan.cost] == "ms":
+        return ""
+    return f"{cost_text(plan.cost, cost_of(plan, mission))}, "
+
+
+def standing(mission: Mission, plan: Plan) -> str:
     """How good a plan is, as far as its certificate shows."""
     from cratous.services.pipeline.plan import cost_of
 
@@ -226,7 +244,7 @@ def standing(plan: Plan) -> str:
         return "optimal"
     if plan.bound <= 0:
         return "no bound known"
-    cost = cost_of(plan)
+    cost = cost_of(plan, mission)
     return f"gap {100 * (cost - plan.bound) / cost:.1f} %"
 
 

@@ -35,8 +35,10 @@ def judge(log: Path, mission: Path | None, as_json: bool, every: bool) -> int:
     3 something is unknown.
     """
     from cratous.judge.verdict import GUARANTEES, HOLDS
+    from cratous.services.cli.progress import waiting
 
-    found = judgement(log, mission)
+    with waiting("judging the flight from its log", as_json):
+        found = judgement(log, mission)
     if as_json:
         click.echo(json.dumps(found.data(), indent=1))
         return found.exit_code

@@ -137,16 +137,19 @@ def list_(source: Source, chosen: Selection, verify: bool, as_json: bool) -> int
 
     Example:  cratous log list out/crossing --type EntityState
     """
+    from cratous.services.cli.progress import waiting
     from cratous.services.cli.show import table
     from cratous.services.logs.source import Source
 
-    if verify:
-        source.verify()
-    counted: Source = source
-    if chosen:
-        counted = Source(source.path, source.kind, lambda _path: source.entries(chosen))
-    topics = counted.topics()
-    closing, missing = source.closing(), _missing(source)
+    with waiting("checking the log", as_json) as wait:
+        if verify:
+            source.verify()
+        wait.at("counting its messages")
+        counted: Source = source
+        if chosen:
+            counted = Source(source.path, source.kind, lambda _path: source.entries(chosen))
+        topics = counted.topics()
+        closing, missing = source.closing(), _missing(source)
     count = sum(found.messages for found in topics)
     if as_json:
         data = {
@@ -294,6 +297,7 @@ def _export(
     with_bytes: bool,
     salvage: bool,
 ) -> int:
+    from cratous.services.cli.progress import waiting
     from cratous.services.logs.export import export as write
 
     form = form or SUFFIXES.get(target.suffix)
@@ -301,7 +305,8 @@ def _export(
         raise BadInput(
             "no format", item=target.name, expected=f"--format, or one of {', '.join(SUFFIXES)}"
         )
-    done = write(source, target, form, chosen, with_bytes=with_bytes, salvage=salvage)
+    with waiting(f"writing {target}"):
+        done = write(source, target, form, chosen, with_bytes=with_bytes, salvage=salvage)
     say(f"{done.count} messages written to {target} ({form})")
     code = _told("kept as bytes", done.undecoded)
     code = max(code, _told("left out", done.left_out))

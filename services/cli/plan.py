@@ -61,6 +61,7 @@ def plan(
     from cratous.services.cli.progress import waiting
     from cratous.services.cli.show import margin_text, say, table
     from cratous.services.logs.records import to_data
+    from cratous.spec.mission.plan import COST_UNITS
 
     bus = new_bus()
     with waiting("holding the code against its proofs", as_json) as wait:
@@ -87,7 +88,8 @@ def plan(
             "exit_code": code,
         }
         if instead is not None:
-            data["why"] = {"task": task, "vehicles": [one._asdict() for one in instead]}
+            vehicles = [one._asdict() for one in instead]
+            data["why"] = {"task": task, "unit": COST_UNITS[made.cost], "vehicles": vehicles}
         click.echo(json.dumps(data, indent=1))
         return code
     table(
@@ -119,10 +121,10 @@ def plan(
     click.echo()
     for note in loaded.notes:
         say(f"note: {note}")
-    for line in (plan_line(made, checks), *left_out_lines(made), *absent_lines(loaded)):
+    for line in (plan_line(loaded, made, checks), *left_out_lines(made), *absent_lines(loaded)):
         click.echo(line)
     if task is not None and instead:
-        for one in why_lines(made, task, instead):
+        for one in why_lines(loaded, made, task, instead):
             click.echo(one)
     click.echo(f"proofs: {standing.line}")
     click.echo(f"evidence: {summary(evidence)}")
@@ -138,18 +140,20 @@ def reasons_of(mission: Any, made: Any, task: int) -> tuple[Any, ...]:
     return why(known_at(mission, 0), made, task, absent(mission, 0))
 
 
-def why_lines(made: Any, task: int, instead: tuple[Any, ...]) -> list[str]:
+def why_lines(mission: Any, made: Any, task: int, instead: tuple[Any, ...]) -> list[str]:
     """In words: what the plan costs, and with the task for each other vehicle."""
     from cratous.services.pipeline.plan import cost_of
+    from cratous.spec.mission.plan import cost_text
 
-    who, cost = next(i.vehicle_id for i in made.items if i.task_id == task), cost_of(made)
-    lines = [f"task {task} is given to vehicle {who}: the plan costs {cost / 1000:.1f} s"]
+    who = next(i.vehicle_id for i in made.items if i.task_id == task)
+    cost = cost_text(made.cost, cost_of(made, mission))
+    lines = [f"task {task} is given to vehicle {who}: the plan costs {cost}"]
     for one in instead:
         if one.vehicle == who:
             continue
         told = one.reason
-        if one.cost_ms is not None:
+        if one.cost is not None:
             doubt = "" if one.sure else ", or less"
-            told = f"the best plan would cost {one.cost_ms / 1000:.1f} s{doubt}"
+            told = f"the best plan would cost {cost_text(made.cost, one.cost)}{doubt}"
         lines.append(f"  with vehicle {one.vehicle}: {told}")
     return lines

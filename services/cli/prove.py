@@ -38,6 +38,27 @@ def _show(theorem: Any, verbose: bool, statement: str) -> None:
         click.echo(f"           {line}")
 
 
+def _tell_ran(theorems: list[Any], verbose: bool) -> None:
+    """What was run on numbers of what is proved, and what could not be."""
+    ran = [(t.name, t.ran) for t in theorems if t.ran is not None]
+    held = [one for _, one in ran if one.points]
+    left = sorted({text for _, one in ran for text in one.left_out})
+    click.echo(
+        f"{len(held)} of {len(theorems)} theorems run as Python, at {sum(o.points for o in held)} points; "
+        f"{len(left)} readings could not be compared"
+    )
+    if verbose:
+        for name, one in ran:
+            if not one.points:
+                why = (
+                    one.not_run
+                    or "no point was found at which its premises hold and all is rational"
+                )
+                click.echo(f"not run: {name}: {why}")
+        for text in left:
+            click.echo(f"not compared: {text}")
+
+
 def _statuses(said: dict[str, str]) -> dict[str, int]:
     """How many kernels, folds and drivers a ledger has of each status."""
     from cratous.core.ledger.status import counts
@@ -297,6 +318,7 @@ def prove(
         )
         click.secho(f"{assumed} assumptions", fg="red" if assumed else None, nl=False)
         click.echo(f", {gate.solver_version()}")
+        _tell_ran(theorems, verbose)
         if statuses:
             click.echo("; ".join(f"{number} {status}" for status, number in statuses.items()))
         before = [

@@ -55,7 +55,8 @@ def uxas(
 
     Example:  cratous uxas -cfgPath cfg.xml -runUntil 60
 
-    Exit codes: 0 it ran to its end, 2 the configuration is refused.
+    Exit codes: 0 it ran to its end, 2 the configuration is refused, 3 ICAROUS instances that it waits for
+    have not come.
     """
     from cratous.services.loading.uxas_settings import read
     from cratous.services.uxas.logs import Logs
@@ -117,8 +118,10 @@ def _require_proofs(config: Any, log: Any, allow_unproved: bool) -> None:
 
     if any(KINDS[e.type].plans for e in config.entries if e.type in KINDS):
         from cratous.core.ledger import require
+        from cratous.services.cli.progress import waiting
 
-        standing = require(allow_unproved=allow_unproved)
+        with waiting("holding the code against its proofs"):
+            standing = require(allow_unproved=allow_unproved)
         log("WARN" if standing.problems else "INFO", f"proofs: {standing.line}")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from cratous.core.avoidance.manoeuvre import Motion
+from cratous.core.routing.dubins import polyline_length_m
 from cratous.services.flight import chain as chains
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState, turn_radius_m
@@ -50,20 +51,23 @@ def last_lap(chain: Chain) -> tuple[Position, ...]:
 
 
 def points_ahead(chain: Chain, opens_ms: int, ahead_m: float) -> tuple[Position, ...]:
-    """The present track and, beyond it, at least ahead_m of what follows if all goes well.
+    """The present track and, beyond it, at least ahead_m of what follows if all goes well, or all of it.
 
     opens_ms: when the next task is expected to begin [ms].
     """
     points = list(chain.track.rest(chain.s_m))
     item = chain.item
     more: list[Position] = []
+    after = chain.items[chain.k + 1 :]
     if item is None:
         more = list(last_lap(chain)) * 4
-    elif chain.phase is Phase.TASK:
-        after = chain.items[chain.k + 1 : chain.k + 2]
-        more = list(after[0].transit + after[0].path) if after else []
-    else:
+    elif chain.phase is not Phase.TASK:
         more = list(laps_expected(chain, opens_ms, ahead_m)) + list(item.path)
+    # where the way ends before it is long enough, nothing follows: ICAROUS takes it for the end
+    for following in after:
+        if polyline_length_m((points[-1], *more)) >= ahead_m:
+            break
+        more += [*following.transit, *following.path]
     return tuple(points + more)
 
 

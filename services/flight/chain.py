@@ -178,12 +178,14 @@ def raised(lap: tuple[Position, ...], to_m: float, slope: float) -> tuple[Positi
 def final_loiter(
     pose: Pose, radius_m: float, layer_m: float, slope: float, zones: tuple[Zone, ...]
 ) -> Track:
-    """A lap at the end of a chain, raised by layer_m where the zones and the climb allow it."""
+    """A lap at the end of a chain, raised by layer_m where the zones and the climb allow it.
+
+    A circle at the pose has to keep the zones.
+    """
     hold = tangent_hold(pose, radius_m, zones)
-    where = hold or tangent_hold(pose, radius_m, ())
-    assert where is not None
-    lap = lap_points(where, Position(*pose[:3]))
-    if hold is not None and layer_m > 0 and slope > 0:
+    assert hold is not None
+    lap = lap_points(hold, Position(*pose[:3]))
+    if layer_m > 0 and slope > 0:
         high = raised(lap, pose.alt_m + layer_m, slope)
         if first_bad_leg(high, zones) is None:
             return Track(high)

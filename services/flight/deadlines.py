@@ -23,7 +23,7 @@ Late = tuple[tuple[int, Row], ...]
 
 def expected(state: State, factor: float, now_ms: int) -> tuple[dict[int, int], dict[int, int]]:
     """Expected starts and ends of all tasks, ways flown at `factor` times the planned speed."""
-    starts, ends, failed = dict(state.starts), dict(state.ends), dict(state.failed)
+    starts, ends, failed = state.counted_starts(), dict(state.ends), dict(state.failed)
     chains, rows = state.by_vehicle(), state.plan.rows
     return expected_times(chains, rows, starts, ends, failed, factor, now_ms)
 

@@ -116,6 +116,11 @@ class State:
         """A task has begun."""
         return replace(self, starts=_with(dict(self.starts), task_id, at_ms))
 
+    def counted_starts(self) -> dict[int, int]:
+        """The starts of the tasks that have not failed: one that was begun and then failed opens nothing."""
+        failed = dict(self.failed)
+        return {task: at_ms for task, at_ms in self.starts if task not in failed}
+
     def ended(self, task_id: int, at_ms: int) -> State:
         """A task has ended."""
         return replace(self, ends=_with(dict(self.ends), task_id, at_ms))

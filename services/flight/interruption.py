@@ -10,7 +10,7 @@ from cratous.services.flight.ahead import leaving_m
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.messages import Left, Suspend, TakeBack
-from cratous.services.flight.passing import NO_WAY, fail, progress
+from cratous.services.flight.passing import NO_WAY, circling, fail, progress
 from cratous.services.flight.telling import command, route
 from cratous.spec.executive import FAIL_TASK
 from cratous.spec.mission import Position
@@ -53,7 +53,9 @@ def take_back(config: Config, state: State, message: TakeBack, out: Out) -> Stat
     if act == FAIL_TASK and chain.item is not None:
         state = fail(config, state.put(chain), chain.item.task_id, NO_WAY, out)
     elif back is None:
-        state = state.put(chain.enter(chain.phase, ways.last(chain, air, 0.0), now_ms))
+        state = state.put(
+            chain.enter(chain.phase, circling(config, state, chain, 0.0, out), now_ms)
+        )
     else:
         entered = chain.enter(chain.phase, back.track, now_ms)
         if chain.phase is Phase.TASK:

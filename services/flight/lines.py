@@ -88,13 +88,24 @@ def places_of(aircraft: Aircraft, projection: Projection) -> Places:
     }
 
 
-def states(vehicle_id: int, aircraft: Aircraft, places: Places, now_ms: int) -> list[Message]:
-    """POSTN and ATTUD of a vehicle, and an OBJCT of each other aircraft."""
+def climbing(s: AirState) -> Attitude:
+    """The attitude of an aircraft of which only the flight path is known: level wings, nose along it."""
+    pitch = math.degrees(math.atan2(s.climb_m_s, s.speed_m_s))
+    return Attitude(roll_deg=0.0, pitch_deg=pitch, yaw_deg=0.0)
+
+
+def states(
+    vehicle_id: int,
+    aircraft: Aircraft,
+    places: Places,
+    now_ms: int,
+    attitude: Attitude | None = None,
+) -> list[Message]:
+    """POSTN and ATTUD of a vehicle, and an OBJCT of each other aircraft. attitude: None for `climbing`."""
     out: list[Message] = []
     for vid, s in aircraft:
         v, (lat, lon) = s.velocity, places[vid]
         if vid == vehicle_id:
-            pitch = math.degrees(math.atan2(s.climb_m_s, s.speed_m_s))
             own = OwnPosition(
                 time_s=now_ms / 1000,
                 lat_deg=lat,
@@ -106,7 +117,7 @@ def states(vehicle_id: int, aircraft: Aircraft, places: Places, now_ms: int) -> 
                 down_mps=v.down_m_s,
                 vehicle_id=vid,
             )
-            out[:0] = [own, Attitude(roll_deg=0.0, pitch_deg=pitch, yaw_deg=0.0)]
+            out[:0] = [own, attitude or climbing(s)]
         else:
             out.append(
                 Traffic(

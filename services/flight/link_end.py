@@ -12,12 +12,20 @@ epoch. Which mode is believed and who counts as alive is decided by the kernels 
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from cratous.bridge import lmcp
-from cratous.bridge.text_protocol import Heartbeat, Message, SetMode, WaypointReached
+from cratous.bridge.text_protocol import (
+    Attitude,
+    HardReset,
+    Heartbeat,
+    Message,
+    SetMode,
+    WaypointReached,
+)
 from cratous.core.authority.gate import UXAS, Gate
 from cratous.core.authority.link_end import LinkEnd, link_mode, link_sign
 from cratous.core.routing.polylines import Track
@@ -34,6 +42,7 @@ from cratous.services.flight.messages import (
     Lost,
     Route,
     Say,
+    Seen,
     Suspend,
     TakeBack,
     ToLinkEnd,
@@ -74,7 +83,7 @@ class Peer:
     end: who commands and whether it is heard, as the kernels have it; open: the connection stands;
     marks_m: arc length of each waypoint told, from from_m of the vehicle's track on; reached: how
     many of them are told to be reached; down: heartbeats sent; heard_ms: when it was last heard; gate: as
-    the vehicle has reported it last.
+    the vehicle has reported it last; way: the lines of the way told last.
     """
 
     vehicle_id: int
@@ -86,6 +95,7 @@ class Peer:
     reached: int = 0
     down: int = 0
     gate: Gate = UNTOUCHED
+    way: tuple[Message, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -138,6 +148,8 @@ class UxasEnd:
                 return self._route(peer, message)
             case Flown(_, s_m):
                 return _flown(peer, s_m)
+            case Seen():
+                return self._seen(peer, message)
             case Left(_, position):
                 return peer, _down(peer, [lines.reset_to(position, self.projection)])
             case Heard(_, now_ms, line):
@@ -151,17 +163,28 @@ class UxasEnd:
                 return _sign(replace(peer, open=False), ENDED, now_ms, note)
 
     def _connected(self, state: State, vehicle_ids: tuple[int, ...], now_ms: int) -> Step:
-        peers = tuple(Peer(vid, now_ms) for vid in vehicle_ids)
+        """Everything is told on a new connection: zones, way, and how far the vehicle is on it."""
         out: list[FromLinkEnd] = []
-        for peer in peers:
-            out += _down(peer, self._fences(state.zones, 0))
-            out.append(_status(peer, True, now_ms, "connected"))
-        return replace(state, peers=peers), tuple(out)
+        for vid in vehicle_ids:
+            old = state.peer(vid)
+            peer = Peer(vid, now_ms)
+            if old is not None:
+                peer = replace(old, heard_ms=now_ms, end=old.end._replace(alive=True), open=True)
+                state = state.with_peer(peer)
+            else:
+                state = replace(state, peers=(*state.peers, peer))
+            out += _down(peer, [*self._fences(state.zones, 0), *_way_on(peer)])
+            out.append(_status(peer, True, now_ms, "connected again" if old else "connected"))
+        return state, tuple(out)
 
     def _zones(self, state: State, zones: tuple[Zone, ...]) -> Step:
-        fences = self._fences(zones, len(state.zones))
-        out = tuple(down for peer in state.peers for down in _down(peer, fences))
-        return replace(state, zones=zones), out
+        known = len(state.zones)
+        more = zones[:known] == state.zones
+        fences = self._fences(zones, known if more else 0)
+        out: list[FromLinkEnd] = []
+        for peer in state.peers:
+            out += _down(peer, fences if more else [HardReset(), *fences, *_way_on(peer)])
+        return replace(state, zones=zones), tuple(out)
 
     def _fences(self, zones: tuple[Zone, ...], known: int) -> list[Message]:
         """The zones after the first `known`, as lines."""
@@ -171,8 +194,17 @@ class UxasEnd:
     def _route(self, peer: Peer, route: Route) -> tuple[Peer, tuple[FromLinkEnd, ...]]:
         track = Track(route.points)
         told = lines.way(track.points, route.speed_m_s, self.projection)
-        after = replace(peer, marks_m=track.s_m, from_m=route.from_m, reached=0)
+        after = replace(peer, marks_m=track.s_m, from_m=route.from_m, reached=0, way=tuple(told))
         return after, _down(peer, told)
+
+    def _seen(self, peer: Peer, seen: Seen) -> OfOne:
+        """POSTN, ATTUD and OBJCT to one instance."""
+        places = lines.places_of(seen.aircraft, self.projection)
+        attitude = Attitude(math.degrees(seen.roll_rad), math.degrees(seen.pitch_rad), 0.0)
+        told = lines.states(peer.vehicle_id, seen.aircraft, places, seen.time_ms, attitude)
+        after = replace(peer, down=peer.down + peer.open)
+        beat = (_heartbeat(after, seen.now_ms, "Down", after.down),) if peer.open else ()
+        return after, (*_down(peer, told), *beat)
 
     def _beat(self, state: State, beat: Beat) -> Step:
         """POSTN, ATTUD and OBJCT to every instance; what to publish of it."""
@@ -188,8 +220,13 @@ class UxasEnd:
         return replace(state, peers=tuple(peers)), tuple(out)
 
 
-ToOne = Route | Flown | Left | Heard | Unreadable | Lost | GateIs
+ToOne = Route | Flown | Seen | Left | Heard | Unreadable | Lost | GateIs
 OfOne = tuple[Peer, tuple[FromLinkEnd, ...]]
+
+
+def _way_on(peer: Peer) -> list[Message]:
+    """The way told last, and the waypoints of it that are reached."""
+    return [*peer.way, *(WaypointReached(k) for k in range(peer.reached))]
 
 
 def _flown(peer: Peer, s_m: float) -> OfOne:

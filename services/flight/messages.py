@@ -35,14 +35,15 @@ class Down(NamedTuple):
 
 
 class Connected(NamedTuple):
-    """The connections to the ICAROUS instances of these vehicles stand."""
+    """The connections to the ICAROUS instances of these vehicles stand, for the first time or again."""
 
     now_ms: int
     vehicle_ids: tuple[int, ...]
 
 
 class ZonesKnown(NamedTuple):
-    """All zones that bind from now on; those told before come first, in the same order."""
+    """All zones that bind from now on; where those told before do not come first, in the same order, the
+    instances forget all and are told anew."""
 
     zones: tuple[Zone, ...]
 
@@ -76,6 +77,18 @@ class Beat(NamedTuple):
 
     now_ms: int
     aircraft: tuple[tuple[int, AirState], ...]
+
+
+class Seen(NamedTuple):
+    """The state of one vehicle has come from outside. time_ms: its own time; aircraft: as in `Beat`, at
+    that time; roll_rad, pitch_rad: of the vehicle."""
+
+    vehicle_id: int
+    now_ms: int
+    time_ms: int
+    aircraft: tuple[tuple[int, AirState], ...]
+    roll_rad: float
+    pitch_rad: float
 
 
 class Heard(NamedTuple):
@@ -209,6 +222,7 @@ ToLinkEnd = (
     | Flown
     | Left
     | Beat
+    | Seen
     | Heard
     | Unreadable
     | Lost

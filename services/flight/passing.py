@@ -21,6 +21,7 @@ from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.left_out import leave_out, nothing_of
 from cratous.services.flight.lives import life
 from cratous.services.flight.messages import Say
+from cratous.services.flight.notices import mission_change
 from cratous.services.flight.timing import closed_by
 from cratous.spec.algebra.partial import waits_for
 from cratous.spec.constraint_rows import Row
@@ -31,6 +32,8 @@ from cratous.spec.mission.plan import PlanItem, in_part_of
 EARLY_MS = 500
 """A planned wait may end this much early; the rows themselves are never bent."""
 NO_WAY = "no way there keeps the zones"
+NO_HOLD = "it would have to wait, and no circle at its start keeps the zones"
+NO_CIRCLE = "no circle there or near keeps the zones: it circles across them"
 NAME = "uxas/executive"
 """The sender of what the executive says of itself."""
 
@@ -114,6 +117,8 @@ def _on_end(config: Config, state: State, chain: Chain, at_ms: int, out: Out) ->
         return _start(state, chain, item, at_ms, out)
     if moved.act == LAP:
         lap = config.ways(state.zones).lap(chain, item)
+        if lap is None:
+            return fail(config, state, item.task_id, NO_HOLD, out)
         entered = chain.enter(Phase.WAIT, lap, at_ms)
         if chain.phase is not Phase.WAIT:
             note = row.text if row is not None else f"planned start at {item.start_ms} ms"
@@ -128,7 +133,7 @@ def _may_begin(state: State, chain: Chain, at_ms: int) -> tuple[Row | None, bool
     if item is None or chain.phase is Phase.TASK:
         return None, False
     starts, ends, failed = dict(state.starts), dict(state.ends), dict(state.failed)
-    row = closed_by(item.task_id, at_ms, state.plan.rows, starts, ends)
+    row = closed_by(item.task_id, at_ms, state.plan.rows, state.counted_starts(), ends)
     early = item.wait_ms != 0 and too_early(at_ms, item.start_ms, EARLY_MS)
     return row, may_begin(life(item.task_id, starts, ends, failed), row is None, early)
 
@@ -148,7 +153,7 @@ def next_item(config: Config, state: State, chain: Chain, at_ms: int, out: Out) 
     state = state.put(chain)
     item, air = chain.item, state.air(chain.vehicle.id)
     if item is None:
-        return _loiter(config, state, chain, at_ms)
+        return _loiter(config, state, chain, at_ms, out)
     chain = replace(chain, speed_m_s=item.speed_m_s)
     way = config.ways(state.zones).transit(chain, air)
     if way is None or way_act(way is not None, True) == FAIL_TASK:
@@ -159,7 +164,7 @@ def next_item(config: Config, state: State, chain: Chain, at_ms: int, out: Out) 
     return state.put(chain)
 
 
-def _loiter(config: Config, state: State, chain: Chain, at_ms: int) -> State:
+def _loiter(config: Config, state: State, chain: Chain, at_ms: int, out: Out) -> State:
     """Circle at the end of the chain; raised to a layer of its own while others still fly.
 
     The layer is one and a half buffered vertical thresholds per vehicle, in the order of
@@ -169,8 +174,18 @@ def _loiter(config: Config, state: State, chain: Chain, at_ms: int) -> State:
     others = any(c.item is not None for c in state.chains if c.vehicle.id != vid)
     daa = state.mission.daa
     layer = 1.5 * daa.buffer * daa.well_clear.zthr_m * finished
-    track = config.ways(state.zones).last(chain, state.air(vid), layer if others else 0.0)
+    track = circling(config, state, chain, layer if others else 0.0, out)
     return replace(state.put(chain.enter(Phase.DONE, track, at_ms)), finished=finished)
+
+
+def circling(config: Config, state: State, chain: Chain, layer_m: float, out: Out) -> Track:
+    """A vehicle's track with nothing left to fly, raised by a layer. If its circle breaks a zone, that is said."""
+    vid = chain.vehicle.id
+    last = config.ways(state.zones).last(chain, state.air(vid), layer_m)
+    if not last.kept:
+        what = f"vehicle {vid} has nothing left to fly"
+        out.append(Say(mission_change(state.now_ms, what, NO_CIRCLE), NAME))
+    return last.track
 
 
 def fail(config: Config, state: State, task_id: int, why: str, out: Out) -> State:

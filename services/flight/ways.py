@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from cratous.core.routing.dubins import STRAIGHT, pose_after
 from cratous.core.routing.polylines import Track
 from cratous.services.flight import chain as chains
 from cratous.services.flight.ahead import join_in_transit, leaving_m
@@ -26,6 +27,19 @@ class Back(NamedTuple):
     track: Track
     join_m: float
     flown_m: float
+
+
+class Last(NamedTuple):
+    """Where a vehicle circles at the end of its chain, and whether its circle keeps the zones."""
+
+    track: Track
+    kept: bool
+
+
+AWAY = (3.0, 6.0, 12.0, 24.0)
+"""So far away a place to circle is looked for, in turn radii,"""
+BEARINGS = 12
+"""in so many directions."""
 
 
 class Ways:
@@ -52,12 +66,11 @@ class Ways:
         off = math.hypot(place.north_m - p.north_m, place.east_m - p.east_m)
         return off <= 3 * state.speed_m_s * self.dt_s + 1
 
-    def lap(self, chain: Chain, item: PlanItem) -> Track:
-        """One lap of the hold at the start pose of an item."""
+    def lap(self, chain: Chain, item: PlanItem) -> Track | None:
+        """One lap of the hold at the start pose of an item; None if no circle there keeps the zones."""
         pose = chains.start_pose(item)
-        hold = item.hold or chains.tangent_hold(pose, _radius_m(chain), ())
-        assert hold is not None
-        return Track(chains.lap_points(hold, Position(*pose[:3])))
+        hold = item.hold or chains.tangent_hold(pose, _radius_m(chain), self.zones)
+        return None if hold is None else Track(chains.lap_points(hold, Position(*pose[:3])))
 
     def back(self, chain: Chain, state: AirState) -> Back | None:
         """To where the path was left, or in transit to a waypoint ahead, else to its end, and on along
@@ -77,18 +90,36 @@ class Ways:
         track = Track((*way, *rest.points[1:]), target.heading_rad)
         return Back(track, max(0.0, track.length_m - rest.length_m), flown_m)
 
-    def last(self, chain: Chain, state: AirState, layer_m: float) -> Track:
+    def last(self, chain: Chain, state: AirState, layer_m: float) -> Last:
         """Circle at the end of the chain, where the vehicle is there, else where it is; raised by
-        layer_m where zones and climb allow it."""
+        layer_m where zones and climb allow it. Where no circle keeps the zones, near there."""
         end, heading = chain.track.at(chain.track.length_m), state.heading_rad
         if chain.k > 0 and self._there(state, end):
             heading = chain.track.heading_rad(chain.track.length_m)
         else:
             end = state.position
         slope = 0.9 * chain.vehicle.max_climb_m_s / chain.vehicle.max_speed_m_s
-        return chains.final_loiter(
-            Pose(*end, heading), _radius_m(chain), layer_m, slope, self.zones
-        )
+        radius_m, pose = _radius_m(chain), Pose(*end, heading)
+        if chains.tangent_hold(pose, radius_m, self.zones) is None:
+            return self._near(chain, state, pose)
+        return Last(chains.final_loiter(pose, radius_m, layer_m, slope, self.zones), True)
+
+    def _near(self, chain: Chain, state: AirState, pose: Pose) -> Last:
+        """A way to the nearest place found where a circle keeps the zones, and a lap there; if there is none,
+        a circle at the pose that breaks one."""
+        radius_m = _radius_m(chain)
+        for away in AWAY:
+            for k in range(BEARINGS):
+                at = pose_after(
+                    pose._replace(heading_rad=pose.heading_rad + 2 * math.pi * k / BEARINGS),
+                    STRAIGHT, away * radius_m, radius_m,
+                )  # fmt: skip
+                hold = chains.tangent_hold(at, radius_m, self.zones)
+                way = self._to(chain, state, at) if hold is not None else ()
+                if hold is not None and way:
+                    lap = chains.lap_points(hold, Position(*at[:3]))
+                    return Last(Track((*way, *lap[1:])), True)
+        return Last(chains.final_loiter(pose, radius_m, 0.0, 0.0, ()), False)
 
     def _to(self, chain: Chain, state: AirState, target: Pose) -> tuple[Position, ...]:
         slope = chain.vehicle.max_climb_m_s / chain.speed_m_s

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from cratous.core.avoidance.manoeuvre import along, velocity_of
+from cratous.core.avoidance.manoeuvre import velocity_of, way_along
 from cratous.core.avoidance.prediction import Piece, buffered
 from cratous.core.avoidance.resolution import Choice, Scene, first_conflict_s, first_zone_s, resolve
 from cratous.core.avoidance.way_ahead import near_line, there_within
+from cratous.services.icarous.ending import Ahead, with_hold
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.return_to_path import bearing_rad, flat, goal_index, way_back
 from cratous.services.icarous.state import Config, State
@@ -29,9 +30,10 @@ def scene_of(config: Config, state: State, sensed: Sensed) -> Scene:
     return Scene(sensed.intruders, state.told.zones, volume, daa.lookahead_s)
 
 
-def predicted(state: State, sensed: Sensed, lookahead_s: float) -> tuple[Piece, ...]:
-    """The own way ahead: along the waypoints while on the path, else straight on."""
-    told, motion = state.told, sensed.motion
+def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahead:
+    """The own way ahead: along the waypoints and into the hold at their end while on the path, else
+    straight on."""
+    told, motion, lookahead_s = state.told, sensed.motion, scene.lookahead_s
     here, index = flat(motion.position), told.next_index
     if 0 < index < len(told.waypoints):
         ahead = told.waypoints[index:]
@@ -40,23 +42,25 @@ def predicted(state: State, sensed: Sensed, lookahead_s: float) -> tuple[Piece, 
             # a waypoint that is as good as reached says nothing about the direction of flight
             if len(ahead) > 1 and there_within(here, goal, motion.speed_m_s, REACHED_S):
                 ahead = ahead[1:]
-            return along(motion, ahead, lookahead_s)
+            way = way_along(motion, ahead, lookahead_s)
+            return with_hold(way, sensed, scene, config.daa.well_clear, TURN_MARGIN)
     v = velocity_of(motion.heading_rad, motion.speed_m_s, motion.climb_m_s)
-    return (Piece(0.0, lookahead_s, motion.position, v),)
+    return Ahead((Piece(0.0, lookahead_s, motion.position, v),), scene.volume)
 
 
 def way_back_is_free(config: Config, state: State, sensed: Sensed) -> bool:
     """The way onto the path and along it is free of predicted conflict over the look-ahead."""
     told, scene = state.told, scene_of(config, state, sensed)
     if not told.waypoints:
-        pieces = predicted(state, sensed, scene.lookahead_s)
+        pieces, volume = predicted(config, state, sensed, scene)
     else:
         points = told.waypoints[min(state.goal, len(told.waypoints) - 1) :]
         if told.resume is not None:
             points = (told.resume, *told.waypoints[min(told.next_index, len(told.waypoints)) :])
         radius_m = TURN_MARGIN * sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
-        pieces = way_back(sensed.motion, radius_m, points, scene.lookahead_s)
-    if first_conflict_s(pieces, scene) is not None:
+        way = way_back(sensed.motion, radius_m, points, scene.lookahead_s)
+        pieces, volume = with_hold(way, sensed, scene, config.daa.well_clear, TURN_MARGIN)
+    if first_conflict_s(pieces, scene._replace(volume=volume)) is not None:
         return False
     return first_zone_s(pieces, scene.zones, 5.0) is None if len(pieces) > 1 else True
 

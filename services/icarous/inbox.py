@@ -67,8 +67,12 @@ def _hear(told: Told, message: Message, projection: Projection) -> Told:
 
 
 def _start(told: Told, projection: Projection) -> Told:
+    """The plan that was gathered is in force; one in which waypoints are missing never is."""
     if not told.gathering:
         return replace(told, started=True)
+    numbers = [waypoint.index for waypoint in told.gathering]
+    if numbers != list(range(told.gathering[-1].total)):
+        return replace(told, gathering=())
     norths, easts = projection.to_local_many(
         [w.lat_deg for w in told.gathering], [w.long_deg for w in told.gathering]
     )

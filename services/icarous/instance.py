@@ -1,6 +1,6 @@
 """The ICAROUS instance of one vehicle: `handle(state, message) -> (state, messages)`.
 
-MONITOR: UxAS flies; the way ahead is checked against traffic and zones. AVOID: ICAROUS has taken
+MONITOR: UxAS flies; the way ahead, up to the hold that ends it, is checked against traffic and zones. AVOID: ICAROUS has taken
 over and flies the manoeuvre that deviates least from the course. HANDBACK: the way back has been
 free for a while, control is offered; ICAROUS steers on until UxAS takes it, and withdraws the
 offer when a conflict shows up. Own state and traffic come from the vehicle itself; the bridge
@@ -122,12 +122,10 @@ class Instance:
     ) -> tuple[tuple[Threat, ...], Conflict | None]:
         """All predicted losses of well clear, and the conflict to act on."""
         scene = scene_of(self.config, state, sensed)
-        pieces = predicted(state, sensed, scene.lookahead_s)
+        pieces, volume = predicted(self.config, state, sensed, scene)
         limits = nearest(sensed.ability, scene.volume, self.config.heartbeat_ms)
         own, seen = self.config.vehicle_id, sensed.intruders
-        found = threats(
-            own, pieces, seen, scene.volume, state.threats, sensed.now_ms, limits, in_turn
-        )
+        found = threats(own, pieces, seen, volume, state.threats, sensed.now_ms, limits, in_turn)
         urgent = most_urgent(found)
         if urgent is not None:
             return found, Conflict("traffic", urgent.intruder_id, urgent.first_violation_s)

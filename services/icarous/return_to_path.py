@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import math
 
-from cratous.core.avoidance.manoeuvre import Motion, along
-from cratous.core.avoidance.prediction import Piece
+from cratous.core.avoidance.manoeuvre import Motion, Way, way_along
 from cratous.core.avoidance.way_ahead import makes_for
 from cratous.core.kernel import Vec2
 from cratous.core.routing.dubins import cut, dubins
@@ -61,9 +60,7 @@ def rejoin(
     return cut(dubins(Pose(*now.position, now.heading_rad), end, radius_m), end)
 
 
-def way_back(
-    now: Motion, radius_m: float, points: tuple[Position, ...], horizon_s: float
-) -> tuple[Piece, ...]:
-    """The pieces of flight from here onto points[0] and on through the others."""
+def way_back(now: Motion, radius_m: float, points: tuple[Position, ...], horizon_s: float) -> Way:
+    """The flight from here onto points[0] and on through the others."""
     onto = rejoin(now, radius_m, points[0], points[1] if len(points) > 1 else None)
-    return along(now, (*onto[1:], *points[1:]), horizon_s)
+    return way_along(now, (*onto[1:], *points[1:]), horizon_s)

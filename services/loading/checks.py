@@ -31,7 +31,7 @@ ONE_POINT = (
 def mission_problems(mission: Mission, where: Where) -> list[BadInput]:
     """Everything wrong with the mission before its zones are padded."""
     found: list[BadInput] = []
-    for check in (_ids, _vehicles, _tasks, _zones, _places, _numbers, _instances):
+    for check in (_ids, _vehicles, _powers, _tasks, _zones, _places, _numbers, _instances):
         found.extend(check(mission, where))
     return found or list(relation_problems(mission, where))
 
@@ -77,6 +77,18 @@ def _vehicles(mission: Mission, where: Where) -> Iterator[BadInput]:
                 most = vehicle.speed_m_s == low
                 expected = f"at most {high:g} m/s" if most else f"at least {low:g} m/s"
         yield BadInput(what, where=where(item), item=item, expected=expected, got=f"{got:g} m/s")
+
+
+def _powers(mission: Mission, where: Where) -> Iterator[BadInput]:
+    for k, vehicle in enumerate(mission.vehicles):
+        if mission.cost == "ENERGY" and vehicle.power_w is None:
+            yield BadInput(
+                f"the cost ENERGY needs what vehicle {vehicle.id} draws in flight",
+                where=where(f"vehicles[{k}]"),
+                item=f"vehicles[{k}].power_w",
+                expected="a number of watts",
+                got="nothing",
+            )
 
 
 def _tasks(mission: Mission, where: Where) -> Iterator[BadInput]:

@@ -113,6 +113,7 @@ def task(
         id=body.TaskID,
         label=body.Label or reading.name,
         eligible=tuple(body.EligibleEntities),
+        priority=body.Priority,
         **found,
     )
 

@@ -169,6 +169,7 @@ def _vehicle(data: dict[str, Any], places: Places) -> Vehicle:
         protected=data.get("protected", True),
         cameras=tuple(_camera(entry) for entry in data.get("cameras", [])),
         cruise_m=float(data["cruise_m"]) if "cruise_m" in data else None,
+        power_w=float(data["power_w"]) if "power_w" in data else None,
     )
 
 

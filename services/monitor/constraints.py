@@ -17,7 +17,7 @@ from cratous.services.monitor.samples import Sample
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
-ACTIVE, COMPLETE = "Active", "Complete"
+ACTIVE, COMPLETE, FAILED = "Active", "Complete", "Failed"
 
 
 @dataclass
@@ -38,6 +38,7 @@ class ConstraintWatch:
         self._starts: dict[int, int] = {}
         self._ends: dict[int, int] = {}
         self._who: dict[int, list[int]] = {}
+        self._failed: set[int] = set()
         self._fences: dict[tuple[int, int], Fence] = {}
         self._tracks: dict[int, list[Position]] = {}
         self.violations: list[Verdict] = []
@@ -51,6 +52,8 @@ class ConstraintWatch:
                 flown_by.append(body.VehicleID)
         elif body.Phase.name == COMPLETE:
             self._ends[body.TaskID] = body.Time
+        elif body.Phase.name == FAILED:
+            self._failed.add(body.TaskID)
 
     def step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
         """Check the leg of every protected vehicle of ours against every zone that is known."""
@@ -93,7 +96,12 @@ class ConstraintWatch:
     def verdicts(self, seen: Watched, ending: Ending) -> list[Verdict]:
         """One verdict for each fence, row and assignment that something was seen of."""
         zones, relations = self._zones(seen, ending), self._relations(seen, ending)
-        return [*zones, *relations, *self._eligibility(seen)]
+        return [
+            *zones,
+            *relations,
+            *self._eligibility(seen, ending),
+            *self._never_begun(seen, ending),
+        ]
 
     def _zones(self, seen: Watched, ending: Ending) -> Iterator[Verdict]:
         for zone, since_ms in zones_of(self._mission, seen.end_ms):
@@ -132,7 +140,7 @@ class ConstraintWatch:
             note = f"not judged: task {', '.join(map(str, missing))} was not flown to its end"
             yield Verdict("G1", f"flight: {row.text}", Outcome.UNKNOWN, Kind.OBSERVED, note)
 
-    def _eligibility(self, seen: Watched) -> Iterator[Verdict]:
+    def _eligibility(self, seen: Watched, ending: Ending) -> Iterator[Verdict]:
         known = {task.id: task for task in self._mission.tasks}
         for task, flown_by in sorted(self._who.items()):
             if task not in known:
@@ -142,7 +150,8 @@ class ConstraintWatch:
             good = all(eligible(mask, self._bits.get(vehicle, 0)) for vehicle in flown_by)
             outcome, note = Outcome.HOLDS if good else Outcome.VIOLATED, "flown by vehicle "
             note += ", ".join(map(str, flown_by))
-            if good and task in seen.tasks and task not in self._ends:
+            given_up = ending.over and task in self._failed
+            if good and task in seen.tasks and task not in self._ends and not given_up:
                 outcome, note = Outcome.UNKNOWN, f"{note}, not to its end"
             yield Verdict(
                 "G1",
@@ -155,3 +164,12 @@ class ConstraintWatch:
                 method="eligible",
                 kernels=(qualified(eligible),),
             )
+
+    def _never_begun(self, seen: Watched, ending: Ending) -> Iterator[Verdict]:
+        """Tasks that are said to have failed before anybody began them: nobody did them who may not."""
+        for task in sorted(self._failed & set(seen.tasks)):
+            if ending.over and task not in self._who and task not in self._ends:
+                note = "nobody began it"
+                yield Verdict(
+                    "G1", eligible_item(task), Outcome.HOLDS, Kind.OBSERVED, note, checks=1
+                )

@@ -23,6 +23,7 @@ from cratous.spec.algebra import ALTERNATIVE, Atom, Term
 from cratous.spec.algebra import partial as algebra_partial
 from cratous.spec.algebra.meaning import branch, branches, rows, tasks
 from cratous.spec.constraint_rows import Row
+from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission
 from cratous.spec.mission.asked import term_of
 from cratous.spec.mission.guarantees import Outcome, Verdict
@@ -91,7 +92,11 @@ def branch_rows(
     if len(ran) < len(chosen):
         return _by_rows(choices, times)
     nodes = mission_nodes(mission)
-    found = term_parts(nodes, ran, not part)
+    try:
+        found = term_parts(nodes, ran, not part)
+    except BadInput as error:
+        # times that no kernel is proved for, from messages
+        return _by_rows(choices, times)._replace(doubt=str(error))
     kept = kept_operands(nodes, found)
     if kept is not None:
         one = branch(_resolved(term, kept), 0)

@@ -21,7 +21,9 @@ from cratous.services.planning import mission_assign, without_vehicles
 from cratous.services.planning.left_out import assign_part
 from cratous.services.planning.options import Option
 from cratous.services.planning.partial import Parts
+from cratous.services.planning.remedies import remedies_of
 from cratous.spec.errors import BadInput, CratousError, NoPlan
+from cratous.spec.mission.plan import COST_UNITS
 
 NAME = "AssignmentTreeBranchBoundService"
 
@@ -103,7 +105,7 @@ class AssignmentTreeBranchBoundService:
             TaskList=listed,
         )
         out += [
-            status(key, "Information", facts(result)),
+            status(key, "Information", facts(result, inputs.mission.cost)),
             *_left_out(key, context.assigned),
             *_in_part(key, inputs.options, result),
             summary,
@@ -129,7 +131,7 @@ def _found(inputs: Offered, rows: list[Any], tasks: Iterable[int]) -> mission_as
         priority = {task.id: task.priority for task in mission.tasks}
         part = assign_part(
             problem, limits, places, Parts(problem, priority, inputs.begun),
-            without_vehicles.unable(inputs),
+            without_vehicles.unable(inputs), lambda task: remedies_of(inputs, task),
         )  # fmt: skip
         if part.assignment is not None:
             return part
@@ -164,10 +166,10 @@ def _in_part(key: int, options: Sequence[Option], result: Assignment) -> list[An
     ]
 
 
-def facts(result: Assignment) -> list[tuple[str, str]]:
+def facts(result: Assignment, cost: str) -> list[tuple[str, str]]:
     """What is known of an assignment, for a status: `optimal` only with a certificate."""
     return [
-        ("cost_ms", str(result.cost)),
+        (f"cost_{COST_UNITS[cost].lower()}", str(result.cost)),
         ("status", result.status),
         ("bound", str(result.bound) if result.bound > 0 else "unknown"),
         ("gap", f"{result.gap:.6f}" if result.bound > 0 else "unknown"),

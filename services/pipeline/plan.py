@@ -26,11 +26,11 @@ from cratous.services.pipeline.tasks import TaskService
 from cratous.services.pipeline.validator import AutomationRequestValidatorService
 from cratous.services.planning import stages, without_vehicles
 from cratous.services.planning.inputs import Inputs
-from cratous.services.planning.mission_assign import parts_in
+from cratous.services.planning.mission_assign import parts_in, power_w
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission import Mission
 from cratous.spec.mission.changes import with_choices
-from cratous.spec.mission.plan import LeftOut, Plan, Pose, partial
+from cratous.spec.mission.plan import COST_UNITS, LeftOut, Plan, Pose, partial
 
 LIMIT_MS = 5000
 """How long a request may take [ms]; here no time passes while one is planned."""
@@ -222,8 +222,16 @@ def _exact(context: Context, summary: Any) -> Plan:
     )
 
 
-def cost_of(plan: Plan) -> int:
-    """The cost of a plan's own items [ms]: the latest end, or the sum of the vehicles' last ends."""
+def cost_of(plan: Plan, mission: Mission) -> int:
+    """The cost of a plan's own items, in the unit of `COST_UNITS`."""
+    if COST_UNITS[plan.cost] != "ms":
+        flown = [
+            (item, item.arrive_ms - item.depart_ms + item.end_ms - item.start_ms)
+            for item in plan.items
+        ]
+        if plan.cost == "DISTANCE":
+            return sum(round(ms * item.speed_m_s) for item, ms in flown)
+        return sum(round(ms * power_w(mission.vehicle(item.vehicle_id))) for item, ms in flown)
     last = {item.vehicle_id: item.end_ms for item in plan.items}
     ends = last.values()
     return sum(ends) if plan.cost == "CUMULATIVE" else max(ends, default=0)

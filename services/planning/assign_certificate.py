@@ -24,6 +24,7 @@ import numpy as np
 from cratous.core.assignment.anytime import NONE, Proof, estimate
 from cratous.core.assignment.by_sets import by_sets, is_sets
 from cratous.core.assignment.chains import chains_below
+from cratous.core.assignment.optimality import shows_optimal
 from cratous.core.assignment.refutation_check import least_cost
 from cratous.core.files.whole_file import write_atomically
 from cratous.services.logs.records import from_data
@@ -78,7 +79,7 @@ def certified(
         status, low = found.status, found.bound
     else:
         low = min(low, found.cost)
-        status = "optimal" if found.cost <= low else "feasible"
+        status = "optimal" if shows_optimal(found.cost, low) else "feasible"
     body: dict[str, Any] = {
         "format": FORMAT,
         "problem": _written(problem),
@@ -92,7 +93,8 @@ def certified(
         body["proofs"] = less
         checked = _bounds(problem, less)
         low = min(low, checked[0])
-        status = "optimal" if found.cost is not None and found.cost <= low else found.status
+        optimal = found.cost is not None and shows_optimal(found.cost, low)
+        status = "optimal" if optimal else found.status
         body["claim"] = {"status": status, "cost": found.cost, "bound": low}
         text = json.dumps(body, sort_keys=True)
     body["sha256"] = hashlib.sha256(text.encode()).hexdigest()  # as `_digest` has it
@@ -200,11 +202,11 @@ def _evidence(body: dict[str, Any]) -> tuple[list[Step], list[dict[str, Any]]]:
 
 def _claims(status: str, cost: int | None, bound: int, low: int) -> str:
     """What of the claim does not follow from the proved bound."""
-    if bound > low:
+    if not shows_optimal(bound, low):
         return f"the proofs show a bound of {low}, not {bound}"
-    if status == "optimal" and (cost is None or cost > low):
+    if status == "optimal" and (cost is None or not shows_optimal(cost, low)):
         return "it is said to be optimal, but the bound is below its cost"
-    if status == "infeasible" and low < NONE:
+    if status == "infeasible" and not shows_optimal(NONE, low):
         return "that nothing exists is not shown"
     if status not in ("optimal", "feasible", "infeasible", "unknown"):
         return f"there is no status {status!r}"

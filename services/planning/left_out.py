@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 
 from cratous.core.assignment.problem import Assignment
@@ -13,7 +13,7 @@ from cratous.services.planning.partial import PROBES, Part, Parts, restricted
 from cratous.spec.algebra.meaning import rows, tasks
 from cratous.spec.algebra.partial import only, waits_for
 from cratous.spec.assignment.search import AssignmentProblem
-from cratous.spec.mission.plan import LeftOut
+from cratous.spec.mission.plan import ORDER, TIME, LeftOut, Remedy
 
 MORE = 100
 """Further questions for finding reasons."""
@@ -27,10 +27,11 @@ def assign_part(
     where: reasons.Places,
     all_of: Parts,
     unable: Mapping[int, str],
+    remedies: Callable[[int], tuple[Remedy, ...]],
 ) -> Found:
     """The best assignment of the part that leaves out least; none if nothing can be done.
 
-    unable: why no vehicle can do a task at all.
+    unable: why no vehicle can do a task at all; remedies: what would have to change so that one could.
     """
     chosen = all_of.choose()
     terms = [only(all_of.branches[k], kept) for k, kept in chosen.parts]
@@ -43,7 +44,7 @@ def assign_part(
         return found
     done = set(found.assignment.branch.tasks)
     part = next(part for part in chosen.parts if part[1] == done)
-    left = _Reasons(all_of, part, unable, where).all()
+    left = _Reasons(all_of, part, unable, where, remedies).all()
     assignment = _numbered(found.assignment, made, problem)
     return replace(found, assignment=assignment, left_out=left, sure=chosen.sure)
 
@@ -60,8 +61,14 @@ class _Reasons:
     """Why the tasks that a part leaves out cannot be done beside it."""
 
     def __init__(
-        self, all_of: Parts, part: Part, unable: Mapping[int, str], where: reasons.Places
+        self,
+        all_of: Parts,
+        part: Part,
+        unable: Mapping[int, str],
+        where: reasons.Places,
+        remedies: Callable[[int], tuple[Remedy, ...]],
     ) -> None:
+        self.remedies = remedies
         self.all_of, self.part, self.unable, self.where = all_of, part, unable, where
         self.branch = all_of.branches[part[0]]
         self.limit = all_of.asked + MORE
@@ -75,9 +82,11 @@ class _Reasons:
             waiting = tuple(other for other in left if task in _chain(waits, other))
             if task not in self.all_of.able:
                 why = self.unable.get(task, "no vehicle can do it")
-                found.append(LeftOut(task, why, waiting))
+                found.append(LeftOut(task, why, waiting, remedies=self.remedies(task)))
             elif waits[task]:
-                found.append(LeftOut(task, self._waits_text(task), waiting))
+                first = f"what it waits for is done first: {_names(waits[task])}"
+                remedy = Remedy((ORDER,), first, tasks=waits[task])
+                found.append(LeftOut(task, self._waits_text(task), waiting, remedies=(remedy,)))
             else:
                 found.append(self._clash(task, waiting))
         return tuple(found)
@@ -110,11 +119,16 @@ class _Reasons:
         asked = all_of.question((k, clash))
         said = reasons.timing_reasons(asked, all_of.solve((k, clash)), self.where)
         why = "; ".join(said[:TOLD_MAX])
-        if reasons.is_wayless(asked):
+        wayless = reasons.is_wayless(asked)
+        remedies = () if wayless else (Remedy((TIME,), f"other times: {why}"),)
+        if wayless:
             why = "there is no way from task to task"
         if instead:
             why = f"not beside {_names(instead)}: {why}"
-        return LeftOut(task, why, tuple(waiting), instead)
+            # the part without them has a schedule, or the clash would not be the smallest one found
+            without = Remedy((TIME,), f"without {_names(instead)}", tasks=instead)
+            remedies = (*remedies, without)
+        return LeftOut(task, why, tuple(waiting), instead, remedies)
 
 
 def _names(numbers: tuple[int, ...]) -> str:

@@ -21,15 +21,29 @@ from cratous.services.planning.assign_replay import branch_of
 from cratous.services.planning.options import Option
 from cratous.spec.algebra import Term, format_term
 from cratous.spec.algebra.meaning import tasks as tasks_of
-from cratous.spec.assignment.search import CUMULATIVE, MINMAX, AssignmentProblem, Choice, Solution
-from cratous.spec.mission import Mission
+from cratous.spec.assignment.search import (
+    CUMULATIVE,
+    MINMAX,
+    AssignmentProblem,
+    Choice,
+    Cost,
+    Rows,
+    Solution,
+)
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Mission, Vehicle
 from cratous.spec.mission.plan import InPart, LeftOut
 
 NODES = 1_000_000
 """Nodes of a mission's search where it gives no limit, some seconds at most."""
 WIDTH = 50_000
 """States kept of a layer."""
-COSTS = {"MINMAX": MINMAX, "CUMULATIVE": CUMULATIVE}
+COSTS = {
+    "MINMAX": MINMAX,
+    "CUMULATIVE": CUMULATIVE,
+    "DISTANCE": Cost(0, 0, 1, 0),
+    "ENERGY": Cost(0, 0, 0, 1),
+}
 Travel = Callable[[int, int, int], int | None]
 """(vehicle, option before or START, option) -> time on the way [ms], None if there is none."""
 
@@ -78,16 +92,50 @@ def problem_of(
         )
         for v, v_id in enumerate(ids)
     )
+    weighed = COSTS[mission.cost]
+    distance, energy = tuple[Rows, ...](), tuple[Rows, ...]()
+    if weighed.distance:
+        distance = tuple(
+            _per_ms(rows, options, [o.flyer.speed_m_s for o in options]) for rows in travel
+        )
+    if weighed.energy:
+        energy = tuple(
+            _per_ms(rows, options, [power_w(vehicle)] * count)
+            for rows, vehicle in zip(travel, mission.vehicles, strict=True)
+        )
     known = {c.task_id for c in choices} | {f.task_id for f in fixed}
     # both forms of "all tasks, in any order" are one problem, with the tasks in the same order
     relations = mission.relations if mission.relations.strip() else format_term(term)
     done = sorted(fixed, key=lambda f: (f.start_ms, f.end_ms, f.task_id))
     return AssignmentProblem(
         mission.name, ids, (now_ms,) * len(ids), choices, travel, relations,
-        cost=COSTS[mission.cost], semantics=mission.order,
+        cost=weighed, semantics=mission.order, distance_mm=distance, energy_mj=energy,
         done=tuple((f.task_id, f.start_ms, f.end_ms) for f in done),
         unable=frozenset(tasks_of(term)) - known,
     )  # fmt: skip
+
+
+def power_w(vehicle: Vehicle) -> float:
+    """What a vehicle draws in flight [W]; BadInput if the mission does not say."""
+    if vehicle.power_w is None:
+        raise BadInput(
+            "the cost ENERGY needs what each vehicle draws in flight",
+            item=f"power_w of vehicle {vehicle.id}",
+            expected="a number of watts",
+            got="nothing",
+        )
+    return vehicle.power_w
+
+
+def _per_ms(rows: Rows, options: Sequence[Option], rates: Sequence[float]) -> Rows:
+    """Ways with the tasks that they lead to, in units of a rate per millisecond: m/s gives mm, W gives mJ."""
+    return tuple(
+        tuple(
+            None if ms is None else round((ms + o.duration_ms) * rate)
+            for ms, o, rate in zip(row, options, rates, strict=True)
+        )
+        for row in rows
+    )
 
 
 def limits_of(mission: Mission) -> Limits:

@@ -110,8 +110,12 @@ def expand(
     mission: Mission,
     tasks: Sequence[Task],
     zones: Sequence[Zone],
+    in_part: bool = True,
 ) -> tuple[tuple[Option, ...], tuple[Dropped, ...]]:
-    """All options of the tasks for the mission's vehicles, and those dropped."""
+    """All options of the tasks for the mission's vehicles, and those dropped.
+
+    in_part: also options over a part of a task, where there is none over all of it.
+    """
     classes: dict[Flyer, list[int]] = {}
     for vehicle in mission.vehicles:
         classes.setdefault(flyer_of(vehicle), []).append(vehicle.id)
@@ -132,7 +136,8 @@ def expand(
             for one in _options(task, flyer, able, zones, mission.frame.terrain_m)
         ]
         offered = [one for one in made if isinstance(one, Option)]
-        offered = offered or parts_of(task, may, zones, mission.frame.terrain_m)
+        if in_part and not offered:
+            offered = parts_of(task, may, zones, mission.frame.terrain_m)
         options += [replace(one, option_id=k) for k, one in enumerate(offered, 1)]
         dropped += [one for one in made if isinstance(one, Dropped)]
     return tuple(options), tuple(dropped)

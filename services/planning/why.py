@@ -21,11 +21,11 @@ from cratous.spec.mission.plan import Plan, left_out_of
 
 
 class Instead(NamedTuple):
-    """What it would mean to give a task to a vehicle. cost_ms: of the whole plan, None if there is none;
+    """What it would mean to give a task to a vehicle. cost: of the whole plan, None if there is none;
     reason: why not, empty if it could be; sure: nothing cheaper, as far as is proved."""
 
     vehicle: int
-    cost_ms: int | None
+    cost: int | None
     reason: str
     sure: bool = True
 

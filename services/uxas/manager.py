@@ -159,6 +159,9 @@ class ServiceManager:
         name = self._name(item.type, number)
         service = kind.make(self._host, item, values, name, number)
         self._add(service, number, values["MessageGroup"])
+        if hasattr(service, "pump"):  # it has a port of its own
+            self.bridges[number] = service
+            self.on_change()
 
     def _make_bridge(self, item: Entry, number: int) -> None:
         kind = bridge_kinds.BRIDGES[item.type]

@@ -128,7 +128,12 @@ class Process:
         return found + list(self.manager.bridges.values())
 
     def run(self, until_s: float | None = None) -> None:
-        """Turn until `until_s` seconds are over, KillService -1 comes, or `stopping` is set."""
+        """Turn until `until_s` seconds are over, KillService -1 comes, or `stopping` is set.
+
+        The start is complete when those are there for whom a service waits; the time counts from then on.
+        """
+        while self._awaits() and not (self.stopping or self.manager.ended):
+            self.turn()
         startup(self.bus)
         if self._virtual:
             self._run_virtual(until_s)
@@ -149,6 +154,11 @@ class Process:
         for port in self.ports:
             port.pump(now_s)
         self.bus.run_until(self.clock.now_ms())
+
+    def _awaits(self) -> bool:
+        now_s = time.monotonic()
+        waiting = [port.awaits(now_s) for port in self.ports if hasattr(port, "awaits")]
+        return any(waiting)  # each has said for whom
 
     def close(self) -> None:
         """End all services, close all sockets. Safe to call twice."""

@@ -10,6 +10,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from cratous.bridge.text_protocol.handshake import secret_of_environment
+from cratous.services.icarous_communication import service as icarous_communication
+from cratous.services.icarous_communication import settings as icarous_settings
 from cratous.services.loading.uxas_settings import Attr, Entry, choice, flag, number, whole
 from cratous.services.logs.message_logger import MessageLogger
 from cratous.services.pipeline import (
@@ -20,7 +23,6 @@ from cratous.services.pipeline import (
     planner,
     sensors,
     task_manager,
-    tasks,
 )
 from cratous.services.pipeline.contexts import Contexts
 from cratous.services.pipeline.validator import AutomationRequestValidatorService
@@ -197,6 +199,13 @@ def _response(host: Host, entry: Entry, v: dict[str, Any], name: str, number: in
     return response.DaidalusResponse(name, _vehicle(host, v), v["ManeuverType"], limit)
 
 
+def _icarous(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    settings = icarous_settings.settings_of(entry, v)
+    return icarous_communication.IcarousCommunicationService(
+        name, host.bus, host.log, settings, secret_of_environment()
+    )
+
+
 def _batch(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
     return batch.BatchSummaryService(source_of(host))
 
@@ -297,6 +306,9 @@ KINDS: dict[str, Kind] = {
         {"FastPlan": flag(False)}, _batch, single=True, plans=True, ignored={"FastPlan": _NOT_USED}
     ),
     "TaskTrackerService": Kind({}, _tracker),
+    "IcarousCommunicationService": Kind(
+        icarous_settings.ATTRIBUTES, _icarous, single=True, plans=True
+    ),
     "DAIDALUS_WCV_Detection": Kind(daidalus.ATTRIBUTES, _detection, plans=True),
     "DAIDALUS_WCV_Response": Kind(
         {
@@ -334,65 +346,3 @@ KINDS: dict[str, Kind] = {
         _report,
     ),
 }
-
-SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
-    VALIDATOR: (
-        AutomationRequestValidatorService,
-        ("UniqueAutomationRequest", "AutomationResponse", "ImpactAutomationResponse",
-         "TaskAutomationResponse", "ServiceStatus"),
-    ),
-    "TaskManagerService": (
-        task_manager.TaskManagerService, ("CreateNewService", "KillService")
-    ),
-    "Task services": (
-        tasks.TaskService,
-        ("TaskInitialized", "SensorFootprintRequests", "TaskPlanOptions", "RoutePlanRequest",
-         "TaskImplementationResponse", "TaskActive", "TaskComplete", "ServiceStatus"),
-    ),
-    "RoutePlannerVisibilityService": (
-        planner.RoutePlannerVisibilityService, ("RoutePlanResponse",)
-    ),
-    "RouteAggregatorService": (
-        aggregator.RouteAggregatorService,
-        ("RoutePlanRequest", "AssignmentCostMatrix", "RouteResponse"),
-    ),
-    "AssignmentTreeBranchBoundService": (
-        assignment.AssignmentTreeBranchBoundService, ("TaskAssignmentSummary", "ServiceStatus")
-    ),
-    "LoiterAssignmentService": (
-        loiter.LoiterAssignmentService, ("VehicleActionCommand", "ServiceStatus")
-    ),
-    "PlanBuilderService": (
-        builder.PlanBuilderService,
-        ("TaskImplementationRequest", "UniqueAutomationResponse", "ServiceStatus"),
-    ),
-    "WaypointPlanManagerService": (waypoints.WaypointPlanManagerService, ("MissionCommand",)),
-    "SimpleWaypointPlanManagerService": (
-        waypoints.SimpleWaypointPlanManagerService, ("MissionCommand",)
-    ),
-    "SensorManagerService": (
-        sensors.SensorManagerService, ("SensorFootprintResponse", "ServiceStatus")
-    ),
-    "OperatingRegionStateService": (
-        regions.OperatingRegionStateService, ("OperatingRegion",)
-    ),
-    "LoiterLeash": (leash.LoiterLeash, ("RoutePlanRequest", "VehicleActionCommand", "ServiceStatus")),
-    "BatchSummaryService": (
-        batch.BatchSummaryService, ("TaskAutomationRequest", "BatchSummaryResponse")
-    ),
-    "TaskTrackerService": (tracker.TaskTrackerService, ()),
-    "DAIDALUS_WCV_Detection": (
-        detection.DaidalusDetection,
-        ("DAIDALUSConfiguration", "WellClearViolationIntervals", "ServiceStatus"),
-    ),
-    "DAIDALUS_WCV_Response": (
-        response.DaidalusResponse, ("VehicleActionCommand", "MissionCommand", "ServiceStatus")
-    ),
-    "AutomationDiagramDataService": (diagram.AutomationDiagramDataService, ("ServiceStatus",)),
-    "SendMessagesService": (small.SendMessagesService, ()),
-    "MessageLoggerDataService": (MessageLogger, ()),
-    "Test_SimulationTime": (small.SimulationTime, ()),
-    "HelloWorld": (small.HelloWorld, ("KeyValuePair",)),
-    "StatusReportService": (small.StatusReportService, ("OnboardStatusReport",)),
-}  # fmt: skip
-"""Of each service its class, which says what it subscribes to, and the messages that it sends."""

@@ -34,3 +34,11 @@ def may_be_last(last: int, end: int, tail: int, lag: int, least: int, after: int
     at the soonest. FOR ALL instants."""
     soonest = end + lag
     return last >= end + tail and last - after >= soonest + least
+
+
+def none_is_cheaper(other: int, cost: int, bound: int) -> bool:
+    """A schedule of this other cost, if it is not below the bound, is not cheaper than `cost`.
+
+    FOR ALL other: as no schedule is below a proved bound, none is cheaper: `cost` is optimal.
+    """
+    return not (other >= bound and other < cost)

@@ -61,7 +61,10 @@ class Camera:
 
 @dataclass(frozen=True)
 class Vehicle:
-    """One aircraft. `protected` vehicles get an ICAROUS instance and the guarantees G1 to G5."""
+    """One aircraft. `protected` vehicles get an ICAROUS instance and the guarantees G1 to G5.
+
+    power_w: what it draws in flight [W], None if that is not known.
+    """
 
     id: int
     label: str
@@ -75,6 +78,7 @@ class Vehicle:
     protected: bool
     cameras: tuple[Camera, ...] = ()
     cruise_m: float | None = None
+    power_w: float | None = None
 
     @property
     def cruise_alt_m(self) -> float:
@@ -260,7 +264,7 @@ class Mission:
     """A whole mission. `relations` is the process-algebra text; empty means all tasks, any order.
 
     instances: ids of the vehicles with an ICAROUS instance (all protected ones unless avoidance
-    is switched off). cost: "MINMAX" (makespan) or "CUMULATIVE". order: "time" (precedence holds
+    is switched off). cost: a key of `spec.mission.plan.COST_UNITS`. order: "time" (precedence holds
     in time, design decision 1) or "order" (as UxAS: order of assignment only). node_limit: nodes of
     the assignment search (0: its first leaf); None: as many as usual; gap: the search may stop once
     (cost - bound) / cost is at most this.

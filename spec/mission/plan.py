@@ -14,6 +14,17 @@ from typing import NamedTuple
 from cratous.spec.constraint_rows import Row
 from cratous.spec.mission import Position
 
+COST_UNITS = {"MINMAX": "ms", "CUMULATIVE": "ms", "DISTANCE": "mm", "ENERGY": "mJ"}
+"""What a plan is to cost least of: the latest end, the sum of the vehicles' last ends, the distance flown on
+ways and tasks, the energy used on them; and the unit of each."""
+
+
+def cost_text(cost: str, value: int) -> str:
+    """A cost in words: seconds, kilometres or kilojoules."""
+    if COST_UNITS[cost] == "ms":
+        return f"{value / 1000:.1f} s"
+    return f"{value / 1e6:.3f} km" if COST_UNITS[cost] == "mm" else f"{value / 1e6:.1f} kJ"
+
 
 class Pose(NamedTuple):
     """A position with a heading [rad, clockwise from north]."""
@@ -81,17 +92,40 @@ class Plan:
         return tuple(item for item in self.items if item.vehicle_id == vehicle_id)
 
 
+ZONE, ELIGIBILITY, TIME, WIND, VEHICLE, ORDER = (
+    "zone", "eligibility", "time", "wind", "vehicle", "order",
+)  # fmt: skip
+"""What may stand in the way of a task. No mission bounds energy, so that never does."""
+
+
+class Remedy(NamedTuple):
+    """A smallest set of what would have to change so that a task that is left out could be done.
+
+    kinds: what it is about; text: in words; zones, tasks, vehicles: of which it speaks; tried: that a vehicle
+    could do the task then was computed (not, whether there is a schedule with it).
+    """
+
+    kinds: tuple[str, ...]
+    text: str
+    zones: tuple[int, ...] = ()
+    tasks: tuple[int, ...] = ()
+    vehicles: tuple[int, ...] = ()
+    tried: bool = False
+
+
 class LeftOut(NamedTuple):
     """A task that is asked for and not planned.
 
     reason: why it cannot be done; waiting: the tasks that are left out because they wait for it; instead:
-    the planned tasks with which there is no schedule for it.
+    the planned tasks with which there is no schedule for it; remedies: what would have to change, each enough by
+    itself as far as is known.
     """
 
     task_id: int
     reason: str
     waiting: tuple[int, ...] = ()
     instead: tuple[int, ...] = ()
+    remedies: tuple[Remedy, ...] = ()
 
     @property
     def text(self) -> str:

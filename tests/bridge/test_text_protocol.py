@@ -160,7 +160,7 @@ ATTUD = "ATTUD,roll1.0,pitch2.0,yaw3.0,\n"
         ("attud,roll1.0,pitch2.0,yaw3.0,\n", "unknown tag", 1),
         ("WAYPTtotal1,index1,lat51.4,\n", "unknown tag", 1),
         ("ATTUD,roll1.0,pit\0ch2.0,yaw3.0,\n", "byte that is not printable", 18),
-        ("ATTUD,roll1.0,pitch2.0,yaw3.0,\r\n", "byte that is not printable", 31),
+        ("ATTUD,roll1.0,\rpitch2.0,yaw3.0,\n", "byte that is not printable", 15),
         ("ATTUD,roll\xb2.0,pitch2.0,yaw3.0,\n", "byte that is not printable", 11),
         ("COMND,typeSTART_MISSIONX,\n", "unknown type", 11),
         ("COMND,\n", "field missing", 7),

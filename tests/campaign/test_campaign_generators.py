@@ -9,13 +9,16 @@ from typing import Any
 
 import pytest
 
-from cratous.services.campaign.definition import Campaign
+from cratous.services.campaign.definition import Campaign, load_campaign
 from cratous.services.campaign.generators import KINDS, mission_of
 from cratous.services.campaign.runs import Run, runs_of
 from cratous.services.cli import main
 from cratous.services.cli.campaign_flight import fly_run
 from cratous.services.loading import load
 from cratous.spec.errors import BadInput
+from cratous.spec.mission.changes import TASK_ADDED as ADDED
+from cratous.spec.mission.changes import VEHICLE_LOST as LOST
+from cratous.spec.mission.changes import ZONE
 
 
 def made(generator: dict[str, Any], seeds: range) -> list[Run]:
@@ -53,6 +56,37 @@ def test_they_load_and_meet(kind: str, cooperative: bool, tmp_path: Path) -> Non
             ) % 360 == pytest.approx(360, abs=0.01)
     assert all(cooperative and "start inside each other's" in what for what in refused)
     assert len(refused) <= 4
+
+
+def test_missions_with_changes_are_missions(tmp_path: Path) -> None:
+    seen: set[str] = set()
+    for seed in range(1, 61):
+        data, draw = mission_of({"kind": "changes", "most_changes": 6}, "c", seed)
+        assert mission_of({"kind": "changes"}, "c", seed)[0] == data
+        file = tmp_path / f"{seed}.yaml"
+        file.write_text(json.dumps(data))
+        mission = load(file)
+        assert 1 <= len(mission.changes) <= 6
+        assert draw.drawn["changes"] == len(mission.changes)
+        seen |= {change.kind for change in mission.changes} | {task.kind for task in mission.tasks}
+    assert {LOST, ADDED, ZONE, "line_search", "area_search"} <= seen
+
+
+@pytest.mark.parametrize(
+    ("generator", "item"),
+    [
+        ({"kind": "changes", "intruders": 2}, "intruders"),
+        ({"kind": "aimed", "most_changes": 3}, "most_changes"),
+    ],
+)
+def test_an_item_of_another_kind_is_refused(
+    generator: dict[str, Any], item: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "campaign.yaml"
+    file.write_text(json.dumps({"name": "c", "generator": generator, "seeds": [1, 2]}))
+    with pytest.raises(BadInput, match="has no such item") as error:
+        load_campaign(file, None, ())
+    assert error.value.item == f"generator.{item}"
 
 
 def test_a_zone_lies_beside_or_across() -> None:

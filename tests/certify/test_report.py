@@ -180,6 +180,19 @@ def test_the_page_is_whole_and_escaped() -> None:
         assert words in page
 
 
+def test_the_page_tells_the_code_and_the_ledger() -> None:
+    data = report()
+    code = {
+        "digest": "4" * 64,
+        "running": "as its files say",
+        "release": "no release to compare with",
+    }
+    data["environment"]["code"], data["proofs"]["seal"] = code, "5" * 64
+    page = render(data)
+    for words in ("4" * 16, "as its files say", "no release to compare with", "5" * 16):
+        assert words in page
+
+
 def test_the_page_loads_nothing() -> None:
     page = render(report())
     assert not re.search(r"""src\s*=|href\s*=(?!"#)|url\(|@import|https?://""", page)

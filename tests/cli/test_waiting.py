@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import io
 import time
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
-from cratous.services.cli import progress
+from cratous.services.cli import main, progress
 from cratous.services.cli.job import planning_told
 from cratous.services.cli.progress import Waiting, waiting
+from cratous.services.logs.log import LogWriter
+from cratous.spec.errors import BadInput
 
 
 class Terminal(io.StringIO):
@@ -78,3 +81,34 @@ def test_planning_tells_how_far_it_is() -> None:
         "planning the ways between the tasks",
         "searching for the best assignment",
     ]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["judge"], "judging the flight from its log"),
+        (["log", "list"], "counting its messages"),
+        (["log", "export", "-o", "out.jsonl"], "writing out.jsonl"),
+    ],
+)
+def test_commands_that_read_a_log_tell_what_they_do(
+    arguments: list[str], told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The work is held up until the line is there, so a command that says nothing fails here."""
+    stream = io.StringIO()
+    monkeypatch.setattr("sys.stderr", stream)
+    monkeypatch.chdir(tmp_path)
+    log = tmp_path / "log.sqlite"
+    LogWriter(log, mission="m").close()
+    called: list[str] = []
+
+    def held(*_args: object, **_more: object) -> None:
+        _until(stream, told)
+        called.append(told)
+        raise BadInput("held up", expected="", got="")
+
+    monkeypatch.setattr("cratous.judge.judge", held)
+    monkeypatch.setattr("cratous.services.cli.log._missing", held)
+    monkeypatch.setattr("cratous.services.logs.export.export", held)
+    assert main([*arguments, str(log)]) == 2
+    assert called == [told]

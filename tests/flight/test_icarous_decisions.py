@@ -8,7 +8,7 @@ import math
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from icarous_tools import ABILITY, NORTH, VOLUME, WIDE, head_on
+from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME, WIDE, head_on
 
 from cratous.core.authority.cycle import patience
 from cratous.core.authority.gate import Gate
@@ -16,12 +16,13 @@ from cratous.core.avoidance.manoeuvre import along, fly_to, velocity_of
 from cratous.core.avoidance.prediction import Intruder, Piece, after, first_violation_s
 from cratous.core.avoidance.resolution import Scene, first_conflict_s, resolve
 from cratous.core.geofence.mission_legs import leg_ok
+from cratous.services.icarous.ending import Ahead
 from cratous.services.icarous.foresight import describe, predicted
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.return_to_path import PERSIST_MS as FREE_MS
 from cratous.services.icarous.return_to_path import goal_index
-from cratous.services.icarous.state import State
+from cratous.services.icarous.state import Config, State
 from cratous.services.icarous.traffic_monitor import (
     PERSIST_MS,
     last_time_s,
@@ -30,7 +31,7 @@ from cratous.services.icarous.traffic_monitor import (
     threats,
     turning,
 )
-from cratous.spec.mission import Position, Velocity, WellClear, Zone, ZoneKind
+from cratous.spec.mission import Daa, Position, Velocity, WellClear, Zone, ZoneKind
 
 
 def straight(duration_s: float = 60.0) -> tuple[Piece, ...]:
@@ -262,6 +263,7 @@ def test_goal_is_ahead_and_not_too_near() -> None:
 
 # ---- what is predicted of whom -------------------------------------------------------------------
 
+CONFIG = Config(1, Daa(VOLUME), PROJECTION, 500)
 WAY = (Position(-1000.0, 0.0, 300.0), Position(100.0, 0.0, 300.0), Position(100.0, 900.0, 300.0))
 
 
@@ -283,10 +285,13 @@ def test_which_way_is_predicted(
 ) -> None:
     state = State(told=Told(waypoints=WAY, next_index=next_index))
     now = NORTH._replace(position=Position(north_m, east_m, 300.0))
-    found = predicted(state, Sensed(0, now, ABILITY, (), Gate(0, 0, False)), 60.0)
-    assert len(found) == pieces
+    found = predicted(
+        CONFIG, state, Sensed(0, now, ABILITY, (), Gate(0, 0, False)), Scene((), (), WIDE, 60.0)
+    )
+    assert len(found.pieces) == pieces
     if pieces == 1:
-        assert found == (Piece(0.0, 60.0, now.position, velocity_of(0.0, 22.0, 0.0)),)
+        straight = Piece(0.0, 60.0, now.position, velocity_of(0.0, 22.0, 0.0))
+        assert found == Ahead((straight,), WIDE)
 
 
 @pytest.mark.parametrize(

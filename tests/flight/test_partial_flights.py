@@ -8,15 +8,22 @@ from typing import Any
 
 import pytest
 import yaml
-from changing_missions import changing_mission
 
 from cratous.bridge import lmcp
 from cratous.judge import judge
 from cratous.services.bus import Bus
+from cratous.services.campaign.changing import changing_mission
 from cratous.services.cli.job import Settings, plan_and_check, refuse_bad_plan, run_mission
+from cratous.services.flight.chain import Phase
+from cratous.services.flight.dynamics import AirState
+from cratous.services.flight.executive_state import Config, first_state
 from cratous.services.flight.loop import fly
+from cratous.services.flight.passing import _may_begin, begin
 from cratous.services.loading import load
+from cratous.services.mission.frames import Projection
 from cratous.services.monitor import Monitor
+from cratous.services.pipeline.plan import make_plan
+from cratous.spec.constraint_rows import AFTER_START
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Change, Mission, Position
 from cratous.spec.mission.changes import VEHICLE_JOINS, VEHICLE_LOST
@@ -57,6 +64,7 @@ def test_the_example_does_what_can_be_done_and_names_the_rest() -> None:
     assert "its path breaks keep-out zone 9" in result.failed[6]
     for task in range(1, 7):
         assert rows[f"task {task} served"] == ("holds" if task in (2, 5) else "violated")
+        assert rows[f"eligibility: task {task} in flight"] == "holds", "nobody began it who may not"
     told = [body.Consequence for body in said if type(body).__name__ == "MissionChange"]
     assert "task 3 (no vehicle can do it" in told[0]
     assert "what waits for it: 4" in told[0]
@@ -91,12 +99,35 @@ def test_a_choice_that_was_begun_is_not_made_again() -> None:
     assert rows["task 1 served"] == "violated"
 
 
+def test_a_task_that_was_begun_and_failed_opens_nothing() -> None:
+    """Of `~(|(p1 p2) p3)` p1 was begun and failed, and p2 is not begun: p3 waits for p2."""
+    mission = replace(load(POPUP), changes=(), relations="~(|(p1 p2) p3)")
+    plan = make_plan(mission)
+    config = Config(mission, Projection(mission.frame), ())
+    state = begin(config, replace(first_state(mission, plan), aircraft=at_starts(mission)), [])
+    who = next(item.vehicle_id for item in plan.items if item.task_id == 3)
+    items = tuple(item for item in plan.items if item.task_id == 3)
+    chain = replace(state.chain(who), items=items, k=0, phase=Phase.TRANSIT)
+    begun = state.begun(1, 1000)
+    assert _may_begin(begun, chain, 900_000) == (None, True)
+    row, may = _may_begin(begun.has_failed(1, "lost"), chain, 900_000)
+    assert (row is not None and row.kind, may) == (AFTER_START, False)
+    again = begun.has_failed(1, "lost").begun(2, 2000)
+    assert _may_begin(again, chain, 900_000) == (None, True)
+
+
+def at_starts(mission: Mission) -> tuple[tuple[int, AirState], ...]:
+    return tuple(
+        (v.id, AirState(v.position, v.heading_rad, v.speed_m_s, 0.0)) for v in mission.vehicles
+    )
+
+
 @pytest.mark.long
-@pytest.mark.parametrize("seed", range(64))
+@pytest.mark.parametrize("seed", range(1, 201))
 def test_every_task_of_a_mission_with_changes_is_accounted_for(seed: int, tmp_path: Path) -> None:
     """No internal error, no row that the independent judge contradicts, no task without a word."""
     file = tmp_path / "mission.yaml"
-    file.write_text(yaml.safe_dump(changing_mission(seed)), encoding="utf-8")
+    file.write_text(yaml.safe_dump(changing_mission("changes", seed, 6)), encoding="utf-8")
     try:
         report = run_mission(load(file), tmp_path, Settings(allow_unproved=True))
     except NoPlan:

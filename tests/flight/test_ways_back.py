@@ -12,7 +12,7 @@ from flight_tools import meeting, of_type
 from cratous.bridge import lmcp
 from cratous.core.authority.gate import UXAS, Gate
 from cratous.core.geofence.mission_legs import first_bad_leg
-from cratous.services.flight import interruption, passing
+from cratous.services.flight import ahead, interruption, passing
 from cratous.services.flight.autopilot import Follow
 from cratous.services.flight.chain import Phase
 from cratous.services.flight.commands import decode
@@ -24,6 +24,7 @@ from cratous.services.flight.rejoining import Router
 from cratous.services.mission.frames import Projection
 from cratous.services.pipeline.plan import make_plan
 from cratous.spec.authority.link_end import SUSPEND, TAKE_BACK
+from cratous.spec.constraint_rows import NOT_BEFORE, Row
 from cratous.spec.executive import FAIL_TASK
 from cratous.spec.mission import Position, Zone, ZoneKind
 from cratous.spec.mission.plan import Pose
@@ -111,3 +112,61 @@ def test_the_kernel_says_what_the_search_for_a_way_leads_to(
     monkeypatch.setattr(interruption, "way_act", lambda *_: FAIL_TASK)
     state, _ = handed_back(())
     assert dict(state.failed) == {1: passing.NO_WAY}
+
+
+def ended_at_here(zones: tuple[Zone, ...]) -> tuple[State, list[Any]]:
+    """What the executive says when the chain of a vehicle ends at HERE, with these zones."""
+    mission = replace(meeting(), traffic=())
+    config = Config(mission, Projection(mission.frame), (1,))
+    plan = make_plan(mission)
+    state = replace(first_state(mission, replace(plan, items=())), zones=zones)
+    out: list[Any] = []
+    state = passing.begin(config, replace(state, aircraft=((1, HERE),)), out)
+    return state, [said.body for said in out if isinstance(said, Say)]
+
+
+def test_who_ends_where_no_circle_keeps_the_zones_goes_where_one_does() -> None:
+    """Walls on both sides of HERE, too near for a circle, open to the south and north."""
+    walls = (
+        Zone(1, ZoneKind.KEEP_OUT, ((1500.0, 200.0), (2400.0, 200.0), (2400.0, 100.0), (1500.0, 100.0)), 0.0, 1000.0),
+        Zone(2, ZoneKind.KEEP_OUT, ((1500.0, 500.0), (2400.0, 500.0), (2400.0, 400.0), (1500.0, 400.0)), 0.0, 1000.0),
+    )  # fmt: skip
+    state, said = ended_at_here(walls)
+    track = state.chain(1).track
+    assert track.points[0] == HERE.position
+    assert first_bad_leg(track.points, walls) is None
+    assert first_bad_leg(ahead.last_lap(state.chain(1)), walls) is None
+    assert of_type(said, "MissionChange") == []
+
+
+def test_who_can_circle_nowhere_says_so() -> None:
+    cage = box(ZoneKind.KEEP_IN, 1950.0, 2050.0, 1000.0)
+    state, said = ended_at_here((cage,))
+    (told,) = of_type(said, "MissionChange")
+    assert told.Consequence == passing.NO_CIRCLE
+    assert first_bad_leg(state.chain(1).track.points, (cage,)) is not None
+
+
+def test_a_task_before_which_no_wait_keeps_the_zones_fails_by_name() -> None:
+    mission = replace(meeting(), traffic=())
+    config, plan = Config(mission, Projection(mission.frame), (1,)), make_plan(mission)
+    start = AirState(Position(0.0, 0.0, 300.0), 0.0, 22.0, 0.0)
+    state = replace(first_state(mission, plan), aircraft=((1, start),))
+    state = passing.begin(config, state, [])
+    chain = state.chain(1)
+    item = replace(chain.items[0], hold=None)
+    pose = item.path[0]
+    corners = (
+        (pose.north_m - 900, pose.east_m - 40), (pose.north_m - 900, pose.east_m + 40),
+        (pose.north_m + 900, pose.east_m + 40), (pose.north_m + 900, pose.east_m - 40),
+    )  # fmt: skip
+    state = replace(
+        state.put(replace(chain, items=(item,))),
+        zones=(Zone(3, ZoneKind.KEEP_IN, corners, 0.0, 1000.0),),
+    )
+    assert config.ways(state.zones).lap(state.chain(1), item) is None
+    assert config.ways(()).lap(state.chain(1), item) is not None
+    late = replace(state.plan, rows=(Row(NOT_BEFORE, item.task_id, (), 9_000_000, 0, "late"),))
+    out: list[Any] = []
+    after = passing._on_end(config, replace(state, plan=late), state.chain(1), 500, out)
+    assert dict(after.failed) == {item.task_id: passing.NO_HOLD}

@@ -66,6 +66,13 @@ def test_waterway(waterway: Mission) -> None:
     assert waterway.cost == "MINMAX"
 
 
+def test_the_priority_of_a_task_is_taken_over(tmp_path: Path, waterway: Mission) -> None:
+    folder = copied(tmp_path, "waterway")
+    (file,) = (folder / "inputs" / "tasks").glob("1000_*.xml")
+    edit(file, "<Priority>0</Priority>", "<Priority>80</Priority>")
+    assert (waterway.tasks[0].priority, load(folder).tasks[0].priority) == (0, 80)
+
+
 def test_what_is_not_used_is_noted(waterway: Mission) -> None:
     notes = "\n".join(waterway.notes)
     for words in ("inputs/", "AutomationDiagramDataService", "<Bridge>", "well-clear", "terrain"):

@@ -151,11 +151,11 @@ def test_why_this_vehicle_is_told_for_each_other_one() -> None:
     who = {item.task_id: item.vehicle_id for item in plan.items}
     assert who == {1: 1, 2: 2}
     own, other = why(plan_of, plan, 1, {})
-    assert (own.vehicle, own.cost_ms, own.reason) == (1, plan.makespan_ms, "")
+    assert (own.vehicle, own.cost, own.reason) == (1, plan.makespan_ms, "")
     # with the other vehicle the whole plan costs what a plan with that vehicle alone does
     alone = make_plan(replace(plan_of, tasks=(replace(FOUR[0], eligible=(2,)), plan_of.tasks[1])))
-    assert (other.vehicle, other.cost_ms, other.reason) == (2, alone.makespan_ms, "")
-    assert why_lines(plan, 1, (own, other)) == [
+    assert (other.vehicle, other.cost, other.reason) == (2, alone.makespan_ms, "")
+    assert why_lines(plan_of, plan, 1, (own, other)) == [
         f"task 1 is given to vehicle 1: the plan costs {plan.makespan_ms / 1000:.1f} s",
         f"  with vehicle 2: the best plan would cost {alone.makespan_ms / 1000:.1f} s"
         + ("" if other.sure else ", or less"),

@@ -29,7 +29,7 @@ from cratous.services.pipeline.plan import (
 )
 from cratous.services.planning.inputs import Inputs
 from cratous.services.planning.stages import start_poses
-from cratous.services.uxas.registry import SERVES
+from cratous.services.uxas.serves import SERVES
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission.plan import Pose
 

@@ -15,14 +15,15 @@ from cratous.core.kernel import REGISTRY, qualified
 from cratous.proofs.claim import Claim
 from cratous.proofs.engine.lift import LiftError, lift
 from cratous.proofs.engine.symbolic import SymMask, SymReal
-from cratous.spec import geofence, schedule, well_clear
+from cratous.spec import geofence, schedule, service, well_clear
+from cratous.spec.algebra import operators
 from cratous.spec.authority import gate as authority
 
 gate.load_all()
 KERNELS = [e.function for e in REGISTRY.values() if e.kind == "kernel"]
 DEFINITIONS = [
     function
-    for module in (authority, geofence, schedule, well_clear)
+    for module in (authority, geofence, operators, schedule, service, well_clear)
     for _, function in inspect.getmembers(module, inspect.isfunction)
     if function.__module__ == module.__name__
 ]

@@ -1,5 +1,5 @@
-"""Missions of two or three vehicles with changes in flight, by number: lost and joining vehicles, zones on
-tasks and ways, wind, late and withdrawn tasks, one to four at once or apart."""
+"""Missions of two or three vehicles with changes in flight, by seed: vehicles that are lost or join, zones on
+tasks and ways, wind, late and withdrawn tasks, at once or apart."""
 
 from __future__ import annotations
 
@@ -9,22 +9,26 @@ from typing import Any
 
 ALTITUDES_M = (300.0, 500.0, 700.0)
 """A layer for each vehicle, so that they meet each other seldom."""
+KINDS = ("must_fly",) * 4 + ("point_search",) * 2 + ("line_search",) * 3 + ("area_search",)
+SQUARE = ((0, 0), (0, 500), (500, 500), (500, 0))
 
 
-def changing_mission(seed: int) -> dict[str, Any]:
-    """The data of mission file `seed`."""
-    random = Random(seed)
+def changing_mission(name: str, seed: int, most_changes: int) -> dict[str, Any]:
+    """The mission file of a seed as data, with one change up to so many."""
+    random = Random(f"{seed} changes")
     vehicles = [_vehicle(number, random) for number in range(1, random.randrange(2, 4) + 1)]
     ids = [v["id"] for v in vehicles]
     tasks = [_task(number, ids, random) for number in range(1, random.randrange(3, 7) + 1)]
     changes: list[dict[str, Any]] = []
-    for _ in range(random.randrange(1, 5)):
+    wanted = random.randrange(1, most_changes + 1)
+    while len(changes) < wanted:
         _change(changes, ids, tasks, random)
     late = {c["task_added"] for c in changes if "task_added" in c}
     if late >= {t["id"] for t in tasks}:  # a mission begins with a task
-        changes = [c for c in changes if "task_added" not in c]
+        changes = [c for c in changes if c.get("task_added") != tasks[0]["id"]]
     return {
-        "name": f"changing_{seed}",
+        "name": f"{name}-{seed}",
+        "description": f"{len(changes)} changes, made by a campaign with seed {seed}",
         "frame": {"latitude_deg": 45.3, "longitude_deg": -121.0, "terrain_m": 0},
         "vehicles": vehicles,
         "tasks": tasks,
@@ -48,12 +52,14 @@ def _vehicle(number: int, random: Random) -> dict[str, Any]:
 
 
 def _task(number: int, vehicles: list[int], random: Random) -> dict[str, Any]:
-    kind = random.choice(("must_fly", "must_fly", "point_search", "line_search"))
+    kind = random.choice(KINDS)
     north, east = random.randrange(900, 3500), random.randrange(-800, 4500)
-    points = [{"north_m": north, "east_m": east}]
+    points: list[dict[str, float]] = [{"north_m": north, "east_m": east}]
     if kind == "line_search":
         turn = random.uniform(0, 2 * pi)
         points.append({"north_m": north + 700 * cos(turn), "east_m": east + 700 * sin(turn)})
+    elif kind == "area_search":
+        points = [{"north_m": north + a, "east_m": east + b} for a, b in SQUARE]
     task: dict[str, Any] = {"id": number, "kind": kind, "points": points}
     if random.random() < 0.35:
         task["eligible"] = [random.choice(vehicles)]

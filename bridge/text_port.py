@@ -1,0 +1,265 @@
+"""The CRATOUS text protocol over TCP between processes: one end that listens, one that connects.
+
+Nothing here blocks and nothing raises because of a peer: what it sends is a record (a message, a refused
+or skipped line), its end is a `LinkEvent`. A peer that does not finish the handshake, sends faster than it
+may, sends nothing but what cannot be read, or falls silent, is dropped with the reason.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import zmq
+
+from cratous.bridge.link import Link, LinkEvent, Listener, connect
+from cratous.bridge.port import Address, Report, Tally, is_due
+from cratous.bridge.text_protocol.format import encode
+from cratous.bridge.text_protocol.handshake import (
+    DEFAULT_SECRET,
+    ClientHandshake,
+    Handshake,
+    ServerHandshake,
+)
+from cratous.bridge.text_protocol.layouts import Limits
+from cratous.bridge.text_protocol.messages import Direction, Heartbeat, Hello, Message
+from cratous.bridge.text_protocol.parser import Record, StreamParser, WireError
+from cratous.spec.errors import BadInput
+
+PROGRAM_LIMITS = Limits(10_000, 1000, 1000, 9999, 9999)
+"""The largest counts that the two programs take; a vehicle's memory is bounded by them."""
+_READS = 16
+_PATIENCE_S = 0.5
+"""How long a client waits for a connection to come about before it goes on with its other work."""
+NOISE, SILENT, LATE, FAST = (
+    "nothing but what cannot be read",
+    "silent",
+    "handshake not finished in time",
+    "sends faster than it may",
+)
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """What a peer may cost.
+
+    handshake_s: until it has shaken hands; silence_s: until it says something, None: for ever;
+    bytes_per_s, burst_bytes: how fast it may send in the long run, and at once; bad_lines: how many
+    lines in a row may be unreadable; connections: how many peers at once.
+    """
+
+    handshake_s: float = 10.0
+    silence_s: float | None = 300.0
+    bytes_per_s: float = 1 << 20
+    burst_bytes: float = 8 << 20
+    bad_lines: int = 1000
+    connections: int = 64
+
+
+class Opened(NamedTuple):
+    """Hands are shaken: messages may follow."""
+
+    peer: str
+
+
+class Came(NamedTuple):
+    """What a connection has brought: that it is open, a record, or its end; the end comes last."""
+
+    key: int
+    what: Opened | Record | LinkEvent
+
+
+class Connection:
+    """One peer: its socket, handshake and parser, and what it has cost so far."""
+
+    def __init__(
+        self, link: Link, handshake: Handshake, direction: Direction, bounds: Bounds, now_s: float
+    ) -> None:
+        """direction: of what comes in. now_s: a clock that does not go back."""
+        self.link, self._handshake, self._bounds = link, handshake, bounds
+        self._parser = StreamParser(direction, limits=PROGRAM_LIMITS, original_peer=True)
+        self.name = link.remote_name
+        self._until_s: float | None = now_s + bounds.handshake_s
+        self._room, self._at_s, self._bad = bounds.burst_bytes, now_s, 0
+        self.link.send(handshake.start())
+
+    @property
+    def due_s(self) -> float | None:
+        """When it is dropped unless something comes."""
+        return self._until_s
+
+    def step(self, now_s: float) -> list[Opened | Record | LinkEvent]:
+        """Move bytes; what has come, in order."""
+        self.link.flush()
+        self.link.drain(_READS)
+        data = self.link.take()
+        found = self._read(data) if data else []
+        self._spend(len(data), now_s)
+        if data and self._handshake.done:
+            silence_s = self._bounds.silence_s
+            self._until_s = None if silence_s is None else now_s + silence_s
+        if is_due(self._until_s, now_s):
+            self.drop(SILENT if self._handshake.done else LATE)
+        if not self.link.alive:
+            found += self._parser.finish()
+            found.append(self.link.ended or LinkEvent("closed"))
+        return found
+
+    def drop(self, why: str) -> None:
+        """End it; the next `step` says so."""
+        if self.link.ended is None:
+            self.link.flush()
+            self.link.ended = LinkEvent("dropped", why)
+
+    def _read(self, data: bytes) -> list[Opened | Record | LinkEvent]:
+        found: list[Opened | Record | LinkEvent] = []
+        if not self._handshake.done:
+            self.link.send(self._handshake.feed(data))
+            if self._handshake.failed:
+                self.drop(f"handshake failed: {self._handshake.failed}")
+            if not self._handshake.done:
+                return found
+            found.append(Opened(self.name))
+            data = self._handshake.rest
+        for record in self._parser.feed(data):
+            found.append(record)
+            self._bad = self._bad + 1 if isinstance(record, WireError) else 0
+            if self._bad > self._bounds.bad_lines:
+                self.drop(NOISE)
+                break
+        return found
+
+    def _spend(self, count: int, now_s: float) -> None:
+        bounds = self._bounds
+        more = (now_s - self._at_s) * bounds.bytes_per_s
+        self._room = min(bounds.burst_bytes, self._room + more) - count
+        self._at_s = now_s
+        if self._room < 0:
+            self.drop(FAST)
+
+
+class TextPort:
+    """The connections of one end; a port for the loop of a program (`handles`, `due_s`, `step`)."""
+
+    def __init__(
+        self,
+        where: Address,
+        *,
+        server: bool,
+        bounds: Bounds | None = None,
+        original: bool = False,
+        secret: str = DEFAULT_SECRET,
+        report: Report = lambda _severity, _text: None,
+    ) -> None:
+        """server: UxAS's end, which listens (BadInput if it cannot); else ICAROUS's, see `dial`.
+
+        original: the peers are the original's: no HELLO and HBEAT, its number formats.
+        """
+        self.where, self._server, self._original = where, server, original
+        self._bounds, self._secret, self._report = bounds or Bounds(), secret, report
+        self._tally = Tally(where.text, report)
+        self.counts = self._tally.counts
+        self._connections: dict[int, Connection] = {}
+        self._keys = itertools.count(1)
+        self._listener: Listener | None = None
+        self._closed = False
+        if server:
+            host = "0.0.0.0" if where.everywhere else where.host
+            self._listener = Listener(host, where.port)
+
+    @property
+    def bound(self) -> tuple[str, int]:
+        """Host and port on which it listens."""
+        assert self._listener is not None
+        return self._listener.address
+
+    @property
+    def due_s(self) -> float | None:
+        """When `step` has something to do even if nothing arrives."""
+        times = [c.due_s for c in self._connections.values() if c.due_s is not None]
+        return min(times, default=None)
+
+    def handles(self) -> list[tuple[Any, int]]:
+        """Sockets to poll, with what for."""
+        found: list[tuple[Any, int]] = []
+        if self._listener is not None and not self._closed:
+            found.append((self._listener.fileno(), zmq.POLLIN))
+        for one in self._connections.values():
+            if one.link.alive:
+                flags = zmq.POLLIN | (zmq.POLLOUT if one.link.waiting else 0)
+                found.append((one.link.fileno(), flags))
+        return found
+
+    def dial(self, now_s: float) -> int:
+        """Connect to the end that listens; the connection's key. BadInput if nobody is there."""
+        link = connect((self.where.host, self.where.port), _PATIENCE_S)
+        return self._join(link, ClientHandshake(self._secret), Direction.DOWN, now_s)
+
+    def step(self, now_s: float) -> list[Came]:
+        """Accept, read, write; what has come, connection by connection, in order of arrival."""
+        if self._closed:
+            return []
+        self._accept(now_s)
+        found: list[Came] = []
+        for key, one in list(self._connections.items()):
+            records = one.step(now_s)
+            found += [Came(key, record) for record in records]
+            self.counts.received += sum(isinstance(record, Message) for record in records)
+            for record in records:
+                if isinstance(record, WireError):
+                    self._tally.refuse(record.what, f"{one.name}: {record}")
+            if not one.link.alive:
+                one.link.close()
+                del self._connections[key]
+        return found
+
+    def send(self, key: int, message: Message) -> bool:
+        """Queue a message for a peer; False if it is gone or the message cannot stand on the wire."""
+        one = self._connections.get(key)
+        if one is None:
+            return False
+        if self._original and isinstance(message, Hello | Heartbeat):
+            return True
+        try:
+            data = encode(message, original=self._original, limits=PROGRAM_LIMITS)
+        except BadInput as error:
+            self._tally.lose("message has no form on the wire", str(error))
+            return False
+        if not one.link.send(data):
+            return False
+        self.counts.sent += 1
+        return True
+
+    def drop(self, key: int, why: str) -> None:
+        """End a connection for a reason, which its `LinkEvent` bears."""
+        if key in self._connections:
+            self._connections[key].drop(why)
+            self._tally.refuse(why, self._connections[key].name)
+
+    def name(self, key: int) -> str:
+        """Who is at the other end of a connection."""
+        return self._connections[key].name if key in self._connections else f"connection {key}"
+
+    def close(self) -> None:
+        """Hand over what waits, close all sockets. Safe to call twice."""
+        for one in self._connections.values():
+            one.link.flush()
+            one.link.close()
+        self._connections.clear()
+        if self._listener is not None and not self._closed:
+            self._listener.close()
+        self._closed = True
+
+    def _accept(self, now_s: float) -> None:
+        while self._listener is not None and (link := self._listener.accept()) is not None:
+            if len(self._connections) >= self._bounds.connections:
+                self._tally.refuse("too many connections", f"{self._bounds.connections} stand")
+                link.close()
+                continue
+            self._join(link, ServerHandshake(self._secret), Direction.UP, now_s)
+
+    def _join(self, link: Link, handshake: Handshake, direction: Direction, now_s: float) -> int:
+        key = next(self._keys)
+        self._connections[key] = Connection(link, handshake, direction, self._bounds, now_s)
+        return key

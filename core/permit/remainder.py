@@ -1,0 +1,87 @@
+"""Whether a vehicle may fly the rest of its way and then hold: what permits it, piece by piece.
+
+The hold is a disc that stands about the end of the way; what lies beyond is not looked at. Intruders are taken
+to fly straight on, as everywhere in prediction: their tubes have no width. On this way the proved fold
+`permitted` keeps the closed cylinder of the volume, the hold included; that the pieces before it keep its
+time thresholds too is the caller's to check.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cratous.core.avoidance.prediction import Intruder, Piece
+from cratous.core.geofence.distance import comes_within
+from cratous.core.geofence.planar import edges_of, keep_in_leg_ok, keep_out_leg_ok, locate
+from cratous.core.kernel import Vec2, driver
+from cratous.core.permit.pieces import Growth, Meeting, permitted
+from cratous.core.readings.exact import exact
+from cratous.spec.mission import Position, Velocity, WellClear, Zone, ZoneKind
+
+STEADY = Growth(0, 0, 0)
+"""The tube of an intruder that is taken to fly straight on."""
+STANDING = Velocity(0.0, 0.0, 0.0)
+"""How the middle of a hold moves."""
+
+Moving = tuple[Vec2, float, float, float]
+"""Velocity [m/s], climb [m/s, up], duration [s] and rho [m], as in `core.permit.pieces.Piece`."""
+
+
+def hold_at(place: Position, start_s: float, horizon_s: float) -> Piece:
+    """A hold about a place, from start_s until horizon_s [s]."""
+    return Piece(start_s, horizon_s - start_s, place, STANDING)
+
+
+def meeting(start: Position, other: Intruder, volume: WellClear) -> Meeting:
+    """An intruder as a trajectory begins at `start`, and the cylinder of a volume to keep clear."""
+    p, w = other.position, other.velocity
+    return Meeting(
+        Vec2(start.north_m - p.north_m, start.east_m - p.east_m),
+        start.alt_m - p.alt_m,
+        Vec2(w.north_m_s, w.east_m_s),
+        -w.down_m_s,
+        STEADY,
+        STEADY,
+        volume.dthr_m,
+        volume.zthr_m,
+    )
+
+
+def moving(piece: Piece, rho_m: float) -> Moving:
+    """A piece of a predicted way as one of a trajectory."""
+    v = piece.velocity
+    return Vec2(v.north_m_s, v.east_m_s), -v.down_m_s, piece.duration_s, rho_m
+
+
+@driver(checked_by=("permitted",))
+def traffic_permits(
+    pieces: Sequence[Piece],
+    intruders: Sequence[Intruder],
+    volume: WellClear,
+    rho_m: float,
+    hold_m: float,
+) -> bool:
+    """True iff pieces, the last of which is a hold, are permitted against every intruder.
+
+    rho_m, hold_m: how far the vehicle may be from its way, and from the middle of the hold [m], >= 0.
+    """
+    trajectory = [moving(piece, rho_m) for piece in pieces[:-1]] + [moving(pieces[-1], hold_m)]
+    start = pieces[0].position
+    return all(exact(permitted, trajectory, meeting(start, other, volume)) for other in intruders)
+
+
+@driver(checked_by=("locate", "comes_within", "keep_out_leg_ok", "keep_in_leg_ok"))
+def zones_permit(place: Position, zones: Sequence[Zone], hold_m: float) -> bool:
+    """True iff the disc of hold_m [m] about a place, at its height, obeys every zone. ValueError if one
+    has padding."""
+    centre, alt = Vec2(place.north_m, place.east_m), place.alt_m
+    for zone in zones:
+        if zone.padding_m != 0:
+            raise ValueError(f"zone {zone.id}: padding must be turned into vertices first")
+        edges = edges_of(zone.vertices)
+        where = exact(locate, edges, centre)
+        near = exact(comes_within, edges, centre, centre, hold_m)
+        holds = keep_out_leg_ok if zone.kind is ZoneKind.KEEP_OUT else keep_in_leg_ok
+        if not holds(where, near, alt, alt, zone.floor_m, zone.ceiling_m):
+            return False
+    return True

@@ -1,0 +1,82 @@
+"""Induction over several folds that run over the same items at once, with any goal on their results.
+
+`Claim.fold` shows that two results are equal. Here an invariant of the accumulators of several folds, of
+kernels and of definitions, is carried along the items, and what follows from it need not be an equation. Base:
+no item yet. Step: any further item that satisfies what `item` states of it. Use: the goal on the results.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from cratous.core.kernel import Fold, qualified
+from cratous.proofs.claim import Claim
+from cratous.proofs.engine.induction import arbitrary, names_in, spread
+from cratous.proofs.engine.lift import REPLACED
+from cratous.proofs.engine.terms import free_names, statement
+
+Run = tuple[Fold[Any], Any, tuple[Any, ...]]
+"""A fold, an arbitrary accumulator of it, and its context."""
+
+
+def along_items(
+    c: Claim,
+    runs: Sequence[Run],
+    *,
+    item: tuple[Any, ...],
+    invariant: Callable[[list[Any]], Any],
+    goal: Callable[[list[Any]], Any],
+    text: str,
+    models: Sequence[Run] = (),
+    each: Callable[[list[Any]], Any] = lambda accumulators: True,
+    known: Callable[[list[Any]], None] = lambda accumulators: None,
+) -> None:
+    """Show `goal(results)` of folds over the same items, of any number.
+
+    item: the arbitrary values of one item; invariant(accumulators): what holds after any number of items;
+    each(accumulators): what an item satisfies; known(accumulators): uses lemmas on one more item, from
+    the accumulators before it; models: folds of definitions, whose accumulators come after the others'.
+    """
+    if c.prefix:
+        return  # used as a lemma, an induction has no goals to offer, as with `Claim.fold`
+    folds = [REPLACED.get(fold, fold) for fold, _, _ in (*runs, *models)]
+    accumulators = [acc for _, acc, _ in (*runs, *models)]
+    contexts = [context for _, _, context in (*runs, *models)]
+    readers = [c.use] * len(runs) + [c.define] * len(models)
+    arbitrary(c.premises, tuple(accumulators), (item, tuple(contexts)))
+    # base and use hold of no item at all, so nothing may be given about one
+    arbitrary(c.premises, item, tuple(contexts))
+    for fold in folds[: len(runs)]:
+        if qualified(fold) not in c.kernels:
+            c.kernels.append(qualified(fold))
+    starts = [fold.start for fold in folds]
+    before = len(c.facts)
+    held, base = statement(invariant(accumulators)), statement(invariant(starts))
+    own = spread(names_in(item), c)
+    for term in (held, base):
+        shared = sorted(free_names(term) & own)
+        if shared:
+            raise ValueError(
+                f"the invariant depends on the item's {shared[0]}: it holds after each"
+            )
+    c._owe("base", f"{text}: no items", base)
+    # the folds are run only where the invariant holds, so what they owe is owed there
+    c._grant(statement(c.all_of(invariant(accumulators), each(accumulators))))
+    known(accumulators)
+    after = [
+        read(fold.step, acc, *item, *context)
+        for read, fold, acc, context in zip(readers, folds, accumulators, contexts, strict=True)
+    ]
+    c._owe("step", f"{text}: one more item", statement(invariant(after)))
+    c.facts = c.facts[:before]
+    c._grant(held)
+    results = [
+        read(fold.finish, acc) for read, fold, acc in zip(readers, folds, accumulators, strict=True)
+    ]
+    wanted = statement(goal(results))
+    shared = sorted(free_names(wanted) & spread(names_in(item), c))
+    if shared:
+        raise ValueError(f"the goal depends on the item's {shared[0]}: there may be none")
+    c._owe("use", f"{text}: no more items", wanted)
+    c.facts, c.granted = c.facts[:before], ()

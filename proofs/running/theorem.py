@@ -1,0 +1,93 @@
+"""One theorem run: at the solver's witnesses, and at special and random numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from cratous.core.kernel.sources import ours
+from cratous.proofs.engine.claim import Claim
+from cratous.proofs.engine.outcomes import Ran
+from cratous.proofs.engine.symbolic import SymMask
+from cratous.proofs.engine.theorem_files import load_claim, load_lemma
+from cratous.proofs.running.copies import Undecided
+from cratous.proofs.running.points import witnesses
+from cratous.proofs.running.statement import False_, NotRun, OnNumbers, Outside, Values
+
+DRAWN = 60
+"""So many points are drawn beside the witnesses."""
+ENOUGH = 3
+"""So many differences of a theorem are told."""
+
+Function = tuple[str, str]
+"""A function that is no part of another one: its module and its name there."""
+
+
+@dataclass(frozen=True)
+class Functions:
+    """Functions that a theorem looked into: positions of bit masks, and arguments it gave them."""
+
+    masks: dict[Function, frozenset[int]] = field(default_factory=dict)
+    rows: dict[Function, tuple[tuple[Any, ...], ...]] = field(default_factory=dict)
+
+
+def run(name: str, claim: Claim, folder: Path) -> tuple[Ran, Functions]:
+    """Run the theorem of a file; claim: the same, stated for the solver."""
+    statement = load_claim(name, folder)[0]
+    called: dict[Function, list[tuple[Any, ...]]] = {}
+    ran = _ran(name, statement, claim, folder, called)
+    masks: dict[Function, frozenset[int]] = {}
+    for visit in claim.visits:
+        function = visit.function
+        if _is_compared(function):
+            key = (function.__module__, function.__qualname__)
+            bits = {k for k, arg in enumerate(visit.args) if isinstance(arg, SymMask)}
+            masks[key] = masks.get(key, frozenset()) | bits
+    return ran, Functions(masks, {key: tuple(rows) for key, rows in called.items() if key in masks})
+
+
+def _is_compared(function: Callable[..., Any]) -> bool:
+    """A kernel or definition: no helper of a theorem, and nothing that only another function can name."""
+    top, *parts = function.__module__.split(".")
+    helper = "theorems" in parts or (top == "cratous" and parts[:1] == ["proofs"])
+    return ours(function) and not helper and "<locals>" not in function.__qualname__
+
+
+def _ran(
+    name: str,
+    statement: Callable[[Any], None],
+    claim: Claim,
+    folder: Path,
+    called: dict[Function, list[tuple[Any, ...]]],
+) -> Ran:
+    found: list[str] = []
+    points = 0
+    given = witnesses(claim)
+    for number in range(len(given) + DRAWN):
+        point = given[number] if number < len(given) else {}
+        values = Values(point, f"{name} at {number}")
+        on = OnNumbers(values, lambda other: load_lemma(other, folder), called=called)
+        try:
+            statement(on)
+        except (Outside, Undecided, ZeroDivisionError):
+            continue  # a statement's own division by zero stands for any number
+        except False_ as error:
+            if len(found) < ENOUGH:
+                found.append(f"run as Python: {error}: {_numbers(on.shown)}")
+        except NotRun as error:
+            return Ran(points, tuple(found), str(error))
+        except (TypeError, AttributeError) as error:
+            return Ran(points, tuple(found), f"{type(error).__name__}: {error}")
+        else:
+            points += 1
+    return Ran(points, tuple(found))
+
+
+def _numbers(shown: dict[str, Any]) -> str:
+    return ", ".join(
+        f"{name} = {value if isinstance(value, Fraction | int) else repr(value)}"
+        for name, value in shown.items()
+    )

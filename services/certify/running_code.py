@@ -1,0 +1,87 @@
+"""Which code of services and bridge runs: that kernels are proved says nothing of it.
+
+The digest is over the files, so that it is the same wherever the same version runs; what runs in this
+process is held against them, and they against the release that is installed, where there is one.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import importlib.metadata
+import inspect
+import sys
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+from cratous.core.kernel.sources import ROOT, runs_as_written
+
+PARTS = ("bridge", "services")
+NO_RELEASE = "no release to compare with"
+SHOWN = 3
+"""So many files or functions are named where more differ."""
+
+
+def _files() -> dict[str, bytes]:
+    """The sources of both parts by their place."""
+    found = (file for part in PARTS for file in (ROOT / part).rglob("*.py"))
+    return {file.relative_to(ROOT).as_posix(): file.read_bytes() for file in sorted(found)}
+
+
+def _listed(names: list[str]) -> str:
+    more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+    return ", ".join(names[:SHOWN]) + more
+
+
+def _other_code() -> Iterator[str]:
+    """Functions of imported modules of both parts that do not run what their files say."""
+    for name, module in sorted(sys.modules.items()):
+        parts = name.split(".")
+        if parts[0] != "cratous" or parts[1:2] not in (["bridge"], ["services"]):
+            continue
+        for function in vars(module).values():
+            own = inspect.isfunction(function) and function.__module__ == name
+            if own and not hasattr(function, "__wrapped__") and not runs_as_written(function):
+                yield f"{name.removeprefix('cratous.')}.{function.__qualname__}"
+
+
+def _recorded(distribution: importlib.metadata.Distribution) -> dict[str, str]:
+    """The hashes that an installed release has of the sources of both parts, by their place."""
+    found = {}
+    for path in distribution.files or []:
+        top, _, inside = path.as_posix().partition("/")
+        mine = top == "cratous" and inside.split("/")[0] in PARTS and inside.endswith(".py")
+        if mine and path.hash is not None and path.hash.mode == "sha256":
+            found[inside] = path.hash.value
+    return found
+
+
+def against(files: dict[str, bytes], recorded: dict[str, str], version: str) -> str:
+    """What the files are to a release: `release X`, `differs from release X: ...`, or that there is none."""
+    if not recorded:
+        return NO_RELEASE
+    now = {
+        place: base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+        for place, data in files.items()
+    }
+    wrong = sorted(p for p in {*now, *recorded} if now.get(p) != recorded.get(p))
+    return f"differs from release {version}: {_listed(wrong)}" if wrong else f"release {version}"
+
+
+@cache
+def running_code() -> dict[str, str]:
+    """Of services and bridge, as first asked: `digest` of the files, `running` and `release` in words."""
+    files = _files()
+    sha = hashlib.sha256()
+    for place, data in files.items():
+        sha.update(f"{place} {len(data)}\n".encode() + data)
+    try:
+        installed = importlib.metadata.distribution("cratous")
+        here = Path(str(installed.locate_file("cratous"))).resolve() == ROOT
+        release = against(files, _recorded(installed) if here else {}, installed.version)
+    except importlib.metadata.PackageNotFoundError:
+        release = NO_RELEASE
+    other = list(_other_code())
+    running = f"not what its files say: {_listed(other)}" if other else "as its files say"
+    return {"digest": sha.hexdigest(), "running": running, "release": release}

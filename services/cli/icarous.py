@@ -1,0 +1,114 @@
+"""`cratous icarous`: the ICAROUS of one vehicle as a program of its own, at its end of the bridge."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from cratous.spec.errors import BadInput
+
+if TYPE_CHECKING:
+    from cratous.services.icarous_program.step import Craft
+
+
+@click.command()
+@click.option("--vehicle", type=click.IntRange(1), required=True, help="Whose ICAROUS: its id.")
+@click.option(
+    "--mission", type=click.Path(path_type=Path), required=True,
+    help="Where airframe, well clear volume and frame stand: a mission file or UxAS folder.",
+)  # fmt: skip
+@click.option("--connect", required=True, metavar="HOST:PORT", help="Where UxAS listens.")
+@click.option(
+    "--original", is_flag=True, help="UxAS's end is the original's: no HELLO, HBEAT and epochs."
+)
+@click.option("--once", is_flag=True, help="End when the connection ends; else connect again.")
+@click.option(
+    "--wait", type=click.FloatRange(0), default=60.0, show_default=True,
+    help="Seconds to wait for UxAS, at the start and when it is gone.",
+)  # fmt: skip
+@click.option(
+    "--log", "folder", type=click.Path(path_type=Path), help="Folder of the log. [log/icarous_ID]"
+)
+@click.option("--allow-unproved", is_flag=True, help="Fly with kernels that have no proof.")
+def icarous(
+    vehicle: int,
+    mission: Path,
+    connect: str,
+    original: bool,
+    once: bool,
+    wait: float,
+    folder: Path | None,
+    allow_unproved: bool,
+) -> int:
+    """Avoid traffic and zones for one vehicle, over the CRATOUS bridge.
+
+    The other end is the service IcarousCommunicationService of a UxAS configuration. Own state, traffic,
+    plan and zones come over the wire and are believed; steering goes back over it. The secret of the
+    handshake is CRATOUS_BRIDGE_SECRET of the environment, if that is set.
+
+    Example:  cratous icarous --vehicle 1 --mission mission.yaml --connect 127.0.0.1:5557
+
+    Exit codes: 0 it was asked to end (SIGTERM, Ctrl-C), 2 bad input, 3 UxAS was not reached, or is gone.
+    """
+    from cratous.bridge.port import address
+    from cratous.bridge.text_port import TextPort
+    from cratous.bridge.text_protocol.handshake import secret_of_environment
+    from cratous.core.ledger import require
+    from cratous.services.icarous_program.program import Patience, Program
+    from cratous.services.icarous_program.step import IcarousEnd
+    from cratous.services.uxas.logs import Logs
+
+    where = address(f"tcp://{connect}", ("tcp",), item="--connect")
+    craft = craft_of(mission, vehicle, original)
+    log = Logs(
+        "WARN",
+        "DEBUG",
+        folder or Path("log") / f"icarous_{vehicle}",
+        echo=lambda text: click.echo(text, err=True),
+    )
+    try:
+        standing = require(allow_unproved=allow_unproved)
+        log("WARN" if standing.problems else "INFO", f"proofs: {standing.line}")
+        secret = secret_of_environment()
+        port = TextPort(where, server=False, original=original, secret=secret, report=log)
+        program = Program(IcarousEnd(craft), port, log, Patience(wait, once))
+
+        def stop(*_: object) -> None:
+            program.stopping = True
+
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, stop)
+        log("INFO", f"ICAROUS of vehicle {vehicle}, connecting to {connect}")
+        program.run()
+    finally:
+        log.close()
+    return 0
+
+
+def craft_of(path: Path, vehicle_id: int, original: bool) -> Craft:
+    """A vehicle of a mission as its ICAROUS has to know it; BadInput if the mission has no such one."""
+    from cratous.services.flight.dynamics import limits_of
+    from cratous.services.flight.loop import GROUND_MARGIN
+    from cratous.services.icarous.state import Config
+    from cratous.services.icarous_program.step import Craft
+    from cratous.services.loading import load
+    from cratous.services.mission.frames import Projection
+
+    mission = load(path)
+    found = [v for v in mission.vehicles if v.id == vehicle_id]
+    if not found:
+        raise BadInput(
+            "the mission has no such vehicle",
+            where=str(path),
+            item="--vehicle",
+            expected=" or ".join(str(v.id) for v in mission.vehicles),
+            got=str(vehicle_id),
+        )
+    floor_m = mission.frame.terrain_m + GROUND_MARGIN * mission.daa.well_clear.zthr_m
+    config = Config(
+        vehicle_id, mission.daa, Projection(mission.frame), mission.simulation.heartbeat_ms
+    )
+    return Craft(config, limits_of(found[0]), floor_m, frozenset(mission.instances), original)

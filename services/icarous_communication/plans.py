@@ -1,0 +1,181 @@
+"""MissionCommands as ICAROUS is told them, where a vehicle leaves its way, and how it is sent on.
+
+A vehicle that has left its way by more than is allowed comes back to where it left it, so that the sensor
+misses nothing; one that has stayed near makes for the waypoint that it was making for.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Any, NamedTuple
+
+from cratous.core.avoidance.manoeuvre import Motion
+from cratous.core.avoidance.way_ahead import near_line
+from cratous.core.kernel import Vec2
+from cratous.core.routing.polylines import Track
+from cratous.services.icarous.return_to_path import rejoin
+from cratous.services.mission.frames import Projection
+from cratous.spec.mission import Position
+
+START = -1
+"""The number of the place where a vehicle was when it got a plan; no command bears it."""
+
+
+class Plan(NamedTuple):
+    """A MissionCommand in force.
+
+    command: as it was given; waypoints: in the order of flight, before them the place where the vehicle was
+    (START) if that is known, and a way back; where each is, and which point of the track it is; goal: index
+    of the one that the vehicle makes for; since_ms: given at; settled: the vehicle flies it; back: index of
+    the last that is none of the mission's (-1: they all are); resume: where it comes back to its way, if
+    that is where it was left.
+    """
+
+    command: Any
+    waypoints: tuple[Any, ...]
+    positions: tuple[Position, ...]
+    marks: tuple[int, ...]
+    track: Track
+    goal: int
+    since_ms: int
+    settled: bool = False
+    back: int = -1
+    resume: Position | None = None
+
+    @property
+    def speed_m_s(self) -> float:
+        """Planned on it [m/s]."""
+        return float(self.waypoints[0].Speed)
+
+
+class Away(NamedTuple):
+    """ICAROUS commands a vehicle. left: where its way was left; tasks: that it was doing then; paused:
+    it is farther from its leg than is allowed, and these tasks are told to pause."""
+
+    left: Position
+    tasks: tuple[int, ...]
+    paused: bool = False
+
+
+def position_of(place: Any, projection: Projection) -> Position:
+    """A place (a Location3D or a Waypoint) in the plane."""
+    north_m, east_m = projection.to_local(place.Latitude, place.Longitude)
+    return Position(north_m, east_m, float(place.Altitude))
+
+
+def plan_of(
+    command: Any, projection: Projection, now_ms: int, here: Position | None
+) -> Plan | None:
+    """The way of a MissionCommand, from its first waypoint each to the next that it names; a way that
+    leads back into itself is told once around. None if it has no waypoints. here: where the vehicle is."""
+    known = {w.Number: w for w in command.WaypointList}
+    if not known:
+        return None
+    number, order = command.FirstWaypoint, list[Any]()
+    if number not in known:
+        number = next(iter(known))
+    while number in known:
+        order.append(known.pop(number))
+        number = order[-1].NextWaypoint
+    if here is not None:
+        order.insert(0, _at(order[0], here, projection, START, order[0].Number))
+    positions = tuple(position_of(w, projection) for w in order)
+    track = Track(positions)
+    start = 0 if here is None else 1
+    back = start - 1
+    return Plan(
+        command, tuple(order), positions, _marks(positions), track, start, now_ms, back=back
+    )
+
+
+def shown(plan: Plan, number: int, long_enough: bool) -> Plan:
+    """The plan with the waypoint that the vehicle says it makes for.
+
+    As long as it does not show this plan's first waypoint, its number may be one of a former plan: that
+    is over when it has had long_enough.
+    """
+    settled = plan.settled or long_enough or number == plan.waypoints[plan.goal].Number
+    numbers = [w.Number for w in plan.waypoints]
+    if not settled or number not in numbers[plan.goal :]:
+        return plan._replace(settled=settled)
+    return plan._replace(settled=True, goal=numbers.index(number, plan.goal))
+
+
+def deviates(plan: Plan, here: Position, allowed_m: float) -> bool:
+    """True iff the vehicle is farther than allowed from the leg that it is flying; before the first
+    waypoint it has none."""
+    if plan.goal == 0:
+        return False
+    a, b = plan.positions[plan.goal - 1], plan.positions[plan.goal]
+    return not near_line(_flat(here), _flat(a), _flat(b), allowed_m)
+
+
+def resume_point(plan: Plan, left: Position) -> Position | None:
+    """Where a vehicle that was too far from its way comes back to it: the nearest place of its leg to where
+    it left it; on a way back, where that leads. None: to the waypoint that it makes for."""
+    if plan.goal <= plan.back:
+        return plan.resume
+    if plan.goal == 0:
+        return None
+    leg = Track(plan.positions[plan.goal - 1 : plan.goal + 1])
+    return leg.at(leg.nearest(left, 0.0, leg.length_m).s_m)
+
+
+class Resumed(NamedTuple):
+    """command: for the autopilot; back: how many waypoints its way back has; resume: as in `Plan`."""
+
+    command: Any
+    back: int
+    resume: Position | None
+
+
+def resumed(
+    plan: Plan, away: Away, now: Motion, radius_m: float, projection: Projection, command_id: int
+) -> Resumed:
+    """What sends a vehicle on: the shortest flyable way, which ICAROUS has found free, onto its own way.
+
+    radius_m: of its turns.
+    """
+    again = away.paused or plan.goal <= plan.back
+    resume = resume_point(plan, away.left) if again else None
+    goal = max(plan.goal, plan.back + 1)
+    onward = plan.positions[goal : goal + 2]
+    if resume is not None:
+        onward = (resume, *onward)
+    way = rejoin(now, radius_m, onward[0], onward[1] if len(onward) > 1 else None)[1:]
+    if resume is None:
+        way = way[:-1]  # the last is the waypoint itself
+    following, points = plan.waypoints[goal], list(plan.command.WaypointList)
+    first = 1 + max(w.Number for w in points)
+    numbers = [*range(first, first + len(way)), following.Number]
+    for k, place in enumerate(way):
+        points.append(_at(following, place, projection, numbers[k], numbers[k + 1]))
+    command = plan.command.copy(CommandID=command_id, FirstWaypoint=numbers[0], WaypointList=points)
+    return Resumed(command, len(way), resume)
+
+
+def _at(waypoint: Any, place: Position, projection: Projection, number: int, following: int) -> Any:
+    """A waypoint like another one at another place."""
+    latitude, longitude = projection.to_geodetic(place.north_m, place.east_m)
+    return waypoint.copy(
+        Number=number,
+        NextWaypoint=following,
+        Latitude=latitude,
+        Longitude=longitude,
+        Altitude=place.alt_m,
+        VehicleActionList=[],
+    )
+
+
+def _marks(positions: tuple[Position, ...]) -> tuple[int, ...]:
+    """Which point of their `Track` each place is; places that are one are one point of it."""
+    marks = [0]
+    for a, b in itertools.pairwise(positions):
+        apart_m = math.hypot(b.north_m - a.north_m, b.east_m - a.east_m)
+        marks.append(marks[-1] + (apart_m > 1e-6))
+    return tuple(marks)
+
+
+def _flat(p: Position) -> Vec2:
+    return Vec2(p.north_m, p.east_m)

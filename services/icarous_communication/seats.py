@@ -1,0 +1,104 @@
+"""Which connection speaks for which vehicle: by its HELLO, or in the order of arrival by ascending ids."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from cratous.bridge.port import is_due
+
+GRACE_S = 1.0
+"""A connection that has said nothing for this long [s] is one that never says HELLO."""
+
+
+class Seats:
+    """The connections of one service. count: how many instances there are; ids: their vehicles, none for
+    the lowest of those that are known."""
+
+    def __init__(self, count: int, ids: tuple[int, ...]) -> None:
+        self._count, self._ids = count, ids
+        self._new: dict[int, float] = {}  # connections that may still say HELLO, and until when
+        self._unnamed: list[int] = []
+        self._vehicle: dict[int, int] = {}
+
+    @property
+    def come(self) -> int:
+        """How many instances are there, with or without a name."""
+        return len(self._vehicle) + len(self._unnamed) + len(self._new)
+
+    def vehicle(self, key: int) -> int | None:
+        """For whom a connection speaks; None as long as that is not known."""
+        return self._vehicle.get(key)
+
+    def key(self, vehicle_id: int) -> int | None:
+        """Which connection speaks for a vehicle."""
+        return next((k for k, vid in self._vehicle.items() if vid == vehicle_id), None)
+
+    @property
+    def due_s(self) -> float | None:
+        """When `settle` has something to do."""
+        return min(self._new.values(), default=None)
+
+    def opened(self, key: int, now_s: float) -> str:
+        """A connection is open; why it is refused, if it is."""
+        if self.come >= self._count:
+            return f"more instances than NumberOfUAVs = {self._count}"
+        self._new[key] = now_s + GRACE_S
+        return ""
+
+    def hello(self, key: int, vehicle_id: int) -> str:
+        """It says for whom it speaks; why that is refused, if it is."""
+        if key in self._vehicle:
+            same = self._vehicle[key] == vehicle_id
+            return "" if same else f"a second HELLO: {vehicle_id} after {self._vehicle[key]}"
+        if self._ids and vehicle_id not in self._ids:
+            expected = ", ".join(map(str, self._ids))
+            return f"HELLO of vehicle {vehicle_id}, expected one of {expected}"
+        if vehicle_id in self._vehicle.values():
+            return f"a second instance for vehicle {vehicle_id}"
+        self._forget(key)
+        self._vehicle[key] = vehicle_id
+        return ""
+
+    def speaks(self, key: int) -> None:
+        """Its first line is none of HELLO."""
+        if key in self._new:
+            del self._new[key]
+            self._unnamed.append(key)
+
+    def settle(self, known: Iterable[int], now_s: float) -> list[tuple[int, int]]:
+        """Connections without a name and the vehicles that they now speak for.
+
+        The lowest ids are theirs, so all vehicles have to be known first.
+        """
+        for key in [k for k, until_s in self._new.items() if is_due(until_s, now_s)]:
+            self.speaks(key)
+        ids = list(self._ids) or sorted(known)[: self._count]
+        if not self._unnamed or len(ids) != self._count:
+            return []
+        free = [vid for vid in ids if vid not in self._vehicle.values()]
+        given = list(zip(self._unnamed, free, strict=False))
+        for key, vid in given:
+            self._vehicle[key] = vid
+            self._unnamed.remove(key)
+        return given
+
+    def gone(self, key: int) -> int | None:
+        """A connection has ended; for whom it spoke."""
+        self._forget(key)
+        return self._vehicle.pop(key, None)
+
+    def missing(self) -> str:
+        """Who is there and who is not, in words."""
+        named = sorted(self._vehicle.values())
+        there = [f"vehicle {vid}" for vid in named]
+        unnamed = len(self._unnamed) + len(self._new)
+        there += [f"{unnamed} without a name"] if unnamed else []
+        absent = [str(vid) for vid in self._ids if vid not in named]
+        who = f" (of the vehicles {', '.join(absent)})" if absent else ""
+        text = f"{self.come} of {self._count} ICAROUS instances are there"
+        return f"{text} ({', '.join(there) or 'none'}); {self._count - self.come} missing{who}"
+
+    def _forget(self, key: int) -> None:
+        self._new.pop(key, None)
+        if key in self._unnamed:
+            self._unnamed.remove(key)

@@ -1,0 +1,228 @@
+"""The service IcarousCommunicationService: connections, seats and clock around the step of `step`.
+
+It listens for the ICAROUS instances and gives each its vehicle. A process that holds it waits for them
+before it says StartupComplete, and is refused when they do not come.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from cratous.bridge.link import LinkEvent
+from cratous.bridge.port import Report, Tally, is_due
+from cratous.bridge.text_port import Bounds, Came, Opened, TextPort
+from cratous.bridge.text_protocol import Heartbeat, Hello, Message, Skipped
+from cratous.services.bus import Bus, Envelope, Wake
+from cratous.services.flight.messages import Down, Lost, Say
+from cratous.services.icarous_communication.seats import Seats
+from cratous.services.icarous_communication.settings import Settings
+from cratous.services.icarous_communication.step import (
+    Communication,
+    Note,
+    Out,
+    Refuse,
+    State,
+    Step,
+)
+from cratous.spec.errors import CratousError
+
+MISSION, STATE = "afrl.cmasi.MissionCommand", "afrl.cmasi.AirVehicleState"
+CONFIGURED = "afrl.cmasi.AirVehicleConfiguration"
+KEEP_IN, KEEP_OUT = "afrl.cmasi.KeepInZone", "afrl.cmasi.KeepOutZone"
+REMOVE_ZONES = "afrl.cmasi.RemoveZones"
+WATCH_MS = 500
+"""How often it looks for instances that have fallen silent [ms]."""
+MOST_EARLY = 1000
+"""Lines of a connection that are kept until it is known for which vehicle it speaks."""
+PROGRESS_S = 10.0
+"""How often it says for whom it waits [s]."""
+
+
+class NobodyCame(CratousError):
+    """ICAROUS instances that the configuration counts on have not come in time."""
+
+    exit_code = 3
+
+
+class IcarousCommunicationService:
+    """UxAS's end of the bridge."""
+
+    subscribes: tuple[str, ...] = (
+        MISSION,
+        STATE,
+        CONFIGURED,
+        KEEP_IN,
+        KEEP_OUT,
+        REMOVE_ZONES,
+    )
+
+    def __init__(
+        self, name: str, bus: Bus, report: Report, settings: Settings, secret: str
+    ) -> None:
+        """BadInput if it cannot listen. report(severity, sentence): to the log."""
+        self.name, self._bus, self._report, self._settings = name, bus, report, settings
+        bounds = Bounds(silence_s=None, connections=4 * settings.instances)
+        self.port = TextPort(
+            settings.where,
+            server=True,
+            bounds=bounds,
+            original=settings.original,
+            secret=secret,
+            report=report,
+        )
+        self._step = Communication(name, settings.deviation_m, settings.original)
+        self._seats = Seats(settings.instances, settings.ids)
+        self._early: dict[int, list[Message]] = {}
+        self._known: set[int] = set()
+        self._tally = Tally(name, report)
+        self._started = False
+        self._until_s: float | None = None
+        self._say_s, self._said = 0.0, ""
+        host, port = self.port.bound
+        report("INFO", f"{name}: listens at {host}:{port}")
+        if settings.where.everywhere:
+            report("WARN", f"{name}: listens on all interfaces; whoever is there may connect")
+
+    # of the bus -----------------------------------------------------------------------------------
+
+    def start(self) -> State:
+        return State()
+
+    def begin(self, state: State) -> tuple[State, Iterable[Any]]:
+        """Look again and again who is still heard."""
+        return state, [Wake(WATCH_MS)]
+
+    def wake(self, state: State, key: Any, now_ms: int) -> tuple[State, Iterable[Any]]:
+        state, out = self._step.watch(state, now_ms)
+        return state, [*self._deliver(out), Wake(WATCH_MS)]
+
+    def handle(self, state: State, envelope: Envelope, now_ms: int) -> tuple[State, Iterable[Any]]:
+        body, topic = envelope.body, envelope.topic
+        if topic == MISSION and envelope.source == self.name:
+            return state, ()
+        state, out = self._heard(state, topic, body, now_ms)
+        return state, self._deliver(out)
+
+    def _heard(self, state: State, topic: str, body: Any, now_ms: int) -> Step:
+        if topic == MISSION:
+            return self._step.mission(state, body, now_ms)
+        if topic == REMOVE_ZONES:
+            return self._step.zones_removed(state, list(body.ZoneList))
+        if topic == CONFIGURED:
+            self._known.add(body.ID)
+            return self._step.configured(state, body)
+        if topic == STATE:
+            self._known.add(body.ID)
+            return self._step.flown(state, body, now_ms)
+        return self._step.zone(state, body)
+
+    def stop(self, state: State) -> None:
+        """Close all connections and say what they have brought."""
+        self.port.close()
+        refused = sorted(self._tally.counts.refused.items())
+        lines = ", ".join(f"{why}: {n}" for why, n in refused) or "none"
+        self._report("INFO", f"{self.name}: closed; {self.port.counts.line()}; refused: {lines}")
+
+    # of the loop ----------------------------------------------------------------------------------
+
+    def pump(self, now_s: float) -> int:
+        """What has arrived, to the step; how much that was."""
+        arrived = self.port.step(now_s)
+        for came in arrived:
+            self._came(came, now_s)
+        for key, vid in self._seats.settle(self._known, now_s):
+            self._seated(key, vid)
+        return len(arrived)
+
+    def awaits(self, now_s: float) -> bool:
+        """True while instances are missing before the start; NobodyCame when its time is over."""
+        if self._started or self._seats.come >= self._settings.instances:
+            self._started = True
+            return False
+        if self._until_s is None:
+            self._until_s = now_s + self._settings.wait_s
+        text = self._seats.missing()
+        if is_due(self._until_s, now_s):
+            raise NobodyCame(f"{self.name}: {self._settings.wait_s:g} s are over: {text}")
+        if text != self._said or is_due(self._say_s, now_s):
+            self._report("WARN", f"{self.name}: waiting: {text}")
+            self._said, self._say_s = text, now_s + PROGRESS_S
+        return True
+
+    def _came(self, came: Came, now_s: float) -> None:
+        key = came.key
+        match came.what:
+            case Opened():
+                self._refuse(key, self._seats.opened(key, now_s))
+            case LinkEvent() as event:
+                self._gone(key, event)
+            case Hello(vid):
+                had = self._seats.vehicle(key)
+                why = self._seats.hello(key, vid)
+                self._refuse(key, why)
+                if not why and had is None:
+                    self._seated(key, vid)
+            case Message() as line:
+                self._line(key, line)
+            case Skipped() as skipped:
+                self._tally.refuse("not known", f"{self.port.name(key)}: {skipped.text}")
+
+    def _line(self, key: int, line: Message) -> None:
+        vid, now_ms = self._seats.vehicle(key), self._bus.now_ms
+        if vid is not None:
+            self._stepped(lambda state: self._step.heard(state, vid, line, now_ms))
+            return
+        self._seats.speaks(key)
+        early = self._early.setdefault(key, [])
+        if len(early) >= MOST_EARLY:
+            self._tally.refuse("line before its vehicle is known", self.port.name(key))
+        elif not isinstance(line, Heartbeat):
+            early.append(line)
+
+    def _gone(self, key: int, event: LinkEvent) -> None:
+        self._early.pop(key, None)
+        vid, now_ms = self._seats.gone(key), self._bus.now_ms
+        if vid is not None:
+            lost = Lost(vid, now_ms, event)
+            self._report("WARN", f"{self.name}: vehicle {vid}: {event.kind} {event.detail}")
+            self._stepped(lambda state: self._step.lost(state, lost))
+
+    def _seated(self, key: int, vid: int) -> None:
+        """A connection speaks for a vehicle from now on."""
+        now_ms = self._bus.now_ms
+        self._report("INFO", f"{self.name}: {self.port.name(key)} is the ICAROUS of vehicle {vid}")
+        self._stepped(lambda state: self._step.connected(state, vid, now_ms))
+        for line in self._early.pop(key, ()):
+            self._line(key, line)
+
+    def _refuse(self, key: int, why: str) -> None:
+        if why:
+            self.port.drop(key, why)
+
+    def _stepped(self, step: Callable[[State], Step]) -> None:
+        """A step that a connection has caused; the bus keeps the state."""
+
+        def call(state: State) -> tuple[State, list[Any]]:
+            after, answers = step(state)
+            return after, self._deliver(answers)
+
+        self._bus.call(self.name, call)
+
+    def _deliver(self, answers: Iterable[Out]) -> list[Any]:
+        """Lines to the wire, sentences to the log; what is left is for the bus."""
+        bodies = []
+        for answer in answers:
+            match answer:
+                case Say(body):
+                    bodies.append(body)
+                case Down(vid, lines):
+                    key = self._seats.key(vid)
+                    for line in lines:
+                        if key is None or not self.port.send(key, line):
+                            self._tally.lose("line that cannot be sent", f"vehicle {vid}: {line}")
+                case Refuse(why, detail):
+                    self._tally.refuse(why, detail)
+                case Note(severity, text):
+                    self._report(severity, f"{self.name}: {text}")
+        return bodies

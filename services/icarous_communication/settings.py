@@ -1,0 +1,74 @@
+"""What a configuration says of IcarousCommunicationService: the original's attributes, and ours."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from cratous.bridge.port import Address, address
+from cratous.services.loading.uxas_settings import Attr, Entry, choice, number, whole
+from cratous.spec.errors import BadInput
+
+MOST_INSTANCES = 64
+ATTRIBUTES: Mapping[str, Attr] = {
+    "NumberOfUAVs": whole(None, 1, MOST_INSTANCES)._replace(needed=True),
+    "RoutePlannerUsed": whole(-1, -1, 3),
+    "DeviationAllowed": whole(None, 0),
+    "DeviationOrigin": choice("line", "line", "path"),
+    # ours: where it listens, for whom, for how long it waits, and whom it waits for
+    "Address": Attr(default="tcp://127.0.0.1:5557"),
+    "VehicleIDs": Attr(),
+    "Timeout_s": number(60.0),
+    "Dialect": choice("cratous", "cratous", "original"),
+}
+DEVIATION_M = 500.0
+"""How far from its leg a vehicle that avoids may be before its tasks are paused [m]."""
+FROM_LINE_M = 200.0
+"""Less by this [m] where a configuration counts it from the line that is searched, as the original does."""
+
+
+class Settings(NamedTuple):
+    """instances: how many to wait for; deviation_m: see DEVIATION_M; where: it listens; ids: of the
+    vehicles, none for the lowest known; wait_s: for the instances; original: the peers' dialect."""
+
+    instances: int
+    deviation_m: float = DEVIATION_M
+    where: Address = Address("tcp", "127.0.0.1", 5557, "tcp://127.0.0.1:5557")
+    ids: tuple[int, ...] = ()
+    wait_s: float = 60.0
+    original: bool = False
+
+
+def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
+    """The settings of an entry; BadInput for what cannot be honoured."""
+    if v["RoutePlannerUsed"] != -1:
+        raise BadInput(
+            "ICAROUS plans no routes for UxAS here",
+            where=entry.where,
+            item=f"{entry.type}.RoutePlannerUsed",
+            expected="-1, or no RoutePlannerUsed: UxAS's own planner plans",
+            got=str(v["RoutePlannerUsed"]),
+        )
+    where = address(
+        v["Address"], ("tcp",), where=entry.where, item=f"{entry.type}.Address", free=True
+    )
+    count, allowed = v["NumberOfUAVs"], v["DeviationAllowed"]
+    deviation_m = DEVIATION_M if allowed is None else float(allowed)
+    if allowed is not None and v["DeviationOrigin"] == "line":
+        deviation_m = max(0.0, deviation_m - FROM_LINE_M)
+    ids = _ids(entry, v["VehicleIDs"], count)
+    return Settings(count, deviation_m, where, ids, v["Timeout_s"], v["Dialect"] == "original")
+
+
+def _ids(entry: Entry, text: str, count: int) -> tuple[int, ...]:
+    words = text.replace(",", " ").split()
+    ids = tuple(sorted({int(word) for word in words if word.isdigit() and len(word) < 19}))
+    if words and (len(ids) != len(words) or len(ids) != count or 0 in ids):
+        raise BadInput(
+            "not the vehicles of the instances",
+            where=entry.where,
+            item=f"{entry.type}.VehicleIDs",
+            expected=f"{count} different ids above 0, as NumberOfUAVs says",
+            got=text[:80],
+        )
+    return ids

@@ -1,0 +1,114 @@
+"""What UxAS's end of the bridge remembers of vehicles and zones, and what it answers besides lines and messages."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+from cratous.services.flight import link_end
+from cratous.services.flight.dynamics import AirState, turn_radius_m
+from cratous.services.flight.messages import Down, Say
+from cratous.services.icarous.foresight import TURN_MARGIN
+from cratous.services.icarous_communication.plans import Away, Plan, position_of
+from cratous.services.mission.frames import Projection
+from cratous.spec.mission import Frame, Position
+
+MOST_BANK_RAD = math.radians(80.0)
+DEFAULT_BANK_RAD = math.radians(30.0)
+"""How far a vehicle banks of which no configuration is known, or one that says nothing of it."""
+
+
+class Refuse(NamedTuple):
+    """To the log: what is not acted upon. why: counted by it; detail: this time."""
+
+    why: str
+    detail: str
+
+
+class Note(NamedTuple):
+    """To the log. severity: as a logger's."""
+
+    severity: str
+    text: str
+
+
+Out = Say | Down | Refuse | Note
+
+
+@dataclass(frozen=True)
+class Craft:
+    """What is known of one vehicle: its configuration; its newest state and where that is in the plane; its plan; that
+    ICAROUS has it; that it was told to hold, because its ICAROUS is not heard; that it was handed back
+    just now, so that the last steering of ICAROUS may still come."""
+
+    configuration: Any = None
+    body: Any = None
+    air: AirState | None = None
+    plan: Plan | None = None
+    away: Away | None = None
+    holds: bool = False
+    handed: bool = False
+
+
+@dataclass(frozen=True)
+class State:
+    """link: what the end remembers; frame: the plane, None before anything has a place; zones and crafts
+    by id; commands: given so far; fresh: vehicles whose instance has not yet said which epoch it is in."""
+
+    link: link_end.State = field(default_factory=link_end.State)
+    frame: Frame | None = None
+    zones: Mapping[int, Any] = field(default_factory=dict)
+    crafts: Mapping[int, Craft] = field(default_factory=dict)
+    commands: int = 0
+    fresh: frozenset[int] = frozenset()
+
+    def craft(self, vehicle_id: int) -> Craft:
+        """What is known of a vehicle."""
+        return self.crafts.get(vehicle_id, Craft())
+
+    def put(self, vehicle_id: int, craft: Craft) -> State:
+        """The same with this of a vehicle."""
+        return replace(self, crafts={**self.crafts, vehicle_id: craft})
+
+
+@lru_cache(maxsize=16)
+def plane(frame: Frame) -> Projection:
+    """The projection of a frame, made once."""
+    return Projection(frame)
+
+
+def air_state(body: Any, projection: Projection) -> AirState:
+    """Where an aircraft is and how it moves, from an AirVehicleState: body axes (u forward, v right,
+    w down), or ground speed and course where it says no body axes."""
+    heading = math.radians(body.Heading)
+    u, v, course = body.u, body.v, math.radians(body.Course)
+    north = u * math.cos(heading) - v * math.sin(heading)
+    east = u * math.sin(heading) + v * math.cos(heading)
+    climb = -body.w
+    if not (u or v):
+        north, east = body.Groundspeed * math.cos(course), body.Groundspeed * math.sin(course)
+        climb = body.VerticalSpeed
+    place = position_of(body.Location, projection)
+    return AirState(place, math.atan2(east, north), math.hypot(north, east), climb)
+
+
+def turn_radius_of(craft: Craft, air: AirState) -> float:
+    """Of the turns of a way back [m]: those that its ICAROUS makes it of."""
+    profile = None if craft.configuration is None else craft.configuration.NominalFlightProfile
+    bank = 0.0 if profile is None else math.radians(profile.MaxBankAngle)
+    bank = min(bank, MOST_BANK_RAD) or DEFAULT_BANK_RAD
+    return TURN_MARGIN * turn_radius_m(air.speed_m_s, bank)
+
+
+def moved(air: AirState, late_s: float) -> AirState:
+    """The same aircraft some seconds later, straight on."""
+    p, v = air.position, air.velocity
+    place = Position(
+        p.north_m + v.north_m_s * late_s,
+        p.east_m + v.east_m_s * late_s,
+        p.alt_m - v.down_m_s * late_s,
+    )
+    return air._replace(position=place)

@@ -1,0 +1,87 @@
+"""What ICAROUS steers, as commands for the autopilot: SETVEL, SETPOS, GOTOWP; and the hold when it is lost."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.bridge.text_protocol import GoToWaypoint, Message, SetPosition, SetVelocity
+from cratous.services.flight.dynamics import GRAVITY_M_S2, AirState
+from cratous.services.icarous_communication.plans import START, Plan
+from cratous.services.mission.frames import Projection, compass
+from cratous.spec.errors import BadInput
+
+AHEAD_S = 10.0
+"""A SETVEL names the altitude that its climb reaches after this [s]; the next SETVEL comes much sooner."""
+HOLD_BANK_RAD = math.radians(20.0)
+"""The turns of a hold are no tighter than with this bank."""
+
+
+def action_of(line: Message, air: AirState, plan: Plan | None, projection: Projection) -> Any:
+    """The VehicleAction that a steering line means for an aircraft that is there now; None for a line that
+    steers nothing. BadInput for a waypoint that the plan does not have."""
+    match line:
+        case SetVelocity(north, east, down):
+            altitude = air.position.alt_m - down * AHEAD_S
+            if not (north or east):
+                return hold(air, projection, altitude)
+            return lmcp.new(
+                "FlightDirectorAction",
+                Speed=math.hypot(north, east),
+                SpeedType="Groundspeed",
+                Heading=compass(math.atan2(east, north)),
+                Altitude=altitude,
+                AltitudeType="MSL",
+                ClimbRate=-down,
+            )
+        case SetPosition(lat, long, alt):
+            return _loiter(lat, long, alt, air)
+        case GoToWaypoint(index):
+            marks = () if plan is None else plan.marks
+            numbers = [
+                waypoint.Number
+                for waypoint, mark in zip(
+                    () if plan is None else plan.waypoints, marks, strict=True
+                )
+                if mark == index and waypoint.Number != START
+            ]
+            if not numbers:
+                raise BadInput(
+                    "GOTOWP of a waypoint that is not there",
+                    item="id",
+                    expected=f"0 to {max(marks)}" if marks else "a plan first",
+                    got=str(index),
+                )
+            return lmcp.new("GoToWaypointAction", WaypointNumber=numbers[-1])
+    return None
+
+
+def hold(air: AirState, projection: Projection, altitude_m: float | None = None) -> Any:
+    """Loiter where the aircraft is, at its altitude or another one [m MSL]."""
+    place = air.position
+    lat, long = projection.to_geodetic(place.north_m, place.east_m)
+    return _loiter(lat, long, place.alt_m if altitude_m is None else altitude_m, air)
+
+
+def command_of(vehicle_id: int, command_id: int, action: Any) -> Any:
+    """A VehicleActionCommand with one action."""
+    return lmcp.new(
+        "VehicleActionCommand",
+        CommandID=command_id,
+        VehicleID=vehicle_id,
+        VehicleActionList=[action],
+    )
+
+
+def _loiter(lat_deg: float, long_deg: float, alt_m: float, air: AirState) -> Any:
+    place = lmcp.new("Location3D", Latitude=lat_deg, Longitude=long_deg, Altitude=alt_m)
+    return lmcp.new(
+        "LoiterAction",
+        LoiterType="Circular",
+        Radius=air.speed_m_s**2 / (GRAVITY_M_S2 * math.tan(HOLD_BANK_RAD)),
+        Direction="Clockwise",
+        Duration=-1,
+        Airspeed=air.speed_m_s,
+        Location=place,
+    )

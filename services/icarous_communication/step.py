@@ -1,0 +1,358 @@
+"""UxAS's end of the bridge as `cratous uxas` has it: `handle(state, message) -> (state, messages)`.
+
+It is the end that `cratous run` flies (`flight.link_end`), with two things around it. The messages of UxAS
+become what that end is told: MissionCommands ways, states own positions and traffic, zones fences. And
+the gate of each vehicle stands here, since ICAROUS steers through UxAS: a SETMOD moves it, what ICAROUS
+sends is passed on while it owns the vehicle, and the offer to hand back is taken at once.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.bridge.text_protocol import Heartbeat, Message, SetMode
+from cratous.core.authority.gate import (
+    ICAROUS,
+    UXAS,
+    Gate,
+    gate_accepts,
+    gate_after,
+    gate_offer,
+    gate_takeover,
+)
+from cratous.core.authority.link_end import link_mode
+from cratous.core.authority.timeliness import lasted
+from cratous.core.avoidance.manoeuvre import Motion
+from cratous.services.flight.dynamics import AirState
+from cratous.services.flight.link_end import UxasEnd
+from cratous.services.flight.messages import (
+    Connected,
+    Flown,
+    GateIs,
+    Heard,
+    Left,
+    Lost,
+    Route,
+    Say,
+    Seen,
+    Suspend,
+    TakeBack,
+    ToLinkEnd,
+    Watch,
+    ZonesKnown,
+)
+from cratous.services.flight.notices import authority_change, gate_state
+from cratous.services.icarous_communication.plans import (
+    Away,
+    deviates,
+    plan_of,
+    resume_point,
+    resumed,
+    shown,
+)
+from cratous.services.icarous_communication.state import (
+    Craft,
+    Note,
+    Out,
+    Refuse,
+    State,
+    air_state,
+    moved,
+    plane,
+    turn_radius_of,
+)
+from cratous.services.icarous_communication.steering import action_of, command_of, hold
+from cratous.services.pipeline.status import status
+from cratous.services.uxas.daidalus.zones import frame_at, surroundings
+from cratous.spec.authority.link_end import OVERTAKEN, REFUSED
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Frame, Position
+
+SETTLES_MS = 2000
+"""After this a vehicle that does not show the first waypoint of a new plan is on a later one [ms]."""
+NO_EPOCH = -1
+"""No epoch has been heard on a connection."""
+COMMANDS_FROM = 2**40
+"""Ids of the commands of this service, apart from those of others."""
+
+
+Step = tuple[State, list[Out]]
+
+
+@dataclass(frozen=True)
+class Communication:
+    """The step; what does not change. allowed_m: how far from its leg a vehicle may be before its tasks
+    are paused; original: the peers are the original's, of whom no heartbeat is to be expected."""
+
+    name: str
+    allowed_m: float
+    original: bool = False
+
+    # what comes over the wire ---------------------------------------------------------------------
+
+    def connected(self, state: State, vehicle_id: int, now_ms: int) -> Step:
+        """An instance speaks for a vehicle, for the first time or again: it is told everything, and its
+        next SETMOD says who commands, and in which epoch."""
+        known = state.link.peer(vehicle_id) is not None
+        state, out = self._end(state, Connected(now_ms, (vehicle_id,)))
+        peer = state.link.peer(vehicle_id)
+        assert peer is not None
+        anew = replace(peer, end=peer.end._replace(epoch=NO_EPOCH))
+        state = replace(state, link=state.link.with_peer(anew), fresh=state.fresh | {vehicle_id})
+        if not known:
+            state, more = self._route(state, vehicle_id)
+            out += more
+        body = state.craft(vehicle_id).body
+        if body is None:
+            return state, out
+        state, more = self._end(state, self._seen(state, vehicle_id, body, now_ms))
+        return state, [*out, *more]
+
+    def lost(self, state: State, message: Lost) -> Step:
+        """The connection of an instance has ended."""
+        state, out = self._end(state, message)
+        return self._held(state, message.vehicle_id, out)
+
+    def heard(self, state: State, vehicle_id: int, line: Message, now_ms: int) -> Step:
+        """A line has come from an instance."""
+        if isinstance(line, SetMode):
+            return self._mode(state, vehicle_id, line, now_ms)
+        state, out = self._end(state, Heard(vehicle_id, now_ms, line))
+        state = self._free(state, vehicle_id)
+        if isinstance(line, Heartbeat):
+            state = state.put(vehicle_id, replace(state.craft(vehicle_id), handed=False))
+        craft, peer = state.craft(vehicle_id), state.link.peer(vehicle_id)
+        if craft.air is None or peer is None or state.frame is None:
+            return state, out
+        try:
+            action = action_of(line, craft.air, craft.plan, plane(state.frame))
+        except BadInput as error:
+            return state, [*out, Refuse(error.what, f"vehicle {vehicle_id}: {error}")]
+        if action is None:
+            return state, out
+        if craft.away is None or not gate_accepts(peer.gate, ICAROUS, peer.gate.epoch):
+            if craft.handed:
+                return state, out
+            detail = f"vehicle {vehicle_id}: {type(line).__name__} in epoch {peer.gate.epoch}"
+            return state, [*out, Refuse("steering by one without authority", detail)]
+        state, command = self._command(state, vehicle_id, action)
+        return state, [*out, command]
+
+    def watch(self, state: State, now_ms: int) -> Step:
+        """Time has passed: who has fallen silent."""
+        if self.original:
+            return state, []
+        state, out = self._end(state, Watch(now_ms))
+        for peer in state.link.peers:
+            state, out = self._held(state, peer.vehicle_id, out)
+        return state, out
+
+    def _mode(self, state: State, vehicle_id: int, line: SetMode, now_ms: int) -> Step:
+        """A SETMOD: the gate is moved as the line says, if it is the next step of this gate; the kernels
+        of the link end decide whether that is true, and what follows."""
+        peer = state.link.peer(vehicle_id)
+        if peer is None:
+            return state, []
+        active, gate = line.mode == "ACTIVE", peer.gate
+        if vehicle_id in state.fresh and line.epoch is not None:
+            gates = [Gate(ICAROUS if active else UXAS, line.epoch, False)]
+        else:
+            gates = [gate, gate_takeover(gate) if active else gate_offer(gate)]
+        said = SetMode(line.mode, gate.epoch if line.epoch is None else line.epoch)
+        for one in gates:
+            epoch = one.epoch if line.epoch is None else line.epoch
+            if link_mode(peer.end, one, active, epoch).act not in (OVERTAKEN, REFUSED):
+                said, gate = SetMode(line.mode, epoch), one
+                state = replace(state, fresh=state.fresh - {vehicle_id})
+                break
+        state, out = self._end(state, GateIs(vehicle_id, gate))
+        state, more = self._end(state, Heard(vehicle_id, now_ms, said))
+        return self._free(state, vehicle_id), [*out, *more]
+
+    # what comes over the bus ----------------------------------------------------------------------
+
+    def configured(self, state: State, body: Any) -> Step:
+        """An AirVehicleConfiguration."""
+        craft = replace(state.craft(body.ID), configuration=body)
+        return state.put(body.ID, craft), []
+
+    def mission(self, state: State, command: Any, now_ms: int) -> Step:
+        """A MissionCommand of somebody else's."""
+        if not command.WaypointList:
+            return state, [Refuse("mission without waypoints", f"vehicle {command.VehicleID}")]
+        state, out = self._framed(state, command.WaypointList[0])
+        assert state.frame is not None
+        craft = state.craft(command.VehicleID)
+        here = None if craft.air is None else craft.air.position
+        craft = replace(craft, plan=plan_of(command, plane(state.frame), now_ms, here))
+        state, more = self._route(state.put(command.VehicleID, craft), command.VehicleID)
+        return state, [*out, *more]
+
+    def zone(self, state: State, body: Any) -> Step:
+        """A KeepInZone or KeepOutZone."""
+        return self._fenced(replace(state, zones={**state.zones, body.ZoneID: body}))
+
+    def zones_removed(self, state: State, ids: list[int]) -> Step:
+        """RemoveZones."""
+        left = {number: zone for number, zone in state.zones.items() if number not in ids}
+        return self._fenced(replace(state, zones=left))
+
+    def flown(self, state: State, body: Any, now_ms: int) -> Step:
+        """An AirVehicleState."""
+        vid = int(body.ID)
+        state, out = self._framed(state, body.Location)
+        assert state.frame is not None
+        air = air_state(body, plane(state.frame))
+        craft = replace(state.craft(vid), body=body, air=air, handed=False)
+        if craft.plan is not None and craft.away is None:
+            settled = lasted(craft.plan.since_ms, now_ms, SETTLES_MS)
+            craft = replace(craft, plan=shown(craft.plan, body.CurrentWaypoint, settled))
+        state = state.put(vid, craft)
+        if state.link.peer(vid) is None:
+            return state, out
+        if craft.away is not None:
+            state, more = self._deviation(state, vid, craft.away, craft, air)
+            out += more
+        elif craft.plan is not None:
+            reached = craft.plan.marks[craft.plan.goal]
+            if reached:
+                state, more = self._end(state, Flown(vid, craft.plan.track.s_m[reached - 1]))
+                out += more
+        state, more = self._end(state, self._seen(state, vid, body, now_ms))
+        return state, [*out, *more]
+
+    def _seen(self, state: State, vid: int, body: Any, now_ms: int) -> Seen:
+        """Everybody at the time of this vehicle's state."""
+        aircraft = []
+        for other, craft in sorted(state.crafts.items()):
+            if craft.air is not None:
+                late_s = (body.Time - craft.body.Time) / 1000
+                aircraft.append((other, moved(craft.air, late_s)))
+        roll, pitch = math.radians(body.Roll), math.radians(body.Pitch)
+        return Seen(vid, now_ms, int(body.Time), tuple(aircraft), roll, pitch)
+
+    def _deviation(self, state: State, vid: int, away: Away, craft: Craft, air: AirState) -> Step:
+        """Tasks pause when the vehicle is farther from its leg than is allowed, once a takeover."""
+        plan = craft.plan
+        if away.paused or plan is None or not deviates(plan, air.position, self.allowed_m):
+            return state, []
+        state = state.put(vid, replace(craft, away=away._replace(paused=True)))
+        point, out = resume_point(plan, away.left), list[Out]()
+        if point is not None:
+            state, out = self._end(state, Left(vid, point))
+        paused = [Say(lmcp.new("TaskPause", TaskID=task), self.name) for task in away.tasks]
+        text = f"vehicle {vid} is more than {self.allowed_m:g} m from its leg; tasks pause"
+        return state, [*out, *paused, Note("INFO", f"{text}: {list(away.tasks)}")]
+
+    # what the end answers ------------------------------------------------------------------------
+
+    def _end(self, state: State, message: ToLinkEnd) -> Step:
+        """Tell the end, and do what it answers."""
+        frame = state.frame or Frame(0.0, 0.0)
+        link, answers = UxasEnd(plane(frame)).handle(state.link, message)
+        state, out = replace(state, link=link), list[Out]()
+        for answer in answers:
+            match answer:
+                case Suspend(vid, now_ms, _):
+                    state, more = self._suspend(state, vid, now_ms)
+                    out += more
+                case TakeBack(vid, now_ms, _, epoch):
+                    state, more = self._take_back(state, vid, epoch, now_ms)
+                    out += more
+                case _:
+                    out.append(answer)
+        return state, out
+
+    def _suspend(self, state: State, vid: int, now_ms: int) -> Step:
+        craft, peer = state.craft(vid), state.link.peer(vid)
+        assert peer is not None
+        tasks = () if craft.body is None else tuple(craft.body.AssociatedTasks)
+        left = Position(0.0, 0.0, 0.0) if craft.air is None else craft.air.position
+        # an instance that comes again has had the vehicle all the time
+        state = state.put(vid, replace(craft, away=craft.away or Away(left, tasks)))
+        return state, [
+            Note("WARN", f"vehicle {vid}: ICAROUS has it, in epoch {peer.gate.epoch}"),
+            *self._told(vid, now_ms, peer.gate),
+        ]
+
+    def _told(self, vid: int, now_ms: int, gate: Gate) -> list[Out]:
+        """How a gate stands and who commands from now on, for whoever listens on the bus."""
+        change = authority_change(vid, now_ms, gate, "SETMOD", 0)
+        return [Say(gate_state(vid, now_ms, gate), self.name), Say(change, self.name)]
+
+    def _take_back(self, state: State, vid: int, epoch: int, now_ms: int) -> Step:
+        """Tasks resume, the mission goes on, ICAROUS is told the way; without a mission it holds."""
+        craft, peer = state.craft(vid), state.link.peer(vid)
+        assert peer is not None
+        gate = gate_after(peer.gate, UXAS, epoch)
+        state, out = self._end(state, GateIs(vid, gate))
+        out.append(Note("WARN", f"vehicle {vid}: ICAROUS hands back, in epoch {epoch}"))
+        out += self._told(vid, now_ms, gate)
+        away, plan = craft.away, craft.plan
+        state = state.put(vid, replace(craft, away=None, holds=False, handed=True))
+        if away is not None and away.paused:
+            out += [Say(lmcp.new("TaskResume", TaskID=task), self.name) for task in away.tasks]
+        air = craft.air
+        if plan is None or away is None or air is None or state.frame is None:
+            return self._hold(state, vid, out, "handed back without a mission")
+        projection = plane(state.frame)
+        number = COMMANDS_FROM + state.commands + 1
+        now = Motion(air.position, air.heading_rad, air.speed_m_s, air.climb_m_s)
+        sent = resumed(plan, away, now, turn_radius_of(craft, air), projection, number)
+        out.append(Say(sent.command, self.name))
+        way = plan_of(sent.command, projection, now_ms, air.position)
+        if way is not None:  # the mission's own command is what the next way back leads to
+            way = way._replace(command=plan.command, back=sent.back, resume=sent.resume)
+        after = replace(craft, away=None, holds=False, handed=True, plan=way)
+        state = replace(state.put(vid, after), commands=state.commands + 1)
+        state, more = self._route(state, vid)
+        return state, [*out, *more]
+
+    def _route(self, state: State, vid: int) -> Step:
+        plan = state.craft(vid).plan
+        if plan is None or state.link.peer(vid) is None:
+            return state, []
+        return self._end(state, Route(vid, plan.positions, plan.speed_m_s, 0.0))
+
+    def _held(self, state: State, vid: int, out: list[Out]) -> Step:
+        """A vehicle that ICAROUS has and whose ICAROUS is not heard holds where it is."""
+        peer, craft = state.link.peer(vid), state.craft(vid)
+        if peer is None or peer.end.alive or craft.away is None or craft.holds:
+            return state, out
+        return self._hold(state, vid, out, "its ICAROUS, which has it, is not heard")
+
+    def _hold(self, state: State, vid: int, out: list[Out], why: str) -> Step:
+        craft = state.craft(vid)
+        text = f"vehicle {vid} holds: {why}"
+        out = [*out, Say(status(0, "Error", [("reason", text)]), self.name)]
+        if craft.air is None or state.frame is None:
+            return state, out
+        state, command = self._command(state, vid, hold(craft.air, plane(state.frame)))
+        return state.put(vid, replace(craft, holds=True)), [*out, command]
+
+    def _free(self, state: State, vid: int) -> State:
+        """It is heard: what made the vehicle hold is over."""
+        craft = state.craft(vid)
+        return state.put(vid, replace(craft, holds=False)) if craft.holds else state
+
+    def _command(self, state: State, vid: int, action: Any) -> tuple[State, Say]:
+        number = COMMANDS_FROM + state.commands + 1
+        state = replace(state, commands=state.commands + 1)
+        return state, Say(command_of(vid, number, action), self.name)
+
+    def _framed(self, state: State, place: Any) -> Step:
+        """The plane is that of the first place that is told; zones told before are in it from then on."""
+        if state.frame is not None:
+            return state, []
+        return self._fenced(replace(state, frame=frame_at(place)))
+
+    def _fenced(self, state: State) -> Step:
+        """All zones to all instances."""
+        if state.frame is None:
+            return state, []
+        around = surroundings(state.frame, state.zones.values(), "MSL")
+        state, out = self._end(state, ZonesKnown(around.zones))
+        return state, [*out, *(Note("WARN", text) for text in around.missing)]

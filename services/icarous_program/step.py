@@ -1,0 +1,272 @@
+"""ICAROUS behind the bridge: `handle(state, line) -> (state, answers)`, lines of the text protocol alone.
+
+Here the instance that `cratous run` flies knows nothing but what comes over the wire: its own state from
+POSTN, traffic from OBJCT, the mission from WAYPT, GEOFN, WPRCH and COMND. What they say is believed, so
+their contents decide. Each POSTN that is a heartbeat later than the last is one heartbeat of the instance.
+The gate of the vehicle stands here: an offer is taken when UxAS tells the way on (START_MISSION, or a
+RESET_SFT with a position). A peer of the original's takes it without a word.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+from cratous.bridge.text_protocol import (
+    Attitude,
+    FenceDone,
+    Message,
+    OwnPosition,
+    SetMode,
+    SoftReset,
+    StartMission,
+    Traffic,
+)
+from cratous.core.authority.cycle import gate_wished
+from cratous.core.authority.gate import UXAS, Gate, gate_accepts, gate_after
+from cratous.core.authority.timeliness import lasted
+from cratous.core.avoidance.manoeuvre import Ability, Motion
+from cratous.core.avoidance.prediction import Intruder
+from cratous.services.flight.dynamics import MAX_ACCELERATION_M_S2, Limits, turn_rate_rad_s
+from cratous.services.icarous import state as icarous
+from cratous.services.icarous.instance import Instance
+from cratous.services.icarous.messages import Foresees, Line, Sensed, Up, Wish
+from cratous.spec.authority.cycle import OFFER, TAKE_OVER, WITHDRAW
+from cratous.spec.mission import Position, Velocity
+
+TRAFFIC_KEPT_MS = 5000
+"""An aircraft of which nothing was heard for this long [ms] is no longer flown on in straight line."""
+MOST_TRAFFIC = 500
+"""So many other aircraft are kept at once."""
+SPEEDS = (0.5, 2.0)
+"""A speed below this part of the airframe's least, or above this multiple of its greatest, is no state
+of this airframe."""
+UNTOUCHED = Gate(UXAS, 0, False)
+"""UxAS commands, and has always done so."""
+ACTS = {OFFER: "offers control back", WITHDRAW: "withdraws its offer", TAKE_OVER: "takes over"}
+
+
+class Seen(NamedTuple):
+    """Another aircraft as OBJCT has told it last, at the time of the last POSTN [ms]."""
+
+    position: Position
+    velocity: Velocity
+    at_ms: int
+
+
+class Tell(NamedTuple):
+    """To UxAS: a line."""
+
+    line: Message
+
+
+class Note(NamedTuple):
+    """To the log. severity: as a logger's."""
+
+    severity: str
+    text: str
+
+
+class Refuse(NamedTuple):
+    """To the log: a line is not acted upon. why: counted by it; detail: this time."""
+
+    why: str
+    detail: str
+
+
+Answer = Tell | Note | Refuse
+
+
+@dataclass(frozen=True)
+class Craft:
+    """What does not change. limits: of the airframe; floor_m: no manoeuvre goes below it [m MSL];
+    cooperating: who else is flown by such an instance; original: the peer is the original's."""
+
+    config: icarous.Config
+    limits: Limits
+    floor_m: float
+    cooperating: frozenset[int] = frozenset()
+    original: bool = False
+
+
+@dataclass(frozen=True)
+class State:
+    """instance: what it remembers; gate: of its vehicle; seen: traffic by id; now_ms: time of the last
+    POSTN, None before the first on this connection; beat_ms: of the last heartbeat."""
+
+    instance: icarous.State = field(default_factory=icarous.State)
+    gate: Gate = UNTOUCHED
+    seen: Mapping[int, Seen] = field(default_factory=dict)
+    now_ms: int | None = None
+    beat_ms: int = 0
+
+
+Step = tuple[State, tuple[Answer, ...]]
+
+
+class IcarousEnd:
+    """The step of one vehicle."""
+
+    def __init__(self, craft: Craft) -> None:
+        self.craft, self._instance = craft, Instance(craft.config)
+
+    def connected(self, state: State) -> Step:
+        """A connection is open: what was seen on another one is forgotten, UxAS hears who commands.
+
+        The waypoints and zones told before stay until UxAS tells them again, as it does on each
+        connection; epochs go on where they stand.
+        """
+        state = replace(state, seen={}, now_ms=None)
+        active = not gate_accepts(state.gate, UXAS, state.gate.epoch)
+        return state, (Tell(SetMode("ACTIVE" if active else "PASSIVE", state.gate.epoch)),)
+
+    def handle(self, state: State, line: Message) -> Step:
+        """One line from UxAS."""
+        match line:
+            case OwnPosition():
+                return self._position(state, line)
+            case Traffic():
+                return self._traffic(state, line)
+            case Attitude():
+                return state, ()
+        before = state.instance.told
+        heard = Line(0 if state.now_ms is None else state.now_ms, line)
+        instance, _ = self._instance.handle(state.instance, heard)
+        state = replace(state, instance=instance)
+        answers: list[Answer] = []
+        if isinstance(line, StartMission):
+            if before.gathering and instance.told.waypoints is before.waypoints:
+                told = f"{len(before.gathering)} of {before.gathering[-1].total} waypoints"
+                answers.append(Refuse("plan with waypoints missing", told))
+            else:
+                count = len(instance.told.waypoints)
+                answers.append(Note("INFO", f"plan of {count} waypoints in force"))
+        if isinstance(line, FenceDone):
+            if instance.told.zones is before.zones:
+                first = before.vertices[:1]
+                total = first[0].total if first else 0
+                told = f"{len(before.vertices)} of {total} vertices"
+                answers.append(Refuse("zone with vertices missing: it is not in force", told))
+            else:
+                answers.append(Note("INFO", f"{len(instance.told.zones)} zones in force"))
+        if self._takes(line):
+            state, more = self._taken(state)
+            answers += more
+        return state, tuple(answers)
+
+    @staticmethod
+    def _takes(line: Message) -> bool:
+        """True iff with this line UxAS takes the vehicle back, if it is on offer."""
+        return isinstance(line, StartMission) or (
+            isinstance(line, SoftReset) and line.lat_deg is not None
+        )
+
+    def _taken(self, state: State) -> Step:
+        """UxAS commands the vehicle again, if it may."""
+        after = gate_after(state.gate, UXAS, state.gate.epoch)
+        if after == state.gate:
+            return state, ()
+        return replace(state, gate=after), (Note("INFO", f"epoch {after.epoch}: UxAS commands"),)
+
+    def _traffic(self, state: State, line: Traffic) -> Step:
+        own = line.index == self.craft.config.vehicle_id
+        if own or (line.index not in state.seen and len(state.seen) >= MOST_TRAFFIC):
+            why = "OBJCT of the vehicle itself" if own else "more traffic than is kept"
+            return state, (Refuse(why, f"index {line.index}"),)
+        if state.now_ms is None:
+            return state, ()  # of an instant that is not known; the next one comes in a heartbeat
+        north, east = self.craft.config.projection.to_local(line.lat_deg, line.long_deg)
+        place = Position(north, east, line.alt_m)
+        velocity = Velocity(line.north_mps, line.east_mps, line.down_mps)
+        seen = {**state.seen, line.index: Seen(place, velocity, state.now_ms)}
+        return replace(state, seen=seen), ()
+
+    def _position(self, state: State, line: OwnPosition) -> Step:
+        """The own state; a heartbeat, if one is due."""
+        refused = self._wrong(state, line)
+        if refused is not None:
+            return state, (refused,)
+        now_ms = round(1000 * line.time_s)
+        first = state.now_ms is None
+        # as of which instant the instance hears what comes next
+        told = replace(state.instance.told, heard_ms=now_ms)
+        state = replace(state, now_ms=now_ms, instance=replace(state.instance, told=told))
+        if not first and not lasted(state.beat_ms, now_ms, self.craft.config.heartbeat_ms):
+            return state, ()
+        return self._beat(replace(state, beat_ms=now_ms), line, now_ms)
+
+    def _wrong(self, state: State, line: OwnPosition) -> Refuse | None:
+        """Why a POSTN cannot be a state of this vehicle now."""
+        vid, limits = self.craft.config.vehicle_id, self.craft.limits
+        if line.vehicle_id not in (0, vid):
+            return Refuse("POSTN of another vehicle", f"expected {vid}, got {line.vehicle_id}")
+        now_ms = round(1000 * line.time_s)
+        if state.now_ms is not None and not lasted(state.now_ms, now_ms, 0):
+            return Refuse("POSTN of an earlier time", f"{now_ms} ms after {state.now_ms} ms")
+        speed = math.hypot(line.north_mps, line.east_mps)
+        low_m_s, high_m_s = SPEEDS[0] * limits.min_speed_m_s, SPEEDS[1] * limits.max_speed_m_s
+        if not low_m_s <= speed <= high_m_s:
+            detail = f"expected {low_m_s:g} to {high_m_s:g} m/s, got {speed:.3g}"
+            return Refuse("POSTN that this airframe cannot fly", detail)
+        return None
+
+    def _beat(self, state: State, line: OwnPosition, now_ms: int) -> Step:
+        """One heartbeat of the instance, and what it wants of the gate."""
+        gone = [vid for vid, s in state.seen.items() if lasted(s.at_ms, now_ms, TRAFFIC_KEPT_MS)]
+        kept = {vid: s for vid, s in state.seen.items() if vid not in gone}
+        answers: list[Answer] = [
+            Note("WARN", f"vehicle {vid}: not heard of for {TRAFFIC_KEPT_MS} ms, no longer avoided")
+            for vid in gone
+        ]
+        state = replace(state, seen=kept)
+        sensed = Sensed(now_ms, *self._flying(line), self._intruders(kept, now_ms), state.gate)
+        instance, said = self._instance.handle(state.instance, sensed)
+        state = replace(state, instance=instance)
+        for one in said:
+            match one:
+                case Wish():
+                    state = replace(state, gate=gate_wished(state.gate, one.act))
+                    epoch, does = state.gate.epoch, ACTS.get(one.act, f"act {one.act}")
+                    because = f" (vehicle {one.intruder_id})" if one.intruder_id else ""
+                    answers.append(
+                        Note("WARN", f"epoch {epoch}: ICAROUS {does}: {one.reason}{because}")
+                    )
+                case Foresees():
+                    answers.append(Note("INFO", f"{now_ms} ms: {one.resolution}"))
+                case Up():
+                    answers.append(Tell(one.line))
+        if self.craft.original and state.gate.offered:
+            state, more = self._taken(state)
+            answers += more
+        return state, tuple(answers)
+
+    def _flying(self, line: OwnPosition) -> tuple[Motion, Ability]:
+        """The own state, and what the airframe can do at its present speed."""
+        north, east = self.craft.config.projection.to_local(line.lat_deg, line.long_deg)
+        speed = math.hypot(line.north_mps, line.east_mps)
+        course = math.atan2(line.east_mps, line.north_mps)
+        limits = self.craft.limits
+        ability = Ability(
+            turn_rate_rad_s(speed, limits.max_bank_rad),
+            limits.min_speed_m_s,
+            limits.max_speed_m_s,
+            limits.max_climb_m_s,
+            MAX_ACCELERATION_M_S2,
+            self.craft.floor_m,
+        )
+        return Motion(Position(north, east, line.alt_abs_m), course, speed, -line.down_mps), ability
+
+    def _intruders(self, seen: Mapping[int, Seen], now_ms: int) -> tuple[Intruder, ...]:
+        """Everybody else, flown on in a straight line to this instant."""
+        found = []
+        for vid, (p, v, at_ms) in sorted(seen.items()):
+            t_s = (now_ms - at_ms) / 1000
+            here = Position(
+                p.north_m + v.north_m_s * t_s,
+                p.east_m + v.east_m_s * t_s,
+                p.alt_m - v.down_m_s * t_s,
+            )
+            found.append(Intruder(vid, here, v, vid in self.craft.cooperating))
+        return tuple(found)

@@ -1,0 +1,87 @@
+"""What each service of the registry is, and what it sends: for the table of services and its tests."""
+
+from __future__ import annotations
+
+from cratous.services.icarous_communication import service as icarous_communication
+from cratous.services.logs.message_logger import MessageLogger
+from cratous.services.pipeline import (
+    aggregator,
+    assignment,
+    builder,
+    loiter,
+    planner,
+    sensors,
+    task_manager,
+    tasks,
+)
+from cratous.services.pipeline.validator import AutomationRequestValidatorService
+from cratous.services.uxas import batch, diagram, leash, regions, small, tracker, waypoints
+from cratous.services.uxas.daidalus import detection, response
+from cratous.services.uxas.registry import VALIDATOR
+
+SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
+    VALIDATOR: (
+        AutomationRequestValidatorService,
+        ("UniqueAutomationRequest", "AutomationResponse", "ImpactAutomationResponse",
+         "TaskAutomationResponse", "ServiceStatus"),
+    ),
+    "TaskManagerService": (
+        task_manager.TaskManagerService, ("CreateNewService", "KillService")
+    ),
+    "Task services": (
+        tasks.TaskService,
+        ("TaskInitialized", "SensorFootprintRequests", "TaskPlanOptions", "RoutePlanRequest",
+         "TaskImplementationResponse", "TaskActive", "TaskComplete", "ServiceStatus"),
+    ),
+    "RoutePlannerVisibilityService": (
+        planner.RoutePlannerVisibilityService, ("RoutePlanResponse",)
+    ),
+    "RouteAggregatorService": (
+        aggregator.RouteAggregatorService,
+        ("RoutePlanRequest", "AssignmentCostMatrix", "RouteResponse"),
+    ),
+    "AssignmentTreeBranchBoundService": (
+        assignment.AssignmentTreeBranchBoundService, ("TaskAssignmentSummary", "ServiceStatus")
+    ),
+    "LoiterAssignmentService": (
+        loiter.LoiterAssignmentService, ("VehicleActionCommand", "ServiceStatus")
+    ),
+    "PlanBuilderService": (
+        builder.PlanBuilderService,
+        ("TaskImplementationRequest", "UniqueAutomationResponse", "ServiceStatus"),
+    ),
+    "WaypointPlanManagerService": (waypoints.WaypointPlanManagerService, ("MissionCommand",)),
+    "SimpleWaypointPlanManagerService": (
+        waypoints.SimpleWaypointPlanManagerService, ("MissionCommand",)
+    ),
+    "SensorManagerService": (
+        sensors.SensorManagerService, ("SensorFootprintResponse", "ServiceStatus")
+    ),
+    "OperatingRegionStateService": (
+        regions.OperatingRegionStateService, ("OperatingRegion",)
+    ),
+    "LoiterLeash": (leash.LoiterLeash, ("RoutePlanRequest", "VehicleActionCommand", "ServiceStatus")),
+    "BatchSummaryService": (
+        batch.BatchSummaryService, ("TaskAutomationRequest", "BatchSummaryResponse")
+    ),
+    "TaskTrackerService": (tracker.TaskTrackerService, ()),
+    "IcarousCommunicationService": (
+        icarous_communication.IcarousCommunicationService,
+        ("MissionCommand", "VehicleActionCommand", "TaskPause", "TaskResume", "ServiceStatus",
+         "BridgeStatus", "Heartbeat", "GateState", "AuthorityChange", "ModeRefused"),
+    ),
+    "DAIDALUS_WCV_Detection": (
+        detection.DaidalusDetection,
+        ("DAIDALUSConfiguration", "WellClearViolationIntervals", "ServiceStatus"),
+    ),
+    "DAIDALUS_WCV_Response": (
+        response.DaidalusResponse, ("VehicleActionCommand", "MissionCommand", "ServiceStatus")
+    ),
+    "AutomationDiagramDataService": (diagram.AutomationDiagramDataService, ("ServiceStatus",)),
+    "SendMessagesService": (small.SendMessagesService, ()),
+    "MessageLoggerDataService": (MessageLogger, ()),
+    "Test_SimulationTime": (small.SimulationTime, ()),
+    "HelloWorld": (small.HelloWorld, ("KeyValuePair",)),
+    "StatusReportService": (small.StatusReportService, ("OnboardStatusReport",)),
+}  # fmt: skip
+"""Of each service its class, which says what it subscribes to, and the messages that it sends."""

@@ -1,0 +1,72 @@
+"""What must be true of the certificate in hand, behind the actuator gate, and of what may take its place.
+
+A certificate says: flown from now on, its trajectory is clear of all that its tracks may do until it expires,
+at every instant before. It names the one that it begins on, which it agrees with until it begins. Whatever is
+lost, comes twice, late or in another order, only such a one may take its place. Milliseconds of one clock.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Hand(NamedTuple):
+    """The certificate in hand. id: which; knowledge: how many changes of the set of tracks and zones it
+    knows; expiry_ms: up to when it is clear; surprises: what became known and was not allowed for."""
+
+    id: int
+    knowledge: int
+    expiry_ms: int
+    surprises: int
+
+
+class Offer(NamedTuple):
+    """A certificate that is offered. base: the one that it begins on, at sigma_ms; the rest as in `Hand`."""
+
+    id: int
+    base: int
+    sigma_ms: int
+    knowledge: int
+    expiry_ms: int
+
+
+def certified(expiry: int, clear: bool, now: int, at: int) -> bool:
+    """Of this instant it is true that the vehicle is clear, if it is one from now until the expiry. FOR
+    ALL at. clear: the vehicle is, at this instant, if it flies the trajectory."""
+    return clear or at < now or at >= expiry
+
+
+def agrees(sigma: int, clear: bool, base_clear: bool, at: int) -> bool:
+    """Before a trajectory begins it is the one that it begins on: both are clear, or neither. FOR ALL at."""
+    return at >= sigma or clear == base_clear
+
+
+def lasts(before: int, after: int, now: int, reserve: int) -> bool:
+    """An expiry falls at most to the reserve from now on; it need not, to fly on near one that hovers."""
+    return after >= before or after >= now + reserve
+
+
+def may_take_over(hand: Hand, offer: Offer, now: int, reserve: int) -> bool:
+    """An offer may take the place of the hand: it begins on it, neither in the past nor after its expiry,
+    allows for all that is known, and does not shorten what is certain by too much."""
+    in_time = not (offer.sigma_ms < now or offer.sigma_ms > hand.expiry_ms)
+    knows = offer.base == hand.id and offer.knowledge == hand.knowledge
+    return knows and in_time and lasts(hand.expiry_ms, offer.expiry_ms, now, reserve)
+
+
+def is_after_offer(before: Hand, offer: Offer, now: int, reserve: int, after: Hand) -> bool:
+    """The hand is the one that was offered if that may take its place; else nothing changes."""
+    if not may_take_over(before, offer, now, reserve):
+        return after == before
+    same = after.knowledge == before.knowledge and after.surprises == before.surprises
+    return after.id == offer.id and after.expiry_ms == offer.expiry_ms and same
+
+
+def is_after_news(before: Hand, permitted: bool, now: int, after: Hand) -> bool:
+    """A track or zone has become known. The hand is permitted against it too, and is certain as before; or
+    it is a surprise, which is declared, and nothing is certain any more. Offers that do not allow for it
+    are not accepted."""
+    known = after.id == before.id and after.knowledge == before.knowledge + 1
+    if permitted:
+        return known and after.expiry_ms == before.expiry_ms and after.surprises == before.surprises
+    return known and after.expiry_ms <= now and after.surprises == before.surprises + 1

@@ -1,0 +1,150 @@
+"""The text protocol over TCP between processes: peers of every kind, and what each may cost."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import time
+from typing import Any
+
+import pytest
+
+from cratous.bridge import text_protocol as tp
+from cratous.bridge.link import LinkEvent
+from cratous.bridge.port import address
+from cratous.bridge.text_port import Bounds, Came, Opened, TextPort
+from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET
+from cratous.spec.errors import BadInput
+
+HEARTBEAT = tp.encode(tp.Heartbeat(1, 0.5))
+
+
+def at(port: int = 0) -> Any:
+    return address(f"tcp://127.0.0.1:{port}", ("tcp",), free=True)
+
+
+def server(opened: list[Any], **bounds: Any) -> TextPort:
+    one = TextPort(at(), server=True, bounds=Bounds(**bounds))
+    opened.append(one)
+    return one
+
+
+class Clock:
+    """A clock that the test moves."""
+
+    now_s = 100.0
+
+
+def until(port: TextPort, clock: Clock, done: Any) -> list[Came]:
+    """Everything that comes until something of it is wanted."""
+    found: list[Came] = []
+    end = time.monotonic() + 30.0
+    while not any(done(came.what) for came in found):
+        assert time.monotonic() < end, found
+        found += port.step(clock.now_s)
+        time.sleep(0.001)
+    return found
+
+
+def raw(port: TextPort, opened: list[Any], *pieces: bytes) -> socket.socket:
+    """A peer that sends these bytes."""
+    sock = socket.create_connection(port.bound, timeout=10)
+    opened.append(sock)
+    for piece in pieces:
+        sock.sendall(piece)
+    return sock
+
+
+def ended(why: str) -> Any:
+    return lambda what: isinstance(what, LinkEvent) and why in what.detail
+
+
+def test_both_ends_meet_and_messages_go_both_ways(opened: list[Any]) -> None:
+    one, clock = server(opened), Clock()
+    other = TextPort(at(one.bound[1]), server=False)
+    opened.append(other)
+    key = other.dial(clock.now_s)
+    found: list[Came] = []
+    while not any(isinstance(came.what, Opened) for came in found):
+        found += one.step(clock.now_s)
+        found += other.step(clock.now_s)
+    assert other.send(key, tp.SetMode("ACTIVE", 3))
+    (came,) = [c for c in until(one, clock, lambda w: isinstance(w, tp.SetMode)) if c.key][-1:]
+    assert came.what == tp.SetMode("ACTIVE", 3)
+    assert one.send(came.key, tp.WaypointReached(4))
+    assert until(other, clock, lambda w: isinstance(w, tp.WaypointReached))
+    assert not one.send(came.key, tp.WaypointReached(10**9))
+    assert one.counts.lost["message has no form on the wire"] == 1
+    other.close()
+    assert until(one, clock, lambda w: isinstance(w, LinkEvent))
+    assert not one.send(came.key, tp.WaypointReached(4))
+
+
+def test_a_peer_that_ends_its_lines_with_cr_lf_is_read(opened: list[Any]) -> None:
+    one, clock = server(opened), Clock()
+    raw(one, opened, DEFAULT_SECRET.encode(), HEARTBEAT.replace(b"\n", b"\r\n"))
+    assert until(one, clock, lambda w: w == tp.Heartbeat(1, 0.5))
+
+
+@pytest.mark.parametrize(
+    ("pieces", "bounds", "later_s", "why"),
+    [
+        ((b"x" * 64,), {}, 0.0, "handshake failed"),
+        ((b"c7a7",), {"handshake_s": 5.0}, 6.0, "handshake not finished in time"),
+        ((DEFAULT_SECRET.encode(),), {"silence_s": 5.0}, 6.0, "silent"),
+        ((DEFAULT_SECRET.encode(), b"SETMOD,\n" * 20), {"bad_lines": 10}, 0.0, "cannot be read"),
+        ((DEFAULT_SECRET.encode(), HEARTBEAT * 99), {"burst_bytes": 999.0}, 0.0, "faster"),
+    ],
+)
+def test_what_a_peer_may_cost(
+    opened: list[Any], pieces: tuple[bytes, ...], bounds: dict[str, Any], later_s: float, why: str
+) -> None:
+    one, clock = server(opened, **bounds), Clock()
+    bad = raw(one, opened, *pieces)
+    good = raw(one, opened, DEFAULT_SECRET.encode())
+    if later_s:
+        end = time.monotonic() + 1.0
+        while time.monotonic() < end:
+            one.step(clock.now_s)
+        clock.now_s += later_s
+        good.sendall(HEARTBEAT)
+        time.sleep(0.2)
+    assert until(one, clock, ended(why))
+    # the other peer pays nothing
+    good.sendall(HEARTBEAT)
+    assert until(one, clock, lambda w: isinstance(w, tp.Heartbeat))
+    bad.settimeout(10)
+    while bad.recv(4096):
+        pass
+
+
+def test_an_unfinished_line_and_one_that_is_too_long_are_said(opened: list[Any]) -> None:
+    one, clock = server(opened), Clock()
+    sock = raw(
+        one, opened, DEFAULT_SECRET.encode(), b"A" * 9000 + b"\n" + HEARTBEAT + b"SETVEL,nor"
+    )
+    sock.shutdown(socket.SHUT_WR)
+    found = until(one, clock, lambda w: isinstance(w, LinkEvent))
+    texts = [w.what for _, w in found if isinstance(w, tp.WireError)]
+    assert texts == ["line too long", "message cut off"]
+    assert one.counts.refused["line too long"] == 1
+
+
+def test_more_peers_than_it_takes_are_closed_and_a_taken_port_is_refused(opened: list[Any]) -> None:
+    one, clock = server(opened, connections=2), Clock()
+    peers = [raw(one, opened, DEFAULT_SECRET.encode()) for _ in range(3)]
+    found: list[Came] = []
+    while sum(isinstance(c.what, Opened) for c in found) < 2:
+        found += one.step(clock.now_s)
+    end = time.monotonic() + 10
+    while not one.counts.refused["too many connections"]:
+        assert time.monotonic() < end
+        one.step(clock.now_s)
+    peers[2].settimeout(10)
+    with contextlib.suppress(ConnectionResetError):  # as it had sent what nobody has read
+        assert peers[2].recv(100) == b""
+    with pytest.raises(BadInput, match="cannot listen"):
+        TextPort(at(one.bound[1]), server=True)
+    one.close()
+    with pytest.raises(BadInput, match="cannot connect"):
+        TextPort(at(one.where.port or 1), server=False).dial(0.0)

@@ -1,0 +1,161 @@
+"""ICAROUS behind the bridge as a step: what it believes, what it refuses, and when it speaks."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from icarous_tools import PROJECTION, VOLUME
+
+from cratous.bridge import text_protocol as tp
+from cratous.core.authority.gate import ICAROUS, UXAS, Gate
+from cratous.services.flight.dynamics import Limits
+from cratous.services.icarous.state import Config
+from cratous.services.icarous_program.step import Craft, IcarousEnd, Note, Refuse, State, Tell
+from cratous.spec.mission import Daa
+
+CRAFT = Craft(Config(1, Daa(VOLUME), PROJECTION, 500), Limits(15.0, 33.0, 0.52, 5.0), 60.0)
+END = IcarousEnd(CRAFT)
+
+
+def own(now_s: float, north_m: float = 0.0, speed: float = 22.0, **more: Any) -> tp.OwnPosition:
+    lat, lon = PROJECTION.to_geodetic(north_m, 0.0)
+    values = {"vehicle_id": 1, "east_mps": 0.0, "down_mps": 0.0, **more}
+    return tp.OwnPosition(now_s, lat, lon, 300.0, 300.0, speed, **values)
+
+
+def traffic(north_m: float, index: int = 9, speed: float = -22.0) -> tp.Traffic:
+    lat, lon = PROJECTION.to_geodetic(north_m, 0.0)
+    return tp.Traffic("TRAFFIC", lat, lon, 300.0, speed, 0.0, 0.0, index)
+
+
+def way(*indices: int, total: int) -> list[tp.Message]:
+    out: list[tp.Message] = [tp.SoftReset()]
+    for k in indices:
+        lat, lon = PROJECTION.to_geodetic(2000.0 * k, 0.0)
+        out.append(tp.Waypoint(k + 1 if k + 1 < total else total, 22.0, lat, lon, 300.0, k))
+    return [*out, tp.StartMission()]
+
+
+def tell(state: State, *lines: tp.Message, end: IcarousEnd = END) -> tuple[State, list[Any]]:
+    answers: list[Any] = []
+    for line in lines:
+        state, said = end.handle(state, line)
+        answers += said
+    return state, answers
+
+
+def lines(answers: list[Any]) -> list[tp.Message]:
+    return [answer.line for answer in answers if isinstance(answer, Tell)]
+
+
+def refused(answers: list[Any]) -> list[str]:
+    return [answer.why for answer in answers if isinstance(answer, Refuse)]
+
+
+def encounter(end: IcarousEnd, lie_m: float = 0.0) -> tuple[State, list[Any], int]:
+    """Head on, 60 heartbeats at most; the beat of the takeover, 0 for none. lie_m: OBJCT is off by it."""
+    state, answers = tell(State(), *way(0, 1, 2, total=3), end=end)
+    for k in range(60):
+        t = k / 2
+        state, said = tell(
+            state, own(t, 22.0 * t), tp.Attitude(0, 0, 0), traffic(3000.0 - 22 * t + lie_m), end=end
+        )
+        answers += said
+        if state.gate.owner == ICAROUS:
+            return state, answers, k
+    return state, answers, 0
+
+
+def test_traffic_on_the_wire_decides_about_the_takeover() -> None:
+    _, answers, beat = encounter(END)
+    assert beat
+    told = lines(answers)
+    assert [type(line).__name__ for line in told[-3:]] == ["SetMode", "SetVelocity", "Heartbeat"]
+    assert told[-3] == tp.SetMode("ACTIVE", 1)
+    assert encounter(END, lie_m=90_000.0)[2] == 0
+    # a traffic of ours that has to give way is waited for
+    ours = Craft(CRAFT.config, CRAFT.limits, 60.0, frozenset({1, 9}))
+    assert not 0 < encounter(IcarousEnd(ours))[2] <= beat
+
+
+def test_every_heartbeat_is_answered_once() -> None:
+    state, answers = tell(State(), *(own(t) for t in (0.0, 0.25, 0.5, 0.9, 1.0, 1.0)))
+    assert [line.sequence for line in lines(answers) if isinstance(line, tp.Heartbeat)] == [1, 2, 3]
+    assert state.now_ms == 1000
+
+
+@pytest.mark.parametrize(
+    ("line", "why"),
+    [
+        (own(4.0), "POSTN of an earlier time"),
+        (own(6.0, speed=0.0), "POSTN that this airframe cannot fly"),
+        (own(6.0, speed=4000.0), "POSTN that this airframe cannot fly"),
+        (own(6.0, vehicle_id=2), "POSTN of another vehicle"),
+        (traffic(0.0, index=1), "OBJCT of the vehicle itself"),
+        (tp.StartMission(), "plan with waypoints missing"),
+        (tp.FenceDone(3), "zone with vertices missing: it is not in force"),
+    ],
+)
+def test_what_cannot_be_so_is_refused(line: tp.Message, why: str) -> None:
+    state, _ = tell(State(), *way(0, 1, total=2), own(5.0))
+    part = way(0, 2, total=3)[:-1] if isinstance(line, tp.StartMission) else []
+    state, _ = tell(state, *part)
+    after, answers = tell(state, line)
+    assert refused(answers) == [why]
+    assert lines(answers) == []
+    assert len(after.instance.told.waypoints) == 2
+    assert after.now_ms == 5000
+
+
+def test_an_offer_is_taken_by_the_way_on_and_by_the_original_at_once() -> None:
+    offered = State(gate=Gate(ICAROUS, 2, True))
+    for taking in (tp.StartMission(), tp.SoftReset(45.0, -121.0, 300.0)):
+        assert tell(offered, taking)[0].gate == Gate(UXAS, 2, False)
+    assert tell(offered, tp.SoftReset())[0].gate == offered.gate
+    owned = State(gate=Gate(ICAROUS, 1, False))
+    assert tell(owned, tp.StartMission())[0].gate == owned.gate
+    _, (mode,) = END.connected(owned)
+    assert mode == Tell(tp.SetMode("ACTIVE", 1))
+    _, (mode,) = END.connected(offered)
+    assert mode == Tell(tp.SetMode("PASSIVE", 2))
+
+
+def test_traffic_that_is_not_heard_of_is_dropped_and_said() -> None:
+    state, answers = tell(State(), own(1.0), traffic(9000.0), *(own(1 + k) for k in range(1, 5)))
+    assert (set(state.seen), refused(answers)) == ({9}, [])
+    state, answers = tell(state, own(6.0))
+    assert not state.seen
+    assert [a for a in answers if isinstance(a, Note) and "no longer avoided" in a.text]
+
+
+number = st.floats(-1e6, 1e6)
+SPOTS = {"lat_deg": st.floats(44.0, 46.0), "long_deg": st.floats(-122.0, -120.0)}
+ANY = st.one_of(
+    st.builds(
+        tp.OwnPosition, st.floats(0, 100), **SPOTS, alt_abs_m=number, alt_rel_m=number,
+        north_mps=st.floats(-40, 40), east_mps=st.floats(-40, 40), down_mps=number,
+    ),
+    st.builds(
+        tp.Traffic, st.just("TRAFFIC"), **SPOTS, alt_m=number, north_mps=number, east_mps=number,
+        down_mps=number, index=st.integers(0, 5),
+    ),
+    st.builds(tp.Waypoint, st.integers(1, 4), number, **SPOTS, alt_m=number, index=st.integers(0, 3)),
+    st.builds(tp.WaypointReached, st.integers(0, 300)),
+    st.sampled_from([tp.StartMission(), tp.SoftReset(), tp.HardReset(), tp.FenceDone(1)]),
+)  # fmt: skip
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(ANY, max_size=12))
+def test_whatever_can_stand_on_the_wire_leaves_the_gate_whole(told: list[tp.Message]) -> None:
+    state, answers = State(), list[Any]()
+    for line in told:
+        before = state
+        state, said = END.handle(state, line)
+        answers += said
+        assert state.gate.epoch >= before.gate.epoch
+    beats = [line for line in lines(answers) if isinstance(line, tp.Heartbeat)]
+    assert len(beats) == state.instance.beats

@@ -1,0 +1,148 @@
+"""What is permitted is not hit: the kernels against the definition at many instants and places."""
+
+from __future__ import annotations
+
+import math
+from fractions import Fraction
+
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from cratous.core.kernel import Vec2
+from cratous.core.permit.pieces import (
+    Growth,
+    Meeting,
+    Piece,
+    above_during,
+    beside_during,
+    growth_after,
+    permitted,
+    reach_after,
+)
+from cratous.core.permit.tubes import disc_within, tube_within
+from cratous.core.readings.exact import exact
+from cratous.core.readings.machine.compiled import compiled
+from cratous.spec.permit import motion
+
+PLACES = st.fractions(-2000, 2000, max_denominator=8)
+SPEEDS = st.fractions(-40, 40, max_denominator=8)
+SMALL = st.fractions(0, 30, max_denominator=8)
+RATES = st.fractions(0, 2, max_denominator=8)
+GROWTHS = st.builds(Growth, SMALL, RATES, st.fractions(0, 1, max_denominator=8))
+VECTORS = st.builds(Vec2, PLACES, PLACES)
+VELOCITIES = st.builds(Vec2, SPEEDS, SPEEDS)
+PIECES = st.lists(
+    st.builds(Piece, VELOCITIES, SPEEDS, st.fractions(0, 20, max_denominator=4), SMALL),
+    min_size=1,
+    max_size=4,
+)
+MEETINGS = st.builds(
+    Meeting, VECTORS, PLACES, VELOCITIES, SPEEDS, GROWTHS, GROWTHS,
+    st.fractions(0, 300, max_denominator=4), st.fractions(0, 60, max_denominator=4),
+)  # fmt: skip
+ROUND = [(0, 0), *[(math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8)]]
+
+
+def hit(
+    pieces: list[Piece], meeting: Meeting, own: motion.Off, other: motion.Off, at: object
+) -> bool:
+    """The definition's fold."""
+    way = motion.Way(False, 0, 0, 0, 0)
+    for piece in pieces:
+        way = motion.way_step(way, *piece, meeting, own, other, at)  # type: ignore[arg-type]
+    return motion.way_result(way)
+
+
+def off(
+    share: Fraction, direction: tuple[float, float], wide: Fraction, high: Fraction
+) -> motion.Off:
+    """A place off by part of what is possible, a little inside so that the sine's rounding is no matter."""
+    x, y = (Fraction(part) * Fraction(999, 1000) for part in direction)
+    return motion.Off(share * wide * x, share * wide * y, share * high)  # type: ignore[arg-type]
+
+
+@settings(max_examples=150, deadline=None)
+@given(PIECES, MEETINGS, st.data())
+def test_what_is_permitted_is_not_hit(
+    pieces: list[Piece], meeting: Meeting, data: st.DataObject
+) -> None:
+    if not permitted(pieces, meeting):
+        return
+    assert exact(permitted, pieces, meeting)
+    whole = sum((piece.duration_s for piece in pieces), Fraction(0))
+    for _ in range(6):
+        at = whole * data.draw(st.fractions(0, 1, max_denominator=16))
+        rho = max(piece.rho_m for piece in pieces)
+        one, two = data.draw(st.sampled_from(ROUND)), data.draw(st.sampled_from(ROUND))
+        own = off(data.draw(st.sampled_from([Fraction(-1), Fraction(1)])), one, rho, rho)
+        wide, high = reach_after(meeting.wide, at), reach_after(meeting.high, at)
+        other = off(data.draw(st.sampled_from([Fraction(-1), Fraction(1)])), two, wide, high)
+        assert not hit(pieces, meeting, own, other, at)
+
+
+def test_both_verdicts_occur() -> None:
+    steady = Growth(0, 0, 0)
+    flight = [Piece(Vec2(22.0, 0.0), 0.0, 60.0, 5.0)]
+    far, near = (
+        Meeting(Vec2(-1000.0, east), 0.0, Vec2(0.0, 0.0), 0.0, steady, steady, 150.0, 30.0)
+        for east in (155.5, 154.5)
+    )
+    assert permitted(flight, far)
+    assert not permitted(flight, near)
+    # stopping before it is permitted, and so is passing above
+    assert permitted([Piece(Vec2(22.0, 0.0), 0.0, 40.0, 5.0)], near)
+    assert permitted(flight, near._replace(sz=35.5))
+    assert not permitted(flight, near._replace(sz=34.5))
+    # a tube that grows reaches it
+    assert not permitted(flight, far._replace(wide=Growth(0.0, 0.0, 0.5)))
+    assert not permitted(flight, far._replace(wide=Growth(0.5, 0.0, 0.0)))
+
+
+@settings(max_examples=200, deadline=None)
+@given(VECTORS, VELOCITIES, SMALL, RATES, st.fractions(0, 60, max_denominator=4))
+@example(Vec2(20, 0), Vec2(0, 0), Fraction(10), Fraction(1), Fraction(10))
+def test_beside_is_exact_where_the_radius_grows_steadily(
+    s: Vec2, v: Vec2, start: Fraction, rate: Fraction, d: Fraction
+) -> None:
+    growth = Growth(start, rate, 0)
+    apart = lambda t: (s.x + t * v.x) ** 2 + (s.y + t * v.y) ** 2 - (start + t * rate) ** 2  # noqa: E731
+    a = v.x * v.x + v.y * v.y - rate * rate
+    instants = [Fraction(0), d, *[d * k / 64 for k in range(65)]]
+    if a > 0:
+        vertex = -(s.x * v.x + s.y * v.y - start * rate) / a
+        instants.append(min(max(vertex, Fraction(0)), d))
+    assert beside_during(s, v, growth, d) == (min(apart(t) for t in instants) > 0)
+
+
+@settings(max_examples=200, deadline=None)
+@given(PLACES, SPEEDS, GROWTHS, st.fractions(0, 60, max_denominator=4))
+def test_above_is_exact(sz: Fraction, vz: Fraction, growth: Growth, d: Fraction) -> None:
+    least = min(sz + t * vz - reach_after(growth, t) for t in (d * k / 32 for k in range(33)))
+    assert above_during(sz, vz, growth, d) == (least > 0)
+
+
+@settings(max_examples=200, deadline=None)
+@given(GROWTHS, SMALL, SMALL)
+def test_growth_is_counted_on(growth: Growth, t: Fraction, more: Fraction) -> None:
+    assert reach_after(growth_after(growth, t), more) == reach_after(growth, t + more)
+
+
+@settings(max_examples=200, deadline=None)
+@given(VECTORS, VELOCITIES, GROWTHS, GROWTHS, SMALL, SMALL, st.sampled_from(ROUND))
+@example(Vec2(0, 0), Vec2(0, 0), Growth(1, 0, 0), Growth(1, 0, 0), Fraction(3), Fraction(9), (1, 0))
+def test_a_nested_tube_stays_nested(
+    s: Vec2, v: Vec2, new: Growth, old: Growth, age: Fraction, t: Fraction, way: tuple[float, float]
+) -> None:
+    s, v = Vec2(s.x / 100, s.y / 100), Vec2(v.x / 40, v.y / 40)
+    if tube_within(s, v, new, old, age):
+        wide = reach_after(new, t) * Fraction(999, 1000)
+        o = motion.Plane(Fraction(way[0]) * wide, Fraction(way[1]) * wide)  # type: ignore[arg-type]
+        assert motion.in_tube_at(s, v, o, new, old, age, t)  # type: ignore[arg-type]
+
+
+def test_discs() -> None:
+    assert disc_within(Vec2(3.0, 4.0), 5.0, 10.0)
+    assert not disc_within(Vec2(3.0, 4.0), 5.001, 10.0)
+    assert not disc_within(Vec2(0.0, 0.0), 2.0, 1.0)
+    many = compiled(disc_within)([3.0, 3.0], [4.0, 4.0], [5.0, 6.0], 10.0)
+    assert many.tolist() == [True, False]

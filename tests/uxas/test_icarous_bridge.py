@@ -1,0 +1,146 @@
+"""The bridge between processes: `cratous uxas`, `cratous icarous`, and a stub simulator, over real sockets."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from bridge_flight import (
+    TASK,
+    Aircraft,
+    Proxy,
+    Simulator,
+    command,
+    configuration,
+    icarous,
+    mission_file,
+    said,
+    way,
+)
+from uxas_tools import free_port
+
+from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET, secret_of_environment
+from cratous.services.cli import main
+from cratous.spec.errors import BadInput
+
+SERVICE = "IcarousCommunicationService"
+WAY = ((0.0, 0.0), (1500.0, 0.0), (3500.0, 0.0), (4500.0, 0.0))
+
+
+def own() -> Aircraft:
+    return Aircraft(1, -300.0, 0.0, 0.0)
+
+
+@pytest.mark.shows(
+    SERVICE, "MissionCommand", "AirVehicleState", "VehicleActionCommand", "TaskPause", "TaskResume",
+    "GateState", "AuthorityChange", "Heartbeat", "BridgeStatus", "NumberOfUAVs", "DeviationAllowed",
+    "DeviationOrigin", "Address",
+)  # fmt: skip
+def test_takeover_avoidance_handback_and_the_mission_is_done(
+    tmp_path: Path, opened: list[Any]
+) -> None:
+    more = 'NumberOfUAVs="1" DeviationAllowed="40" DeviationOrigin="path"'
+    cfg, sim_port, ics_port = configuration(tmp_path, more)
+    with (
+        command(tmp_path, "uxas", "-cfgPath", str(cfg)) as uxas,
+        icarous(tmp_path, ics_port) as pilot,
+    ):
+        sim = Simulator(sim_port, own(), Aircraft(90, 2000.0, 2300.0, 270.0))
+        opened.append(sim)
+        sim.client.send(way(*WAY), 1, 1)
+        sim.own.told(way(*WAY))
+        assert sim.fly(700, lambda: 4 in sim.own.passed), said(tmp_path)
+        assert sim.nearest_m > 150.0
+        owners = [change.Owner.name for change in sim.all("AuthorityChange")]
+        assert owners == ["ICAROUS", "UxAS"]
+        assert [p.TaskID for p in sim.all("TaskPause")] == [TASK]
+        assert [r.TaskID for r in sim.all("TaskResume")] == [TASK]
+        assert {1, 2, 3, 4} <= set(sim.own.passed)
+        pilot.terminate()
+        assert pilot.wait(20) == 0
+        uxas.terminate()
+        assert uxas.wait(20) == 0
+
+
+def test_what_stands_on_the_wire_decides_and_a_cut_link_comes_again(
+    tmp_path: Path, opened: list[Any]
+) -> None:
+    cfg, sim_port, ics_port = configuration(tmp_path, 'NumberOfUAVs="1"')
+    proxy = Proxy(ics_port)
+    opened.append(proxy)
+
+    def far(line: bytes) -> bytes:
+        return line.replace(b"OBJCT,type_TRAFFIC_,lat45.", b"OBJCT,type_TRAFFIC_,lat47.")
+
+    def rubbish(line: bytes) -> bytes:
+        return re.sub(rb"(POSTN.*),north[^,]*", rb"\1,north4000.000000", line)
+
+    with (
+        command(tmp_path, "uxas", "-cfgPath", str(cfg)),
+        icarous(tmp_path, proxy.port),
+    ):
+        sim = Simulator(sim_port, own(), Aircraft(90, 2000.0, 2300.0, 270.0))
+        opened.append(sim)
+        sim.client.send(way(*WAY), 1, 1)
+        sim.own.told(way(*WAY))
+        # the intruder is told to be far away: with honest lines the takeover is at heartbeat 54
+        proxy.change = far
+        assert not sim.fly(75, lambda: sim.own.steered)
+        proxy.change = lambda line: line
+        assert sim.fly(12, lambda: sim.own.steered), said(tmp_path)
+        # a cut while ICAROUS has the vehicle: it holds, and ICAROUS comes again
+        proxy.cut()
+        assert sim.wait(lambda: any("not heard" in text for text in reasons(sim)), 30.0)
+        assert type(sim.own.flies).__name__ == "Circle"
+        again = "connected again"
+        assert sim.wait(lambda: any(b.Note == again for b in sim.all("BridgeStatus")), 60.0)
+        assert sim.fly(5, lambda: type(sim.own.flies).__name__ == "Fly"), said(tmp_path)
+        # an own state that cannot be: ICAROUS says nothing any more, and the vehicle holds
+        proxy.change = rubbish
+        assert any(not sim.beat(3.0) for _ in range(4))  # answers of before may still come
+        assert sim.wait(lambda: len(reasons(sim)) == 2, 30.0)
+        assert type(sim.own.flies).__name__ == "Circle"
+    assert "POSTN that this airframe cannot fly" in said(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "text"),
+    [
+        (("--vehicle", "8"), 2, "the mission has no such vehicle"),
+        (("--vehicle", "1", "--connect", "nowhere"), 2, "not an address"),
+        (("--vehicle", "1", "--wait", "0.3"), 3, "no UxAS for 0.3 s (Connection refused)"),
+    ],
+)
+def test_the_command_says_what_is_wrong(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    arguments: tuple[str, ...],
+    code: int,
+    text: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    mission = str(mission_file(tmp_path))
+    where = f"127.0.0.1:{free_port()}"
+    assert main(["icarous", "--mission", mission, "--connect", where, *arguments]) == code
+    assert text in capsys.readouterr().err
+
+
+def test_the_secret_of_the_environment_is_checked_and_not_shown(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert secret_of_environment() == DEFAULT_SECRET
+    monkeypatch.setenv("CRATOUS_BRIDGE_SECRET", "a" * 64)
+    assert secret_of_environment() == "a" * 64
+    monkeypatch.setenv("CRATOUS_BRIDGE_SECRET", "hunter2")
+    with pytest.raises(BadInput, match="got 7 characters") as wrong:
+        secret_of_environment()
+    assert "hunter2" not in str(wrong.value)
+
+
+def reasons(sim: Simulator) -> list[str]:
+    """What ServiceStatuses of errors say."""
+    bodies = [b for b in sim.all("ServiceStatus") if b.StatusType.name == "Error"]
+    return [pair.Value for body in bodies for pair in body.Info if pair.Key == "reason"]

@@ -1,0 +1,262 @@
+"""UxAS's end of the bridge in one process with fake ICAROUS clients: who speaks for whom, what they are told,
+whose SETMOD is believed, and what cannot be honoured."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from bridge_flight import PLANE, Aircraft, way
+from uxas_tools import process, until, write_cfg
+
+from cratous.bridge import lmcp
+from cratous.bridge import text_protocol as tp
+from cratous.bridge.text_protocol.handshake import ClientHandshake
+from cratous.services.bus import Envelope
+from cratous.services.icarous_communication.service import NobodyCame
+from cratous.spec.errors import BadInput
+
+SERVICE = "IcarousCommunicationService"
+
+
+class Fake:
+    """A client of the text protocol that does what the test says."""
+
+    def __init__(self, port: int, hello: int | None = None) -> None:
+        self.sock = socket.create_connection(("127.0.0.1", port), timeout=5)
+        self.sock.setblocking(False)
+        self.handshake, self.hello, self.ended = ClientHandshake(), hello, False
+        self.parser = tp.StreamParser(tp.Direction.DOWN, limits=tp.WIDE_LIMITS)
+        self.got: list[Any] = []
+        self.raw = b""
+
+    def read(self) -> list[Any]:
+        """All records so far."""
+        with contextlib.suppress(BlockingIOError, ConnectionError):
+            while data := self.sock.recv(65536):
+                if self.handshake.done:
+                    self.take(data)
+                    continue
+                self.sock.sendall(self.handshake.feed(data))
+                if self.handshake.done:
+                    if self.hello is not None:
+                        self.say(tp.Hello(self.hello))
+                    self.take(self.handshake.rest)
+            self.ended = True
+        return self.got
+
+    def take(self, data: bytes) -> None:
+        self.raw += data
+        self.got += self.parser.feed(data)
+
+    def say(self, *lines: tp.Message) -> None:
+        for line in lines:
+            self.sock.sendall(tp.encode(line, limits=tp.WIDE_LIMITS))
+
+    def all(self, kind: type[Any]) -> list[Any]:
+        return [record for record in self.read() if isinstance(record, kind)]
+
+    def close(self) -> None:
+        self.sock.close()
+
+
+class Rig:
+    """A process with the service alone, all that it publishes, and fakes."""
+
+    def __init__(self, folder: Path, attributes: str, opened: list[Any]) -> None:
+        text = f'<Service Type="{SERVICE}" Address="tcp://127.0.0.1:0" {attributes}/>'
+        self.process, self.said = process(write_cfg(folder, text))
+        opened.append(self.process)
+        self.opened, self.sent = opened, list[Envelope]()
+        self.process.bus.tap(self.sent.append)
+        (self.service,) = self.process.ports
+        self.port = self.service.port.bound[1]
+
+    def fake(self, hello: int | None = None) -> Fake:
+        one = Fake(self.port, hello)
+        self.opened.append(one)
+        self.until(lambda: one.read() is not None and (one.handshake.done or one.ended))
+        return one
+
+    def until(self, done: Any) -> None:
+        until(done, self.process, limit_s=60.0)
+
+    def tell(self, *bodies: Any) -> None:
+        for body in bodies:
+            self.process.bus.publish(body, "test")
+        self.process.turn(0.0)
+
+    def got(self, kind: str) -> list[Any]:
+        return [e.body for e in self.sent if type(e.body).__name__ == kind and e.source == SERVICE]
+
+
+def state(vehicle: int, north: float = 0.0, now_ms: int = 1000) -> Any:
+    craft = Aircraft(vehicle, north, 0.0, 0.0)
+    craft.waypoint = 1
+    return craft.state(now_ms)
+
+
+def zone(kind: str, number: int) -> Any:
+    corners = [(-9000, -9000), (-9000, 9000), (9000, 9000), (9000, -9000)]
+    points = [PLANE.to_geodetic(n / number, e / number) for n, e in corners]
+    boundary = lmcp.new(
+        "Polygon",
+        BoundaryPoints=[lmcp.new("Location3D", Latitude=a, Longitude=b) for a, b in points],
+    )
+    return lmcp.new(
+        kind, ZoneID=number, MaxAltitude=500.0, MaxAltitudeType="MSL", MinAltitudeType="MSL",
+        Boundary=boundary,
+    )  # fmt: skip
+
+
+@pytest.mark.shows(SERVICE, "VehicleIDs", "Timeout_s")
+def test_it_waits_and_says_who_is_missing(tmp_path: Path, opened: list[Any]) -> None:
+    rig = Rig(tmp_path, 'NumberOfUAVs="2" VehicleIDs="3 5" Timeout_s="3"', opened)
+    one = Fake(rig.port, hello=5)
+    opened.append(one)
+    begun = time.monotonic()
+    # as `Process.run` does before StartupComplete
+    rig.until(lambda: (one.read(), rig.process._awaits(), time.monotonic() - begun > 2.9)[2])
+    with pytest.raises(NobodyCame) as wrong:
+        rig.until(lambda: not rig.process._awaits())
+    assert time.monotonic() - begun > 2.9
+    text = "1 of 2 ICAROUS instances are there (vehicle 5); 1 missing (of the vehicles 3)"
+    assert text in str(wrong.value)
+    assert wrong.value.exit_code == 3
+    assert rig.said.has(f"waiting: {text}")
+    assert rig.said.has("0 of 2 ICAROUS instances are there (none); 2 missing")
+
+
+def test_instances_without_a_hello_get_the_lowest_ids_in_the_order_of_arrival(
+    tmp_path: Path, opened: list[Any]
+) -> None:
+    rig = Rig(tmp_path, 'NumberOfUAVs="2"', opened)
+    first = rig.fake()
+    second = rig.fake()
+    rig.tell(state(12), lmcp.new("AirVehicleConfiguration", ID=7), state(4))
+    rig.until(lambda: first.all(tp.OwnPosition) or rig.tell(state(4), state(7), state(12)))
+    rig.until(lambda: second.all(tp.OwnPosition))
+    assert {p.vehicle_id for p in first.all(tp.OwnPosition)} == {4}
+    assert {p.vehicle_id for p in second.all(tp.OwnPosition)} == {7}
+    rig.tell(state(4, now_ms=2000))
+    rig.until(lambda: {t.index for t in first.all(tp.Traffic)} == {7, 12})
+    third = rig.fake()
+    rig.until(lambda: third.read() is not None and third.ended)
+    assert rig.said.has("more instances than NumberOfUAVs = 2")
+
+
+def test_two_instances_for_one_vehicle_and_a_stranger_are_refused(
+    tmp_path: Path, opened: list[Any]
+) -> None:
+    rig = Rig(tmp_path, 'NumberOfUAVs="2" VehicleIDs="1 2"', opened)
+    one = rig.fake(hello=1)
+    for hello, why in ((1, "a second instance for vehicle 1"), (9, "expected one of 1, 2")):
+        other = rig.fake(hello=hello)
+        rig.until(lambda other=other: other.read() is not None and other.ended)
+        assert rig.said.has(why)
+    rig.tell(state(1))
+    rig.until(lambda: one.all(tp.OwnPosition))
+    assert not one.ended
+
+
+@pytest.mark.shows(SERVICE, "AirVehicleConfiguration", "KeepInZone", "KeepOutZone", "RemoveZones")
+def test_plans_and_zones_are_told_and_told_again(tmp_path: Path, opened: list[Any]) -> None:
+    rig = Rig(tmp_path, 'NumberOfUAVs="1"', opened)
+    rig.tell(zone("KeepInZone", 1), zone("KeepOutZone", 2), way((0.0, 0.0), (900.0, 0.0)))
+    one = rig.fake(hello=1)
+    rig.until(lambda: one.all(tp.StartMission))
+    assert [v.fence for v in one.all(tp.FenceVertex)] == ["KEEPIN"] * 4 + ["KEEPOUT"] * 4
+    assert [w.index for w in one.all(tp.Waypoint)] == [0, 1]
+    rig.tell(state(1))
+    one.got.clear()
+    rig.tell(lmcp.new("RemoveZones", ZoneList=[1]))
+    rig.until(lambda: one.all(tp.StartMission))
+    told = [m for m in one.got if not isinstance(m, tp.OwnPosition | tp.Attitude | tp.Traffic)]
+    assert isinstance(told[0], tp.HardReset)
+    assert [v.fence for v in one.all(tp.FenceVertex)] == ["KEEPOUT"] * 4
+    assert len(one.all(tp.Waypoint)) == 2
+    # a connection that comes again is told everything
+    one.close()
+    rig.until(lambda: rig.said.has("eof"))
+    two = rig.fake(hello=1)
+    rig.until(lambda: two.all(tp.OwnPosition))
+    assert (len(two.all(tp.Waypoint)), len(two.all(tp.FenceVertex))) == (2, 4)
+    # the turns of a way back are as wide as the configuration's bank makes them
+    lengths = []
+    for number, bank in enumerate((10.0, 40.0)):
+        profile = lmcp.new("FlightProfile", MaxBankAngle=bank)
+        rig.tell(lmcp.new("AirVehicleConfiguration", ID=1, NominalFlightProfile=profile))
+        rig.tell(way((-2000.0, 0.0), (-4000.0, 0.0)), state(1, now_ms=2000 + number))
+        two.say(tp.SetMode("ACTIVE", 2 * number + 1), tp.SetMode("PASSIVE", 2 * number + 2))
+        rig.until(lambda n=number: len(rig.got("MissionCommand")) == n + 1)
+        points = rig.got("MissionCommand")[-1].WaypointList[2:]
+        lengths.append(max(abs(PLANE.to_local(w.Latitude, w.Longitude)[1]) for w in points))
+    assert lengths[0] > 3 * lengths[1]
+
+
+@pytest.mark.shows(SERVICE, "ModeRefused", "ServiceStatus", "VehicleActionCommand")
+def test_who_steers_is_what_the_modes_say(tmp_path: Path, opened: list[Any]) -> None:
+    rig = Rig(tmp_path, 'NumberOfUAVs="1"', opened)
+    one = rig.fake(hello=1)
+    rig.tell(state(1), way((0.0, 0.0), (900.0, 0.0)), state(1, 1.0, 1500))
+    one.say(tp.SetMode("PASSIVE", 4), tp.SetVelocity(0.0, 20.0, 0.0), tp.SetMode("ACTIVE", 9))
+    rig.until(lambda: rig.got("ModeRefused"))
+    assert rig.said.has("steering by one without authority")
+    assert rig.got("VehicleActionCommand") == []
+    one.say(
+        tp.SetMode("ACTIVE", 5),
+        tp.SetVelocity(0.0, 20.0, -2.0),
+        tp.SetPosition(45.0, -121.0, 350.0),
+    )
+    one.say(tp.GoToWaypoint(1), tp.GoToWaypoint(7), tp.SetVelocity(0.0, 0.0, 0.0))
+    rig.until(lambda: len(rig.got("VehicleActionCommand")) == 4)
+    velocity, place, waypoint, stay = (
+        c.VehicleActionList[0] for c in rig.got("VehicleActionCommand")
+    )
+    assert (velocity.Speed, velocity.Heading, velocity.ClimbRate) == (20.0, 90.0, 2.0)
+    assert velocity.Altitude == pytest.approx(320.0)
+    assert (place.Location.Latitude, place.Location.Altitude) == (45.0, 350.0)
+    assert waypoint.WaypointNumber == 2
+    assert stay.Location.Altitude == pytest.approx(300.0)
+    assert rig.said.has("GOTOWP of a waypoint that is not there")
+    # the instance is gone: the vehicle holds, until it comes again and hands back
+    one.close()
+    rig.until(lambda: rig.got("ServiceStatus"))
+    assert type(rig.got("VehicleActionCommand")[-1].VehicleActionList[0]).__name__ == "LoiterAction"
+    two = rig.fake(hello=1)
+    two.say(tp.SetMode("PASSIVE", 12))
+    rig.until(lambda: rig.got("MissionCommand"))
+    assert [c.Owner.name for c in rig.got("AuthorityChange")] == ["ICAROUS", "UxAS"]
+
+
+@pytest.mark.shows(SERVICE, "Dialect")
+def test_the_original_s_modes_have_no_epochs(tmp_path: Path, opened: list[Any]) -> None:
+    rig = Rig(tmp_path, 'NumberOfUAVs="1" Dialect="original"', opened)
+    one = rig.fake()
+    rig.tell(state(1), way((0.0, 0.0), (900.0, 0.0)))
+    rig.until(lambda: one.all(tp.OwnPosition) or rig.tell(state(1)))
+    assert b"lat44.99" in one.raw or b"lat45.00" in one.raw
+    one.say(tp.SetMode("ACTIVE"))
+    rig.until(lambda: rig.got("AuthorityChange"))
+    one.say(tp.SetVelocity(10.0, 10.0, 0.0), tp.SetMode("PASSIVE"))
+    rig.until(lambda: rig.got("MissionCommand"))
+    assert len(rig.got("VehicleActionCommand")) == 1
+    assert [c.Owner.name for c in rig.got("AuthorityChange")] == ["ICAROUS", "UxAS"]
+
+
+@pytest.mark.shows(SERVICE, "RoutePlannerUsed")
+def test_what_cannot_be_honoured_is_refused(tmp_path: Path, opened: list[Any]) -> None:
+    for attributes, what in (
+        ('NumberOfUAVs="1" RoutePlannerUsed="1"', "ICAROUS plans no routes for UxAS here"),
+        ("", "NumberOfUAVs"),
+        ('NumberOfUAVs="2" VehicleIDs="3"', "2 different ids above 0"),
+        ('NumberOfUAVs="1" DeviationOrigin="somewhere"', "line or path"),
+        ('NumberOfUAVs="1" UseICAROUSRoutePlanner="true"', "unknown attribute"),
+    ):
+        with pytest.raises(BadInput, match=what):
+            Rig(tmp_path, attributes, opened)
+    Rig(tmp_path, 'NumberOfUAVs="1" RoutePlannerUsed="-1"', opened)
