@@ -140,7 +140,10 @@ def test_signals_clean_up(tmp_path: Path, number: signal.Signals) -> None:
     """The usual code (128 and the number), and nothing is left of a run that has begun to fly."""
     mission = ROOT / "examples" / "crossing" / "mission.yaml"
     code = (
-        "import sys, time; from cratous.services.cli import job, main\n"
+        "import signal, sys, time; from cratous.services.cli import job, main\n"
+        # a test run under nohup hands its ignored SIGHUP on
+        "if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:\n"
+        "    signal.signal(signal.SIGHUP, signal.SIG_DFL)\n"
         "def stay(mission, folder, settings, tell):\n"
         "    (folder / 'report.json').write_text('half'); print('flying', flush=True)\n"
         "    time.sleep(60)\n"
