@@ -122,6 +122,10 @@ def test_without_a_plan_what_is_left_fails_by_name() -> None:
     # nobody began it, so nobody did who may not
     assert verdicts["G1"] is Outcome.HOLDS
     assert verdicts["G3"] is Outcome.VIOLATED
+    # nothing holds that no kernel decided
+    held = [v for v in monitor.details() if v.outcome is Outcome.HOLDS]
+    assert "nobody began it" in {v.note for v in held}
+    assert all(v.kernels for v in held)
 
 
 @pytest.mark.parametrize(
