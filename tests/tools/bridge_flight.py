@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from uxas_tools import Client, free_port
+from uxas_tools import Client, ended, free_port
 
 from cratous.bridge import lmcp
 from cratous.core.routing.polylines import Track
@@ -83,16 +83,8 @@ def command(folder: Path, *arguments: str) -> Iterator[subprocess.Popen[str]]:
             cwd=folder, stdout=said, stderr=subprocess.STDOUT, text=True,
             env={**os.environ, "PYTHONUNBUFFERED": "1"},
         )  # fmt: skip
-        try:
+        with ended(running):
             yield running
-        finally:
-            if running.poll() is None:
-                running.terminate()
-            try:
-                running.wait(20)
-            except subprocess.TimeoutExpired:
-                running.kill()
-                running.wait(5)
 
 
 def icarous(folder: Path, port: int, *more: str, vehicle: int = 1) -> Any:

@@ -102,6 +102,21 @@ class Client:
 
 
 @contextlib.contextmanager
+def ended(running: subprocess.Popen[Any]) -> Any:
+    """A process that is asked to end when it is left, and killed if it does not."""
+    try:
+        yield running
+    finally:
+        if running.poll() is None:
+            running.terminate()
+        try:
+            running.wait(20)
+        except subprocess.TimeoutExpired:
+            running.kill()
+            running.wait(5)
+
+
+@contextlib.contextmanager
 def started(path: Path, *options: str) -> Any:
     """`cratous uxas` as a process of its own, in the configuration's folder."""
     running = subprocess.Popen(
@@ -112,13 +127,5 @@ def started(path: Path, *options: str) -> Any:
         text=True,
         env={**os.environ, "PYTHONUNBUFFERED": "1"},
     )
-    try:
+    with ended(running):
         yield running
-    finally:
-        if running.poll() is None:
-            running.terminate()
-        try:
-            running.wait(15)
-        except subprocess.TimeoutExpired:
-            running.kill()
-            running.wait(5)
