@@ -177,7 +177,7 @@ class HelloWorld:
 
 
 class Report(NamedTuple):
-    """The present report, and how many states and keep-alives have arrived."""
+    """The present report, and how many states and keep-alive messages have come."""
 
     report: Any
     states: int = 0
