@@ -45,7 +45,7 @@ def ahead(lat: float, lon: float, length_m: float, azimuth_rad: float) -> tuple[
     arc = length_m / EQUATOR_M
     s, c, north = sin(arc), cos(arc), cos(azimuth_rad)
     return (
-        asin(sin(lat) * c + cos(lat) * s * north),
+        asin(max(-1.0, min(1.0, sin(lat) * c + cos(lat) * s * north))),
         lon + atan2(s * sin(azimuth_rad), cos(lat) * c - sin(lat) * s * north),
     )
 

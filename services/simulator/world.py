@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.services.simulator import payload
 from cratous.services.simulator.aircraft import Aircraft, aircraft_of, receive, state, step
+from cratous.services.simulator.commands import check_command, present
 from cratous.services.simulator.performance import Airframe, airframe_of
 from cratous.spec.errors import BadInput
 
@@ -119,6 +120,7 @@ class World:
     def receive(self, body: Any, where: str = "") -> None:
         """Take a message, of the scenario or from outside; BadInput if it cannot be done."""
         kind = type(body).__name__
+        present(body, where)
         if kind == "AirVehicleConfiguration":
             if body.ID not in self._airframes:
                 if len(self._airframes) >= MOST_VEHICLES:
@@ -139,7 +141,10 @@ class World:
         elif kind in ("MissionCommand", "VehicleActionCommand"):
             self._command(body, where)
         elif kind == "AutomationResponse":
-            for one in (*body.MissionCommandList, *body.VehicleCommandList):
+            commands = (*body.MissionCommandList, *body.VehicleCommandList)
+            for one in commands:  # all of them, or none
+                self._check(one, where)
+            for one in commands:
                 self._command(one, where)
         elif kind == "WeatherReport":
             if not (isfinite(body.WindSpeed) and isfinite(body.WindDirection)):
@@ -154,9 +159,10 @@ class World:
         else:
             self.unheard[kind] += 1
 
-    def _command(self, body: Any, where: str) -> None:
-        one = self.aircraft.get(body.VehicleID)
-        if one is None:
+    def _check(self, body: Any, where: str) -> None:
+        """BadInput for a command that cannot be done."""
+        check_command(body, where)
+        if body.VehicleID not in self.aircraft:
             raise BadInput(
                 "a command for a vehicle that is not there",
                 where=where,
@@ -164,8 +170,10 @@ class World:
                 expected=f"one of {sorted(self.aircraft)[:20]}",
                 got=str(body.VehicleID),
             )
-        _check_numbers(body, where)
-        one = receive(one, body)
+
+    def _command(self, body: Any, where: str) -> None:
+        self._check(body, where)
+        one = receive(self.aircraft[body.VehicleID], body)
         for fired in one.guidance.fired:
             self._act(body.VehicleID, fired)
         self.aircraft[body.VehicleID] = one._replace(guidance=one.guidance._replace(fired=()))
@@ -177,43 +185,3 @@ class World:
             self.unheard[type(body).__name__] += 1
             return
         self._mounted[key] = tuple(payload.act(one, body) for one in mounted)
-
-
-def _check_numbers(body: Any, where: str) -> None:
-    """BadInput for numbers that cannot be flown to."""
-    places = list(getattr(body, "WaypointList", ()))
-    for one in [
-        *getattr(body, "VehicleActionList", ()),
-        *(a for w in places for a in w.VehicleActionList),
-    ]:
-        kind = type(one).__name__
-        numbers: tuple[float, ...]
-        if kind == "LoiterAction":
-            if one.Location is None or not one.Radius > 0 or not one.Length >= 0:
-                raise BadInput(
-                    "a loiter that cannot be flown",
-                    where=where,
-                    item=f"{type(body).__name__} {body.CommandID}",
-                    expected="a Location, Radius above 0, Length at least 0 [m]",
-                    got=f"Radius {one.Radius:g}, Length {one.Length:g}",
-                )
-            places.append(one.Location)
-            numbers = (one.Radius, one.Length, one.Axis, one.Airspeed)
-        elif kind == "FlightDirectorAction":
-            numbers = (one.Heading, one.Altitude, one.Speed, one.ClimbRate)
-        elif kind == "SpeedOverrideAction":
-            numbers = (one.Speed,)
-        else:
-            continue
-        if not all(map(isfinite, numbers)):
-            raise BadInput("not a number", where=where, item=kind, got=str(numbers))
-    for place in places:
-        numbers = (place.Latitude, place.Longitude, place.Altitude, getattr(place, "Speed", 0.0))
-        if not all(map(isfinite, numbers)) or abs(place.Latitude) > 90:
-            raise BadInput(
-                "a place that cannot be flown to",
-                where=where,
-                item=f"{type(body).__name__} {body.CommandID}",
-                expected="finite numbers, Latitude between -90 and 90 deg",
-                got=str(numbers),
-            )

@@ -213,3 +213,37 @@ def test_links_are_read_and_circles_of_them_refused(tmp_path: Path) -> None:
     (tmp_path / "b.xml").write_text(link.format("a.xml"))
     with pytest.raises(BadInput, match=r"b\.xml.*circle"):
         read(tmp_path / "a.xml")
+
+
+def test_what_cannot_be_flown_changes_nothing() -> None:
+    """Nulls and numbers that are none, as a client may send them; of a response all or nothing."""
+    plan = of_text(scenario(mission(waypoint(1, 1, 45.02, LOITER.format("Circular", 0)))), "x")
+    configuration, state, command = (event.body for event in plan.events)
+    world = World(plan.events, 600)
+    while world.time_s < 2:
+        world.tick()
+    before = world.aircraft
+    (w,) = command.WaypointList
+    (loiter,) = w.VehicleActionList
+    angle = lmcp.new("GimbalAngleAction", Azimuth=math.nan)
+    good = command.copy(CommandID=77)
+    bad = [
+        state.copy(Heading=math.inf),
+        configuration.copy(ID=2, AlternateFlightProfiles=[None]),
+        command.copy(WaypointList=[None]),
+        command.copy(WaypointList=[w.copy(VehicleActionList=[None])]),
+        command.copy(WaypointList=[w.copy(Speed=math.inf)]),
+        *(
+            lmcp.new("VehicleActionCommand", VehicleID=1, VehicleActionList=[one])
+            for one in (None, angle, loiter.copy(Radius=-1.0))
+        ),
+        lmcp.new("AutomationResponse", MissionCommandList=[good, good.copy(VehicleID=5)]),
+        lmcp.new("WeatherReport", WindSpeed=math.nan),
+    ]
+    for body in bad:
+        with pytest.raises(BadInput):
+            world.receive(body, "a client")
+    assert world.aircraft == before
+    assert world.aircraft[1].guidance.route_id == 7
+    world.receive(lmcp.new("AutomationResponse", MissionCommandList=[good]), "a client")
+    assert world.aircraft[1].guidance.route_id == 77
