@@ -66,6 +66,29 @@ def gimbals_of(configuration: Any, where: str) -> tuple[Gimbal, ...]:
     return tuple(found)
 
 
+def placed(mounted: tuple[Gimbal, ...], told: Any) -> tuple[Gimbal, ...]:
+    """The gimbals and cameras as the payload states of an AirVehicleState have them."""
+    known = {one.PayloadID: one for one in told.PayloadStateList if one is not None}
+    return tuple(_placed(g, known) for g in mounted)
+
+
+def _placed(g: Gimbal, known: dict[int, Any]) -> Gimbal:
+    c = g.configuration
+    one: Any = known.get(c.PayloadID)
+    if type(one).__name__ == "GimbalState" and isfinite(one.Azimuth + one.Elevation):
+        g = g._replace(
+            azimuth_deg=_clamp(one.Azimuth, c.MinAzimuth, c.MaxAzimuth),
+            elevation_deg=_clamp(one.Elevation, c.MinElevation, c.MaxElevation),
+        )
+    return g._replace(cameras=tuple(_with_fov(c, known) for c in g.cameras))
+
+
+def _with_fov(c: Camera, known: dict[int, Any]) -> Camera:
+    one: Any = known.get(c.configuration.PayloadID)
+    wide = one.HorizontalFieldOfView if type(one).__name__ == "CameraState" else 0.0
+    return c._replace(fov_deg=_fov(c.configuration, wide)) if wide and isfinite(wide) else c
+
+
 def _fov(camera: Any, wanted_deg: float) -> float:
     """The nearest field of view [deg] that a camera has."""
     steps = camera.DiscreteHorizontalFieldOfViewList

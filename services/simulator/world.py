@@ -138,6 +138,7 @@ class World:
                 )
             before = self.aircraft.get(body.ID)
             self.aircraft[body.ID] = aircraft_of(body, airframe, before, where)
+            self._mounted[body.ID] = payload.placed(self._mounted[body.ID], body)
         elif kind in ("MissionCommand", "VehicleActionCommand"):
             self._command(body, where)
         elif kind == "AutomationResponse":

@@ -247,3 +247,38 @@ def test_what_cannot_be_flown_changes_nothing() -> None:
     assert world.aircraft[1].guidance.route_id == 7
     world.receive(lmcp.new("AutomationResponse", MissionCommandList=[good]), "a client")
     assert world.aircraft[1].guidance.route_id == 77
+
+
+def test_a_recorded_session_of_amase_is_told_again(shared: Path) -> None:
+    """Places, gimbals and footprints of two aircraft with cameras that fly a route, 26 s."""
+    plan = read(shared / "vectors/amase/scenarios/02_waterway.xml")
+    world = World(plan.events, 30, compatible=True)
+    told = {}
+    while not world.over:
+        for body in world.tick():
+            if type(body).__name__ == "AirVehicleState":
+                told[body.ID, body.Time] = body
+    compared = 0
+    with gzip.open(shared / "vectors/amase/session-waterway-rate1.jsonl.gz", "rt") as lines:
+        for message in (json.loads(line)["msg"] for line in lines):
+            if message["$type"] != "CMASI/AirVehicleState" or not message["Time"]:
+                continue
+            state = told[message["ID"], message["Time"]]
+            compared += 1
+            pairs = [(state.Location, message["Location"], 0.01)]
+            for ours, theirs in zip(
+                state.PayloadStateList, message["PayloadStateList"], strict=True
+            ):
+                assert ours.Elevation == pytest.approx(theirs["Elevation"], abs=1e-4)
+                if theirs["$type"] == "CMASI/CameraState":
+                    pairs += zip(ours.Footprint, theirs["Footprint"], [0.01] * 4, strict=True)
+            for place, wanted, near_m in pairs:
+                assert away_m_to(place, wanted) < near_m
+    assert compared > 90
+
+
+def away_m_to(place: Any, wanted: dict[str, float]) -> float:
+    return math.hypot(
+        (place.Latitude - wanted["Latitude"]) * 111_200,
+        (place.Longitude - wanted["Longitude"]) * 78_200,
+    )
