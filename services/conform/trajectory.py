@@ -10,6 +10,8 @@ commands are listed for each case.
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
+from dataclasses import replace
 from math import cos, hypot, radians
 from typing import Any
 
@@ -22,6 +24,29 @@ NEAR_M, FAR_M = 1.0, 10.0
 DEGREE_M = 111_320.0
 NEEDED = {"Time", "Latitude", "Longitude", "Altitude"}
 STATES = ("Mode", "CurrentWaypoint", "CurrentCommand")
+
+
+class Flights:
+    """The suite over one file: it keeps a line for each flight."""
+
+    def __init__(self) -> None:
+        self._lines: list[str] = []
+
+    def judge(self, case: dict[str, Any]) -> Result:
+        """Compare one flight."""
+        result = judge(case)
+        if result.text:
+            self._lines.append(f"  {result.case}: {result.text}")
+        return result
+
+    def summary(self) -> list[str]:
+        """How far each flight was off, and in what its states differ."""
+        return self._lines
+
+
+def suite() -> Callable[[dict[str, Any]], Result]:
+    """The suite for one file."""
+    return Flights().judge
 
 
 def judge(case: dict[str, Any]) -> Result:
@@ -84,4 +109,4 @@ def _compare(
         )
     if worst_m > bound_m:
         return failed(name, f"farther off than {bound_m:g} m", text, checks)
-    return passed(name, checks)
+    return replace(passed(name, checks), text=text)

@@ -44,6 +44,8 @@ def test_recorded_flights_of_amase_are_flown_again(shared: Path) -> None:
             assert result.status == "passed", result
             case["rows"][-1][case["columns"].index("Longitude")] += 0.0003
             assert trajectory.judge(case).status == "failed", "20 m off are seen"
+            case["rows"][-1][case["columns"].index("CurrentWaypoint")] += 1
+            assert "CurrentWaypoint differs in 1 states" in trajectory.judge(case).text
 
 
 def test_the_same_scenario_tells_the_same_bytes() -> None:
