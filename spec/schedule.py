@@ -12,6 +12,8 @@ the kernels are proved, where the sum of two stays in 64 bits.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from cratous.spec.constraint_rows import (
     AFTER_END,
     AFTER_START,
@@ -87,11 +89,20 @@ def all_rows_hold(
     return interval_is_ordered(t, u, start, end) and row_holds(u, kind, start, end, ref, lo, hi)
 
 
-def rows_hold_step(
-    t: int, u: int, ok: bool, kind: int, start: int, end: int, ref: int, lo: int, hi: int
-) -> bool:
+class Timed(NamedTuple):
+    """A row with the interval of its task, what it refers to and its limits."""
+
+    kind: int
+    start: int
+    end: int
+    ref: int
+    lo: int
+    hi: int
+
+
+def rows_hold_step(t: int, u: int, ok: bool, row: Timed) -> bool:
     """All rows so far held (`ok`) and this one does. THERE IS a t such that FOR ALL u."""
-    return ok and all_rows_hold(t, u, kind, start, end, ref, lo, hi)
+    return ok and all_rows_hold(t, u, row.kind, row.start, row.end, row.ref, row.lo, row.hi)
 
 
 def rows_hold_result(ok: bool) -> bool:

@@ -68,10 +68,10 @@ class Height(NamedTuple):
 
 @kernel(implements="daa.meaning.accelerated")
 def height(
-    z_m: float, vz_m_s: float, target_m: float, accel_m_s2: float,
-    t1_s: float, t2_s: float, t3_s: float, rate_m_s: float, t_s: float,
-) -> Height:  # fmt: skip
+    z_m: float, vz_m_s: float, target_m: float, accel_m_s2: float, phases: Climb, t_s: float
+) -> Height:
     """Altitude and vertical speed t_s after the begin of a `climb` with these phases."""
+    t1_s, t2_s, t3_s, rate_m_s = phases
     if t_s > t3_s:
         return Height(target_m, 0)
     if t_s <= t1_s:
@@ -116,7 +116,8 @@ def altitude_conflict(
     if rate_m_s == 0 or accel_m_s2 == 0:
         level = Relative(Vec2(x0, y0), v, target_m - h0, 0.0 - other[5])
         return lost(kind, level, w, 0.0, from_s, min(lookahead_s, horizon_s))
-    t1, t2, t3, rate = climb(z0, own[5], target_m, rate_m_s, accel_m_s2)
+    phases = climb(z0, own[5], target_m, rate_m_s, accel_m_s2)
+    t1, t2, t3, rate = phases
     level_s = t3 + sample_s
     cruise_s = horizon_s
     final_s = horizon_s
@@ -133,7 +134,7 @@ def altitude_conflict(
     ):
         return True
     if t2 > t1 and max(from_s, t1) <= min(cruise_s, t2):
-        z1, _ = height(z0, own[5], target_m, accel_m_s2, t1, t2, t3, rate, t1)
+        z1, _ = height(z0, own[5], target_m, accel_m_s2, phases, t1)
         cruise = Relative(
             Vec2(x0 + v.x * t1, y0 + v.y * t1), v, z1 - h0 - other[5] * t1, rate - other[5]
         )
@@ -145,7 +146,7 @@ def altitude_conflict(
             begin, end = math.ceil(t2 / sample_s) * sample_s, level_s
         t = max(begin, math.ceil(from_s / sample_s) * sample_s)
         while t <= end and t <= final_s:
-            zt, vt = height(z0, own[5], target_m, accel_m_s2, t1, t2, t3, rate, t)
+            zt, vt = height(z0, own[5], target_m, accel_m_s2, phases, t)
             there = Relative(
                 Vec2(x0 + v.x * t, y0 + v.y * t), v, zt - h0 - other[5] * t, vt - other[5]
             )

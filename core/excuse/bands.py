@@ -121,7 +121,7 @@ def _climb_pieces(g: Grid, target_m: float, horizon_s: float) -> np.ndarray:
     for begin_s, end_s in ((0.0, phases.t1_s), (phases.t2_s, phases.t3_s)):
         cuts |= {begin_s + k * SAMPLE_S for k in range(int((end_s - begin_s) / SAMPLE_S) + 1)}
     times_s = np.array([*sorted(t for t in cuts if 0 <= t < horizon_s), horizon_s])
-    heights = [height(z, vz, target_m, g.accel_m_s2, *phases, t).z_m for t in times_s.tolist()]
+    heights = [height(z, vz, target_m, g.accel_m_s2, phases, t).z_m for t in times_s.tolist()]
     begins_s = times_s[:-1]
     up = np.diff(heights) / np.diff(times_s)
     same = np.ones(len(begins_s))

@@ -6,6 +6,8 @@ A step conflicts if a volume is violated at some instant of a piece on the way t
 instant of the straight flight from it within a horizon. The definitions name the instants.
 """
 
+from typing import NamedTuple
+
 from cratous.spec.well_clear import (
     Plane,
     dot,
@@ -18,6 +20,20 @@ from cratous.spec.well_clear import (
     within_at,
 )
 from cratous.spec.well_clear import within as well_within
+
+
+class Vertical(NamedTuple):
+    """A relative altitude and climb rate, or how far they may be off."""
+
+    z: float
+    w: float
+
+
+class Span(NamedTuple):
+    """Instants from the first to the last; none where the last is before the first."""
+
+    first: float
+    last: float
 
 
 def violated_at(
@@ -151,20 +167,21 @@ def may_be_violated_at(
     """The true state may be off by (ds, dz) and (dv, dw), and then the volume is violated at t."""
     if not well_within(ds, es) or not well_within(dv, ev):
         return False
-    if not layer_may_be_violated_at(sz, vz, dz, dw, ez, ew, zthr, tcoa, vmod, t):
+    if not layer_may_be_violated_at(
+        Vertical(sz, vz), Vertical(dz, dw), Vertical(ez, ew), zthr, tcoa, vmod, t
+    ):
         return False
     p, q = Plane(s.x + ds.x, s.y + ds.y), Plane(v.x + dv.x, v.y + dv.y)
     return violation_taumod_at(p, q, sz + dz, vz + dw, dthr, zthr, tthr, tcoa, vmod, t)
 
 
 def layer_may_be_violated_at(
-    sz: float, vz: float, dz: float, dw: float, ez: float, ew: float, zthr: float, tcoa: float,
-    vmod: float, t: float,
-) -> bool:  # fmt: skip
-    """Altitude and climb rate may be off by dz and dw, and then the layer is violated at t."""
-    if dz < -ez or dz > ez or dw < -ew or dw > ew:
+    state: Vertical, off: Vertical, error: Vertical, zthr: float, tcoa: float, vmod: float, t: float
+) -> bool:
+    """Altitude and climb rate may be off by so much, and then the layer is violated at t."""
+    if off.z < -error.z or off.z > error.z or off.w < -error.w or off.w > error.w:
         return False
-    return layer_violation_at(sz + dz, vz + dw, zthr, tcoa, vmod, t)
+    return layer_violation_at(state.z + off.z, state.w + off.w, zthr, tcoa, vmod, t)
 
 
 def level_at(sz: float, vz: float) -> float:
@@ -223,10 +240,7 @@ def last_root(a: float, half: float, c: float, t: float, last: float) -> bool:
     return not not_positive(a, half, c, t) or t <= last
 
 
-def in_own_or_both(
-    own_first: float, own_last: float, first: float, last: float, other_first: float,
-    other_last: float, begin: float, end: float, t: float,
-) -> bool:  # fmt: skip
+def in_own_or_both(own: Span, one: Span, other: Span, begin: float, end: float, t: float) -> bool:
     """In a span of its own, or in two others at once and from begin to end."""
-    both = in_span(first, last, t) and in_span(other_first, other_last, t)
-    return in_span(own_first, own_last, t) or (both and begin <= t and t <= end)
+    both = in_span(one.first, one.last, t) and in_span(other.first, other.last, t)
+    return in_span(own.first, own.last, t) or (both and begin <= t and t <= end)

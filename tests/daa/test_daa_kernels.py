@@ -84,7 +84,7 @@ def test_a_climb_is_flown(vz: float, target: float):
     assert 0 <= phases.t1_s <= phases.t2_s <= phases.t3_s
     z, dt = 1000.0, 0.001
     for k in range(int(phases.t3_s / dt)):
-        z += height(1000.0, vz, target, 2.0, *phases, (k + 0.5) * dt).vz_m_s * dt
+        z += height(1000.0, vz, target, 2.0, phases, (k + 0.5) * dt).vz_m_s * dt
     assert z == pytest.approx(target, abs=0.05)
 
 

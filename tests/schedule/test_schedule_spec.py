@@ -39,9 +39,9 @@ def test_vehicle_is_eligible(mask, number):
 
 @given(st.booleans(), KIND, SMALL, SMALL, SMALL, SMALL, SMALL)
 def test_one_step_of_the_schedule_checker(ok, kind, start, end, ref, lo, hi):
+    row = schedule.Timed(kind, start, end, ref, lo, hi)
     by_instants = any(
-        all(schedule.rows_hold_step(t, u, ok, kind, start, end, ref, lo, hi) for u in INSTANTS)
-        for t in INSTANTS
+        all(schedule.rows_hold_step(t, u, ok, row) for u in INSTANTS) for t in INSTANTS
     )
     assert timing.schedule_step(ok, kind, start, end, ref, lo, hi) == by_instants
 

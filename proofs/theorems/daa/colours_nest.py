@@ -26,7 +26,7 @@ def claim(c: Claim) -> None:
     greater = dict(zip(names.split(), mild, strict=True))
     red = c.use(in_conflict, kind, s, v, sz, vz, *severe, begin, end)
     first, _ = c.use(conflict_span, kind, s, v, sz, vz, *severe, begin, end)
-    some = witnesses(c, "", s, v, sz, vz, tuple(severe), begin, end)
+    some = witnesses(c, "", (s, v, sz, vz), tuple(severe), begin, end)
     c.lemma(
         "daa_conflict_has_an_instant", kind=kind, begin=begin, end=end, **some, **state, **limits
     )

@@ -29,10 +29,10 @@ HORIZONTAL = {
 
 
 def witnesses(
-    c: Claim, label: str, s: Any, v: Any, sz: Any, vz: Any, limits: tuple[Any, ...], begin: Any,
-    end: Any,
-) -> dict[str, Any]:  # fmt: skip
+    c: Claim, label: str, state: tuple[Any, ...], limits: tuple[Any, ...], begin: Any, end: Any
+) -> dict[str, Any]:
     """For each kind the instant that stands for a detection, named by the equation that defines it."""
+    s, v, sz, vz = state
     c.opaque(*HORIZONTAL.values(), layer_window)
     dthr, zthr, *times = limits
     found = {}
@@ -71,7 +71,7 @@ def claim(c: Claim) -> None:
     limits = (dthr, zthr, tthr, tcoa, vmod)
     state = {"s": s, "v": v, "sz": sz, "vz": vz, "begin": begin, "end": end}
     full = {"dthr": dthr, "zthr": zthr, "tthr": tthr, "tcoa": tcoa, "vmod": vmod}
-    found = witnesses(c, "", s, v, sz, vz, limits, begin, end)
+    found = witnesses(c, "", (s, v, sz, vz), limits, begin, end)
     for part, name, size in (
         ("a", "taumod", full),
         ("b", "tcpa", full),

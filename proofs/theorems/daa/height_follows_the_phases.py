@@ -1,7 +1,7 @@
 """The altitude of a climb is the flown one at every instant: accelerated towards the held rate until the
 first phase ends, at that rate until the second does, accelerated back until the third, then the target."""
 
-from cratous.core.daa.climb import height
+from cratous.core.daa.climb import Climb, height
 from cratous.proofs.claim import Claim
 from cratous.spec.daa import meaning as daa_meaning
 
@@ -13,7 +13,7 @@ def claim(c: Claim) -> None:
     met = vz + first * t1 == held  # the held rate is reached when the first phase ends
     c.premise(t1 <= t2)
     c.premise(t2 <= t3)
-    now = c.use(height, z, vz, target, accel, t1, t2, t3, held, t)
+    now = c.use(height, z, vz, target, accel, Climb(t1, t2, t3, held), t)
     flown = c.define(daa_meaning.accelerated, z, vz, first, t)
     c.show(c.implies(t <= t1, c.all_of(now.z_m == flown, now.vz_m_s == vz + first * t)), "first")
     begun = c.define(daa_meaning.accelerated, z, vz, first, t1)

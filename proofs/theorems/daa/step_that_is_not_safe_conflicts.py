@@ -25,7 +25,7 @@ def claim(c: Claim) -> None:
     zero = at - at
     blocked = c.all_of(c.use(piece_counts, at, begin, end), c.use(in_conflict, *state, zero, piece))
     first, _ = c.use(conflict_span, *state, zero, piece)
-    some = witnesses(c, "_way", s, v, sz, vz, limits, zero, piece)
+    some = witnesses(c, "_way", (s, v, sz, vz), limits, zero, piece)
     c.lemma("daa_conflict_has_an_instant", begin=zero, end=piece, **some, **known)
     violated = c.define(daa_meaning.violated_at, *state, first)
     why = c.define(daa_meaning.lost_on_piece, violated, first, piece, at, begin, end)
@@ -33,7 +33,7 @@ def claim(c: Claim) -> None:
     since = c.use(straight_from, at, begin)
     red = c.use(in_conflict, *state, since, end - at)
     when, _ = c.use(conflict_span, *state, since, end - at)
-    more = witnesses(c, "_on", s, v, sz, vz, limits, since, end - at)
+    more = witnesses(c, "_on", (s, v, sz, vz), limits, since, end - at)
     c.lemma("daa_conflict_has_an_instant", begin=since, end=end - at, **more, **known)
     then = c.define(daa_meaning.violated_at, *state, when)
     why = c.define(daa_meaning.lost_from_step, then, when, at, begin, end)

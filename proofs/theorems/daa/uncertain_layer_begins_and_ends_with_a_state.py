@@ -21,8 +21,15 @@ def claim(c: Claim) -> None:
     first, last = c.use(layer_span, sz, vz, ez, ew, *limits, end)
 
     def may(state: tuple[Any, Any], t: Any) -> Any:
-        off = (state[0] - sz, state[1] - vz)
-        return c.define(daa_meaning.layer_may_be_violated_at, sz, vz, *off, ez, ew, *limits, t)
+        off = daa_meaning.Vertical(state[0] - sz, state[1] - vz)
+        return c.define(
+            daa_meaning.layer_may_be_violated_at,
+            daa_meaning.Vertical(sz, vz),
+            off,
+            daa_meaning.Vertical(ez, ew),
+            *limits,
+            t,
+        )
 
     low, high, slow, fast = sz - ez, sz + ez, vz - ew, vz + ew
     up, down = (slow, fast), (0 - fast, 0 - slow)

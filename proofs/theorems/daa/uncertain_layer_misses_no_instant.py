@@ -26,8 +26,13 @@ def claim(c: Claim) -> None:
     for (there, sign), args in zip(sides, c.calls(layer_above), strict=False):
         bounds = dict(zip(names, args, strict=True))
         c.lemma(seen, when=c.all_of(near, there), z=sign * z, w=sign * w, t=t, **bounds)
+    state, off, error = (
+        daa_meaning.Vertical(sz, vz),
+        daa_meaning.Vertical(dz, dw),
+        daa_meaning.Vertical(ez, ew),
+    )
     violated = c.define(
-        daa_meaning.layer_may_be_violated_at, sz, vz, dz, dw, ez, ew, zthr, tcoa, vmod, t
+        daa_meaning.layer_may_be_violated_at, state, off, error, zthr, tcoa, vmod, t
     )
     found = c.define(well_clear.in_span, *span, t)
     c.show(c.implies(violated, found))

@@ -27,10 +27,11 @@ def claim(c: Claim) -> None:
     own = c.use(violation_interval_taumod, s, v, sz, vz, *limits, begin, end)
     layer = c.use(layer_span, sz, vz, ez, ew, zthr, tcoa, vmod, end)
     circle = c.use(circle_span, s, v, es, ev, dthr, tthr, end)
-    every = c.define(daa_meaning.in_own_or_both, *own, *layer, *circle, begin, end, t)
+    spans = [daa_meaning.Span(*span_of) for span_of in (own, layer, circle)]
+    every = c.define(daa_meaning.in_own_or_both, *spans, begin, end, t)
     c.show(c.implies(every, c.define(well_clear.in_span, *span, t)), "holds them")
     for instant in span:
-        at = c.define(daa_meaning.in_own_or_both, *own, *layer, *circle, begin, end, instant)
+        at = c.define(daa_meaning.in_own_or_both, *spans, begin, end, instant)
         c.show(c.implies(span.first_s <= span.last_s, at), "is the least")
     plain = c.use(violation_during_taumod, s, v, sz, vz, *limits, begin, end)
     unknown = c.all_of(es > 0, ez > 0, ev > 0, ew > 0, span.first_s <= span.last_s)
@@ -52,7 +53,7 @@ def claim(c: Claim) -> None:
     found = c.use(uncertain_conflict, *state)
     inexact = c.all_of(sizes, es > 0, ez > 0, ev > 0, ew > 0)
     c.show(c.implies(c.all_of(inexact, every), found), "a conflict misses no instant")
-    at_first = c.define(daa_meaning.in_own_or_both, *own, *layer, *circle, begin, end, span.first_s)
+    at_first = c.define(daa_meaning.in_own_or_both, *spans, begin, end, span.first_s)
     c.show(c.implies(c.all_of(inexact, found), at_first), "and has one")
     c.lemma(
         "well_clear_interval_taumod_first_and_last_violate", when=sizes,

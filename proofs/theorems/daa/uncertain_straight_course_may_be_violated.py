@@ -45,9 +45,12 @@ def claim(c: Claim) -> None:
     worst = may_be_violated(*[Vec2(size * ahead.x, size * ahead.y) for size in (-es, -ev)])
     for one, other in combinations(c.calls(well_clear.horizontal_violation), 2):
         c.congruence(well_clear.horizontal_violation, one, other)
-    layer = c.define(
-        daa_meaning.layer_may_be_violated_at, sz, vz, dz, dw, ez, ew, zthr, tcoa, vmod, t
+    up, off, error = (
+        daa_meaning.Vertical(sz, vz),
+        daa_meaning.Vertical(dz, dw),
+        daa_meaning.Vertical(ez, ew),
     )
+    layer = c.define(daa_meaning.layer_may_be_violated_at, up, off, error, zthr, tcoa, vmod, t)
     held = c.define(well_clear.in_span, *span, t)
     c.show(c.same(worst, c.all_of(held, layer)), "the worst state")
     known = c.all_of(c.define(well_clear.within, ds, es), c.define(well_clear.within, dv, ev))

@@ -24,7 +24,7 @@ def claim(c: Claim) -> None:
     lost = c.use(piece_lost, *state, piece)
     zero = piece - piece
     first, _ = c.use(conflict_span, *state, zero, piece)
-    some = witnesses(c, "", s, v, sz, vz, limits, zero, piece)
+    some = witnesses(c, "", (s, v, sz, vz), limits, zero, piece)
     c.lemma(
         "daa_conflict_has_an_instant", kind=kind, s=s, v=v, sz=sz, vz=vz, dthr=dthr, zthr=zthr,
         tthr=tthr, tcoa=tcoa, vmod=vmod, begin=zero, end=piece, **some,

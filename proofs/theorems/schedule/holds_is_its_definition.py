@@ -5,23 +5,24 @@ from typing import Any
 
 from cratous.core.schedule.rows import schedule_holds
 from cratous.proofs.claim import Claim
-from cratous.spec.schedule import rows_hold_result, rows_hold_step
+from cratous.spec.schedule import Timed, rows_hold_result, rows_hold_step
 
 
 def model_step(ok: Any, kind: Any, start: Any, end: Any, ref: Any, lo: Any, hi: Any) -> Any:
-    at_start = rows_hold_step(start, start, ok, kind, start, end, ref, lo, hi)
-    return at_start and rows_hold_step(start, end, ok, kind, start, end, ref, lo, hi)
+    row = Timed(kind, start, end, ref, lo, hi)
+    return rows_hold_step(start, start, ok, row) and rows_hold_step(start, end, ok, row)
 
 
 def claim(c: Claim) -> None:
     values = tuple(c.integer(name) for name in ["kind", "start", "end", "ref", "lo", "hi"])
-    _, start, end, *_ = values
+    row = Timed(*values)
+    start, end = row.start, row.end
     t, u, before = c.integer("t"), c.integer("u"), c.boolean("before")
     seen = c.define(model_step, before, *values)
-    everywhere = c.define(rows_hold_step, start, u, before, *values)
+    everywhere = c.define(rows_hold_step, start, u, before, row)
     c.show(c.implies(seen, everywhere), "what holds at the two instants holds at every one")
-    at_start = c.define(rows_hold_step, t, start, before, *values)
-    at_end = c.define(rows_hold_step, t, end, before, *values)
+    at_start = c.define(rows_hold_step, t, start, before, row)
+    at_end = c.define(rows_hold_step, t, end, before, row)
     c.show(c.implies(c.all_of(at_start, at_end), seen), "from whatever instant it is seen")
     c.fold(
         schedule_holds,

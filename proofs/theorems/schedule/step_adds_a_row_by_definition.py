@@ -18,17 +18,17 @@ SEEN = (
 
 def claim(c: Claim) -> None:
     ok = c.boolean("ok")
-    row = tuple(c.integer(name) for name in ["kind", "start", "end", "ref", "lo", "hi"])
-    _, start, end, *_ = row
+    row = schedule.Timed(*[c.integer(name) for name in ["kind", "start", "end", "ref", "lo", "hi"]])
+    start, end = row.start, row.end
     t, u = c.integer("t"), c.integer("u")
     held = c.use(schedule_step, ok, *row)
-    witness = c.define(schedule.rows_hold_step, start, u, ok, *row)
+    witness = c.define(schedule.rows_hold_step, start, u, ok, row)
     c.show(c.implies(held, witness), "if they hold, its start is an instant that shows it")
     # some t at which it runs, and the two instants that would show what is against it
-    at_start = c.define(schedule.rows_hold_step, t, start, ok, *row)
-    at_end = c.define(schedule.rows_hold_step, t, end, ok, *row)
+    at_start = c.define(schedule.rows_hold_step, t, start, ok, row)
+    at_end = c.define(schedule.rows_hold_step, t, end, ok, row)
     c.show(c.implies(c.all_of(at_start, at_end), held), "if not, start or end shows it")
     for text, (t, u, start, end), said in SEEN:
-        one = (schedule.NOT_BEFORE, start, end, 0, 0, 0)
-        held = c.define(schedule.rows_hold_step, t, u, True, *one)
+        one = schedule.Timed(schedule.NOT_BEFORE, start, end, 0, 0, 0)
+        held = c.define(schedule.rows_hold_step, t, u, True, one)
         c.show(c.same(held, said), f"an example: seen {text}")

@@ -2,69 +2,28 @@
 lost at an instant of [B, T] that can be named: the first one of the horizontal span within the
 vertical window."""
 
-from cratous.core.kernel import Vec2
 from cratous.core.well_clear import (
     horizontal_interval_tcpa,
     horizontal_violation_within_tcpa,
-    layer_window,
     violation_during_tcpa,
 )
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.detections import detection_has_a_witness
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
-    begin, end, t = c.reals("begin end t")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
-    c.opaque(
-        horizontal_interval_tcpa,
-        horizontal_violation_within_tcpa,
-        layer_window,
-        well_clear.horizontal_violation_tcpa,
-        well_clear.layer_violation,
+    detection_has_a_witness(
+        c,
+        (
+            "well_clear_horizontal_detection_tcpa_is_the_interval",
+            "well_clear_horizontal_interval_tcpa_lies_within",
+            "well_clear_horizontal_interval_tcpa_is_exact",
+            "well_clear_horizontal_violation_tcpa_scales",
+        ),
+        horizontal_during=horizontal_violation_within_tcpa,
+        horizontal_interval=horizontal_interval_tcpa,
+        violation_during=violation_during_tcpa,
+        meant_horizontally=well_clear.horizontal_violation_tcpa,
+        meant_at=well_clear.violation_tcpa_at,
     )
-    limits = (dthr, zthr, tthr, tcoa, vmod)
-    detected = c.use(violation_during_tcpa, s, v, sz, vz, *limits, begin, end)
-    c.show(c.implies(begin > end, c.negation(detected)), "nothing where B is after T")
-    up = {"sz": sz + begin * vz, "vz": vz, "zthr": zthr, "tcoa": tcoa, "vmod": vmod}
-    runs = begin <= end
-    window = {"h": end - begin, **up}
-    c.lemma("well_clear_layer_window_is_exact", when=runs, t=begin - begin, **window)
-    k, first, last = c.use(layer_window, sz + begin * vz, vz, zthr, tcoa, vmod, end - begin)
-    at = Vec2(
-        (s.x + begin * v.x) * k + first * v.x,
-        (s.y + begin * v.y) * k + first * v.y,
-    )
-    flat = {"s": at, "v": v, "dthr": dthr * k, "tthr": tthr * k}
-    length = last - first
-    some = c.all_of(runs, first <= last)
-    c.lemma("well_clear_horizontal_detection_tcpa_is_the_interval", when=some, h=length, **flat)
-    zero = first - first
-    span = {"begin": zero, "end": length, **flat}
-    c.lemma("well_clear_horizontal_interval_tcpa_lies_within", when=some, **span)
-    scaled, until = c.use(horizontal_interval_tcpa, at, v, dthr * k, tthr * k, zero, length)
-    found = c.all_of(some, scaled <= until)
-    # the instant, named by the equation that defines it
-    c.premise(c.implies(k > 0, k * (t - begin) == first + scaled))
-    c.lemma("well_clear_horizontal_interval_tcpa_is_exact", when=found, t=scaled, **span)
-    c.lemma("well_clear_layer_window_is_exact", when=found, t=t - begin, **window)
-    there = Vec2(s.x + t * v.x, s.y + t * v.y)
-    c.lemma(
-        "well_clear_horizontal_violation_tcpa_scales",
-        when=found,
-        s=there,
-        v=v,
-        dthr=dthr,
-        tthr=tthr,
-        k=k,
-    )
-    c.congruence(
-        well_clear.horizontal_violation_tcpa,
-        (Vec2(at.x + scaled * v.x, at.y + scaled * v.y), v, dthr * k, tthr * k),
-        (Vec2(k * there.x, k * there.y), v, k * dthr, k * tthr),
-    )
-    lost = c.define(well_clear.violation_tcpa_at, s, v, sz, vz, *limits, t)
-    c.show(c.implies(detected, c.all_of(begin <= t, t <= end, lost)), "lost at the instant")

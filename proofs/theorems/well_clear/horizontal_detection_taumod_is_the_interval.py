@@ -3,13 +3,12 @@ exactly when the interval kernel's span over [0, h] is not empty."""
 
 from cratous.core.well_clear import horizontal_interval_taumod, horizontal_violation_within
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.detections import horizontal_detection_is_the_interval
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    dthr, tthr, h = c.reals("dthr tthr h")
-    for nonnegative in (dthr, tthr, h):
-        c.premise(nonnegative >= 0)
-    detected = c.use(horizontal_violation_within, s, v, dthr, tthr, h)
-    first, last = c.use(horizontal_interval_taumod, s, v, dthr, tthr, h - h, h)
-    c.show(c.same(detected, first <= last))
+    horizontal_detection_is_the_interval(
+        c,
+        horizontal_during=horizontal_violation_within,
+        horizontal_interval=horizontal_interval_taumod,
+    )

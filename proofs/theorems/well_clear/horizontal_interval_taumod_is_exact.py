@@ -3,16 +3,13 @@ in the span that the interval kernel gives; for every relative state in any fram
 
 from cratous.core.well_clear import horizontal_interval_taumod
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.spans import horizontal_interval_is_exact
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    dthr, tthr, begin, end, t = c.reals("dthr tthr begin end t")
-    c.premise(dthr >= 0)
-    c.premise(tthr >= 0)
-    c.premise(begin <= t)
-    c.premise(t <= end)
-    span = c.use(horizontal_interval_taumod, s, v, dthr, tthr, begin, end)
-    violated = c.define(well_clear.horizontal_violation_at, s, v, dthr, tthr, t)
-    c.show(c.same(violated, c.define(well_clear.in_span, *span, t)))
+    horizontal_interval_is_exact(
+        c,
+        horizontal_interval=horizontal_interval_taumod,
+        meant_horizontally_at=well_clear.horizontal_violation_at,
+    )

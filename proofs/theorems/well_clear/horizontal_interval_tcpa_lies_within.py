@@ -3,15 +3,8 @@ one is from 1 to 0, and where B is after T it is empty."""
 
 from cratous.core.well_clear import horizontal_interval_tcpa
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.spans import horizontal_interval_lies_within
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    dthr, tthr, begin, end = c.reals("dthr tthr begin end")
-    c.premise(dthr >= 0)
-    c.premise(tthr >= 0)
-    first, last = c.use(horizontal_interval_tcpa, s, v, dthr, tthr, begin, end)
-    within = c.all_of(begin <= first, last <= end)
-    c.show(c.implies(first <= last, within), "within [B, T]")
-    c.show(c.implies(first > last, c.all_of(first == 1, last == 0)), "one empty span")
-    c.show(c.implies(begin > end, first > last), "nothing where B is after T")
+    horizontal_interval_lies_within(c, horizontal_interval=horizontal_interval_tcpa)

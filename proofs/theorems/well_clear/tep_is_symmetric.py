@@ -1,43 +1,21 @@
 """Well clear by tep is symmetric: seen from the intruder, the verdict now and the first and last
 instant over [B, T] are those that the ownship sees."""
 
-from cratous.core.kernel import Vec2
 from cratous.core.well_clear import (
     horizontal_interval_tep,
     horizontal_violation_tep,
-    layer_violation,
-    vertical_interval,
     violation_interval_tep,
     violation_tep,
 )
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.volumes import volume_is_symmetric
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
-    begin, end = c.reals("begin end")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
-    c.opaque(horizontal_interval_tep, horizontal_violation_tep, layer_violation, vertical_interval)
-    limits = (dthr, zthr, tthr, tcoa, vmod)
-    back = (Vec2(0 - s.x, 0 - s.y), Vec2(0 - v.x, 0 - v.y), 0 - sz, 0 - vz)
-    low, high = c.use(vertical_interval, sz, vz, zthr, tcoa, vmod, begin, end)
-    low_back, high_back = c.use(vertical_interval, 0 - sz, 0 - vz, zthr, tcoa, vmod, begin, end)
-    c.lemma(
-        "well_clear_vertical_volume_is_symmetric",
-        sz=sz, vz=vz, zthr=zthr, tcoa=tcoa, vmod=vmod, begin=begin, end=end,
-    )  # fmt: skip
-    c.lemma(
-        "well_clear_horizontal_volumes_are_symmetric",
-        s=s, v=v, dthr=dthr, tthr=tthr, begin=low, end=high,
-    )  # fmt: skip
-    c.congruence(
-        horizontal_interval_tep,
-        (back[0], back[1], dthr, tthr, low, high),
-        (back[0], back[1], dthr, tthr, low_back, high_back),
+    volume_is_symmetric(
+        c,
+        horizontal_now=horizontal_violation_tep,
+        horizontal_interval=horizontal_interval_tep,
+        violation_now=violation_tep,
+        violation_interval=violation_interval_tep,
     )
-    ours = c.use(violation_tep, s, v, sz, vz, *limits)
-    c.show(c.same(ours, c.use(violation_tep, *back, *limits)), "now")
-    span = c.use(violation_interval_tep, s, v, sz, vz, *limits, begin, end)
-    c.show(c.same(span, c.use(violation_interval_tep, *back, *limits, begin, end)), "the span")

@@ -3,25 +3,15 @@ between the first and the last one that the kernel gives, these two included."""
 
 from cratous.core.well_clear import violation_interval_taumod, violation_times_taumod
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.spans import times_are_exact
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
-    begin, end, some, t = c.reals("begin end some t")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
-    for instant in (some, t):
-        c.premise(c.all_of(begin <= instant, instant <= end))
-    c.opaque(violation_interval_taumod, violation_times_taumod, well_clear.violation_taumod_at)
-    limits = (dthr, zthr, tthr, tcoa, vmod)
-    size = {"dthr": dthr, "zthr": zthr, "tthr": tthr, "tcoa": tcoa, "vmod": vmod}
-    state = {"s": s, "v": v, "sz": sz, "vz": vz, "begin": begin, "end": end}
-    for instant in (some, t):
-        c.lemma("well_clear_interval_taumod_is_exact", t=instant, **state, **size)
-    c.lemma("well_clear_times_taumod_are_the_interval", **state, **size)
-    c.premise(c.define(well_clear.violation_taumod_at, s, v, sz, vz, *limits, some))
-    times = c.use(violation_times_taumod, s, v, sz, vz, *limits, begin, end)
-    lost = c.define(well_clear.violation_taumod_at, s, v, sz, vz, *limits, t)
-    c.show(c.same(lost, c.define(well_clear.in_span, *times, t)))
+    times_are_exact(
+        c,
+        ("well_clear_interval_taumod_is_exact", "well_clear_times_taumod_are_the_interval"),
+        violation_interval=violation_interval_taumod,
+        violation_times=violation_times_taumod,
+        meant_at=well_clear.violation_taumod_at,
+    )

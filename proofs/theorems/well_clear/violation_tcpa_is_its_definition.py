@@ -3,22 +3,15 @@ vertical one, by TCOA or VMOD, are violated at once."""
 
 from cratous.core.well_clear import violation_tcpa
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.volumes import violation_is_its_definition
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
-    limits = (dthr, zthr, tthr, tcoa, vmod)
-    c.opaque(well_clear.horizontal_violation_tcpa, well_clear.layer_violation)
-    lost = c.define(well_clear.violation_tcpa_at, s, v, sz, vz, *limits, sz - sz)
-    c.lemma(
-        "well_clear_horizontal_violation_tcpa_is_its_definition", s=s, v=v, dthr=dthr, tthr=tthr
+    violation_is_its_definition(
+        c,
+        "well_clear_horizontal_violation_tcpa_is_its_definition",
+        violation_now=violation_tcpa,
+        meant_horizontally=well_clear.horizontal_violation_tcpa,
+        meant_at=well_clear.violation_tcpa_at,
     )
-    c.lemma(
-        "well_clear_layer_violation_is_its_definition",
-        sz=sz, vz=vz, zthr=zthr, tcoa=tcoa, vmod=vmod,
-    )  # fmt: skip
-    c.show(c.same(c.use(violation_tcpa, s, v, sz, vz, *limits), lost))

@@ -1,0 +1,149 @@
+"""Theorems on well-clear volumes as sets, stated alike for tau_mod, tcpa and tep.
+
+Each function states one of them; the theorems give it the kernels and definitions of their volume.
+Names: `horizontal_*` and `violation_*` are kernels (in the plane, in space), `meant_*` definitions,
+`lemmas` the names of the theorems that it rests on, which are of the same volume.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cratous.core.kernel import Vec2
+from cratous.core.well_clear import layer_violation, vertical_interval
+from cratous.proofs.claim import Claim
+from cratous.spec import well_clear
+
+
+def horizontal_is_monotone(
+    c: Claim,
+    horizontal_now: Any,
+) -> None:
+    """The horizontal volume grows with DTHR and TTHR."""
+    s, v = c.vector("s"), c.vector("v")
+    dthr, tthr, dthr2, tthr2 = c.reals("dthr tthr dthr2 tthr2")
+    c.premise(dthr >= 0)
+    c.premise(tthr >= 0)
+    c.premise(dthr <= dthr2)
+    c.premise(tthr <= tthr2)
+    before = c.use(horizontal_now, s, v, dthr, tthr)
+    wider = c.use(horizontal_now, s, v, dthr2, tthr)
+    c.step(c.implies(before, wider), "in DTHR")
+    after = c.use(horizontal_now, s, v, dthr2, tthr2)
+    c.step(c.implies(wider, after), "in TTHR")
+    c.show(c.implies(before, after), "in both")
+
+
+def volume_is_convex(
+    c: Claim,
+    lemma: str,
+    violation_interval: Any,
+    meant_at: Any,
+) -> None:
+    """What violates at two instants of straight flight violates between them."""
+    s, v = c.vector("s"), c.vector("v")
+    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    early, middle, late = c.reals("early middle late")
+    for threshold in (dthr, zthr, tthr, tcoa, vmod):
+        c.premise(threshold >= 0)
+    c.premise(early <= middle)
+    c.premise(middle <= late)
+    c.opaque(violation_interval, meant_at)
+    limits = {"dthr": dthr, "zthr": zthr, "tthr": tthr, "tcoa": tcoa, "vmod": vmod}
+    state = {"s": s, "v": v, "sz": sz, "vz": vz, "begin": early, "end": late}
+    c.use(violation_interval, s, v, sz, vz, *limits.values(), early, late)
+    lost = []
+    for t in (early, middle, late):
+        c.lemma(lemma, t=t, **state, **limits)
+        arguments = (s, v, sz, vz, *limits.values(), t)
+        lost.append(c.define(meant_at, *arguments))
+    c.show(c.implies(c.all_of(lost[0], lost[2]), lost[1]))
+
+
+def volume_is_monotone(
+    c: Claim,
+    lemma: str,
+    horizontal_now: Any,
+    violation_now: Any,
+) -> None:
+    """The volume grows with each of its thresholds."""
+    s, v = c.vector("s"), c.vector("v")
+    sz, vz = c.reals("sz vz")
+    names = "dthr zthr tthr tcoa vmod"
+    small, great = c.reals(names), c.reals(" ".join(name + "2" for name in names.split()))
+    for low, high in zip(small, great, strict=True):
+        c.premise(low >= 0)
+        c.premise(low <= high)
+    c.opaque(horizontal_now, layer_violation)
+    before = c.use(violation_now, s, v, sz, vz, *small)
+    after = c.use(violation_now, s, v, sz, vz, *great)
+    (dthr, zthr, tthr, tcoa, vmod), (dthr2, zthr2, tthr2, tcoa2, vmod2) = small, great
+    c.lemma(
+        lemma,
+        s=s, v=v, dthr=dthr, tthr=tthr, dthr2=dthr2, tthr2=tthr2,
+    )  # fmt: skip
+    c.lemma(
+        "well_clear_vertical_volume_is_monotone",
+        sz=sz, vz=vz, zthr=zthr, tcoa=tcoa, vmod=vmod, zthr2=zthr2, tcoa2=tcoa2, vmod2=vmod2,
+    )  # fmt: skip
+    c.show(c.implies(before, after))
+
+
+def volume_is_symmetric(
+    c: Claim,
+    horizontal_now: Any,
+    horizontal_interval: Any,
+    violation_now: Any,
+    violation_interval: Any,
+) -> None:
+    """Seen from the intruder, the verdict now and the span are the same."""
+    s, v = c.vector("s"), c.vector("v")
+    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    begin, end = c.reals("begin end")
+    for threshold in (dthr, zthr, tthr, tcoa, vmod):
+        c.premise(threshold >= 0)
+    c.opaque(horizontal_interval, horizontal_now, layer_violation, vertical_interval)
+    limits = (dthr, zthr, tthr, tcoa, vmod)
+    back = (Vec2(0 - s.x, 0 - s.y), Vec2(0 - v.x, 0 - v.y), 0 - sz, 0 - vz)
+    low, high = c.use(vertical_interval, sz, vz, zthr, tcoa, vmod, begin, end)
+    low_back, high_back = c.use(vertical_interval, 0 - sz, 0 - vz, zthr, tcoa, vmod, begin, end)
+    c.lemma(
+        "well_clear_vertical_volume_is_symmetric",
+        sz=sz, vz=vz, zthr=zthr, tcoa=tcoa, vmod=vmod, begin=begin, end=end,
+    )  # fmt: skip
+    c.lemma(
+        "well_clear_horizontal_volumes_are_symmetric",
+        s=s, v=v, dthr=dthr, tthr=tthr, begin=low, end=high,
+    )  # fmt: skip
+    c.congruence(
+        horizontal_interval,
+        (back[0], back[1], dthr, tthr, low, high),
+        (back[0], back[1], dthr, tthr, low_back, high_back),
+    )
+    ours = c.use(violation_now, s, v, sz, vz, *limits)
+    c.show(c.same(ours, c.use(violation_now, *back, *limits)), "now")
+    span = c.use(violation_interval, s, v, sz, vz, *limits, begin, end)
+    c.show(c.same(span, c.use(violation_interval, *back, *limits, begin, end)), "the span")
+
+
+def violation_is_its_definition(
+    c: Claim,
+    lemma: str,
+    violation_now: Any,
+    meant_horizontally: Any,
+    meant_at: Any,
+) -> None:
+    """The kernel in space says lost now exactly where its definition does."""
+    s, v = c.vector("s"), c.vector("v")
+    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    for threshold in (dthr, zthr, tthr, tcoa, vmod):
+        c.premise(threshold >= 0)
+    limits = (dthr, zthr, tthr, tcoa, vmod)
+    c.opaque(meant_horizontally, well_clear.layer_violation)
+    lost = c.define(meant_at, s, v, sz, vz, *limits, sz - sz)
+    c.lemma(lemma, s=s, v=v, dthr=dthr, tthr=tthr)
+    c.lemma(
+        "well_clear_layer_violation_is_its_definition",
+        sz=sz, vz=vz, zthr=zthr, tcoa=tcoa, vmod=vmod,
+    )  # fmt: skip
+    c.show(c.same(c.use(violation_now, s, v, sz, vz, *limits), lost))
