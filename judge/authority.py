@@ -92,16 +92,13 @@ class _Story:
             self.fault(at_ms, f"that {self.owner} has control was not announced")
             self.said_owner = self.owner
 
-    def end(self, at_ms: int, failed_ms: int | None) -> str:
-        """The mission's end; what is said of a takeover that was not handed back."""
+    def end(self, at_ms: int) -> None:
+        """The mission's end: control has been handed back. That a task failed meanwhile ends no takeover."""
         self.settle(at_ms)
         self._announced(at_ms)
-        if self.open_ms is None:
-            return ""
-        if failed_ms is not None and failed_ms >= self.open_ms:
-            return f"; the last one ended in the failure declared at {seconds(failed_ms)}"
-        self.fault(self.open_ms, f"the takeover of {seconds(self.open_ms)} was never handed back")
-        return ""
+        if self.open_ms is not None:
+            said = f"the takeover of {seconds(self.open_ms)} was never handed back"
+            self.fault(self.open_ms, said)
 
 
 def _words(owner: str, epoch: int, offered: bool) -> str:
@@ -116,15 +113,11 @@ def rows(mission: Mission, log: Log) -> Iterator[Row]:
             if said.vehicle == vehicle:
                 getattr(story, said.kind)(said)
         subject, item = ("authority", str(vehicle)), f"authority over vehicle {vehicle}"
-        ended = ""
         if log.end_ms is not None:
-            failed = [
-                p.time_ms for p in log.progress if p.vehicle == vehicle and p.phase == "Failed"
-            ]
-            ended = story.end(log.end_ms, failed[-1] if failed else None)
+            story.end(log.end_ms)
         note = (
             f"{story.takeovers} takeovers, {story.handbacks} handbacks, {story.commands} commands, "
-            f"{story.dropped} of them dropped{ended}"
+            f"{story.dropped} of them dropped"
         )
         if story.faults:
             at_ms, text = min(story.faults, key=lambda fault: fault[0])

@@ -20,6 +20,7 @@ from cratous.services.flight import (
     deadlines,
     executive_outputs,
     interruption,
+    left_out,
     task_transitions,
 )
 from cratous.services.flight.executive_state import Asked, Config, Out, State
@@ -86,7 +87,7 @@ class Executive:
             case Report(now_ms):
                 state = self._report(state, now_ms, out)
             case Closing():
-                self._close(state, message, out)
+                state = self._close(state, message, out)
         return state, tuple(out)
 
     def _begin(self, state: State, message: Begin, out: Out) -> State:
@@ -194,14 +195,34 @@ class Executive:
             state = executive_outputs.report(state, vid, out)
         return state
 
-    def _close(self, state: State, message: Closing, out: Out) -> None:
-        """Whether the flight has ended, and how: what the kernel `flight_outcome` answers."""
+    def _close(self, state: State, message: Closing, out: Out) -> State:
+        """Whether the flight has ended, and how: what the kernel `flight_outcome` answers.
+
+        Every task that is asked for has a final word then.
+        """
         now_ms, limit_ms = message.now_ms, self.config.mission.simulation.limit_ms
         flying = sum(chain.item is not None for chain in state.chains)
-        away = sum(gate.owner != UXAS for _, gate in message.gates)
+        away = [vid for vid, gate in message.gates if gate.owner != UXAS]
         kinds = (*BRINGS_WORK, *((WIND,) if state.left_out else ()))
         expected = sum(c.kind in kinds for c in state.to_come)
         todo = len(changes.left(state)) if not flying else 0  # while some fly it is no matter
-        how = OUTCOMES[flight_outcome(flying, away, expected, todo, now_ms, limit_ms)]
-        if how:
-            out += [Say(mission_end(now_ms, how), task_transitions.NAME), Over(how)]
+        how = OUTCOMES[flight_outcome(flying, len(away), expected, todo, now_ms, limit_ms)]
+        if not how:
+            return state
+        why = "not served when the mission ended"
+        if how == OUTCOMES[LIMIT]:
+            why = f"not served when the flight ended at its limit of {limit_ms / 1000:g} s"
+        for vid in away:
+            why += f"; vehicle {vid} was still under ICAROUS"
+        settled = (
+            dict(state.starts),
+            dict(state.ends),
+            {**dict(state.left_out), **dict(state.failed)},
+        )
+        chains = {chain.vehicle.id: chain for chain in state.chains}
+        tasks, said = left_out.unfinished(changes.left(state), settled, chains, now_ms, why)
+        for task in tasks:
+            state = state.has_failed(task, why)
+        out += [Say(one, task_transitions.NAME) for one in said]
+        out += [Say(mission_end(now_ms, how), task_transitions.NAME), Over(how)]
+        return state

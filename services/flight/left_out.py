@@ -44,6 +44,27 @@ def leave_out(
     return found, said
 
 
+def unfinished(
+    tasks: Iterable[int],
+    settled: tuple[Container[int], Container[int], Mapping[int, str]],
+    chains: Mapping[int, Chain],
+    now_ms: int,
+    why: str,
+) -> tuple[list[int], list[Any]]:
+    """Of these tasks those that have had no final word when the flight ends, and a TaskProgress for each.
+
+    settled: tasks that have begun, ended and failed (left out included).
+    """
+    starts, ends, failed = settled
+    found, said = [], []
+    for task in tasks:
+        if fails(task, starts, ends, failed):
+            found.append(task)
+            vehicle, served = _flown_by(task, chains)
+            said.append(task_progress(task, vehicle, now_ms, "Failed", served, why))
+    return found, said
+
+
 def _flown_by(task: int, chains: Mapping[int, Chain]) -> tuple[int, float]:
     """Whose task it was, and how much of it had been flown."""
     for number, chain in sorted(chains.items()):

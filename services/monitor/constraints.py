@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from cratous.core.algebra.steps import Ran, in_order
 from cratous.core.kernel import qualified
 from cratous.core.schedule.choice import as_asked
 from cratous.core.schedule.rows import eligible, runs_forward
@@ -20,10 +21,13 @@ from cratous.services.monitor.required_rows import (
     zones_of,
 )
 from cratous.services.monitor.samples import Sample
+from cratous.spec.constraint_rows import AFTER_END, AFTER_START, Row
 from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
 ACTIVE, COMPLETE, FAILED = "Active", "Complete", "Failed"
+WAITS = {AFTER_END: 1, AFTER_START: 2}
+"""Rows by which a task waits for others, and the code of the operator that asks for it."""
 
 
 @dataclass
@@ -143,8 +147,26 @@ class ConstraintWatch:
             if kept is not None and not missing:
                 yield kept.verdict(row, times, "flight")
                 continue
-            note = f"not judged: task {', '.join(map(str, missing))} was not flown to its end"
-            yield Verdict("G1", f"flight: {row.text}", Outcome.UNKNOWN, Kind.OBSERVED, note)
+            yield self._unfinished(row, missing, ending)
+
+    def _unfinished(self, row: Row, missing: list[int], ending: Ending) -> Verdict:
+        """A row of whose tasks some were not flown to their end: broken where nobody waited at all."""
+        item = f"flight: {row.text}"
+        start = self._starts.get(row.i)
+        if ending.over and start is not None and row.kind in WAITS:
+            begun = [self._starts[task] for task in row.group if task in self._starts]
+            before = Ran(bool(begun), min(begun, default=0), max(begun, default=0))
+            is_whole = all(task in self._ends for task in row.group)
+            if not in_order(WAITS[row.kind], is_whole, before, Ran(True, start, start)):
+                never = "ended" if row.kind == AFTER_END else "begun"
+                names = ", ".join(map(str, sorted(set(row.group) & set(missing)))) or "none"
+                note = f"task {row.i} began, though task {names} had never {never}"
+                return Verdict(
+                    "G1", item, Outcome.VIOLATED, Kind.EXACT, note, time_ms=start, checks=1,
+                    method="in_order", kernels=(qualified(in_order),),
+                )  # fmt: skip
+        note = f"not judged: task {', '.join(map(str, missing))} was not flown to its end"
+        return Verdict("G1", item, Outcome.UNKNOWN, Kind.OBSERVED, note)
 
     def _eligibility(self, seen: Watched, ending: Ending) -> Iterator[Verdict]:
         known = {task.id: task for task in self._mission.tasks}

@@ -72,7 +72,7 @@ def test_no_task_begins_that_may_not(monkeypatch: pytest.MonkeyPatch) -> None:
     result, log = flown(alone(begun + 60_000))
     assert (result.outcome, result.starts, result.ends) == ("limit", {}, {})
     phases = [p.Phase.name for p in of_type(log, "TaskProgress", TaskID=1)]
-    assert phases == ["Transit", "Waiting"]
+    assert phases == ["Transit", "Waiting", "Failed"]
 
 
 @pytest.mark.parametrize(("act", "failed"), [(GIVE_UP, [1]), (STANDS_BY, [])])

@@ -219,6 +219,12 @@ def test_limit_ends_the_flight() -> None:
     result, log = flown(m)
     assert (result.outcome, result.end_ms) == ("limit", 5000)
     assert [e.Outcome for e in of_type(log, "MissionEnd")] == ["limit"]
+    # every task has a final word
+    said = {p.TaskID: p.Note for p in of_type(log, "TaskProgress") if p.Phase.name == "Failed"}
+    assert said == dict.fromkeys(
+        (task.id for task in m.tasks), "not served when the flight ended at its limit of 5 s"
+    )
+    assert result.failed == said
 
 
 def test_one_state_of_everyone_each_step_and_heartbeats_each_period() -> None:

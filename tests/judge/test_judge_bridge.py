@@ -69,11 +69,11 @@ def test_stories_that_do_not_fit(tmp_path: Path, rows) -> None:
     assert authority(tmp_path, rows) == "violated"
 
 
-def test_a_takeover_may_end_in_a_declared_failure(tmp_path: Path) -> None:
+def test_a_task_that_fails_ends_no_takeover(tmp_path: Path) -> None:
     scene = Scene(tasks=[task(1, "must_fly", (100, 0))]).straight(1, (0, 0, 300), NORTH)
     scene.commands(1, *TAKEN[:4])
     scene.say(7000, "TaskProgress", TaskID=1, VehicleID=1, Time=7000, Phase="Failed")
-    assert one(tmp_path, scene, "authority over vehicle 1") == "holds"
+    assert one(tmp_path, scene, "authority over vehicle 1") == "violated"
 
 
 # ---- G5 -----------------------------------------------------------------------------------------

@@ -188,6 +188,23 @@ def test_a_task_that_was_not_flown_is_not_complete_and_its_order_is_unknown():
     assert seen["G1"].outcome is Outcome.UNKNOWN
 
 
+@pytest.mark.parametrize(("relations", "phase"), [("~(p1 p2)", ""), (".(p1 p2)", "Active")])
+def test_a_task_that_did_not_wait_for_one_that_never_came_breaks_the_order(relations, phase):
+    """What it waits for was never begun (`~`), or never ended (`.`): that is no matter of its times."""
+    short = [m for m in done() if getattr(m[1], "TaskID", 0) != 1]
+    if phase:
+        short.append(progress(1, 1, 0, phase))
+    seen = watch(mission(relations=relations), [*apart(), *beats(3000), *short])
+    (row,) = [v for k, v in seen.items() if k.startswith(f"G1:flight: `{relations}`: p2 starts")]
+    assert (row.outcome, row.method, row.time_ms) == (Outcome.VIOLATED, "in_order", 2000)
+    assert "had never" in row.note
+    # while the mission goes on it may still come
+    on = [m for m in short if type(m[1]).__name__ != "MissionEnd"]
+    seen = watch(mission(relations=relations), [*apart(), *beats(3000), *on])
+    (row,) = [v for k, v in seen.items() if k.startswith(f"G1:flight: `{relations}`: p2 starts")]
+    assert row.outcome is Outcome.UNKNOWN
+
+
 def test_the_tasks_of_a_later_plan_count():
     m = mission(relations="+(p1 p2)")
     later = (500, lmcp.new("PlanAccepted", Time=500, Tasks=[2]))
