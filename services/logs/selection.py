@@ -130,10 +130,11 @@ def _topic_test(name: str) -> Callable[[str], bool]:
     from cratous.bridge import lmcp
 
     full = lmcp.types[name].all_names[0]
-    return lambda topic: topic == full or full in _bases(topic)
+    return lambda topic: topic == full or full in names_of(topic)
 
 
-def _bases(topic: str) -> tuple[str, ...]:
+def names_of(topic: str) -> tuple[str, ...]:
+    """The full names of a message type and of its bases; none for a type without a model."""
     from cratous.bridge import lmcp
 
     return lmcp.types[topic].all_names if topic in lmcp.types else ()
@@ -141,7 +142,7 @@ def _bases(topic: str) -> tuple[str, ...]:
 
 def names_entity(data: Any, topic: str, ids: frozenset[int]) -> bool:
     """Whether a message in its JSON form names one of these entities."""
-    bases = _bases(topic)
+    bases = names_of(topic)
     own = any(base in bases for base in _ENTITIES)
     return _names(data, ids, own)
 

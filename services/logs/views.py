@@ -118,7 +118,7 @@ class Views:
             yield from _zone(data, KEEP_OUT in names)
 
     def _state(self, data: dict[str, Any], time_ns: int) -> Iterator[View]:
-        place = _place(data.get("Location"))
+        place = place_of(data.get("Location"))
         if place is None:
             return
         latitude, longitude, altitude = place
@@ -180,7 +180,7 @@ def _scene(
 
 
 def _route(data: dict[str, Any]) -> Iterator[View]:
-    way = [_place(waypoint) for waypoint in data.get("WaypointList", ())]
+    way = [place_of(waypoint) for waypoint in data.get("WaypointList", ())]
     points = [[place[1], place[0]] for place in way if place is not None]
     if len(points) > 1:
         number = data.get("VehicleID", 0)
@@ -189,7 +189,7 @@ def _route(data: dict[str, Any]) -> Iterator[View]:
 
 
 def _zone(data: dict[str, Any], keep_out: bool) -> Iterator[View]:
-    corners = _corners(data.get("Boundary"))
+    corners = corners_of(data.get("Boundary"))
     if len(corners) > 2:
         number, kind = data.get("ZoneID", 0), "keep out" if keep_out else "keep in"
         ring = [[longitude, latitude] for latitude, longitude in [*corners, corners[0]]]
@@ -207,14 +207,14 @@ def _drawn(topic: str, shape: dict[str, Any], name: str, color: str) -> View:
     return View(topic, GEO_JSON, {"geojson": json.dumps(feature, separators=(",", ":"))})
 
 
-def _corners(shape: Any) -> list[tuple[float, float]]:
+def corners_of(shape: Any) -> list[tuple[float, float]]:
     """(latitude, longitude) [deg] of the corners of a Polygon, Rectangle or Circle, else none."""
     if not isinstance(shape, dict):
         return []
-    places = [_place(point) for point in shape.get("BoundaryPoints", ())]
+    places = [place_of(point) for point in shape.get("BoundaryPoints", ())]
     if places:
         return [place[:2] for place in places if place is not None]
-    centre = _place(shape.get("CenterPoint"))
+    centre = place_of(shape.get("CenterPoint"))
     names = ("Radius",) if "Radius" in shape else ("Width", "Height")
     sizes = [shape.get(name, 0.0) for name in names]
     turn = shape.get("Rotation", 0.0)
@@ -230,7 +230,7 @@ def _corners(shape: Any) -> list[tuple[float, float]]:
     return [projection.to_geodetic(*corner) for corner in local]
 
 
-def _place(data: Any) -> tuple[float, float, float] | None:
+def place_of(data: Any) -> tuple[float, float, float] | None:
     """Latitude, longitude [deg] and altitude [m], if they are numbers."""
     if not isinstance(data, dict):
         return None

@@ -1,0 +1,27 @@
+// The state that is in the page's address, behind #: what is not as it should be there is left out.
+
+export const RATES = [0.25, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000];
+
+export function read(end_ms, ids) {
+  const given = new URLSearchParams(location.hash.slice(1)), state = {};
+  const number = name => given.has(name) && given.get(name) !== "" ? Number(given.get(name)) : NaN;
+  const t = number("t");
+  if (Number.isFinite(t)) state.time = Math.min(Math.max(t * 1000, 0), end_ms);
+  if (RATES.includes(number("rate"))) state.rate = number("rate");
+  if (ids.includes(given.get("aircraft"))) state.picked = given.get("aircraft");
+  if (["dark", "light"].includes(given.get("theme"))) state.theme = given.get("theme");
+  if (["si", "aviation"].includes(given.get("units"))) state.aviation = given.get("units") === "aviation";
+  const view = (given.get("map") || "").split(",").map(Number);
+  if (view.length === 3 && view.every(Number.isFinite) && view[2] > 0) state.view = { north: view[0], east: view[1], scale: view[2] };
+  return state;
+}
+
+export function write(state) {
+  const said = { t: (state.time / 1000).toFixed(1), rate: state.rate };
+  if (state.picked) said.aircraft = state.picked;
+  if (state.theme) said.theme = state.theme;
+  if (state.aviation) said.units = "aviation";
+  if (state.view) said.map = [state.view.north.toFixed(0), state.view.east.toFixed(0), state.view.scale.toPrecision(4)].join(",");
+  const hash = `#${Object.entries(said).map(([key, value]) => `${key}=${value}`).join("&")}`;
+  if (hash !== location.hash) history.replaceState(null, "", hash);
+}

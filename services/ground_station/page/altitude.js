@@ -1,0 +1,52 @@
+// Altitudes over time, with the spans under ICAROUS and the instant that is shown.
+
+import { color, colorOf, niceStep, sized } from "./canvas.js";
+import { UNSEEN_MS } from "./instant.js";
+
+const LEFT = 66, RIGHT = 10, TOP = 8, BOTTOM = 18;
+
+export class AltitudeChart {
+  constructor(canvas, recording, go) {
+    this.canvas = canvas;
+    this.recording = recording;
+    canvas.addEventListener("pointerdown", event => {
+      const box = canvas.getBoundingClientRect();
+      go((event.offsetX - LEFT) / (box.width - LEFT - RIGHT) * recording.end_ms);
+    });
+    let low = Infinity, high = -Infinity;
+    for (const track of Object.values(recording.tracks)) for (const row of track) { low = Math.min(low, row[3]); high = Math.max(high, row[3]); }
+    this.low = low; this.high = high;
+  }
+
+  draw(state, words) {
+    const { pen, width, height } = sized(this.canvas), end = Math.max(this.recording.end_ms, 1000);
+    if (this.low > this.high) return;
+    const step = niceStep(Math.max(this.high - this.low, 40) / 2);
+    const low = (Math.ceil(this.low / step) - 1) * step, high = (Math.floor(this.high / step) + 1) * step;
+    const x = t => LEFT + (width - LEFT - RIGHT) * t / end, y = alt => height - BOTTOM - (height - TOP - BOTTOM) * (alt - low) / (high - low);
+    pen.fillStyle = color("icarous");
+    pen.globalAlpha = 0.2;
+    for (const t of this.recording.takeovers) pen.fillRect(x(t.from_ms), TOP, Math.max(1, x(t.to_ms ?? end) - x(t.from_ms)), height - TOP - BOTTOM);
+    pen.globalAlpha = 1;
+    for (const t of this.recording.takeovers) pen.fillText(`ICAROUS, ${t.vehicle}`, x(t.from_ms) + 3, TOP + 11);
+    pen.strokeStyle = color("rule"); pen.fillStyle = color("soft"); pen.lineWidth = 1;
+    for (let level = low; level <= high + step / 2; level += step) {
+      pen.beginPath(); pen.moveTo(LEFT, y(level)); pen.lineTo(width - RIGHT, y(level)); pen.stroke();
+      pen.fillText(words.altitude(level), 2, y(level) + 4);
+    }
+    const every = niceStep(end / 1000 / 8) * 1000;
+    for (let t = 0; t <= end; t += every) pen.fillText(`${t / 1000} s`, x(t) - 8, height - 4);
+    pen.lineWidth = 2;
+    for (const [id, track] of Object.entries(this.recording.tracks)) {
+      pen.strokeStyle = colorOf(this.recording, id);
+      pen.beginPath();
+      track.forEach((row, k) => {
+        const broken = k && row[0] - track[k - 1][0] > UNSEEN_MS;
+        if (k && !broken) pen.lineTo(x(row[0]), y(row[3])); else pen.moveTo(x(row[0]), y(row[3]));
+      });
+      pen.stroke();
+    }
+    pen.strokeStyle = color("ink"); pen.lineWidth = 1.5;
+    pen.beginPath(); pen.moveTo(x(state.time), 0); pen.lineTo(x(state.time), height - BOTTOM + 4); pen.stroke();
+  }
+}

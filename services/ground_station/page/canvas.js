@@ -1,0 +1,34 @@
+// A canvas that is sharp on any screen, and the colours of the page's style sheet.
+
+export function sized(canvas) {
+  const ratio = window.devicePixelRatio || 1, box = canvas.getBoundingClientRect();
+  const width = Math.max(1, Math.round(box.width * ratio)), height = Math.max(1, Math.round(box.height * ratio));
+  if (canvas.width !== width) canvas.width = width;
+  if (canvas.height !== height) canvas.height = height;
+  const pen = canvas.getContext("2d");
+  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  pen.clearRect(0, 0, box.width, box.height);
+  pen.font = "12px system-ui, sans-serif";
+  return { pen, width: box.width, height: box.height };
+}
+
+let kept = { theme: null, of: new Map() };
+
+export function color(name) {
+  const theme = document.documentElement.className;
+  if (kept.theme !== theme) kept = { theme, of: new Map() };
+  if (!kept.of.has(name)) kept.of.set(name, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+  return kept.of.get(name);
+}
+
+// ours get six colours in turn; other traffic has one
+export function colorOf(recording, id) {
+  const k = recording.vehicles.findIndex(v => String(v.id) === String(id));
+  return color(k < 0 ? "traffic" : `c${k % 6}`);
+}
+
+// the least of 1, 2, 5, 10, 20 ... that is not below
+export function niceStep(least) {
+  const power = 10 ** Math.floor(Math.log10(Math.max(least, 1e-3)));
+  return [1, 2, 5, 10].map(k => k * power).find(step => step >= least) || 10 * power;
+}

@@ -1,0 +1,67 @@
+// What a recording says of one instant. Between two samples an aircraft is drawn on a straight line.
+
+export const UNSEEN_MS = 2500; // tracks have a sample a second: after this an aircraft is not seen
+
+// index of the last row at or before `time`, by the value that `of` gives; -1 before the first
+export function lastAt(rows, time, of) {
+  let low = 0, high = rows.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (of(rows[middle]) <= time) low = middle + 1; else high = middle;
+  }
+  return low - 1;
+}
+
+// {north, east, alt, speed, climb, course, owner, seen}: metres, m/s, degrees; null before it is there
+export function positionAt(track, time) {
+  const k = lastAt(track, time, row => row[0]);
+  if (k < 0) return null;
+  const a = track[k], b = track[k + 1];
+  if (!b || b[0] - a[0] > UNSEEN_MS) {
+    const from = track[k - 1], moved = from && motion(from, a);
+    return { north: a[1], east: a[2], alt: a[3], owner: a[4], seen: time - a[0] <= UNSEEN_MS, last: a[0], ...(moved || still) };
+  }
+  const part = (time - a[0]) / (b[0] - a[0]);
+  const at = i => a[i] + part * (b[i] - a[i]);
+  return { north: at(1), east: at(2), alt: at(3), owner: a[4], seen: true, last: a[0], ...motion(a, b) };
+}
+
+const still = { speed: null, climb: null, course: null };
+
+function motion(a, b) {
+  const s = (b[0] - a[0]) / 1000;
+  if (!(s > 0)) return still;
+  const north = (b[1] - a[1]) / s, east = (b[2] - a[2]) / s, speed = Math.hypot(north, east);
+  const course = speed > 0.05 ? (Math.atan2(east, north) * 180 / Math.PI + 360) % 360 : null;
+  return { speed, climb: (b[3] - a[3]) / s, course };
+}
+
+// the last entry about a vehicle at or before `time`; undefined if there is none
+export function lastOf(list, vehicle, time) {
+  let found;
+  for (const entry of list) if (entry.vehicle === vehicle && entry.time_ms <= time) found = entry;
+  return found;
+}
+
+// who commands: {name, reason, since}; name is null where the log does not say
+export function authorityAt(recording, vehicle, time) {
+  if (recording.authority === null) return { name: null };
+  const change = lastOf(recording.authority, vehicle, time);
+  if (!change) return { name: "UxAS", reason: "since the start", since: 0 };
+  return { name: change.owner, reason: change.reason, since: change.time_ms };
+}
+
+// every two aircraft that are there: horizontal distance and difference of altitude [m], nearest first
+export function pairsAt(recording, time) {
+  const ours = new Set(recording.vehicles.map(v => String(v.id)));
+  const there = Object.keys(recording.tracks)
+    .map(id => ({ id, at: positionAt(recording.tracks[id], time) }))
+    .filter(one => one.at && one.at.seen);
+  const found = [];
+  there.forEach((one, k) => there.slice(k + 1).forEach(other => {
+    if (!ours.has(one.id) && !ours.has(other.id)) return;
+    const across = Math.hypot(one.at.north - other.at.north, one.at.east - other.at.east);
+    found.push({ one: one.id, other: other.id, across, above: Math.abs(one.at.alt - other.at.alt) });
+  }));
+  return found.sort((a, b) => a.across - b.across);
+}

@@ -1,0 +1,233 @@
+// The map: north up, one scale, metres of the mission frame. Everything is drawn anew for an instant.
+
+import { UNSEEN_MS, authorityAt, lastAt, positionAt } from "./instant.js";
+import { color, colorOf, niceStep, sized } from "./canvas.js";
+
+const EDGE = 50;
+
+export class FlightMap {
+  constructor(canvas, recording, changed) {
+    this.canvas = canvas;
+    this.recording = recording;
+    this.changed = changed; // called when the user moved the map
+    this.view = null;
+    this.bounds = extent(recording);
+    this.listen();
+  }
+
+  // the view that shows everything
+  whole() {
+    const box = this.canvas.getBoundingClientRect(), b = this.bounds;
+    const scale = Math.min((box.width - 2 * EDGE) / Math.max(b.east1 - b.east0, 100), (box.height - 2 * EDGE) / Math.max(b.north1 - b.north0, 100));
+    return { north: (b.north0 + b.north1) / 2, east: (b.east0 + b.east1) / 2, scale: Math.max(scale, 1e-5) };
+  }
+
+  draw(state, words) {
+    const { pen, width, height } = sized(this.canvas);
+    this.view = state.view || this.whole();
+    this.xy = (north, east) => [width / 2 + (east - this.view.east) * this.view.scale, height / 2 - (north - this.view.north) * this.view.scale];
+    this.pen = pen;
+    const { time } = state, recording = this.recording;
+    this.grid(width, height, words);
+    for (const zone of recording.zones) if (zone.from_ms <= time) this.zone(zone);
+    for (const seen of recording.footprints) if (seen.time_ms <= time) this.footprint(seen);
+    for (const task of recording.tasks) this.task(task);
+    for (const [id, route] of routesAt(recording, time)) this.route(id, route);
+    for (const id of Object.keys(recording.tracks)) this.trail(id, time);
+    for (const takeover of recording.takeovers) if (takeover.from_ms <= time) this.takeover(takeover);
+    for (const id of Object.keys(recording.tracks)) this.aircraft(id, state, words);
+  }
+
+  path(places, closed) {
+    this.pen.beginPath();
+    places.forEach((place, k) => {
+      const [x, y] = this.xy(place[0], place[1]);
+      if (k) this.pen.lineTo(x, y); else this.pen.moveTo(x, y);
+    });
+    if (closed) this.pen.closePath();
+  }
+
+  stroke(ink, width, dash = [], alpha = 1) {
+    Object.assign(this.pen, { strokeStyle: ink, lineWidth: width, globalAlpha: alpha, lineJoin: "round", lineCap: "round" });
+    this.pen.setLineDash(dash);
+    this.pen.stroke();
+    this.pen.setLineDash([]);
+    this.pen.globalAlpha = 1;
+  }
+
+  fill(ink, alpha) {
+    Object.assign(this.pen, { fillStyle: ink, globalAlpha: alpha });
+    this.pen.fill();
+    this.pen.globalAlpha = 1;
+  }
+
+  // text on a plate of its own, so that it is read on anything
+  label(text, x, y, ink) {
+    const wide = this.pen.measureText(text).width;
+    Object.assign(this.pen, { fillStyle: color("paper"), globalAlpha: 0.75 });
+    this.pen.fillRect(x - 2, y - 11, wide + 4, 15);
+    Object.assign(this.pen, { fillStyle: ink, globalAlpha: 1 });
+    this.pen.fillText(text, x, y);
+  }
+
+  grid(width, height, words) {
+    const step = niceStep(110 / this.view.scale), pen = this.pen;
+    const east0 = this.view.east - width / 2 / this.view.scale, north0 = this.view.north - height / 2 / this.view.scale;
+    pen.beginPath();
+    for (let k = Math.ceil(east0 / step); this.xy(0, k * step)[0] < width; k++) {
+      const x = this.xy(0, k * step)[0];
+      pen.moveTo(x, 0); pen.lineTo(x, height);
+    }
+    for (let k = Math.ceil(north0 / step); this.xy(k * step, 0)[1] > 0; k++) {
+      const y = this.xy(k * step, 0)[1];
+      pen.moveTo(0, y); pen.lineTo(width, y);
+    }
+    this.stroke(color("rule"), 1, [], 0.6);
+    pen.beginPath();
+    pen.moveTo(14, height - 14); pen.lineTo(14 + step * this.view.scale, height - 14);
+    this.stroke(color("ink"), 2);
+    this.label(`${words.distance(step)}, north up`, 14, height - 22, color("ink"));
+  }
+
+  zone(zone) {
+    const ink = color(zone.kind === "keep_out" ? "keepout" : "keepin");
+    this.path(zone.vertices, true);
+    if (zone.kind === "keep_out") this.fill(ink, 0.16);
+    this.stroke(ink, 2, zone.kind === "keep_out" ? [] : [10, 5]);
+    const [x, y] = this.xy(...zone.vertices[0]);
+    this.label(`${zone.kind.replace("_", " ")} ${zone.id} ${zone.label || ""}`.trim(), x + 4, y - 4, ink);
+  }
+
+  footprint(seen) {
+    this.path(seen.corners, true);
+    this.fill(colorOf(this.recording, seen.vehicle), 0.05);
+  }
+
+  task(task) {
+    const [x, y] = this.xy(...task.points[0]);
+    if (task.points.length > 1) {
+      this.path(task.points, task.closed);
+      if (task.closed) this.fill(color("ink"), 0.06);
+      this.stroke(color("ink"), task.closed ? 2 : 8, [], 0.25);
+    }
+    this.pen.beginPath();
+    this.pen.arc(x, y, Math.max(5, (task.radius_m || 0) * this.view.scale), 0, 7);
+    this.stroke(color("ink"), 1.5, [], 0.8);
+    this.label(`p${task.id} ${task.label || ""}`.trim(), x + 9, y + 16, color("ink"));
+  }
+
+  route(id, route) {
+    this.path(route.points, false);
+    this.stroke(colorOf(this.recording, id), 1.5, [3, 5], 0.8);
+  }
+
+  trail(id, time) {
+    const track = this.recording.tracks[id], last = lastAt(track, time, row => row[0]), ours = colorOf(this.recording, id);
+    const now = positionAt(track, time);
+    const broken = k => track[k + 1][0] - track[k][0] > UNSEEN_MS;
+    for (let from = 0; from <= last;) {
+      let to = from;
+      while (to < last && track[to + 1][4] === track[from][4] && !broken(to)) to++;
+      // a piece ends where the next one begins, unless nobody saw what was between
+      const end = to < last && !broken(to) ? to + 1 : to;
+      const places = track.slice(from, end + 1).map(row => [row[1], row[2]]);
+      if (to === last && now && now.seen) places.push([now.north, now.east]);
+      this.path(places, false);
+      if (track[from][4] === 1) this.stroke(color("icarous"), 5); else this.stroke(ours, 2.5);
+      from = to + 1;
+    }
+  }
+
+  takeover(takeover) {
+    const [x, y] = this.xy(takeover.north_m, takeover.east_m);
+    this.pen.beginPath();
+    this.pen.moveTo(x, y - 7); this.pen.lineTo(x + 7, y); this.pen.lineTo(x, y + 7); this.pen.lineTo(x - 7, y);
+    this.pen.closePath();
+    this.fill(color("paper"), 1);
+    this.stroke(color("icarous"), 2.5);
+  }
+
+  aircraft(id, state, words) {
+    const at = positionAt(this.recording.tracks[id], state.time);
+    if (!at) return;
+    const [x, y] = this.xy(at.north, at.east), ink = colorOf(this.recording, id), pen = this.pen;
+    const commands = authorityAt(this.recording, Number(id), state.time).name;
+    pen.save();
+    pen.translate(x, y);
+    pen.rotate((at.course || 0) * Math.PI / 180);
+    pen.beginPath();
+    pen.moveTo(0, -11); pen.lineTo(7, 9); pen.lineTo(0, 5); pen.lineTo(-7, 9);
+    pen.closePath();
+    if (at.seen) this.fill(ink, 1);
+    this.stroke(at.seen ? color("paper") : ink, 1.5);
+    pen.restore();
+    if (at.seen && (commands === "ICAROUS" || state.picked === id)) {
+      pen.beginPath();
+      pen.arc(x, y, 17, 0, 7);
+      this.stroke(commands === "ICAROUS" ? color("icarous") : ink, 2.5, commands === "ICAROUS" ? [] : [4, 3]);
+    }
+    const vehicle = this.recording.vehicles.find(v => String(v.id) === id);
+    const name = vehicle ? vehicle.label || id : `traffic ${id}`;
+    const rest = at.seen ? words.altitude(at.alt) : "not seen any more";
+    this.label(`${name} ${rest}${at.seen && commands === "ICAROUS" ? " ICAROUS" : ""}`, x + 15, y - 10, ink);
+  }
+
+  zoom(by, x, y) {
+    const box = this.canvas.getBoundingClientRect(), view = this.view;
+    const dx = (x ?? box.width / 2) - box.width / 2, dy = (y ?? box.height / 2) - box.height / 2;
+    const scale = Math.min(Math.max(view.scale * by, 1e-5), 100);
+    this.changed({
+      north: view.north - dy / view.scale + dy / scale,
+      east: view.east + dx / view.scale - dx / scale,
+      scale,
+    });
+  }
+
+  move(dx, dy) {
+    const view = this.view;
+    this.changed({ ...view, east: view.east - dx / view.scale, north: view.north + dy / view.scale });
+  }
+
+  // north and east [m] under a place of the canvas
+  under(x, y) {
+    const box = this.canvas.getBoundingClientRect();
+    return [this.view.north - (y - box.height / 2) / this.view.scale, this.view.east + (x - box.width / 2) / this.view.scale];
+  }
+
+  listen() {
+    const canvas = this.canvas;
+    let from = null;
+    canvas.addEventListener("pointerdown", event => { from = [event.clientX, event.clientY]; canvas.setPointerCapture(event.pointerId); });
+    canvas.addEventListener("pointerup", () => { from = null; });
+    canvas.addEventListener("pointermove", event => {
+      if (!from) return;
+      this.move(event.clientX - from[0], event.clientY - from[1]);
+      from = [event.clientX, event.clientY];
+    });
+    canvas.addEventListener("wheel", event => {
+      event.preventDefault();
+      this.zoom(Math.exp(-event.deltaY / 400), event.offsetX, event.offsetY);
+    }, { passive: false });
+  }
+}
+
+// the route of each vehicle that was commanded last
+function routesAt(recording, time) {
+  const found = new Map();
+  for (const route of recording.routes) if (route.time_ms <= time) found.set(String(route.vehicle), route);
+  return found;
+}
+
+function extent(recording) {
+  const places = [];
+  const ours = new Set(recording.vehicles.map(v => String(v.id)));
+  for (const [id, track] of Object.entries(recording.tracks)) if (ours.has(id)) for (const row of track) places.push([row[1], row[2]]);
+  for (const task of recording.tasks) places.push(...task.points);
+  for (const zone of recording.zones) if (zone.kind === "keep_out") places.push(...zone.vertices);
+  const found = { north0: Infinity, north1: -Infinity, east0: Infinity, east1: -Infinity };
+  for (const [north, east] of places) {
+    found.north0 = Math.min(found.north0, north); found.north1 = Math.max(found.north1, north);
+    found.east0 = Math.min(found.east0, east); found.east1 = Math.max(found.east1, east);
+  }
+  return places.length ? found : { north0: -500, north1: 500, east0: -500, east1: 500 };
+}

@@ -1,0 +1,138 @@
+// The tables beside the map. All text is set as text, never as markup.
+
+import { authorityAt, lastOf, pairsAt, positionAt } from "./instant.js";
+import { seconds } from "./units.js";
+
+const FEW = 6;
+const by = id => document.getElementById(id);
+
+function cell(row, text, classes = "", tag = "td") {
+  const made = document.createElement(tag);
+  made.textContent = text;
+  if (classes) made.className = classes;
+  row.append(made);
+  return made;
+}
+
+function table(id, heads, rows) {
+  const head = document.createElement("tr");
+  for (const [text, classes] of heads) cell(head, text, classes, "th");
+  by(id).replaceChildren(...(rows.length ? [head, ...rows] : []));
+}
+
+function row(...cells) {
+  const made = document.createElement("tr");
+  for (const [text, classes] of cells) cell(made, text, classes);
+  return made;
+}
+
+export function aircraft(recording, state, words) {
+  by("at").textContent = seconds(state.time);
+  const names = new Map(recording.vehicles.map(v => [String(v.id), v]));
+  const rows = Object.keys(recording.tracks).flatMap(id => {
+    const at = positionAt(recording.tracks[id], state.time), ours = names.get(id), seen = at && at.seen;
+    const name = ours ? `${id} ${ours.label || ""}` : `${id} (traffic)`;
+    const first = row([name], ...(seen
+      ? [[words.altitude(at.alt), "n"], [words.speed(at.speed), "n"], [words.climb(at.climb), "n"], [words.course(at.course), "n"]]
+      : [["–", "n"], ["–", "n"], ["–", "n"], ["–", "n"]]));
+    const second = document.createElement("tr");
+    const told = cell(second, "", "told");
+    told.colSpan = 5;
+    if (seen && ours) {
+      const who = authorityAt(recording, Number(id), state.time), badge = document.createElement("b");
+      badge.textContent = who.name ?? "not in the log";
+      badge.className = who.name === "ICAROUS" ? "icarous" : "";
+      const why = who.name === "ICAROUS" ? ` since ${seconds(who.since)}: ${who.reason}` : "";
+      told.append("authority ", badge, `${why} · link ${link(recording, Number(id), state.time)}${phase(recording, Number(id), state.time)}`);
+    } else {
+      told.append(seen ? "others' traffic" : at ? `not seen since ${seconds(at.last)}` : "not there yet");
+    }
+    for (const made of [first, second]) {
+      made.dataset.aircraft = id;
+      made.classList.toggle("picked", state.picked === id);
+    }
+    return [first, second];
+  });
+  table("aircraft", [["aircraft"], ["altitude", "n"], ["speed", "n"], ["climb", "n"], ["course", "n"]], rows);
+}
+
+function link(recording, id, time) {
+  if (recording.links === null) return "not in the log";
+  const said = lastOf(recording.links, id, time);
+  return said ? (said.alive ? "alive" : "silent") : "not in the log";
+}
+
+function phase(recording, id, time) {
+  const now = lastOf(recording.phases, id, time);
+  return now ? ` · p${now.task} ${now.phase.toLowerCase()}` : "";
+}
+
+export function pairs(recording, state, words) {
+  const found = pairsAt(recording, state.time), volume = recording.volume;
+  by("pairs-note").textContent = volume
+    ? `Measured between positions, not judged. Well clear uses ${words.distance(volume.dthr_m)} across, ${words.altitude(volume.zthr_m)} in altitude, and ${volume.tthr_s} s.`
+    : "Measured between positions, not judged.";
+  table("pairs", [["aircraft"], ["across", "n"], ["in altitude", "n"]],
+    found.slice(0, FEW).map(p => row([`${p.one} and ${p.other}`], [words.distance(p.across), "n"], [words.altitude(p.above), "n"])));
+  if (!found.length) by("pairs-note").textContent = "No two aircraft are there.";
+  if (found.length > FEW) by("pairs-note").textContent += ` The nearest ${FEW} of ${found.length}.`;
+}
+
+export function verdicts(recording, state, go) {
+  const said = recording.verdicts;
+  if (said.why_none) {
+    by("verdicts-note").textContent = `Not judged here: ${said.why_none}.`;
+    return;
+  }
+  by("overall").textContent = said.overall;
+  by("overall").className = said.overall;
+  by("verdicts-note").textContent = "As report.json says; `cratous certify` holds it against the log. A time is where the margin is least, or where it broke.";
+  const rank = { violated: 0, unknown: 1, excused: 2, holds: 3 };
+  const parts = said.details.filter(one => one.verdict !== "holds" || one.time_ms !== null)
+    .sort((a, b) => rank[a.verdict] - rank[b.verdict]);
+  const rows = [...said.requirements, ...parts].map((one, k) => {
+    const whole = k < said.requirements.length;
+    const made = row([whole ? `${one.requirement} ${one.title}` : one.item, whole ? "whole" : "part"], [one.verdict, one.verdict],
+      [one.margin === null ? "–" : `${one.margin.toPrecision(4)} ${one.unit}`, "margin"]);
+    made.title = one.note;
+    const when = cell(made, "", "n");
+    if (one.time_ms !== null && (one.margin !== null || one.verdict !== "holds")) {
+      const jump = document.createElement("button");
+      jump.type = "button";
+      jump.textContent = seconds(one.time_ms);
+      jump.addEventListener("click", () => go(one.time_ms));
+      when.append(jump);
+    }
+    return made;
+  });
+  table("verdicts", [["requirement"], ["verdict"], ["margin", "n"], ["at", "n"]], rows);
+}
+
+export function tasks(recording, state) {
+  by("tasks").parentElement.hidden = !recording.tasks.length;
+  const rows = recording.tasks.map(task => {
+    let now;
+    for (const one of recording.phases) if (one.task === task.id && one.time_ms <= state.time) now = one;
+    const told = recording.source !== "mission" ? "not in the log" : now ? `${now.phase.toLowerCase()} (vehicle ${now.vehicle}) since ${seconds(now.time_ms)}` : "not begun";
+    return row([`p${task.id} ${task.label || ""}`], [task.kind.replaceAll("_", " ")], [told]);
+  });
+  table("tasks", [["task"], ["kind"], ["now"]], rows);
+}
+
+// made once; `mark` shows which of them is the last at an instant
+export function events(recording, go) {
+  by("events").replaceChildren(...recording.events.map(event => {
+    const item = document.createElement("li"), jump = document.createElement("button");
+    jump.type = "button";
+    jump.textContent = `${seconds(event.time_ms)}  ${event.vehicle === null ? "" : `vehicle ${event.vehicle}: `}${event.text}`;
+    jump.addEventListener("click", () => go(event.time_ms));
+    item.append(jump);
+    return item;
+  }));
+}
+
+export function mark(recording, state) {
+  let last = -1;
+  recording.events.forEach((event, k) => { if (event.time_ms <= state.time) last = k; });
+  [...by("events").children].forEach((item, k) => { item.className = k === last ? "now" : k > last ? "ahead" : ""; });
+}

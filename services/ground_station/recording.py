@@ -1,0 +1,209 @@
+"""What the page shows of a run or a message log, as plain data: made once, when it is opened.
+
+Times are ms after mission start; of a log without a mission after its first message. Places are
+north, east [m] in the mission frame, or in one about the first position that the log has. Nothing
+is judged here: verdicts are those of the run's report.json, and without one there are none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from cratous.services.certify.timeline import Flight, read_flight
+from cratous.services.ground_station.positions import Positions
+from cratous.services.ground_station.shapes import Shapes
+from cratous.services.ground_station.verdicts import verdicts_of
+from cratous.services.logs.entry import Entry, any_data, to_text
+from cratous.services.logs.log import Row
+from cratous.services.logs.records import from_data, to_data
+from cratous.services.logs.source import Source, open_log
+from cratous.services.mission.frames import Projection
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Frame, Mission
+
+FORMAT = "cratous-recording/1"
+READ_BY_FLIGHT = "cratous."
+"""Messages of flights of ours; these two of them come often and say nothing that is shown."""
+SILENT = ("cratous.Heartbeat", "cratous.GatedCommand")
+TRUTH, LINK, STATE = "cratous.TruthState", "cratous.BridgeStatus", "afrl.cmasi.AirVehicleState"
+TOLD = ("Request", "Response", "Command", "Action", "Complete", "Status", "Zone", "Task")
+"""Messages of other logs whose types end so are listed as events."""
+
+
+def recording(path: Path) -> dict[str, Any]:
+    """All that is shown of a results folder or a message log.
+
+    Raises BadInput, with file and place, where the log, or report.json beside it, is damaged.
+    """
+    with open_log(path) as source:
+        try:
+            mission = _mission(source)
+            found = _flown(source, mission) if mission is not None else _told(source)
+            found["log"] = _log(source)
+        except BadInput as error:
+            error.where = f"{source.path}, {error.where}" if error.where else str(source.path)
+            raise
+    folder = path if path.is_dir() else None
+    closing = found["log"]["digest"]
+    return {"format": FORMAT, **found, "verdicts": verdicts_of(folder, closing)}
+
+
+def _mission(source: Source) -> Mission | None:
+    """The mission that the log was made for; None if it does not say."""
+    meta = source.meta()
+    return from_data(Mission, meta["mission"], "meta.mission") if "mission" in meta else None
+
+
+def _log(source: Source) -> dict[str, Any]:
+    closing = source.closing()
+    return {
+        "file": source.path.name,
+        "kind": source.kind,
+        "end": source.end(),
+        "digest": None if closing is None else closing.digest,
+        "missing": source.holes() + sum(gap.missing for gap in source.gaps()),
+    }
+
+
+def _flown(source: Source, mission: Mission) -> dict[str, Any]:
+    """A flight of ours, by its mission and what its messages say."""
+    to_local = Projection(mission.frame).to_local
+    shapes, links = Shapes(to_local), _Links()
+    place = ""
+
+    def rows() -> Iterator[Row]:
+        nonlocal place
+        for entry in source.entries():
+            place = entry.place
+            if entry.topic == LINK:
+                links.add(entry)
+            if entry.topic in SILENT or not entry.topic.startswith(READ_BY_FLIGHT):
+                shapes.add(entry, 0)
+                if entry.topic != STATE:
+                    continue
+            yield Row(entry.seq, entry.time_ms, entry.source, entry.topic, to_text(entry))
+
+    try:
+        flight = read_flight(rows(), (vehicle.id for vehicle in mission.vehicles))
+    except (LookupError, TypeError, ValueError) as error:
+        raise BadInput(
+            "a message lacks what its type has", where=place, expected="a message of a flight",
+            got=f"{type(error).__name__}: {error}"[:120],
+        ) from None  # fmt: skip
+    plain = to_data(mission)
+    zones = [{**zone, "from_ms": 0} for zone in plain["zones"]]
+    zones += [
+        {**c["zone"], "from_ms": c["at_ms"]} for c in plain.get("changes", ()) if c.get("zone")
+    ]
+    return {
+        "name": mission.name,
+        "source": "mission",
+        "frame": plain["frame"],
+        "end_ms": flight.end_ms,
+        "outcome": flight.outcome,
+        "vehicles": [_ours(vehicle) for vehicle in plain["vehicles"]],
+        "volume": plain["daa"]["well_clear"],
+        "tasks": [_task(task) for task in plain["tasks"]],
+        "zones": zones,
+        "routes": shapes.routes,
+        "tracks": {str(number): track for number, track in sorted(flight.tracks.items())},
+        "footprints": _footprints(flight, to_local),
+        "authority": flight.authority,
+        "takeovers": flight.takeovers,
+        "phases": flight.phases,
+        "links": links.found,
+        "events": flight.events,
+    }
+
+
+def _ours(vehicle: dict[str, Any]) -> dict[str, Any]:
+    return {key: vehicle[key] for key in ("id", "label", "protected")}
+
+
+def _task(task: dict[str, Any]) -> dict[str, Any]:
+    places = [[place["north_m"], place["east_m"]] for place in task["points"]]
+    reach_m = task["radius_m"] or task["extent_m"]
+    return {
+        "id": task["id"], "label": task["label"], "kind": task["kind"], "points": places,
+        "radius_m": reach_m, "closed": task["kind"] == "area_search" and not reach_m,
+    }  # fmt: skip
+
+
+def _footprints(flight: Flight, to_local: Any) -> list[dict[str, Any]]:
+    return [
+        {
+            "task": task,
+            "vehicle": one["vehicle"],
+            "time_ms": one["time_ms"],
+            "corners": [[round(x, 1) for x in to_local(*corner)] for corner in one["corners"]],
+        }
+        for task, found in sorted(flight.footprints.items())
+        for one in found
+    ]
+
+
+class _Links:
+    """What the bridge said of its links."""
+
+    def __init__(self) -> None:
+        self.found: list[dict[str, Any]] = []
+
+    def add(self, entry: Entry) -> None:
+        body, _ = any_data(entry)
+        if not isinstance(body, dict):
+            return
+        self.found.append(
+            {
+                "time_ms": entry.time_ms,
+                "vehicle": body.get("VehicleID"),
+                "alive": body.get("Alive") is True,
+                "note": str(body.get("Note", "")),
+            }
+        )
+
+
+def _told(source: Source) -> dict[str, Any]:
+    """A log of others: states, routes and zones as its messages tell them."""
+    positions, begin_ms, end_ms = Positions(), 0, 0
+    shapes: Shapes | None = None
+    waiting: list[Entry] = []
+    events: list[dict[str, Any]] = []
+    for number, entry in enumerate(source.entries()):
+        begin_ms = begin_ms if number else entry.time_ms
+        end_ms = max(end_ms, entry.time_ms - begin_ms)
+        positions.add(entry, begin_ms)
+        if shapes is None and positions.frame is not None:
+            shapes = Shapes(Projection(positions.frame).to_local)
+            for before in waiting:
+                shapes.add(before, begin_ms)
+            waiting.clear()
+        if shapes is None:
+            waiting.append(entry)
+        else:
+            shapes.add(entry, begin_ms)
+        short = entry.topic.rpartition(".")[2]
+        if short.endswith(TOLD):
+            text = f"{short} from {entry.source}" if entry.source else short
+            events.append({"time_ms": entry.time_ms - begin_ms, "vehicle": None, "text": text})
+    frame = positions.frame or Frame(0.0, 0.0)
+    return {
+        "name": source.path.name,
+        "source": "messages",
+        "frame": to_data(frame),
+        "end_ms": end_ms,
+        "outcome": "the log names no mission",
+        "vehicles": positions.vehicles(),
+        "volume": None,
+        "tasks": shapes.tasks if shapes else [],
+        "zones": shapes.zones if shapes else [],
+        "routes": shapes.routes if shapes else [],
+        "tracks": positions.tracks(),
+        "footprints": [],
+        "authority": None,
+        "takeovers": [],
+        "phases": [],
+        "links": None,
+        "events": events,
+    }

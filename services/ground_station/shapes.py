@@ -1,0 +1,112 @@
+"""Routes, zones and tasks that messages tell, in the frame of the page."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from cratous.services.logs.entry import Entry, any_data
+from cratous.services.logs.selection import names_of
+from cratous.services.logs.views import (
+    COMMAND,
+    GEO_JSON,
+    KEEP_OUT,
+    RESPONSE,
+    ZONE,
+    Views,
+    corners_of,
+    place_of,
+)
+
+GATED = "cratous.GatedCommand"
+POINT, LINE, AREA = (f"afrl.cmasi.{kind}SearchTask" for kind in ("Point", "Line", "Area"))
+SHAPED = frozenset((COMMAND, RESPONSE, ZONE, GATED, POINT, LINE, AREA))
+Local = Callable[[float, float], tuple[float, float]]
+
+
+class Shapes:
+    """Collects them in the order of the log. to_local: latitude, longitude [deg] to north, east [m]."""
+
+    def __init__(self, to_local: Local) -> None:
+        self._to_local, self._views = to_local, Views()
+        self.routes: list[dict[str, Any]] = []
+        self.zones: list[dict[str, Any]] = []
+        self.tasks: list[dict[str, Any]] = []
+
+    def add(self, entry: Entry, begin_ms: int) -> None:
+        """Take a message; one that tells no shape changes nothing."""
+        names = names_of(entry.topic) or (entry.topic,)
+        if SHAPED.isdisjoint(names):
+            return
+        body, error = any_data(entry)
+        if error is not None or not isinstance(body, dict):
+            return
+        time_ms, sender = entry.time_ms - begin_ms, ""
+        if GATED in names:  # a command that the gate let through, whoever sent it
+            sender, body, names = str(body.get("Sender", "")), body.get("Command"), (COMMAND,)
+            if not isinstance(body, dict):
+                return
+        if ZONE in names:
+            self._zone(body, names, time_ms)
+        elif COMMAND in names:
+            self._route(body, sender, time_ms)
+        elif RESPONSE in names:
+            for command in body.get("MissionCommandList", ()):
+                self._route(command, sender, time_ms)
+        else:
+            self._task(body, names)
+
+    def _drawn(self, body: Any, names: tuple[str, ...]) -> Iterator[dict[str, Any]]:
+        for view in self._views.of(body, names, 0):
+            if view.schema == GEO_JSON:
+                yield json.loads(view.data["geojson"])["geometry"]
+
+    def _place(self, corner: list[float]) -> list[float]:
+        longitude, latitude = corner
+        return [round(x, 1) for x in self._to_local(latitude, longitude)]
+
+    def _zone(self, body: Any, names: tuple[str, ...], time_ms: int) -> None:
+        for shape in self._drawn(body, names):
+            self.zones.append(
+                {
+                    "id": body.get("ZoneID", 0),
+                    "kind": "keep_out" if KEEP_OUT in names else "keep_in",
+                    "label": str(body.get("Label", "")),
+                    "vertices": [self._place(corner) for corner in shape["coordinates"][0][:-1]],
+                    "from_ms": time_ms,
+                }
+            )
+
+    def _route(self, command: Any, sender: str, time_ms: int) -> None:
+        for shape in self._drawn(command, (COMMAND,)):
+            self.routes.append(
+                {
+                    "time_ms": time_ms,
+                    "vehicle": command.get("VehicleID", 0),
+                    "sender": sender,
+                    "points": [self._place(corner) for corner in shape["coordinates"]],
+                }
+            )
+
+    def _task(self, body: Any, names: tuple[str, ...]) -> None:
+        if POINT in names:
+            found = [place_of(body.get("SearchLocation"))]
+        elif LINE in names:
+            found = [place_of(point) for point in body.get("PointList", ())]
+        elif AREA in names:
+            found = [(*corner, 0.0) for corner in corners_of(body.get("SearchArea"))]
+        else:
+            return
+        places = [self._place([place[1], place[0]]) for place in found if place is not None]
+        if places:
+            self.tasks.append(
+                {
+                    "id": body.get("TaskID", 0),
+                    "label": str(body.get("Label", "")),
+                    "kind": names[0].rpartition(".")[2],
+                    "points": places,
+                    "radius_m": 0.0,
+                    "closed": AREA in names,
+                }
+            )

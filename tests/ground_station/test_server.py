@@ -1,0 +1,199 @@
+"""The ground station's server over loopback: what it gives out, to whom, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import signal
+import socket
+import sqlite3
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from ground_station_tools import LIMIT_S, ask, serving
+
+from cratous.services.cli import main
+from cratous.services.ground_station.recording import recording
+from cratous.services.ground_station.server import page_files
+from cratous.services.ground_station.verdicts import NO_REPORT, OTHER_LOG
+from cratous.spec.errors import BadInput
+
+
+@pytest.fixture
+def port(crossing: Path) -> Iterator[int]:
+    with serving(crossing) as (_, port):
+        yield port
+
+
+def test_the_page_and_all_that_it_names_are_there(port: int) -> None:
+    page = ask(port, "/")
+    assert page.status == 200
+    assert page.headers["content-type"] == "text/html; charset=utf-8"
+    named = {path for path in page_files() if path[1:].encode() in page.body and path != "/"}
+    assert named == {"/main.js", "/station.css"}
+    for path in page_files():
+        got = ask(port, path)
+        assert got.status == 200
+        assert int(got.headers["content-length"]) == len(got.body) > 100
+
+
+def test_nothing_of_the_page_comes_from_elsewhere() -> None:
+    for path, answer in page_files().items():
+        assert b"http" not in answer.body.lower().replace(b"http-equiv", b""), path
+        assert b"//" not in b"".join(
+            line for line in answer.body.splitlines() if b'="//' in line or b"import(" in line
+        ), path
+
+
+def test_every_answer_has_the_headers_that_keep_others_out(port: int) -> None:
+    for got in (ask(port, "/"), ask(port, "/recording.json"), ask(port, "/none")):
+        policy = got.headers["content-security-policy"]
+        assert policy.startswith("default-src 'none'; script-src 'self';")
+        assert "unsafe" not in policy
+        assert "frame-ancestors 'none'" in policy
+        assert got.headers["x-content-type-options"] == "nosniff"
+        assert got.headers["cache-control"] == "no-store"
+        assert "access-control-allow-origin" not in got.headers
+
+
+@pytest.mark.parametrize("host", ["evil.example", "evil.example:{}", "127.0.0.1", "127.0.0.1:1"])
+def test_another_name_in_host_is_refused(port: int, host: str) -> None:
+    for path in ("/", "/recording.json"):
+        got = ask(port, path, Host=host.format(port))
+        assert got.status == 421
+        assert b"answers to no other name" in got.body
+    assert ask(port, "/", Host=f"localhost:{port}").status == 200
+
+
+@pytest.mark.parametrize(
+    "path", ["/none", "/../server.py", "/page/main.js", "//etc/passwd", "/%2e%2e/server.py", "*"]
+)
+def test_no_other_path_gives_anything(port: int, path: str) -> None:
+    got = ask(port, path)
+    assert got.status == 404
+    assert got.data() == {"error": "there is no such page"}
+
+
+def test_it_takes_nothing(port: int) -> None:
+    for method in ("POST", "PUT", "DELETE", "OPTIONS", "NONSENSE"):
+        assert ask(port, "/", method).status == 501
+    assert ask(port, "/", "HEAD").body == b""
+
+
+def test_a_recording_is_what_the_flight_s_report_says(port: int, crossing: Path) -> None:
+    got = ask(port, "/recording.json", Accept_Encoding="gzip")
+    assert got.headers["content-encoding"] == "gzip"
+    found = got.data()
+    assert found == ask(port, "/recording.json").data()
+    report = json.loads((crossing / "report.json").read_text())
+    for key in ("tracks", "takeovers", "authority", "events", "end_ms", "outcome"):
+        assert found[key] == report["flight"][key], key
+    assert found["verdicts"]["overall"] == report["verdict"]
+    for name in ("requirements", "constraints"):
+        shown = found["verdicts"]["details" if name == "constraints" else name]
+        assert [(r["requirement"], r["item"], r["verdict"], r["margin"]) for r in shown] == [
+            (r["requirement"], r["item"], r["verdict"], r["margin"]) for r in report[name]
+        ]
+    assert {route["vehicle"] for route in found["routes"]} == {1, 2}
+    assert [link["alive"] for link in found["links"]] == [True, True]
+
+
+def test_a_log_alone_has_no_verdicts(crossing: Path) -> None:
+    found = recording(crossing / "log.sqlite")
+    assert found["verdicts"] == {"why_none": NO_REPORT}
+    assert found["takeovers"]
+
+
+def test_a_report_of_another_log_gives_no_verdicts(crossing: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    shutil.copytree(crossing, folder)
+    report = json.loads((folder / "report.json").read_text())
+    report["log"]["digest"] = "0" * 64
+    (folder / "report.json").write_text(json.dumps(report))
+    assert recording(folder)["verdicts"] == {"why_none": OTHER_LOG}
+
+
+def test_a_damaged_report_is_named(crossing: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    shutil.copytree(crossing, folder)
+    report = json.loads((folder / "report.json").read_text())
+    report["constraints"][3]["verdict"] = 7
+    (folder / "report.json").write_text(json.dumps(report))
+    with pytest.raises(BadInput, match=r"report\.json") as caught:
+        recording(folder)
+    assert caught.value.item == "constraints[3].verdict"
+
+
+def test_a_log_of_others_shows_what_its_messages_tell(crossing: Path, tmp_path: Path) -> None:
+    """Without the mission: positions, routes and events; authority and links are not in the log."""
+    told = tmp_path / "told.jsonl"
+    words = ["--type", "AirVehicleState", "--type", "AutomationResponse"]
+    assert main(["log", "export", str(crossing), *words, "-o", str(told)]) == 0
+    found, full = recording(told), recording(crossing)
+    assert found["authority"] is found["links"] is None
+    assert {vehicle["id"] for vehicle in found["vehicles"]} == {1, 2}
+    assert {route["vehicle"] for route in found["routes"]} == {1, 2}
+    assert [event["text"].split()[0] for event in found["events"]] == ["AutomationResponse"]
+    # another origin, the same ways: lengths of the two tracks agree
+    for number in ("1", "2"):
+        (a, b), (c, d) = ((r["tracks"][number][0], r["tracks"][number][-5]) for r in (found, full))
+        assert b[1] - a[1] == pytest.approx(d[1] - c[1], abs=25)
+        assert b[2] - a[2] == pytest.approx(d[2] - c[2], abs=25)
+
+
+def test_a_damaged_log_is_told_in_the_page_s_answer_and_on_stderr(
+    crossing: Path, tmp_path: Path
+) -> None:
+    log = tmp_path / "log.sqlite"
+    shutil.copy(crossing / "log.sqlite", log)
+    with sqlite3.connect(log) as database:
+        (seq,) = database.execute(
+            "SELECT max(seq) FROM messages WHERE topic = 'cratous.TaskProgress'"
+        ).fetchone()
+        database.execute("UPDATE messages SET body = '{\"Time\":1}' WHERE seq = ?", (seq,))
+    with serving(log) as (running, port):
+        got = ask(port, "/recording.json")
+        assert got.status == 422
+        told = got.data()
+        assert told["error"] == "a message lacks what its type has"
+        assert told["where"] == f"{log}, message {seq} (cratous.TaskProgress)"
+        assert ask(port, "/").status == 200
+        running.send_signal(signal.SIGTERM)
+        _, said = running.communicate(timeout=LIMIT_S)
+        assert f"message {seq} (cratous.TaskProgress)" in said
+        assert running.returncode == 0
+
+
+def test_what_is_no_log_is_refused_before_anything_listens(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["serve", str(tmp_path / "none")]) == 2
+    (tmp_path / "text").write_text("not a log")
+    assert main(["serve", str(tmp_path / "text")]) == 2
+    assert "not a message log" in capsys.readouterr().err
+
+
+def test_a_port_in_use_is_refused(crossing: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        assert main(["serve", str(crossing), "--port", str(taken.getsockname()[1])]) == 2
+    assert "cannot listen there" in capsys.readouterr().err
+
+
+def test_silent_clients_hold_up_nobody(port: int) -> None:
+    silent = [socket.create_connection(("127.0.0.1", port)) for _ in range(20)]
+    began_s = time.monotonic()
+    assert ask(port, "/").status == 200
+    assert time.monotonic() - began_s < 5
+    for one in silent:
+        one.close()
+
+
+def test_ctrl_c_ends_it(crossing: Path) -> None:
+    with serving(crossing) as (running, port):
+        assert ask(port, "/recording.json").status == 200
+        running.send_signal(signal.SIGINT)
+        assert running.wait(timeout=LIMIT_S) == 0
