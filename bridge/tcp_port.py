@@ -133,13 +133,14 @@ class TcpPort:
         self.counts.received += len(found)
         return found
 
-    def send(self, parts: tuple[bytes, ...]) -> None:
-        """Queue the payload for every peer; without any, a client counts it as lost."""
+    def send(self, parts: tuple[bytes, ...], but: str = "") -> None:
+        """Queue the payload for every peer but the one of that name; without any, a client counts it
+        as lost."""
         payload = b"".join(parts)
         if len(payload) > self._limits.payload_bytes:
             self._tally.lose("message longer than the limit", f"{len(payload)} bytes")
             return
-        peers = [peer for peer in self._peers.values() if not peer.connecting]
+        peers = [p for p in self._peers.values() if not p.connecting and p.name != but]
         if not peers:
             if not self._server:
                 self._tally.lose(NOBODY)

@@ -74,7 +74,8 @@ def judge(
     )
     findings = [str(finding) for finding in inventory.findings]
     # what is outside of the subset is not read any further
-    read = {} if findings else Kept(keep, home).all(t.name for t in inventory.theorems)
+    kept, stated = Kept(keep, home), [t.name for t in inventory.theorems]
+    read = {} if findings else kept.all(stated, jobs or ledger.jobs_default())
     statements = {name: found.statement for name, found in read.items()}
     if not whole:
         return Judgement(inventory, tuple(findings), (), statements=statements)

@@ -8,12 +8,13 @@ all of them is computed on reading.
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from cratous.core.kernel.sources import digest
 from cratous.core.ledger.key_parts import PROVENANCE
-from cratous.core.ledger.package_home import PRODUCT, Home, theorem_file
+from cratous.core.ledger.package_home import PRODUCT, Home, theorem_home, theorems
 from cratous.core.ledger.status import status_of
 from cratous.spec.errors import Refused
 
@@ -90,19 +91,22 @@ def texts(data: dict[str, Any], home: Home = PRODUCT) -> dict[str, str]:
     for name, record in data["kernels"].items():
         module = name.removeprefix("cratous.core.").rpartition(".")[0]
         rows.setdefault(f"kernels/{module}.json", {})[name] = record
+    files = {one: theorems(one) for one in (home, PRODUCT)}
     for name, record in data["theorems"].items():
-        rows.setdefault(f"theorems/{_folder(name, home)}.json", {})[name] = record
+        rows.setdefault(f"theorems/{_folder(name, home, files)}.json", {})[name] = record
     return {
         place: json.dumps(found, indent=1, sort_keys=True) + "\n"
         for place, found in sorted(rows.items())
     }
 
 
-def _folder(name: str, home: Home) -> str:
+def _folder(name: str, home: Home, files: Mapping[Home, dict[str, Path]]) -> str:
     """The folder that a theorem lies in, for the name of its file of records."""
-    file = theorem_file(name, home)
-    above = () if file is None else file.relative_to(home.theorems).parts[:-1]
-    return ".".join(above) or "theorems"
+    whose = theorem_home(name, home, files)
+    if whose is None:
+        return "theorems"
+    file = files[whose][name.rpartition(".")[2]]
+    return ".".join(file.relative_to(home.theorems).parts[:-1]) or "theorems"
 
 
 def differing(new: dict[str, str], folder: Path, *, provenance: bool = True) -> list[str]:

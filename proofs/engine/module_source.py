@@ -28,38 +28,40 @@ def _parsed(file: str, changed_ns: int) -> ast.Module:
         return ast.parse(text.read())
 
 
-def _module(file: str) -> ast.Module:
-    return _parsed(file, os.stat(file).st_mtime_ns)
-
-
 def is_top(function: types.FunctionType) -> bool:
     """Its file has one definition of this name, at the top, and nothing else gets the name there."""
-    tree = _module(str(inspect.getsourcefile(function)))
-    found = [n for n in ast.walk(tree) if _binds(n, function.__name__)]
-    top = [n for n in tree.body if isinstance(n, ast.FunctionDef) and n.name == function.__name__]
+    file = str(inspect.getsourcefile(function))
+    found = _bindings(file, os.stat(file).st_mtime_ns).get(function.__name__, [])
+    return len(found) == 1 and found[0]
+
+
+@functools.cache
+def _bindings(file: str, changed_ns: int) -> dict[str, list[bool]]:
+    """Whatever gives a name in a file, outside of functions and classes: is it a `def` at the top?"""
+    tree = _parsed(file, changed_ns)
     inner = {
         id(n)
         for f in ast.walk(tree)
-        if isinstance(f, ast.FunctionDef)
+        if isinstance(f, ast.FunctionDef | ast.ClassDef)
         for b in f.body
         for n in ast.walk(b)
     }
-    fields = {
-        id(n)
-        for c in ast.walk(tree)
-        if isinstance(c, ast.ClassDef)
-        for b in c.body
-        for n in ast.walk(b)
-    }
-    return len(top) == 1 and [n for n in found if id(n) not in inner | fields] == top
+    top = {id(n) for n in tree.body if isinstance(n, ast.FunctionDef)}
+    found: dict[str, list[bool]] = {}
+    for node in ast.walk(tree):
+        name = _bound_name(node)
+        if name and id(node) not in inner:
+            found.setdefault(name, []).append(id(node) in top)
+    return found
 
 
-def _binds(node: ast.AST, name: str) -> bool:
+def _bound_name(node: ast.AST) -> str:
+    """The name that a node gives something; empty for one that gives none."""
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
-        return node.name == name
+        return node.name
     if isinstance(node, ast.alias):
-        return (node.asname or node.name) == name
-    return isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node.id == name
+        return node.asname or node.name
+    return node.id if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) else ""
 
 
 def constant(module: types.ModuleType, name: str) -> Any:

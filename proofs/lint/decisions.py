@@ -34,6 +34,7 @@ KINDS = {
     "prefilter": "leaves work out; what it lets through is re-checked by a kernel",
     "input": "range check of input, refused with a message",
     "clock": "when something is due or begins, not whether it holds",
+    "world": "moves the simulated world, whose every motion the product has to cope with",
     "open": "a decision that has no kernel yet",
 }
 
@@ -67,7 +68,10 @@ class Place:
 
 @dataclass(frozen=True)
 class Explanation:
-    """An entry of `decisions.json`: functions of a file, the kind of decision, the reason."""
+    """An entry of `decisions.json`: functions of a file, the kind of decision, the reason.
+
+    `*` as the function of a folder (its name ends in `/`) is all that stands in it: for the world alone.
+    """
 
     file: str
     functions: tuple[str, ...]
@@ -76,6 +80,8 @@ class Explanation:
 
     def covers(self, place: Place) -> bool:
         """True iff it is about this place."""
+        if self.functions == ("*",):
+            return self.kind == "world" and place.file.startswith(self.file)
         return place.file == self.file and place.function in self.functions
 
 
@@ -156,6 +162,8 @@ def unexplained(root: Path = ROOT, file: Path = FILE, parts: tuple[str, ...] = P
     wrong = [str(place) for place in seen if not any(e.covers(place) for e in known)]
     there = {place.name for place in seen}
     for explanation in known:
+        if explanation.functions == ("*",) and any(map(explanation.covers, seen)):
+            continue
         for function in explanation.functions:
             name = f"{explanation.file}:{function}"
             if name not in there:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 from collections.abc import Iterable
@@ -10,6 +11,7 @@ from typing import Any
 
 from cratous.core.kernel.sources import digest
 from cratous.core.ledger.package_home import Home
+from cratous.proofs.engine import worker_processes
 from cratous.proofs.ledger.proof_recall import Recall
 from cratous.proofs.ledger.text_cache import named
 from cratous.proofs.statements import relations, sentences
@@ -25,32 +27,50 @@ class Kept:
     def __init__(self, folder: Path | None, home: Home) -> None:
         self.folder, self.home, self._recall = folder, home, Recall(None, home)
 
-    def all(self, names: Iterable[str]) -> dict[str, Relations]:
-        """The relations of these theorems, whose statements can be read."""
-        return {name: self.get(name) for name in names}
+    def all(self, names: Iterable[str], jobs: int = 1) -> dict[str, Relations]:
+        """The relations of these theorems, whose statements can be read; jobs: processes."""
+        files = {name: self._file(name) for name in names}
+        found = {name: _kept(file) for name, file in files.items()}
+        rest = [name for name, one in found.items() if one is None]
+        # a few in each process: some take far longer than others
+        parts = [rest[k :: 8 * jobs] for k in range(min(8 * jobs, len(rest)))]
+        tasks = [functools.partial(self._read, part) for part in parts]
+        read = {n: one for _, some in worker_processes.each(tasks, jobs) for n, one in some.items()}
+        for name, one in read.items():
+            _keep(files[name], one)
+        return {name: one or read[name] for name, one in found.items()}
 
-    def get(self, name: str) -> Relations:
-        """The relations of one theorem."""
+    def _read(self, names: Iterable[str]) -> dict[str, Relations]:
+        return {name: relations.relations(name, self.home.theorems) for name in names}
+
+    def _file(self, name: str) -> Path | None:
+        """Where the relations of a theorem are kept; None where nothing is."""
         known = self._recall.key(name) if self.folder is not None else None
         if self.folder is None or known is None:
-            return relations.relations(name, self.home.theorems)
+            return None
         readers = (relations.__file__, sentences.__file__)
         wanted = digest([known, *(named(Path(reader).resolve()) for reader in readers)])
-        file = self.folder / wanted[:2] / wanted
-        try:
-            return _restored(json.loads(file.read_text(encoding="utf-8")))
-        except (OSError, ValueError, KeyError, TypeError):
-            found = relations.relations(name, self.home.theorems)
-        parts: dict[str, Any] = {part: sorted(getattr(found, part)) for part in PARTS}
-        text = json.dumps({**parts, "statement": found.statement})
-        try:
-            file.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
-            part = file.with_name(f"{wanted}.{os.getpid()}")
-            part.write_text(text, encoding="utf-8")
-            part.replace(file)
-        except OSError:
-            pass  # a folder that cannot be written is no error
-        return found
+        return self.folder / wanted[:2] / wanted
+
+
+def _kept(file: Path | None) -> Relations | None:
+    try:
+        return None if file is None else _restored(json.loads(file.read_text(encoding="utf-8")))
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def _keep(file: Path | None, found: Relations) -> None:
+    if file is None:
+        return
+    said: dict[str, Any] = {part: sorted(getattr(found, part)) for part in PARTS}
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+        part = file.with_name(f"{file.name}.{os.getpid()}")
+        part.write_text(json.dumps({**said, "statement": found.statement}), encoding="utf-8")
+        part.replace(file)
+    except OSError:
+        pass  # a folder that cannot be written is no error
 
 
 PARTS = ("definitions", "together", "follows", "leads", "lemmas", "uses")

@@ -45,6 +45,7 @@ COMMANDS = {
     "lmcp": "Read, write, explain and compare LMCP messages.",
     "uxas": "Run a UxAS configuration: services and bridges.",
     "icarous": "Avoid for one vehicle, over the CRATOUS bridge to UxAS.",
+    "sim": "Simulate the aircraft of an AMASE scenario, and be its AMASE on the network.",
     "algebra": "Check, draw or enumerate a process-algebra text.",
     "warm": "Compile ahead what commands would compile when they need it.",
     "version": "Print the version.",

@@ -14,7 +14,9 @@ from cratous.spec.mission.guarantees import exit_code
 @click.command()
 @click.argument("log", type=click.Path(path_type=Path))
 @click.option(
-    "--requirements", type=click.Path(path_type=Path), help="C2PO file; LOG is a CSV file."
+    "--requirements",
+    type=click.Path(path_type=Path),
+    help="Requirements of your own: a file *.req, or C2PO; LOG may be a CSV file then.",
 )
 @click.option("--verdicts", is_flag=True, help="Also each verdict, as `id:sample,T`, F or ?.")
 @click.option("--json", "as_json", is_flag=True, help="Print the verdicts as JSON.")
@@ -24,7 +26,8 @@ def monitor(
 ) -> int:
     """Replay a message LOG (log.sqlite, or its folder) through the monitor of G1 to G5.
 
-    With --requirements, hold a trace (a CSV file of signals) against requirements of your own.
+    With --requirements, hold a trace (a CSV file of signals; with *.req also a message log of any
+    format) against requirements of your own.
 
     Example:  cratous monitor out/crossing/log.sqlite
 
@@ -32,7 +35,9 @@ def monitor(
     unknown or excused.
     """
     if requirements is not None:
-        return _trace(log, requirements, verdicts, as_json, allow_unproved)
+        from cratous.services.cli.monitor_requirements import trace
+
+        return trace(log, requirements, verdicts, as_json, allow_unproved)
     if verdicts:
         raise BadInput("there are no such verdicts", item="--verdicts", expected="--requirements")
     from cratous.core import ledger
@@ -67,37 +72,4 @@ def monitor(
         requirement_table(requirement_rows(rows))
         click.echo(f"proofs: {standing.line}")
         click.echo(f"evidence: {summary(evidence)}")
-    return code
-
-
-def _trace(
-    trace: Path, requirements: Path, verdicts: bool, as_json: bool, allow_unproved: bool
-) -> int:
-    """A trace against requirements; the exit code."""
-    from cratous.core import ledger
-    from cratous.services.cli.show import say
-    from cratous.services.requirements import c2po, watch
-    from cratous.spec.files.limits import CONFIG_BYTES
-    from cratous.spec.files.text_file import text_of
-
-    spec = c2po.read(text_of(requirements, CONFIG_BYTES, "requirements in C2PO"), str(requirements))
-    standing = ledger.require(allow_unproved=allow_unproved)
-    lines: list[str] | None = [] if verdicts else None
-    outcomes = watch.watch(spec, trace, lines)
-    words = {outcome.verdict for outcome in outcomes}
-    code = 1 if "violated" in words else (0 if words == {"holds"} and not standing.problems else 3)
-    if as_json:
-        rows = [outcome.data() for outcome in outcomes]
-        data = {"requirements": rows, "proofs": standing.line, "exit_code": code}
-        click.echo(json.dumps({**data, "verdicts": lines} if verdicts else data, indent=1))
-        return code
-    for line in lines or ():
-        say(line)
-    for one in outcomes:
-        text = f"{one.name}: {one.verdict}; samples: {one.holds} hold, {one.violated} violated"
-        text += f", {one.unknown} unknown, {one.undecided} undecided at the end"
-        if one.violated:
-            text += f"; first violated at sample {one.first_violated}, known at {one.decided_at}"
-        say(text)
-    click.echo(f"proofs: {standing.line}")
     return code

@@ -28,6 +28,7 @@ SUITES = {
     "detect-and-avoid": "Alerts, bands, recovery, last times and resolutions of DAIDALUS.",
     "bridge": "Lines and recorded sessions of the CRATOUS text protocol, whole and cut at every place.",
     "monitor": "Requirements over time: verdicts of R2U2 on its traces and suites.",
+    "trajectory": "Flights of AMASE against the simulator in compatibility mode.",
     "assignment": "Optimal assignments: recorded optima, and best costs of OpenUxAS.",
 }
 

@@ -19,6 +19,7 @@ from cratous.services.requirements import c2po
 from cratous.services.requirements.csv_trace import Sample, TraceOfChanges, samples
 from cratous.services.requirements.evaluation import Evaluation
 from cratous.services.requirements.formula import Formula, Reaches, parts, signals
+from cratous.services.requirements.specification import NotRead, Specification
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import CONFIG_BYTES, integer_of, json_of
 from cratous.spec.files.text_file import lines_of, text_of
@@ -109,7 +110,7 @@ def _oracle(file: Path) -> dict[str, dict[int, int]]:
 
 
 @lru_cache(4)
-def _specification(file: Path) -> c2po.Specification:
+def _specification(file: Path) -> Specification:
     return c2po.read(text_of(file, CONFIG_BYTES), file.name)
 
 
@@ -136,7 +137,7 @@ def judge(case: dict[str, Any]) -> Result:
             "there is no such requirement", where=str(spec_file), got=str(case["requirement"])
         )
     formula = found[0].formula
-    if isinstance(formula, c2po.NotRead):
+    if isinstance(formula, NotRead):
         return not_covered(case["id"], "outside of the part of C2PO that is read")
     return _compare(case, formula, spec.types, trace_file)
 

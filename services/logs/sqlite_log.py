@@ -117,7 +117,7 @@ class SqliteLog:
         return "closing" not in self._tables
 
     def closing(self) -> Closing | None:
-        """What the writer said at its end; None if it has not ended, was killed, or is of old."""
+        """What the writer said at its end; None if it has not ended, was killed, or is of version 1."""
         if "closing" not in self._tables:
             return None
         rows = self._rows("SELECT messages, digest FROM closing")

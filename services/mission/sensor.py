@@ -245,7 +245,7 @@ def covered_by(
 ) -> np.ndarray:
     """Which points of the task's line (or its one point) a flight along the path sees.
 
-    every: ask only for each so manyth point of the line.
+    every: only one point in so many is asked about.
     """
     import numpy as np
 

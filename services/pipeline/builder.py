@@ -35,7 +35,7 @@ class Work(NamedTuple):
 
 
 class Built(NamedTuple):
-    """Requests in work, and the last command id."""
+    """Requests in progress, and the last command id."""
 
     work: dict[int, Work]
     commands: int = 0

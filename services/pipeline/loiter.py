@@ -59,7 +59,7 @@ class Order(NamedTuple):
 
 
 class Loiters(NamedTuple):
-    """Requests in work; orders by their number; how many orders and commands there have been."""
+    """Requests in progress; orders by number; how many orders and commands have been sent."""
 
     work: dict[int, Work]
     orders: dict[int, Order]

@@ -62,7 +62,7 @@ _EVENTS = {
 
 
 class State(NamedTuple):
-    """The kernel's state; the implementation request in work; the vehicle that the task is for.
+    """The kernel's state; the implementation request in progress; the vehicle that the task is assigned to.
 
     The kernel's requests are tickets that count up, as RequestIDs need not; tickets: the newest with
     their RequestIDs. asked: what others have said of the options.
@@ -79,7 +79,7 @@ class State(NamedTuple):
         return dict(self.tickets)[ticket]
 
     def ticket(self, number: int) -> int:
-        """The ticket of the request in work, or the one after it, if this is its RequestID, else -1."""
+        """The ticket of the request in progress, or the one after it, if this is its RequestID, else -1."""
         mine = (self.task.request, self.task.kept)
         return next((t for t, n in self.tickets if n == number and t in mine), -1)
 
@@ -95,7 +95,7 @@ class State(NamedTuple):
 
 
 def nothing() -> None:
-    """Nothing has to be done when a task is no more."""
+    """Nothing has to be done when a task is removed."""
 
 
 class TaskService:
@@ -115,14 +115,14 @@ class TaskService:
     def __init__(
         self, contexts: Contexts, task_id: int, kind: TaskKind, ended: Callable[[], None] = nothing
     ) -> None:
-        """ended: called when the task is no more."""
+        """ended: called when the task is removed."""
         self._contexts, self._task_id, self._when_ended = contexts, task_id, ended
         self._request = 0
         self.name = f"{NAMES[kind]}[{task_id}]"
 
     @property
     def _context(self) -> Context:
-        """Of the request in work."""
+        """The context of the request in progress."""
         return self._contexts.of(self._request)
 
     def _task_in(self, context: Context) -> Task:
@@ -334,7 +334,7 @@ class TaskService:
         return status(0, "Warning", [("TaskID", str(self._task_id)), ("reason", text)])
 
     def stop(self, state: State) -> None:
-        """The task is no more."""
+        """The task has been removed."""
         self._when_ended()
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -28,6 +27,13 @@ from cratous.services.requirements.formula import (
     iff,
     implies,
     once,
+)
+from cratous.services.requirements.specification import (
+    NotRead,
+    Requirement,
+    Signal,
+    Specification,
+    caret_of,
 )
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import CONFIG_BYTES, at_most, integer_of
@@ -49,41 +55,6 @@ ONE_SIDED: dict[str, Callable[[Formula, int, int], Formula]] = {
 }
 
 
-class NotRead(BadInput):
-    """A requirement outside of the part of C2PO that is read."""
-
-    def __init__(
-        self, what: str, where: str, caret: str, *, expected: str = "", got: str = ""
-    ) -> None:
-        self._caret = caret
-        super().__init__(what, where=where, expected=expected, got=got)
-
-    def caret(self) -> str:
-        """The line of the requirement (a window of it if it is long), and ^ below the place."""
-        return self._caret
-
-    def data(self) -> dict[str, str]:
-        """As for every `BadInput`, and the caret."""
-        return {**super().data(), "caret": self._caret}
-
-
-@dataclass(frozen=True)
-class Requirement:
-    """One requirement of a file. name: its own, else its number; formula: or why it is not read."""
-
-    name: str
-    text: str
-    formula: Formula | NotRead
-
-
-@dataclass(frozen=True)
-class Specification:
-    """The requirements of a file in order, and the type of each declared signal: bool, int, float."""
-
-    types: dict[str, str]
-    requirements: tuple[Requirement, ...]
-
-
 def read(text: str, where: str = "C2PO") -> Specification:
     """The requirements of a text. Raises BadInput for one that has none, or declares a signal twice."""
     at_most(len(text.encode()), CONFIG_BYTES, "the requirements are too long", where)
@@ -100,7 +71,7 @@ def read(text: str, where: str = "C2PO") -> Specification:
     if not found:
         raise BadInput("there is no requirement", where=where, expected="FTSPEC or PTSPEC")
     made = [_requirement(n, at, piece, text, types, where) for n, (at, piece) in enumerate(found)]
-    return Specification(types, tuple(made))
+    return Specification({name: Signal(kind) for name, kind in types.items()}, tuple(made))
 
 
 def _pieces(text: str, start: int, end: int) -> Iterator[tuple[int, str]]:
@@ -129,13 +100,8 @@ def _requirement(
         name, formula = _formula(piece, types)
         return Requirement(name or str(number), piece, formula)
     except _Wrong as no:
-        line = text.count("\n", 0, at + no.offset) + 1
-        begin = text.rfind("\n", 0, at + no.offset) + 1
-        column = at + no.offset - begin
-        shown = text.split("\n")[line - 1]
-        window = max(0, column - 60)
-        caret = f"{shown[window : window + 90]}\n{' ' * (column - window)}^"
-        place = f"{where}, line {line}, column {column + 1}"
+        line, column, caret = caret_of(text, at + no.offset)
+        place = f"{where}, line {line}, column {column}"
         refused = NotRead(no.what, place, caret, expected=no.expected, got=no.got)
         return Requirement(str(number), piece, refused)
 

@@ -10,6 +10,7 @@ from cratous.spec.errors import BadInput
 from cratous.spec.files.text_file import lines_of
 
 Sample = dict[str, float | None]
+Cells = dict[str, str]
 
 
 class TraceOfChanges(BadInput):
@@ -22,6 +23,13 @@ def samples(file: Path) -> Iterator[tuple[int, Sample]]:
     Raises BadInput with line and column's name for a cell that is no number, a row of another length, and a
     first line that does not name each column once; TraceOfChanges.
     """
+    for where, cells in rows_of(file):
+        row = {name: _number(cell, where, name) for name, cell in cells.items()}
+        yield int(where.rpartition(":")[2]), row
+
+
+def rows_of(file: Path) -> Iterator[tuple[str, Cells]]:
+    """(`file:line`, cells by column) of each row. Raises as `samples` does, but for what cells say."""
     names: list[str] = []
     for number, line in lines_of(file):
         where = f"{file}:{number}"
@@ -38,8 +46,7 @@ def samples(file: Path) -> Iterator[tuple[int, Sample]]:
         if len(cells) != len(names):
             got = f"{len(cells)} cells"
             raise BadInput("a row is incomplete", where=where, expected=f"{len(names)}", got=got)
-        row = zip(names, cells, strict=True)
-        yield number, {name: _number(cell, where, name) for name, cell in row}
+        yield where, dict(zip(names, cells, strict=True))
     if not names:
         raise BadInput(
             "the file is empty", where=str(file), expected="a line of names, then samples"

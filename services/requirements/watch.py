@@ -1,26 +1,33 @@
-"""A trace held against requirements: what is violated, unknown, or not decided when the trace ends."""
+"""A trace held against requirements: what is violated, unknown, or not decided when the trace ends.
+
+Samples are numbered from 0 where the language counts them, and bear times where it has times [ns].
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
-from cratous.services.requirements.c2po import NotRead, Specification
 from cratous.services.requirements.csv_trace import samples
 from cratous.services.requirements.evaluation import FALSE, TRUE, Evaluation
-from cratous.services.requirements.formula import horizon, signals
+from cratous.services.requirements.formula import Formula, Reaches, horizon, parts, signals
+from cratous.services.requirements.sampling import Finding, Sample, Sampling
+from cratous.services.requirements.specification import NotRead, Requirement, Specification
+from cratous.services.requirements.traces import rows as timed_rows
 from cratous.spec.errors import BadInput
 
 
 @dataclass
 class Outcome:
-    """One requirement over a trace. Samples are counted from 0; first_*: -1 where there is none.
+    """One requirement over a trace. Instants: numbers of samples, or times [ns]; -1 where there is none.
 
-    undecided: samples whose verdict needs more than the trace has.
+    undecided: samples whose verdict needs more than the trace has; decided_at: when the first violation was
+    known; whole: no sample had to be left out; margins: of each comparison.
     """
 
-    name: str
+    requirement: Requirement
     horizon: int
     holds: int = 0
     violated: int = 0
@@ -29,19 +36,22 @@ class Outcome:
     first_violated: int = -1
     decided_at: int = -1
     first_unknown: int = -1
+    whole: bool = True
+    margins: list[Margin] = field(default_factory=list)
+
+    @property
+    def name(self) -> str:
+        """The requirement's name."""
+        return self.requirement.name
 
     @property
     def verdict(self) -> str:
         """violated, unknown, undecided, or holds: the last only where every sample is decided."""
         if self.violated:
             return "violated"
-        if self.unknown:
+        if self.unknown or not self.whole:
             return "unknown"
         return "undecided" if self.undecided or not self.holds else "holds"
-
-    def data(self) -> dict[str, Any]:
-        """For `--json`."""
-        return {"verdict": self.verdict, **vars(self)}
 
     def add(self, sample: int, verdict: int, now: int) -> None:
         """A verdict more, decided by the sample `now`."""
@@ -56,39 +66,103 @@ class Outcome:
             self.first_unknown = sample if self.first_unknown < 0 else self.first_unknown
 
 
-def watch(spec: Specification, trace: Path, verdicts: list[str] | None = None) -> list[Outcome]:
-    """The outcome of each requirement over a CSV trace; one row is one time step.
+@dataclass
+class Margin:
+    """How near a comparison came to its bound: least and greatest left - right, where it was known.
+
+    unit: of both sides; at, greatest_at: instants.
+    """
+
+    left: str | float
+    right: str | float
+    unit: str
+    least: float = math.inf
+    at: int = -1
+    greatest: float = -math.inf
+    greatest_at: int = -1
+
+    def add(self, row: Sample, now: int) -> None:
+        """A sample more."""
+        left = row.get(self.left) if isinstance(self.left, str) else self.left
+        right = row.get(self.right) if isinstance(self.right, str) else self.right
+        if left is None or right is None or not math.isfinite(left - right):
+            return
+        if left - right < self.least:
+            self.least, self.at = left - right, now
+        if left - right > self.greatest:
+            self.greatest, self.greatest_at = left - right, now
+
+
+@dataclass(frozen=True)
+class Watched:
+    """The outcome of each requirement, and what is wrong with the samples."""
+
+    outcomes: tuple[Outcome, ...]
+    findings: tuple[Finding, ...]
+
+
+def watch(spec: Specification, trace: Path, verdicts: list[str] | None = None) -> Watched:
+    """The outcome of each requirement over a trace: a CSV file, for a timed specification also a log.
 
     verdicts: takes a line `id:t,T`, `F` or `?` (unknown) for each verdict as it comes. A cell that is empty or
-    no finite number is unknown. Raises BadInput for a requirement that is not read, a signal without a
-    column, and a bool that is neither 0 nor 1.
+    no finite number is unknown. Raises BadInput for a requirement that is not read, a signal that the trace
+    cannot have, and a bool that is neither 0 nor 1.
     """
     watched: list[tuple[Outcome, Evaluation]] = []
-    bools: set[str] = set()
     needed: set[str] = set()
     for one in spec.requirements:
         if isinstance(one.formula, NotRead):
             raise one.formula
         needed |= set(signals(one.formula))
-        watched.append((Outcome(one.name, horizon(one.formula)), Evaluation(one.formula)))
-    bools = {name for name in needed if spec.types[name] == "bool"}
+        outcome = Outcome(one, horizon(one.formula), margins=_margins(one.formula, spec))
+        watched.append((outcome, Evaluation(one.formula)))
+    sampling = Sampling(spec, needed)
+    rows = timed_rows(trace, spec, needed) if spec.timed else None
+    read = _counted(spec, trace, needed) if rows is None else sampling.samples(rows)
     count = 0
+    for time, row in read:
+        for outcome, evaluation in watched:
+            for margin in outcome.margins:
+                margin.add(row, time)
+            for sample, verdict in evaluation.sample(time, row):
+                outcome.add(sample, verdict, time)
+                if verdicts is not None:
+                    at = f"{sample / 1e9:.9g}" if spec.timed else str(sample)
+                    verdicts.append(f"{outcome.name}:{at},{'F?T'[verdict]}")
+        count += 1
+    for outcome, _ in watched:
+        outcome.undecided = count - outcome.holds - outcome.violated - outcome.unknown
+        outcome.whole = sampling.is_whole
+    findings = tuple(sampling.findings) if spec.timed else ()
+    return Watched(tuple(outcome for outcome, _ in watched), findings)
+
+
+def _margins(formula: Formula, spec: Specification) -> list[Margin]:
+    """One for each comparison of numbers, whichever side is written first."""
+    found: dict[frozenset[str | float], Margin] = {}
+    for part in parts(formula):
+        if isinstance(part, Reaches):
+            named = [s for s in (part.left, part.right) if isinstance(s, str)]
+            if spec.signals[named[0]].kind != "bool":
+                left, right = part.left, part.right
+                if not isinstance(left, str):
+                    left, right = right, left
+                unit = spec.signals[named[0]].unit
+                found.setdefault(frozenset((left, right)), Margin(left, right, unit))
+    return list(found.values())
+
+
+def _counted(spec: Specification, trace: Path, needed: set[str]) -> Iterator[tuple[int, Sample]]:
+    """The samples of a CSV trace; one row is one time step."""
+    bools = sorted(name for name in needed if spec.types[name] == "bool")
     for time, (line, row) in enumerate(samples(trace)):
         missing = sorted(needed - set(row))
         if missing:
             raise BadInput("a signal has no column", where=str(trace), item=missing[0])
-        for name in sorted(bools):
+        for name in bools:
             if row[name] not in (0.0, 1.0, None):
                 raise BadInput(
                     "this is no truth value", where=f"{trace}:{line}", item=name,
                     expected="0 or 1", got=str(row[name]),
                 )  # fmt: skip
-        for outcome, evaluation in watched:
-            for sample, verdict in evaluation.sample(time, row):
-                outcome.add(sample, verdict, time)
-                if verdicts is not None:
-                    verdicts.append(f"{outcome.name}:{sample},{'F?T'[verdict]}")
-        count += 1
-    for outcome, _ in watched:
-        outcome.undecided = count - outcome.holds - outcome.violated - outcome.unknown
-    return [outcome for outcome, _ in watched]
+        yield time, row

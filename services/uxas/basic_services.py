@@ -144,12 +144,12 @@ class SimulationTime:
         return envelope.body.Time, ()
 
     def stop(self, state: int) -> None:
-        """Time of the machine again."""
+        """From now on the clock is that of the machine."""
         self._clock.discrete = False
 
 
 class HelloWorld:
-    """Says a text every so often, and prints what others say."""
+    """Sends a text periodically, and prints the texts of others."""
 
     subscribes: tuple[str, ...] = ("afrl.cmasi.KeyValuePair",)
 
@@ -177,7 +177,7 @@ class HelloWorld:
 
 
 class Report(NamedTuple):
-    """The present report, and how often a state and a keep-alive have come."""
+    """The present report, and how many states and keep-alive messages have come."""
 
     report: Any
     states: int = 0
@@ -185,7 +185,7 @@ class Report(NamedTuple):
 
 
 class StatusReportService:
-    """Every so often says how a vehicle is: connected entities, tasks, fresh state, authority.
+    """Reports a vehicle's status periodically: connected entities, tasks, age of its state, authority.
 
     A state that is older than `stale_ms`, or an autopilot's keep-alive older than `expires_ms`,
     is no longer called valid.

@@ -41,7 +41,7 @@ class Batch(NamedTuple):
 
 
 class Batches(NamedTuple):
-    """The next free id, and requests in work."""
+    """The next free id, and requests in progress."""
 
     free: int = 1
     open: tuple[Batch, ...] = ()

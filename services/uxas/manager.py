@@ -234,7 +234,7 @@ class ServiceManager:
 
 
 def _forget(world: World, task: Any) -> None:
-    """A task is no more, unless another has taken its place already."""
+    """Remove a task, unless a newer task has its id by now."""
     known = world.task(task.TaskID)
     if known is not None and known.body == task:
         world.forget("task", task.TaskID)
@@ -335,7 +335,7 @@ def _whole(text: str) -> bool:
 
 
 def _nobody_has(kind: str) -> bool:
-    """True for a service of UxAS that is not covered, and for one of a name like no other's."""
+    """True for a service of UxAS that is not covered, and for a name that resembles no known one."""
     known = [*registry.KINDS, *TASKS, *bridge_kinds.BRIDGES]
     slip = get_close_matches(kind, known, 1, SLIP) or ":" in kind
     return user_services.kind_of(kind) is None and (kind in not_covered.SERVICES or not slip)

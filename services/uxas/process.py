@@ -130,7 +130,7 @@ class Process:
     def run(self, until_s: float | None = None) -> None:
         """Turn until `until_s` seconds are over, KillService -1 comes, or `stopping` is set.
 
-        The start is complete when those are there for whom a service waits; the time counts from then on.
+        The start is complete when all entities that services wait for have connected; time counts from then on.
         """
         while self._awaits() and not (self.stopping or self.manager.ended):
             self.turn()

@@ -1,4 +1,4 @@
-"""TaskTrackerService: tells in the log what becomes of each task.
+"""TaskTrackerService: logs each change of a task's status.
 
 A task is known, assigned (a plan for a vehicle has it), active (the vehicle says so), or done.
 """

@@ -108,7 +108,7 @@ def _loitering(waypoint: Any, radius_m: float) -> Any:
 
 
 class Served(NamedTuple):
-    """The path in work, the segment that the vehicle has, its waypoint, and the last command id."""
+    """The path in progress, the segment that the vehicle has, its waypoint, and the last command id."""
 
     path: Path | None = None
     span: Span = Span(0, 0)

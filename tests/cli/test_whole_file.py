@@ -190,6 +190,7 @@ KEPT = {
     "services/logs/uxas_log.py": "inside `replacing`",
     "services/logs/text_files.py": "a log that grows",
     "services/uxas/logs.py": "a log that grows",
+    "services/cli/sim.py": "inside `replacing`",
     "services/daa/plot.py": "inside `replacing`",
     "docs/tools/geofence_pictures.py": "inside `replacing`",
     "docs/tools/pictures_well_clear.py": "into memory",

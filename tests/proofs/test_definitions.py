@@ -10,6 +10,7 @@ import pytest
 
 from cratous.core import kernel as kernels
 from cratous.core import ledger
+from cratous.core.files.private_cache import private_cache
 from cratous.core.kernel import REGISTRY, Entry, named, supported
 from cratous.core.ledger import PRODUCT
 from cratous.proofs.engine import prover
@@ -22,6 +23,7 @@ from cratous.proofs.statements.definitions import (
     is_restated,
     problems,
 )
+from cratous.proofs.statements.relation_cache import Kept
 from cratous.proofs.statements.relations import Relations, relations
 from cratous.proofs.statements.restated import restates
 
@@ -43,7 +45,8 @@ def test_every_kernel_of_the_product_has_a_definition_or_is_a_step_of_one_that_h
 @pytest.mark.slow  # it reads the statement of each theorem
 def test_each_definition_is_used_and_related_by_a_theorem() -> None:
     data = ledger.read()["theorems"]
-    related = {name: relations(name) for name in prover.theorem_files()}
+    kept = Kept(private_cache() / "relations", PRODUCT)
+    related = kept.all(prover.theorem_files(), jobs=2)
     # that their arguments vary is asked when they are proved
     varied = {name: {use[2:]: ALL for use in one.uses} for name, one in related.items()}
     proofs = Proofs(

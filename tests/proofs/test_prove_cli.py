@@ -20,6 +20,7 @@ from cratous.services.cli import main
 
 FEW = "*its_definition"
 ONE = "geofence_straddles_is_its_definition"
+FEW_USE_IT = "authority_exactly_one_gives_way"
 
 
 @pytest.fixture(autouse=True)
@@ -135,9 +136,11 @@ def test_mutation_is_reported(monkeypatch: pytest.MonkeyPatch, capsys: pytest.Ca
 
     monkeypatch.setattr(mutate, "run", run)
     monkeypatch.setattr(mutation_record, "write", lambda report, keys: kept.append(report))
-    assert main(["prove", "--only", ONE, "--mutate"]) == 1, "a survivor on a kernel fails the run"
+    assert main(["prove", "--only", FEW_USE_IT, "--mutate"]) == 1, (
+        "a survivor on a kernel fails the run"
+    )
     out = capsys.readouterr().out
-    assert asked == [((ONE,), [ONE])]
+    assert asked == [((FEW_USE_IT,), [FEW_USE_IT])]
     assert kept == [
         mutate.MutationReport((result,), ()),
         mutate.MutationReport((), (), ("a_theorem",)),

@@ -1,0 +1,120 @@
+"""`cratous monitor --requirements`: a trace against requirements of the user's own."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from cratous.services.requirements.specification import Specification
+    from cratous.services.requirements.watch import Margin, Outcome
+
+
+def trace(
+    trace: Path, requirements: Path, verdicts: bool, as_json: bool, allow_unproved: bool
+) -> int:
+    """Print what each requirement says of the trace; the exit code."""
+    from cratous.core import ledger
+    from cratous.services.cli.show import say
+    from cratous.services.requirements.lint import lint
+    from cratous.services.requirements.watch import watch
+
+    spec = _read(requirements)
+    standing = ledger.require(allow_unproved=allow_unproved)
+    remarks = lint(spec)
+    lines: list[str] | None = [] if verdicts else None
+    watched = watch(spec, trace, lines)
+    words = {outcome.verdict for outcome in watched.outcomes}
+    code = 1 if "violated" in words else (0 if words == {"holds"} and not standing.problems else 3)
+    if as_json:
+        data: dict[str, Any] = {
+            "requirements": [_data(one, spec.timed) for one in watched.outcomes],
+            "findings": [vars(one) for one in watched.findings],
+            "lint": [vars(one) for one in remarks],
+            "proofs": standing.line,
+            "exit_code": code,
+        }
+        click.echo(json.dumps({**data, "verdicts": lines} if verdicts else data, indent=1))
+        return code
+    for line in lines or ():
+        say(line)
+    for remark in remarks:
+        say(f"lint: {remark.text}")
+    for finding in watched.findings:
+        say(f"finding: {finding.text}")
+    for one in watched.outcomes:
+        say(_line(one, spec.timed))
+        if spec.timed:
+            for margin in one.margins:
+                say(f"  {_margin(margin)}")
+    click.echo(f"proofs: {standing.line}")
+    return code
+
+
+def _read(requirements: Path) -> Specification:
+    from cratous.services.requirements import c2po, language
+    from cratous.spec.files.limits import CONFIG_BYTES
+    from cratous.spec.files.text_file import text_of
+
+    reader = language if requirements.suffix == ".req" else c2po
+    return reader.read(text_of(requirements, CONFIG_BYTES, "requirements"), str(requirements))
+
+
+def _data(one: Outcome, timed: bool) -> dict[str, Any]:
+    required = one.requirement
+    instants = {k: getattr(one, k) for k in ("first_violated", "decided_at", "first_unknown")}
+    if timed:
+        instants = {f"{k}_s": v / 1e9 if v >= 0 else None for k, v in instants.items()}
+    counts = {k: getattr(one, k) for k in ("holds", "violated", "unknown", "undecided")}
+    return {
+        "name": one.name,
+        "verdict": one.verdict,
+        "text": required.text,
+        "title": required.title,
+        "severity": required.severity,
+        "source": required.source,
+        **({"horizon_s": one.horizon / 1e9} if timed else {"horizon": one.horizon}),
+        **counts,
+        **instants,
+        "margins": [
+            {
+                "of": f"{m.left} - {m.right}",
+                "unit": m.unit,
+                "least": m.least if m.at >= 0 else None,
+                "at": m.at / 1e9 if timed and m.at >= 0 else m.at,
+                "greatest": m.greatest if m.at >= 0 else None,
+                "greatest_at": m.greatest_at / 1e9 if timed and m.at >= 0 else m.greatest_at,
+            }
+            for m in one.margins
+        ],
+    }
+
+
+def _line(one: Outcome, timed: bool) -> str:
+    name = f"{one.name} ({one.requirement.title})" if one.requirement.title else one.name
+    severity = f" [{one.requirement.severity}]" if one.requirement.severity else ""
+    text = f"{name}{severity}: {one.verdict}; samples: {one.holds} hold, {one.violated} violated"
+    text += f", {one.unknown} unknown, {one.undecided} undecided at the end"
+    if one.violated:
+        first, known = (
+            (f"{one.first_violated / 1e9:g} s", f"{one.decided_at / 1e9:g} s")
+            if timed
+            else (f"sample {one.first_violated}", str(one.decided_at))
+        )
+        text += f"; first violated at {first}, known at {known}"
+    return text
+
+
+def _margin(margin: Margin) -> str:
+    """How near the two sides came, in their unit."""
+    unit = "" if margin.unit == "1" else f" {margin.unit}"
+    right = margin.right if isinstance(margin.right, str) else f"{margin.right:g}{unit}"
+    if margin.at < 0:
+        return f"{margin.left} - {right}: never known"
+    return (
+        f"{margin.left} - {right}: least {margin.least:g}{unit} at {margin.at / 1e9:g} s, "
+        f"greatest {margin.greatest:g}{unit} at {margin.greatest_at / 1e9:g} s"
+    )

@@ -1,0 +1,126 @@
+"""`cratous sim`: the simulator as a program of its own."""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from cratous.services.simulator.scenario import Scenario
+    from cratous.services.simulator.world import World
+
+
+@click.command()
+@click.argument("scenario", type=click.Path(path_type=Path))
+@click.option("--listen", metavar="HOST:PORT", help="Be AMASE for clients at this address.")
+@click.option(
+    "--rate", type=click.FloatRange(0, 1e6, min_open=True), default=1.0, show_default=True,
+    help="Times faster than real time, with --listen.",
+)  # fmt: skip
+@click.option(
+    "--clients", type=click.IntRange(0, 100), default=0, help="Begin when so many are connected."
+)
+@click.option(
+    "--until", type=click.FloatRange(0, min_open=True), help="End after so many seconds of it."
+)
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Write all that is told: sentinel frames.")  # fmt: skip
+@click.option(
+    "--compatibility", type=click.Choice(["none", "amase"]), default="none", show_default=True,
+    help="amase: with AMASE's defects.",
+)  # fmt: skip
+def sim(
+    scenario: Path,
+    listen: str | None,
+    rate: float,
+    clients: int,
+    until: float | None,
+    output: Path | None,
+    compatibility: str,
+) -> int:
+    """Fly the aircraft of an AMASE SCENARIO (XML).
+
+    Without --listen as fast as it goes, to the end; -o keeps what AMASE would tell (read it with
+    `cratous lmcp decode`). With --listen for clients such as UxAS, at --rate: they send MissionCommand,
+    VehicleActionCommand and others, and SessionStatus to pause, run, reset or stop.
+
+    Example:  cratous sim 02_waterway.xml --listen 127.0.0.1:5555
+
+    Exit codes: 0 the scenario is over, or it was asked to end (SIGTERM, Ctrl-C, Stopped), 2 bad input.
+    """
+    from cratous.services.simulator.scenario import read
+    from cratous.services.simulator.world import World
+    from cratous.spec.errors import BadInput
+
+    if listen is not None and output is not None:
+        raise BadInput("not both", item="--listen, -o", expected="one of them")
+    plan = read(scenario)
+    for note in plan.notes:
+        click.echo(f"note: {note}", err=True)
+    end_s = min(plan.duration_s, until or plan.duration_s)
+
+    def make() -> World:
+        return World(plan.events, end_s, compatible=compatibility == "amase")
+
+    if listen is not None:
+        return _serve(make, plan, listen, rate, clients)
+    began_s = time.monotonic()
+    world = make()
+    _write(world, output)
+    took_s = max(1e-9, time.monotonic() - began_s)
+    for kind, count in sorted(world.unheard.items()):
+        click.echo(f"note: {count} x {kind} changes nothing in the simulator", err=True)
+    click.echo(
+        f"{plan.name}: {world.time_s:.0f} s of {len(world.aircraft)} aircraft, "
+        f"{world.time_s / took_s:.0f} times real time"
+    )
+    return 0
+
+
+def _write(world: World, output: Path | None) -> None:
+    """Play a world to its end; all that it tells goes to a file, which stands there when it is whole."""
+    from cratous.bridge import sentinel
+    from cratous.core.files.whole_file import cannot_write, replacing
+    from cratous.services.simulator.server import frame_payload
+
+    if output is None:
+        while not world.over:
+            world.tick()
+        return
+    with replacing(output) as part:
+        try:
+            with part.open("wb") as file:
+                while not world.over:
+                    for body in world.tick():
+                        file.write(sentinel.frame(frame_payload(body)))
+        except OSError as error:
+            raise cannot_write(output, error) from error
+
+
+def _serve(
+    make: Callable[[], World], plan: Scenario, listen: str, rate: float, clients: int
+) -> int:
+    from cratous.bridge.port import address
+    from cratous.services.simulator.server import Server
+
+    def report(severity: str, text: str) -> None:
+        if severity != "DEBUG":
+            click.echo(f"{severity}: {text}", err=True)
+
+    where = address(f"tcp://{listen}", ("tcp",), item="--listen", free=True)
+    server = Server(make, where, report, rate=rate, clients=clients)
+
+    def stop(*_: object) -> None:
+        server.stopping = True
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, stop)
+    host, port = server.port.bound
+    click.echo(f"{plan.name}: listening on {host}:{port}")
+    server.run()
+    click.echo(f"{plan.name}: ended at {server.world.time_s:.0f} s")
+    return 0

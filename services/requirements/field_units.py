@@ -1,0 +1,50 @@
+"""The unit that the message models state for a field, in the names that requirements use."""
+
+from __future__ import annotations
+
+from cratous.bridge.lmcp import model
+from cratous.spec.errors import BadInput
+
+NAMES = {
+    "meter": "m", "meters": "m", "meters msl": "m", "m": "m",
+    "meter/sec": "m/s", "meters/sec": "m/s", "mps": "m/s", "m/s": "m/s",
+    "meter/sec/sec": "m/s^2",
+    "degree": "deg", "degrees": "deg", "deg": "deg",
+    "degree/sec": "deg/s", "degree/second": "deg/s", "degrees/sec": "deg/s",
+    "millisecond": "ms", "milliseconds": "ms", "milliseconds since 1 jan 1970": "ms", "sec": "s",
+    "%": "%",
+}  # fmt: skip
+
+
+def unit_of(message: str, path: str) -> str:
+    """The unit of a field, by a path of names from a message type; "" where the models do not say.
+
+    Raises BadInput for a path that a known type does not have.
+    """
+    try:
+        series, name = model.resolve(message)
+    except BadInput:
+        return ""  # a type that only the log knows
+    units = ""
+    for part in path.split("."):
+        fields = _fields(series, name)
+        field = fields.get(part)
+        if field is None:
+            raise BadInput(
+                "the message type has no such field", item=f"{message}.{path}",
+                expected=", ".join(fields) or "nothing below it", got=part,
+            )  # fmt: skip
+        units = field.units
+        series, _, name = field.type.partition("/") if field.kind == "struct" else ("", "", "")
+    return NAMES.get(units.lower(), "")
+
+
+def _fields(series: str, name: str) -> dict[str, model.Field]:
+    found: dict[str, model.Field] = {}
+    while name:
+        struct = model.load(series).structs.get(name)
+        if struct is None:
+            break
+        found = {**{field.name: field for field in struct.fields}, **found}
+        series, _, name = struct.extends.partition("/")
+    return found

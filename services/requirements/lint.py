@@ -1,0 +1,190 @@
+"""What is odd about requirements before any trace is there: asked of z3, with bounded effort.
+
+A formula is written out over the samples of a trace that has them a period apart, in its middle, with every
+signal free at each: unsatisfiable, valid, an antecedent that never happens, two that say the same. What is
+too long for that, or not decided, is said to be not looked into, never to be in order.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
+
+from cratous.services.requirements.formula import (
+    Always,
+    Bounded,
+    Formula,
+    Join,
+    Not,
+    Reaches,
+    parts,
+    signals,
+)
+from cratous.services.requirements.specification import NotRead, Requirement, Specification
+
+if TYPE_CHECKING:
+    import z3
+
+MOST_TERMS = 20_000
+PAIRS = 500
+RLIMIT = 2_000_000
+
+
+@dataclass(frozen=True)
+class Remark:
+    """kind: unsatisfiable, valid, vacuous, duplicate, unused, unchecked; name: requirement or signal."""
+
+    kind: str
+    name: str
+    text: str
+
+
+class _TooLong(Exception):
+    pass
+
+
+def lint(spec: Specification) -> list[Remark]:
+    """Everything odd about a file of requirements, in its order."""
+    read = [(one, one.formula) for one in spec.requirements if not isinstance(one.formula, NotRead)]
+    used = {name for _, formula in read for name in signals(formula)}
+    found = [
+        Remark("unused", name, f"signal {name} is in no requirement")
+        for name in spec.signals
+        if name not in used
+    ]
+    period = spec.period_ns if spec.timed else 1
+    written: list[tuple[Requirement, z3.BoolRef, tuple[str, ...]]] = []
+    for one, formula in read:
+        ask = _Asked(period)
+        try:
+            if not period and any(isinstance(part, Bounded) for part in parts(formula)):
+                raise _TooLong("nothing says how far samples are apart (trace every ...)")
+            term = ask.term(formula)
+            found += _about(one, formula, term, ask)
+            written.append((one, term, signals(formula)))
+        except _TooLong as why:
+            text = f"{one.name} was not looked into: {why}"
+            found.append(Remark("unchecked", one.name, text))
+    return found + _duplicates(written)
+
+
+def _about(one: Requirement, formula: Formula, term: z3.BoolRef, ask: _Asked) -> list[Remark]:
+    import z3
+
+    never, always = _impossible(term), _impossible(z3.Not(term))
+    if never is None or always is None:
+        return [Remark("unchecked", one.name, f"{one.name} was not decided within its effort")]
+    if never:
+        text = f"{one.name} cannot be satisfied: every trace violates it at every sample"
+        return [Remark("unsatisfiable", one.name, text)]
+    if always:
+        return [Remark("valid", one.name, f"{one.name} says nothing: every trace satisfies it")]
+    asks_if = isinstance(formula, Join) and not formula.is_and and isinstance(formula.phi, Not)
+    if asks_if and _impossible(ask.term(formula.phi.phi)):  # type: ignore[union-attr]
+        text = f"{one.name} never asks for anything: what it depends on cannot happen"
+        return [Remark("vacuous", one.name, text)]
+    return []
+
+
+def _duplicates(written: list[tuple[Requirement, z3.BoolRef, tuple[str, ...]]]) -> list[Remark]:
+    import z3
+
+    pairs = [(a, b) for a, b in combinations(written, 2) if a[2] == b[2]]
+    found = [
+        Remark("duplicate", b.name, f"{b.name} says the same as {a.name}")
+        for (a, one, _), (b, other, _) in pairs[:PAIRS]
+        if _impossible(z3.Xor(one, other))
+    ]
+    if len(pairs) > PAIRS:
+        text = f"{len(pairs) - PAIRS} pairs of requirements were not compared"
+        found.append(Remark("unchecked", "", text))
+    return found
+
+
+def _impossible(term: Any) -> bool | None:
+    import z3
+
+    solver = z3.Solver()
+    solver.set("rlimit", RLIMIT)
+    solver.add(term)
+    answer = solver.check()
+    return None if answer == z3.unknown else bool(answer == z3.unsat)
+
+
+class _Asked:
+    """Formulas written out over samples a period apart; sample 0 is the one that they are about."""
+
+    def __init__(self, period: int) -> None:
+        self.period = max(1, period)
+        self.known: dict[tuple[int, int], Any] = {}
+        self.terms = 0
+        self.kept: list[Formula] = []
+
+    def term(self, formula: Formula) -> Any:
+        """The formula at sample 0; _TooLong where it needs too many terms."""
+        self.kept.append(formula)  # so that no id is given twice
+        todo: list[tuple[Formula, int]] = [(formula, 0)]
+        while todo:
+            part, at = todo[-1]
+            if (id(part), at) in self.known:
+                todo.pop()
+                continue
+            needed = [
+                pair for pair in self._needed(part, at) if (id(pair[0]), pair[1]) not in self.known
+            ]
+            if needed:
+                todo += needed
+                continue
+            self.known[id(part), at] = self._made(part, at)
+            todo.pop()
+        return self.known[id(formula), 0]
+
+    def _count(self, more: int) -> None:
+        self.terms += more
+        if self.terms > MOST_TERMS:
+            raise _TooLong(f"it speaks of too many samples (above {MOST_TERMS} terms)")
+
+    def _steps(self, part: Bounded) -> range:
+        first, last = -(-part.low // self.period), part.high // self.period
+        if last > MOST_TERMS:
+            self._count(last)
+        return range(first, last + 1)
+
+    def _needed(self, part: Formula, at: int) -> list[tuple[Formula, int]]:
+        if isinstance(part, Not):
+            return [(part.phi, at)]
+        if isinstance(part, Join):
+            return [(part.phi, at), (part.psi, at)]
+        if not isinstance(part, Bounded):
+            return []
+        way, steps = (-1 if part.past else 1), self._steps(part)
+        self._count(2 * len(steps))
+        phis = [(part.phi, at + way * k) for k in range(steps.stop - 1 if steps else 0)]
+        return phis + [(part.psi, at + way * k) for k in steps]
+
+    def _made(self, part: Formula, at: int) -> Any:
+        import z3
+
+        if isinstance(part, Always):
+            return z3.BoolVal(part.verdict == 2)
+        if isinstance(part, Reaches):
+            left, right = (
+                z3.Real(f"{side}@{at}") if isinstance(side, str) else z3.Q(*side.as_integer_ratio())
+                for side in (part.left, part.right)
+            )
+            return left >= right
+        if isinstance(part, Not):
+            return z3.Not(self.known[id(part.phi), at])
+        if isinstance(part, Join):
+            both = [self.known[id(side), at] for side in (part.phi, part.psi)]
+            return z3.And(*both) if part.is_and else z3.Or(*both)
+        way = -1 if part.past else 1
+        choices, kept = [], z3.BoolVal(True)
+        steps = self._steps(part)
+        for k in range(steps.stop if steps else 0):
+            if k in steps:
+                choices.append(z3.And(kept, self.known[id(part.psi), at + way * k]))
+            if k < steps.stop - 1:
+                kept = z3.And(kept, self.known[id(part.phi), at + way * k])
+        return z3.Or(*choices) if choices else z3.BoolVal(False)

@@ -1,0 +1,99 @@
+"""From what arrives to samples: values that are held, samples that are missing, late or out of order.
+
+What is not known at a sample is unknown there, and said: a value that is no number, one that is older than
+its signal is held, a sample that is not later than the one before, and a gap between samples, into which an
+unknown sample is put.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from math import isfinite
+
+from cratous.services.requirements.specification import Signal, Specification
+
+Sample = dict[str, float | None]
+Row = tuple[int, Mapping[str, float | None]]
+"""Time [ns], and what came then by signal; None: it came without a value."""
+SAYS = {
+    "gap": "samples are further apart than the trace says",
+    "order": "a sample is not later than the one before, and was left out",
+    "missing": "a sample has no value",
+    "stale": "the newest value is older than it is held",
+    "never": "no value ever came",
+}
+
+
+@dataclass
+class Finding:
+    """What is wrong with the samples. kind: a key of `SAYS`; signal: "" for all; first_ns: -1 for never."""
+
+    kind: str
+    signal: str
+    first_ns: int
+    count: int = 1
+
+    @property
+    def text(self) -> str:
+        """In words."""
+        where = f" first at {self.first_ns / 1e9:g} s" if self.first_ns >= 0 else ""
+        times = f", {self.count} times," if self.count > 1 else ("," if where else "")
+        return f"{self.signal or 'trace'}: {SAYS[self.kind]}{times}{where}"
+
+
+class Sampling:
+    """Makes the samples of a trace; `findings` grows as they are made."""
+
+    def __init__(self, spec: Specification, names: Iterable[str]) -> None:
+        self.gap_ns = spec.gap_ns
+        self.signals: dict[str, Signal] = {name: spec.signals[name] for name in sorted(names)}
+        self.held: dict[str, tuple[int, float]] = {}
+        self.last = -1
+        self._found: dict[tuple[str, str], Finding] = {}
+
+    @property
+    def findings(self) -> list[Finding]:
+        """All that was found so far; signals of which no value came are among them."""
+        never = [Finding("never", name, -1, 1) for name in self.signals if name not in self.held]
+        gone = {one.signal for one in never}
+        return [f for f in self._found.values() if f.signal not in gone] + never
+
+    @property
+    def is_whole(self) -> bool:
+        """No sample was left out."""
+        return ("order", "") not in self._found
+
+    def samples(self, rows: Iterable[Row]) -> Iterator[tuple[int, Sample]]:
+        """The samples of the rows, with times that rise."""
+        for time, row in rows:
+            if time <= self.last:
+                self._find("order", "", time)
+                continue
+            if self.gap_ns and self.last >= 0 and time - self.last > self.gap_ns:
+                self._find("gap", "", self.last)
+                # when the next one was due nothing is known
+                yield self.last + self.gap_ns, dict.fromkeys(self.signals)
+            self.last = time
+            yield time, {name: self._value(name, time, row) for name in self.signals}
+
+    def _value(self, name: str, time: int, row: Mapping[str, float | None]) -> float | None:
+        value = row.get(name)
+        if value is not None and isfinite(value):
+            self.held[name] = time, value
+            return value
+        since, last = self.held.get(name, (-1, 0.0))
+        hold = self.signals[name].hold_ns
+        # a value that is no number takes the place of the one before
+        if name not in row and since >= 0 and time - since <= hold:
+            return last
+        is_stale = name not in row and hold > 0 and since >= 0
+        self._find("stale" if is_stale else "missing", name, time)
+        return None
+
+    def _find(self, kind: str, signal: str, time: int) -> None:
+        found = self._found.get((kind, signal))
+        if found is None:
+            self._found[kind, signal] = Finding(kind, signal, time)
+        else:
+            found.count += 1

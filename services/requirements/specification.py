@@ -1,0 +1,87 @@
+"""What a file of requirements says, in whichever language: signals, requirements, and why some are not read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cratous.services.requirements.formula import Formula
+from cratous.spec.errors import BadInput
+
+
+class NotRead(BadInput):
+    """A requirement that is outside of the language."""
+
+    def __init__(
+        self, what: str, where: str, caret: str, *, expected: str = "", got: str = ""
+    ) -> None:
+        self._caret = caret
+        super().__init__(what, where=where, expected=expected, got=got)
+
+    def caret(self) -> str:
+        """The line of the requirement (a window of it if it is long), and ^ below the place."""
+        return self._caret
+
+    def data(self) -> dict[str, str]:
+        """As for every `BadInput`, and the caret."""
+        return {**super().data(), "caret": self._caret}
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """One requirement of a file. name: its own, else its number; formula: or why it is not read.
+
+    title, severity, source: as its author states them, empty where he does not.
+    """
+
+    name: str
+    text: str
+    formula: Formula | NotRead
+    title: str = ""
+    severity: str = ""
+    source: str = ""
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A signal. kind: bool, int or float; unit: "" where the language has none.
+
+    message, field: the message type and the field that give it in a log, with what the message's other
+    fields must be; hold_ns: how long a value counts after its sample (0: at its sample alone).
+    """
+
+    kind: str
+    unit: str = ""
+    message: str = ""
+    chosen: tuple[tuple[str, str], ...] = ()
+    field: str = ""
+    hold_ns: int = 0
+
+
+@dataclass(frozen=True)
+class Specification:
+    """The requirements of a file in order, and its signals by name.
+
+    timed: samples bear times, and bounds are times [ns]; else both count samples. gap_ns: samples that
+    are further apart leave unknown what lies between them; 0: nothing is said of it. period_ns: of the
+    samples, for the lint; 0: not told.
+    """
+
+    signals: dict[str, Signal]
+    requirements: tuple[Requirement, ...]
+    timed: bool = False
+    gap_ns: int = 0
+    period_ns: int = 0
+
+    @property
+    def types(self) -> dict[str, str]:
+        """The kind of each signal: bool, int or float."""
+        return {name: signal.kind for name, signal in self.signals.items()}
+
+
+def caret_of(text: str, offset: int) -> tuple[int, int, str]:
+    """(line, column) from 1 of an offset, and a window of the line with ^ below the place."""
+    line = text.count("\n", 0, offset) + 1
+    column = offset - (text.rfind("\n", 0, offset) + 1)
+    shown = text.split("\n")[line - 1]
+    window = max(0, column - 60)
+    return line, column + 1, f"{shown[window : window + 90]}\n{' ' * (column - window)}^"

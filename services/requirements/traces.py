@@ -1,0 +1,150 @@
+"""The rows of a trace with times: a CSV file with a column `time_s`, or a message log of any format.
+
+In a log a signal is a field of messages of one type, as `AirVehicleState[ID=1].Location.Altitude` says;
+messages of one instant are one row. In CSV an empty cell brings no value.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from fractions import Fraction
+from itertools import groupby
+from math import isfinite
+from operator import itemgetter
+from pathlib import Path
+from typing import Any
+
+from cratous.services.logs.entry import Entry, to_data
+from cratous.services.logs.source import Source, open_log
+from cratous.services.requirements.csv_trace import Cells, rows_of
+from cratous.services.requirements.field_units import unit_of
+from cratous.services.requirements.formula import MAX_TIME
+from cratous.services.requirements.sampling import Row
+from cratous.services.requirements.specification import Signal, Specification
+from cratous.spec.errors import BadInput
+from cratous.spec.files.limits import DIGITS
+
+TIME = "time_s"
+
+
+def rows(trace: Path, spec: Specification, names: Iterable[str]) -> Iterator[Row]:
+    """The rows of a trace; BadInput with the place for what is none."""
+    wanted = {name: spec.signals[name] for name in sorted(names)}
+    if trace.suffixes[-1:] == [".csv"] or trace.suffixes[-2:] == [".csv", ".gz"]:
+        return _of_csv(trace, wanted)
+    return _of_log(trace, wanted)
+
+
+def _of_csv(trace: Path, wanted: Mapping[str, Signal]) -> Iterator[Row]:
+    for where, cells in rows_of(trace):
+        for name in (TIME, *wanted):
+            if name not in cells:
+                raise BadInput("a signal has no column", where=str(trace), item=name)
+        row = {name: _cell(cells, name, where) for name in wanted if cells[name]}
+        for name, value in row.items():
+            # what is no number at all is for the sampling to say
+            if wanted[name].kind == "bool" and isfinite(value) and value not in (0.0, 1.0):
+                got = cells[name][:40]
+                raise BadInput(
+                    "this is no truth value", where=where, item=name, expected="0 or 1", got=got
+                )
+        yield _time(cells[TIME], where), row
+
+
+def _cell(cells: Cells, name: str, where: str) -> float:
+    try:
+        return float(cells[name])
+    except ValueError:
+        raise BadInput(
+            "this is no number", where=where, item=name, expected="a number", got=cells[name][:40]
+        ) from None
+
+
+def _time(text: str, where: str) -> int:
+    try:
+        time = Fraction(text) * 10**9 if len(text) <= DIGITS and "/" not in text else None
+    except ValueError:
+        time = None
+    if time is None or time.denominator != 1 or not 0 <= time <= MAX_TIME:
+        expected = "seconds from 0 on, to the nanosecond"
+        raise BadInput("this is no time", where=where, item=TIME, expected=expected, got=text[:40])
+    return int(time)
+
+
+def _of_log(trace: Path, wanted: Mapping[str, Signal]) -> Iterator[Row]:
+    for name, signal in wanted.items():
+        if not signal.message:
+            expected = f"signal {name}: {signal.unit or 'bool'} from TYPE[FIELD=VALUE].FIELD"
+            raise BadInput("nothing says where a log has this signal", item=name, expected=expected)
+        unit = unit_of(signal.message, signal.field)
+        if unit and signal.unit != unit:
+            what = "the field has another unit" if signal.unit else "the field is no bool"
+            raise BadInput(what, item=name, expected=unit, got=signal.unit or "bool")
+    source = open_log(trace)
+    known = {topic.topic for topic in source.topics()}
+    for name, signal in wanted.items():
+        if not any(_is(topic, signal.message) for topic in known):
+            got = ", ".join(sorted(topic.rpartition(".")[2] for topic in known))
+            raise BadInput(
+                "the log has no message of this type", where=str(trace), item=name,
+                expected=signal.message, got=got[:300],
+            )  # fmt: skip
+    for time_ms, parts in groupby(_of_messages(source, wanted), key=itemgetter(0)):
+        row: dict[str, float | None] = {}
+        for _, part in parts:
+            row.update(part)
+        yield time_ms * 10**6, row
+
+
+def _of_messages(
+    source: Source, wanted: Mapping[str, Signal]
+) -> Iterator[tuple[int, Mapping[str, float | None]]]:
+    """The time [ms] of each message that has a signal, and what it has."""
+    for entry in source.entries():
+        mine = {n: s for n, s in wanted.items() if _is(entry.topic, s.message)}
+        if not mine:
+            continue
+        data = to_data(entry)
+        found = {
+            name: _field(data, signal, name, entry)
+            for name, signal in mine.items()
+            if all(_chosen(data, field, value, entry) for field, value in signal.chosen)
+        }
+        if found:
+            yield entry.time_ms, found
+
+
+def _is(topic: str, wanted: str) -> bool:
+    return topic == wanted or topic.endswith(f".{wanted}")
+
+
+def _at(data: Any, path: str, entry: Entry) -> Any:
+    for part in path.split("."):
+        if not isinstance(data, dict) or part not in data:
+            known = ", ".join(k for k in data if k != "$type") if isinstance(data, dict) else "none"
+            raise BadInput(
+                "the message has no such field",
+                where=entry.place,
+                item=path,
+                expected=known,
+                got=part,
+            )
+        data = data[part]
+    return data
+
+
+def _chosen(data: Any, path: str, value: str, entry: Entry) -> bool:
+    return str(_at(data, path, entry)) == value
+
+
+def _field(data: Any, signal: Signal, name: str, entry: Entry) -> float | None:
+    value = _at(data, signal.field, entry)
+    if value is None:
+        return None
+    if isinstance(value, bool) != (signal.kind == "bool") or not isinstance(value, int | float):
+        expected = "true or false" if signal.kind == "bool" else "a number"
+        raise BadInput(
+            "the field is of another kind", where=entry.place, item=name, expected=expected,
+            got=str(value)[:40],
+        )  # fmt: skip
+    return float(value)

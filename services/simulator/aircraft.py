@@ -1,0 +1,163 @@
+"""One aircraft of the simulator: motion and guidance in one value, and its messages."""
+
+from __future__ import annotations
+
+from math import atan2, cos, degrees, hypot, isfinite, radians, sin
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.services.simulator import guidance as guide
+from cratous.services.simulator.guidance import DIRECTED, LOITER, WAYPOINT, Guidance
+from cratous.services.simulator.motion import Command, Motion, move
+from cratous.services.simulator.performance import Airframe
+from cratous.spec.errors import BadInput
+
+
+class Aircraft(NamedTuple):
+    """id, airframe; motion, the greatest bank that holds [rad], guidance; shown: command and waypoint
+    of the state that was told last, first: the state it began with."""
+
+    id: int
+    airframe: Airframe
+    motion: Motion
+    max_bank_rad: float
+    guidance: Guidance
+    first: Any
+    shown_command: int
+    shown_waypoint: int
+
+
+def aircraft_of(body: Any, airframe: Airframe, before: Aircraft | None, where: str) -> Aircraft:
+    """An aircraft as an AirVehicleState puts it there, with what it was doing before."""
+    place = body.Location
+    numbers = (place.Latitude, place.Longitude, place.Altitude, body.Heading, body.Pitch,
+               body.Roll, body.u, body.Airspeed, body.EnergyAvailable)  # fmt: skip
+    if not all(map(isfinite, numbers)) or abs(place.Latitude) > 89.9:
+        raise BadInput(
+            "a state that cannot be flown",
+            where=where,
+            item=f"AirVehicleState {body.ID}",
+            expected="finite numbers, Latitude between -89.9 and 89.9 deg",
+            got=str(numbers),
+        )
+    heading, pitch = radians(body.Heading), radians(body.Pitch)
+    speed = body.u if airframe.compatible or body.u else body.Airspeed
+    # AMASE begins at rest over ground, and turns north for an instant
+    north, east = 0.0, 0.0
+    if not airframe.compatible:
+        north, east = speed * cos(pitch) * cos(heading), speed * cos(pitch) * sin(heading)
+    if before is not None:
+        north, east = before.motion.north_m_s, before.motion.east_m_s
+    motion = Motion(
+        radians(place.Latitude),
+        radians(place.Longitude),
+        place.Altitude,
+        heading,
+        pitch,
+        radians(body.Roll),
+        speed,
+        north,
+        east,
+        0.0,
+        body.EnergyAvailable,
+        body.ActualEnergyRate,
+    )
+    command = Command(heading, place.Altitude, body.Airspeed, 0.0)
+    held = (
+        before.guidance._replace(command=command)
+        if before
+        else Guidance(command, airframe.compatible, airframe.min_speed_m_s)
+    )
+    bank = radians(airframe.levels[0].max_bank_deg)
+    return Aircraft(
+        body.ID, airframe, motion, bank, held, body, body.CurrentCommand, body.CurrentWaypoint
+    )
+
+
+def step(a: Aircraft, wind_m_s: tuple[float, float], ground_m: float, dt_s: float) -> Aircraft:
+    """The aircraft a step later."""
+    motion, bank = move(a.motion, a.guidance.command, a.airframe, wind_m_s, ground_m, dt_s)
+    held = guide.guide(a.guidance, motion, bank, dt_s)
+    return Aircraft(a.id, a.airframe, motion, bank, held, *a[5:])
+
+
+def receive(a: Aircraft, body: Any) -> Aircraft:
+    """The aircraft after a MissionCommand or VehicleActionCommand for it."""
+    take = guide.mission if type(body).__name__ == "MissionCommand" else guide.command
+    return a._replace(guidance=take(a.guidance, body))
+
+
+class Shown(NamedTuple):
+    """What a state says of guidance: mode, command, waypoint and tasks."""
+
+    mode: str
+    command: int
+    waypoint: int
+    tasks: tuple[int, ...]
+
+
+def shown(a: Aircraft) -> Shown:
+    """What the aircraft's next state says; command and waypoint stay where its mode has none."""
+    g = a.guidance
+    mode, waypoint, number = g.mode, a.shown_waypoint, a.shown_command
+    tasks: tuple[int, ...] = ()
+    if mode == WAYPOINT and g.leg.to is not None:
+        number, waypoint, tasks = g.route_id, g.leg.to.number, g.leg.to.tasks
+    elif mode == LOITER:
+        number = g.loiter_id
+        if g.at_waypoint and g.leg.to is not None:
+            tasks = g.leg.to.tasks
+    if g.directed_id is not None:
+        mode, number = DIRECTED, g.directed_id
+    return Shown(mode, number, waypoint, tasks)
+
+
+def ground_motion(a: Aircraft, wind_m_s: tuple[float, float]) -> tuple[float, float]:
+    """Ground speed [m/s] and course [rad] as told; AMASE takes the wind off a second time."""
+    north, east = a.motion.north_m_s, a.motion.east_m_s
+    if a.airframe.compatible:
+        north, east = north - wind_m_s[0], east - wind_m_s[1]
+    return hypot(north, east), atan2(east, north)
+
+
+def state(
+    a: Aircraft, wind_m_s: tuple[float, float], time_ms: int, payloads: tuple[Any, ...] = ()
+) -> tuple[Aircraft, Any]:
+    """The AirVehicleState that is told, and the aircraft that has told it."""
+    m, what = a.motion, shown(a)
+    speed, course = ground_motion(a, wind_m_s)
+    wind: dict[str, float] = {}
+    if not a.airframe.compatible:
+        wind = {
+            "WindSpeed": hypot(*wind_m_s),
+            "WindDirection": degrees(atan2(wind_m_s[1], wind_m_s[0])) % 360,
+        }
+    body = lmcp.new(
+        "AirVehicleState",
+        ID=a.id,
+        u=m.airspeed_m_s,
+        Heading=degrees(m.heading_rad),
+        Pitch=degrees(m.pitch_rad),
+        Roll=degrees(m.roll_rad),
+        Airspeed=m.airspeed_m_s,
+        Groundspeed=speed,
+        Course=degrees(course),
+        VerticalSpeed=m.climb_m_s,
+        Location=lmcp.new(
+            "Location3D",
+            Latitude=degrees(m.lat_rad),
+            Longitude=degrees(m.lon_rad),
+            Altitude=m.alt_m,
+            AltitudeType="MSL",
+        ),
+        EnergyAvailable=m.energy_percent,
+        ActualEnergyRate=m.energy_percent_s,
+        PayloadStateList=list(payloads),
+        CurrentWaypoint=what.waypoint,
+        CurrentCommand=what.command,
+        Mode=what.mode,
+        AssociatedTasks=list(what.tasks),
+        Time=time_ms,
+        **wind,
+    )
+    return a._replace(shown_command=what.command, shown_waypoint=what.waypoint), body

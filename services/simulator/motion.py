@@ -1,0 +1,108 @@
+"""One aircraft through the air for one step: coordinated turns without sideslip, wind, energy.
+
+Wind is where it blows from: north and east part [m/s] of a vector that points there.
+"""
+
+from __future__ import annotations
+
+from math import atan2, copysign, cos, exp, pi, radians, sin, tan
+from typing import NamedTuple
+
+from cratous.services.simulator.earth import POLE_M, bound_pi, prime_vertical_m
+from cratous.services.simulator.performance import Airframe, profile_at
+
+GRAVITY_M_S2 = 9.8
+BANK_RATE_RAD_S = radians(60)
+PITCH_RATE_RAD_S = radians(90)
+BANK_GAIN = 8.0
+"""How fast the bank grows to its greatest with the error of the course [1 / rad]."""
+ACCELERATION_M_S2 = 10.0
+
+
+class Motion(NamedTuple):
+    """Place [rad, m MSL], attitude [rad], airspeed and velocity over ground [m/s], energy [%]."""
+
+    lat_rad: float
+    lon_rad: float
+    alt_m: float
+    heading_rad: float
+    pitch_rad: float
+    roll_rad: float
+    airspeed_m_s: float
+    north_m_s: float
+    east_m_s: float
+    climb_m_s: float
+    energy_percent: float
+    energy_percent_s: float
+
+
+class Command(NamedTuple):
+    """What guidance asks for: course [rad], altitude [m MSL], airspeed and climb [m/s].
+
+    climb 0: as the difference in altitude tells."""
+
+    course_rad: float
+    alt_m: float
+    speed_m_s: float
+    climb_m_s: float
+
+
+def _towards(value: float, wanted: float, most: float) -> float:
+    change = wanted - value
+    return value + copysign(min(abs(change), most), change)
+
+
+def asked_climb_m_s(difference_m: float, climb_m_s: float, compatible: bool) -> float:
+    """Vertical speed asked for: towards the altitude, no faster than the climb if one is given.
+
+    AMASE climbs or sinks at a given rate whatever the altitude commanded.
+    """
+    if climb_m_s == 0:
+        return difference_m
+    if compatible:
+        return climb_m_s
+    return copysign(min(abs(difference_m), abs(climb_m_s)), difference_m)
+
+
+def move(
+    m: Motion,
+    command: Command,
+    airframe: Airframe,
+    wind_m_s: tuple[float, float],
+    ground_m: float,
+    dt_s: float,
+) -> tuple[Motion, float]:
+    """The motion after a step and the greatest bank that holds [rad].
+
+    Without energy, or on the ground, nothing moves.
+    """
+    climb = asked_climb_m_s(command.alt_m - m.alt_m, command.climb_m_s, airframe.compatible)
+    speed = m.airspeed_m_s
+    profile = profile_at(airframe, speed, climb)
+    max_bank = radians(profile.max_bank_deg)
+    if m.energy_percent <= 0 or m.alt_m <= ground_m:
+        if airframe.compatible:
+            return m, max_bank
+        return m._replace(north_m_s=0.0, east_m_s=0.0, climb_m_s=0.0, airspeed_m_s=0.0), max_bank
+    climb = copysign(min(abs(profile.vertical_m_s), abs(climb)), climb)
+    error = bound_pi(command.course_rad - atan2(m.east_m_s, m.north_m_s))
+    wanted = copysign(max_bank * (1 - exp(-BANK_GAIN * abs(error))), error)
+    roll = _towards(m.roll_rad, wanted, BANK_RATE_RAD_S * dt_s)
+    heading = m.heading_rad
+    if speed > 0:
+        heading = bound_pi(heading + GRAVITY_M_S2 * tan(roll) / speed * dt_s)
+    pitch = _towards(m.pitch_rad, radians(profile.pitch_deg), PITCH_RATE_RAD_S * dt_s)
+    change = max(-ACCELERATION_M_S2, min(ACCELERATION_M_S2, command.speed_m_s - speed))
+    after = max(airframe.min_speed_m_s, min(airframe.max_speed_m_s, speed + change * dt_s))
+    level = speed * cos(pitch)
+    north = level * cos(heading) - wind_m_s[0]
+    east = level * sin(heading) - wind_m_s[1]
+    alt = m.alt_m + climb * dt_s
+    lat = m.lat_rad + north * dt_s / (POLE_M + alt)
+    lon = m.lon_rad + east * dt_s / ((prime_vertical_m(lat) + alt) * cos(lat))
+    if abs(lon) > pi and not airframe.compatible:
+        lon = bound_pi(lon)
+    use = profile.energy_percent_s
+    energy = max(0.0, m.energy_percent - use * dt_s)
+    moved = Motion(lat, lon, alt, heading, pitch, roll, after, north, east, climb, energy, use)
+    return moved, max_bank

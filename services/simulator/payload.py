@@ -1,0 +1,269 @@
+"""What is mounted on an aircraft: gimbals that slew, and the cameras on them with their footprints.
+
+Angles of messages and of this module are degrees: azimuth from the nose to the right, elevation up.
+"""
+
+from __future__ import annotations
+
+from math import atan2, cos, degrees, hypot, isfinite, radians, sin, sqrt, tan
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.services.simulator.earth import EQUATOR_M, bearing_rad, distance_m
+from cratous.services.simulator.motion import Motion
+from cratous.spec.errors import BadInput
+
+Axes = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
+
+
+class Camera(NamedTuple):
+    """The configuration of a camera, and its horizontal field of view [deg]."""
+
+    configuration: Any
+    fov_deg: float
+
+
+class Gimbal(NamedTuple):
+    """Its configuration, where it points [deg], what it does, the corner and cycle of a scan; cameras."""
+
+    configuration: Any
+    azimuth_deg: float
+    elevation_deg: float
+    action: Any
+    corner: int
+    cycle: int
+    cameras: tuple[Camera, ...]
+
+
+def gimbals_of(configuration: Any, where: str) -> tuple[Gimbal, ...]:
+    """The gimbals of an aircraft with their cameras; BadInput for one that cannot be."""
+    loads = configuration.PayloadConfigurationList
+    cameras = {c.PayloadID: c for c in loads if type(c).__name__ == "CameraConfiguration"}
+    found = []
+    for g in (c for c in loads if type(c).__name__ == "GimbalConfiguration"):
+        limits = (g.MinAzimuth, g.MaxAzimuth, g.MinElevation, g.MaxElevation)
+        rates = (g.MaxAzimuthSlewRate, g.MaxElevationSlewRate)
+        if (
+            not all(map(isfinite, (*limits, *rates)))
+            or g.MinAzimuth > g.MaxAzimuth
+            or g.MinElevation > g.MaxElevation
+            or min(rates) < 0
+        ):
+            raise BadInput(
+                "wrong limits of a gimbal [deg, deg/s]",
+                where=where,
+                item=f"AirVehicleConfiguration {configuration.ID}, payload {g.PayloadID}",
+                expected="finite numbers, Min at most Max, slew rates at least 0",
+                got=f"{limits}, {rates}",
+            )
+        mounted = tuple(
+            Camera(c, _fov(c, (c.MinHorizontalFieldOfView + c.MaxHorizontalFieldOfView) / 2))
+            for key, c in cameras.items()
+            if key in g.ContainedPayloadList
+        )
+        middle = (limits[0] + limits[1]) / 2, (limits[2] + limits[3]) / 2
+        found.append(Gimbal(g, *middle, None, 0, 0, mounted))
+    return tuple(found)
+
+
+def placed(mounted: tuple[Gimbal, ...], told: Any) -> tuple[Gimbal, ...]:
+    """The gimbals and cameras as the payload states of an AirVehicleState have them."""
+    known = {one.PayloadID: one for one in told.PayloadStateList if one is not None}
+    return tuple(_placed(g, known) for g in mounted)
+
+
+def _placed(g: Gimbal, known: dict[int, Any]) -> Gimbal:
+    c = g.configuration
+    one: Any = known.get(c.PayloadID)
+    if type(one).__name__ == "GimbalState" and isfinite(one.Azimuth + one.Elevation):
+        g = g._replace(
+            azimuth_deg=_clamp(one.Azimuth, c.MinAzimuth, c.MaxAzimuth),
+            elevation_deg=_clamp(one.Elevation, c.MinElevation, c.MaxElevation),
+        )
+    return g._replace(cameras=tuple(_with_fov(c, known) for c in g.cameras))
+
+
+def _with_fov(c: Camera, known: dict[int, Any]) -> Camera:
+    one: Any = known.get(c.configuration.PayloadID)
+    wide = one.HorizontalFieldOfView if type(one).__name__ == "CameraState" else 0.0
+    return c._replace(fov_deg=_fov(c.configuration, wide)) if wide and isfinite(wide) else c
+
+
+def _fov(camera: Any, wanted_deg: float) -> float:
+    """The nearest field of view [deg] that a camera has."""
+    steps = camera.DiscreteHorizontalFieldOfViewList
+    if camera.FieldOfViewMode.name == "Discrete" and steps:
+        return float(min(steps, key=lambda one: abs(one - wanted_deg)))
+    return _clamp(wanted_deg, camera.MinHorizontalFieldOfView, camera.MaxHorizontalFieldOfView)
+
+
+def _clamp(value: float, low: float, high: float) -> float:
+    return max(low, min(high, value))
+
+
+def is_for(mounted: tuple[Gimbal, ...], body: Any) -> bool:
+    """Whether an action is one for a gimbal or camera that is mounted."""
+    number = getattr(body, "PayloadID", None)
+    kind = type(body).__name__
+    if kind == "CameraAction":
+        return any(c.configuration.PayloadID == number for g in mounted for c in g.cameras)
+    known = kind in ("GimbalAngleAction", "GimbalStareAction", "GimbalScanAction")
+    return known and any(g.configuration.PayloadID == number for g in mounted)
+
+
+def act(g: Gimbal, body: Any) -> Gimbal:
+    """The gimbal after an action, which may be for another one."""
+    if type(body).__name__ == "CameraAction":
+        cameras = tuple(
+            c._replace(fov_deg=_fov(c.configuration, body.HorizontalFieldOfView))
+            if c.configuration.PayloadID == body.PayloadID
+            else c
+            for c in g.cameras
+        )
+        return g._replace(cameras=cameras)
+    if g.configuration.PayloadID != body.PayloadID:
+        return g
+    return g._replace(action=body, corner=0, cycle=0)
+
+
+def step(g: Gimbal, m: Motion, dt_s: float) -> Gimbal:
+    """The gimbal a step later."""
+    body = g.action
+    if body is None:
+        return g
+    kind = type(body).__name__
+    c = g.configuration
+    rates = c.MaxAzimuthSlewRate, c.MaxElevationSlewRate
+    if kind == "GimbalAngleAction":
+        return _slew(g, (body.Azimuth, body.Elevation), rates, dt_s)[0]
+    if kind == "GimbalStareAction":
+        return _slew(g, aim(m, body.Starepoint), rates, dt_s)[0]
+    if body.Cycles > 0 and g.cycle >= body.Cycles:
+        return g
+    wanted = (
+        body.StartAzimuth if g.corner < 2 else body.EndAzimuth,
+        body.EndElevation if g.corner in (1, 2) else body.StartElevation,
+    )
+    rates = min(rates[0], body.AzimuthSlewRate), min(rates[1], body.ElevationSlewRate)
+    g, there = _slew(g, wanted, rates, dt_s)
+    if not there:
+        return g
+    return g._replace(corner=(g.corner + 1) % 4, cycle=g.cycle + (g.corner == 3))
+
+
+def _slew(
+    g: Gimbal, wanted: tuple[float, float], rates: tuple[float, float], dt_s: float
+) -> tuple[Gimbal, bool]:
+    """A step towards an azimuth and elevation within the limits, and whether it is there."""
+    c = g.configuration
+    turn = wanted[0] - g.azimuth_deg
+    if c.MaxAzimuth - c.MinAzimuth >= 360:
+        turn = (turn + 180) % 360 - 180
+        azimuth = g.azimuth_deg + _clamp(turn, -rates[0] * dt_s, rates[0] * dt_s)
+        azimuth = (azimuth + 180) % 360 - 180
+    else:
+        turn = _clamp(wanted[0], c.MinAzimuth, c.MaxAzimuth) - g.azimuth_deg
+        azimuth = g.azimuth_deg + _clamp(turn, -rates[0] * dt_s, rates[0] * dt_s)
+    lift = _clamp(wanted[1], c.MinElevation, c.MaxElevation) - g.elevation_deg
+    elevation = g.elevation_deg + _clamp(lift, -rates[1] * dt_s, rates[1] * dt_s)
+    there = abs(turn) <= rates[0] * dt_s and abs(lift) <= rates[1] * dt_s
+    return g._replace(azimuth_deg=azimuth, elevation_deg=elevation), there
+
+
+def axes(heading: float, pitch: float, roll: float) -> Axes:
+    """North, east and down parts of the axes forward, right and down of a body turned so [rad]."""
+    ch, sh, cp, sp, cr, sr = (
+        cos(heading), sin(heading), cos(pitch), sin(pitch), cos(roll), sin(roll),
+    )  # fmt: skip
+    return (
+        (ch * cp, sh * cp, -sp),
+        (ch * sp * sr - sh * cr, sh * sp * sr + ch * cr, cp * sr),
+        (ch * sp * cr + sh * sr, sh * sp * cr - ch * sr, cp * cr),
+    )
+
+
+def aim(m: Motion, point: Any) -> tuple[float, float]:
+    """Azimuth and elevation [deg] at which an aircraft sees a place, over the curved earth."""
+    lat, lon = radians(point.Latitude), radians(point.Longitude)
+    away = distance_m(m.lat_rad, m.lon_rad, lat, lon)
+    course = bearing_rad(m.lat_rad, m.lon_rad, lat, lon)
+    down = m.alt_m - point.Altitude + EQUATOR_M * (1 - cos(away / EQUATOR_M))
+    seen = away * cos(course), away * sin(course), down
+    x, y, z = (
+        sum(a * b for a, b in zip(axis, seen, strict=True))
+        for axis in axes(m.heading_rad, m.pitch_rad, m.roll_rad)
+    )
+    return degrees(atan2(y, x)), degrees(atan2(-z, hypot(x, y)))
+
+
+def states(mounted: tuple[Gimbal, ...], m: Motion, ground_m: float) -> tuple[Any, ...]:
+    """GimbalState and CameraState of all that is mounted."""
+    told: list[Any] = []
+    for g in mounted:
+        pointing = {
+            "Azimuth": g.azimuth_deg,
+            "Elevation": g.elevation_deg,
+            "PointingMode": _POINTING[type(g.action).__name__],
+        }
+        told.append(lmcp.new("GimbalState", PayloadID=g.configuration.PayloadID, **pointing))
+        for c in g.cameras:
+            ratio = _ratio(c.configuration)
+            corners = footprint(g, c, m, ground_m)
+            told.append(
+                lmcp.new(
+                    "CameraState",
+                    PayloadID=c.configuration.PayloadID,
+                    HorizontalFieldOfView=c.fov_deg,
+                    VerticalFieldOfView=c.fov_deg / ratio,
+                    Footprint=[_place(p, ground_m) for p in corners[:4]],
+                    Centerpoint=_place(corners[4], ground_m),
+                    **pointing,
+                )
+            )
+    return tuple(told)
+
+
+_POINTING = {
+    "NoneType": "AirVehicleRelativeAngle",
+    "GimbalAngleAction": "AirVehicleRelativeAngle",
+    "GimbalStareAction": "LatLonSlaved",
+    "GimbalScanAction": "Scan",
+}
+
+
+def _ratio(camera: Any) -> float:
+    wide, high = camera.VideoStreamHorizontalResolution, camera.VideoStreamVerticalResolution
+    return wide / high if wide and high else 4 / 3
+
+
+def _place(point: tuple[float, float], ground_m: float) -> Any:
+    return lmcp.new(
+        "Location3D", Latitude=degrees(point[0]), Longitude=degrees(point[1]), Altitude=ground_m
+    )
+
+
+def footprint(g: Gimbal, c: Camera, m: Motion, ground_m: float) -> list[tuple[float, float]]:
+    """Where the corners of a picture and its middle meet flat ground [rad]; the horizon at most.
+
+    Order: top left, top right, bottom right, bottom left, middle.
+    """
+    body = axes(m.heading_rad, m.pitch_rad, m.roll_rad)
+    sensor = axes(radians(g.azimuth_deg), radians(g.elevation_deg), 0.0)
+    wide = tan(radians(c.fov_deg) / 2)
+    high = tan(radians(c.fov_deg / _ratio(c.configuration)) / 2)
+    height = max(0.0, m.alt_m - ground_m)
+    horizon = sqrt(2 * EQUATOR_M * height + height * height)
+    corners = []
+    for right, down in ((-wide, -high), (wide, -high), (wide, high), (-wide, high), (0.0, 0.0)):
+        ray = [sensor[0][k] + right * sensor[1][k] + down * sensor[2][k] for k in range(3)]
+        north, east, below = (sum(ray[k] * body[k][n] for k in range(3)) for n in range(3))
+        level = hypot(north, east)
+        along = level * height / below if below > 0 else horizon
+        part = min(along, horizon) / level if level else 0.0
+        corners.append(
+            (
+                m.lat_rad + north * part / EQUATOR_M,
+                m.lon_rad + east * part / (EQUATOR_M * cos(m.lat_rad)),
+            )
+        )
+    return corners

@@ -1,0 +1,157 @@
+"""The port of the simulator: what AMASE's TCP server does, without its faults.
+
+Everything told goes to every client; what a client sends is taken, and relayed to the others. A client that does
+not read loses its oldest messages and holds up nobody. SessionStatus controls the clock: Paused, Running
+(with its RealTimeMultiple, if that is above 0), Reset, Stopped. Clients that come late are told the
+configurations of all vehicles, which AMASE leaves out.
+"""
+
+from __future__ import annotations
+
+import select
+import time
+from collections.abc import Callable
+from typing import Any
+
+from cratous.bridge import envelope as wire
+from cratous.bridge import lmcp
+from cratous.bridge.port import Address, Incoming, Limits, Tally
+from cratous.bridge.tcp_port import TcpPort
+from cratous.services.simulator.world import TICK_S, World
+from cratous.spec.errors import BadInput
+
+LIMITS = Limits(payload_bytes=4 << 20, waiting_bytes=1 << 20, connections=100)
+BURST = 500
+"""Ticks in a row before clients are heard again."""
+MOST_RATE = 1e6
+LINGER_S = 2.0
+"""How long clients have, at the end, to read what waits for them [s]."""
+
+
+class Server:
+    """A world that clients see and command; see the module.
+
+    make: the world anew, for Reset. rate: how many times faster than real time it goes. clients: so
+    many must be there before it begins. stopping: set to end.
+    """
+
+    def __init__(
+        self,
+        make: Callable[[], World],
+        where: Address,
+        report: Callable[[str, str], None],
+        *,
+        rate: float = 1.0,
+        clients: int = 0,
+    ) -> None:
+        self._make = make
+        self.world = make()
+        self.rate = rate
+        self._clients = clients
+        self.port = TcpPort(where, server=True, limits=LIMITS, report=report)
+        self._tally = Tally("clients", report)
+        self._report = report
+        self.state = "Running"
+        self.stopping = False
+        self._known: dict[int, Any] = {}
+        self._peers = 0
+        self._behind_s = 0.0
+
+    @property
+    def refused(self) -> dict[str, int]:
+        """Messages of clients that could not be taken, by reason."""
+        return dict(self._tally.counts.refused)
+
+    def run(self) -> None:
+        """Until the scenario is over, or `stopping`; the port is closed then."""
+        last_s = time.monotonic()
+        try:
+            while not (self.stopping or self.world.over or self.state == "Stopped"):
+                now_s = time.monotonic()
+                self.turn(now_s, now_s - last_s)
+                last_s = now_s
+            self.tell(self.world.status("Stopped", self.rate))
+            self._linger()
+        finally:
+            self.port.close()
+
+    def turn(self, now_s: float, passed_s: float) -> None:
+        """Hear the clients, then go on by the time that has passed [s]; waits if nothing is due."""
+        for incoming in self.port.step(now_s):
+            self._take(incoming)
+        if self.port.peers > self._peers:
+            for body in self._known.values():
+                self.tell(body)
+        self._peers = self.port.peers
+        self._clients = max(0, self._clients if self._peers < self._clients else 0)
+        if self.state != "Running" or self._clients:
+            self._behind_s = 0.0
+            self._wait(0.05)
+            return
+        self._behind_s += passed_s * self.rate
+        for _ in range(BURST):
+            if self._behind_s < TICK_S or self.world.over:
+                break
+            self._behind_s -= TICK_S
+            for body in self.world.tick():
+                self.tell(body)
+        else:
+            # what cannot be done in time is not made up for: the rate is what the machine gives
+            self._behind_s = min(self._behind_s, BURST * TICK_S)
+            return
+        self._wait(max(0.0, (TICK_S - self._behind_s) / self.rate))
+
+    def _wait(self, most_s: float) -> None:
+        handles = [handle for handle, _ in self.port.handles()]
+        select.select(handles, [], [], min(most_s, 0.05))
+
+    def _linger(self) -> None:
+        end_s = time.monotonic() + LINGER_S
+        while self.port.waiting and time.monotonic() < end_s and not self.stopping:
+            self.port.step(time.monotonic())
+            time.sleep(0.005)
+
+    def tell(self, body: Any, but: str = "") -> None:
+        """Send an object to every client but one; configurations are kept for those that come late."""
+        name = type(body).__name__
+        if name == "SessionStatus" and not but:
+            body = body.copy(RealTimeMultiple=self.rate)
+        elif name == "AirVehicleConfiguration":
+            self._known[body.ID] = body
+        elif name == "RemoveEntities":
+            for key in body.EntityList:
+                self._known.pop(key, None)
+        if self.port.peers:
+            self.port.send((frame_payload(body),), but)
+
+    def _take(self, incoming: Incoming) -> None:
+        """What a client has sent; what cannot be taken is reported, and goes to nobody."""
+        try:
+            message = wire.parse(incoming.parts[0])
+            if message.content_type != wire.LMCP:
+                raise BadInput("unknown content type", expected="lmcp", got=message.content_type)
+            body, _payload, _notes = lmcp.binary.received(message.payload, message.descriptor)
+            if type(body).__name__ == "SessionStatus":
+                self._control(body)
+                return
+            self.world.receive(body, incoming.peer)
+        except BadInput as error:
+            self._tally.refuse("message", str(error))
+            return
+        self.tell(body, incoming.peer)
+
+    def _control(self, body: Any) -> None:
+        wanted = body.State.name
+        if 0 < body.RealTimeMultiple <= MOST_RATE:
+            self.rate = body.RealTimeMultiple
+        if wanted == "Reset":
+            self.world = self._make()
+            wanted = "Paused"
+        self.state = wanted
+        self._report("INFO", f"a client asks: {body.State.name}, {self.rate:g} times real time")
+        self.tell(self.world.status(wanted))
+
+
+def frame_payload(body: Any) -> bytes:
+    """An object as AMASE sends it: its address, and 0 for entity and service."""
+    return wire.enclose(body.all_names[0], lmcp.binary.pack(body)).pack()

@@ -1,0 +1,188 @@
+"""A scenario as it runs: the clock, the events by time, all vehicles, and what they tell.
+
+The clock ticks 100 times a second. A step of a thirtieth is done on the tick by which it is due, as
+AMASE does it: what is told, then events, then motion. `World.tick` gives the messages of one tick, in order; nothing in it
+depends on the machine's time.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from collections.abc import Iterable
+from math import cos, isfinite, radians, sin
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.services.simulator import payload
+from cratous.services.simulator.aircraft import Aircraft, aircraft_of, receive, state, step
+from cratous.services.simulator.commands import check_command, present
+from cratous.services.simulator.performance import Airframe, airframe_of
+from cratous.spec.errors import BadInput
+
+TICK_S = 0.01
+STEP_S = 1 / 30
+TELL_S = 0.5
+GROUND_M = 0.0
+"""No terrain is known: the ground is at mean sea level, as it is in AMASE without elevation data."""
+MOST_VEHICLES = 1000
+
+
+class Event(NamedTuple):
+    """An object of a scenario, when it happens [s], and where it stands in the file."""
+
+    time_s: float
+    body: Any
+    where: str
+
+
+class World:
+    """See the module. compatible: AMASE's defects are kept. duration_s: when the scenario ends.
+
+    unheard: kinds of messages that were told to others, but that mean nothing here, counted.
+    """
+
+    def __init__(
+        self, events: Iterable[Event], duration_s: float, *, compatible: bool = False
+    ) -> None:
+        self.time_s = 0.0
+        self.duration_s = duration_s
+        self.compatible = compatible
+        self.unheard: Counter[str] = Counter()
+        # events of the same time happen in the order of the file
+        self._events = deque(sorted(events, key=lambda event: event.time_s))
+        self._airframes: dict[int, Airframe] = {}
+        self._mounted: dict[int, tuple[payload.Gimbal, ...]] = {}
+        self.aircraft: dict[int, Aircraft] = {}
+        self.wind_m_s = 0.0, 0.0
+        self._part = 0.0  # of a step that is due already
+        self._told_s = 0.0
+
+    @property
+    def time_ms(self) -> int:
+        """Time of the scenario [ms], as messages tell it."""
+        return int(self.time_s * 1000)
+
+    @property
+    def over(self) -> bool:
+        """True when the scenario's duration has passed."""
+        return self.time_s >= self.duration_s
+
+    def tick(self) -> list[Any]:
+        """One tick; the objects that it tells: events, and states and SessionStatus twice a second."""
+        self.time_s += TICK_S
+        told: list[Any] = []
+        due = TICK_S / STEP_S + self._part
+        self._part = due - int(due)
+        if not int(due):
+            return told
+        if self.time_s - self._told_s > TELL_S:
+            self._told_s = self.time_s
+            told += [self.status("Running"), *self.states()]
+        while self._events and self._events[0].time_s <= self.time_s:
+            event = self._events.popleft()
+            self.receive(event.body, event.where)
+            told.append(event.body)
+        self._move()
+        return told
+
+    def _move(self) -> None:
+        wind = self.wind_m_s
+        for key, one in self.aircraft.items():
+            one = step(one, wind, GROUND_M, STEP_S)
+            if one.guidance.fired:
+                for body in one.guidance.fired:
+                    self._act(key, body)
+                one = one._replace(guidance=one.guidance._replace(fired=()))
+            self.aircraft[key] = one
+            mounted = self._mounted.get(key)
+            if mounted:
+                self._mounted[key] = tuple(payload.step(p, one.motion, STEP_S) for p in mounted)
+
+    def status(self, state_name: str, rate: float = 1.0) -> Any:
+        """The SessionStatus of now."""
+        return lmcp.new(
+            "SessionStatus",
+            State=state_name,
+            ScenarioTime=self.time_ms,
+            RealTimeMultiple=rate,
+        )
+
+    def states(self) -> list[Any]:
+        """The states of all vehicles, as they are now."""
+        told = []
+        for key, one in self.aircraft.items():
+            mounted = self._mounted.get(key, ())
+            seen = payload.states(mounted, one.motion, GROUND_M) if mounted else ()
+            self.aircraft[key], body = state(one, self.wind_m_s, self.time_ms, seen)
+            told.append(body)
+        return told
+
+    def receive(self, body: Any, where: str = "") -> None:
+        """Take a message, of the scenario or from outside; BadInput if it cannot be done."""
+        kind = type(body).__name__
+        present(body, where)
+        if kind == "AirVehicleConfiguration":
+            if body.ID not in self._airframes:
+                if len(self._airframes) >= MOST_VEHICLES:
+                    raise BadInput("too many vehicles", where=where, expected=f"{MOST_VEHICLES}")
+                self._airframes[body.ID] = airframe_of(body, self.compatible, where)
+                self._mounted[body.ID] = payload.gimbals_of(body, where)
+        elif kind == "AirVehicleState":
+            airframe = self._airframes.get(body.ID)
+            if airframe is None:
+                raise BadInput(
+                    "a state of a vehicle without configuration",
+                    where=where,
+                    item=f"AirVehicleState {body.ID}",
+                    expected="its AirVehicleConfiguration before it",
+                )
+            before = self.aircraft.get(body.ID)
+            self.aircraft[body.ID] = aircraft_of(body, airframe, before, where)
+            self._mounted[body.ID] = payload.placed(self._mounted[body.ID], body)
+        elif kind in ("MissionCommand", "VehicleActionCommand"):
+            self._command(body, where)
+        elif kind == "AutomationResponse":
+            commands = (*body.MissionCommandList, *body.VehicleCommandList)
+            for one in commands:  # all of them, or none
+                self._check(one, where)
+            for one in commands:
+                self._command(one, where)
+        elif kind == "WeatherReport":
+            if not (isfinite(body.WindSpeed) and isfinite(body.WindDirection)):
+                raise BadInput("wind that is no number", where=where, item=kind)
+            at = radians(body.WindDirection)
+            self.wind_m_s = body.WindSpeed * cos(at), body.WindSpeed * sin(at)
+        elif kind == "RemoveEntities":
+            for key in body.EntityList:
+                self.aircraft.pop(key, None)
+                self._airframes.pop(key, None)
+                self._mounted.pop(key, None)
+        else:
+            self.unheard[kind] += 1
+
+    def _check(self, body: Any, where: str) -> None:
+        """BadInput for a command that cannot be done."""
+        check_command(body, where)
+        if body.VehicleID not in self.aircraft:
+            raise BadInput(
+                "a command for a vehicle that is not there",
+                where=where,
+                item=f"{type(body).__name__} {body.CommandID}",
+                expected=f"one of {sorted(self.aircraft)[:20]}",
+                got=str(body.VehicleID),
+            )
+
+    def _command(self, body: Any, where: str) -> None:
+        self._check(body, where)
+        one = receive(self.aircraft[body.VehicleID], body)
+        for fired in one.guidance.fired:
+            self._act(body.VehicleID, fired)
+        self.aircraft[body.VehicleID] = one._replace(guidance=one.guidance._replace(fired=()))
+
+    def _act(self, key: int, body: Any) -> None:
+        """An action for what is mounted on a vehicle."""
+        mounted = self._mounted.get(key, ())
+        if not payload.is_for(mounted, body):
+            self.unheard[type(body).__name__] += 1
+            return
+        self._mounted[key] = tuple(payload.act(one, body) for one in mounted)

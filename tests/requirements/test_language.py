@@ -1,0 +1,394 @@
+"""The product's language of requirements: units, times, samples that are missing, logs, and the lint."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cratous.bridge.lmcp.messages import cmasi
+from cratous.services.cli import main
+from cratous.services.logs.log import LogWriter
+from cratous.services.requirements.evaluation import Evaluation
+from cratous.services.requirements.formula import Bounded, Reaches, parts
+from cratous.services.requirements.language import read
+from cratous.services.requirements.lint import lint
+from cratous.services.requirements.sampling import Sampling
+from cratous.services.requirements.specification import NotRead
+from cratous.services.requirements.units import UNITS, dimension
+from cratous.services.requirements.watch import watch
+from cratous.spec.errors import BadInput
+
+HEAD = "signal a, b, c: bool\nsignal x, y: m\nsignal v: kn\n"
+
+
+def formula(text):
+    (found,) = read(f"{HEAD}requirement R: {text}").requirements
+    return found.formula
+
+
+@pytest.mark.parametrize(
+    ("text", "same"),
+    [
+        ("a or b and c", "a or (b and c)"),
+        ("a implies b or c", "a implies (b or c)"),
+        ("not a and b", "(not a) and b"),
+        ("a iff b implies c", "a iff (b implies c)"),
+        ("a and always within 1 s b", "a and (always from 0 ms to 1000 ms b)"),
+        ("eventually within 1 min a", "true until within 60 s a"),
+        ("x >= 1 km", "x >= 1000 m"),
+        ("x < 10 ft", "not (x >= 3.048 m)"),
+        ("1 nmi <= x", "x >= 1852 m"),
+        ("x != y", "not (x == y)"),
+        ("a # says nothing\n or b", "a or b"),
+    ],
+)
+def test_what_is_written_two_ways_means_one_thing(text, same):
+    assert formula(text) == formula(same)
+
+
+def test_a_number_is_taken_into_the_signals_unit():
+    assert formula("v >= 18.52 km/h") == Reaches("v", 10.0)
+    # 0.1 m is a tenth, not three doubles multiplied
+    assert formula("x >= 100e-3 m") == Reaches("x", 0.1)
+
+
+def test_bounds_are_nanoseconds_and_open_only_where_they_say_so():
+    found = formula("a since from 2 ms to 3 ms b")
+    assert found == Bounded(Reaches("a", 1.0), Reaches("b", 1.0), 2_000_000, 3_000_000, True)
+
+
+@pytest.mark.parametrize(
+    ("text", "what", "column"),
+    [
+        ("x >= 3 s", "units that do not fit", 18),
+        ("x >= v", "units that do not fit", 18),
+        ("x >= 3", "units that do not fit", 18),
+        ("x", "this is no such signal", 16),
+        ("a >= 1 m", "this is no such signal", 16),
+        ("z", "this is no such signal", 16),
+        ("3 m >= 2 m", "no signal is compared", 20),
+        ("always within 2 m a", "this is no time", 32),
+        ("always within 0.5 ns a", "this time cannot be taken exactly", 30),
+        ("always within -1 s a", "this time cannot be taken exactly", 30),
+        ("a until from 3 s to 1 s b", "these bounds are empty", 24),
+        ("a implies b implies c", "this cannot stand here", 28),
+        ("a always b", "this cannot stand here", 18),
+        ("x >= 1" + "0" * 400 + " m", "the number is too long", 21),
+        ("x >= 1e999 m", "the number is too long", 21),
+        ("(" * 300 + "a" + ")" * 300, "the formula is nested too deeply", 216),
+        ("a &", "this cannot stand here", 18),
+    ],
+)
+def test_what_does_not_fit_is_refused_with_its_place(text, what, column):
+    with pytest.raises(NotRead) as told:
+        formula(text)
+    assert told.value.what == what
+    assert told.value.where == f"requirements, line 4, column {column}"
+    line, caret = told.value.caret().split("\n")
+    assert caret.strip() == "^"
+    assert line[:10].strip() or column > 60
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("signal a: bool", "there is no requirement"),
+        ("signal a: bool signal a: m requirement R: a", "a signal is declared twice"),
+        ("signal a: bool requirement R: a requirement R: a", "a requirement's id is given twice"),
+        ("signal a: furlong requirement R: a", "this cannot stand here"),
+        ("trace every 0 s signal a: bool requirement R: a", "these are no times between samples"),
+        ("trace every 2 s gap 1 s signal a: bool requirement R: a", "these are no times between samples"),
+        ("trace every 1 s trace every 1 s signal a: bool requirement R: a", "the trace is described twice"),
+        ("signal a: m from T[ID].x requirement R: a >= 1 m", "this chooses no message"),
+        ("", "this cannot stand here"),
+    ],
+)  # fmt: skip
+def test_files_that_mean_nothing(text, what):
+    with pytest.raises(NotRead) as told:
+        read(text)
+    assert told.value.what == what
+
+
+def test_a_file_beyond_its_bound():
+    with pytest.raises(BadInput, match="too long"):
+        read("#" * 1_000_001)
+
+
+def test_every_unit_can_be_written():
+    for unit in UNITS:
+        if unit != "1":
+            found = read(f"signal q: {unit} requirement R: q >= 2 {unit}").requirements[0].formula
+            assert found == Reaches("q", 2.0)
+            assert dimension(unit)
+
+
+# -- samples ---------------------------------------------------------------------------------
+CSV = """time_s,request,margin
+0,0,12
+0.5,1,8
+1.0,0,-2
+"""
+
+
+def _watched(tmp_path: Path, text: str, csv: str):
+    trace = tmp_path / "t.csv"
+    trace.write_text(csv)
+    return watch(read(text), trace)
+
+
+def test_a_trace_with_times(tmp_path: Path) -> None:
+    text = "signal request: bool\nsignal margin: m\n"
+    text += "requirement A: request implies eventually within 1 s margin < 0 m\n"
+    text += "requirement B severity hazardous: margin >= 0 m"
+    one, other = _watched(tmp_path, text, CSV).outcomes
+    assert (one.verdict, one.holds, one.undecided) == ("holds", 3, 0)
+    assert (other.verdict, other.first_violated, other.decided_at) == ("violated", 10**9, 10**9)
+    (margin,) = other.margins
+    assert (margin.least, margin.at, margin.greatest, margin.greatest_at) == (-2, 10**9, 12, 0)
+    assert other.requirement.severity == "hazardous"
+
+
+def test_a_gap_leaves_unknown_what_lies_in_it(tmp_path: Path) -> None:
+    text = "trace every 500 ms gap 600 ms\nsignal margin: m\nrequirement B: margin >= 0 m"
+    found = _watched(tmp_path, text, "time_s,margin\n0,1\n0.5,1\n2,1\n")
+    (one,) = found.outcomes
+    assert (one.verdict, one.unknown, one.first_unknown) == ("unknown", 1, 1_100_000_000)
+    (finding,) = found.findings
+    assert (finding.kind, finding.first_ns) == ("gap", 500_000_000)
+    assert "further apart" in finding.text
+
+
+def test_a_sample_out_of_order_never_lets_it_hold(tmp_path: Path) -> None:
+    text = "signal margin: m\nrequirement B: margin >= 0 m"
+    found = _watched(tmp_path, text, "time_s,margin\n0,1\n1,1\n1,-5\n0.5,1\n2,1\n")
+    (one,) = found.outcomes
+    assert (one.verdict, one.unknown, one.violated) == ("unknown", 0, 0)
+    assert [(f.kind, f.count) for f in found.findings] == [("order", 2)]
+
+
+def test_values_are_held_as_long_as_they_say(tmp_path: Path) -> None:
+    text = "signal held: m hold 1 s\nsignal bare: m\nrequirement R: held >= 0 m and bare >= 0 m"
+    csv = "time_s,held,bare\n0,1,1\n1,,1\n1.5,,1\n2,nan,1\n2.5,,1\n3,1,\n4,1,1\n"
+    found = _watched(tmp_path, text, csv)
+    (one,) = found.outcomes
+    assert (one.holds, one.unknown, one.first_unknown) == (3, 4, 1_500_000_000)
+    told = {(f.kind, f.signal): (f.first_ns / 1e9, f.count) for f in found.findings}
+    # a value that is no number takes the place of the one before
+    assert told == {
+        ("stale", "held"): (1.5, 2), ("missing", "held"): (2.0, 1), ("missing", "bare"): (3.0, 1),
+    }  # fmt: skip
+
+
+def test_a_signal_that_never_comes_is_unknown_and_told(tmp_path: Path) -> None:
+    text = "signal m: m\nrequirement R: m >= 0 m"
+    found = _watched(tmp_path, text, "time_s,m\n0,\n1,\n")
+    assert found.outcomes[0].verdict == "unknown"
+    assert [f.text for f in found.findings] == ["m: no value ever came"]
+
+
+@pytest.mark.parametrize(
+    ("csv", "what"),
+    [
+        ("time_s,other\n0,1\n", "a signal has no column"),
+        ("m\n1\n", "a signal has no column"),
+        ("time_s,m\n0,one\n", "this is no number"),
+        ("time_s,m\n-1,1\n", "this is no time"),
+        ("time_s,m\n0.0000000001,1\n", "this is no time"),
+        ("time_s,m\nnan,1\n", "this is no time"),
+        ("time_s,m\n1/2,1\n", "this is no time"),
+        ("time_s,m\n1e99,1\n", "this is no time"),
+        ("time_s,m\n0\n", "a row is incomplete"),
+        ("", "the file is empty"),
+    ],
+)
+def test_traces_that_are_none(tmp_path: Path, csv: str, what: str) -> None:
+    with pytest.raises(BadInput) as told:
+        _watched(tmp_path, "signal m: m\nrequirement R: m >= 0 m", csv)
+    assert told.value.what == what
+
+
+def test_a_bool_is_zero_or_one(tmp_path: Path) -> None:
+    with pytest.raises(BadInput, match="no truth value"):
+        _watched(tmp_path, "signal a: bool\nrequirement R: a", "time_s,a\n0,2\n")
+
+
+times = st.lists(st.integers(0, 40), min_size=1, max_size=12)
+
+
+@given(times, st.integers(1, 5), st.data())
+def test_samples_rise_and_every_gap_has_an_unknown_one(rows, gap, data):
+    spec = read("trace every 1 ns gap 1 ns signal x: m hold 3 ns requirement R: x >= 0 m")
+    sampling = Sampling(spec, ["x"])
+    sampling.gap_ns = gap
+    values = [data.draw(st.sampled_from([None, 1.0, float("nan")])) for _ in rows]
+    given_rows = [(t, {} if v is None else {"x": v}) for t, v in zip(rows, values, strict=True)]
+    found = list(sampling.samples(given_rows))
+    got = [time for time, _ in found]
+    assert got == sorted(set(got))
+    kept = [t for n, t in enumerate(rows) if all(t > other for other in rows[:n])]
+    assert set(kept) <= set(got)
+    assert sampling.is_whole == (len(kept) == len(rows))
+    for before, after in itertools.pairwise(kept):
+        if after - before > gap:
+            assert found[got.index(before) + 1] == (before + gap, {"x": None})
+    # a value is known only where one came in the three nanoseconds before, and none after it was no number
+    for time, row in found:
+        past = [(t, v) for t, v in zip(rows, values, strict=True) if t <= time and t in kept and v]
+        if row["x"] is not None:
+            assert any(time - t <= 3 and v == 1.0 for t, v in past)
+
+
+# -- logs ------------------------------------------------------------------------------------
+def _log(folder: Path) -> Path:
+    with LogWriter(folder / "log.sqlite") as log:
+        for n in range(8):
+            state = cmasi.AirVehicleState(ID=1 + n % 2, Groundspeed=20.0 + n)
+            state.Location = cmasi.Location3D(Altitude=100.0 * (1 + n % 2))
+            log.tap(_envelope(n, 500 * (n // 2), state))
+    return folder / "log.sqlite"
+
+
+def _envelope(seq, time_ms, body):
+    from cratous.services.bus import Envelope
+
+    return Envelope(seq, time_ms, "sim", "afrl.cmasi.AirVehicleState", body)
+
+
+FROM = "AirVehicleState[ID={}].{}"
+
+
+def test_signals_of_a_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = _log(tmp_path)
+    file = tmp_path / "r.req"
+    file.write_text(
+        "trace every 500 ms gap 600 ms\n"
+        f"signal one: m from {FROM.format(1, 'Location.Altitude')} hold 1 s\n"
+        f"signal two: m from {FROM.format(2, 'Location.Altitude')} hold 1 s\n"
+        f"signal fast: m/s from {FROM.format(2, 'Groundspeed')}\n"
+        'requirement HIGHER "two above one" source "plan 3": two > one\n'
+        "requirement SLOW: fast <= 26 m/s\n"
+    )
+    assert main(["monitor", str(log), "--requirements", str(file), "--json"]) == 1
+    data = json.loads(capsys.readouterr().out)
+    higher, slow = data["requirements"]
+    assert (higher["verdict"], higher["holds"]) == ("holds", 4)
+    assert higher["margins"][0]["least"] == -100
+    assert (slow["verdict"], slow["first_violated_s"], slow["decided_at_s"]) == (
+        "violated",
+        1.5,
+        1.5,
+    )
+    assert data["findings"] == []
+    assert main(["monitor", str(log), "--requirements", str(file), "--verdicts"]) == 1
+    out = capsys.readouterr().out
+    assert "SLOW:1.5,F" in out
+    assert "HIGHER (two above one): holds" in out
+    assert "fast - 26 m/s: least -5 m/s at 0 s, greatest 1 m/s at 1.5 s" in out
+
+
+@pytest.mark.parametrize(
+    ("signal", "what"),
+    [
+        ("ft from AirVehicleState[ID=1].Location.Altitude", "the field has another unit"),
+        ("bool from AirVehicleState[ID=1].Groundspeed", "the field is no bool"),
+        ("m from AirVehicleState[ID=1].Nothing", "the message type has no such field"),
+        ("m from AirVehicleState[Nobody=1].Location.Altitude", "the message has no such field"),
+        ("1 from AirVehicleState[ID=1].Location", "the field is of another kind"),
+        ("m from Sent[].x", "the log has no message of this type"),
+        ("m", "nothing says where a log has this signal"),
+    ],
+)  # fmt: skip
+def test_what_a_log_does_not_have(tmp_path: Path, signal: str, what: str) -> None:
+    atom = "q" if signal.startswith("bool") else f"q >= 0 {signal.split()[0]}"
+    with pytest.raises(BadInput) as told:
+        watch(read(f"signal q: {signal}\nrequirement R: {atom}"), _log(tmp_path))
+    assert told.value.what == what
+
+
+# -- lint ------------------------------------------------------------------------------------
+def _remarks(*requirements: str, head: str = "trace every 1 s\n" + HEAD) -> dict[str, str]:
+    text = "".join(f"requirement R{n}: {one}\n" for n, one in enumerate(requirements))
+    return {r.name: r.kind for r in lint(read(head + text)) if r.kind != "unused"}
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ("x > 3 m and x < 2 m", "unsatisfiable"),
+        ("always within 2 s a and eventually from 1 s to 2 s not a", "unsatisfiable"),
+        ("eventually from 1.2 s to 1.8 s a", "unsatisfiable"),  # there is no sample between
+        ("historically within 3 s a and not a", "unsatisfiable"),
+        ("a or not a", "valid"),
+        ("always within 3 s a implies a", "valid"),
+        ("(x > 3 m and x < 2 m) implies a", "valid"),
+        ("always within 90000 s a", "unchecked"),
+        ("a implies eventually within 3 s b", ""),
+        ("a since within 2 s b", ""),
+    ],
+)
+def test_what_is_odd(text, kind):
+    assert _remarks(text) == ({"R0": kind} if kind else {})
+
+
+def test_two_that_say_the_same_and_signals_that_nobody_uses():
+    found = lint(read(HEAD + "requirement A: a\nrequirement B: not not a"))
+    assert [(r.kind, r.name) for r in found] == [
+        *(("unused", name) for name in ("b", "c", "x", "y", "v")), ("duplicate", "B"),
+    ]  # fmt: skip
+    assert _remarks("always within 2 s a", "not eventually within 2 s not a") == {"R1": "duplicate"}
+
+
+def test_without_a_period_time_is_not_looked_into():
+    assert _remarks("always within 2 s a", head=HEAD) == {"R0": "unchecked"}
+
+
+formulas = st.recursive(
+    st.sampled_from(["a", "b", "x >= 1 m", "x < 1 m"]),
+    lambda inner: st.one_of(
+        st.tuples(st.sampled_from(["and", "or"]), inner, inner).map(lambda t: f"({t[1]}) {t[0]} ({t[2]})"),
+        inner.map(lambda one: f"not ({one})"),
+        st.tuples(st.sampled_from(["always", "eventually", "historically", "once"]), inner).map(
+            lambda t: f"{t[0]} within 1 s ({t[1]})"
+        ),
+        st.tuples(st.sampled_from(["until", "since"]), inner, inner).map(
+            lambda t: f"({t[1]}) {t[0]} within 1 s ({t[2]})"
+        ),
+    ),
+    max_leaves=4,
+)  # fmt: skip
+
+
+@given(formulas, st.lists(st.tuples(*[st.sampled_from([0.0, 1.0])] * 3), min_size=5, max_size=9))
+def test_the_lint_says_of_no_formula_what_a_trace_refutes(text, rows):
+    found = _remarks(text)
+    evaluation = Evaluation(formula(text))
+    depth = sum(isinstance(p, Bounded) for p in parts(formula(text)))
+    verdicts = {}
+    for n, (a, b, x) in enumerate(rows):
+        verdicts.update(evaluation.sample(n * 10**9, {"a": a, "b": b, "x": x}))
+    # in the middle of a trace: what reaches beyond its ends is no case of the lint
+    middle = {
+        v for t, v in verdicts.items() if depth * 10**9 <= t <= (len(rows) - 1 - depth) * 10**9
+    }
+    assert not (found.get("R0") == "unsatisfiable" and 2 in middle)
+    assert not (found.get("R0") == "valid" and 0 in middle)
+
+
+def test_the_guide_has_the_example_and_what_it_says_of_a_flight(
+    root: Path, capsys, tmp_path
+) -> None:
+    example = root / "examples" / "crossing" / "requirements.req"
+    blocks = (root / "docs" / "guides" / "requirements.md").read_text(encoding="utf-8").split("```")
+    assert blocks[1].strip() == example.read_text(encoding="utf-8").strip()
+    assert lint(read(example.read_text(encoding="utf-8"))) == []
+    mission = root / "examples" / "crossing" / "mission.yaml"
+    assert main(["run", str(mission), "--out", str(tmp_path), "--quiet"]) == 0
+    capsys.readouterr()
+    log = str(tmp_path / "crossing")
+    assert main(["monitor", log, "--requirements", str(example)]) == 3
+    assert capsys.readouterr().out.startswith(blocks[5].strip())
