@@ -94,11 +94,6 @@ def followed(ok: bool, known: bool, start: int, at: int, lo: int) -> bool:
     return (known and early_enough) or ok
 
 
-def so_far(ok: bool) -> bool:
-    """After the last task of the row. Nothing is quantified."""
-    return ok
-
-
 def late_answer(under_way: bool, may_plan: bool, torn: bool) -> int:
     """Another plan is made only where it interrupts no task, and is waited for where it would; a task
     that is being flown, or that no planner can save, is given up."""

@@ -111,11 +111,6 @@ def every_step(so_far: bool, here: bool) -> bool:
     return so_far and here
 
 
-def every_result(so_far: bool) -> bool:
-    """Whether it holds everywhere."""
-    return so_far
-
-
 def common_point(p: Point, q: Point, a: Point, b: Point, s: float, t: float) -> bool:
     """The point of p-q at s and the point of a-b at t are the same point of both segments."""
     one, other = along(p, q, s), along(a, b, t)
@@ -161,11 +156,6 @@ def leaves_keep_in_at(place: int, meets: bool, alt: float, floor: float, ceiling
 def any_step(found: bool, here: bool) -> bool:
     """One more place has been looked at: was it found in any so far?"""
     return found or here
-
-
-def any_result(found: bool) -> bool:
-    """Whether it was found anywhere."""
-    return found
 
 
 def squared_distance(p: Point, m: Point) -> float:

@@ -105,11 +105,6 @@ def rows_hold_step(t: int, u: int, ok: bool, row: Timed) -> bool:
     return ok and all_rows_hold(t, u, row.kind, row.start, row.end, row.ref, row.lo, row.hi)
 
 
-def rows_hold_result(ok: bool) -> bool:
-    """After the last row: all rows held. Nothing is quantified."""
-    return ok
-
-
 def later_of(t: int, best: int, value: int) -> bool:
     """The instant t is no later than one of the two.
 
@@ -131,8 +126,3 @@ def flown_as_asked(n: int, ok: bool, least: int, most: int, times: int) -> bool:
     it has to be done n times, and none where it may not be done so often. FOR ALL n >= 1."""
     there = n <= times
     return ok and (there or n > least) and (n <= most or not there)
-
-
-def flown_as_asked_result(ok: bool) -> bool:
-    """After the last task. Nothing is quantified."""
-    return ok

@@ -72,18 +72,11 @@ def covers_step(ok: bool, mine: int, other: int) -> bool:
     return ok and mine <= other
 
 
-@kernel(supports="covers")
-def covers_result(ok: bool) -> bool:
-    """Whether no time of the one state is later than that of the other."""
-    return ok
-
-
 covers = fold(
     name="covers",
     implements="assignment.search.is_covered_step",
     step=covers_step,
     start=True,
-    finish=covers_result,
 )
 
 

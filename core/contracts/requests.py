@@ -117,7 +117,7 @@ def watched_step(
     )
 
 
-@kernel(implements="contracts.requests.always")
+@kernel(supports="requests_in_order")
 def watched_result(w: Watched) -> bool:
     """Whether all was in order all the time."""
     return w.held

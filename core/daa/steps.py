@@ -34,18 +34,11 @@ def lost_before(before: bool, piece: bool) -> bool:
     return before or piece
 
 
-@kernel(supports="way_conflicts")
-def lost_on_way(lost: bool) -> bool:
-    """Whether the way loses a volume, after all of its pieces."""
-    return lost
-
-
 way_conflicts = fold(
     name="way_conflicts",
     implements="daa.meaning.lost_somewhere",
     step=lost_before,
     start=False,
-    finish=lost_on_way,
 )
 """Whether any of the pieces (lost,) of a way loses a volume."""
 

@@ -39,18 +39,11 @@ def after_piece(so_far: int, known: bool, lost: bool, surely: bool) -> int:
     return 0
 
 
-@kernel(implements="excuse.judged")
-def manoeuvre_result(so_far: int) -> int:
-    """-1 refused, 0 open, 1 free."""
-    return so_far
-
-
 manoeuvre_judged = fold(
     name="manoeuvre_judged",
     implements="excuse.flown_step",
     step=after_piece,
     start=1,
-    finish=manoeuvre_result,
 )
 """A manoeuvre from its pieces (known, lost, surely)."""
 

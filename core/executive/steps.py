@@ -70,18 +70,11 @@ def ended_before(ok: bool, known: bool, end: int, at: int, lo: int) -> bool:
     return ok and known and row_holds(1, at, at, end, lo, 0)
 
 
-@kernel(supports="all_ended_before")
-def ended_result(ok: bool) -> bool:
-    """Whether all had ended."""
-    return ok
-
-
 all_ended_before = fold(
     name="all_ended_before",
     implements="executive.preceded_by",
     step=ended_before,
     start=True,
-    finish=ended_result,
 )
 
 
@@ -91,18 +84,11 @@ def begun_before(ok: bool, known: bool, start: int, at: int, lo: int) -> bool:
     return ok or (known and row_holds(2, at, at, start, lo, 0))
 
 
-@kernel(supports="some_begun_before")
-def begun_result(ok: bool) -> bool:
-    """Whether one had begun."""
-    return ok
-
-
 some_begun_before = fold(
     name="some_begun_before",
     implements="executive.followed",
     step=begun_before,
     start=False,
-    finish=begun_result,
 )
 
 

@@ -78,18 +78,11 @@ def nearest_step(least: int, a: Vec2, b: Vec2, p: Vec2, d_m: float) -> int:
     return min(least, edge_against(p, a, b, d_m))
 
 
-@kernel(supports="boundary_against")
-def nearest_result(least: int) -> int:
-    """The least of all verdicts: that of the nearest edge."""
-    return least
-
-
 boundary_against = fold(
     name="boundary_against",
     implements="geofence.against",
     step=nearest_step,
     start=1,
-    finish=nearest_result,
 )
 
 
@@ -107,18 +100,11 @@ def distance_step(least: Ratio, a: Vec2, b: Vec2, p: Vec2) -> Ratio:
     return lesser(least, edge_distance(p, a, b))
 
 
-@kernel(supports="boundary_distance")
-def distance_result(least: Ratio) -> Ratio:
-    """The least of all squared distances."""
-    return least
-
-
 boundary_distance = fold(
     name="boundary_distance",
     implements="geofence.least_step",
     step=distance_step,
     start=Ratio(1, 0),
-    finish=distance_result,
 )
 
 
@@ -158,16 +144,9 @@ def approach_step(near: bool, a: Vec2, b: Vec2, p: Vec2, q: Vec2, d_m: float) ->
     return near or leg_within(p, q, a, b, d_m)
 
 
-@kernel(supports="comes_within")
-def approach_result(near: bool) -> bool:
-    """Whether any edge was near."""
-    return near
-
-
 comes_within = fold(
     name="comes_within",
     implements="geofence.any_step",
     step=approach_step,
     start=False,
-    finish=approach_result,
 )

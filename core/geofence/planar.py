@@ -97,18 +97,11 @@ def contact_step(met: bool, a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> bool:
     return met or segments_meet(p, q, a, b)
 
 
-@kernel(supports="meets_boundary")
-def contact_result(met: bool) -> bool:
-    """Whether any edge was met."""
-    return met
-
-
 meets_boundary = fold(
     name="meets_boundary",
     implements="geofence.any_step",
     step=contact_step,
     start=False,
-    finish=contact_result,
 )
 
 
@@ -154,18 +147,11 @@ def area_step(twice: float, a: Vec2, b: Vec2, p: Vec2) -> float:
     return twice + orient(p, a, b)
 
 
-@kernel(supports="twice_area")
-def area_result(twice: float) -> float:
-    """Twice the signed area: positive if the chain turns from +x towards +y."""
-    return twice
-
-
 twice_area: Fold[float] = fold(
     name="twice_area",
     implements="geofence.swept",
     step=area_step,
     start=0,
-    finish=area_result,
 )
 
 

@@ -67,18 +67,11 @@ def anywhere_step(greatest: int, place: int) -> int:
     return either_place(greatest, place)
 
 
-@kernel(implements="geofence.place_of")
-def place_result(place: int) -> int:
-    """The place in all of them together."""
-    return place
-
-
 place_in_all = fold(
     name="place_in_all",
     implements="geofence.intersection_step",
     step=everywhere_step,
     start=1,
-    finish=place_result,
 )
 
 place_in_any = fold(
@@ -86,5 +79,4 @@ place_in_any = fold(
     implements="geofence.union_step",
     step=anywhere_step,
     start=-1,
-    finish=place_result,
 )

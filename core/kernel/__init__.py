@@ -201,7 +201,8 @@ def driver(*, checked_by: tuple[str, ...]) -> Callable[[F], F]:
 class Fold(Generic[Acc]):
     """`finish(step(... step(step(start, item0, *context), item1, *context) ..., *context))`.
 
-    step and finish are kernels; start is a tuple of integers or booleans; module: where it is made.
+    step and finish are kernels; without a finish the result is what the last step gives; start is a
+    tuple of integers or booleans; module: where it is made.
     The prover turns each fold into three obligations (base, step, use), so its theorem holds for
     every number of items.
     """
@@ -210,26 +211,35 @@ class Fold(Generic[Acc]):
     implements: str
     step: Callable[..., Acc]
     start: Acc
-    finish: Callable[..., Any]
+    finish: Callable[..., Any] | None = None
     module: str = ""
 
     @property
     def __name__(self) -> str:
         return self.name
 
+    @property
+    def kernels(self) -> tuple[Callable[..., Any], ...]:
+        """The kernels that it is made of."""
+        return (self.step,) if self.finish is None else (self.step, self.finish)
+
     def __call__(self, items: Iterable[tuple[Any, ...]], *context: Any) -> Any:
         acc = self.start
         for item in items:
             acc = self.step(acc, *item, *context)
-        return self.finish(acc)
+        return acc if self.finish is None else self.finish(acc)
 
 
 def fold(
-    *, name: str, implements: str, step: Callable[..., Acc], start: Acc, finish: Callable[..., Any]
+    *,
+    name: str,
+    implements: str,
+    step: Callable[..., Acc],
+    start: Acc,
+    finish: Callable[..., Any] | None = None,
 ) -> Fold[Acc]:
     """Make and register a fold over a proved step."""
     made = Fold(name, implements, step, start, finish, sys._getframe(1).f_globals["__name__"])
-    _register(
-        Entry(qualified(made), "fold", implements, made, (qualified(step), qualified(finish)))
-    )
+    parts = tuple(qualified(part) for part in made.kernels)
+    _register(Entry(qualified(made), "fold", implements, made, parts))
     return made

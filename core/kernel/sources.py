@@ -85,9 +85,9 @@ def reached(item: Any) -> dict[str, Any]:
         value = todo.pop()
         if isinstance(value, Fold):
             seen[f"fold {qualified(value)}"] = (
-                value.start, qualified(value.step), qualified(value.finish),
+                value.start, *(qualified(part) for part in value.kernels),
             )  # fmt: skip
-            todo += [value.step, value.finish]
+            todo += value.kernels
             continue
         name = f"{value.__module__}.{value.__qualname__}"
         if name in seen:

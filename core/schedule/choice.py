@@ -15,16 +15,9 @@ def as_asked_step(ok: bool, least: int, most: int, times: int) -> bool:
     return ok and least <= times and times <= most
 
 
-@kernel(supports="as_asked")
-def as_asked_result(ok: bool) -> bool:
-    """Whether every task was."""
-    return ok
-
-
 as_asked = fold(
     name="as_asked",
     implements="schedule.flown_as_asked",
     step=as_asked_step,
     start=True,
-    finish=as_asked_result,
 )

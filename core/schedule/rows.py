@@ -42,18 +42,11 @@ def schedule_step(ok: bool, kind: int, start: int, end: int, ref: int, lo: int, 
     return ok and runs_forward(start, end) and row_holds(kind, start, end, ref, lo, hi)
 
 
-@kernel(supports="schedule_holds")
-def schedule_result(ok: bool) -> bool:
-    """Whether every row held."""
-    return ok
-
-
 schedule_holds = fold(
     name="schedule_holds",
     implements="schedule.rows_hold_step",
     step=schedule_step,
     start=True,
-    finish=schedule_result,
 )
 
 

@@ -8,13 +8,12 @@ import numpy as np
 
 from cratous.core.geofence.planar import (
     Seen,
-    contact_result,
     contact_step,
     location_result,
     location_step,
 )
 from cratous.core.kernel import Vec2, driver
-from cratous.core.tasks.coverage_steps import within_result, within_step
+from cratous.core.tasks.coverage_steps import within_step
 
 
 def place_of(edges: np.ndarray, n: float, e: float) -> int:
@@ -70,7 +69,7 @@ def grid_squares(
                     for k in range(close):
                         e = edges[near[k]]
                         met = contact_step(met, Vec2(e[0], e[1]), Vec2(e[2], e[3]), p, q)
-                shares = contact_result(met) or place_of(edges, x, y) >= 0
+                shares = met or place_of(edges, x, y) >= 0
                 if not shares:
                     for k in range(close):
                         e = edges[near[k]]
@@ -81,7 +80,7 @@ def grid_squares(
     return count
 
 
-@driver(checked_by=("within_step", "within_result"))
+@driver(checked_by=("within_step",))
 def mark_seen(centres: np.ndarray, half: float, quads: np.ndarray, seen: np.ndarray) -> None:
     """Set `seen` (n, bool) for every square of which each point lies in one of the convex footprints.
 
@@ -109,5 +108,5 @@ def mark_seen(centres: np.ndarray, half: float, quads: np.ndarray, seen: np.ndar
                     b = j + 1 if j + 1 < len(quad) else 0
                     p, q = Vec2(quad[j, 0], quad[j, 1]), Vec2(quad[b, 0], quad[b, 1])
                     within = within_step(within, p, q, centre, half)
-                seen[k] = within_result(within)
+                seen[k] = within
             k += 1

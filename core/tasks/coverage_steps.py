@@ -22,18 +22,11 @@ def within_step(so_far: bool, a: Vec2, b: Vec2, centre: Vec2, half: float) -> bo
     return so_far and square_left_of(a, b, centre, half)
 
 
-@kernel(supports="square_within")
-def within_result(so_far: bool) -> bool:
-    """Whether the square is left of all edges."""
-    return so_far
-
-
 square_within = fold(
     name="square_within",
     implements="geofence.every_step",
     step=within_step,
     start=True,
-    finish=within_result,
 )
 
 

@@ -352,14 +352,14 @@ class Claim:
         context: tuple[Any, ...],
         model_start: Any,
         model_step: Callable[..., Any],
-        model_finish: Callable[..., Any],
         relation: Callable[[Any, Any], Any],
+        model_finish: Callable[..., Any] | None = None,
     ) -> None:
         """The fold equals its definition for every number of items, by induction on it.
 
         acc and model are arbitrary accumulators of kernel and definition. Base: `relation` holds
         at the start. Step: if it holds before any item it holds after it. Use: where it holds the
-        results are equal. The three together are the induction over the number of items, provided
+        results are equal; without a finish the accumulator is the result. The three together are the induction over the number of items, provided
         that the accumulators are arbitrary: that they are distinct free values which no premise
         restricts, and on which the item does not depend, is checked here, and that the relation
         does not depend on the item (see `induction`). What is to be known of the accumulators
@@ -384,8 +384,9 @@ class Claim:
         model_after = self.define(model_step, model, *item, *context)
         self._owe("step", "relation is kept", statement(relation(after, model_after)))
         with induction.without_items():
-            result = self.use(kernel_fold.finish, acc)
-            wanted = self.define(model_finish, model)
+            finish = kernel_fold.finish
+            result = acc if finish is None else self.use(finish, acc)
+            wanted = model if model_finish is None else self.define(model_finish, model)
             self._owe("use", "results are equal", statement(self.same(result, wanted)))
         induction.model_only(model_after, wanted)
         # what was shown where the relation was granted holds there alone

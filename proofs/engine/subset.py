@@ -289,7 +289,7 @@ def lint_all(names: Container[str] | None = None) -> list[Finding]:
         if entry.kind == "kernel":
             found += lint(entry.function)
         if isinstance(entry.function, Fold):
-            for part in (entry.function.step, entry.function.finish):
+            for part in entry.function.kernels:
                 known = entry_of(part)
                 if known is None or known.kind != "kernel":
                     found.append(Finding(entry.name, 1, f"{part.__name__} is no kernel"))

@@ -65,7 +65,8 @@ def closed_chain(
     c.facts = c.facts[:before]
     c._grant(statement(invariant(accumulators, first, first)))
     results = [
-        read(fold.finish, acc) for read, fold, acc in zip(readers, folds, accumulators, strict=True)
+        acc if fold.finish is None else read(fold.finish, acc)
+        for read, fold, acc in zip(readers, folds, accumulators, strict=True)
     ]
     c._owe("use", f"{text}: the chain is closed", statement(goal(results)))
     c.facts, c.granted = c.facts[:before], ()

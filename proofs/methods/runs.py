@@ -76,7 +76,8 @@ def along_items(
     c.facts = c.facts[:before]
     c._grant(held)
     results = [
-        read(fold.finish, acc) for read, fold, acc in zip(readers, folds, accumulators, strict=True)
+        acc if fold.finish is None else read(fold.finish, acc)
+        for read, fold, acc in zip(readers, folds, accumulators, strict=True)
     ]
     wanted = statement(goal(results))
     shared = sorted(free_names(wanted) & spread(names_in(item), c))

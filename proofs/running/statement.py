@@ -165,21 +165,25 @@ class OnNumbers:
         context: tuple[Any, ...],
         model_start: Any,
         model_step: Callable[..., Any],
-        model_finish: Callable[..., Any],
         relation: Callable[[Any, Any], Any],
+        model_finish: Callable[..., Any] | None = None,
     ) -> None:
         if self.prefix:
             return
+
+        def finished(finish: Callable[..., Any] | None, value: Any) -> Any:
+            return value if finish is None else self._run(finish, (value,))
+
         self.show(relation(kernel_fold.start, model_start), "relation at the start")
         if _truth(relation(acc, model)):
             after = self._run(kernel_fold.step, (acc, *item, *context))
             modelled = self._run(model_step, (model, *item, *context))
             self.show(relation(after, modelled), "relation is kept")
-            results = self._run(kernel_fold.finish, (acc,)), self._run(model_finish, (model,))
+            results = finished(kernel_fold.finish, acc), finished(model_finish, model)
             self.show(self.same(*results), "results are equal")
         ours, theirs = kernel_fold.start, model_start
         for count in (0, 1, 2, 3):
-            results = self._run(kernel_fold.finish, (ours,)), self._run(model_finish, (theirs,))
+            results = finished(kernel_fold.finish, ours), finished(model_finish, theirs)
             self.show(self.same(*results), f"the fold of {count} items is its definition")
             ours = self._run(kernel_fold.step, (ours, *item, *context))
             theirs = self._run(model_step, (theirs, *item, *context))

@@ -18,7 +18,8 @@ from cratous.core.kernel import REGISTRY, Entry, Fold, supported
 from cratous.core.kernel.sources import position, reached
 from cratous.core.ledger.package_home import Home
 from cratous.proofs.engine.reachable_paths import of_more_than_one
-from cratous.proofs.statements.relations import Relations, full_name
+from cratous.proofs.statements.closed_definitions import full_name
+from cratous.proofs.statements.relations import Relations
 from cratous.proofs.statements.restated import restates
 
 

@@ -18,7 +18,6 @@ from typing import Any, get_args, get_origin, get_type_hints
 import z3
 
 from cratous.core.kernel import REGISTRY, Fold, qualified
-from cratous.core.kernel.sources import ours
 from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.closed import TRUE
 from cratous.proofs.engine.lift import LiftError
@@ -26,6 +25,14 @@ from cratous.proofs.engine.symbolic import SymBool, SymInt, SymMask, SymReal, _r
 from cratous.proofs.engine.terms import free_names, free_values, fresh, known, leaves
 from cratous.proofs.engine.theorem_files import FOLDER, load_claim
 from cratous.proofs.statements import sentences
+from cratous.proofs.statements.closed_definitions import (
+    Closed,
+    full_name,
+    in_spec,
+    part_of,
+    plain,
+    reopened,
+)
 from cratous.proofs.statements.premise_and_goal import sides, signs
 from cratous.proofs.statements.sentences import UNREAD, Call, Stated
 
@@ -61,46 +68,6 @@ class Relations:
         return self.together | self.follows | self.leads
 
 
-def full_name(function: Any) -> str:
-    """`package.folder.module.name` of a function or fold."""
-    home = function.step if isinstance(function, Fold) else function
-    return f"{home.__module__}.{function.__name__}"
-
-
-def in_spec(function: Any) -> bool:
-    """True iff it is a definition: a function of the product's `spec`, or of a package's."""
-    return ours(function) and _part(function) == "spec"
-
-
-def _part(function: Any) -> str:
-    return str((*function.__module__.split("."), "")[1])
-
-
-@dataclass(frozen=True)
-class _Closed:
-    """A definition as a statement sees it: whether it is called or handed on, it stays closed."""
-
-    function: Function
-    claim: _Outline = field(compare=False, repr=False)
-
-    def __call__(self, *args: Any) -> Any:
-        return self.claim.closed_value(self.function, args)
-
-
-class _ClosedModule:
-    """A module of `spec` whose functions stay closed."""
-
-    def __init__(self, module: types.ModuleType, claim: _Outline) -> None:
-        self._module, self._claim = module, claim
-
-    def __getattr__(self, name: str) -> Any:
-        return _closed(getattr(self._module, name), self._claim)
-
-
-def _plain(function: Any) -> Function:
-    return function.function if isinstance(function, _Closed) else function
-
-
 def _unknown(name: str, kind: Any) -> Any:
     """An arbitrary value of this type; TypeError if there is none."""
     if get_origin(kind) is tuple:
@@ -112,14 +79,6 @@ def _unknown(name: str, kind: Any) -> Any:
 
 def _is_number(value: Any) -> bool:
     return isinstance(value, int | float | Fraction)
-
-
-def _closed(value: Any, claim: Any) -> Any:
-    if isinstance(value, types.FunctionType) and in_spec(value):
-        return _Closed(value, claim)
-    if isinstance(value, types.ModuleType) and value.__name__.split(".")[1:2] == ["spec"]:
-        return _ClosedModule(value, claim)
-    return value
 
 
 @dataclass
@@ -140,6 +99,7 @@ class _Outline(Claim):
     values_of: dict[str, Call] = field(default_factory=dict)
     folded: tuple[Fold[Any], tuple[str, ...]] | None = None
     relation: z3.BoolRef | None = None
+    ended: dict[int, tuple[str, frozenset[str]]] = field(default_factory=dict)
 
     def _value(self, name: str, make: Callable[[str], Any]) -> Any:
         value = super()._value(name, make)
@@ -152,7 +112,13 @@ class _Outline(Claim):
         self.folded = (kernel_fold, items)
         step = qualified(kernel_fold.step)
         self.stepped[full_name(kernel_fold)] = (step, self.counted.get(step, -1) + 1)
+        first = len(self.obligations)
         super().fold(kernel_fold, **how)
+        if kernel_fold.finish is None:
+            # its accumulator is its result, where the results are held against each other
+            result = full_name(kernel_fold), frozenset(str(known(v)) for v in leaves(how["acc"]))
+            added = enumerate(self.obligations[first:], first)
+            self.ended |= {number: result for number, owed in added if owed.kind == "use"}
 
     def _grant(self, condition: z3.BoolRef) -> None:
         self.relation = condition
@@ -210,7 +176,7 @@ class _Outline(Claim):
             return frozenset([self.stepped[kernel]])
         found = frozenset[Use]().union(*map(self.uses_in, terms))
         fold = next((f for f in self.folds() if full_name(f) == kernel), None)
-        names = (kernel,) if fold is None else (qualified(fold.step), qualified(fold.finish))
+        names = (kernel,) if fold is None else tuple(map(qualified, fold.kernels))
         return frozenset(use for use in found if use[0] in names)
 
     def rows(self, uses: Iterable[Use]) -> set[str]:
@@ -247,13 +213,13 @@ class _Outline(Claim):
         machine: bool = True,
         where: z3.BoolRef = TRUE,
     ) -> Any:
-        function = _plain(function)
-        if _part(function) in ("proofs", "theorems"):
+        function = plain(function)
+        if part_of(function) in ("proofs", "theorems"):
             # the statement's own helper is looked into, what it calls is not
             stubs: dict[Any, Any] = self.stubs
             for value in function.__globals__.values():
-                if isinstance(value, types.FunctionType) and _part(value) == "core":
-                    stubs.setdefault(value, _Closed(value, self))
+                if isinstance(value, types.FunctionType) and part_of(value) == "core":
+                    stubs.setdefault(value, Closed(value, self))
             return super()._lift(function, args, machine, where)
         return self.closed_value(function, args)
 
@@ -265,7 +231,7 @@ class _Outline(Claim):
 
     def calls(self, function: Function) -> list[tuple[Any, ...]]:
         """The arguments with which it was used."""
-        return list(self.arguments.get(_plain(function), []))
+        return list(self.arguments.get(plain(function), []))
 
     def congruence(self, function: Function, one: tuple[Any, ...], other: tuple[Any, ...]) -> None:
         """Equal arguments give the same value already."""
@@ -279,42 +245,12 @@ class _Outline(Claim):
         self.lemmas.append(name)
 
 
-def _speaks_of_spec(value: Any) -> bool:
-    """A helper of theorems: a function of proofs in whose reach definitions are."""
-    if not isinstance(value, types.FunctionType) or _part(value) != "proofs":
-        return False
-    return any(_closed(each, None) is not each for each in value.__globals__.values())
-
-
-def _reopened(statement: Function, claim: _Outline) -> Function:
-    """The statement with its helpers, in whose globals the definitions are closed."""
-    scopes: dict[int, dict[str, Any]] = {}
-
-    def copy(function: Function) -> Function:
-        assert isinstance(function, types.FunctionType)
-        key = id(function.__globals__)
-        if key not in scopes:
-            scope = scopes[key] = dict(function.__globals__)
-            for name, value in function.__globals__.items():
-                scope[name] = copy(value) if _speaks_of_spec(value) else _closed(value, claim)
-        made = types.FunctionType(
-            function.__code__, scopes[key], function.__name__, function.__defaults__,
-            function.__closure__,
-        )  # fmt: skip
-        made.__kwdefaults__ = function.__kwdefaults__
-        made.__annotations__ = dict(function.__annotations__)
-        made.__module__ = function.__module__
-        return made
-
-    return copy(statement)
-
-
 def relations(name: str, folder: Path = FOLDER) -> Relations:
     """What the statement of a theorem relates; its kernels must be registered."""
     statement = load_claim(name, folder)[0]
     claim = _Outline(load=lambda other: load_claim(other, folder)[0])
     try:
-        _reopened(statement, claim)(claim)
+        reopened(statement, claim)(claim)
     except (LiftError, TypeError, ValueError, RuntimeError, IndexError, KeyError, AttributeError):
         # it asks for more than what a closed function tells: only that it names them is known
         return Relations(_named_in(statement), NONE, NONE, NONE, tuple(sorted(set(claim.lemmas))))
@@ -323,7 +259,7 @@ def relations(name: str, folder: Path = FOLDER) -> Relations:
     for number, owed in enumerate(claim.obligations):
         said = [owed.goal, *claim.given_then.get(number, ())]
         if owed.kind in ("goal", "base", "step", "use"):
-            for how, pair in _pairs(claim, owed.goal, induction=owed.kind != "goal"):
+            for how, pair in _pairs(claim, number):
                 both = pair not in found[how] and owed.kind == "goal"
                 if not both or all(_says(claim, number, function) for function in pair):
                     found[how].add(pair)
@@ -350,13 +286,17 @@ def _says(claim: _Outline, number: int, function: str) -> bool:
     return bool(solver.check() != z3.unsat)
 
 
-def _pairs(
-    claim: _Outline, goal: z3.BoolRef, *, induction: bool
-) -> Iterator[tuple[str, tuple[str, str]]]:
-    """The pairs of kernel and definition that a goal relates, and how."""
-    for given, conclusion in sides(goal):
+def _pairs(claim: _Outline, number: int) -> Iterator[tuple[str, tuple[str, str]]]:
+    """The pairs of kernel and definition that an obligation's goal relates, and how."""
+    owed = claim.obligations[number]
+    ended, accumulator = claim.ended.get(number, ("", frozenset()))
+    for given, conclusion in sides(owed.goal):
         spoken = claim.functions_in(conclusion)
-        kernels = _kernels(spoken) | (_folds(claim, spoken) if induction else set())
+        kernels = _kernels(spoken)
+        if owed.kind != "goal":
+            kernels |= _folds(claim, spoken)
+        if free_names(conclusion) & accumulator:
+            kernels.add(ended)
         meant = _definitions(spoken)
         yield from (("together", (kernel, other)) for kernel in kernels for other in meant)
         for kernel in kernels:
@@ -391,7 +331,7 @@ def _kernels(functions: Iterable[Function]) -> set[str]:
 
 def _folds(claim: _Outline, spoken: Iterable[Function]) -> set[str]:
     """The folds that an induction runs over, of those that the theorem is about."""
-    return {full_name(f) for f in claim.folds() if {f.step, f.finish} & set(spoken)}
+    return {full_name(f) for f in claim.folds() if set(f.kernels) & set(spoken)}
 
 
 def _definitions(functions: Iterable[Function]) -> set[str]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from cratous.core.authority.timeliness import Beats, beats_in_time
+from cratous.core.authority.timeliness import Beats, beats_in_time, beats_result
 from cratous.core.kernel import qualified
 from cratous.services.monitor.required_rows import WAYS, beat_item
 from cratous.spec.mission import Mission
@@ -49,7 +49,7 @@ class Beat:
     @property
     def in_time(self) -> bool:
         """True iff none was late so far."""
-        return bool(beats_in_time.finish(self.beats))
+        return bool(beats_result(self.beats))
 
 
 class BridgeWatch:
@@ -93,7 +93,7 @@ class BridgeWatch:
         margin: float | None = (self._bound_ms - beat.longest_ms) / 1000
         note = f"{beat.count} heartbeats, longest gap {beat.longest_ms / 1000:.2f} s"
         outcome = Outcome.HOLDS if beat.in_time else Outcome.VIOLATED
-        kernels: tuple[str, ...] = (qualified(beats_in_time.step), qualified(beats_in_time.finish))
+        kernels: tuple[str, ...] = tuple(map(qualified, beats_in_time.kernels))
         if vehicle not in self._instances:
             outcome, margin, kernels = Outcome.UNKNOWN, None, NONE
             note = "the vehicle has no ICAROUS instance: there is no bridge to judge"

@@ -173,11 +173,6 @@ def is_covered_step(t: int, ok: bool, mine: int, other: int) -> bool:
     return ok and not (ready(other, t) and not ready(mine, t))
 
 
-def covered_result(ok: bool) -> bool:
-    """After the last time: none was later. Nothing is quantified."""
-    return ok
-
-
 def weighted(makespan: int, team: int, added: int, per_makespan: int, per_team: int) -> int:
     """The cost of a schedule: latest end and sum of last ends by their weights, and its legs."""
     return per_makespan * makespan + per_team * team + added

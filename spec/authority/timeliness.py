@@ -32,8 +32,3 @@ def too_early(t: int, at: int, planned: int, margin: int) -> bool:
     FOR ALL t. Premise: margin >= 0.
     """
     return not (at <= t and t <= at + margin) or t < planned
-
-
-def beats_result(ok: bool) -> bool:
-    """After the last heartbeat: each came in time. Nothing is quantified."""
-    return ok

@@ -51,11 +51,6 @@ def in_order(pair: Pair) -> bool:
     return lived and (pair.second == NEW or pair.second == TAKEN or pair.first == ANSWERED)
 
 
-def always(held: bool) -> bool:
-    """What has held all the time."""
-    return held
-
-
 def steps_left(ahead: int, being_planned: bool) -> int:
     """How many publications and answers a request waits for, with so many unanswered before it."""
     if being_planned:

@@ -87,11 +87,6 @@ def since_step(meant: Meant, time: int, phi: int, psi: int, at: int, low: int, h
     return Meant(time, meant.hold, max(min(meant.value, phi), here))
 
 
-def meant(value: int) -> int:
-    """After the last sample: the value so far. Nothing is quantified."""
-    return value
-
-
 def at_least(change: float, value: float, bound: float) -> bool:
     """The signal, changed by so much, is at least the bound. FOR ALL changes: margins speak of them."""
     return value + change >= bound

@@ -15,6 +15,7 @@ from cratous.core.kernel import REGISTRY, Entry, named, supported
 from cratous.core.ledger import PRODUCT
 from cratous.proofs.engine import prover
 from cratous.proofs.engine.reachable_paths import ALL, NOT
+from cratous.proofs.statements.closed_definitions import full_name
 from cratous.proofs.statements.definitions import (
     Proofs,
     definition,
@@ -23,7 +24,7 @@ from cratous.proofs.statements.definitions import (
     problems,
 )
 from cratous.proofs.statements.relation_cache import Kept
-from cratous.proofs.statements.relations import Relations, full_name, relations
+from cratous.proofs.statements.relations import Relations, relations
 from cratous.proofs.statements.restated import restates
 
 ENTRIES = ledger.load_all()
@@ -268,6 +269,8 @@ def test_what_is_no_formula_is_not_compared() -> None:
         ("schedule_holds_is_its_definition", "schedule_holds", "schedule.rows_hold_step", "together"),
         ("geofence_boundary_distance_is_that_of_the_nearest_edge", "boundary_distance",
          "geofence.least_step", "together"),
+        # of a fold without a finish the accumulator is the result
+        ("geofence_boundary_verdict_is_its_definition", "boundary_against", "geofence.against", "together"),
         # a table of numbers, evaluated while it is stated
         ("contracts_tasks_move_as_the_table_says", "task_step", "contracts.tasks.row", "together"),
     ],

@@ -167,7 +167,7 @@ def test_assumptions_stay_visible():
 def test_a_wrong_fold_is_refuted():
     locate = named("meets_boundary").function
     assert isinstance(locate, Fold)
-    broken = Fold(locate.name, locate.implements, locate.step, True, locate.finish)
+    broken = Fold(locate.name, locate.implements, locate.step, True)
 
     def claim(c: Claim) -> None:
         p, q, a, b = (c.vector(n) for n in "pqab")
@@ -179,13 +179,34 @@ def test_a_wrong_fold_is_refuted():
             context=(p, q),
             model_start=False,
             model_step=locate.step,
-            model_finish=locate.finish,
             relation=c.same,
         )
 
     statuses = {o.obligation.kind: o.status for o in _prove(claim).outcomes}
     assert statuses["base"] == "refuted"
     assert statuses["use"] == "proved"
+
+
+@pytest.mark.parametrize(("weak", "use"), [(False, "proved"), (True, "refuted")])
+def test_a_fold_without_a_finish_gives_its_accumulator(weak: bool, use: str) -> None:
+    meets = named("meets_boundary").function
+    assert isinstance(meets, Fold)
+    assert meets.finish is None
+
+    def claim(c: Claim) -> None:
+        p, q, a, b = (c.vector(n) for n in "pqab")
+        c.fold(
+            meets,
+            acc=c.boolean("met"),
+            model=c.boolean("model"),
+            item=(a, b),
+            context=(p, q),
+            model_start=False,
+            model_step=meets.step,
+            relation=(lambda met, model: c.same(met, met)) if weak else c.same,
+        )
+
+    assert {o.obligation.kind: o.status for o in _prove(claim).outcomes}["use"] == use
 
 
 # -- the subset -----------------------------------------------------------------------------

@@ -251,7 +251,7 @@ def exact(function: Callable[..., Any] | Fold[Any], *args: Any) -> Any:
             acc = function.start
             for item in items:
                 acc = _one(function.step, (acc, *item, *context))
-            return _one(function.finish, (acc,))
+            return acc if function.finish is None else _one(function.finish, (acc,))
         return _one(function, args)
     except OverflowError as error:
         name_ = function.__name__

@@ -76,15 +76,29 @@ def _start(value: Any) -> list[Any]:
     return [value]
 
 
+def _ending(finish: Filter | None, kinds: list[str]) -> list[str]:
+    """The result of one context, from its last accumulator."""
+    state = [
+        f"s_{k}[j] != 0" if kind == "np.uint8" else f"s_{k}[j]" for k, kind in enumerate(kinds)
+    ]
+    pad = " " * 12
+    if finish is None:
+        return [f"{pad}found[j] = {state[0]}"]
+    columns = [str(column.value) for column in finish.program.columns]
+    lines = [f"{pad}{c} = {same}" for c, same in zip(columns, state, strict=True)]
+    return [*lines, *straight(_roots(finish), pad), f"{pad}found[j] = {_values(finish)[0]}"]
+
+
 @functools.cache
 def _map(fold: Fold[Any], arguments: int) -> tuple[Any, _Shape]:
     """The compiled loop: (out, code, items..., contexts...)."""
-    step, finish, shape = filtered(fold.step), filtered(fold.finish), _Shape(fold, arguments)
-    if any(leaf.kind == "float" for leaf in _roots(step)[1:]) or len(finish.results) != 1:
+    step, shape = filtered(fold.step), _Shape(fold, arguments)
+    finish = None if fold.finish is None else filtered(fold.finish)
+    results = step.results if finish is None else finish.results
+    if any(leaf.kind == "float" for leaf in _roots(step)[1:]) or len(results) != 1:
         raise NotInSubset(f"{fold.name}: only truth values and integers are folded over arrays")
     start = _start(fold.start)
     names = [*(f"i_{c}" for c in shape.items), *(f"c_{c}" for c in shape.context)]
-    ends = [str(column.value) for column in finish.program.columns]
     kinds = ["np.uint8" if isinstance(v, bool) else "np.int64" for v in start]
     lines = ["import numpy as np", "from numba import njit", "", "", f"@{FLAGS}"]
     lines += [f"def _fold(out, code, {', '.join(names)}):"]
@@ -111,11 +125,7 @@ def _map(fold: Fold[Any], arguments: int) -> tuple[Any, _Shape]:
         f"                open_[j] |= not ({_certainty(step)})",
         "        for j in range(found.size):",
     ]
-    for k, column in enumerate(ends):
-        same = f"s_{k}[j] != 0" if kinds[k] == "np.uint8" else f"s_{k}[j]"
-        lines.append(f"            {column} = {same}")
-    lines += straight(_roots(finish), " " * 12)
-    lines += [f"            found[j] = {_values(finish)[0]}", ""]
+    lines += [*_ending(finish, kinds), ""]
     return load("\n".join(lines))._fold, shape
 
 
@@ -141,7 +151,7 @@ def folded(fold: Fold[Any], arguments: int = 2, rest: Rest | None = None) -> Cal
         flat = [np.full(size, c) if np.ndim(c) == 0 else c for c in flat]
         columns = [np.ascontiguousarray(c, dtype=np.float64) for c in flat]
         edges = tuple(np.ascontiguousarray(c, dtype=np.float64) for c in items)
-        truth = get_type_hints(fold.finish)["return"] is bool
+        truth = get_type_hints(fold.kernels[-1])["return"] is bool
         out: np.ndarray = np.empty(size, dtype=np.bool_ if truth else np.int8)
         code = np.empty(size, dtype=np.uint8)
         compiled(out, code, *edges, *columns)

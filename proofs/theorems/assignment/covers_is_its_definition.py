@@ -27,6 +27,5 @@ def claim(c: Claim) -> None:
         context=(),
         model_start=True,
         model_step=model_step,
-        model_finish=assignment.covered_result,
         relation=c.same,
     )

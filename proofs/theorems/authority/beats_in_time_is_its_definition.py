@@ -5,7 +5,7 @@ from typing import Any
 
 from cratous.core.authority.timeliness import Beats, beats_in_time
 from cratous.proofs.claim import Claim
-from cratous.spec.authority.timeliness import beats_result, in_time
+from cratous.spec.authority.timeliness import in_time
 
 
 def claim(c: Claim) -> None:
@@ -34,6 +34,6 @@ def claim(c: Claim) -> None:
         context=(bound,),
         model_start=Beats(0, True),
         model_step=model_step,
-        model_finish=lambda beats: beats_result(beats.ok),
+        model_finish=lambda beats: beats.ok,
         relation=related,
     )

@@ -7,7 +7,6 @@ from typing import Any
 from cratous.core.contracts.building import WatchedParts, parts_in_order
 from cratous.proofs.claim import Claim
 from cratous.spec.contracts.building import Parts, in_order
-from cratous.spec.contracts.requests import always
 
 MANY = 2**60
 
@@ -61,6 +60,5 @@ def claim(c: Claim) -> None:
         context=(one, other),
         model_start=True,
         model_step=lambda held, *_: held,
-        model_finish=always,
         relation=related,
     )

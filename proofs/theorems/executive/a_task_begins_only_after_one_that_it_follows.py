@@ -24,7 +24,6 @@ def claim(c: Claim) -> None:
         context=(at, lo),
         model_start=False,
         model_step=step,
-        model_finish=executive.so_far,
         relation=c.same,
     )
     before = c.boolean("before")

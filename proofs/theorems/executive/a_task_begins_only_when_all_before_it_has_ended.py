@@ -24,7 +24,6 @@ def claim(c: Claim) -> None:
         context=(at, lo),
         model_start=True,
         model_step=step,
-        model_finish=executive.so_far,
         relation=c.same,
     )
     before, is_life = c.boolean("before"), c.all_of(life >= 0, life <= executive.FAILED)

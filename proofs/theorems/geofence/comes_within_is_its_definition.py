@@ -5,7 +5,7 @@ from typing import Any
 
 from cratous.core.geofence.distance import comes_within, leg_within
 from cratous.proofs.claim import Claim
-from cratous.spec.geofence import any_result, any_step
+from cratous.spec.geofence import any_step
 
 
 def model_step(near: Any, a: Any, b: Any, p: Any, q: Any, d: Any) -> Any:
@@ -23,6 +23,5 @@ def claim(c: Claim) -> None:
         context=(p, q, d),
         model_start=False,
         model_step=model_step,
-        model_finish=any_result,
         relation=c.same,
     )

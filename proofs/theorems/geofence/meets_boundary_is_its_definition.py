@@ -5,7 +5,7 @@ from typing import Any
 
 from cratous.core.geofence.planar import meets_boundary, segments_meet
 from cratous.proofs.claim import Claim
-from cratous.spec.geofence import any_result, any_step
+from cratous.spec.geofence import any_step
 
 
 def model_step(met: Any, a: Any, b: Any, p: Any, q: Any) -> Any:
@@ -23,6 +23,5 @@ def claim(c: Claim) -> None:
         context=(p, q),
         model_start=False,
         model_step=model_step,
-        model_finish=any_result,
         relation=c.same,
     )

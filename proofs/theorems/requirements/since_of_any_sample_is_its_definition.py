@@ -5,7 +5,7 @@ from typing import Any
 
 from cratous.core.requirements.since import Broken, Found, Since, since_holds
 from cratous.proofs.claim import Claim
-from cratous.spec.requirements.operators import Meant, meant, since_step
+from cratous.spec.requirements.operators import Meant, since_step
 
 START = -(2**62)
 
@@ -51,6 +51,6 @@ def claim(c: Claim) -> None:
         context=(at, low, high),
         model_start=Meant(START, 2, 0),
         model_step=since_step,
-        model_finish=lambda m: meant(m.value),
+        model_finish=lambda m: m.value,
         relation=related,
     )

@@ -5,7 +5,7 @@ from typing import Any
 
 from cratous.core.requirements.until import Times, Until, until_holds
 from cratous.proofs.claim import Claim
-from cratous.spec.requirements.operators import Meant, meant, until_step
+from cratous.spec.requirements.operators import Meant, until_step
 
 START = -(2**62)
 
@@ -68,6 +68,6 @@ def claim(c: Claim) -> None:
         context=(at, low, high),
         model_start=Meant(START, 2, 0),
         model_step=until_step,
-        model_finish=lambda m: meant(m.value),
+        model_finish=lambda m: m.value,
         relation=related,
     )

@@ -5,7 +5,7 @@ from typing import Any
 
 from cratous.core.schedule.choice import as_asked, as_asked_step
 from cratous.proofs.claim import Claim
-from cratous.spec.schedule import flown_as_asked, flown_as_asked_result
+from cratous.spec.schedule import flown_as_asked
 
 
 def model_step(ok: Any, least: Any, most: Any, times: Any) -> Any:
@@ -38,6 +38,5 @@ def claim(c: Claim) -> None:
         context=(),
         model_start=True,
         model_step=model_step,
-        model_finish=flown_as_asked_result,
         relation=c.same,
     )

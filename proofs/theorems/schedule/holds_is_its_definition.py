@@ -5,7 +5,7 @@ from typing import Any
 
 from cratous.core.schedule.rows import schedule_holds
 from cratous.proofs.claim import Claim
-from cratous.spec.schedule import Timed, rows_hold_result, rows_hold_step
+from cratous.spec.schedule import Timed, rows_hold_step
 
 
 def model_step(ok: Any, kind: Any, start: Any, end: Any, ref: Any, lo: Any, hi: Any) -> Any:
@@ -32,6 +32,5 @@ def claim(c: Claim) -> None:
         context=(),
         model_start=True,
         model_step=model_step,
-        model_finish=rows_hold_result,
         relation=c.same,
     )

@@ -5,7 +5,7 @@ from typing import Any
 
 from cratous.core.tasks.coverage_steps import square_left_of, square_within
 from cratous.proofs.claim import Claim
-from cratous.spec.geofence import every_result, every_step
+from cratous.spec.geofence import every_step
 
 
 def model_step(so_far: Any, a: Any, b: Any, centre: Any, half: Any) -> Any:
@@ -24,6 +24,5 @@ def claim(c: Claim) -> None:
         context=(centre, half),
         model_start=True,
         model_step=model_step,
-        model_finish=every_result,
         relation=c.same,
     )
