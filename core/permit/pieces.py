@@ -150,3 +150,47 @@ permitted = fold(
     start=Flight(True, 0, 0, 0, 0),
     finish=flight_result,
 )
+
+
+@kernel(supports="permitted_from")
+def part_step(
+    flight: Flight,
+    v: Vec2,
+    climb_m_s: float,
+    d_s: float,
+    rho_m: float,
+    meeting: Meeting,
+    gone_s: float,
+) -> Flight:
+    """One more piece, of which only what lies after gone_s [s from the beginning] counts."""
+    t = flight.time_s
+    clear = flight.clear
+    if t + d_s >= gone_s:
+        flown = max(gone_s - t, 0)
+        at = t + flown
+        clear = clear and piece_clear(
+            Vec2(
+                meeting.s.x + (flight.north_m + flown * v.x) - at * meeting.w.x,
+                meeting.s.y + (flight.east_m + flown * v.y) - at * meeting.w.y,
+            ),
+            Vec2(v.x - meeting.w.x, v.y - meeting.w.y),
+            meeting.sz + (flight.up_m + flown * climb_m_s) - at * meeting.wz,
+            climb_m_s - meeting.wz,
+            growth_after(meeting.wide, at),
+            growth_after(meeting.high, at),
+            meeting.radius_m,
+            meeting.half_height_m,
+            rho_m,
+            d_s - flown,
+        )
+    up = flight.up_m + d_s * climb_m_s
+    return Flight(clear, flight.north_m + d_s * v.x, flight.east_m + d_s * v.y, up, t + d_s)
+
+
+permitted_from = fold(
+    name="permitted_from",
+    implements="permit.motion.way_step",
+    step=part_step,
+    start=Flight(True, 0, 0, 0, 0),
+    finish=flight_result,
+)
