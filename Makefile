@@ -4,12 +4,13 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.ready
 
-.PHONY: help venv demo test test-fast test-long lint types prove recheck mutate crosshair fuzz daa-fuzz bench docs dist changelog lock clean
+.PHONY: help venv demo test test-fast test-long test-web lint types prove recheck mutate crosshair fuzz daa-fuzz bench docs dist changelog lock clean
 
 help:
 	@echo "make demo      set up, then plan, prove, fly, monitor and certify the crossing mission"
 	@echo "make test      set up, then run the tests"
 	@echo "make test-long the tests that take many minutes"
+	@echo "make test-web  the ground station in headless Chromium, where there is one"
 	@echo "make venv      only set up (.venv, pinned dependencies, compiled kernels)"
 	@echo "make lint      style and spelling"
 	@echo "make types     mypy, strict"
@@ -42,6 +43,9 @@ test: venv
 
 test-long: venv
 	$(BIN)/python -m pytest -m long
+
+test-web: venv
+	$(BIN)/python -m pytest tests/ground_station
 
 test-fast: venv
 	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder -m "not slow and not long"

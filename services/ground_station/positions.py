@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from typing import Any
 
 from cratous.services.logs.entry import Entry, any_data
@@ -16,20 +18,40 @@ NOBODY = -1
 """In the place of the owner: the log does not say who commands."""
 
 
+Local = Callable[[float, float], tuple[float, float]]
+
+
+def local_place(
+    to_local: Local, latitude_deg: float, longitude_deg: float
+) -> tuple[float, float] | None:
+    """North and east [m] to a decimetre; None for degrees that are nowhere on the earth."""
+    from pyproj.exceptions import ProjError
+
+    try:
+        north_m, east_m = to_local(latitude_deg, longitude_deg)
+    except ProjError:  # there is no frame about such a place
+        return None
+    if not math.isfinite(north_m) or not math.isfinite(east_m):
+        return None
+    return round(north_m, 1), round(east_m, 1)
+
+
 class Positions:
     """Reads states and configurations, in the order of the log.
 
-    frame: about the first position, None before there is one.
+    frame: about the first position, None before there is one; unread: of how many states the body
+    could not be decoded.
     """
 
     def __init__(self) -> None:
         self._tracks: dict[str, dict[int, list[float]]] = {}
         self.frame: Frame | None = None
+        self.unread = 0
         self._projection: Projection | None = None
         self._labels: dict[str, str] = {}
 
-    def add(self, entry: Entry, begin_ms: int) -> None:
-        """Take a message; what is no state and no configuration changes nothing."""
+    def add(self, entry: Entry, time_ms: int) -> None:
+        """Take a message of a time after the log's first; only states and configurations count."""
         names = names_of(entry.topic)
         if CONFIGURATION in names:
             body, _ = any_data(entry)
@@ -37,16 +59,19 @@ class Positions:
                 self._labels[str(body.get("ID", 0))] = str(body.get("Label", ""))
         if STATE not in names:
             return
-        body, _ = any_data(entry)
+        body, error = any_data(entry)
+        self.unread += error is not None
         place = place_of(body.get("Location")) if isinstance(body, dict) else None
         if place is None or not isinstance(body.get("ID"), int):
             return
+        frame = Frame(place[0], place[1])
+        projection = self._projection or Projection(frame)
+        local = local_place(projection.to_local, place[0], place[1])
+        if local is None:
+            return
         if self._projection is None:
-            self.frame = Frame(place[0], place[1])
-            self._projection = Projection(self.frame)
-        local = self._projection.to_local(place[0], place[1])
-        time_ms = entry.time_ms - begin_ms
-        row = [time_ms, *(round(x, 1) for x in (*local, place[2])), NOBODY]
+            self.frame, self._projection = frame, projection
+        row = [time_ms, *local, round(place[2], 1), NOBODY]
         # the first of each second stays
         self._tracks.setdefault(str(body["ID"]), {}).setdefault(time_ms // PERIOD_MS, row)
 

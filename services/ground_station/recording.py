@@ -25,9 +25,12 @@ from cratous.spec.mission import Frame, Mission
 
 FORMAT = "cratous-recording/1"
 READ_BY_FLIGHT = "cratous."
-"""Messages of flights of ours; these two of them come often and say nothing that is shown."""
-SILENT = ("cratous.Heartbeat", "cratous.GatedCommand")
-TRUTH, LINK, STATE = "cratous.TruthState", "cratous.BridgeStatus", "afrl.cmasi.AirVehicleState"
+"""Types of flights of ours begin so."""
+HEARTBEAT, GATED = "cratous.Heartbeat", "cratous.GatedCommand"
+LINK, STATE = "cratous.BridgeStatus", "afrl.cmasi.AirVehicleState"
+CLOCKS = {"afrl.cmasi.SessionStatus": "ScenarioTime", STATE: "Time"}
+"""Where the messages of a capture that has no times say what time it is [ms]."""
+TIMELESS = ("frames", "lmcp")
 TOLD = ("Request", "Response", "Command", "Action", "Complete", "Status", "Zone", "Task")
 """Messages of other logs whose types end so are listed as events."""
 
@@ -79,8 +82,10 @@ def _flown(source: Source, mission: Mission) -> dict[str, Any]:
             place = entry.place
             if entry.topic == LINK:
                 links.add(entry)
-            if entry.topic in SILENT or not entry.topic.startswith(READ_BY_FLIGHT):
-                shapes.add(entry, 0)
+            if entry.topic == HEARTBEAT:
+                continue
+            if entry.topic == GATED or not entry.topic.startswith(READ_BY_FLIGHT):
+                shapes.add(entry, entry.time_ms)
                 if entry.topic != STATE:
                     continue
             yield Row(entry.seq, entry.time_ms, entry.source, entry.topic, to_text(entry))
@@ -115,6 +120,7 @@ def _flown(source: Source, mission: Mission) -> dict[str, Any]:
         "phases": flight.phases,
         "links": links.found,
         "events": flight.events,
+        "unread": shapes.unread,
     }
 
 
@@ -166,27 +172,24 @@ class _Links:
 
 def _told(source: Source) -> dict[str, Any]:
     """A log of others: states, routes and zones as its messages tell them."""
-    positions, begin_ms, end_ms = Positions(), 0, 0
+    positions, end_ms = Positions(), 0
     shapes: Shapes | None = None
-    waiting: list[Entry] = []
+    waiting: list[tuple[Entry, int]] = []
     events: list[dict[str, Any]] = []
-    for number, entry in enumerate(source.entries()):
-        begin_ms = begin_ms if number else entry.time_ms
-        end_ms = max(end_ms, entry.time_ms - begin_ms)
-        positions.add(entry, begin_ms)
+    for entry, time_ms in _timed(source):
+        end_ms = max(end_ms, time_ms)
+        positions.add(entry, time_ms)
+        waiting.append((entry, time_ms))
         if shapes is None and positions.frame is not None:
             shapes = Shapes(Projection(positions.frame).to_local)
+        if shapes is not None:
             for before in waiting:
-                shapes.add(before, begin_ms)
+                shapes.add(*before)
             waiting.clear()
-        if shapes is None:
-            waiting.append(entry)
-        else:
-            shapes.add(entry, begin_ms)
         short = entry.topic.rpartition(".")[2]
-        if short.endswith(TOLD):
+        if short.endswith(TOLD) and entry.topic not in CLOCKS:
             text = f"{short} from {entry.source}" if entry.source else short
-            events.append({"time_ms": entry.time_ms - begin_ms, "vehicle": None, "text": text})
+            events.append({"time_ms": time_ms, "vehicle": None, "text": text})
     frame = positions.frame or Frame(0.0, 0.0)
     return {
         "name": source.path.name,
@@ -206,4 +209,20 @@ def _told(source: Source) -> dict[str, Any]:
         "phases": [],
         "links": None,
         "events": events,
+        "unread": positions.unread + (shapes.unread if shapes else 0),
     }
+
+
+def _timed(source: Source) -> Iterator[tuple[Entry, int]]:
+    """The messages with their times after the first of them [ms]; time never goes back."""
+    begin_ms: int | None = None
+    now_ms = 0
+    for entry in source.entries():
+        told: Any = entry.time_ms
+        if source.kind in TIMELESS:
+            body, _ = any_data(entry) if entry.topic in CLOCKS else ({}, None)
+            told = body.get(CLOCKS.get(entry.topic)) if isinstance(body, dict) else None
+        if isinstance(told, int):
+            begin_ms = told if begin_ms is None else begin_ms
+            now_ms = max(now_ms, told - begin_ms)
+        yield entry, now_ms

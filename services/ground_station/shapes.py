@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
+from cratous.services.ground_station.positions import Local, local_place
 from cratous.services.logs.entry import Entry, any_data
 from cratous.services.logs.selection import names_of
 from cratous.services.logs.views import (
@@ -22,30 +23,38 @@ from cratous.services.logs.views import (
 GATED = "cratous.GatedCommand"
 POINT, LINE, AREA = (f"afrl.cmasi.{kind}SearchTask" for kind in ("Point", "Line", "Area"))
 SHAPED = frozenset((COMMAND, RESPONSE, ZONE, GATED, POINT, LINE, AREA))
-Local = Callable[[float, float], tuple[float, float]]
 
 
 class Shapes:
-    """Collects them in the order of the log. to_local: latitude, longitude [deg] to north, east [m]."""
+    """Collects them in the order of the log. to_local: latitude, longitude [deg] to north, east [m].
+
+    unread: of how many messages the body could not be decoded.
+    """
 
     def __init__(self, to_local: Local) -> None:
         self._to_local, self._views = to_local, Views()
         self.routes: list[dict[str, Any]] = []
         self.zones: list[dict[str, Any]] = []
         self.tasks: list[dict[str, Any]] = []
+        self.unread = 0
+        self._names: dict[str, tuple[str, ...]] = {}
 
-    def add(self, entry: Entry, begin_ms: int) -> None:
-        """Take a message; one that tells no shape changes nothing."""
-        names = names_of(entry.topic) or (entry.topic,)
-        if SHAPED.isdisjoint(names):
+    def add(self, entry: Entry, time_ms: int) -> None:
+        """Take a message of a time of the page; one that tells no shape changes nothing."""
+        names = self._names.get(entry.topic)
+        if names is None:
+            names = names_of(entry.topic) or (entry.topic,)
+            names = self._names[entry.topic] = () if SHAPED.isdisjoint(names) else names
+        if not names:
             return
         body, error = any_data(entry)
         if error is not None or not isinstance(body, dict):
+            self.unread += 1
             return
-        time_ms, sender = entry.time_ms - begin_ms, ""
+        sender = ""
         if GATED in names:  # a command that the gate let through, whoever sent it
             sender, body, names = str(body.get("Sender", "")), body.get("Command"), (COMMAND,)
-            if not isinstance(body, dict):
+            if not isinstance(body, dict) or body.get("$type") != "CMASI/MissionCommand":
                 return
         if ZONE in names:
             self._zone(body, names, time_ms)
@@ -62,9 +71,10 @@ class Shapes:
             if view.schema == GEO_JSON:
                 yield json.loads(view.data["geojson"])["geometry"]
 
-    def _place(self, corner: list[float]) -> list[float]:
-        longitude, latitude = corner
-        return [round(x, 1) for x in self._to_local(latitude, longitude)]
+    def _places(self, corners: Any) -> list[tuple[float, float]]:
+        """Of latitudes and longitudes, or nothing in their place, in the frame of the page."""
+        found = (local_place(self._to_local, *c[:2]) for c in corners if c is not None)
+        return [place for place in found if place is not None]
 
     def _zone(self, body: Any, names: tuple[str, ...], time_ms: int) -> None:
         for shape in self._drawn(body, names):
@@ -73,21 +83,21 @@ class Shapes:
                     "id": body.get("ZoneID", 0),
                     "kind": "keep_out" if KEEP_OUT in names else "keep_in",
                     "label": str(body.get("Label", "")),
-                    "vertices": [self._place(corner) for corner in shape["coordinates"][0][:-1]],
+                    "vertices": self._places((c[1], c[0]) for c in shape["coordinates"][0][:-1]),
                     "from_ms": time_ms,
                 }
             )
 
     def _route(self, command: Any, sender: str, time_ms: int) -> None:
-        for shape in self._drawn(command, (COMMAND,)):
-            self.routes.append(
-                {
-                    "time_ms": time_ms,
-                    "vehicle": command.get("VehicleID", 0),
-                    "sender": sender,
-                    "points": [self._place(corner) for corner in shape["coordinates"]],
-                }
-            )
+        # one without waypoints takes the place of the route before it, too
+        self.routes.append(
+            {
+                "time_ms": time_ms,
+                "vehicle": command.get("VehicleID", 0),
+                "sender": sender,
+                "points": self._places(place_of(w) for w in command.get("WaypointList", ())),
+            }
+        )
 
     def _task(self, body: Any, names: tuple[str, ...]) -> None:
         if POINT in names:
@@ -98,7 +108,7 @@ class Shapes:
             found = [(*corner, 0.0) for corner in corners_of(body.get("SearchArea"))]
         else:
             return
-        places = [self._place([place[1], place[0]]) for place in found if place is not None]
+        places = self._places(found)
         if places:
             self.tasks.append(
                 {

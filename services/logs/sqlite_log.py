@@ -23,6 +23,9 @@ TABLE_NAMES = "SELECT name FROM sqlite_master WHERE type = 'table'"
 """Names of tables alone: the rows of a view have no end that could be foreseen."""
 
 
+OPTIONAL_KINDS = frozenset((str, type(None)))
+
+
 class Closing(NamedTuple):
     """What the writer said at its end."""
 
@@ -176,7 +179,7 @@ def entry_of(row: tuple[Any, ...]) -> Entry:
     right = type(entry.seq) is type(entry.time_ms) is int
     right = right and type(entry.source) is type(entry.topic) is str
     right = right and type(entry.body) in (str, bytes)
-    if not right or any(type(value) not in (str, type(None)) for value in entry[5:]):
+    if not right or not OPTIONAL_KINDS.issuperset(map(type, entry[5:])):
         raise sqlite3.DatabaseError(f"wrong values {row!r:.80}")
     return entry
 

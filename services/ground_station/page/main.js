@@ -47,7 +47,7 @@ class Station {
     by("name").textContent = recording.name;
     document.title = `${recording.name} – CRATOUS ground station`;
     const log = recording.log;
-    by("source").textContent = [`${log.file} (${log.kind})`, recording.outcome, log.end && !log.digest ? log.end : "", log.missing ? `${log.missing} messages are missing` : ""].filter(Boolean).join(" · ");
+    by("source").textContent = [`${log.file} (${log.kind})`, recording.outcome, log.end && !log.digest ? log.end : "", log.missing ? `${log.missing} messages are missing` : "", recording.unread ? `${recording.unread} messages could not be decoded` : ""].filter(Boolean).join(" · ");
     by("slider").max = recording.end_ms;
     by("rate").append(...address.RATES.map(rate => new Option(`${rate}×`, rate)));
     panels.events(recording, go);

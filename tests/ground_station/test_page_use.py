@@ -1,0 +1,100 @@
+"""The page as it is used: keys, buttons and clicks in a real browser."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from chromium_tools import Page, browsing
+from ground_station_tools import serving
+
+pytestmark = pytest.mark.slow
+READY = "!document.getElementById('station')?.hidden && document.querySelector('#aircraft tr')"
+
+
+@pytest.fixture
+def page(crossing: Path, tmp_path: Path) -> Iterator[Page]:
+    with serving(crossing) as (_, port), browsing(tmp_path) as page:
+        page.go(f"http://127.0.0.1:{port}/#t=0")
+        page.until(READY)
+        yield page
+        # nothing was refused by the content security policy, no script failed
+        assert page.logged == []
+
+
+def _time_s(page: Page) -> float:
+    return float(page.value("document.getElementById('slider').value")) / 1000
+
+
+def test_keys_jump_from_event_to_event_and_the_address_follows(page: Page) -> None:
+    page.key("n")
+    assert page.text("clock").startswith("00:00:21.5 of")
+    assert "ICAROUS since 21.5 s" in page.text("aircraft")
+    assert page.value("location.hash").startswith("#t=21.5&rate=1")
+    page.key("n")
+    assert page.text("clock").startswith("00:00:59.0 of")
+    page.key("p")
+    page.key("ArrowRight")
+    assert page.text("clock").startswith("00:00:22.5 of")
+    page.key("End")
+    assert page.text("clock").startswith("00:03:35.7 of")
+    page.key("Home")
+    assert page.text("clock").startswith("00:00:00.0 of")
+
+
+def test_it_plays_at_its_rate_stops_at_the_end_and_pauses(page: Page) -> None:
+    for _ in range(6):
+        page.key("]")
+    assert page.value("document.getElementById('rate').value") == "100"
+    page.key(" ")
+    assert page.text("play") == "Pause"
+    page.until("Number(document.getElementById('slider').value) > 20000")
+    page.click("#play")
+    page.until("document.getElementById('play').textContent === 'Play'")
+    stood = _time_s(page)
+    assert 20 < stood <= 215.75
+    time.sleep(0.3)
+    assert _time_s(page) == stood
+    page.key("End")
+    page.key("ArrowLeft")
+    page.key(" ")
+    page.until("document.getElementById('play').textContent === 'Play'")
+    assert page.text("clock").startswith("00:03:35.7 of 00:03:35.7")
+
+
+def test_clicks_go_to_events_margins_and_the_chart_and_pick_an_aircraft(page: Page) -> None:
+    page.click("#events li:nth-child(8) button")
+    assert page.value("document.querySelector('#events .now').textContent").startswith("96.5 s")
+    assert "authority UxAS" in page.text("aircraft")
+    page.click("#verdicts button")
+    assert page.text("clock").startswith("00:01:35.0 of")  # where the margin of G2 is least
+    page.click("#altitude")
+    assert 90 < _time_s(page) < 115
+    page.click("#aircraft tr[data-aircraft='2']")
+    assert "aircraft=2" in page.value("location.hash")
+    page.key("u")
+    assert "ft" in page.text("aircraft")
+    page.key("d")
+    assert page.value("document.documentElement.className") == "dark"
+    page.key("+")
+    page.until("location.hash.includes('map=')")
+    page.key("f")
+    page.until("!location.hash.includes('map=')")
+
+
+def test_the_map_draws_the_takeover_in_its_colour(page: Page) -> None:
+    """Pixels of the colour of ICAROUS: none before the takeover, a trail and a ring in it."""
+    count = """(() => {
+        const map = document.getElementById('map'), pen = map.getContext('2d');
+        const pixels = pen.getImageData(0, 0, map.width, map.height).data;
+        let found = 0;
+        for (let k = 0; k < pixels.length; k += 4)
+            found += pixels[k] === 0xc9 && pixels[k + 1] === 0x44 && pixels[k + 2] === 0;
+        return found;
+    })()"""
+    assert page.value(count) == 0
+    page.value("location.hash = '#t=60&theme=light'")
+    page.until("document.getElementById('clock').textContent.startsWith('00:01:00.0')")
+    assert page.value(count) > 300
