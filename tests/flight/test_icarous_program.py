@@ -115,6 +115,11 @@ def test_an_offer_is_taken_by_the_way_on_and_by_the_original_at_once() -> None:
     for taking in (tp.StartMission(), tp.SoftReset(45.0, -121.0, 300.0)):
         assert tell(offered, taking)[0].gate == Gate(UXAS, 2, False)
     assert tell(offered, tp.SoftReset())[0].gate == offered.gate
+    # a plan that is refused hands nothing back
+    state, answers = tell(offered, *way(0, 2, total=3))
+    assert refused(answers) == ["plan with waypoints missing"]
+    assert state.gate == offered.gate
+    assert tell(state, *way(0, 1, 2, total=3))[0].gate == Gate(UXAS, 2, False)
     owned = State(gate=Gate(ICAROUS, 1, False))
     assert tell(owned, tp.StartMission())[0].gate == owned.gate
     _, (mode,) = END.connected(owned)
