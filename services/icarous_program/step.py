@@ -149,8 +149,10 @@ class IcarousEnd:
             if instance.told.zones is before.zones:
                 first = before.vertices[:1]
                 total = first[0].total if first else 0
-                told = f"{len(before.vertices)} of {total} vertices"
-                answers.append(Refuse("zone with vertices missing: it is not in force", told))
+                zones = sorted({v.zone for v in before.vertices})
+                told = f"{len(before.vertices)} of {total} vertices, of zones {zones}"
+                told += f"; GEOFN_SEND of zone {line.zone}"
+                answers.append(Refuse("zone that is not whole: it is not in force", told))
             else:
                 answers.append(Note("INFO", f"{len(instance.told.zones)} zones in force"))
         if takes:

@@ -96,7 +96,7 @@ def test_every_heartbeat_is_answered_once() -> None:
         (own(6.0, vehicle_id=2), "POSTN of another vehicle"),
         (traffic(0.0, index=1), "OBJCT of the vehicle itself"),
         (tp.StartMission(), "plan with waypoints missing"),
-        (tp.FenceDone(3), "zone with vertices missing: it is not in force"),
+        (tp.FenceDone(3), "zone that is not whole: it is not in force"),
     ],
 )
 def test_what_cannot_be_so_is_refused(line: tp.Message, why: str) -> None:
