@@ -62,7 +62,7 @@ def _hear(told: Told, message: Message, projection: Projection) -> Told:
         kept = told.vertices if message.vertex > 1 else ()
         return replace(told, vertices=(*kept, message))
     if isinstance(message, FenceDone):
-        return _close_fence(told, projection)
+        return _close_fence(told, message, projection)
     return told
 
 
@@ -91,12 +91,21 @@ def _start(told: Told, projection: Projection) -> Told:
     )
 
 
-def _close_fence(told: Told, projection: Projection) -> Told:
-    """A zone counts only when all its vertices are there; until then it is not in force."""
+def _close_fence(told: Told, done: FenceDone, projection: Projection) -> Told:
+    """A zone counts only when it is whole; until then it is not in force.
+
+    Whole: vertices 1 to `total` in order, all of one zone, kind, total, floor and ceiling, and of
+    the zone that GEOFN_SEND names; one that names none closes the zone that was told.
+    """
     vertices = told.vertices
-    if not vertices or len(vertices) != vertices[0].total:
-        return replace(told, vertices=())
+    if not vertices:
+        return told
     first = vertices[0]
+    alike = {(v.zone, v.fence, v.total, v.floor_m, v.ceiling_m) for v in vertices}
+    counted = [v.vertex for v in vertices] == list(range(1, len(vertices) + 1))
+    named = done.zone in (None, first.zone)
+    if len(alike) != 1 or len(vertices) != first.total or not counted or not named:
+        return replace(told, vertices=())
     zone = Zone(
         first.zone,
         ZoneKind.KEEP_IN if first.fence == "KEEPIN" else ZoneKind.KEEP_OUT,

@@ -3,8 +3,8 @@
 Here the instance that `cratous run` flies knows nothing but what comes over the wire: its own state from
 POSTN, traffic from OBJCT, the mission from WAYPT, GEOFN, WPRCH and COMND. What they say is believed, so
 their contents decide. Each POSTN that is a heartbeat later than the last is one heartbeat of the instance.
-The gate of the vehicle stands here: an offer is taken when UxAS tells the way on (START_MISSION, or a
-RESET_SFT with a position). A peer of the original's takes it without a word.
+The gate of the vehicle stands here: an offer is taken when UxAS tells the way on (START_MISSION after
+a whole plan, or a RESET_SFT with a position). A peer of the original's takes it without a word.
 """
 
 from __future__ import annotations
@@ -136,32 +136,29 @@ class IcarousEnd:
         instance, _ = self._instance.handle(state.instance, heard)
         state = replace(state, instance=instance)
         answers: list[Answer] = []
+        takes = isinstance(line, SoftReset) and line.lat_deg is not None
         if isinstance(line, StartMission):
             if before.gathering and instance.told.waypoints is before.waypoints:
                 told = f"{len(before.gathering)} of {before.gathering[-1].total} waypoints"
                 answers.append(Refuse("plan with waypoints missing", told))
             else:
+                takes = True  # a plan that is refused takes nothing: there is no way on to fly
                 count = len(instance.told.waypoints)
                 answers.append(Note("INFO", f"plan of {count} waypoints in force"))
         if isinstance(line, FenceDone):
             if instance.told.zones is before.zones:
                 first = before.vertices[:1]
                 total = first[0].total if first else 0
-                told = f"{len(before.vertices)} of {total} vertices"
-                answers.append(Refuse("zone with vertices missing: it is not in force", told))
+                zones = sorted({v.zone for v in before.vertices})
+                told = f"{len(before.vertices)} of {total} vertices, of zones {zones}"
+                told += f"; GEOFN_SEND of zone {line.zone}"
+                answers.append(Refuse("zone that is not whole: it is not in force", told))
             else:
                 answers.append(Note("INFO", f"{len(instance.told.zones)} zones in force"))
-        if self._takes(line):
+        if takes:
             state, more = self._taken(state)
             answers += more
         return state, tuple(answers)
-
-    @staticmethod
-    def _takes(line: Message) -> bool:
-        """True iff with this line UxAS takes the vehicle back, if it is on offer."""
-        return isinstance(line, StartMission) or (
-            isinstance(line, SoftReset) and line.lat_deg is not None
-        )
 
     def _taken(self, state: State) -> Step:
         """UxAS commands the vehicle again, if it may."""

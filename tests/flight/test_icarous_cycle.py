@@ -63,8 +63,8 @@ def waypoints(*places: Position) -> list[Message]:
     return [*out, StartMission()]
 
 
-def vertices(count: int) -> list[Message]:
-    out: list[Message] = []
+def vertices(count: int) -> list[FenceVertex]:
+    out: list[FenceVertex] = []
     for k in range(count):
         lat, lon = PROJECTION.to_geodetic(
             500 * math.cos(2 * math.pi * k / count), 500 * math.sin(2 * math.pi * k / count)
@@ -93,6 +93,15 @@ def test_a_zone_counts_only_when_it_is_whole() -> None:
     assert [len(z.vertices) for z in told.zones] == [5]
     broken = [v for k, v in enumerate(vertices(5)) if k != 3]
     assert heard(Told(), *broken, FenceDone(1)).zones == ()
+    # as many vertices as the total, and yet not the zone that was sent
+    one, two, three, four, five = vertices(5)
+    other = [replace(four, zone=2), replace(four, fence="KEEPIN"), replace(four, total=6)]
+    other += [replace(four, floor_m=9.0), replace(four, ceiling_m=9.0), replace(four, vertex=3)]
+    for wrong in other:
+        assert heard(Told(), one, two, three, wrong, five, FenceDone(1)).zones == ()
+    assert heard(Told(), one, three, two, four, five, FenceDone(1)).zones == ()
+    assert heard(Told(), *vertices(5), FenceDone(2)).zones == ()
+    assert [z.id for z in heard(Told(), *vertices(5), FenceDone()).zones] == [1]
 
 
 # ---- the step ------------------------------------------------------------------------------------

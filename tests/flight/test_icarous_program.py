@@ -96,7 +96,7 @@ def test_every_heartbeat_is_answered_once() -> None:
         (own(6.0, vehicle_id=2), "POSTN of another vehicle"),
         (traffic(0.0, index=1), "OBJCT of the vehicle itself"),
         (tp.StartMission(), "plan with waypoints missing"),
-        (tp.FenceDone(3), "zone with vertices missing: it is not in force"),
+        (tp.FenceDone(3), "zone that is not whole: it is not in force"),
     ],
 )
 def test_what_cannot_be_so_is_refused(line: tp.Message, why: str) -> None:
@@ -115,6 +115,11 @@ def test_an_offer_is_taken_by_the_way_on_and_by_the_original_at_once() -> None:
     for taking in (tp.StartMission(), tp.SoftReset(45.0, -121.0, 300.0)):
         assert tell(offered, taking)[0].gate == Gate(UXAS, 2, False)
     assert tell(offered, tp.SoftReset())[0].gate == offered.gate
+    # a plan that is refused hands nothing back
+    state, answers = tell(offered, *way(0, 2, total=3))
+    assert refused(answers) == ["plan with waypoints missing"]
+    assert state.gate == offered.gate
+    assert tell(state, *way(0, 1, 2, total=3))[0].gate == Gate(UXAS, 2, False)
     owned = State(gate=Gate(ICAROUS, 1, False))
     assert tell(owned, tp.StartMission())[0].gate == owned.gate
     _, (mode,) = END.connected(owned)
