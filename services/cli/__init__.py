@@ -34,6 +34,7 @@ COMMANDS = {
     "campaign": "Fly and judge many runs, and count what holds.",
     "plan": "Plan a mission and check the plan; nothing flies.",
     "prove": "Prove the kernels and write the ledger (in a checkout).",
+    "search-faults": "Find how broken designs of authority go wrong.",
     "conform": "Run published vectors against the kernels and the wires.",
     "daa": "Alerts, bands and reasons for an encounter file.",
     "certify": "Judge a finished flight again from its log.",

@@ -1,0 +1,198 @@
+"""Authority over one vehicle as a transition system: the kernels that run, and messages that get lost.
+
+A message that was sent stays in the channel, so it may come late, twice, in any order or never; SETMOD lines
+may even be forged. Time is not searched: every wait is over and every peer is heard (`proofs/theorems/system`
+has the clocks). `changes` numbers the changes of authority that there really were; no design sees it. What
+is checked is `spec.system.authority` and `spec.authority`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from cratous.core.authority import cycle as cycles
+from cratous.core.authority import gate as gates
+from cratous.core.authority import link_end as ends
+from cratous.core.authority.cycle import Cycle, Cycled
+from cratous.core.authority.gate import ICAROUS, UXAS, Gate
+from cratous.core.authority.link_end import Linked, LinkEnd
+from cratous.spec.authority import cycle as instance
+from cratous.spec.authority import gate as authority
+from cratous.spec.authority.link_end import TAKE_BACK, believes_uxas
+from cratous.spec.system import authority as system
+
+NAMES = ("UxAS", "ICAROUS")
+
+
+class Command(NamedTuple):
+    """A command in the channel; changes: how many changes of authority there had been when it was made."""
+
+    sender: int
+    epoch: int
+    changes: int
+
+
+class State(NamedTuple):
+    """One state: the parts, what UxAS was told last of the gate, and all that was ever sent.
+
+    commanded: who had a command accepted last; returned: UxAS has flown again after ICAROUS had.
+    """
+
+    gate: Gate = Gate(0, 0, False)
+    cycle: Cycle = Cycle(0, 0, False, 0, False, 0)
+    end: LinkEnd = LinkEnd(False, 0, True)
+    suspended: bool = False
+    known: Gate = Gate(0, 0, False)
+    reports: frozenset[Gate] = frozenset({Gate(0, 0, False)})
+    commands: frozenset[Command] = frozenset()
+    changes: int = 0
+    commanded: int = UXAS
+    returned: bool = False
+
+
+class Step(NamedTuple):
+    """What happens, as a user reads it; the state afterwards; and what is wrong with it, or nothing."""
+
+    text: str
+    after: State
+    wrong: str = ""
+
+
+@dataclass(frozen=True)
+class Design:
+    """The steps of the composition. As it stands: the kernels that run; a seeded fault replaces some."""
+
+    accepts: Callable[[Gate, int, int], bool] = gates.gate_accepts
+    commanded: Callable[[Gate, int, int], Gate] = gates.gate_after
+    wished: Callable[[Gate, int], Gate] = cycles.gate_wished
+    begun: Callable[[Cycle, bool, int], Cycle] = cycles.cycle_begun
+    watched: Callable[[Cycle, bool, int, int], Cycled] = cycles.cycle_watched
+    flown: Callable[[Cycle, bool, int, int, int, int], Cycled] = cycles.cycle_flown
+    mode: Callable[[LinkEnd, Gate, bool, int], Linked] = ends.link_mode
+    suspends: Callable[[bool, int], bool] = ends.suspended_after
+    tells: Callable[[bool, bool], bool] = ends.track_is_told
+    restarted: Callable[[Gate], Gate] | None = None
+    unheard_offers: bool = False
+
+
+def steps(design: Design, state: State) -> Iterator[Step]:
+    """Everything that can happen next."""
+    yield _heartbeat(design, state, False)
+    yield _heartbeat(design, state, True)
+    for report in sorted(state.reports):
+        if report != state.known:
+            yield Step(f"UxAS is told that {_gate(report)}", state._replace(known=report))
+    for active in (False, True):
+        for epoch in range(state.gate.epoch + 2):
+            yield _mode(design, state, active, epoch)
+    if design.tells(state.suspended, True):
+        yield _uxas_commands(state, state.known.epoch, "UxAS commands a new track")
+    for command in sorted(state.commands):
+        yield _arrives(design, state, command)
+    if design.restarted is not None:
+        after = _changed(state, design.restarted(state.gate))
+        yield _checked("the gate restarts", state, after)
+
+
+def _heartbeat(design: Design, state: State, free: bool) -> Step:
+    """One heartbeat of ICAROUS; free: nothing is foreseen, and the way back is free."""
+    gate = state.gate
+    cycle = design.begun(state.cycle, design.accepts(gate, ICAROUS, gate.epoch), 0)
+    flies = instance.steers(cycle)
+    does = design.flown(cycle, free, 0, 0, 0, 0) if flies else design.watched(cycle, not free, 0, 0)
+    after = _changed(state._replace(cycle=does.cycle), design.wished(gate, does.act))
+    if instance.steers(does.cycle):
+        sent = Command(ICAROUS, after.gate.epoch, after.changes)
+        after = after._replace(commands=after.commands | {sent})
+    seen = "the way is free" if free else "a conflict is foreseen"
+    act = ("nothing changes", "it offers control", "it withdraws its offer", "it takes over")
+    text = f"ICAROUS heartbeat, {seen}: {act[does.act]}; {_gate(after.gate)}"
+    if not free and after.gate.offered:
+        return Step(text, after, "an offer stays open though a conflict is foreseen")
+    if not authority.is_takeover(gate, after.gate) and does.act == instance.TAKE_OVER:
+        return Step(text, after, "ICAROUS has not taken over in an epoch of its own")
+    if not instance.is_after_wish(gate, does.act, after.gate):
+        return Step(text, after, "the gate did not do what ICAROUS wants in an epoch of its own")
+    if not instance.agree(does.cycle, after.gate):
+        return Step(
+            text, after, "after its heartbeat ICAROUS and the gate disagree on who commands"
+        )
+    return _checked(text, state, after)
+
+
+def _mode(design: Design, state: State, active: bool, epoch: int) -> Step:
+    """Any SETMOD line arrives at the UxAS end."""
+    linked = design.mode(state.end, state.known, active, epoch)
+    held = design.suspends(state.suspended, linked.act)
+    after = state._replace(end=linked.end, suspended=held)
+    says = "ICAROUS commands" if active else "UxAS may command"
+    answers = ("changes nothing", "lets go", "takes the vehicle back", "is overtaken", "is refused")
+    text = f"a SETMOD line arrives at UxAS ({says}, epoch {epoch}): {answers[linked.act]}"
+    if linked.act == TAKE_BACK:
+        after = _uxas_commands(after, epoch, text).after
+    return _checked(text, state, after)
+
+
+def _uxas_commands(state: State, epoch: int, text: str) -> Step:
+    sent = Command(UXAS, epoch, state.changes)
+    after = state._replace(commands=state.commands | {sent})
+    if not believes_uxas(state.end):
+        return Step(text, after, "UxAS commands a vehicle that it believes ICAROUS to command")
+    return Step(f"{text}, epoch {epoch}", after)
+
+
+def _arrives(design: Design, state: State, command: Command) -> Step:
+    """A command arrives at the gate."""
+    gate, sender = state.gate, command.sender
+    accepted = design.accepts(gate, sender, command.epoch)
+    after = state._replace(gate=design.commanded(gate, sender, command.epoch))
+    after = after._replace(reports=after.reports | {after.gate})
+    text = f"a command of {NAMES[sender]}, epoch {command.epoch}, arrives: "
+    if not accepted and after.gate != gate:
+        return Step(text + "dropped", after, "a command that is dropped changes the gate")
+    if not accepted:
+        return _checked(text + "dropped", state, after)
+    text += f"ACTS; {_gate(after.gate)}"
+    back = state.returned or (state.commanded == ICAROUS and sender == UXAS)
+    after = after._replace(commanded=sender, returned=back)
+    if command.changes != state.changes:
+        return Step(text, after, "a command that was made before a change of authority acts")
+    if not authority.may_act(gate, sender, command.epoch):
+        return Step(text, after, f"{NAMES[sender]} may not command in this epoch")
+    if sender == UXAS and authority.may_command(after.gate, ICAROUS):
+        return Step(text, after, "two command in one epoch: UxAS has, and ICAROUS still may")
+    heard = system.takes_only_what_it_heard(gate, state.end, sender, accepted)
+    if design.unheard_offers and not heard:
+        return Step(text, after, "UxAS takes an offer that it has not heard of")
+    return _checked(text, state, after)
+
+
+def _changed(state: State, gate: Gate) -> State:
+    """The state with another gate, which is reported."""
+    if gate == state.gate:
+        return state
+    return state._replace(gate=gate, reports=state.reports | {gate}, changes=state.changes + 1)
+
+
+def _checked(text: str, before: State, after: State) -> Step:
+    """The step, with what is wrong afterwards."""
+    if after.gate.epoch < before.gate.epoch:
+        return Step(text, after, "the gate's epoch goes back")
+    if after.end.epoch < before.end.epoch:
+        return Step(text, after, "the epoch that UxAS believes in goes back")
+    if not system.end_holds(after.gate, after.end, after.suspended):
+        return Step(text, after, "UxAS believes of the present epoch, or does, what is not so")
+    # ICAROUS takes notice at its next heartbeat; at a heartbeat `_heartbeat` has asked already
+    cycle = cycles.cycle_begun(after.cycle, authority.may_command(after.gate, ICAROUS), 0)
+    if not system.holds(after.gate, cycle, after.end, after.suspended):
+        return Step(text, after, "ICAROUS and the gate disagree on who commands")
+    if not all(system.report_holds(after.gate, one) for one in after.reports):
+        return Step(text, after, "in one epoch the gate is reported both ways")
+    return Step(text, after)
+
+
+def _gate(gate: Gate) -> str:
+    who = "UxAS commands" if gate.owner == UXAS else "ICAROUS commands"
+    return f"{who}{', control is offered' if gate.offered else ''} (epoch {gate.epoch})"

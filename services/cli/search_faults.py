@@ -1,0 +1,84 @@
+"""`cratous search-faults`: break the design of authority on purpose, and find how it goes wrong."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import Any
+
+import click
+
+from cratous.spec.errors import BadInput
+from cratous.spec.files.printable import json_text
+
+SAFE = "safe"
+
+
+@click.command()
+@click.argument("names", nargs=-1, metavar="[NAME]...")
+@click.option(
+    "--steps", default=8, show_default=True, type=click.IntRange(1, 100), help="Longest trace."
+)
+@click.option(
+    "--states",
+    default=100_000,
+    show_default=True,
+    type=click.IntRange(1, 2_000_000),
+    help="Give up after this many.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print JSON, for machines.")
+def search_faults(names: tuple[str, ...], steps: int, states: int, as_json: bool) -> None:
+    """Search broken designs of authority for the shortest trace to a fault.
+
+    The steps are the kernels that run: the gate, ICAROUS, the UxAS end, over a link that loses, repeats,
+    delays and reorders, and on which SETMOD lines are forged; each design named has one step replaced.
+    `safe` is the design as it runs. All of them without a name. The search is bounded: that nothing is
+    found within the bound is no proof (`cratous prove --only 'system*'` has the proofs).
+
+    Example: cratous search-faults no-acknowledgement safe
+
+    Exit code: 0 each fault is found and the safe design shows none and returns control, 1 a safe design
+    that is not or does not, 2 bad input, 3 a fault that is not found, or the bound of states is reached.
+    """
+    from cratous.proofs.system_search.authority import Design
+    from cratous.proofs.system_search.breadth_first import search
+    from cratous.proofs.system_search.faults import FAULTS
+
+    known = [SAFE, *FAULTS]
+    for name in names:
+        if name not in known:
+            raise BadInput("no such design", item="NAME", expected=", ".join(known), got=name)
+    rows: list[dict[str, Any]] = []
+    code = 0
+    for name in names or known:
+        safe = name == SAFE
+        begun = time.monotonic()
+        found = search(Design() if safe else FAULTS[name].design, steps, states)
+        says = "the design as it runs" if safe else FAULTS[name].says
+        row = {"name": name, "says": says, **found._asdict(), "steps": steps}
+        rows.append({**row, "seconds": round(time.monotonic() - begun, 2)})
+        if safe and (found.wrong or (found.complete and not found.returned)):
+            code = 1
+        elif bool(found.wrong) == safe or (safe and not found.complete):
+            code = code or 3
+    if as_json:
+        click.echo(json_text({"designs": rows, "bounded": True, "exit_code": code}))
+    else:
+        for row in rows:
+            _show(row)
+    sys.exit(code)
+
+
+def _show(row: dict[str, Any]) -> None:
+    click.secho(f"{row['name']}: {row['says']}", bold=True)
+    for number, text in enumerate(row["trace"], 1):
+        click.echo(f"  {number}. {text}")
+    if row["wrong"]:
+        click.secho(f"  WRONG: {row['wrong']} ({row['states']} states)", fg="red")
+        return
+    seen = f"{row['states']} states, traces of up to {row['steps']} steps"
+    if not row["complete"]:
+        click.echo(f"  not decided: the bound of states was reached ({seen})")
+        return
+    back = "UxAS flies again after ICAROUS has" if row["returned"] else "control never returns"
+    click.echo(f"  nothing wrong within the bound, which is no proof; {back} ({seen})")

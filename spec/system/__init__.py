@@ -1,0 +1,1 @@
+"""What must hold of several parts together: steps of different programs, joined by messages."""
