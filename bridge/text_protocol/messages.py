@@ -31,7 +31,8 @@ class Message:
 
 @dataclass(frozen=True)
 class Waypoint(Message):
-    """WAYPT: one waypoint of the plan; `total` is a running count, `index` starts at 0."""
+    """WAYPT: one waypoint of the plan; `index` starts at 0. `total`: the number of all waypoints of the
+    plan; from the original a running count."""
 
     tag: ClassVar[str] = "WAYPT"
     total: int

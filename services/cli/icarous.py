@@ -108,7 +108,6 @@ def craft_of(path: Path, vehicle_id: int, original: bool) -> Craft:
             got=str(vehicle_id),
         )
     floor_m = mission.frame.terrain_m + GROUND_MARGIN * mission.daa.well_clear.zthr_m
-    config = Config(
-        vehicle_id, mission.daa, Projection(mission.frame), mission.simulation.heartbeat_ms
-    )
+    projection, beat_ms = Projection(mission.frame), mission.simulation.heartbeat_ms
+    config = Config(vehicle_id, mission.daa, projection, beat_ms, original)
     return Craft(config, limits_of(found[0]), floor_m, frozenset(mission.instances), original)

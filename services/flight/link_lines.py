@@ -57,13 +57,13 @@ def _reachable_m(alt_m: float) -> float:
 
 
 def way(points: tuple[Position, ...], speed_m_s: float, projection: Projection) -> list[Message]:
-    """A way as RESET_SFT, its WAYPTs and START_MISSION."""
+    """A way as RESET_SFT, its WAYPTs, each with the number of all, and START_MISSION."""
     lats, lons = projection.to_geodetic_many(
         [p.north_m for p in points], [p.east_m for p in points]
     )
     waypoints = [
         Waypoint(
-            total=k + 1,
+            total=len(points),
             speed_mps=speed_m_s,
             lat_deg=float(lat),
             long_deg=float(lon),

@@ -38,19 +38,21 @@ class Told:
     started: bool = False
 
 
-def hear(told: Told, message: Message, projection: Projection, now_ms: int) -> Told:
-    """The same after one more line, which has come now [ms]."""
-    return replace(_hear(told, message, projection), heard_ms=now_ms)
+def hear(
+    told: Told, message: Message, projection: Projection, now_ms: int, original: bool = False
+) -> Told:
+    """The same after one more line, which has come now [ms]. original: from a UxAS of the original's."""
+    return replace(_hear(told, message, projection, original), heard_ms=now_ms)
 
 
-def _hear(told: Told, message: Message, projection: Projection) -> Told:
+def _hear(told: Told, message: Message, projection: Projection, original: bool) -> Told:
     if isinstance(message, WaypointReached):
         return replace(told, next_index=max(told.next_index, message.index + 1))
     if isinstance(message, Waypoint):
         gathering = () if message.index == 0 else told.gathering
         return replace(told, gathering=(*gathering, message))
     if isinstance(message, StartMission):
-        return _start(told, projection)
+        return _start(told, projection, original)
     if isinstance(message, SoftReset):
         if message.lat_deg is None or message.long_deg is None or message.alt_m is None:
             return replace(told, resume=None)
@@ -66,12 +68,17 @@ def _hear(told: Told, message: Message, projection: Projection) -> Told:
     return told
 
 
-def _start(told: Told, projection: Projection) -> Told:
-    """The plan that was gathered is in force; one in which waypoints are missing never is."""
+def _start(told: Told, projection: Projection, original: bool) -> Told:
+    """The plan that was gathered is in force; one in which waypoints are missing never is.
+
+    The original's `total` is a running count: its last line has the number of all that were told.
+    """
     if not told.gathering:
         return replace(told, started=True)
+    count = len(told.gathering)
     numbers = [waypoint.index for waypoint in told.gathering]
-    if numbers != list(range(told.gathering[-1].total)):
+    totals = {waypoint.total for waypoint in told.gathering[-1 if original else 0 :]}
+    if numbers != list(range(count)) or totals != {count}:
         return replace(told, gathering=())
     norths, easts = projection.to_local_many(
         [w.lat_deg for w in told.gathering], [w.long_deg for w in told.gathering]

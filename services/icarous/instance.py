@@ -78,7 +78,8 @@ class Instance:
         """One step: the state afterwards, and what to send, in order."""
         match message:
             case Line(now_ms, line):
-                told = hear(state.told, line, self.config.projection, now_ms)
+                config = self.config
+                told = hear(state.told, line, config.projection, now_ms, config.original)
                 # an index into the waypoints of another way says nothing
                 goal = state.goal if told.waypoints is state.told.waypoints else 0
                 return replace(state, told=told, goal=goal), ()

@@ -18,12 +18,15 @@ START = Cycle(MONITOR, 0, False, 0, False, 0)
 
 
 class Config(NamedTuple):
-    """What does not change: whose instance, what it keeps clear of, and the heartbeat [ms]."""
+    """What does not change: whose instance, what it keeps clear of, and the heartbeat [ms].
+
+    original: UxAS's end is the original's, whose WAYPT lines carry a running count."""
 
     vehicle_id: int
     daa: Daa
     projection: Projection
     heartbeat_ms: int
+    original: bool = False
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from cratous.bridge.text_protocol import Message, SoftReset
+from cratous.bridge.text_protocol import Message, SoftReset, Waypoint
 from cratous.core.authority.timeliness import in_time
 from cratous.services.flight import link_end
 from cratous.services.flight.dynamics import AirState, turn_radius_m
@@ -136,7 +136,9 @@ def moved(air: AirState, late_s: float) -> AirState:
 
 
 def placed(state: State, vid: int, line: Message) -> Message:
-    """The original's client cannot read a RESET_SFT without a place: it gets where the vehicle is."""
+    """As the original's client reads it: WAYPT with a running count, RESET_SFT with where the vehicle is."""
+    if isinstance(line, Waypoint):
+        return replace(line, total=line.index + 1)
     if not isinstance(line, SoftReset) or line.lat_deg is not None:
         return line
     air = state.craft(vid).air

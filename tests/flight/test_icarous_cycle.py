@@ -59,7 +59,7 @@ def waypoints(*places: Position) -> list[Message]:
     out: list[Message] = []
     for k, p in enumerate(places):
         lat, lon = PROJECTION.to_geodetic(p.north_m, p.east_m)
-        out.append(Waypoint(k + 1, 22.0, lat, lon, p.alt_m, k))
+        out.append(Waypoint(len(places), 22.0, lat, lon, p.alt_m, k))
     return [*out, StartMission()]
 
 
@@ -86,6 +86,18 @@ def test_inbox_takes_waypoints_only_when_started() -> None:
     told = heard(told, lines[-1], WaypointReached(0), now_ms=500)
     assert len(told.waypoints) == 2
     assert (told.next_index, told.heard_ms) == (1, 500)
+
+
+def test_a_plan_that_lost_its_tail_is_not_in_force() -> None:
+    *sent, start = waypoints(*(Position(900.0 * k, 0, 300) for k in range(4)))
+    for lost in range(1, 4):
+        assert heard(Told(), *sent[:-lost], start).waypoints == ()
+    counted = [replace(line, total=k) for k, line in enumerate(sent, 1)]  # type: ignore[call-arg]
+    assert heard(Told(), *counted, start).waypoints == ()
+    told = Told()
+    for line in (*counted, start):
+        told = hear(told, line, PROJECTION, 0, original=True)
+    assert len(told.waypoints) == 4
 
 
 def test_a_zone_counts_only_when_it_is_whole() -> None:

@@ -35,7 +35,7 @@ def way(*indices: int, total: int) -> list[tp.Message]:
     out: list[tp.Message] = [tp.SoftReset()]
     for k in indices:
         lat, lon = PROJECTION.to_geodetic(2000.0 * k, 0.0)
-        out.append(tp.Waypoint(k + 1 if k + 1 < total else total, 22.0, lat, lon, 300.0, k))
+        out.append(tp.Waypoint(total, 22.0, lat, lon, 300.0, k))
     return [*out, tp.StartMission()]
 
 
