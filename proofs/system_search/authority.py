@@ -20,7 +20,7 @@ from cratous.core.authority.gate import ICAROUS, UXAS, Gate
 from cratous.core.authority.link_end import Linked, LinkEnd
 from cratous.spec.authority import cycle as instance
 from cratous.spec.authority import gate as authority
-from cratous.spec.authority.link_end import TAKE_BACK, believes_uxas
+from cratous.spec.authority.link_end import TAKE_BACK, End, believes_uxas
 from cratous.spec.system import authority as system
 
 NAMES = ("UxAS", "ICAROUS")
@@ -100,10 +100,10 @@ def _heartbeat(design: Design, state: State, free: bool) -> Step:
     """One heartbeat of ICAROUS; free: nothing is foreseen, and the way back is free."""
     gate = state.gate
     cycle = design.begun(state.cycle, design.accepts(gate, ICAROUS, gate.epoch), 0)
-    flies = instance.steers(cycle)
+    flies = instance.steers(_cycle_of(cycle))
     does = design.flown(cycle, free, 0, 0, 0, 0) if flies else design.watched(cycle, not free, 0, 0)
     after = _changed(state._replace(cycle=does.cycle), design.wished(gate, does.act))
-    if instance.steers(does.cycle):
+    if instance.steers(_cycle_of(does.cycle)):
         sent = Command(ICAROUS, after.gate.epoch, after.changes)
         after = after._replace(commands=after.commands | {sent})
     seen = "the way is free" if free else "a conflict is foreseen"
@@ -111,11 +111,14 @@ def _heartbeat(design: Design, state: State, free: bool) -> Step:
     text = f"ICAROUS heartbeat, {seen}: {act[does.act]}; {_gate(after.gate)}"
     if not free and after.gate.offered:
         return Step(text, after, "an offer stays open though a conflict is foreseen")
-    if not authority.is_takeover(gate, after.gate) and does.act == instance.TAKE_OVER:
+    if (
+        not authority.is_takeover(_gate_of(gate), _gate_of(after.gate))
+        and does.act == instance.TAKE_OVER
+    ):
         return Step(text, after, "ICAROUS has not taken over in an epoch of its own")
-    if not instance.is_after_wish(gate, does.act, after.gate):
+    if not instance.is_after_wish(_gate_of(gate), does.act, _gate_of(after.gate)):
         return Step(text, after, "the gate did not do what ICAROUS wants in an epoch of its own")
-    if not instance.agree(does.cycle, after.gate):
+    if not instance.agree(_cycle_of(does.cycle), _gate_of(after.gate)):
         return Step(
             text, after, "after its heartbeat ICAROUS and the gate disagree on who commands"
         )
@@ -138,7 +141,7 @@ def _mode(design: Design, state: State, active: bool, epoch: int) -> Step:
 def _uxas_commands(state: State, epoch: int, text: str) -> Step:
     sent = Command(UXAS, epoch, state.changes)
     after = state._replace(commands=state.commands | {sent})
-    if not believes_uxas(state.end):
+    if not believes_uxas(_end_of(state.end)):
         return Step(text, after, "UxAS commands a vehicle that it believes ICAROUS to command")
     return Step(f"{text}, epoch {epoch}", after)
 
@@ -159,11 +162,11 @@ def _arrives(design: Design, state: State, command: Command) -> Step:
     after = after._replace(commanded=sender, returned=back)
     if command.changes != state.changes:
         return Step(text, after, "a command that was made before a change of authority acts")
-    if not authority.may_act(gate, sender, command.epoch):
+    if not authority.may_act(_gate_of(gate), sender, command.epoch):
         return Step(text, after, f"{NAMES[sender]} may not command in this epoch")
-    if sender == UXAS and authority.may_command(after.gate, ICAROUS):
+    if sender == UXAS and authority.may_command(_gate_of(after.gate), ICAROUS):
         return Step(text, after, "two command in one epoch: UxAS has, and ICAROUS still may")
-    heard = system.takes_only_what_it_heard(gate, state.end, sender, accepted)
+    heard = system.takes_only_what_it_heard(_gate_of(gate), _end_of(state.end), sender, accepted)
     if design.unheard_offers and not heard:
         return Step(text, after, "UxAS takes an offer that it has not heard of")
     return _checked(text, state, after)
@@ -182,15 +185,29 @@ def _checked(text: str, before: State, after: State) -> Step:
         return Step(text, after, "the gate's epoch goes back")
     if after.end.epoch < before.end.epoch:
         return Step(text, after, "the epoch that UxAS believes in goes back")
-    if not system.end_holds(after.gate, after.end, after.suspended):
+    gate, end = _gate_of(after.gate), _end_of(after.end)
+    if not system.end_holds(gate, end, after.suspended):
         return Step(text, after, "UxAS believes of the present epoch, or does, what is not so")
     # ICAROUS takes notice at its next heartbeat; at a heartbeat `_heartbeat` has asked already
-    cycle = cycles.cycle_begun(after.cycle, authority.may_command(after.gate, ICAROUS), 0)
-    if not system.holds(after.gate, cycle, after.end, after.suspended):
+    cycle = cycles.cycle_begun(after.cycle, authority.may_command(gate, ICAROUS), 0)
+    if not system.holds(gate, _cycle_of(cycle), end, after.suspended):
         return Step(text, after, "ICAROUS and the gate disagree on who commands")
-    if not all(system.report_holds(after.gate, one) for one in after.reports):
+    if not all(system.report_holds(gate, _gate_of(one)) for one in after.reports):
         return Step(text, after, "in one epoch the gate is reported both ways")
     return Step(text, after)
+
+
+def _gate_of(gate: Gate) -> authority.State:
+    """What the definitions call a gate."""
+    return authority.State(*gate)
+
+
+def _cycle_of(cycle: Cycle) -> instance.Instance:
+    return instance.Instance(*cycle)
+
+
+def _end_of(end: LinkEnd) -> End:
+    return End(*end)
 
 
 def _gate(gate: Gate) -> str:

@@ -33,6 +33,7 @@ PROOF_COMMANDS = {
     "services/cli/prove_checks.py",
     "services/cli/prove_self_test.py",
     "services/cli/certify.py",
+    "services/cli/search_faults.py",
 }
 
 
