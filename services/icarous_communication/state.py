@@ -46,7 +46,7 @@ Out = Say | Down | Refuse | Note
 class Craft:
     """What is known of one vehicle: its configuration; its newest state and where that is in the plane; its plan; that
     ICAROUS has it; that it was told to hold, because its ICAROUS is not heard; that it was handed back
-    just now, so that the last steering of ICAROUS may still come."""
+    just now, so that the last steering of ICAROUS may still come; waiting: the mission that came meanwhile."""
 
     configuration: Any = None
     body: Any = None
@@ -55,6 +55,7 @@ class Craft:
     away: Away | None = None
     holds: bool = False
     handed: bool = False
+    waiting: Any = None
 
 
 @dataclass(frozen=True)

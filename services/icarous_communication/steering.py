@@ -7,7 +7,10 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.bridge.text_protocol import GoToWaypoint, Message, SetPosition, SetVelocity
+from cratous.core.authority.gate import Gate
 from cratous.services.flight.dynamics import GRAVITY_M_S2, AirState
+from cratous.services.flight.messages import Say
+from cratous.services.flight.notices import authority_change, gate_state
 from cratous.services.icarous_communication.plans import START, Plan
 from cratous.services.mission.frames import Projection, compass
 from cratous.spec.errors import BadInput
@@ -85,3 +88,9 @@ def _loiter(lat_deg: float, long_deg: float, alt_m: float, air: AirState) -> Any
         Airspeed=air.speed_m_s,
         Location=place,
     )
+
+
+def told(name: str, vehicle_id: int, now_ms: int, gate: Gate) -> list[Say]:
+    """How a gate stands and who commands from now on, for whoever listens on the bus; name: who says it."""
+    change = authority_change(vehicle_id, now_ms, gate, "SETMOD", 0)
+    return [Say(gate_state(vehicle_id, now_ms, gate), name), Say(change, name)]

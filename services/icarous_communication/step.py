@@ -51,7 +51,6 @@ from cratous.services.flight.messages import (
     Watch,
     ZonesKnown,
 )
-from cratous.services.flight.notices import authority_change, gate_state
 from cratous.services.icarous_communication.plans import (
     Away,
     Plan,
@@ -76,7 +75,7 @@ from cratous.services.icarous_communication.state import (
     plane,
     turn_radius_of,
 )
-from cratous.services.icarous_communication.steering import action_of, command_of, hold
+from cratous.services.icarous_communication.steering import action_of, command_of, hold, told
 from cratous.services.pipeline.status import status
 from cratous.services.uxas.daidalus.zones import frame_at, surroundings
 from cratous.spec.authority.link_end import OVERTAKEN, REFUSED
@@ -196,15 +195,18 @@ class Communication:
         return state.put(body.ID, craft), []
 
     def mission(self, state: State, command: Any, now_ms: int) -> Step:
-        """A MissionCommand of somebody else's."""
+        """A MissionCommand of somebody else's; while ICAROUS has the vehicle it waits for the handback."""
+        vid, craft = int(command.VehicleID), state.craft(command.VehicleID)
         if not command.WaypointList:
-            return state, [Refuse("mission without waypoints", f"vehicle {command.VehicleID}")]
+            return state, [Refuse("mission without waypoints", f"vehicle {vid}")]
+        if craft.away is not None:
+            text = f"vehicle {vid}: a mission has come while ICAROUS has it, and waits for the handback"
+            return state.put(vid, replace(craft, waiting=command)), [Note("WARN", text)]
         state, out = self._framed(state, command.WaypointList[0])
         assert state.frame is not None
-        craft = state.craft(command.VehicleID)
         here = None if craft.air is None else craft.air.position
         craft = replace(craft, plan=plan_of(command, plane(state.frame), now_ms, here))
-        state, more = self._route(state.put(command.VehicleID, craft), command.VehicleID)
+        state, more = self._route(state.put(vid, craft), vid)
         return state, [*out, *more]
 
     def zone(self, state: State, body: Any) -> Step:
@@ -310,13 +312,8 @@ class Communication:
         state = state.put(vid, replace(craft, away=craft.away or Away(left, tasks)))
         return state, [
             Note("WARN", f"vehicle {vid}: ICAROUS has it, in epoch {peer.gate.epoch}"),
-            *self._told(vid, now_ms, peer.gate),
+            *told(self.name, vid, now_ms, peer.gate),
         ]
-
-    def _told(self, vid: int, now_ms: int, gate: Gate) -> list[Out]:
-        """How a gate stands and who commands from now on, for whoever listens on the bus."""
-        change = authority_change(vid, now_ms, gate, "SETMOD", 0)
-        return [Say(gate_state(vid, now_ms, gate), self.name), Say(change, self.name)]
 
     def _take_back(self, state: State, vid: int, epoch: int, now_ms: int) -> Step:
         """Tasks resume, the mission goes on, ICAROUS is told the way; without a mission it holds."""
@@ -325,11 +322,15 @@ class Communication:
         gate = gate_after(peer.gate, UXAS, epoch)
         state, out = self._end(state, GateIs(vid, gate))
         out.append(Note("WARN", f"vehicle {vid}: ICAROUS hands back, in epoch {epoch}"))
-        out += self._told(vid, now_ms, gate)
+        out += told(self.name, vid, now_ms, gate)
         away, plan = craft.away, craft.plan
         state = state.put(vid, replace(craft, away=None, holds=False, handed=True))
         if away is not None and away.paused:
             out += [Say(lmcp.new("TaskResume", TaskID=task), self.name) for task in away.tasks]
+        if craft.waiting is not None:
+            state = state.put(vid, replace(state.craft(vid), waiting=None))
+            state, more = self.mission(state, craft.waiting, now_ms)
+            return state, [*out, Say(craft.waiting, self.name), *more]
         air = craft.air
         if plan is None or away is None or air is None or state.frame is None:
             return self._hold(state, vid, out, "handed back without a mission")

@@ -249,6 +249,29 @@ def test_who_steers_is_what_the_modes_say(tmp_path: Path, opened: list[Any]) -> 
     assert [c.Owner.name for c in rig.got("AuthorityChange")] == ["ICAROUS", "UxAS"]
 
 
+def test_a_mission_that_comes_during_a_takeover_waits_for_the_handback(
+    tmp_path: Path, opened: list[Any]
+) -> None:
+    rig = Rig(tmp_path, 'NumberOfUAVs="1"', opened)
+    one = rig.fake(hello=1)
+    rig.tell(state(1), way((0.0, 0.0), (900.0, 0.0)), state(1, 1.0, 1500))
+    one.say(tp.SetMode("ACTIVE", 1))
+    rig.until(lambda: rig.got("AuthorityChange"))
+    told = len(one.all(tp.Waypoint))
+    later = way((0.0, 0.0), (0.0, 700.0), (0.0, 900.0))
+    rig.tell(later)
+    rig.until(lambda: rig.said.has("waits for the handback"))
+    assert len(one.all(tp.Waypoint)) == told, "the way under ICAROUS was changed"
+    assert rig.got("MissionCommand") == []
+    one.say(tp.SetMode("PASSIVE", 2))
+    rig.until(lambda: rig.got("MissionCommand"))
+    assert rig.got("MissionCommand") == [later]
+    rig.until(lambda: len(one.all(tp.Waypoint)) > told)
+    assert one.all(tp.Waypoint)[-1].lat_deg == pytest.approx(
+        later.WaypointList[-1].Latitude, abs=1e-6
+    )
+
+
 @pytest.mark.shows(SERVICE, "Dialect")
 def test_the_original_s_modes_have_no_epochs(tmp_path: Path, opened: list[Any]) -> None:
     rig = Rig(tmp_path, 'NumberOfUAVs="1" Dialect="original"', opened)
