@@ -34,7 +34,7 @@ def link_mode(end: LinkEnd, gate: Gate, active: bool, epoch: int) -> Linked:
 
     gate: as the vehicle has reported it last; active: the line says that ICAROUS commands, else that it
     offers control; epoch: the one that began with it. act: 0 nothing, 1 suspend what UxAS flies, 2 take
-    the vehicle back, 3 report a mode that is overtaken, 4 refuse a mode that cannot be true.
+    the vehicle back (also where the takeover was never heard of), 3 report a mode that is overtaken, 4 refuse a mode that cannot be true.
     """
     if epoch == end.epoch and active == end.active:
         return Linked(end, 0)
@@ -48,7 +48,7 @@ def link_mode(end: LinkEnd, gate: Gate, active: bool, epoch: int) -> Linked:
     after = LinkEnd(active, epoch, end.alive)
     if active:
         return Linked(after, 1)
-    if end.active:
+    if end.active or gate.offered:
         return Linked(after, 2)
     return Linked(after, 0)
 

@@ -60,6 +60,11 @@ class Step(NamedTuple):
     wrong: str = ""
 
 
+def heard_epoch(state: State) -> int:
+    """The epoch that a new track of UxAS names: the one that it believes in."""
+    return state.end.epoch
+
+
 @dataclass(frozen=True)
 class Design:
     """The steps of the composition. As it stands: the kernels that run; a seeded fault replaces some."""
@@ -74,7 +79,7 @@ class Design:
     suspends: Callable[[bool, int], bool] = ends.suspended_after
     tells: Callable[[bool, bool], bool] = ends.track_is_told
     restarted: Callable[[Gate], Gate] | None = None
-    unheard_offers: bool = False
+    names: Callable[[State], int] = heard_epoch
 
 
 def steps(design: Design, state: State) -> Iterator[Step]:
@@ -88,7 +93,7 @@ def steps(design: Design, state: State) -> Iterator[Step]:
         for epoch in range(state.gate.epoch + 2):
             yield _mode(design, state, active, epoch)
     if design.tells(state.suspended, True):
-        yield _uxas_commands(state, state.known.epoch, "UxAS commands a new track")
+        yield _uxas_commands(state, design.names(state), "UxAS commands a new track")
     for command in sorted(state.commands):
         yield _arrives(design, state, command)
     if design.restarted is not None:
@@ -167,7 +172,7 @@ def _arrives(design: Design, state: State, command: Command) -> Step:
     if sender == UXAS and authority.may_command(_gate_of(after.gate), ICAROUS):
         return Step(text, after, "two command in one epoch: UxAS has, and ICAROUS still may")
     heard = system.takes_only_what_it_heard(_gate_of(gate), _end_of(state.end), sender, accepted)
-    if design.unheard_offers and not heard:
+    if not heard:
         return Step(text, after, "UxAS takes an offer that it has not heard of")
     return _checked(text, state, after)
 

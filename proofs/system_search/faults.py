@@ -8,7 +8,7 @@ from cratous.core.authority import cycle as cycles
 from cratous.core.authority.cycle import Cycle, Cycled, gate_wished
 from cratous.core.authority.gate import ICAROUS, UXAS, Gate, gate_accepts, gate_after
 from cratous.core.authority.link_end import Linked, LinkEnd, link_mode, suspended_after
-from cratous.proofs.system_search.authority import Design
+from cratous.proofs.system_search.authority import Design, State
 from cratous.spec.authority.cycle import OFFER, TAKE_OVER, WITHDRAW
 from cratous.spec.authority.link_end import SUSPEND, TAKE_BACK
 
@@ -131,11 +131,18 @@ def _tells_always(suspended: bool, changed: bool) -> bool:
     return changed
 
 
+def _reported_epoch(state: State) -> int:
+    return state.known.epoch
+
+
 FAULTS = {
     "no-epoch-check": Fault("the gate takes no notice of epochs", Design(_any_epoch)),
     "older-epochs": Fault("the gate takes commands of older epochs too", Design(_older_epochs)),
     "no-sender-check": Fault("whoever names the present epoch commands", Design(_any_sender)),
-    "uxas-always": Fault("UxAS may command at any time", Design(_uxas_always)),
+    "uxas-always": Fault(
+        "UxAS may command at any time, in whatever epoch the vehicle reports",
+        Design(_uxas_always, names=_reported_epoch),
+    ),
     "icarous-always": Fault(
         "ICAROUS may command without a takeover, as one left running by a handback does",
         Design(_icarous_always),
@@ -200,9 +207,9 @@ FAULTS = {
         Design(restarted=lambda gate: Gate(UXAS, gate.epoch, False)),
     ),
     "offer-taken-unheard": Fault(
-        "as it runs: UxAS names the epoch that the vehicle reports, also where the SETMOD lines were lost, "
-        "and so takes an offer that it has not heard of",
-        Design(unheard_offers=True),
+        "UxAS names the epoch that the vehicle reports, also where the SETMOD lines were lost, and so "
+        "takes an offer that it has not heard of",
+        Design(names=_reported_epoch),
     ),
 }
-"""By name. The last is no seeded fault but what the running design does, asked for more than G4 asks."""
+"""By name."""

@@ -112,12 +112,10 @@ class Executive:
     def _tick(self, state: State, tick: Tick, out: Out) -> State:
         """What has become known; then events since the last step, in the order of time."""
         due, to_come = split(state.to_come, tick.now_ms)
-        epochs = tuple((vid, gate.epoch) for vid, gate in tick.gates)
         state = replace(
             state,
             now_ms=tick.now_ms,
             aircraft=tick.aircraft,
-            epochs=epochs,
             to_come=tuple(to_come),
         )
         if due:
@@ -142,7 +140,7 @@ class Executive:
         if self._beats(state):
             for chain in state.chains:
                 state = state.put(deadlines.adapted(state, state.chain(chain.vehicle.id)))
-        before, epochs = dict(versions), dict(state.epochs)
+        before = dict(versions)
         for vid in [chain.vehicle.id for chain in state.chains]:
             chain = state.chain(vid)
             if rejoined(chain.away, chain.suspended, chain.s_m, chain.join_m):
@@ -152,7 +150,7 @@ class Executive:
                 )
                 state = state.put(replace(chain, away=False))
             if track_is_told(chain.suspended, chain.version != before[vid]):
-                state = executive_outputs.command(self.config, state, vid, epochs[vid], out)
+                state = executive_outputs.command(self.config, state, vid, state.epoch(vid), out)
         return state
 
     def _beats(self, state: State) -> bool:

@@ -36,7 +36,7 @@ def command_all(config: Config, state: State, out: Out) -> State:
     for chain in state.chains:
         vid = chain.vehicle.id
         if not chain.suspended:
-            state = command(config, state, vid, dict(state.epochs)[vid], out)
+            state = command(config, state, vid, state.epoch(vid), out)
     return state
 
 

@@ -63,8 +63,8 @@ class Config:
 @dataclass(frozen=True)
 class State:
     """known: the mission as it is known now; mission: all of it in the wind of now; zones: those that
-    bind, with their padding turned into vertices; to_come: changes that nobody knows of yet; aircraft
-    and epochs: of the vehicles, as told last; starts, ends: real ones; failed: tasks with the reason; left_out:
+    bind, with their padding turned into vertices; to_come: changes that nobody knows of yet; aircraft: of the vehicles,
+    as told last; epochs: in which UxAS took them back, of those that it has (else 0): what commands name; starts, ends: real ones; failed: tasks with the reason; left_out:
     those that the plan in force leaves out, with the reason;
     commands, replans, finished: counts; hurry: some deadline is near; asked: for which plan."""
 
@@ -99,6 +99,10 @@ class State:
     def air(self, vehicle_id: int) -> AirState:
         """Where a vehicle is."""
         return dict(self.aircraft)[vehicle_id]
+
+    def epoch(self, vehicle_id: int) -> int:
+        """The epoch in which UxAS commands a vehicle, as far as it has heard."""
+        return dict(self.epochs).get(vehicle_id, 0)
 
     def by_vehicle(self) -> dict[int, Chain]:
         """The chains by vehicle."""

@@ -45,6 +45,7 @@ def take_back(config: Config, state: State, message: TakeBack, out: Out) -> Stat
     """ICAROUS hands back: route to the resume point, then along the rest of the path. Where no way
     there keeps the zones, its task fails and the next one is made for; the vehicle circles after its last."""
     vid, now_ms = message.vehicle_id, message.now_ms
+    state = replace(state, epochs=tuple({**dict(state.epochs), vid: message.epoch}.items()))
     chain = state.chain(vid)
     chain = replace(chain, suspended=suspended_after(chain.suspended, message.act))
     ways, air = config.ways(state.zones), state.air(vid)

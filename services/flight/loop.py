@@ -155,7 +155,7 @@ class _Flight:
 
     def _step(self) -> None:
         now = self.now_ms
-        self._executive(Tick(now, self._own(), self._gates()))
+        self._executive(Tick(now, self._own()))
         if now % self.mission.simulation.heartbeat_ms == 0:
             self._heartbeat()
         self._to_all(Choose())

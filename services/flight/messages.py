@@ -143,11 +143,10 @@ class SetOut(NamedTuple):
 
 
 class Tick(NamedTuple):
-    """A step of the flight. aircraft: as in `Begin`; gates: how each vehicle's gate stands, by id."""
+    """A step of the flight. aircraft: as in `Begin`."""
 
     now_ms: int
     aircraft: tuple[tuple[int, AirState], ...]
-    gates: tuple[tuple[int, Gate], ...]
 
 
 class Planned(NamedTuple):

@@ -46,7 +46,7 @@ def is_after_mode(before: End, gate: State, active: bool, epoch: int, after: End
     """The mode that is believed already changes nothing. One that is past is reported, and one that is
     neither past nor true is refused; neither changes anything. A true one is believed, and that alone
     changes; UxAS then lets go of a vehicle that it may not command, and takes back one that it may
-    command again."""
+    command again, be it that it has let go or that it is offered what it never knew was taken."""
     if active == before.active and epoch == before.epoch:
         return after == before and act == NOTHING
     if is_past(before, gate, epoch):
@@ -56,7 +56,7 @@ def is_after_mode(before: End, gate: State, active: bool, epoch: int, after: End
     believed = after == End(active, epoch, before.alive)
     if not believes_uxas(after):
         return believed and act == SUSPEND
-    if not believes_uxas(before):
+    if not believes_uxas(before) or gate.offered:
         return believed and act == TAKE_BACK
     return believed and act == NOTHING
 

@@ -36,9 +36,9 @@ def report_holds(gate: State, report: State) -> bool:
     return known and (report.epoch != gate.epoch or same)
 
 
-def uxas_command_holds(gate: State, epoch: int) -> bool:
-    """A command that UxAS has ever sent: of an epoch that was given."""
-    return was_given(gate, epoch)
+def uxas_command_holds(gate: State, end: End, epoch: int) -> bool:
+    """A command that UxAS has ever sent: of an epoch that was given, and that UxAS had heard of."""
+    return was_given(gate, epoch) and epoch <= end.epoch
 
 
 def icarous_command_holds(gate: State, epoch: int) -> bool:

@@ -128,6 +128,23 @@ def test_a_takeover_suspends_and_an_offer_is_taken_once() -> None:
     assert state.peer(1) == before
 
 
+def test_an_offer_is_taken_also_where_the_takeover_was_not_heard() -> None:
+    """Every SETMOD of the takeover was lost: UxAS takes the offer because it hears of it, not unheard."""
+    state, _ = END.handle(State(), Connected(0, (1,)))
+    state, _ = END.handle(state, GateIs(1, Gate(ICAROUS, 2, True)))
+    state, out = END.handle(state, Heard(1, 500, SetMode("PASSIVE", 2)))
+    assert [(m.vehicle_id, m.epoch, m.act) for m in out if isinstance(m, TakeBack)] == [
+        (1, 2, TAKE_BACK)
+    ]
+    _, out = END.handle(state, Heard(1, 1000, SetMode("PASSIVE", 2)))
+    assert not [m for m in out if isinstance(m, TakeBack)]
+    # where nothing is offered there is nothing to take
+    state, _ = END.handle(State(), Connected(0, (1,)))
+    state, _ = END.handle(state, GateIs(1, Gate(UXAS, 2, False)))
+    _, out = END.handle(state, Heard(1, 500, SetMode("PASSIVE", 2)))
+    assert not [m for m in out if isinstance(m, TakeBack)]
+
+
 def test_a_mode_without_an_epoch_is_of_the_present_one() -> None:
     state, out = after(*ALL[:2], GateIs(1, TAKEN), Heard(1, 500, SetMode("ACTIVE", None)))
     assert out == [Suspend(1, 500, SUSPEND)]

@@ -10,7 +10,6 @@ import pytest
 from flight_tools import meeting, of_type
 
 from cratous.bridge import lmcp
-from cratous.core.authority.gate import UXAS, Gate
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.services.flight import interruption, remaining_path, task_transitions
 from cratous.services.flight.autopilot import Follow
@@ -68,10 +67,9 @@ def handed_back(zones: tuple[Zone, ...], phase: Phase = Phase.TRANSIT) -> tuple[
     actor = Executive(Config(mission, Projection(mission.frame), (1,)))
     state = first_state(mission, make_plan(mission))
     start = AirState(Position(0.0, 0.0, 300.0), 0.0, 22.0, 0.0)
-    gates = ((1, Gate(UXAS, 0, False)),)
     state, _ = actor.handle(state, Begin(0, ((1, start),)))
     state, _ = actor.handle(state, SetOut())
-    state, _ = actor.handle(state, Tick(250, ((1, HERE),), gates))
+    state, _ = actor.handle(state, Tick(250, ((1, HERE),)))
     state, _ = actor.handle(state, Suspend(1, 500, SUSPEND))
     state = replace(state.put(replace(state.chain(1), phase=phase)), zones=zones)
     state, out = actor.handle(state, TakeBack(1, 500, TAKE_BACK, 2))

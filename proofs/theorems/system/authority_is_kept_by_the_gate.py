@@ -1,6 +1,7 @@
 """Whichever command that was ever sent reaches the gate, late or twice: what gate, ICAROUS and the UxAS end
 keep together holds once ICAROUS has taken notice at its next heartbeat; one that acts is of the present
-epoch, from one who may command in it, and after one of UxAS none of ICAROUS acts in that epoch; every message that was ever sent remains what a message must be."""
+epoch, from one who may command in it, and after one of UxAS none of ICAROUS acts in that epoch; UxAS takes
+no offer that it has not heard of; every message that was ever sent remains what a message must be."""
 
 from cratous.core.authority.cycle import Cycle, cycle_begun
 from cratous.core.authority.gate import Gate, gate_accepts, gate_after
@@ -39,6 +40,9 @@ def claim(c: Claim) -> None:
     also = c.use(gate_accepts, after, 1, again)
     taken = c.all_of(acts, sender == 0)
     c.show(c.implies(taken, c.negation(also)), "once UxAS has commanded, nothing of ICAROUS acts")
+    heard = c.define(system.takes_only_what_it_heard, gate, end, sender, acts)
+    sent = c.define(system.uxas_command_holds, gate, end, epoch)
+    c.show(c.implies(sent, heard), "UxAS takes no offer that it has not heard of")
     report = Gate(c.integer("report_owner"), c.integer("report_epoch"), c.boolean("report_offered"))
     other = c.integer("other_epoch")
     for text, was, stays in (
@@ -49,8 +53,8 @@ def claim(c: Claim) -> None:
         ),
         (
             "a command of UxAS",
-            c.define(system.uxas_command_holds, gate, other),
-            c.define(system.uxas_command_holds, after, other),
+            c.define(system.uxas_command_holds, gate, end, other),
+            c.define(system.uxas_command_holds, after, end, other),
         ),
         (
             "a command of ICAROUS",

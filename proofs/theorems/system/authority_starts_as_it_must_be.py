@@ -14,7 +14,7 @@ def claim(c: Claim) -> None:
     cycle = Cycle(0, 0, False, 0, False, 0)
     c.show(c.define(system.holds, gate, cycle, end, False), "together")
     c.show(c.define(system.report_holds, gate, gate), "what is reported")
-    c.show(c.define(system.uxas_command_holds, gate, gate.epoch), "what UxAS sends")
+    c.show(c.define(system.uxas_command_holds, gate, end, gate.epoch), "what UxAS sends")
     sender, epoch = c.integer("sender"), c.integer("epoch")
     passes = c.use(gate_accepts, gate, sender, epoch)
     first = c.all_of(sender == 0, epoch == 0)
