@@ -48,7 +48,7 @@ def link_mode(end: LinkEnd, gate: Gate, active: bool, epoch: int) -> Linked:
     after = LinkEnd(active, epoch, end.alive)
     if active:
         return Linked(after, 1)
-    if end.active or gate.offered:
+    if end.active or gate.owner != 0:
         return Linked(after, 2)
     return Linked(after, 0)
 
