@@ -141,9 +141,11 @@ def test_signals_clean_up(tmp_path: Path, number: signal.Signals) -> None:
     mission = ROOT / "examples" / "crossing" / "mission.yaml"
     code = (
         "import signal, sys, time; from cratous.services.cli import job, main\n"
-        # a test run under nohup hands its ignored SIGHUP on
+        # a test run under nohup or in the background hands its ignored signals on
         "if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:\n"
         "    signal.signal(signal.SIGHUP, signal.SIG_DFL)\n"
+        "if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:\n"
+        "    signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "def stay(mission, folder, settings, tell):\n"
         "    (folder / 'report.json').write_text('half'); print('flying', flush=True)\n"
         "    time.sleep(60)\n"

@@ -86,7 +86,7 @@ def test_a_merge_that_took_the_record_of_one_and_the_kernel_of_another_is_refuse
     assert "too_early: changed since the proof: its source" in done.stdout
 
 
-@pytest.mark.slow
+@pytest.mark.long  # a whole proof
 def test_what_was_merged_is_what_a_proof_of_it_writes(branches: Path) -> None:
     assert _git(branches, "checkout", "-q", "-B", "merged", "early").returncode == 0
     assert _git(branches, "merge", "-q", "--no-edit", "wind").returncode == 0
