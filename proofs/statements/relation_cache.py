@@ -14,7 +14,7 @@ from cratous.core.ledger.package_home import Home
 from cratous.proofs.engine import worker_processes
 from cratous.proofs.ledger.proof_recall import Recall
 from cratous.proofs.ledger.text_cache import named
-from cratous.proofs.statements import relations, sentences
+from cratous.proofs.statements import relations
 from cratous.proofs.statements.relations import Relations
 
 
@@ -48,9 +48,13 @@ class Kept:
         known = self._recall.key(name) if self.folder is not None else None
         if self.folder is None or known is None:
             return None
-        readers = (relations.__file__, sentences.__file__)
-        wanted = digest([known, *(named(Path(reader).resolve()) for reader in readers)])
+        wanted = digest([known, *map(named, readers())])
         return self.folder / wanted[:2] / wanted
+
+
+def readers() -> list[Path]:
+    """The files that read statements: what is kept holds for them as they are."""
+    return sorted(Path(relations.__file__).resolve().parent.glob("*.py"))
 
 
 def _kept(file: Path | None) -> Relations | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from typing import NamedTuple
 
 import pytest
@@ -15,6 +16,7 @@ from cratous.core.kernel import REGISTRY, Entry, named, supported
 from cratous.core.ledger import PRODUCT
 from cratous.proofs.engine import prover
 from cratous.proofs.engine.reachable_paths import ALL, NOT
+from cratous.proofs.statements import relation_cache
 from cratous.proofs.statements.closed_definitions import full_name
 from cratous.proofs.statements.definitions import (
     Proofs,
@@ -23,7 +25,7 @@ from cratous.proofs.statements.definitions import (
     is_restated,
     problems,
 )
-from cratous.proofs.statements.relation_cache import Kept
+from cratous.proofs.statements.relation_cache import Kept, readers
 from cratous.proofs.statements.relations import Relations, relations
 from cratous.proofs.statements.restated import restates
 
@@ -56,6 +58,21 @@ def test_each_definition_is_used_and_related_by_a_theorem() -> None:
         varied,
     )
     assert problems(ENTRIES, PRODUCT, proofs) == []
+
+
+def test_what_is_kept_of_a_statement_depends_on_all_that_reads_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept = Kept(tmp_path, PRODUCT)
+    before = kept._file("authority_exactly_one_gives_way")
+    assert before == kept._file("authority_exactly_one_gives_way")
+    there = {file.name: file for file in readers()}
+    for name in ("relations.py", "sentences.py", "closed_definitions.py", "premise_and_goal.py"):
+        changed = tmp_path / name
+        changed.write_text(there[name].read_text(encoding="utf-8") + "\n# another\n")
+        files = [changed if file.name == name else file for file in there.values()]
+        monkeypatch.setattr(relation_cache, "readers", lambda files=files: files)
+        assert kept._file("authority_exactly_one_gives_way") != before, name
 
 
 # -- what is wrong is said -------------------------------------------------------------------
