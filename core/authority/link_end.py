@@ -34,7 +34,8 @@ def link_mode(end: LinkEnd, gate: Gate, active: bool, epoch: int) -> Linked:
 
     gate: as the vehicle has reported it last; active: the line says that ICAROUS commands, else that it
     offers control; epoch: the one that began with it. act: 0 nothing, 1 suspend what UxAS flies, 2 take
-    the vehicle back (also where the takeover was never heard of), 3 report a mode that is overtaken, 4 refuse a mode that cannot be true.
+    the vehicle back, also where its takeover was never heard of, 3 report a mode that is overtaken,
+    4 refuse a mode that cannot be true.
     """
     if epoch == end.epoch and active == end.active:
         return Linked(end, 0)

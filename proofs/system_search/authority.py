@@ -37,6 +37,7 @@ class Command(NamedTuple):
 class State(NamedTuple):
     """One state: the parts, what UxAS was told last of the gate, and all that was ever sent.
 
+    taken: the epoch in which UxAS has last taken the vehicle, 0 at first, as its executive remembers it;
     commanded: who had a command accepted last; returned: UxAS has flown again after ICAROUS had.
     """
 
@@ -44,6 +45,7 @@ class State(NamedTuple):
     cycle: Cycle = Cycle(0, 0, False, 0, False, 0)
     end: LinkEnd = LinkEnd(False, 0, True)
     suspended: bool = False
+    taken: int = 0
     known: Gate = Gate(0, 0, False)
     reports: frozenset[Gate] = frozenset({Gate(0, 0, False)})
     commands: frozenset[Command] = frozenset()
@@ -60,9 +62,9 @@ class Step(NamedTuple):
     wrong: str = ""
 
 
-def heard_epoch(state: State) -> int:
-    """The epoch that a new track of UxAS names: the one that it believes in."""
-    return state.end.epoch
+def taken_epoch(state: State) -> int:
+    """The epoch that a new track of UxAS names: the one in which it took the vehicle."""
+    return state.taken
 
 
 @dataclass(frozen=True)
@@ -79,7 +81,7 @@ class Design:
     suspends: Callable[[bool, int], bool] = ends.suspended_after
     tells: Callable[[bool, bool], bool] = ends.track_is_told
     restarted: Callable[[Gate], Gate] | None = None
-    names: Callable[[State], int] = heard_epoch
+    names: Callable[[State], int] = taken_epoch
 
 
 def steps(design: Design, state: State) -> Iterator[Step]:
@@ -139,7 +141,10 @@ def _mode(design: Design, state: State, active: bool, epoch: int) -> Step:
     answers = ("changes nothing", "lets go", "takes the vehicle back", "is overtaken", "is refused")
     text = f"a SETMOD line arrives at UxAS ({says}, epoch {epoch}): {answers[linked.act]}"
     if linked.act == TAKE_BACK:
-        after = _uxas_commands(after, epoch, text).after
+        sent = _uxas_commands(after._replace(taken=epoch), epoch, text)
+        if sent.wrong:
+            return sent
+        after = sent.after
     return _checked(text, state, after)
 
 

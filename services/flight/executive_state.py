@@ -63,9 +63,10 @@ class Config:
 @dataclass(frozen=True)
 class State:
     """known: the mission as it is known now; mission: all of it in the wind of now; zones: those that
-    bind, with their padding turned into vertices; to_come: changes that nobody knows of yet; aircraft: of the vehicles,
-    as told last; epochs: in which UxAS took them back, of those that it has (else 0): what commands name; starts, ends: real ones; failed: tasks with the reason; left_out:
-    those that the plan in force leaves out, with the reason;
+    bind, with their padding turned into vertices; to_come: changes that nobody knows of yet; aircraft:
+    of the vehicles, as told last; epochs: in which UxAS took a vehicle back (0 for others): what its commands
+    name; starts, ends: real ones; failed: tasks with the reason; left_out: those that the plan in force
+    leaves out, with the reason;
     commands, replans, finished: counts; hurry: some deadline is near; asked: for which plan."""
 
     known: Mission
@@ -101,7 +102,7 @@ class State:
         return dict(self.aircraft)[vehicle_id]
 
     def epoch(self, vehicle_id: int) -> int:
-        """The epoch in which UxAS commands a vehicle, as far as it has heard."""
+        """The epoch that commands to a vehicle name: the one in which UxAS has it, as far as it has heard."""
         return dict(self.epochs).get(vehicle_id, 0)
 
     def by_vehicle(self) -> dict[int, Chain]:

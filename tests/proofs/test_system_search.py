@@ -66,7 +66,7 @@ def test_the_theorems_and_the_search_are_about_the_same_kernels() -> None:
     default = Design()
     searched = {
         one.__name__ for one in vars(default).values() if getattr(one, "__name__", "") != ""
-    } - {"track_is_told", "heard_epoch"}  # when UxAS sends, and the end's own field
+    } - {"track_is_told", "taken_epoch"}  # when UxAS sends, and what its executive remembers
     proved = set()
     for file in THEOREMS.glob("*.py"):
         for node in ast.walk(ast.parse(file.read_text())):
