@@ -158,9 +158,9 @@ class ConstraintWatch:
             before = Ran(bool(begun), min(begun, default=0), max(begun, default=0))
             is_whole = all(task in self._ends for task in row.group)
             if not in_order(WAITS[row.kind], is_whole, before, Ran(True, start, start)):
-                never = "ended" if row.kind == AFTER_END else "begun"
-                names = ", ".join(map(str, sorted(set(row.group) & set(missing)))) or "none"
-                note = f"task {row.i} began, though task {names} had never {never}"
+                event = "ended" if row.kind == AFTER_END else "begun"
+                names = ", ".join(map(str, sorted(set(row.group) & set(missing))))
+                note = f"task {row.i} began, though task {names} had not {event} by then"
                 return Verdict(
                     "G1", item, Outcome.VIOLATED, Kind.EXACT, note, time_ms=start, checks=1,
                     method="in_order", kernels=(qualified(in_order),),

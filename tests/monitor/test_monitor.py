@@ -197,12 +197,23 @@ def test_a_task_that_did_not_wait_for_one_that_never_came_breaks_the_order(relat
     seen = watch(mission(relations=relations), [*apart(), *beats(3000), *short])
     (row,) = [v for k, v in seen.items() if k.startswith(f"G1:flight: `{relations}`: p2 starts")]
     assert (row.outcome, row.method, row.time_ms) == (Outcome.VIOLATED, "in_order", 2000)
-    assert "had never" in row.note
+    assert "had not" in row.note
     # while the mission goes on it may still come
     on = [m for m in short if type(m[1]).__name__ != "MissionEnd"]
     seen = watch(mission(relations=relations), [*apart(), *beats(3000), *on])
     (row,) = [v for k, v in seen.items() if k.startswith(f"G1:flight: `{relations}`: p2 starts")]
     assert row.outcome is Outcome.UNKNOWN
+
+
+def test_a_task_that_began_before_one_that_it_waits_for_is_told_as_it_was():
+    short = [m for m in done() if getattr(m[1], "TaskID", 0) != 1]
+    seen = watch(
+        mission(relations="~(p1 p2)"),
+        [*apart(), *beats(3000), *short, progress(1, 1, 2500, "Active")],
+    )
+    (row,) = [v for k, v in seen.items() if k.startswith("G1:flight: `~(p1 p2)`: p2 starts")]
+    assert row.outcome is Outcome.VIOLATED
+    assert row.note == "task 2 began, though task 1 had not begun by then"
 
 
 def test_the_tasks_of_a_later_plan_count():
