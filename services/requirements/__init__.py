@@ -1,4 +1,4 @@
-"""Requirements over time: formulas, their evaluation sample by sample, and the import of others' languages.
+"""Requirements over time: formulas and their language, C2PO, samples of traces, evaluation, lint.
 
 Nothing here imports the planner or the prover; verdicts are decided by the kernels of `core.requirements`.
 """

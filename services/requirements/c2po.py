@@ -21,6 +21,7 @@ from cratous.services.requirements.formula import (
     Join,
     Not,
     Reaches,
+    compared,
     eventually,
     globally,
     historically,
@@ -156,7 +157,7 @@ def _made(node: Any, types: dict[str, str]) -> Any:
     if kind == "constant":
         return TRUE if got[0] == "true" else FALSE
     if kind == "compare":
-        return _compared(*got)
+        return compared(got[0], str(got[1]), got[2])
     if kind == "negation":
         return Not(got[0])
     if kind == "unary":
@@ -197,19 +198,6 @@ def _number(token: Any, negative: bool) -> float:
     if value == float("inf"):
         raise _Wrong("the number is too large", token.start_pos, "a double", str(token)[:30])
     return -value if negative else value
-
-
-def _compared(left: str | float, relation: Any, right: str | float) -> Formula:
-    above, below = Reaches(left, right), Reaches(right, left)
-    made: dict[str, Formula] = {
-        ">=": above,
-        "<=": below,
-        ">": Not(below),
-        "<": Not(above),
-        "==": Join(above, below, True),
-        "!=": Not(Join(above, below, True)),
-    }
-    return made[str(relation)]
 
 
 def _two_sided(phi: Formula, operator: Any, bounds: tuple[int, int], psi: Formula) -> Formula:

@@ -72,6 +72,20 @@ Formula: TypeAlias = Always | Reaches | Not | Join | Bounded
 TRUE, FALSE = Always(2), Always(0)
 
 
+def compared(left: str | float, relation: str, right: str | float) -> Formula:
+    """A comparison: `>= <= > < == !=`."""
+    above, below = Reaches(left, right), Reaches(right, left)
+    made: dict[str, Formula] = {
+        ">=": above,
+        "<=": below,
+        ">": Not(below),
+        "<": Not(above),
+        "==": Join(above, below, True),
+        "!=": Not(Join(above, below, True)),
+    }
+    return made[relation]
+
+
 def eventually(phi: Formula, low: int, high: int) -> Formula:
     """Phi at some sample between low and high ahead."""
     return Bounded(TRUE, phi, low, high, False)

@@ -23,6 +23,7 @@ from cratous.services.requirements.formula import (
     Join,
     Not,
     Reaches,
+    compared,
     eventually,
     globally,
     historically,
@@ -37,7 +38,7 @@ from cratous.services.requirements.specification import (
     Specification,
     caret_of,
 )
-from cratous.services.requirements.units import UNITS, Quantity, dimension, in_unit
+from cratous.services.requirements.units import Quantity, dimension, in_unit
 from cratous.spec.files.limits import CONFIG_BYTES, DIGITS, at_most
 
 if TYPE_CHECKING:
@@ -248,16 +249,7 @@ class _Reader:
             if k in units and other != unit:
                 raise _Wrong("signals of two units are compared", relation.start_pos, unit, other)
             values.append(str(side) if k in units else float(in_unit(side, unit)))
-        above, below = Reaches(values[0], values[1]), Reaches(values[1], values[0])
-        made: dict[str, Formula] = {
-            ">=": above,
-            "<=": below,
-            ">": Not(below),
-            "<": Not(above),
-            "==": Join(above, below, True),
-            "!=": Not(Join(above, below, True)),
-        }
-        return made[str(relation)]
+        return compared(values[0], str(relation), values[1])
 
 
 def _offset(node: Any) -> int:
@@ -282,11 +274,6 @@ def _origin(token: Any) -> tuple[str, tuple[tuple[str, str], ...], str]:
             raise _Wrong("this chooses no message", token.start_pos, "FIELD=VALUE", part)
         chosen.append((name, value))
     return message, tuple(chosen), field
-
-
-def units_known() -> tuple[str, ...]:
-    """The units that a signal may have."""
-    return tuple(UNITS)
 
 
 @cache

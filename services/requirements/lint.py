@@ -80,10 +80,13 @@ def _about(one: Requirement, formula: Formula, term: z3.BoolRef, ask: _Asked) ->
         return [Remark("unsatisfiable", one.name, text)]
     if always:
         return [Remark("valid", one.name, f"{one.name} says nothing: every trace satisfies it")]
-    asks_if = isinstance(formula, Join) and not formula.is_and and isinstance(formula.phi, Not)
-    if asks_if and _impossible(ask.term(formula.phi.phi)):  # type: ignore[union-attr]
-        text = f"{one.name} never asks for anything: what it depends on cannot happen"
-        return [Remark("vacuous", one.name, text)]
+    if isinstance(formula, Join) and not formula.is_and and isinstance(formula.phi, Not):
+        idle = _impossible(ask.term(formula.phi.phi))
+        if idle is None:
+            return [Remark("unchecked", one.name, f"{one.name} was not decided within its effort")]
+        if idle:
+            text = f"{one.name} never asks for anything: what it depends on cannot happen"
+            return [Remark("vacuous", one.name, text)]
     return []
 
 
@@ -91,13 +94,14 @@ def _duplicates(written: list[tuple[Requirement, z3.BoolRef, tuple[str, ...]]]) 
     import z3
 
     pairs = [(a, b) for a, b in combinations(written, 2) if a[2] == b[2]]
-    found = [
-        Remark("duplicate", b.name, f"{b.name} says the same as {a.name}")
-        for (a, one, _), (b, other, _) in pairs[:PAIRS]
-        if _impossible(z3.Xor(one, other))
-    ]
-    if len(pairs) > PAIRS:
-        text = f"{len(pairs) - PAIRS} pairs of requirements were not compared"
+    found, open_pairs = [], max(0, len(pairs) - PAIRS)
+    for (a, one, _), (b, other, _) in pairs[:PAIRS]:
+        same = _impossible(z3.Xor(one, other))
+        open_pairs += same is None
+        if same:
+            found.append(Remark("duplicate", b.name, f"{b.name} says the same as {a.name}"))
+    if open_pairs:
+        text = f"{open_pairs} pairs of requirements were not compared to the end"
         found.append(Remark("unchecked", "", text))
     return found
 

@@ -22,7 +22,11 @@ SAYS = {
     "missing": "a sample has no value",
     "stale": "the newest value is older than it is held",
     "never": "no value ever came",
+    "open": "the log has no end: it is being written, or its writer was stopped",
+    "lost": "messages of the log are missing",
 }
+NOT_WHOLE = ("order", "open", "lost")
+"""Where one of these was found nothing holds, since more could be known."""
 
 
 @dataclass
@@ -48,50 +52,56 @@ class Sampling:
     def __init__(self, spec: Specification, names: Iterable[str]) -> None:
         self.gap_ns = spec.gap_ns
         self.signals: dict[str, Signal] = {name: spec.signals[name] for name in sorted(names)}
-        self.held: dict[str, tuple[int, float]] = {}
+        self.held: dict[str, tuple[int, float | None]] = {}
+        self.seen: set[str] = set()
         self.last = -1
         self._found: dict[tuple[str, str], Finding] = {}
 
     @property
     def findings(self) -> list[Finding]:
         """All that was found so far; signals of which no value came are among them."""
-        never = [Finding("never", name, -1, 1) for name in self.signals if name not in self.held]
+        never = [Finding("never", name, -1, 1) for name in self.signals if name not in self.seen]
         gone = {one.signal for one in never}
         return [f for f in self._found.values() if f.signal not in gone] + never
 
     @property
     def is_whole(self) -> bool:
-        """No sample was left out."""
-        return ("order", "") not in self._found
+        """No sample was left out, and no message of the trace is known to be missing."""
+        return not any((kind, "") in self._found for kind in NOT_WHOLE)
 
     def samples(self, rows: Iterable[Row]) -> Iterator[tuple[int, Sample]]:
         """The samples of the rows, with times that rise."""
         for time, row in rows:
             if time <= self.last:
-                self._find("order", "", time)
+                self.find("order", "", time)
                 continue
             if self.gap_ns and self.last >= 0 and time - self.last > self.gap_ns:
-                self._find("gap", "", self.last)
+                self.find("gap", "", self.last)
                 # when the next one was due nothing is known
                 yield self.last + self.gap_ns, dict.fromkeys(self.signals)
             self.last = time
             yield time, {name: self._value(name, time, row) for name in self.signals}
 
     def _value(self, name: str, time: int, row: Mapping[str, float | None]) -> float | None:
-        value = row.get(name)
-        if value is not None and isfinite(value):
-            self.held[name] = time, value
-            return value
-        since, last = self.held.get(name, (-1, 0.0))
-        hold = self.signals[name].hold_ns
-        # a value that is no number takes the place of the one before
-        if name not in row and since >= 0 and time - since <= hold:
-            return last
-        is_stale = name not in row and hold > 0 and since >= 0
-        self._find("stale" if is_stale else "missing", name, time)
-        return None
+        if name in row:
+            value = row[name]
+            known = value if value is not None and isfinite(value) else None
+            # one that is no number takes the place of the one before
+            self.held[name] = time, known
+            if known is None:
+                self.find("missing", name, time)
+            else:
+                self.seen.add(name)
+            return known
+        since, last = self.held.get(name, (time, None))
+        if last is None or time - since > self.signals[name].hold_ns:
+            is_stale = last is not None and self.signals[name].hold_ns > 0
+            self.find("stale" if is_stale else "missing", name, time)
+            return None
+        return last
 
-    def _find(self, kind: str, signal: str, time: int) -> None:
+    def find(self, kind: str, signal: str = "", time: int = -1) -> None:
+        """Remember what is wrong, at a time [ns] if it has one."""
         found = self._found.get((kind, signal))
         if found is None:
             self._found[kind, signal] = Finding(kind, signal, time)

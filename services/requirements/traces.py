@@ -30,9 +30,22 @@ TIME = "time_s"
 def rows(trace: Path, spec: Specification, names: Iterable[str]) -> Iterator[Row]:
     """The rows of a trace; BadInput with the place for what is none."""
     wanted = {name: spec.signals[name] for name in sorted(names)}
-    if trace.suffixes[-1:] == [".csv"] or trace.suffixes[-2:] == [".csv", ".gz"]:
-        return _of_csv(trace, wanted)
-    return _of_log(trace, wanted)
+    return _of_csv(trace, wanted) if _is_csv(trace) else _of_log(trace, wanted)
+
+
+def doubts(trace: Path) -> list[str]:
+    """What keeps a log from being whole: `open`, `lost`; BadInput where it is not what its writer left."""
+    if _is_csv(trace):
+        return []
+    with open_log(trace) as source:
+        source.verify()
+        is_open = bool(source.end()) and source.closing() is None
+        is_lost = bool(source.holes() + sum(gap.missing for gap in source.gaps()))
+    return [kind for kind, is_so in (("open", is_open), ("lost", is_lost)) if is_so]
+
+
+def _is_csv(trace: Path) -> bool:
+    return trace.suffixes[-1:] == [".csv"] or trace.suffixes[-2:] == [".csv", ".gz"]
 
 
 def _of_csv(trace: Path, wanted: Mapping[str, Signal]) -> Iterator[Row]:

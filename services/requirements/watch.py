@@ -15,6 +15,7 @@ from cratous.services.requirements.evaluation import FALSE, TRUE, Evaluation
 from cratous.services.requirements.formula import Formula, Reaches, horizon, parts, signals
 from cratous.services.requirements.sampling import Finding, Sample, Sampling
 from cratous.services.requirements.specification import NotRead, Requirement, Specification
+from cratous.services.requirements.traces import doubts
 from cratous.services.requirements.traces import rows as timed_rows
 from cratous.spec.errors import BadInput
 
@@ -24,7 +25,7 @@ class Outcome:
     """One requirement over a trace. Instants: numbers of samples, or times [ns]; -1 where there is none.
 
     undecided: samples whose verdict needs more than the trace has; decided_at: when the first violation was
-    known; whole: no sample had to be left out; margins: of each comparison.
+    known; whole: nothing of the trace is known to be missing; margins: of each comparison.
     """
 
     requirement: Requirement
@@ -118,6 +119,8 @@ def watch(spec: Specification, trace: Path, verdicts: list[str] | None = None) -
         watched.append((outcome, Evaluation(one.formula)))
     sampling = Sampling(spec, needed)
     rows = timed_rows(trace, spec, needed) if spec.timed else None
+    for doubt in doubts(trace) if spec.timed else ():
+        sampling.find(doubt)
     read = _counted(spec, trace, needed) if rows is None else sampling.samples(rows)
     count = 0
     for time, row in read:

@@ -180,8 +180,16 @@ def test_values_are_held_as_long_as_they_say(tmp_path: Path) -> None:
     told = {(f.kind, f.signal): (f.first_ns / 1e9, f.count) for f in found.findings}
     # a value that is no number takes the place of the one before
     assert told == {
-        ("stale", "held"): (1.5, 2), ("missing", "held"): (2.0, 1), ("missing", "bare"): (3.0, 1),
+        ("stale", "held"): (1.5, 1), ("missing", "held"): (2.0, 2), ("missing", "bare"): (3.0, 1),
     }  # fmt: skip
+
+
+def test_a_number_that_is_none_ends_what_is_held(tmp_path: Path) -> None:
+    text = "signal held: m hold 9 s\nsignal t: m\nrequirement R: held >= 0 m and t >= 0 m"
+    found = _watched(tmp_path, text, "time_s,held,t\n0,1,1\n1,nan,1\n2,,1\n3,1,1\n4,,1\n")
+    (one,) = found.outcomes
+    assert (one.holds, one.unknown, one.first_unknown) == (3, 2, 10**9)
+    assert [(f.kind, f.count) for f in found.findings] == [("missing", 2)]
 
 
 def test_a_signal_that_never_comes_is_unknown_and_told(tmp_path: Path) -> None:
@@ -236,11 +244,14 @@ def test_samples_rise_and_every_gap_has_an_unknown_one(rows, gap, data):
     for before, after in itertools.pairwise(kept):
         if after - before > gap:
             assert found[got.index(before) + 1] == (before + gap, {"x": None})
-    # a value is known only where one came in the three nanoseconds before, and none after it was no number
+    # known where the newest that came is a number of at most three nanoseconds ago
+    came = dict(zip(rows[::-1], values[::-1], strict=True))
     for time, row in found:
-        past = [(t, v) for t, v in zip(rows, values, strict=True) if t <= time and t in kept and v]
-        if row["x"] is not None:
-            assert any(time - t <= 3 and v == 1.0 for t, v in past)
+        if time in kept:
+            news = [(t, came[t]) for t in kept if t <= time and came[t] is not None]
+            newest, value = max(news, default=(time, None), key=lambda one: one[0])
+            known = value == 1.0 and time - newest <= 3
+            assert row["x"] == (1.0 if known else None)
 
 
 # -- logs ------------------------------------------------------------------------------------
@@ -289,6 +300,40 @@ def test_signals_of_a_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert "SLOW:1.5,F" in out
     assert "HIGHER (two above one): holds" in out
     assert "fast - 26 m/s: least -5 m/s at 0 s, greatest 1 m/s at 1.5 s" in out
+
+
+def test_of_a_log_that_is_not_whole_nothing_holds(tmp_path: Path) -> None:
+    import sqlite3
+
+    spec = read(
+        f"signal one: m from {FROM.format(1, 'Location.Altitude')} hold 1 s\nrequirement R: one > 0 m"
+    )
+    log = _log(tmp_path)
+    assert watch(spec, log).outcomes[0].verdict == "holds"
+    with sqlite3.connect(log) as base:
+        base.execute("DELETE FROM closing")
+    found = watch(spec, log)
+    assert (found.outcomes[0].verdict, [f.kind for f in found.findings]) == ("unknown", ["open"])
+    with sqlite3.connect(log) as base:
+        base.execute("DELETE FROM messages WHERE seq = 3")
+    found = watch(spec, log)
+    assert (found.outcomes[0].verdict, [f.kind for f in found.findings]) == (
+        "unknown",
+        ["open", "lost"],
+    )
+
+
+def test_a_log_that_was_changed_is_refused(tmp_path: Path) -> None:
+    import sqlite3
+
+    log = _log(tmp_path)
+    with sqlite3.connect(log) as base:
+        base.execute("UPDATE messages SET body = replace(body, '100.0', '900.0')")
+    spec = read(
+        f"signal one: m from {FROM.format(1, 'Location.Altitude')} hold 1 s\nrequirement R: one > 0 m"
+    )
+    with pytest.raises(BadInput):
+        watch(spec, log)
 
 
 @pytest.mark.parametrize(
