@@ -20,6 +20,7 @@ from cratous.services.logs.log import Row
 from cratous.services.logs.records import from_data, to_data
 from cratous.services.logs.source import Source, open_log
 from cratous.services.mission.frames import Projection
+from cratous.services.results.names import REPORT_NAME
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame, Mission
 
@@ -40,15 +41,17 @@ def recording(path: Path) -> dict[str, Any]:
 
     Raises BadInput, with file and place, where the log, or report.json beside it, is damaged.
     """
+    folder = path if path.is_dir() else None
     with open_log(path) as source:
         try:
+            if folder is not None and (folder / REPORT_NAME).exists():
+                source.verify()  # verdicts are shown of the log that they were made of, and of no other
             mission = _mission(source)
             found = _flown(source, mission) if mission is not None else _told(source)
             found["log"] = _log(source)
         except BadInput as error:
             error.where = f"{source.path}, {error.where}" if error.where else str(source.path)
             raise
-    folder = path if path.is_dir() else None
     closing = found["log"]["digest"]
     return {"format": FORMAT, **found, "verdicts": verdicts_of(folder, closing)}
 

@@ -119,6 +119,16 @@ def test_a_report_of_another_log_gives_no_verdicts(crossing: Path, tmp_path: Pat
     assert recording(folder)["verdicts"] == {"why_none": OTHER_LOG}
 
 
+def test_verdicts_are_not_shown_beside_a_log_that_was_changed(
+    crossing: Path, tmp_path: Path
+) -> None:
+    changed = shutil.copytree(crossing, tmp_path / "changed")
+    with sqlite3.connect(changed / "log.sqlite") as base:
+        base.execute("UPDATE messages SET body = replace(body, '300.0', '310.0') WHERE seq > 50")
+    with pytest.raises(BadInput, match="not those that were logged"):
+        recording(changed)
+
+
 def test_a_damaged_report_is_named(crossing: Path, tmp_path: Path) -> None:
     folder = tmp_path / "run"
     shutil.copytree(crossing, folder)
