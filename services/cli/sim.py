@@ -72,13 +72,17 @@ def sim(
     world = make()
     _write(world, output)
     took_s = max(1e-9, time.monotonic() - began_s)
-    for kind, count in sorted(world.unheard.items()):
-        click.echo(f"note: {count} x {kind} changes nothing in the simulator", err=True)
+    _tell_unheard(world)
     click.echo(
         f"{plan.name}: {world.time_s:.0f} s of {len(world.aircraft)} aircraft, "
         f"{world.time_s / took_s:.0f} times real time"
     )
     return 0
+
+
+def _tell_unheard(world: World) -> None:
+    for kind, count in sorted(world.unheard.items()):
+        click.echo(f"note: {count} x {kind} changes nothing in the simulator", err=True)
 
 
 def _write(world: World, output: Path | None) -> None:
@@ -122,5 +126,6 @@ def _serve(
     host, port = server.port.bound
     click.echo(f"{plan.name}: listening on {host}:{port}")
     server.run()
+    _tell_unheard(server.world)
     click.echo(f"{plan.name}: ended at {server.world.time_s:.0f} s")
     return 0

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
-from math import cos, hypot, radians
+from math import cos, hypot, isfinite, radians
 from typing import Any
 
 from cratous.services.conform import Result, failed, not_covered, passed
@@ -96,6 +96,8 @@ def _compare(
             (place.Longitude - wanted["Longitude"]) * DEGREE_M * cos(radians(place.Latitude)),
             place.Altitude - wanted["Altitude"],
         )
+        if not isfinite(off_m):
+            return failed(name, "a place that is no number", f"at {got.Time} ms", checks)
         if off_m > worst_m:
             worst_m, worst_ms = off_m, got.Time
         said = {"Mode": got.Mode.name, "CurrentWaypoint": got.CurrentWaypoint,

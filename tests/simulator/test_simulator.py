@@ -46,6 +46,9 @@ def test_recorded_flights_of_amase_are_flown_again(shared: Path) -> None:
             assert trajectory.judge(case).status == "failed", "20 m off are seen"
             case["rows"][-1][case["columns"].index("CurrentWaypoint")] += 1
             assert "CurrentWaypoint differs in 1 states" in trajectory.judge(case).text
+            case["rows"][9][case["columns"].index("Latitude")] = float("nan")
+            assert trajectory.judge(case).status == "failed"
+            assert "no number" in str(trajectory.judge(case))
 
 
 def test_the_same_scenario_tells_the_same_bytes() -> None:

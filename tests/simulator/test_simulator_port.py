@@ -12,7 +12,7 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import pytest
 from simulator_tools import GO_TO, mission, ordered, scenario, waypoint
@@ -29,11 +29,14 @@ FLIGHT = mission(waypoint(1, 2, 45.02), waypoint(2, 2, 45.1))
 
 
 @contextlib.contextmanager
-def simulating(path: Path, *options: str) -> Iterator[tuple[subprocess.Popen[str], int]]:
+def simulating(
+    path: Path, *options: str, errors: IO[str] | None = None
+) -> Iterator[tuple[subprocess.Popen[str], int]]:
     """`cratous sim` as a process of its own, and its port."""
     running = subprocess.Popen(
         [sys.executable, "-m", "cratous", "sim", str(path), "--listen", "127.0.0.1:0", *options],
         stdout=subprocess.PIPE,
+        stderr=errors,
         text=True,
         env={**os.environ, "PYTHONUNBUFFERED": "1"},
     )
@@ -152,6 +155,26 @@ def test_it_ends_when_it_is_asked_to(tmp_path: Path, number: int) -> None:
         running.send_signal(number)
         assert running.wait(LIMIT_S) == 0
         client.close()
+
+
+def test_what_changes_nothing_is_told_at_the_end(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    zone = '<KeyValuePair Series="CMASI" Time="2"><Key>a</Key></KeyValuePair>'
+    path = tmp_path / "s.xml"
+    path.write_text(scenario(FLIGHT, zone))
+    assert main(["sim", str(path), "--until", "5"]) == 0
+    assert "1 x KeyValuePair changes nothing" in capsys.readouterr().err
+    with (tmp_path / "err").open("w+") as errors:
+        with simulating(path, errors=errors) as (running, port):
+            client = Client(port)
+            client.wait("KeyValuePair")
+            client.send(lmcp.new("KeyValuePair", Key="b"))
+            client.send(lmcp.new("SessionStatus", State="Stopped"))
+            assert running.wait(LIMIT_S) == 0
+            client.close()
+        errors.seek(0)
+        assert "2 x KeyValuePair changes nothing" in errors.read()
 
 
 def test_the_command_says_where_a_scenario_is_wrong(
