@@ -17,6 +17,8 @@ from cratous.proofs.claim import Claim
 from cratous.proofs.engine.induction import arbitrary
 from cratous.proofs.engine.lift import REPLACED
 from cratous.proofs.engine.terms import statement
+from cratous.proofs.running import inductions
+from cratous.proofs.running.statement import OnNumbers
 
 Run = tuple[Fold[Any], Any, tuple[Any, ...]]
 """A fold, an arbitrary accumulator of it, and its context."""
@@ -41,6 +43,12 @@ def closed_chain(
     """
     if c.prefix:
         return  # used as a lemma, an induction has no goals to offer, as with `Claim.fold`
+    if isinstance(c, OnNumbers):
+        both = (*runs, *models)
+        inductions.closed_chain(
+            c, both, invariant=invariant, edge=edge, goal=goal, text=text, begin=begin
+        )
+        return
     first, last, to = c.vector("first"), c.vector("last"), c.vector("to")
     folds = [REPLACED.get(fold, fold) for fold, _, _ in (*runs, *models)]
     accumulators = [acc for _, acc, _ in (*runs, *models)]

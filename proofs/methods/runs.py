@@ -15,6 +15,8 @@ from cratous.proofs.claim import Claim
 from cratous.proofs.engine.induction import arbitrary, names_in, spread
 from cratous.proofs.engine.lift import REPLACED
 from cratous.proofs.engine.terms import free_names, statement
+from cratous.proofs.running import inductions
+from cratous.proofs.running.statement import OnNumbers
 
 Run = tuple[Fold[Any], Any, tuple[Any, ...]]
 """A fold, an arbitrary accumulator of it, and its context."""
@@ -40,6 +42,12 @@ def along_items(
     """
     if c.prefix:
         return  # used as a lemma, an induction has no goals to offer, as with `Claim.fold`
+    if isinstance(c, OnNumbers):
+        both = (*runs, *models)
+        inductions.along_items(
+            c, both, item=item, invariant=invariant, goal=goal, text=text, each=each, known=known
+        )
+        return
     folds = [REPLACED.get(fold, fold) for fold, _, _ in (*runs, *models)]
     accumulators = [acc for _, acc, _ in (*runs, *models)]
     contexts = [context for _, _, context in (*runs, *models)]

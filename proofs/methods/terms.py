@@ -23,6 +23,8 @@ import z3
 from cratous.proofs.claim import Claim
 from cratous.proofs.engine.induction import arbitrary, names_in, spread
 from cratous.proofs.engine.terms import free_names, statement
+from cratous.proofs.running import inductions
+from cratous.proofs.running.statement import OnNumbers
 
 Pair = tuple[Any, Any]
 """On the kernel's side, and on the definition's."""
@@ -52,6 +54,12 @@ def every_term(
     """
     if c.prefix:
         return  # used as a lemma, an induction has no goals to offer, as with `Claim.fold`
+    if isinstance(c, OnNumbers):
+        inductions.every_term(
+            c, task=task, none=none, so_far=so_far, operand=operand, add=add, whole=whole,
+            related=related, alike=alike, text=text,
+        )  # fmt: skip
+        return
     arbitrary(c.premises, (so_far, operand), node)
     premises = list(c.premises)
     of_task, of_node = spread(names_in(task), c), spread(names_in(node), c)

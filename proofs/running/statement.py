@@ -16,6 +16,7 @@ from typing import Any, get_type_hints
 
 from cratous.core.kernel import Fold, Vec2, qualified
 from cratous.proofs.running.copies import Undecided, rational_root, with_root
+from cratous.proofs.running.late_values import All, Cell, Late, Open, made_true, now
 
 Point = Mapping[str, Any]
 ERRORS = (ZeroDivisionError, ValueError, OverflowError)
@@ -90,7 +91,7 @@ class OnNumbers:
         return found
 
     def real(self, name: str) -> Any:
-        return self._value(name, self.values.real)
+        return self._value(name, lambda full: Late(Cell(lambda: self.values.real(full))))
 
     def reals(self, names: str) -> list[Any]:
         return [self.real(name) for name in names.split()]
@@ -116,7 +117,7 @@ class OnNumbers:
         return Vec2(*self.reals(f"{name}.x {name}.y"))
 
     def premise(self, condition: Any) -> None:
-        if not _truth(condition):
+        if not (made_true(condition) if isinstance(condition, Open) else truth(condition)):
             raise Outside
 
     def assume(self, condition: Any, *, owner: str, reason: str) -> None:
@@ -124,7 +125,7 @@ class OnNumbers:
 
     # -- functions -----------------------------------------------------------------------------
     def use(self, kernel: Callable[..., Any], *args: Any, when: Any = True) -> Any:
-        if _truth(when):
+        if truth(when):
             return self._run(kernel, args)
         try:
             return self._run(kernel, args)
@@ -135,7 +136,7 @@ class OnNumbers:
         return self._run(definition, args)
 
     def _run(self, function: Callable[..., Any], args: tuple[Any, ...]) -> Any:
-        given = _of_kinds(function, args)
+        given = _of_kinds(function, now(args))
         seen = self.called.setdefault((function.__module__, function.__qualname__), [])
         if len(seen) < ROWS and given not in seen:
             seen.append(given)
@@ -147,8 +148,9 @@ class OnNumbers:
     def opaque(self, *functions: Callable[..., Any]) -> None:
         """Nothing is closed to a function that runs."""
 
-    def calls(self, function: Callable[..., Any]) -> list[tuple[Any, ...]]:
-        raise NotRun("it asks for the calls of a closed function, which are those of all paths")
+    def calls(self, function: Callable[..., Any]) -> Iterable[tuple[Any, ...]]:
+        """None: those of all paths are known of terms alone. What is said of each is not run."""
+        return iter(())
 
     def congruence(
         self, function: Callable[..., Any], one: tuple[Any, ...], other: tuple[Any, ...]
@@ -175,7 +177,7 @@ class OnNumbers:
             return value if finish is None else self._run(finish, (value,))
 
         self.show(relation(kernel_fold.start, model_start), "relation at the start")
-        if _truth(relation(acc, model)):
+        if truth(relation(acc, model)):
             after = self._run(kernel_fold.step, (acc, *item, *context))
             modelled = self._run(model_step, (model, *item, *context))
             self.show(relation(after, modelled), "relation is kept")
@@ -190,7 +192,7 @@ class OnNumbers:
 
     # -- what is to be shown ---------------------------------------------------------------------
     def show(self, goal: Any, text: str = "the claim") -> None:
-        if not _truth(goal):
+        if not truth(goal):
             raise False_(f"{text!r} is false there")
         self.goals += 1
 
@@ -198,12 +200,12 @@ class OnNumbers:
         self.show(goal, text)
 
     def cases(self, *conditions: Any, goal: Any, text: str = "the claim") -> None:
-        self.show(any(map(_truth, conditions)), f"{text}: the cases cover everything")
+        self.show(any(map(truth, conditions)), f"{text}: the cases cover everything")
         self.show(goal, text)
 
     def lemma(self, name: str, *, when: Any = True, **values: Any) -> None:
         number = self.lemmas[name] = self.lemmas.get(name, -1) + 1
-        if not _truth(when):
+        if not truth(when):
             return
         inner = OnNumbers(
             self.values, self.load, f"{self.prefix}{name}!{number}!", _flat(values), self.called
@@ -217,19 +219,20 @@ class OnNumbers:
 
     # -- statements ------------------------------------------------------------------------------
     def implies(self, if_: Any, then: Any) -> Any:
-        return not _truth(if_) or _truth(then)
+        return then if truth(if_) else True
 
     def all_of(self, *conditions: Any) -> Any:
-        return all(list(map(_truth, conditions)))
+        # a premise makes each true in turn
+        return All(tuple(c if isinstance(c, Open) else truth(c) for c in conditions))
 
     def any_of(self, *conditions: Any) -> Any:
-        return any(list(map(_truth, conditions)))
+        return any(list(map(truth, conditions)))
 
     def negation(self, condition: Any) -> Any:
-        return not _truth(condition)
+        return not truth(condition)
 
     def when(self, condition: Any, yes: Any, no: Any) -> Any:
-        return yes if _truth(condition) else no
+        return yes if truth(condition) else no
 
     def same(self, a: Any, b: Any) -> Any:
         if isinstance(a, tuple) or isinstance(b, tuple):
@@ -237,7 +240,10 @@ class OnNumbers:
         return _decided(a) == _decided(b)
 
 
-def _truth(value: Any) -> bool:
+def truth(value: Any) -> bool:
+    """The value of a statement that is run; raises NotRun for what is none."""
+    if isinstance(value, Open):
+        return bool(value)
     if not isinstance(value, bool):
         raise NotRun(f"{value!r} is taken for a statement")
     return value
@@ -246,12 +252,12 @@ def _truth(value: Any) -> bool:
 def _decided(value: Any) -> Any:
     if isinstance(value, float):
         raise Undecided("a double came up")
-    return value
+    return bool(value) if isinstance(value, Open) else value
 
 
 def _flat(values: dict[str, Any]) -> dict[str, Any]:
     flat: dict[str, Any] = {}
-    for name, value in values.items():
+    for name, value in zip(values, now(tuple(values.values())), strict=True):
         if isinstance(value, Vec2):
             flat[name + ".x"], flat[name + ".y"] = value.x, value.y
         else:

@@ -14,11 +14,12 @@ from cratous.proofs.engine.outcomes import Ran
 from cratous.proofs.engine.symbolic import SymMask
 from cratous.proofs.engine.theorem_files import load_claim, load_lemma
 from cratous.proofs.running.copies import Undecided
+from cratous.proofs.running.late_values import now
 from cratous.proofs.running.points import witnesses
 from cratous.proofs.running.statement import False_, NotRun, OnNumbers, Outside, Values
 
-DRAWN = 40
-"""So many points are drawn beside the witnesses."""
+DRAWN, FEW, DRAWN_AT_MOST = 40, 3, 400
+"""So many points are drawn beside the witnesses; more where no more than FEW of them count."""
 ENOUGH = 3
 """So many differences of a theorem are told."""
 
@@ -68,7 +69,9 @@ def _ran(
     found: list[str] = []
     points = 0
     given = witnesses(claim)
-    for number in range(len(given) + DRAWN):
+    for number in range(len(given) + DRAWN_AT_MOST):
+        if number >= len(given) + DRAWN and points > FEW:
+            break
         point = given[number] if number < len(given) else {}
         values = Values(point, f"{name} at {number}")
         on = OnNumbers(values, lambda other: load_lemma(other, folder), called=called)
@@ -91,5 +94,5 @@ def _ran(
 def _numbers(shown: dict[str, Any]) -> str:
     return ", ".join(
         f"{name} = {value if isinstance(value, Fraction | int) else repr(value)}"
-        for name, value in shown.items()
+        for name, value in zip(shown, now(tuple(shown.values())), strict=True)
     )

@@ -17,6 +17,7 @@ from cratous.core.ledger import load_all
 from cratous.proofs import ledger
 from cratous.proofs.engine import prover
 from cratous.proofs.engine.prover import Outcome, Owed, restore
+from cratous.proofs.engine.theorem_files import load_claim
 from cratous.proofs.ledger.report_formats import failure_text
 from cratous.proofs.running.arguments import rows
 from cratous.proofs.running.copies import Undecided, rational_root
@@ -45,6 +46,34 @@ FALSE = {
     c.show(c.implies(value > best + 1000, c.same(c.use(later, best, value), best)))
 """,
 }
+INDUCTIONS = {
+    "along_items": """    item = (c.real("x"), c.real("y"))
+    along_items(
+        c, [(Fold("sum", "", lambda acc, x, y: acc + x, 0), c.real("acc"), ())], item=item,
+        invariant=lambda a: a[0] >= 0, goal=lambda r: r[0] >= 0, text="sums",
+    )
+""",
+    "a_closed_chain": """    closed_chain(
+        c, [(Fold("turns", "", lambda acc, a, b: acc + 1, 0), c.integer("acc"), ())],
+        invariant=lambda a, first, last: a[0] >= 0, edge=lambda a, b: None,
+        goal=lambda r: r[0] <= 2, text="edges",
+    )
+""",
+    "a_term": """    every_term(
+        c, task=(1, 1), none=(0, 0), so_far=(c.integer("n"), c.integer("m")),
+        operand=(c.integer("k"), c.integer("l")),
+        add=(lambda n, k: n + k, lambda m, l: m + l), whole=(lambda n: n, lambda m: m + 1),
+        related=c.same, alike=c.same, node=(), text="sizes",
+    )
+""",
+}
+INDUCTION_HEAD = HEAD.replace(
+    "from cratous.proofs.claim import Claim\n",
+    "from cratous.core.kernel import Fold\nfrom cratous.proofs.claim import Claim\n"
+    "from cratous.proofs.methods.chains import closed_chain\n"
+    "from cratous.proofs.methods.runs import along_items\n"
+    "from cratous.proofs.methods.terms import every_term\n",
+)
 TRUE = """    best, value = c.integer("best"), c.integer("value")
     c.premise(value >= best)
     c.show(c.same(c.use(later, best, value), value))
@@ -64,6 +93,52 @@ def test_what_a_prover_wrongly_proves_is_false_when_it_is_run(name, tmp_path: Pa
     assert not theorem.proved
     assert "run as Python" in failure_text(theorem)
     assert "best = " in failure_text(theorem)
+
+
+@pytest.mark.parametrize("name", INDUCTIONS)
+def test_an_induction_that_does_not_hold_is_false_when_it_is_run(name, tmp_path: Path):
+    (tmp_path / f"{name}.py").write_text(INDUCTION_HEAD + INDUCTIONS[name])
+    statement = load_claim(name, tmp_path)[0]
+
+    def tried(number: int) -> bool:
+        on = OnNumbers(Values({}, f"{name} {number}"), lambda other: lambda c: None)
+        try:
+            statement(on)
+        except False_:
+            return True
+        return False
+
+    assert sum(map(tried, range(40))) >= 5
+
+
+def test_an_open_value_takes_the_number_that_a_premise_gives_it():
+    for seed in range(20):
+        on = OnNumbers(Values({}, f"{seed}"), lambda name: lambda c: None)
+        x, y, z, w = on.reals("x y z w")
+        on.premise(3 * (x - 1) == 7 - y)
+        on.premise(on.all_of(y < z, z + 1 >= w))
+        assert 3 * (x.number() - 1) == 7 - y.number()
+        assert y.number() <= z.number()
+        assert z.number() + 1 >= w.number()
+        with pytest.raises(Outside):
+            on.premise(3 * x == 11 - y)  # they have their numbers
+
+
+def test_only_a_premise_makes_a_statement_true():
+    """A goal, a condition and the premise of a lemma about open values are asked, not granted."""
+    held = []
+    for seed in range(40):
+        on = OnNumbers(Values({}, f"{seed}"), lambda name: lambda c: c.premise(c.real("x") == 0))
+        try:
+            on.show(on.real("x") == 5)
+        except False_:
+            held.append(False)
+        else:
+            held.append(True)
+        with pytest.raises(False_, match="premise of the lemma any"):
+            on.lemma("any", x=on.real("y") + Fraction(1, 2) + 1000)
+        assert on.when(on.real("z") == 77, 1, 2) == 2
+    assert not all(held)
 
 
 def test_a_true_theorem_is_run_at_some_points_and_kept_with_them(tmp_path: Path):

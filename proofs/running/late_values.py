@@ -1,0 +1,165 @@
+"""Arbitrary real values of a statement that is run, drawn no earlier than something is asked of them.
+
+A theorem may name a value by the equation that defines it (`k * (t - begin) == first`), or bound it by another.
+A number drawn before would seldom satisfy such premises; a value of which nothing was asked yet takes one that does.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+
+class Cell:
+    """One arbitrary value: the number drawn for it, or given to it by an equation."""
+
+    def __init__(self, draw: Callable[[], Fraction]) -> None:
+        self._draw, self.found = draw, None
+
+    found: Fraction | None
+
+    def number(self) -> Fraction:
+        if self.found is None:
+            self.found = self._draw()
+        return self.found
+
+
+def now(value: Any) -> Any:
+    """The value with a number for everything in it that is still open."""
+    if isinstance(value, Late):
+        return value.number()
+    if isinstance(value, Open):
+        return bool(value)
+    if isinstance(value, tuple):
+        parts = [now(part) for part in value]
+        return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
+    return value
+
+
+class Late:
+    """scale * value + offset, of one arbitrary value; every question but a comparison draws its number."""
+
+    __slots__ = ("_cell", "_offset", "_scale")
+
+    def __init__(self, cell: Cell, scale: Any = 1, offset: Any = 0) -> None:
+        self._cell, self._scale, self._offset = cell, scale, offset
+
+    def number(self) -> Fraction:
+        """Its number from now on."""
+        return Fraction(self._scale * self._cell.number() + self._offset)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether an equation may still give the value a number."""
+        return self._cell.found is None and self._scale != 0
+
+    def be(self, wanted: Any) -> None:
+        """Take the number with which this is the one that is wanted."""
+        self._cell.found = Fraction(wanted - self._offset) / self._scale
+
+    def __add__(self, other: Any) -> Any:
+        if self._cell.found is not None:
+            return self.number() + other
+        return Late(self._cell, self._scale, self._offset + now(other))
+
+    def __mul__(self, other: Any) -> Any:
+        factor = now(other)  # it may be of the same value
+        if self._cell.found is not None:
+            return self.number() * factor
+        return Late(self._cell, self._scale * factor, self._offset * factor)
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __neg__(self) -> Any:
+        return self * -1
+
+    def __sub__(self, other: Any) -> Any:
+        return self + -now(other)
+
+    def __rsub__(self, other: Any) -> Any:
+        return -self + other
+
+    def __truediv__(self, other: Any) -> Any:
+        return self * (Fraction(1) / now(other))
+
+    def __rtruediv__(self, other: Any) -> Any:
+        return other / self.number()
+
+    def __pow__(self, other: Any) -> Any:
+        return self.number() ** other
+
+    def __abs__(self) -> Fraction:
+        return abs(self.number())
+
+    def __lt__(self, other: Any) -> Any:
+        return Comparison(self, operator.lt, other)
+
+    def __le__(self, other: Any) -> Any:
+        return Comparison(self, operator.le, other)
+
+    def __gt__(self, other: Any) -> Any:
+        return Comparison(self, operator.gt, other)
+
+    def __ge__(self, other: Any) -> Any:
+        return Comparison(self, operator.ge, other)
+
+    def __eq__(self, other: Any) -> Any:
+        return Comparison(self, operator.eq, other)
+
+    def __ne__(self, other: Any) -> Any:
+        return Comparison(self, operator.ne, other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return str(self.number())
+
+
+class Comparison:
+    """A value compared with another: true or false when it is asked for, made true by a premise."""
+
+    def __init__(self, late: Late, relation: Callable[[Any, Any], Any], other: Any) -> None:
+        self._late, self._relation, self._other = late, relation, other
+
+    def __bool__(self) -> bool:
+        return bool(self._relation(self._late.number(), now(self._other)))
+
+    def made_true(self) -> bool:
+        """Whether it holds, with a number that makes it so where that is open."""
+        ours, other = self._late, self._other
+        if isinstance(other, Late) and other.is_open and not ours.is_open:
+            ours, other = other, ours
+        was_open, bound = ours.is_open, now(other)
+        if not self and was_open:
+            # as far on the other side of the bound; on it for an equation
+            apart = 0 if self._relation is operator.eq else bound - ours.number()
+            for number in (bound + apart, bound + 1, bound - 1):
+                ours.be(number)
+                if self:
+                    return True
+        return bool(self)
+
+
+class All:
+    """Statements of which all hold."""
+
+    def __init__(self, statements: tuple[Any, ...]) -> None:
+        self._statements = statements
+
+    def __bool__(self) -> bool:
+        return all(list(map(bool, self._statements)))
+
+    def made_true(self) -> bool:
+        """Whether all hold, one after the other made so where that is open."""
+        return all(list(map(made_true, self._statements)))
+
+
+Open = Comparison | All
+"""A statement whose truth may still be open."""
+
+
+def made_true(statement: Any) -> bool:
+    """Whether a statement holds, made so where that is open."""
+    return statement.made_true() if isinstance(statement, Open) else bool(statement)
