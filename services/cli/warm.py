@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 
 import click
@@ -26,15 +27,12 @@ def warm(planning: bool, prune: bool, days: float, quiet: bool) -> int:
     Example:  cratous warm --prune
     """
     from cratous.services.startup.prune import prune as pruned
-    from cratous.services.startup.warm import PLANNING, STEPS
+    from cratous.services.startup.warm import CHAINS, PLANNING, compile_all
 
-    steps = PLANNING if planning else STEPS
+    chains, cores = (PLANNING,) if planning else CHAINS, os.cpu_count() or 1
     began = time.monotonic()
     with waiting("compiling", quiet) as wait:
-        for name, step in wait.each(steps, "steps"):
-            if not quiet:
-                wait.line(f"compiling: {name}")
-            step()
+        compile_all(chains, cores, lambda name: None if quiet else wait.line(f"compiled: {name}"))
     if not quiet:
         click.echo(f"what the runtime uses is compiled ({time.monotonic() - began:.0f} s)")
     if prune:

@@ -11,7 +11,9 @@ import hashlib
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from multiprocessing import get_context
 from pathlib import Path
 
 from cratous.core import ledger
@@ -107,16 +109,37 @@ def warm_gate() -> None:
     ledger.require(allow_unproved=True)
 
 
-PLANNING: tuple[tuple[str, Callable[[], None]], ...] = (
+Step = tuple[str, Callable[[], None]]
+PLANNING: tuple[Step, ...] = (
     ("the searches of the assignment", assign.warm),
     ("the loops of planning", warm_planning),
 )
-STEPS = (
-    ("well clear over arrays", warm_kernels),
-    *PLANNING,
+OTHERS: tuple[Step, ...] = (
     ("detect and avoid", warm_daa),
+    ("well clear over arrays", warm_kernels),
     ("what the gate reads", warm_gate),
 )
+CHAINS = (PLANNING, OTHERS)
+"""What may be compiled at the same time: steps of one chain share kernels, those of two hardly any."""
+
+
+def compile_all(chains: Sequence[Sequence[Step]], cores: int, say: Callable[[str], None]) -> None:
+    """Take all steps of these chains, on several cores each chain in a process; `say` is told what is done."""
+    if cores == 1 or len(chains) == 1:
+        for name, step in (step for chain in chains for step in chain):
+            step()
+            say(name)
+        return
+    with ProcessPoolExecutor(min(cores, len(chains)), mp_context=get_context("spawn")) as pool:
+        for done in as_completed([pool.submit(_taken, chain) for chain in chains]):
+            for name in done.result():
+                say(name)
+
+
+def _taken(chain: Sequence[Step]) -> list[str]:
+    for _, step in chain:
+        step()
+    return [name for name, _ in chain]
 
 
 def ensure_planning(say: Callable[[str], None]) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import time
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -87,3 +89,21 @@ def test_inside_at_once_the_first_call_is_compiled(monkeypatch: pytest.MonkeyPat
         assert swift.swift(write_cfg) == "machine code"
     swift._compiled.clear()
     assert swift.swift(write_cfg) is write_cfg
+
+
+@pytest.mark.parametrize("cores", [1, 2, 8])
+def test_every_step_of_every_chain_is_taken_and_told(cores: int):
+    told: list[str] = []
+    warm.compile_all(
+        [[("a", time.monotonic), ("b", os.getpid)], [("c", os.getpid)]], cores, told.append
+    )
+    assert sorted(told) == ["a", "b", "c"]
+
+
+@pytest.mark.parametrize("cores", [1, 2])
+def test_a_step_that_fails_is_not_told_as_done(cores: int):
+    told: list[str] = []
+    gone = partial(os.rmdir, "no such folder")
+    with pytest.raises(FileNotFoundError):
+        warm.compile_all([[("a", os.getpid)], [("b", gone)]], cores, told.append)
+    assert "b" not in told
