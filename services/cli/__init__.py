@@ -20,6 +20,7 @@ from typing import Any
 
 import click
 
+from cratous import __version__
 from cratous.services.cli.stopping import Stopped, stoppable
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 from cratous.spec.files.extras import told
@@ -74,6 +75,7 @@ class LazyGroup(click.Group):
 
 
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, message="%(prog)s %(version)s")
 @click.option("--debug", is_flag=True, help="Show the traceback of an internal error.")
 def cli(debug: bool) -> None:
     """Verified mission autonomy for teams of unmanned aircraft.

@@ -51,6 +51,7 @@ def report_of(folder: Path) -> dict[str, Any]:
 def test_version(run: Run) -> None:
     assert run("version") == (0, f"cratous {__version__} (Python {sys.version.split()[0]})\n", "")
     assert json.loads(run("version", "--json")[1])["cratous"] == __version__
+    assert run("--version") == (0, f"cratous {__version__}\n", "")
 
 
 @pytest.mark.parametrize("command", COMMANDS)
