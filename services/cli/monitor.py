@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -12,28 +13,77 @@ from cratous.spec.mission.guarantees import exit_code
 
 
 @click.command()
-@click.argument("log", type=click.Path(path_type=Path))
+@click.argument("log", type=click.Path(path_type=Path), required=False)
 @click.option(
     "--requirements",
     type=click.Path(path_type=Path),
     help="Requirements of your own: a file *.req, or C2PO; LOG may be a CSV file then.",
 )
 @click.option("--verdicts", is_flag=True, help="Also each verdict, as `id:sample,T`, F or ?.")
+@click.option(
+    "--attach",
+    metavar="HOST:PORT",
+    help="Watch a running system instead of a LOG: a TCP bridge of UxAS, or AMASE.",
+)
+@click.option(
+    "--seconds", type=click.FloatRange(0, min_open=True), help="With --attach: end after so many."
+)
+@click.option(
+    "--keep",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="With --attach: keep what comes in a log.",
+)
+@click.option(
+    "--metrics",
+    type=click.IntRange(0, 65535),
+    metavar="PORT",
+    help="With --attach: counts for Prometheus, on 127.0.0.1.",
+)
+@click.option(
+    "--on-violation",
+    default="",
+    metavar="COMMAND",
+    help="With --attach: started when a requirement is violated for the first time.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print the verdicts as JSON.")
 @click.option("--allow-unproved", is_flag=True, help="Judge with kernels that have no proof.")
 def monitor(
-    log: Path, requirements: Path | None, verdicts: bool, as_json: bool, allow_unproved: bool
+    log: Path | None,
+    requirements: Path | None,
+    verdicts: bool,
+    as_json: bool,
+    allow_unproved: bool,
+    **attached: Any,
 ) -> int:
     """Replay a message LOG (log.sqlite, or its folder) through the monitor of G1 to G5.
 
     With --requirements, hold a trace (a CSV file of signals; with *.req also a message log of any
     format) against requirements of your own.
 
+    With --attach, hold what a running system tells against such requirements, until Ctrl-C: a line
+    (with --json a JSON object) when one is violated or unknown for the first time, all verdicts at the
+    end. Nothing is sent to it.
+
     Example:  cratous monitor out/crossing/log.sqlite
 
     Exit codes: 0 all requirements hold, 1 something is violated, 2 bad input, 3 something is
     unknown or excused.
     """
+    address = attached.pop("attach")
+    if (log is None) == (address is None):
+        raise BadInput("one of them is watched", expected="LOG or --attach HOST:PORT")
+    if address is not None:
+        from cratous.services.cli.monitor_attach import Live, attach
+
+        if requirements is None or verdicts:
+            raise BadInput("--attach watches requirements", expected="--requirements FILE.req")
+        return attach(address, requirements, Live(**attached), as_json, allow_unproved)
+    assert log is not None
+    if given := [name for name, value in attached.items() if value not in (None, "")]:
+        raise BadInput(
+            f"--{given[0].replace('_', '-')} needs --attach", expected="--attach HOST:PORT"
+        )
     if requirements is not None:
         from cratous.services.cli.monitor_requirements import trace
 

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 if TYPE_CHECKING:
+    from cratous.core.ledger import Standing
+    from cratous.services.requirements.lint import Remark
     from cratous.services.requirements.specification import Specification
-    from cratous.services.requirements.watch import Margin, Outcome
+    from cratous.services.requirements.watch import Margin, Outcome, Watched
 
 
 def trace(
@@ -18,26 +21,39 @@ def trace(
 ) -> int:
     """Print what each requirement says of the trace; the exit code."""
     from cratous.core import ledger
-    from cratous.services.cli.show import say
     from cratous.services.requirements.lint import lint
     from cratous.services.requirements.watch import watch
 
-    spec = _read(requirements)
+    spec = read(requirements)
     standing = ledger.require(allow_unproved=allow_unproved)
     remarks = lint(spec)
     lines: list[str] | None = [] if verdicts else None
     watched = watch(spec, trace, lines)
+    return print_result(watched, remarks, standing, spec.timed, lines, as_json)
+
+
+def print_result(
+    watched: Watched,
+    remarks: Sequence[Remark],
+    standing: Standing,
+    timed: bool,
+    lines: list[str] | None,
+    as_json: bool,
+) -> int:
+    """Print verdicts, margins and what is wrong with samples and requirements; the exit code."""
+    from cratous.services.cli.show import say
+
     words = {outcome.verdict for outcome in watched.outcomes}
     code = 1 if "violated" in words else (0 if words == {"holds"} and not standing.problems else 3)
     if as_json:
         data: dict[str, Any] = {
-            "requirements": [_data(one, spec.timed) for one in watched.outcomes],
+            "requirements": [_data(one, timed) for one in watched.outcomes],
             "findings": [vars(one) for one in watched.findings],
             "lint": [vars(one) for one in remarks],
             "proofs": standing.line,
             "exit_code": code,
         }
-        click.echo(json.dumps({**data, "verdicts": lines} if verdicts else data, indent=1))
+        click.echo(json.dumps({**data, "verdicts": lines} if lines is not None else data, indent=1))
         return code
     for line in lines or ():
         say(line)
@@ -46,15 +62,16 @@ def trace(
     for finding in watched.findings:
         say(f"finding: {finding.text}")
     for one in watched.outcomes:
-        say(_line(one, spec.timed))
-        if spec.timed:
+        say(_line(one, timed))
+        if timed:
             for margin in one.margins:
                 say(f"  {_margin(margin)}")
     click.echo(f"proofs: {standing.line}")
     return code
 
 
-def _read(requirements: Path) -> Specification:
+def read(requirements: Path) -> Specification:
+    """The requirements of a file, in the language that its name tells; BadInput for what is none."""
     from cratous.services.requirements import c2po, language
     from cratous.spec.files.limits import CONFIG_BYTES
     from cratous.spec.files.text_file import text_of

@@ -24,8 +24,10 @@ SAYS = {
     "never": "no value ever came",
     "open": "the log has no end: it is being written, or its writer was stopped",
     "lost": "messages of the log are missing",
+    "cut": "the connection was lost, and messages with it",
+    "refused": "bytes came that are no message",
 }
-NOT_WHOLE = ("order", "open", "lost")
+NOT_WHOLE = ("order", "open", "lost", "cut", "refused")
 """Where one of these was found nothing holds, since more could be known."""
 
 

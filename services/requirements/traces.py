@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from cratous.services.logs.entry import Entry, to_data
-from cratous.services.logs.source import Source, open_log
+from cratous.services.logs.source import open_log
 from cratous.services.requirements.csv_trace import Cells, rows_of
 from cratous.services.requirements.field_units import unit_of
 from cratous.services.requirements.formula import MAX_TIME
@@ -29,8 +29,9 @@ TIME = "time_s"
 
 def rows(trace: Path, spec: Specification, names: Iterable[str]) -> Iterator[Row]:
     """The rows of a trace; BadInput with the place for what is none."""
-    wanted = {name: spec.signals[name] for name in sorted(names)}
-    return _of_csv(trace, wanted) if _is_csv(trace) else _of_log(trace, wanted)
+    if _is_csv(trace):
+        return _of_csv(trace, {name: spec.signals[name] for name in sorted(names)})
+    return _of_log(trace, wanted_of(spec, names))
 
 
 def doubts(trace: Path) -> list[str]:
@@ -84,7 +85,9 @@ def _time(text: str, where: str) -> int:
     return int(time)
 
 
-def _of_log(trace: Path, wanted: Mapping[str, Signal]) -> Iterator[Row]:
+def wanted_of(spec: Specification, names: Iterable[str]) -> dict[str, Signal]:
+    """The signals of these names, for messages; BadInput for one that no message gives or in another unit."""
+    wanted = {name: spec.signals[name] for name in sorted(names)}
     for name, signal in wanted.items():
         if not signal.message:
             expected = f"signal {name}: {signal.unit or 'bool'} from TYPE[FIELD=VALUE].FIELD"
@@ -93,6 +96,10 @@ def _of_log(trace: Path, wanted: Mapping[str, Signal]) -> Iterator[Row]:
         if unit and signal.unit != unit:
             what = "the field has another unit" if signal.unit else "the field is no bool"
             raise BadInput(what, item=name, expected=unit, got=signal.unit or "bool")
+    return wanted
+
+
+def _of_log(trace: Path, wanted: Mapping[str, Signal]) -> Iterator[Row]:
     source = open_log(trace)
     known = {topic.topic for topic in source.topics()}
     for name, signal in wanted.items():
@@ -102,7 +109,12 @@ def _of_log(trace: Path, wanted: Mapping[str, Signal]) -> Iterator[Row]:
                 "the log has no message of this type", where=str(trace), item=name,
                 expected=signal.message, got=got[:300],
             )  # fmt: skip
-    for time_ms, parts in groupby(_of_messages(source, wanted), key=itemgetter(0)):
+    yield from rows_of_messages(source.entries(), wanted)
+
+
+def rows_of_messages(entries: Iterable[Entry], wanted: Mapping[str, Signal]) -> Iterator[Row]:
+    """The rows of messages in the order of their times; those of one instant are one row."""
+    for time_ms, parts in groupby(_of_messages(entries, wanted), key=itemgetter(0)):
         row: dict[str, float | None] = {}
         for _, part in parts:
             row.update(part)
@@ -110,10 +122,10 @@ def _of_log(trace: Path, wanted: Mapping[str, Signal]) -> Iterator[Row]:
 
 
 def _of_messages(
-    source: Source, wanted: Mapping[str, Signal]
+    entries: Iterable[Entry], wanted: Mapping[str, Signal]
 ) -> Iterator[tuple[int, Mapping[str, float | None]]]:
     """The time [ms] of each message that has a signal, and what it has."""
-    for entry in source.entries():
+    for entry in entries:
         mine = {n: s for n, s in wanted.items() if _is(entry.topic, s.message)}
         if not mine:
             continue

@@ -6,14 +6,14 @@ Samples are numbered from 0 where the language counts them, and bear times where
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from cratous.services.requirements.csv_trace import samples
 from cratous.services.requirements.evaluation import FALSE, TRUE, Evaluation
 from cratous.services.requirements.formula import Formula, Reaches, horizon, parts, signals
-from cratous.services.requirements.sampling import Finding, Sample, Sampling
+from cratous.services.requirements.sampling import Finding, Row, Sample, Sampling
 from cratous.services.requirements.specification import NotRead, Requirement, Specification
 from cratous.services.requirements.traces import doubts
 from cratous.services.requirements.traces import rows as timed_rows
@@ -102,42 +102,75 @@ class Watched:
     findings: tuple[Finding, ...]
 
 
-def watch(spec: Specification, trace: Path, verdicts: list[str] | None = None) -> Watched:
-    """The outcome of each requirement over a trace: a CSV file, for a timed specification also a log.
+class Watch:
+    """Requirements of a specification over rows as they come.
 
-    verdicts: takes a line `id:t,T`, `F` or `?` (unknown) for each verdict as it comes. A cell that is empty or
-    no finite number is unknown. Raises BadInput for a requirement that is not read, a signal that the trace
-    cannot have, and a bool that is neither 0 nor 1.
+    verdicts: takes a line `id:t,T`, `F` or `?` (unknown) for each verdict as it is decided. Raises BadInput
+    for a requirement that is not read.
     """
-    watched: list[tuple[Outcome, Evaluation]] = []
-    needed: set[str] = set()
-    for one in spec.requirements:
-        if isinstance(one.formula, NotRead):
-            raise one.formula
-        needed |= set(signals(one.formula))
-        outcome = Outcome(one, horizon(one.formula), margins=_margins(one.formula, spec))
-        watched.append((outcome, Evaluation(one.formula)))
-    sampling = Sampling(spec, needed)
-    rows = timed_rows(trace, spec, needed) if spec.timed else None
-    for doubt in doubts(trace) if spec.timed else ():
-        sampling.find(doubt)
-    read = _counted(spec, trace, needed) if rows is None else sampling.samples(rows)
-    count = 0
-    for time, row in read:
-        for outcome, evaluation in watched:
+
+    def __init__(self, spec: Specification, verdicts: list[str] | None = None) -> None:
+        self.spec, self.verdicts = spec, verdicts
+        self.count = 0
+        self.needed: set[str] = set()
+        self._watched: list[tuple[Outcome, Evaluation]] = []
+        for one in spec.requirements:
+            if isinstance(one.formula, NotRead):
+                raise one.formula
+            self.needed |= set(signals(one.formula))
+            outcome = Outcome(one, horizon(one.formula), margins=_margins(one.formula, spec))
+            self._watched.append((outcome, Evaluation(one.formula)))
+        self.sampling = Sampling(spec, self.needed)
+
+    @property
+    def outcomes(self) -> list[Outcome]:
+        """The outcomes so far, in the order of the file."""
+        return [outcome for outcome, _ in self._watched]
+
+    def rows(self, rows: Iterable[Row]) -> Iterator[int]:
+        """Take rows with times; the time [ns] of each sample that is taken."""
+        for time, row in self.sampling.samples(rows):
+            self.sample(time, row)
+            yield time
+
+    def sample(self, time: int, row: Sample) -> None:
+        """Take one sample more."""
+        for outcome, evaluation in self._watched:
             for margin in outcome.margins:
                 margin.add(row, time)
             for sample, verdict in evaluation.sample(time, row):
                 outcome.add(sample, verdict, time)
-                if verdicts is not None:
-                    at = f"{sample / 1e9:.9g}" if spec.timed else str(sample)
-                    verdicts.append(f"{outcome.name}:{at},{'F?T'[verdict]}")
-        count += 1
-    for outcome, _ in watched:
-        outcome.undecided = count - outcome.holds - outcome.violated - outcome.unknown
-        outcome.whole = sampling.is_whole
-    findings = tuple(sampling.findings) if spec.timed else ()
-    return Watched(tuple(outcome for outcome, _ in watched), findings)
+                if self.verdicts is not None:
+                    at = f"{sample / 1e9:.9g}" if self.spec.timed else str(sample)
+                    self.verdicts.append(f"{outcome.name}:{at},{'F?T'[verdict]}")
+        self.count += 1
+
+    def result(self) -> Watched:
+        """What can be said where the trace ends here."""
+        for outcome in self.outcomes:
+            outcome.undecided = self.count - outcome.holds - outcome.violated - outcome.unknown
+            outcome.whole = self.sampling.is_whole
+        findings = tuple(self.sampling.findings) if self.spec.timed else ()
+        return Watched(tuple(self.outcomes), findings)
+
+
+def watch(spec: Specification, trace: Path, verdicts: list[str] | None = None) -> Watched:
+    """The outcome of each requirement over a trace: a CSV file, for a timed specification also a log.
+
+    verdicts: as for `Watch`. A cell that is empty or no finite number is unknown. Raises BadInput for a
+    requirement that is not read, a signal that the trace cannot have, and a bool that is neither 0 nor 1.
+    """
+    watching = Watch(spec, verdicts)
+    if spec.timed:
+        rows = timed_rows(trace, spec, watching.needed)
+        for doubt in doubts(trace):
+            watching.sampling.find(doubt)
+        for _ in watching.rows(rows):
+            pass
+    else:
+        for time, row in _counted(spec, trace, watching.needed):
+            watching.sample(time, row)
+    return watching.result()
 
 
 def _margins(formula: Formula, spec: Specification) -> list[Margin]:

@@ -1,0 +1,150 @@
+"""`cratous monitor --attach`: a running system against requirements of the user's own, while it runs."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import shutil
+import signal
+import subprocess
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import click
+
+from cratous.spec.errors import BadInput
+
+if TYPE_CHECKING:
+    from cratous.services.logs.entry import Entry
+    from cratous.services.logs.store import LogStore
+    from cratous.services.requirements.watch import Outcome, Watch
+
+WAIT_S = 60.0
+"""So long nobody may listen at the address."""
+EVENTS = ("violated", "unknown")
+
+
+class Live(NamedTuple):
+    """What is asked for beside the verdicts. seconds: None until it is ended; metrics: a port, None for none."""
+
+    seconds: float | None
+    keep: Path | None
+    metrics: int | None
+    on_violation: str
+
+
+def attach(
+    address: str, requirements: Path, live: Live, as_json: bool, allow_unproved: bool
+) -> int:
+    """Watch until the time is over or a signal ends it; the exit code."""
+    from cratous.bridge.port import address as read_address
+    from cratous.bridge.port import is_due
+    from cratous.core import ledger
+    from cratous.services.cli.monitor_requirements import print_result, read
+    from cratous.services.logs.store import Gap, LogStore
+    from cratous.services.requirements.attached import Attached
+    from cratous.services.requirements.lint import lint
+    from cratous.services.requirements.metrics import served, text_of
+    from cratous.services.requirements.sampling import SAYS
+    from cratous.services.requirements.traces import rows_of_messages, wanted_of
+    from cratous.services.requirements.watch import Watch
+
+    text = address if "://" in address else f"tcp://{address}"
+    where = read_address(text, ("tcp",), item="--attach")
+    spec = read(requirements)
+    if not spec.timed:
+        raise BadInput(
+            "these requirements count samples", where=str(requirements), expected="a file *.req"
+        )
+    words = _command(live.on_violation)
+    standing = ledger.require(allow_unproved=allow_unproved)
+    remarks = lint(spec)
+    watch = Watch(spec)
+    wanted = wanted_of(spec, watch.needed)
+    stores: list[LogStore] = []
+
+    def find(kind: str, time_ns: int) -> None:
+        watch.sampling.find(kind, "", time_ns)
+        for store in stores:
+            now_ms = time_ns // 10**6
+            # how many are missing is not known
+            store.keep_gap(Gap(store.count, 1, now_ms, now_ms, SAYS[kind]))
+
+    attached = Attached(where, lambda _severity, said: click.echo(said, err=True), find)
+    stopping: list[int] = []
+    limit_ms = None if live.seconds is None else live.seconds * 1000
+    with ExitStack() as stack:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            before = signal.signal(number, lambda got, _frame: stopping.append(got))
+            stack.callback(signal.signal, number, before)
+        if live.metrics is not None:
+            port = stack.enter_context(served(live.metrics, lambda: text_of(watch, attached.seq)))
+            click.echo(f"metrics: http://127.0.0.1:{port}/metrics", err=True)
+        messages = attached.messages(
+            WAIT_S, lambda now_ms: bool(stopping) or is_due(limit_ms, now_ms)
+        )
+        if live.keep is not None:
+            stores.append(stack.enter_context(LogStore(live.keep, origin=where.text)))
+            messages = _recorded(messages, stores[0])
+        told: set[tuple[str, str]] = set()
+        for _ in watch.rows(rows_of_messages(messages, wanted)):
+            for event, one in _news(watch, told):
+                _tell(event, one, as_json)
+                if event == "violated" and words:
+                    _run(words, one)
+    return print_result(watch.result(), remarks, standing, True, None, as_json)
+
+
+def _recorded(messages: Iterator[Entry], store: LogStore) -> Iterator[Entry]:
+    for entry in messages:
+        store.write(entry)
+        yield entry
+
+
+def _news(watch: Watch, told: set[tuple[str, str]]) -> Iterator[tuple[str, Outcome]]:
+    """What is so for the first time: a requirement is violated at a sample, or unknown."""
+    for one in watch.outcomes:
+        for event in EVENTS:
+            if getattr(one, event) and (one.name, event) not in told:
+                told.add((one.name, event))
+                yield event, one
+
+
+def _tell(event: str, one: Outcome, as_json: bool) -> None:
+    at_s = getattr(one, f"first_{event}") / 1e9
+    if as_json:
+        data: dict[str, Any] = {"event": event, "requirement": one.name, "at_s": at_s}
+        if event == "violated":
+            data["known_s"] = one.decided_at / 1e9
+        click.echo(json.dumps({**data, "severity": one.requirement.severity}))
+        return
+    severity = f" [{one.requirement.severity}]" if one.requirement.severity else ""
+    click.echo(f"{one.name}{severity}: {event} at {at_s:g} s")
+
+
+def _command(text: str) -> list[str]:
+    try:
+        words = shlex.split(text)
+    except ValueError as error:
+        raise BadInput("this is no command", item="--on-violation", got=str(error)) from None
+    if words and shutil.which(words[0]) is None:
+        raise BadInput(
+            "there is no such program", item="--on-violation", expected="a program", got=words[0]
+        )
+    return words
+
+
+def _run(words: list[str], one: Outcome) -> None:
+    """Start the user's command; it is not waited for."""
+    about = {
+        "CRATOUS_REQUIREMENT": one.name,
+        "CRATOUS_SEVERITY": one.requirement.severity,
+        "CRATOUS_AT_S": f"{one.first_violated / 1e9:.9g}",
+    }
+    try:
+        subprocess.Popen(words, env={**os.environ, **about}, stdin=subprocess.DEVNULL)
+    except OSError as error:
+        click.echo(f"--on-violation: {words[0]}: {error.strerror}", err=True)

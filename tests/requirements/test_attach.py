@@ -1,0 +1,218 @@
+"""`cratous monitor --attach`: a running system watched while it runs, and judged as its log is."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+import urllib.request
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+
+from cratous.bridge import envelope, lmcp, sentinel
+from cratous.services.cli import main
+
+REQUIREMENTS = """trace every 50 ms gap 2 s
+signal altitude: m from AirVehicleState[ID=7].Location.Altitude hold 1 s
+requirement FLOOR "never low" severity hazardous: altitude >= 90 m
+requirement SINKS severity minor: altitude >= 200 m
+requirement SOON: altitude < 250 m implies eventually within 10 s altitude >= 250 m
+"""
+ROOT = Path(__file__).parents[2]
+
+
+def _state(altitude_m: float, vehicle: int = 7) -> bytes:
+    state = lmcp.types["afrl.cmasi.AirVehicleState"]()
+    state.ID = vehicle
+    state.Location.Altitude = altitude_m
+    name = "afrl.cmasi.AirVehicleState"
+    message = envelope.AddressedMessage(
+        name, envelope.LMCP, name, "", "7", "1", lmcp.binary.pack(state)
+    )
+    return sentinel.frame(message.pack())
+
+
+class Peer:
+    """What is watched: listens, and says the same to each client in turn."""
+
+    def __init__(self, *talks: list[bytes]) -> None:
+        self._listener = socket.create_server(("127.0.0.1", 0))
+        self.port = self._listener.getsockname()[1]
+        self.heard = b""
+        self._talks = talks
+        self._thread = threading.Thread(target=self._talk, daemon=True)
+        self._thread.start()
+
+    def _talk(self) -> None:
+        for number, talk in enumerate(self._talks, 1):
+            client, _ = self._listener.accept()
+            with client, suppress(ConnectionError, TimeoutError):
+                client.settimeout(20)
+                for piece in talk:
+                    client.sendall(piece)
+                    time.sleep(0.02)
+                if number == len(self._talks):  # the last one stays until the other end goes
+                    self.heard += client.recv(1000)
+
+    def close(self) -> None:
+        self._listener.close()
+        self._thread.join(5)
+
+
+@pytest.fixture
+def peers() -> Iterator[Callable[..., Peer]]:
+    made: list[Peer] = []
+
+    def peer(*talks: list[bytes]) -> Peer:
+        made.append(Peer(*talks))
+        return made[-1]
+
+    yield peer
+    for one in made:
+        one.close()
+
+
+@pytest.fixture
+def requirements(tmp_path: Path) -> Path:
+    file = tmp_path / "r.req"
+    file.write_text(REQUIREMENTS)
+    return file
+
+
+def _attach(port: int, requirements: Path, *more: str, seconds: float = 1.0) -> int:
+    words = ["monitor", "--attach", f"127.0.0.1:{port}", "--requirements", str(requirements)]
+    return main([*words, "--seconds", str(seconds), *more])
+
+
+def test_what_is_watched_is_judged_as_its_log_is(peers, requirements, tmp_path, capsys):
+    talk = [_state(300), _state(20, vehicle=8), _state(150), _state(80), _state(300), _state(240)]
+    peer = peers(talk)
+    log = tmp_path / "kept.sqlite"
+    code = _attach(peer.port, requirements, "--keep", str(log), "--json", seconds=1.0)
+    assert code == 1
+    lines = capsys.readouterr().out
+    events, _, result = lines.partition("\n{\n")
+    first = [json.loads(line) for line in events.splitlines()]
+    assert [(e["event"], e["requirement"]) for e in first] == [
+        ("violated", "SINKS"),
+        ("violated", "FLOOR"),
+    ]
+    assert first[0]["at_s"] <= first[1]["at_s"]
+    live = json.loads("{\n" + result)
+    assert [r["verdict"] for r in live["requirements"]] == ["violated", "violated", "undecided"]
+    assert peer.heard == b""  # nothing is sent to what is watched
+    assert main(["monitor", str(log), "--requirements", str(requirements), "--json"]) == 1
+    again = json.loads(capsys.readouterr().out)
+    assert again["requirements"] == live["requirements"]
+
+
+def test_a_connection_that_is_lost_is_made_again_and_nothing_holds_then(
+    peers, requirements, tmp_path, capsys
+):
+    peer = peers([_state(300), _state(310)], [_state(320), b"rubbish", _state(330)])
+    log = tmp_path / "kept.sqlite"
+    code = _attach(peer.port, requirements, "--keep", str(log), "--json", seconds=1.5)
+    assert code == 3
+    said = json.loads(capsys.readouterr().out)
+    kinds = {finding["kind"] for finding in said["findings"]}
+    assert {"cut", "refused"} <= kinds
+    assert {r["verdict"] for r in said["requirements"]} == {"unknown"}
+    assert said["requirements"][0]["holds"] >= 3
+    assert main(["monitor", str(log), "--requirements", str(requirements), "--json"]) == 3
+    again = json.loads(capsys.readouterr().out)
+    assert {r["verdict"] for r in again["requirements"]} == {"unknown"}
+
+
+def test_a_command_is_started_once_for_a_requirement(peers, requirements, tmp_path, capsys):
+    peer = peers([_state(300), _state(80), _state(70), _state(60)])
+    told = tmp_path / "told"
+    script = (
+        f"open({str(told)!r}, 'a').write(__import__('os').environ['CRATOUS_REQUIREMENT'] + ' ')"
+    )
+    assert (
+        _attach(
+            peer.port,
+            requirements,
+            "--on-violation",
+            f'{sys.executable} -c "{script}"',
+            seconds=0.5,
+        )
+        == 1
+    )
+    deadline = time.monotonic() + 20
+    while (
+        time.monotonic() < deadline and len(told.read_text().split() if told.exists() else []) < 2
+    ):
+        time.sleep(0.05)
+    assert sorted(told.read_text().split()) == ["FLOOR", "SINKS"]
+    assert "FLOOR [hazardous]: violated at " in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_it_serves_counts_and_ends_with_its_verdicts_at_a_signal(peers, requirements, number):
+    peer = peers([_state(300)] + [_state(300 + k) for k in range(400)])
+    process = subprocess.Popen(
+        [sys.executable, "-m", "cratous", "monitor", "--attach", f"127.0.0.1:{peer.port}",
+         "--requirements", str(requirements), "--metrics", "0"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=ROOT,
+        env={**os.environ, "PYTHONUNBUFFERED": "1"},
+        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),
+    )  # fmt: skip
+    try:
+        assert process.stderr is not None
+        line = process.stderr.readline()
+        url = re.search(r"http://127\.0\.0\.1:\d+/metrics", line)
+        assert url, line
+        deadline, text = time.monotonic() + 30, ""
+        while time.monotonic() < deadline and 'requirement="FLOOR",verdict="holds"} 2' not in text:
+            with urllib.request.urlopen(url[0], timeout=5) as answer:
+                text = answer.read().decode()
+            time.sleep(0.02)
+        assert 'cratous_violated{requirement="FLOOR",severity="hazardous"} 0' in text
+        assert 'cratous_samples_total{requirement="SOON",verdict="violated"} 0' in text
+        with pytest.raises(urllib.request.HTTPError):
+            urllib.request.urlopen(url[0].replace("/metrics", "/other"), timeout=5)
+        process.send_signal(number)
+        out, _ = process.communicate(timeout=20)
+    finally:
+        process.kill()
+        process.wait()
+    assert process.returncode == 0
+    assert "FLOOR (never low) [hazardous]: holds" in out
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--attach", "127.0.0.1:1"], "--requirements"),
+        (["--attach", "nonsense", "--requirements", "{r}"], "--attach"),
+        (["log.sqlite", "--attach", "127.0.0.1:1", "--requirements", "{r}"], "LOG or --attach"),
+        ([], "LOG or --attach"),
+        (["log.sqlite", "--seconds", "3"], "--seconds needs --attach"),
+        (["log.sqlite", "--metrics", "0"], "--metrics needs --attach"),
+        (["--attach", "127.0.0.1:1", "--requirements", "{r}", "--on-violation", "no-such-program"],
+         "no-such-program"),
+    ],
+)  # fmt: skip
+def test_what_does_not_go_together_is_bad_input(words, said, requirements, capsys):
+    assert main(["monitor", *(word.format(r=requirements) for word in words)]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_nobody_there_is_said(requirements, monkeypatch, capsys):
+    from cratous.services.cli import monitor_attach
+
+    monkeypatch.setattr(monitor_attach, "WAIT_S", 0.3)
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+    assert _attach(port, requirements, seconds=20) == 2
+    assert "nobody listens there" in capsys.readouterr().err
