@@ -3,7 +3,8 @@
 The well-clear rows are those of `exact_well_clear.py` and `interval_well_clear.py`, where the
 peer is C; those of points in polygons are those of `containment.py`, by CPU time; those of messages
 are in `lmcp_codec.py`, the one of the message logger in `day_of_traffic.py`, those of routes and
-plans in `planning.py`, those of bands and alerts, against recorded figures, in `daa.py`.
+plans in `planning.py`, those of bands and alerts, against recorded figures, in `daa.py`, those of
+requirements in `requirements_monitor.py`.
 
 `python bench/run.py --write` puts the table into bench/README.md.
 """
@@ -33,6 +34,7 @@ import exact_well_clear
 import interval_well_clear
 import lmcp_codec
 import planning
+import requirements_monitor
 from table import markdown, on_one_core
 
 README = Path(__file__).resolve().parent / "README.md"
@@ -98,7 +100,8 @@ def rows() -> list[tuple[str, float, str, float]]:
     found.append(("point in 10-gon, exact, one by one", a, "shapely contains, one by one", b))
     wells = exact_well_clear.rows() + interval_well_clear.rows()
     messages = lmcp_codec.rows() + day_of_traffic.rows()
-    return wells + containment.rows() + found + messages + planning.rows() + daa.rows()
+    monitor = requirements_monitor.measured()
+    return wells + containment.rows() + found + messages + planning.rows() + daa.rows() + monitor
 
 
 def table() -> str:
