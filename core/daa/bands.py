@@ -75,16 +75,17 @@ def colours(safe: np.ndarray, state: np.ndarray, recovered: bool) -> np.ndarray:
 
 def merged(edges: np.ndarray, cells: np.ndarray, low: float, high: float) -> list[Band]:
     """Neighbouring cells of one colour as one band, cut to [low, high]."""
-    bands: list[Band] = []
-    for a, b, region in zip(edges[:-1].tolist(), edges[1:].tolist(), cells.tolist(), strict=True):
-        a, b = max(a, low), min(b, high)
-        if not a < b:
-            continue
-        if bands and bands[-1].region == region:
-            bands[-1] = bands[-1]._replace(high=b)
-        else:
-            bands.append(Band(a, b, region))
-    return bands
+    begins = np.where(edges[:-1] < low, low, edges[:-1])
+    ends = np.where(edges[1:] > high, high, edges[1:])
+    inside = begins < ends
+    begins, ends, colour = begins[inside], ends[inside], cells[inside]
+    if not len(colour):
+        return []
+    changes = np.flatnonzero(colour[1:] != colour[:-1]) + 1
+    firsts = np.concatenate([[0], changes])
+    lasts = np.concatenate([changes - 1, [len(colour) - 1]])
+    columns = begins[firsts].tolist(), ends[lasts].tolist(), colour[firsts].tolist()
+    return [Band(*one) for one in zip(*columns, strict=True)]
 
 
 def on_circle(bands: list[Band]) -> tuple[Band, ...]:
