@@ -10,8 +10,21 @@ import click
 SHOWN = 20
 
 
+def _print_schema(context: click.Context, _parameter: click.Parameter, wanted: bool) -> None:
+    """Print the schema and end; no folder is needed."""
+    if wanted and not context.resilient_parsing:
+        from cratous.services.certify.report_schema import schema_text
+
+        click.echo(schema_text(), nl=False)
+        context.exit()
+
+
 @click.command()
 @click.argument("folder", type=click.Path(path_type=Path))
+@click.option(
+    "--schema", is_flag=True, is_eager=True, expose_value=False, callback=_print_schema,
+    help="Print the JSON Schema of report.json, and do nothing else.",
+)  # fmt: skip
 @click.option(
     "--rewrite", is_flag=True, help="Make report.html and map.svg anew where they differ."
 )
