@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import click
+
+from cratous.services.cli.certify_views import Asked, checked, view_options, write
 
 SHOWN = 20
 
@@ -33,8 +36,9 @@ def _print_schema(context: click.Context, _parameter: click.Parameter, wanted: b
     is_flag=True,
     help="Print for each row which kernels decided it, and their theorems and definitions.",
 )
+@view_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON, all differences.")
-def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool) -> int:
+def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: Any) -> int:
     """Judge a finished flight again from its log and compare with all that is written of it.
 
     FOLDER is an output folder of `cratous run`. The log's digest, the plan check and the monitor
@@ -46,6 +50,9 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool) -> int:
     With --trace every row of the report is followed to the kernels that decided it and were called in
     this run, from each to the theorems that hold it against its definition, and to that definition.
 
+    With --junit, --sarif, --csv, --sign or -o views of the confirmed report are written for other
+    tools, all three if none is named. In none of them does anything pass that was not checked.
+
     Example:  cratous certify out/crossing
 
     Exit codes: as of the flight if the report is confirmed (0, 1 or 3); 1 if it is not, with the
@@ -56,10 +63,13 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool) -> int:
     from cratous.services.cli.progress import waiting
     from cratous.services.cli.show import requirement_table, say
 
+    asked = Asked(**views)
+    key = checked(asked)
     with waiting("judging the flight again from its log", as_json):
         done = certify_again(folder, rewrite=rewrite)
     report, found = done.report, done.found
     code = 1 if found else int(report["exit_code"])
+    written = write(done, folder, asked, key) if asked.anything and not found else []
     chains = traced(report) if trace and not found else None
     if chains is not None and chains["missing"]:
         code = 1
@@ -69,6 +79,7 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool) -> int:
             "differences": found,
             "not_checked": done.unchecked,
             "rewritten": done.rewritten,
+            "written": written,
             "verdict": report.get("verdict"),
             "digest": report["log"]["digest"] if report else None,
             "exit_code": code,
@@ -91,6 +102,8 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool) -> int:
         say(f"not checked: {text}", err=bool(found))
     for name in done.rewritten:
         say(f"rewritten: {name}")
+    for name in written:
+        say(f"written: {name}")
     if not found:
         say(f"report: {folder / 'report.html'}")
     return code
