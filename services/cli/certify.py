@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from cratous.services.cli.certify_views import Asked, checked, view_options, write
+from cratous.services.cli.certify_views import Asked, checked, verified, view_options, write
 
 SHOWN = 20
 
@@ -53,18 +53,28 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: An
     With --junit, --sarif, --csv, --sign or -o views of the confirmed report are written for other
     tools, all three if none is named. In none of them does anything pass that was not checked.
 
+    --sign signs digests of results and views with the verdict; --verify checks signature and digests,
+    and judges the log again by the judge, in a process without planner and pilot.
+
     Example:  cratous certify out/crossing
 
     Exit codes: as of the flight if the report is confirmed (0, 1 or 3); 1 if it is not, with the
     differences named, or if something is missing in a trace; 2 bad input.
     """
+    asked = Asked(**views)
+    key = checked(asked)
+    if asked.verify:
+        if rewrite or trace:
+            raise click.UsageError(
+                "--verify judges by the judge alone, without --rewrite and --trace"
+            )
+        return verified(folder, asked, as_json)
+
     from cratous.services.certify.rejudge import certify_again
     from cratous.services.certify.trace import lines, traced
     from cratous.services.cli.progress import waiting
     from cratous.services.cli.show import requirement_table, say
 
-    asked = Asked(**views)
-    key = checked(asked)
     with waiting("judging the flight again from its log", as_json):
         done = certify_again(folder, rewrite=rewrite)
     report, found = done.report, done.found

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import click
+
+from cratous.services.cli.show import say
 
 OPTIONS = (
     click.option(
@@ -17,6 +21,12 @@ OPTIONS = (
     click.option("--csv", is_flag=True, help="Write constraints.csv."),
     click.option("--mission", type=click.Path(path_type=Path), help="Mission file, for lines in SARIF."),
     click.option("--sign", is_flag=True, help="Sign a statement over results and views (Ed25519)."),
+    click.option(
+        "--verify", is_flag=True, help="Verify what was signed; FOLDER is not judged by the monitor."
+    ),
+    click.option(
+        "--public-key", type=click.Path(path_type=Path), help="File of the signer's public key, PEM."
+    ),
     click.option(
         "--key", type=click.Path(path_type=Path),
         help="File of the private key, PEM. [the PEM in CRATOUS_SIGNING_KEY]",
@@ -40,6 +50,8 @@ class Asked(NamedTuple):
     csv: bool
     mission: Path | None
     sign: bool
+    verify: bool
+    public_key: Path | None
     key: Path | None
 
     @property
@@ -60,11 +72,48 @@ def checked(asked: Asked) -> Any:
         raise click.UsageError("--key is the key of --sign")
     if asked.mission is not None and not asked.anything:
         raise click.UsageError("--mission finds lines for --sarif")
+    if asked.public_key is not None and not asked.verify:
+        raise click.UsageError("--public-key is the key of --verify")
     if not asked.sign:
         return None
     from cratous.services.attestation.dsse import private_key
 
     return private_key(asked.key)
+
+
+def verified(results: Path, asked: Asked, as_json: bool) -> int:
+    """Verify what was signed, and print what came of it; returns the exit code.
+
+    Nothing of planner, pilot, monitor or kernels is imported here, nor by the judge.
+    """
+    from cratous.services.attestation.dsse import public_key
+    from cratous.services.attestation.names import FOLDER
+    from cratous.services.attestation.verification import signed_folder, verify
+    from cratous.services.cli.judge import judgement
+
+    if asked.sign or asked.junit or asked.sarif or asked.csv or asked.mission:
+        raise click.UsageError("--verify writes nothing")
+    if asked.public_key is None:
+        raise click.UsageError("--verify needs --public-key")
+    place = signed_folder(results, asked.out, FOLDER)
+    found = verify(place, public_key(asked.public_key), judgement)
+    if as_json:
+        click.echo(json.dumps({"verified": not found.refused, **asdict(found)}, indent=1))
+        return found.exit_code
+    for line in found.refused:
+        say(f"refused: {line}", err=True)
+    if not found.refused:
+        of = found.recomputed + len(found.undecided)
+        say(
+            f"verified: signature, {found.files} digests, {found.recomputed} of {of} verdicts on the flight by the judge"
+        )
+    for line in found.undecided:
+        say(f"not decided here: {line}")
+    for line in found.not_judged:
+        say(f"not checked here: {line}")
+    if not found.refused:
+        say(f"{found.verdict.upper()}; exit code {found.exit_code}")
+    return found.exit_code
 
 
 def write(done: Any, results: Path, asked: Asked, key: Any) -> list[str]:
