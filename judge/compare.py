@@ -13,6 +13,7 @@ import json
 import re
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from cratous.judge.fields import Node
 from cratous.judge.verdict import GUARANTEES, HOLDS, UNKNOWN, VIOLATED, Row, worst
@@ -55,6 +56,23 @@ class Difference:
         return f"{self.guarantee} {self.item}: judge {self.judge}, monitor {self.monitor} ({self.note})"
 
 
+class Answer(NamedTuple):
+    """A row of the monitor and the judge's verdict on it: empty where the judge has none.
+
+    Rows on the relations are judged together, so that one of them is confirmed only by a verdict on all.
+    """
+
+    guarantee: str
+    item: str
+    monitor: str
+    judge: str
+
+    @property
+    def confirmed(self) -> bool:
+        """Whether the judge says the same."""
+        return self.monitor == self.judge
+
+
 Key = tuple[str, ...]
 CHOICE = ("G1", "choice")
 
@@ -82,15 +100,13 @@ def read(path: Path) -> Node:
 def differences(rows: list[Row], report: Node, digest: str) -> list[Difference]:
     """All of them, those that disagree first."""
     theirs, strange = _theirs(report)
-    mine: dict[Key, list[Row]] = {}
-    for row in rows:
-        mine.setdefault(_key(row), []).append(row)
+    mine = _mine(rows)
     found = []
     if report["log"]["digest"].text != digest:
         note = "the report is about another log"
         found.append(Difference(DISAGREE, "", "log", digest[:12], "another digest", note))
-    if CHOICE in theirs:
-        mine[CHOICE] = _choice(rows)
+    if CHOICE not in theirs:
+        del mine[CHOICE]
     for key in sorted({*mine, *theirs}):
         one = _compare(key, mine.get(key, []), theirs.get(key, []), mine)
         if one is not None:
@@ -102,6 +118,28 @@ def differences(rows: list[Row], report: Node, digest: str) -> list[Difference]:
             note = "a row that the judge cannot read"
             found.append(Difference(DISAGREE, guarantee, bad[0], whole, VIOLATED, note))
     return sorted(found, key=lambda d: (DISAGREE, CLAIMED, UNDECIDED).index(d.kind))
+
+
+def answers(rows: list[Row], report: Node) -> list[Answer]:
+    """The judge's verdict on every row of the report that is on the flight."""
+    theirs, strange = _theirs(report)
+    mine = _mine(rows)
+    found = [Answer(guarantee, item, verdict, "") for guarantee, item, verdict in strange]
+    for key, said in theirs.items():
+        here = worst([row.verdict for row in mine[key]]) if mine.get(key) else ""
+        if not here and _met_nobody(key, mine):
+            here = HOLDS
+        found += [Answer(key[0], item, verdict, here) for verdict, item in said]
+    return found
+
+
+def _mine(rows: list[Row]) -> dict[Key, list[Row]]:
+    """The judge's rows by key, with those on the choice."""
+    mine: dict[Key, list[Row]] = {}
+    for row in rows:
+        mine.setdefault(_key(row), []).append(row)
+    mine[CHOICE] = _choice(rows)
+    return mine
 
 
 def _choice(rows: list[Row]) -> list[Row]:

@@ -17,7 +17,7 @@ from cratous.judge import (
     service,
     zones,
 )
-from cratous.judge.compare import DISAGREE, Difference
+from cratous.judge.compare import DISAGREE, Answer, Difference
 from cratous.judge.mission import Mission, from_log
 from cratous.judge.tracks import tracks
 from cratous.judge.verdict import GUARANTEES, HOLDS, UNKNOWN, VIOLATED, Row, doubted, worst
@@ -26,13 +26,17 @@ from cratous.judge.work import Flight
 
 @dataclass(frozen=True)
 class Judgement:
-    """Rows, and where the flight's report says otherwise. report: whether there is one."""
+    """Rows, and where the flight's report says otherwise. report: whether there is one.
+
+    answers: to each row of the report on the flight.
+    """
 
     rows: tuple[Row, ...]
     differences: tuple[Difference, ...]
     report: bool
     not_covered: tuple[int, ...]
     digest: str
+    answers: tuple[Answer, ...] = ()
 
     @property
     def verdict(self) -> str:
@@ -79,9 +83,13 @@ def judge(path: Path, mission: Path | None = None) -> Judgement:
     asked = mission_file.read(mission) if mission else from_log(log.mission_node(found))
     rows = tuple(judged(asked, found))
     report = compare.report_of(path)
-    said = compare.differences(list(rows), compare.read(report), found.digest) if report else []
+    said, answers = [], []
+    if report:
+        read = compare.read(report)
+        said = compare.differences(list(rows), read, found.digest)
+        answers = compare.answers(list(rows), read)
     uncovered = tuple(sorted(v.id for v in asked.vehicles.values() if not v.protected))
-    return Judgement(rows, tuple(said), report is not None, uncovered, found.digest)
+    return Judgement(rows, tuple(said), report is not None, uncovered, found.digest, tuple(answers))
 
 
 def judged(mission: Mission, found: log.Log) -> list[Row]:

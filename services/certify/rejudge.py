@@ -12,13 +12,14 @@ from cratous.services.certify.differences import differences
 from cratous.services.certify.flight_record import flown_of
 from cratous.services.certify.report import build_report, mission_hash, plan_hash, report_text
 from cratous.services.certify.report_input import read_report
+from cratous.services.certify.report_schema import departures
 from cratous.services.certify.result_files import Files
 from cratous.services.certify.verdicts import constraint_rows, plan_rows
 from cratous.services.logs.log import read_envelopes, read_log, read_meta
 from cratous.services.logs.records import from_data
 from cratous.services.logs.sqlite_log import SqliteLog
 from cratous.services.mission.wind import known_at
-from cratous.services.results.names import CERTIFICATE_NAME, FORMER, LOG_NAME
+from cratous.services.results.names import CERTIFICATE_NAME, FORMER, LOG_NAME, REPORT_NAME
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Verdict
@@ -85,6 +86,8 @@ def certify_again(folder: Path, *, rewrite: bool = False) -> Judgement:
     left = {key: value for key, value in silent.items() if "." not in key}
     former = written["format"] == FORMER
     found += differences(_compared(written, left, former), _compared(report, left, former))
+    if not former:  # the schema is of this format alone
+        found += [f"{REPORT_NAME}, by its schema: {line}" for line in departures(written)]
     _, plan = subject(log)
     files = Files(folder, report, read_meta(log), same=not found)
     found += _certificate(plan, folder) + files.wrong

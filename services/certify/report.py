@@ -212,6 +212,15 @@ def pages(report: dict[str, Any]) -> dict[str, str]:
 
 
 def write_report(report: dict[str, Any], folder: Path) -> None:
-    """Write `report.json` and what is made from it into a folder; each whole or not at all."""
+    """Write `report.json` and what is made from it into a folder; each whole or not at all.
+
+    RuntimeError, and nothing written, for a report that is not as the published schema says: then
+    what made it is wrong.
+    """
+    from cratous.services.certify.report_schema import departures
+
+    wrong = departures(json.loads(report_text(report)))
+    if wrong:
+        raise RuntimeError(f"the report is not as its schema says: {wrong[0]}")
     for name, text in {REPORT_NAME: report_text(report), **pages(report)}.items():
         write_atomically(folder / name, text, "the report")

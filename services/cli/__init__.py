@@ -49,6 +49,7 @@ COMMANDS = {
     "icarous": "Avoid for one vehicle, over the CRATOUS bridge to UxAS.",
     "sim": "Simulate the aircraft of an AMASE scenario, and be its AMASE on the network.",
     "serve": "Replay a run or a message log in the browser.",
+    "check": "Check mission files and algebra texts; nothing is planned.",
     "algebra": "Check, draw or enumerate a process-algebra text.",
     "warm": "Compile ahead what commands would compile when they need it.",
     "version": "Print the version.",

@@ -4,14 +4,30 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import click
+
+from cratous.services.cli.certify_views import Asked, checked, verified, view_options, write
 
 SHOWN = 20
 
 
+def _print_schema(context: click.Context, _parameter: click.Parameter, wanted: bool) -> None:
+    """Print the schema and end; no folder is needed."""
+    if wanted and not context.resilient_parsing:
+        from cratous.services.certify.report_schema import schema_text
+
+        click.echo(schema_text(), nl=False)
+        context.exit()
+
+
 @click.command()
 @click.argument("folder", type=click.Path(path_type=Path))
+@click.option(
+    "--schema", is_flag=True, is_eager=True, expose_value=False, callback=_print_schema,
+    help="Print the JSON Schema of report.json, and do nothing else.",
+)  # fmt: skip
 @click.option(
     "--rewrite", is_flag=True, help="Make report.html and map.svg anew where they differ."
 )
@@ -20,8 +36,9 @@ SHOWN = 20
     is_flag=True,
     help="Print for each row which kernels decided it, and their theorems and definitions.",
 )
+@view_options
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON, all differences.")
-def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool) -> int:
+def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: Any) -> int:
     """Judge a finished flight again from its log and compare with all that is written of it.
 
     FOLDER is an output folder of `cratous run`. The log's digest, the plan check and the monitor
@@ -33,11 +50,26 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool) -> int:
     With --trace every row of the report is followed to the kernels that decided it and were called in
     this run, from each to the theorems that hold it against its definition, and to that definition.
 
+    With --junit, --sarif, --csv, --sign or -o views of the confirmed report are written for other
+    tools, all three if none is named. In none of them does anything pass that was not checked.
+
+    --sign signs digests of results and views with the verdict; --verify checks signature and digests,
+    and judges the log again by the judge, in a process without planner and pilot.
+
     Example:  cratous certify out/crossing
 
     Exit codes: as of the flight if the report is confirmed (0, 1 or 3); 1 if it is not, with the
     differences named, or if something is missing in a trace; 2 bad input.
     """
+    asked = Asked(**views)
+    key = checked(asked)
+    if asked.verify:
+        if rewrite or trace:
+            raise click.UsageError(
+                "--verify judges by the judge alone, without --rewrite and --trace"
+            )
+        return verified(folder, asked, as_json)
+
     from cratous.services.certify.rejudge import certify_again
     from cratous.services.certify.trace import lines, traced
     from cratous.services.cli.progress import waiting
@@ -47,6 +79,7 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool) -> int:
         done = certify_again(folder, rewrite=rewrite)
     report, found = done.report, done.found
     code = 1 if found else int(report["exit_code"])
+    written = write(done, folder, asked, key) if asked.anything and not found else []
     chains = traced(report) if trace and not found else None
     if chains is not None and chains["missing"]:
         code = 1
@@ -56,6 +89,7 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool) -> int:
             "differences": found,
             "not_checked": done.unchecked,
             "rewritten": done.rewritten,
+            "written": written,
             "verdict": report.get("verdict"),
             "digest": report["log"]["digest"] if report else None,
             "exit_code": code,
@@ -78,6 +112,8 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool) -> int:
         say(f"not checked: {text}", err=bool(found))
     for name in done.rewritten:
         say(f"rewritten: {name}")
+    for name in written:
+        say(f"written: {name}")
     if not found:
         say(f"report: {folder / 'report.html'}")
     return code

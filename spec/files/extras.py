@@ -15,6 +15,7 @@ EXTRAS = {
     "lz4": ("lz4", "wires"),
     "zstandard": ("zstandard", "wires"),
     "cvc5": ("cvc5", "prove"),
+    "cryptography": ("cryptography", "sign"),
     "dask": ("dask", "campaign"),
     "distributed": ("distributed", "campaign"),
 }

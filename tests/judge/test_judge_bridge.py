@@ -135,6 +135,20 @@ def test_agreement_is_said_and_rows_of_the_plan_are_left_aside(tmp_path: Path) -
     assert not found.differences
 
 
+def test_every_row_of_a_report_on_the_flight_is_answered(tmp_path: Path) -> None:
+    log, rows = full(tmp_path)
+    rows[0]["verdict"] = "unknown"
+    rows.append(row("G1", "flight: `p1_[0-9]`: judged together", "violated"))
+    rows.append(row("G2", "a row that nobody knows", "holds"))
+    rows.append(row("G1", "plan: something", "violated") | {"source": "plan"})
+    found = judge(tools.with_report(log, rows)).answers
+    assert sorted(one.item for one in found) == sorted(r["item"] for r in rows[:-1])
+    open_ = {one.item: one.judge for one in found if not one.confirmed}
+    assert open_ == {rows[0]["item"]: "holds", rows[-3]["item"]: "holds", rows[-2]["item"]: ""}
+    assert judge(log.with_name("log.sqlite")).answers == found
+    assert judge(Path(log.rename(tmp_path / "alone.sqlite"))).answers == ()
+
+
 def test_disagreement_is_the_first_line(tmp_path: Path, capsys) -> None:
     log, rows = full(tmp_path, lost=True)
     for there in rows:

@@ -74,9 +74,10 @@ def test_extras_bring_what_is_told(project: dict[str, Any]) -> None:
 
 def test_pins_are_those_of_the_lock(root: Path, project: dict[str, Any]) -> None:
     lock = locked(root)
-    declared = project["dependencies"] + project["optional-dependencies"]["prove"]
+    extras = project["optional-dependencies"]
+    declared = project["dependencies"] + extras["prove"] + extras["sign"]
     pins = dict(one.split("==") for one in declared if "==" in one)
-    assert set(pins) == {*COMPILER, "z3-solver", "cvc5"}
+    assert set(pins) == {*COMPILER, "z3-solver", "cvc5", "cryptography"}
     assert pins == {name: lock[name] for name in pins}
     for record in ledger.read()["kernels"].values():
         for name in COMPILER:

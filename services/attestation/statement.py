@@ -1,0 +1,62 @@
+"""An in-toto statement (version 1) on a report: digests of the evidence and of all views, and the claim.
+
+Subjects are `results/NAME` for the files of the results folder, the message log among them, and
+`views/NAME` for those that were made from its report for other tools.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable
+from pathlib import Path
+
+from cratous.services.attestation.findings import Data, Subject
+from cratous.spec.errors import BadInput
+
+STATEMENT_TYPE = "https://in-toto.io/Statement/v1"
+PREDICATE_TYPE = "urn:cratous:constraint-satisfaction:1"
+RESULTS, VIEWS = "results", "views"
+CHUNK = 1 << 20
+CLAIMED = ("verdict", "exit_code", "counts", "mission_hash", "not_covered", "limits")
+"""What the statement says again of report.json."""
+
+
+def digest(path: Path) -> str:
+    """SHA-256 of a file in hexadecimal; OSError if it cannot be read."""
+    sha = hashlib.sha256()
+    with path.open("rb") as stream:
+        while part := stream.read(CHUNK):
+            sha.update(part)
+    return sha.hexdigest()
+
+
+def claim(report: Data) -> Data:
+    """What a statement claims, as report.json says it."""
+    return {
+        **{key: report[key] for key in CLAIMED},
+        "product": report["product"],
+        "log_digest": report["log"]["digest"],
+        "ledger": {key: report["proofs"][key] for key in ("seal", "line", "solver")},
+    }
+
+
+def statement(subject: Subject, results: Iterable[Path], views: Iterable[Path]) -> bytes:
+    """The statement as it is signed: canonical JSON. unchecked is part of what is claimed."""
+    files = [(RESULTS, path) for path in results] + [(VIEWS, path) for path in views]
+    try:
+        subjects = [
+            {"name": f"{where}/{path.name}", "digest": {"sha256": digest(path)}}
+            for where, path in files
+        ]
+    except OSError as error:
+        raise BadInput(
+            "cannot be read", where=str(error.filename), got=error.strerror or ""
+        ) from None
+    data = {
+        "_type": STATEMENT_TYPE,
+        "subject": sorted(subjects, key=lambda one: str(one["name"])),
+        "predicateType": PREDICATE_TYPE,
+        "predicate": {**claim(subject.report), "not_checked": list(subject.unchecked)},
+    }
+    return json.dumps(data, sort_keys=True, separators=(",", ":"), ensure_ascii=False).encode()

@@ -1,0 +1,132 @@
+"""What `cratous certify` writes for other tools, and how it verifies what was signed."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import click
+
+from cratous.services.cli.show import say
+
+OPTIONS = (
+    click.option(
+        "-o", "--out", type=click.Path(path_type=Path),
+        help="Folder of the views and the statement. [FOLDER/attestation]",
+    ),
+    click.option("--junit", is_flag=True, help="Write junit.xml: a test case a constraint."),
+    click.option("--sarif", is_flag=True, help="Write report.sarif: what is not shown to hold."),
+    click.option("--csv", is_flag=True, help="Write constraints.csv."),
+    click.option("--mission", type=click.Path(path_type=Path), help="Mission file, for lines in SARIF."),
+    click.option("--sign", is_flag=True, help="Sign a statement over results and views (Ed25519)."),
+    click.option(
+        "--verify", is_flag=True, help="Verify what was signed; FOLDER is not judged by the monitor."
+    ),
+    click.option(
+        "--public-key", type=click.Path(path_type=Path), help="File of the signer's public key, PEM."
+    ),
+    click.option(
+        "--key", type=click.Path(path_type=Path),
+        help="File of the private key, PEM. [the PEM in CRATOUS_SIGNING_KEY]",
+    ),
+)  # fmt: skip
+
+
+def view_options(command: Any) -> Any:
+    """The options of this module, put before a command's own."""
+    for option in reversed(OPTIONS):
+        command = option(command)
+    return command
+
+
+class Asked(NamedTuple):
+    """The options as given."""
+
+    out: Path | None
+    junit: bool
+    sarif: bool
+    csv: bool
+    mission: Path | None
+    sign: bool
+    verify: bool
+    public_key: Path | None
+    key: Path | None
+
+    @property
+    def anything(self) -> bool:
+        """Whether anything is to be written."""
+        return self.junit or self.sarif or self.csv or self.sign or self.out is not None
+
+    def folder(self, results: Path) -> Path:
+        """Where views and statement stand."""
+        from cratous.services.attestation.names import FOLDER
+
+        return self.out or results / FOLDER
+
+
+def checked(asked: Asked) -> Any:
+    """The key to sign with, None for none; refuses options that go against each other."""
+    if asked.key is not None and not asked.sign:
+        raise click.UsageError("--key is the key of --sign")
+    if asked.mission is not None and not asked.anything:
+        raise click.UsageError("--mission finds lines for --sarif")
+    if asked.public_key is not None and not asked.verify:
+        raise click.UsageError("--public-key is the key of --verify")
+    if not asked.sign:
+        return None
+    from cratous.services.attestation.dsse import private_key
+
+    return private_key(asked.key)
+
+
+def verified(results: Path, asked: Asked, as_json: bool) -> int:
+    """Verify what was signed, and print what came of it; returns the exit code.
+
+    Nothing of planner, pilot, monitor or kernels is imported here, nor by the judge.
+    """
+    from cratous.services.attestation.dsse import public_key
+    from cratous.services.attestation.names import FOLDER
+    from cratous.services.attestation.verification import signed_folder, verify
+    from cratous.services.cli.judge import judgement
+
+    if asked.sign or asked.junit or asked.sarif or asked.csv or asked.mission:
+        raise click.UsageError("--verify writes nothing")
+    if asked.public_key is None:
+        raise click.UsageError("--verify needs --public-key")
+    place = signed_folder(results, asked.out, FOLDER)
+    found = verify(place, public_key(asked.public_key), judgement)
+    if as_json:
+        click.echo(json.dumps({"verified": not found.refused, **asdict(found)}, indent=1))
+        return found.exit_code
+    for line in found.refused:
+        say(f"refused: {line}", err=True)
+    if not found.refused:
+        of = found.recomputed + len(found.undecided)
+        say(
+            f"verified: signature, {found.files} digests, {found.recomputed} of {of} verdicts on the flight by the judge"
+        )
+    for line in found.undecided:
+        say(f"not decided here: {line}")
+    for line in found.not_judged:
+        say(f"not checked here: {line}")
+    if not found.refused:
+        say(f"{found.verdict.upper()}; exit code {found.exit_code}")
+    return found.exit_code
+
+
+def write(done: Any, results: Path, asked: Asked, key: Any) -> list[str]:
+    """Write what was asked for of a confirmed judgement; returns what to say of it."""
+    from cratous.services.attestation.findings import Subject
+    from cratous.services.attestation.names import CSV_NAME, JUNIT_NAME, SARIF_NAME, VIEWS
+    from cratous.services.attestation.writing import Wanted, write_views
+
+    chosen = ((asked.junit, JUNIT_NAME), (asked.sarif, SARIF_NAME), (asked.csv, CSV_NAME))
+    names = tuple(name for wanted, name in chosen if wanted) or VIEWS
+    target = asked.folder(results)
+    inside = f"{target.name}: " if target.resolve().parent == results.resolve() else None
+    # the views themselves are no part of what they are about
+    unchecked = tuple(u for u in done.unchecked if inside is None or not u.startswith(inside))
+    subject = Subject(done.report, unchecked)
+    return write_views(subject, results, target, Wanted(names, asked.mission, key))
