@@ -1,8 +1,8 @@
 """A UxAS folder or configuration, as it is, as a `Mission`.
 
-The last configuration and state of each entity, the tasks and zones, and the first automation
-request make the mission: only what the request names takes part, and only the zones of its
-operating region bind. Whatever has no counterpart here is refused or noted, never dropped.
+The configuration and state of each entity, the tasks and zones, as they are when an automation
+request is sent, and that request make the mission: only what the request names takes part, and only the
+zones of its operating region bind. Whatever has no counterpart here is refused or noted, never dropped.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from cratous.services.loading.places import Places
 from cratous.services.loading.polygons import one_region
 from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.uxas_cfg import Configuration, Sent, read_all, scenario_states
+from cratous.services.loading.uxas_requests import WRAPPED, is_request, requests_of
 from cratous.services.loading.uxas_tasks import Interests
 from cratous.services.loading.uxas_tasks import task as read_task
 from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR, finish
@@ -28,19 +29,28 @@ from cratous.spec.mission import Daa, Frame, Mission, Simulation, Task, Vehicle,
 
 LIMIT_MS = 86_400_000
 """UxAS knows no end of the simulation: a day."""
-WRAPPED = {
-    "CoordinatedAutomationRequest": "OriginalRequest",
-    "TaskAutomationRequest": "OriginalRequest",
-    "ImpactAutomationRequest": "TrialRequest",
-}
 
 
-def load_uxas(path: Path) -> Mission:
-    """The mission of a UxAS folder (its only cfg*.xml) or cfg XML file.
+def load_uxas(path: Path, number: int = 1) -> Mission:
+    """The mission of a request of a UxAS folder (its only cfg*.xml) or cfg XML file: the first one, or
+    the one with a number.
 
     Raises BadInput for what is wrong, missing, or not covered yet (named).
     """
-    return mission_of(read_all(Path(path)), str(path))
+    asked = requests_of(read_all(Path(path)))
+    if not 1 <= number <= len(asked):
+        raise BadInput(
+            "there is no such request",
+            where=str(path),
+            item="request",
+            expected=f"1 to {len(asked)}",
+            got=str(number),
+        )
+    mission = mission_of(asked[number - 1], str(path))
+    if len(asked) > 1:
+        note = f"this is request {number} of {len(asked)}, which begins where the messages put the vehicles"
+        mission = replace(mission, notes=(note, *mission.notes))
+    return mission
 
 
 def mission_of(cfg: Configuration, source: str) -> Mission:
@@ -141,7 +151,7 @@ class _Cast:
                 continue
             elif kind == "OperatingRegion":
                 self.regions[body.ID] = sent
-            elif kind == "AutomationRequest" or kind in WRAPPED:
+            elif is_request(kind):
                 self._add_request(sent, kind)
             elif hasattr(body, "TaskID") and hasattr(body, "EligibleEntities"):
                 self.tasks[body.TaskID] = sent
@@ -169,7 +179,7 @@ class _Cast:
                 self.notes.extend(note for note in notes if note not in self.notes)
 
     def request(self) -> Sent:
-        """The automation request that is flown: the first one."""
+        """The automation request."""
         if not self.requests:
             raise BadInput(
                 "there is nothing to do",
@@ -178,8 +188,6 @@ class _Cast:
                 expected="an AutomationRequest among the messages",
                 got="none",
             )
-        if len(self.requests) > 1:
-            self.notes.append(f"only the first of {len(self.requests)} requests is flown")
         return self.requests[0]
 
 
