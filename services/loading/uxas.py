@@ -7,6 +7,7 @@ zones of its operating region bind. Whatever has no counterpart here is refused 
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 from math import isfinite
 from pathlib import Path
@@ -20,7 +21,7 @@ from cratous.services.loading.polygons import one_region
 from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.uxas_cfg import Configuration, Sent, read_all, scenario_states
 from cratous.services.loading.uxas_requests import WRAPPED, is_request, requests_of
-from cratous.services.loading.uxas_tasks import Interests
+from cratous.services.loading.uxas_tasks import Interests, other
 from cratous.services.loading.uxas_tasks import task as read_task
 from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR, finish
 from cratous.spec.errors import BadInput
@@ -53,9 +54,14 @@ def load_uxas(path: Path, number: int = 1) -> Mission:
     return mission
 
 
-def mission_of(cfg: Configuration, source: str) -> Mission:
-    """The mission that a configuration and its messages make, from a file or as they came in."""
-    cast = _Cast(cfg)
+def mission_of(
+    cfg: Configuration, source: str, spoken_for: Collection[int] = frozenset()
+) -> Mission:
+    """The mission that a configuration and its messages make, from a file or as they came in.
+
+    spoken_for: tasks that may be of a kind that is not covered, as their own services say how they are flown.
+    """
+    cast = _Cast(cfg, spoken_for)
     request = cast.request()
     notes = [*cfg.notes, *cast.notes]
     frame = _frame(cast)
@@ -128,8 +134,8 @@ def surroundings_of(cfg: Configuration, source: str) -> Mission:
 class _Cast:
     """The messages sorted by what they are; later ones replace earlier ones of the same id."""
 
-    def __init__(self, cfg: Configuration) -> None:
-        self.cfg = cfg
+    def __init__(self, cfg: Configuration, spoken_for: Collection[int] = frozenset()) -> None:
+        self.cfg, self.spoken_for = cfg, spoken_for
         self.notes: list[str] = []
         self.configurations: dict[int, Sent] = {}
         self.states: dict[int, Sent] = {}
@@ -258,7 +264,9 @@ def _tasks(
                 got=str(number),
             )
         sources[f"tasks[{k}]"] = cast.tasks[number].where
-        task = read_task(cast.tasks[number], places, vehicles, notes, cast.interests)
+        task = other(cast.tasks[number]) if number in cast.spoken_for else None
+        if task is None:
+            task = read_task(cast.tasks[number], places, vehicles, notes, cast.interests)
         found.append(_eligible(task, cast, vehicles, f"tasks[{k}].eligible", notes))
     return tuple(_named_only(found, request, notes))
 
