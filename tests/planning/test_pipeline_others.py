@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import pytest
-from pipeline_messages import option, options, unique
+from pipeline_messages import cost, matrix, option, options, unique
 from pipeline_tools import Rig, must_fly, place, request, vehicle
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
 from cratous.services.pipeline.unserved import OTHERS_MS
+from cratous.spec import algebra
+from cratous.spec.algebra import meaning as algebra_meaning
 
 KIND = "afrl.impact.CommRelayTask"
 INFO = "AutomationResponse"
@@ -151,3 +154,84 @@ def test_a_planner_s_process_without_a_validator_refuses_what_nobody_speaks_for(
     assert len(rig.reasons()) == 1, "it waits for the options of the one who spoke"
     rig.tell(relay(9), unique(5, 9))
     assert len(rig.reasons()) == 2, "another task of this id has not been spoken for"
+
+
+@pytest.mark.parametrize(
+    ("composition", "flown"),
+    [
+        (".(p1 p2)", [1, 2]),
+        (".(p2 p1)", [2, 1]),
+        ("|(p1 p2)", [1, 2]),
+        ("+(.(p2 p1) p3)", [3]),
+        (".(+(p1 p3) p2)", [1, 2]),
+        ("+(.(p1 p2 p3))_[0-9000000]", [1, 2, 3]),
+    ],
+)
+def test_the_options_of_a_task_are_flown_as_its_composition_says(
+    rig: Rig, composition: str, flown: list[int]
+) -> None:
+    count = max(int(c) for c in composition.split("_")[0] if c.isdigit())
+    rig.tell(relay(9))
+    rig.bus.add(OtherTask(9, composition, count))
+    rig.tell(request(5, 9, TaskRelationships=".(p5 p9)"))
+    assert not rig.reasons(), rig.reasons()
+    (summary,) = rig.got("TaskAssignmentSummary")
+    pairs = [(t.TaskID, t.OptionID) for t in summary.TaskList]
+    assert pairs == [(5, pairs[0][1]), *((9, n) for n in flown)]
+    starts = [t.TimeThreshold for t in summary.TaskList]
+    assert all(b >= a.TimeTaskCompleted for a, b in zip(summary.TaskList, starts[1:], strict=False))
+    (command,) = rig.got(INFO)[0].MissionCommandList
+    passed = [round(w.Latitude, 6) for w in command.WaypointList if 9 in w.AssociatedTasks]
+    assert passed == [round(0.022 + 0.01 * n, 6) for n in flown]
+
+
+def test_two_vehicles_fly_the_parts_of_one_task(rig: Rig) -> None:
+    """As a blockade has it: both options at once, each by whom it suits."""
+    rig.tell(*vehicle(2, 0.06), relay(9))
+    rig.bus.add(OtherTask(9, "|(p1 p2 p3)", 3))
+    rig.tell(request(9, vehicles=(1, 2)))
+    (summary,) = rig.got("TaskAssignmentSummary")
+    assert {t.AssignedVehicle for t in summary.TaskList} == {1, 2}
+    assert sorted(t.OptionID for t in summary.TaskList) == [1, 2, 3]
+    assert len(rig.got(INFO)[0].MissionCommandList) == 2
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_composition_costs_what_the_same_relations_of_tasks_cost(
+    tmp_path: Path, seed: int
+) -> None:
+    """Options 1 to 4 of task 9, and tasks 1 to 4 with the composition as relations: one problem, two ways."""
+    rng = random.Random(seed)
+    rig = Rig(tmp_path, "AssignmentTreeBranchBoundService")
+    rig.tell(*vehicle(1), *vehicle(2, 0.01), relay(9), *(must_fly(n) for n in (1, 2, 3, 4)))
+    rig.tell(lmcp.new("TaskInitialized", TaskID=9))
+    text = _random_term(rng, [1, 2, 3, 4])
+    times = {n: rng.randrange(1000, 9000) for n in (1, 2, 3, 4)}
+    ways = {
+        (v, a, b): rng.randrange(100, 5000)
+        for v in (1, 2)
+        for a in range(5)
+        for b in (1, 2, 3, 4)
+        if a != b
+    }
+    one = [option(9, n, cost=times[n]) for n in times]
+    rows = [cost(v, 9, b, ms, (9, a) if a else (0, 0)) for (v, a, b), ms in ways.items()]
+    rig.tell(unique(2, 9, vehicles=(1, 2)), options(2, 9, *one, composition=text), matrix(2, *rows))
+    rows = [cost(v, b, 1, ms, (a, 1) if a else (0, 0)) for (v, a, b), ms in ways.items()]
+    asked = unique(3, 1, 2, 3, 4, vehicles=(1, 2), TaskRelationships=text)
+    rig.tell(asked, *(options(3, n, option(n, 1, cost=times[n])) for n in times), matrix(3, *rows))
+    assert not rig.reasons(), rig.reasons()
+    composed, related = rig.got("TaskAssignmentSummary")
+    ends = [max(t.TimeTaskCompleted for t in s.TaskList) for s in (composed, related)]
+    assert ends[0] == ends[1]
+    done = {t.OptionID for t in composed.TaskList}
+    whole = [set(algebra_meaning.tasks(b)) for b in algebra_meaning.branches(algebra.parse(text))]
+    assert done in whole
+
+
+def _random_term(rng: random.Random, left: list[int]) -> str:
+    if len(left) == 1:
+        return f"p{left[0]}"
+    cut = rng.randrange(1, len(left))
+    parts = " ".join(_random_term(rng, part) for part in (left[:cut], left[cut:]))
+    return f"{rng.choice('.|+')}({parts})"

@@ -114,8 +114,8 @@ def test_each_request_gets_one_response_in_order_with_reasons(
         (6, "task 1000"),
     ):
         assert re.search(text, reasons[k]), reasons[k]
-    assert reasons[5], "a kind of task that is not covered is named"
-    assert said.has("unknown service type") or said.has("not covered yet")
+    assert "task 5 is a afrl.impact.CommRelayTask: no service here does this kind" in reasons[5]
+    assert said.has("task 5 is a afrl.impact.CommRelayTask")
     assert not said.has("fails at")
     names = one.bus.names()
     assert not any("1000" in name for name in names), "the task's service has ended"
