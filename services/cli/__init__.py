@@ -148,7 +148,7 @@ def _usage(error: click.ClickException, as_json: bool) -> int:
 def report_error(error: CratousError, as_json: bool) -> int:
     """Print an error once, for people or as JSON; returns its exit code."""
     if as_json:
-        click.echo(json_text({**_data(error), "exit_code": error.exit_code}))
+        click.echo(json_text({**error_data(error), "exit_code": error.exit_code}))
         return error.exit_code
     notes = "".join(f" {note}" for note in getattr(error, "__notes__", ()))
     # lines of our own stand only in what is refused for reasons of our own
@@ -162,7 +162,8 @@ def report_error(error: CratousError, as_json: bool) -> int:
     return error.exit_code
 
 
-def _data(error: CratousError) -> dict[str, Any]:
+def error_data(error: CratousError) -> dict[str, Any]:
+    """An error as JSON data, without its exit code."""
     if isinstance(error, BadInput):
         return error.data()
     if isinstance(error, NoPlan):

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
 
+from cratous.services.cli import error_data, report_error
+from cratous.spec.errors import BadInput, CratousError
+from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import exit_code
+from cratous.spec.mission.plan import COST_UNITS
 
 
 @click.command()
@@ -22,6 +26,11 @@ from cratous.spec.mission.guarantees import exit_code
     help="Write what proves the assignment, for `cratous certify-plan`.",
 )
 @click.option("--why", "task", type=click.IntRange(1), help="Why this vehicle does task N.")
+@click.option(
+    "--request",
+    type=click.IntRange(1),
+    help="Of a UxAS folder with several requests the N-th alone.",
+)
 @click.option("--allow-unproved", is_flag=True, help="Plan with kernels that have no proof.")
 def plan(
     mission: Path,
@@ -29,6 +38,7 @@ def plan(
     as_json: bool,
     certificate: Path | None,
     task: int | None,
+    request: int | None,
     allow_unproved: bool,
 ) -> int:
     """Plan a MISSION and check the plan with the proved kernels; nothing flies.
@@ -36,62 +46,121 @@ def plan(
     Example:  cratous plan examples/relations/mission.yaml
 
     Where not all tasks can be done, the plan is of those that can, by priority, and the others are
-    named with the reasons.
+    named with the reasons. Of a UxAS folder every automation request is planned, in the order in which
+    they are sent, each from where the messages put the vehicles.
 
     Exit codes: 0 the plan satisfies all its constraints, 1 it does not, leaves tasks out or does
-    not exist, 2 bad input, 3 something is unknown.
+    not exist, 2 bad input, 3 something is unknown; of several requests the worst: 2, 1, 3, 0.
     """
-    from cratous.services.loading import load
+    from cratous.services.loading import count_requests, load
 
-    loaded = load(mission, seed)  # a bad mission is refused before anything that takes time
+    count = 1 if request else count_requests(mission)
+    if count > 1 and (certificate is not None or task is not None):
+        raise BadInput(
+            "several requests",
+            where=str(mission),
+            item="--certificate" if task is None else "--why",
+            expected=f"--request 1 to {count} with it",
+        )
+    # what is bad is refused before anything that takes time; beside other requests it is one answer
+    loaded: list[Mission | CratousError] = []
+    for number in range(1, count + 1):
+        try:
+            loaded.append(load(mission, seed, request or number))
+        except CratousError as error:
+            loaded.append(error)
+            if count == 1:
+                raise
 
     from cratous.core import ledger
-    from cratous.services.certify.evidence import counted
-    from cratous.services.certify.proofs import inventory, summary
-    from cratous.services.certify.verdicts import constraint_rows
-    from cratous.services.cli.job import (
-        absent_lines,
-        left_out_lines,
-        new_bus,
-        plan_and_check,
-        plan_line,
-        planning_told,
-        write_certificate,
-    )
     from cratous.services.cli.progress import waiting
-    from cratous.services.cli.show import margin_text, say, table
-    from cratous.services.logs.records import to_data
-    from cratous.spec.mission.plan import COST_UNITS
 
-    bus = new_bus()
-    with waiting("holding the code against its proofs", as_json) as wait:
+    with waiting("holding the code against its proofs", as_json):
         standing = ledger.require(allow_unproved=allow_unproved)
+    job = _Job(as_json, certificate, task, standing)
+    if count == 1:
+        assert isinstance(loaded[0], Mission)
+        data, code = _planned(loaded[0], job)
+        if as_json:
+            click.echo(json.dumps(data, indent=1))
+        return code
+    answers: list[dict[str, Any]] = []
+    for number, one in enumerate(loaded, 1):
+        if not as_json:
+            click.echo(f"{'' if number == 1 else chr(10)}request {number} of {count}")
+        try:
+            if isinstance(one, CratousError):
+                raise one
+            data, code = _planned(one, job)
+        except CratousError as error:
+            code = error.exit_code
+            data = {**error_data(error), "exit_code": code}
+            if not as_json:
+                report_error(error, as_json=False)
+        answers.append(data)
+    codes = [answer["exit_code"] for answer in answers]
+    code = next(c for c in (2, 1, 3, *codes) if c in codes)
+    if as_json:
+        click.echo(json.dumps({"requests": answers, "exit_code": code}, indent=1))
+    return code
+
+
+class _Job(NamedTuple):
+    """What is asked of each plan, and how the code stands against its proofs."""
+
+    as_json: bool
+    certificate: Path | None
+    task: int | None
+    standing: Any
+
+
+def _planned(loaded: Mission, job: _Job) -> tuple[dict[str, Any], int]:
+    """Plan one mission, print it unless as JSON; the data, and the exit code. NoPlan if there is none."""
+    from cratous.services.certify.evidence import counted
+    from cratous.services.certify.proofs import inventory
+    from cratous.services.certify.verdicts import constraint_rows
+    from cratous.services.cli.job import new_bus, plan_and_check, planning_told, write_certificate
+    from cratous.services.cli.progress import waiting
+    from cratous.services.logs.records import to_data
+
+    bus, standing, task = new_bus(), job.standing, job.task
+    with waiting("planning", job.as_json) as wait:
         bus.tap(planning_told(wait.at, len(loaded.tasks)))
         with counted() as calls:
             made, checks = plan_and_check(loaded, bus)
             instead = None if task is None else reasons_of(loaded, made, task)
         wait.at("gathering the evidence")
         evidence = inventory(standing, calls.data())
-    if certificate is not None:
-        write_certificate(bus, certificate)
+    if job.certificate is not None:
+        write_certificate(bus, job.certificate)
     code = exit_code([check.outcome for check in checks])
     if standing.problems and code == 0:
         code = 3  # no verdict of an unproved kernel is better than unknown
-    rows = constraint_rows(checks, "plan")
-    if as_json:
-        data = {
-            "plan": to_data(made),
-            "constraints": rows,
-            "notes": list(loaded.notes),
-            "proofs": standing.line,
-            "evidence": evidence,
-            "exit_code": code,
-        }
-        if instead is not None:
-            vehicles = [one._asdict() for one in instead]
-            data["why"] = {"task": task, "unit": COST_UNITS[made.cost], "vehicles": vehicles}
-        click.echo(json.dumps(data, indent=1))
-        return code
+    data = {
+        "plan": to_data(made),
+        "constraints": constraint_rows(checks, "plan"),
+        "notes": list(loaded.notes),
+        "proofs": standing.line,
+        "evidence": evidence,
+        "exit_code": code,
+    }
+    if instead is not None:
+        vehicles = [one._asdict() for one in instead]
+        data["why"] = {"task": task, "unit": COST_UNITS[made.cost], "vehicles": vehicles}
+    if not job.as_json:
+        _print(loaded, made, checks, data)
+        if task is not None and instead:
+            for line in why_lines(loaded, made, task, instead):
+                click.echo(line)
+        _print_evidence(data)
+    return data, code
+
+
+def _print(loaded: Mission, made: Any, checks: list[Any], data: dict[str, Any]) -> None:
+    """The plan, its constraints and notes as tables."""
+    from cratous.services.cli.job import absent_lines, left_out_lines, plan_line
+    from cratous.services.cli.show import margin_text, say, table
+
     table(
         ["task", "vehicle", "departs", "arrives", "waits", "starts", "ends"],
         [
@@ -115,7 +184,7 @@ def plan(
     click.echo()
     table(
         ["constraint", "verdict", "margin", "note"],
-        [[row["item"], row["verdict"], margin_text(row), row["note"]] for row in rows],
+        [[r["item"], r["verdict"], margin_text(r), r["note"]] for r in data["constraints"]],
         verdict_column=1,
     )
     click.echo()
@@ -123,12 +192,13 @@ def plan(
         say(f"note: {note}")
     for line in (plan_line(loaded, made, checks), *left_out_lines(made), *absent_lines(loaded)):
         click.echo(line)
-    if task is not None and instead:
-        for one in why_lines(loaded, made, task, instead):
-            click.echo(one)
-    click.echo(f"proofs: {standing.line}")
-    click.echo(f"evidence: {summary(evidence)}")
-    return code
+
+
+def _print_evidence(data: dict[str, Any]) -> None:
+    from cratous.services.certify.proofs import summary
+
+    click.echo(f"proofs: {data['proofs']}")
+    click.echo(f"evidence: {summary(data['evidence'])}")
 
 
 def reasons_of(mission: Any, made: Any, task: int) -> tuple[Any, ...]:

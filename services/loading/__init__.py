@@ -8,10 +8,11 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission
 
 
-def load(path: str | Path, seed: int = 0) -> Mission:
+def load(path: str | Path, seed: int = 0, request: int = 1) -> Mission:
     """The mission at a path: a YAML file, a UxAS cfg XML, or a folder with either.
 
-    seed: 0 is the mission as written, N > 0 its N-th variant (YAML missions only).
+    seed: 0 is the mission as written, N > 0 its N-th variant (YAML missions only); request: which
+    of the AutomationRequests of a UxAS configuration, in the order in which they are sent.
     Raises BadInput with file, item, expected and got.
     """
     path = Path(path)
@@ -33,8 +34,15 @@ def load(path: str | Path, seed: int = 0) -> Mission:
                 expected="--seed 0",
                 got=f"--seed {seed}",
             )
-        return load_uxas(path)
+        return load_uxas(path, request)
     if path.suffix.lower() in (".yaml", ".yml"):
+        if request != 1:
+            raise BadInput(
+                "a mission file is one request",
+                where=str(path),
+                expected="--request 1",
+                got=f"--request {request}",
+            )
         from cratous.services.loading.yaml_mission import load as load_yaml
 
         return load_yaml(path, seed)
@@ -44,3 +52,14 @@ def load(path: str | Path, seed: int = 0) -> Mission:
         expected="a name that ends in .yaml, .yml or .xml, or a folder",
         got=path.suffix or "none",
     )
+
+
+def count_requests(path: str | Path) -> int:
+    """How many AutomationRequests a UxAS folder or configuration sends; 1 for a mission file."""
+    path = Path(path)
+    if (path.is_dir() and not (path / "mission.yaml").is_file()) or path.suffix.lower() == ".xml":
+        from cratous.services.loading.uxas import requests_of
+        from cratous.services.loading.uxas_cfg import read_all
+
+        return len(requests_of(read_all(path)))
+    return 1

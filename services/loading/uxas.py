@@ -1,12 +1,13 @@
 """A UxAS folder or configuration, as it is, as a `Mission`.
 
-The last configuration and state of each entity, the tasks and zones, and the first automation
-request make the mission: only what the request names takes part, and only the zones of its
-operating region bind. Whatever has no counterpart here is refused or noted, never dropped.
+The configuration and state of each entity, the tasks and zones, as they are when an automation
+request is sent, and that request make the mission: only what the request names takes part, and only the
+zones of its operating region bind. Whatever has no counterpart here is refused or noted, never dropped.
 """
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 from math import isfinite
 from pathlib import Path
@@ -19,7 +20,8 @@ from cratous.services.loading.places import Places
 from cratous.services.loading.polygons import one_region
 from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.uxas_cfg import Configuration, Sent, read_all, scenario_states
-from cratous.services.loading.uxas_tasks import Interests
+from cratous.services.loading.uxas_requests import WRAPPED, is_request, requests_of
+from cratous.services.loading.uxas_tasks import Interests, other
 from cratous.services.loading.uxas_tasks import task as read_task
 from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR, finish
 from cratous.spec.errors import BadInput
@@ -28,24 +30,38 @@ from cratous.spec.mission import Daa, Frame, Mission, Simulation, Task, Vehicle,
 
 LIMIT_MS = 86_400_000
 """UxAS knows no end of the simulation: a day."""
-WRAPPED = {
-    "CoordinatedAutomationRequest": "OriginalRequest",
-    "TaskAutomationRequest": "OriginalRequest",
-    "ImpactAutomationRequest": "TrialRequest",
-}
 
 
-def load_uxas(path: Path) -> Mission:
-    """The mission of a UxAS folder (its only cfg*.xml) or cfg XML file.
+def load_uxas(path: Path, number: int = 1) -> Mission:
+    """The mission of a request of a UxAS folder (its only cfg*.xml) or cfg XML file: the first one, or
+    the one with a number.
 
     Raises BadInput for what is wrong, missing, or not covered yet (named).
     """
-    return mission_of(read_all(Path(path)), str(path))
+    asked = requests_of(read_all(Path(path)))
+    if not 1 <= number <= len(asked):
+        raise BadInput(
+            "there is no such request",
+            where=str(path),
+            item="request",
+            expected=f"1 to {len(asked)}",
+            got=str(number),
+        )
+    mission = mission_of(asked[number - 1], str(path))
+    if len(asked) > 1:
+        note = f"this is request {number} of {len(asked)}, which begins where the messages put the vehicles"
+        mission = replace(mission, notes=(note, *mission.notes))
+    return mission
 
 
-def mission_of(cfg: Configuration, source: str) -> Mission:
-    """The mission that a configuration and its messages make, from a file or as they came in."""
-    cast = _Cast(cfg)
+def mission_of(
+    cfg: Configuration, source: str, spoken_for: Collection[int] = frozenset()
+) -> Mission:
+    """The mission that a configuration and its messages make, from a file or as they came in.
+
+    spoken_for: tasks that may be of a kind that is not covered, as their own services say how they are flown.
+    """
+    cast = _Cast(cfg, spoken_for)
     request = cast.request()
     notes = [*cfg.notes, *cast.notes]
     frame = _frame(cast)
@@ -118,8 +134,8 @@ def surroundings_of(cfg: Configuration, source: str) -> Mission:
 class _Cast:
     """The messages sorted by what they are; later ones replace earlier ones of the same id."""
 
-    def __init__(self, cfg: Configuration) -> None:
-        self.cfg = cfg
+    def __init__(self, cfg: Configuration, spoken_for: Collection[int] = frozenset()) -> None:
+        self.cfg, self.spoken_for = cfg, spoken_for
         self.notes: list[str] = []
         self.configurations: dict[int, Sent] = {}
         self.states: dict[int, Sent] = {}
@@ -141,7 +157,7 @@ class _Cast:
                 continue
             elif kind == "OperatingRegion":
                 self.regions[body.ID] = sent
-            elif kind == "AutomationRequest" or kind in WRAPPED:
+            elif is_request(kind):
                 self._add_request(sent, kind)
             elif hasattr(body, "TaskID") and hasattr(body, "EligibleEntities"):
                 self.tasks[body.TaskID] = sent
@@ -169,7 +185,7 @@ class _Cast:
                 self.notes.extend(note for note in notes if note not in self.notes)
 
     def request(self) -> Sent:
-        """The automation request that is flown: the first one."""
+        """The automation request."""
         if not self.requests:
             raise BadInput(
                 "there is nothing to do",
@@ -178,8 +194,6 @@ class _Cast:
                 expected="an AutomationRequest among the messages",
                 got="none",
             )
-        if len(self.requests) > 1:
-            self.notes.append(f"only the first of {len(self.requests)} requests is flown")
         return self.requests[0]
 
 
@@ -250,7 +264,9 @@ def _tasks(
                 got=str(number),
             )
         sources[f"tasks[{k}]"] = cast.tasks[number].where
-        task = read_task(cast.tasks[number], places, vehicles, notes, cast.interests)
+        task = other(cast.tasks[number]) if number in cast.spoken_for else None
+        if task is None:
+            task = read_task(cast.tasks[number], places, vehicles, notes, cast.interests)
         found.append(_eligible(task, cast, vehicles, f"tasks[{k}].eligible", notes))
     return tuple(_named_only(found, request, notes))
 

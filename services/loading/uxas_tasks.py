@@ -88,6 +88,21 @@ class _Reading:
         return known[number].body
 
 
+def other(sent: Sent) -> Task | None:
+    """A task of a kind that is not covered, for which a service of its own speaks; None for one that is."""
+    body = sent.body
+    if type(body).__name__ in READERS:
+        return None
+    return Task(
+        id=body.TaskID,
+        kind=TaskKind.OTHER,
+        label=body.Label or f"task {body.TaskID}",
+        points=(),
+        eligible=tuple(body.EligibleEntities),
+        priority=body.Priority,
+    )
+
+
 def task(
     sent: Sent,
     places: Places,

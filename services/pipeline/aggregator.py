@@ -22,6 +22,7 @@ from cratous.core.contracts.checklists import (
     owns,
 )
 from cratous.services.bus import Envelope
+from cratous.services.pipeline.compositions import composition, is_choice
 from cratous.services.pipeline.contexts import UNIQUE, Contexts
 from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
 from cratous.spec.errors import CratousError
@@ -164,7 +165,10 @@ class RouteAggregatorService:
         context = self._contexts.of(mine.request.RequestID)
         states = {planning.EntityID: planning for planning in mine.request.PlanningStates}
         options = [o for task in request.TaskList for o in mine.options[task].Options]
-        may_follow = context.inputs.may_follow
+        may_follow = set(context.inputs.may_follow)
+        # of a task that is no choice of one option, one option may follow another
+        told = {task: composition(mine.options[task]) for task in request.TaskList}
+        may_follow |= {(task, task) for task, term in told.items() if not is_choice(term)}
         asked: list[Any] = []
         ends: list[tuple[tuple[End, End], ...]] = []
         vehicles: list[int] = []
@@ -178,7 +182,7 @@ class RouteAggregatorService:
                 ((a.TaskID, a.OptionID), (a.EndLocation, a.EndHeading), b)
                 for a in able
                 for b in able
-                if (a.TaskID, b.TaskID) in may_follow
+                if (a.TaskID, b.TaskID) in may_follow and a is not b
             ]
             vehicles.append(vehicle)
             ends.append(tuple((end, (to.TaskID, to.OptionID)) for end, _, to in pairs))

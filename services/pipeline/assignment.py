@@ -7,15 +7,16 @@ The search is that of `services.planning.mission_assign`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.core.assignment.problem import Assignment
 from cratous.services.bus import Envelope
+from cratous.services.pipeline.compositions import Pair
 from cratous.services.pipeline.contexts import UNIQUE, Contexts
 from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
-from cratous.services.pipeline.offers import OPTIONS, Offered, Told, read, travel_of
+from cratous.services.pipeline.offers import OPTIONS, Read, Told, read, travel_of
 from cratous.services.pipeline.status import status
 from cratous.services.planning import mission_assign, without_vehicles
 from cratous.services.planning.left_out import assign_part
@@ -83,14 +84,14 @@ class AssignmentTreeBranchBoundService:
         if offered.foreign:
             text = f"{offered.foreign} rows are of vehicles that the request does not name: they take no part"
             out.append(status(key, "Warning", [("reason", text)]))
-        context.assigned = _found(offered.inputs, offered.rows, offered.tasks)
+        context.assigned = _found(offered)
         result = context.assigned.assignment
         assert result is not None
-        inputs = offered.inputs
+        inputs, pairs = offered.inputs, offered.split.pairs
         listed = [
             lmcp.new(
                 "TaskAssignment",
-                TaskID=inputs.options[placed.candidate].task_id,
+                TaskID=_task(inputs.options[placed.candidate].task_id, pairs),
                 OptionID=inputs.options[placed.candidate].option_id,
                 AssignedVehicle=inputs.mission.vehicles[placed.vehicle].id,
                 TimeThreshold=placed.start_ms,
@@ -112,9 +113,18 @@ class AssignmentTreeBranchBoundService:
         ]
 
 
-def _found(inputs: Offered, rows: list[Any], tasks: Iterable[int]) -> mission_assign.Found:
+def _task(number: int, pairs: Mapping[int, Pair]) -> int:
+    """The task of a request that a task of the assignment is of."""
+    return pairs[number][0] if number in pairs else number
+
+
+def _found(offered: Read) -> mission_assign.Found:
     """The assignment of all tasks, else of the part that leaves out least; if nothing can be done, NoPlan
-    with what no vehicle can do or reach, or which constraints clash."""
+    with what no vehicle can do or reach, or which constraints clash.
+
+    Where options are tasks, a part might be half of a task: then it is all or nothing.
+    """
+    inputs, rows, tasks = offered.inputs, offered.rows, offered.tasks
     mission, problem = inputs.mission, inputs.problem(travel_of(inputs, rows))
     limits, places = mission_assign.limits_of(mission), mission_assign.places_in(mission)
     try:
@@ -127,6 +137,11 @@ def _found(inputs: Offered, rows: list[Any], tasks: Iterable[int]) -> mission_as
         if not problem.choices:
             raise NoPlan(why) from error
         found = mission_assign.Found(None, None, why)
+    if found.assignment is None and offered.split.ids:
+        reached = {row.DestinationTaskID for row in rows}
+        missing = [f"the costs have no way to task {task}" for task in tasks if task not in reached]
+        why = (*missing, *found.reasons) or without_vehicles.why_none(inputs)
+        raise NoPlan(tuple(offered.split.told(text) for text in why))
     if found.assignment is None:
         priority = {task.id: task.priority for task in mission.tasks}
         part = assign_part(

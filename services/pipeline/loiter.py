@@ -178,12 +178,27 @@ def _due(context: Context, mine: Work, summary: Any) -> tuple[Due, ...]:
         )
     offered = read(mine.told, mine.matrix, context)
     problem = offered.inputs.problem(travel_of(offered.inputs, offered.rows))
+    ids = offered.split.ids
     given = [
-        Given(task.AssignedVehicle, task.TaskID, task.OptionID, task.TimeThreshold)
+        Given(
+            task.AssignedVehicle,
+            ids.get((task.TaskID, task.OptionID), task.TaskID),
+            task.OptionID,
+            task.TimeThreshold,
+        )
         for task in summary.TaskList
     ]
     steps = schedule(part_problem(problem, {one.task_id for one in given}), given)
     loiters = loiters_of(steps, offered.inputs.options, context.inputs.zones)
+    for loiter in loiters:
+        if loiter.task_id in offered.split.pairs:
+            # the waypoints of a plan name tasks: before which of several options it is, they cannot say
+            raise BadInput(
+                "a wait before one of several options of a task is not covered here",
+                item="TaskAssignmentSummary",
+                expected="a plan that waits by itself, without the LoiterAssignmentService",
+                got=offered.split.told(_text(loiter)),
+            )
     return tuple(Due(loiter, _action(context, loiter)) for loiter in loiters)
 
 

@@ -6,19 +6,19 @@ Whatever is missing, or stands in the costs without having been offered, is a na
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
 from cratous.core.assignment.problem import START, Branch
+from cratous.services.pipeline.compositions import Pair, Split, composition, is_choice, split
 from cratous.services.pipeline.contexts import Context
 from cratous.services.planning.flyers import flyer_of
 from cratous.services.planning.inputs import Inputs
 from cratous.services.planning.mission_assign import Travel
 from cratous.services.planning.options import Dropped, Option, hold_rooms
 from cratous.services.planning.routes import Routes
-from cratous.spec import algebra
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Zone
 
@@ -69,12 +69,16 @@ class Offered(Inputs):
 
 
 class Read(NamedTuple):
-    """The inputs with what was offered, the ways that count, tasks, and rows that take no part."""
+    """The inputs with what was offered, the ways that count, tasks, and rows that take no part.
+
+    split: where options are tasks of the assignment; inputs, rows and tasks are in its ids.
+    """
 
     inputs: Offered
     rows: list[Any]
     tasks: tuple[int, ...]
     foreign: int
+    split: Split
 
 
 def read(told: Told, matrix: Any, context: Context) -> Read:
@@ -90,12 +94,13 @@ def read(told: Told, matrix: Any, context: Context) -> Read:
             item="AssignmentCostMatrix",
             expected="TaskPlanOptions of task " + ", ".join(map(str, missing)),
         )
-    options = (option for task in tasks for option in _options(told.options[task], context))
-    inputs = Offered(context.inputs, tuple(options), bool(context.offered))
+    options = [option for task in tasks for option in _options(told.options[task], context)]
+    terms = {task: composition(told.options[task]) for task in tasks}
+    composed = {task: term for task, term in terms.items() if term and not is_choice(term)}
     rows = [row for row in matrix.CostMatrix if row.VehicleID in context.vehicles]
     foreign = len(matrix.CostMatrix) - len(rows)
     rows = [r for r in rows if not {r.IntialTaskID, r.DestinationTaskID} & unnamed]
-    known = {(0, 0), *((o.task_id, o.option_id) for o in inputs.offered)}
+    known = {(0, 0), *((o.task_id, o.option_id) for o in options)}
     for k, row in enumerate(rows):
         start = row.IntialTaskID, row.IntialTaskOption
         to = row.DestinationTaskID, row.DestinationTaskOption
@@ -106,13 +111,30 @@ def read(told: Told, matrix: Any, context: Context) -> Read:
                 expected="options that the tasks have offered, and no time below 0",
                 got=f"vehicle {row.VehicleID}, {start} to {to} in {row.TimeToGo} ms",
             )
-    return Read(inputs, rows, tasks, foreign)
+    parts = split(context.inputs, composed)
+    if composed:
+        ids = parts.ids
+        options = [
+            replace(o, task_id=ids.get((o.task_id, o.option_id), o.task_id)) for o in options
+        ]
+        rows = [_renamed(row, ids) for row in rows]
+        tasks = (*(t for t in tasks if t not in composed), *ids.values())
+    inputs = Offered(parts.inputs, tuple(options), bool(context.offered))
+    return Read(inputs, rows, tasks, foreign, parts)
+
+
+def _renamed(row: Any, ids: Mapping[Pair, int]) -> Any:
+    """A way of the costs between options that are tasks."""
+    start, to = row.IntialTaskID, row.DestinationTaskID
+    return row.copy(
+        IntialTaskID=ids.get((start, row.IntialTaskOption), start),
+        DestinationTaskID=ids.get((to, row.DestinationTaskOption), to),
+    )
 
 
 def _options(told: Any, context: Context) -> list[Option]:
-    """TaskPlanOptions as options; BadInput for a composition that names what is not offered."""
+    """TaskPlanOptions as options; BadInput for what is none."""
     item = f"TaskPlanOptions of task {told.TaskID}"
-    _check_composition(told, item)
     mission, made = context.inputs.mission, []
     flyers = {vehicle.id: flyer_of(vehicle) for vehicle in mission.vehicles}
     ours = {
@@ -163,27 +185,3 @@ def travel_of(inputs: Inputs, rows: Iterable[Any]) -> Travel:
         return times.get((vehicle, before, to))
 
     return travel_ms
-
-
-def _is_choice(term: algebra.Term) -> bool:
-    """True if a term is one of its atoms, whatever the nesting of the choices."""
-    if isinstance(term, algebra.Atom):
-        return True
-    return term.op == algebra.ALTERNATIVE and all(_is_choice(part) for part in term.operands)
-
-
-def _check_composition(told: Any, item: str) -> None:
-    """A composition has to be a choice of exactly the options that are offered."""
-    listed = {option.OptionID for option in told.Options}
-    if not told.Composition.strip() and not listed:
-        return
-    term = algebra.parse(told.Composition, where=item)
-    flat = _is_choice(term)
-    named = {atom.task for atom in algebra.atoms(term)}
-    if flat and named == listed:
-        return
-    what = "compositions other than a choice of one option are not covered"
-    if flat:
-        what = "this is no choice of the options that are offered"
-    expected = "+(" + " ".join(f"p{n}" for n in sorted(listed)) + ")"
-    raise BadInput(what, where=item, item="Composition", expected=expected, got=told.Composition)

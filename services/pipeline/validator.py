@@ -2,7 +2,7 @@
 
 Every request gets a ticket when it comes. When its turn comes it is held against what is known
 (`validity`): a valid one is published as UniqueAutomationRequest, one that waits only for its tasks
-to initialise themselves waits, any other is answered with the reasons. One is in the pipeline at a
+to initialise themselves waits (not for a kind that nobody does: `unserved`), any other is answered with the reasons. One is in the pipeline at a
 time; each is answered once, in order, by its response, by an error, or because its time ran out.
 A TaskAutomationRequest keeps its RequestID; the others, and one whose id has just been another's, are
 numbered in the order in which they come.
@@ -24,12 +24,15 @@ from cratous.services.bus import Envelope, Wake
 from cratous.services.pipeline.answers import Asked, answer, asked_of, refusal
 from cratous.services.pipeline.contexts import Context, Contexts
 from cratous.services.pipeline.status import status
+from cratous.services.pipeline.tasks import TASKS
+from cratous.services.pipeline.unserved import Unserved
 from cratous.services.pipeline.validity import things_of, verdict
 
 NAME = "AutomationRequestValidatorService"
 RESPONSE = "uxas.messages.task.UniqueAutomationResponse"
 STATUS = "afrl.cmasi.ServiceStatus"
 INITIALISED = "uxas.messages.task.TaskInitialized"
+MANAGER = "TaskManagerService"
 CMASI_TASK, REMOVE = "afrl.cmasi.Task", "afrl.cmasi.RemoveTasks"
 REMEMBERED = 4096
 """RequestIDs that are not given again."""
@@ -42,13 +45,15 @@ REQUESTS = (
 
 class Requests(NamedTuple):
     """line: the kernel's; asked: requests by ticket, each with its RequestID; published: the one
-    whose turn it is is out; initialised: tasks that have said so; notes: for its answer."""
+    whose turn it is is out; initialised: tasks that have said so; notes: for its answer; unserved: tasks
+    that nobody does."""
 
     line: Line
     asked: dict[int, Asked]
     published: bool
     initialised: frozenset[int]
     notes: tuple[str, ...] = ()
+    unserved: Unserved = Unserved()
 
     @property
     def work(self) -> int:
@@ -95,16 +100,27 @@ class AutomationRequestValidatorService:
         elif topic == STATUS:
             state = self._fail(self._noted(state, body), body, out, now_ms)
         elif topic == INITIALISED:
-            state = state._replace(initialised=state.initialised | {body.TaskID})
+            unserved = state.unserved.without([body.TaskID])
+            initialised = state.initialised | {body.TaskID}
+            state = state._replace(initialised=initialised, unserved=unserved)
         elif topic == REMOVE:
-            state = state._replace(initialised=state.initialised - set(body.TaskList))
+            unserved = state.unserved.without(body.TaskList)
+            initialised = state.initialised - set(body.TaskList)
+            state = state._replace(initialised=initialised, unserved=unserved)
         elif hasattr(body, "TaskID"):  # another task of this id, which has to initialise itself
             state = state._replace(initialised=state.initialised - {body.TaskID})
+            unserved = state.unserved.without([body.TaskID])
+            if topic not in TASKS and self._contexts.source.asks(MANAGER):
+                unserved, wake = unserved.arrived((body.TaskID, envelope.seq), topic)
+                out.append(wake)
+            state = state._replace(unserved=unserved)
         return self._pump(state, out, now_ms), out
 
-    def wake(self, state: Requests, key: int, now_ms: int) -> Step:
-        """A request's time may be over; whether it is, the kernel says."""
+    def wake(self, state: Requests, key: Any, now_ms: int) -> Step:
+        """A request's time may be over, and whether it is the kernel says; or a task's, to be spoken for."""
         out: list[Any] = []
+        if isinstance(key, tuple):
+            state = state._replace(unserved=state.unserved.due(key))
         return self._pump(state, out, now_ms), out
 
     def _step(
@@ -200,7 +216,8 @@ class AutomationRequestValidatorService:
 
     def _verdict(self, state: Requests, asked: Asked) -> Any:
         given = {planning.EntityID for planning in asked.states}
-        things = things_of(asked.request, given, self._contexts.world, state.initialised)
+        world, nobody = self._contexts.world, state.unserved.named
+        things = things_of(asked.request, given, world, state.initialised, nobody)
         return verdict(things)
 
     def _begin(self, state: Requests, out: list[Any], now_ms: int) -> Requests:

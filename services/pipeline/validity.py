@@ -8,7 +8,7 @@ that mean nothing, the planning services answer.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
 from cratous.core.contracts.validity import NOT_READY, item_fault, request_valid
@@ -21,7 +21,8 @@ _PLACES = {"LineID": "line", "SearchAreaID": "area", "SearchLocationID": "point"
 
 
 class Thing(NamedTuple):
-    """One thing that a request names, as the kernels take it, its id, and why it is not known."""
+    """One thing that a request names, as the kernels take it, its id, what it names that is not known, and
+    why there is nobody to do it."""
 
     kind: int
     known: bool
@@ -29,6 +30,7 @@ class Thing(NamedTuple):
     given: bool
     number: int
     lacks: str = ""
+    nobody: str = ""
 
     @property
     def fault(self) -> int:
@@ -37,6 +39,8 @@ class Thing(NamedTuple):
 
     def __str__(self) -> str:
         name = f"{_NAMES[self.kind]} {self.number}"
+        if self.nobody:
+            return f"{name} is a {self.nobody}: no service here does this kind, and no other speaks for it"
         if self.lacks:
             return f"{name} names {self.lacks}, which does not exist"
         if self.fault != NOT_READY:
@@ -55,11 +59,16 @@ class Verdict(NamedTuple):
 
 
 def things_of(
-    request: Any, given: Collection[int], world: Known, initialised: Collection[int]
+    request: Any,
+    given: Collection[int],
+    world: Known,
+    initialised: Collection[int],
+    unserved: Mapping[int, str] = {},
 ) -> list[Thing]:
     """Everything that an AutomationRequest names; no EntityList means all vehicles.
 
-    given: vehicles whose state comes with the request; initialised: tasks that have said so.
+    given: vehicles whose state comes with the request; initialised: tasks that have said so; unserved:
+    kinds of tasks that nobody does.
     """
     vehicles = list(request.EntityList) or world.ids("configuration")
     made = [
@@ -68,8 +77,9 @@ def things_of(
     ]
     for number in request.TaskList:
         lacks = _lacking(world, number)
-        known = world.has("task", number) and not lacks
-        made.append(Thing(TASK, known, number in initialised, False, number, lacks))
+        nobody = unserved.get(number, "")
+        known = world.has("task", number) and not lacks and not nobody
+        made.append(Thing(TASK, known, number in initialised, False, number, lacks, nobody))
     number = request.OperatingRegion
     if number:
         region = world.get("region", number)

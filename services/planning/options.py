@@ -128,7 +128,9 @@ def expand(
             unable = tuple(v for v in ids if v not in able)
             if unable:
                 dropped.append(Dropped(task.id, unable, "", "the task does not name it eligible"))
-            if able:
+            if able and task.kind is TaskKind.OTHER:
+                dropped.append(Dropped(task.id, able, "", "its own service says how it is flown"))
+            elif able:
                 may[flyer] = able
         made = [
             one

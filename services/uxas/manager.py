@@ -108,12 +108,11 @@ class ServiceManager:
         if envelope.topic != CREATE:
             return None, ()
         try:
-            self._create(envelope)
+            return None, self._create(envelope)
         except CratousError as error:
             self._host.log("ERROR", f"CreateNewService from {envelope.source} is refused: {error}")
             facts = [("CreateNewService", str(envelope.body.ServiceID)), ("reason", str(error))]
             return None, [status(0, "Error", facts)]
-        return None, ()
 
     def kill(self, number: int) -> None:
         """End a service or bridge: -1 the process, the manager's id all services."""
@@ -198,7 +197,8 @@ class ServiceManager:
     def _name(self, kind: str, number: int) -> str:
         return f"{kind}[{number}]" if kind in self._host.bus.names() else kind
 
-    def _create(self, envelope: Envelope) -> None:
+    def _create(self, envelope: Envelope) -> list[Any]:
+        """Make the service; what is to be said of it."""
         body = envelope.body
         number = body.ServiceID
         where = f"CreateNewService {number}"
@@ -225,12 +225,18 @@ class ServiceManager:
             contexts, kind = registry.contexts_of(self._host), TASKS[item.type]
             ended = partial(_forget, world, task)
             self._add(TaskService(contexts, task.TaskID, kind, ended), number)
-            return
+            return []
+        if item.type in not_covered.TASKS and task is not None:
+            # no error: another's service may do it, and a request says if nobody does
+            text = f"task {task.TaskID} is a {item.type}: no service here does this kind"
+            self._host.log("WARN", text)
+            return [status(0, "Warning", [("TaskID", str(task.TaskID)), ("reason", text)])]
         problems: list[BadInput] = []
         running = set(self._names.values())
         _check(item, [*(e for e in self._config.entries if e.type in running), item], problems)
         refuse(problems)
         self._make(item, number)
+        return []
 
 
 def _forget(world: World, task: Any) -> None:

@@ -15,13 +15,14 @@ from cratous.services.loading.places import Places
 from cratous.services.loading.uxas import mission_of, surroundings_of
 from cratous.services.loading.uxas_cfg import Configuration, Sent
 from cratous.services.pipeline.places import RequestPlaces, read_pose
-from cratous.services.pipeline.world import World
+from cratous.services.pipeline.world import MOST, World
 from cratous.services.planning import stages
 from cratous.services.planning.inputs import Inputs
 from cratous.services.uxas.frame import Host
 from cratous.spec.errors import BadInput
 
 IMPACT = "afrl.impact.ImpactAutomationRequest"
+INITIALISED = "uxas.messages.task.TaskInitialized"
 IMPACT_ANSWER = "afrl.impact.ImpactAutomationResponse"
 _OF_ZONES = -1  # no region that comes in a message is this one
 MOST_OVERRIDDEN = 1000
@@ -30,11 +31,12 @@ MOST_OVERRIDDEN = 1000
 class MessageSource:
     """The facts of one process."""
 
-    subscribes: tuple[str, ...] = (*World.subscribes, IMPACT, IMPACT_ANSWER)
+    subscribes: tuple[str, ...] = (*World.subscribes, IMPACT, IMPACT_ANSWER, INITIALISED)
 
     def __init__(self, host: Host) -> None:
         self.world = World()
         self._host = host
+        self._spoken: dict[int, None] = {}  # tasks whose services have said that they are there
         self._overridden: dict[int, Any] = {}  # requests with conditions of their own, unanswered
 
     def hear(self, envelope: Envelope, now_ms: int) -> None:
@@ -46,7 +48,13 @@ class MessageSource:
                 self._overridden = dict(list(kept.items())[-MOST_OVERRIDDEN:])
         elif envelope.topic == IMPACT_ANSWER:
             self._overridden.pop(body.ResponseID, None)
+        elif envelope.topic == INITIALISED:
+            self._spoken[body.TaskID] = None
+            if len(self._spoken) > MOST:
+                self._spoken.pop(next(iter(self._spoken)))
         else:
+            if hasattr(body, "TaskID"):  # another task of this id, which has to be spoken for anew
+                self._spoken.pop(body.TaskID, None)
             self.world.add(body, f"message {envelope.seq} from {envelope.source}", now_ms)
 
     def asks(self, service: str) -> bool:
@@ -64,7 +72,7 @@ class MessageSource:
                 expected="speeds and altitudes in the configurations",
             )
         cfg = self._configuration(Sent(request.OriginalRequest, where, 0))
-        mission = mission_of(cfg, str(self._host.config))
+        mission = mission_of(cfg, str(self._host.config), self._spoken)
         for note in mission.notes:
             self._host.log("INFO", f"request {request.RequestID}: {note}")
         frame = Places(mission.frame)

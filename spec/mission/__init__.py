@@ -93,6 +93,8 @@ class TaskKind(StrEnum):
     LOITER = "loiter"
     AREA_SEARCH = "area_search"
     PATTERN_SEARCH = "pattern_search"
+    OTHER = "other"
+    """Known by what a service of its own says of it in messages, and by nothing else; of no mission file."""
 
 
 SEARCHES = (

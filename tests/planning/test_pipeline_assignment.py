@@ -77,11 +77,20 @@ def test_ineligible_and_excluded_vehicles_get_nothing_whatever_rows_there_are(
 @pytest.mark.parametrize(
     ("told", "rows", "words"),
     [
-        (options(2, 5, option(5, 1, 1), composition="+(p1 p9)"), [], "no choice of the options"),
+        (
+            options(2, 5, option(5, 1, 1), composition="+(p1 p9)"),
+            [],
+            "no composition of the options",
+        ),
+        (
+            options(2, 5, option(5, 1, 1), option(5, 2, 1), composition=".(p1 p1 p2)"),
+            [],
+            "p1 stands twice in one branch",
+        ),
         (
             options(2, 5, option(5, 1, 1), option(5, 2, 1), composition=".(p1 p2)"),
-            [],
-            "not covered",
+            [cost(1, 5, 1, 5)],
+            r"the costs have no way to task 5 \(option 2\)",
         ),
         (
             options(2, 5, option(5, 1, 1), composition="+(1)"),

@@ -11,6 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from bridge_tools import ALL, TCP, tcp_server
+from pipeline_messages import option, options
+from pipeline_tools import place, request, vehicle
 from uxas_tools import LIMIT_S, Client, free_port, process, started, until, write_cfg
 
 from cratous.bridge import lmcp
@@ -114,8 +116,8 @@ def test_each_request_gets_one_response_in_order_with_reasons(
         (6, "task 1000"),
     ):
         assert re.search(text, reasons[k]), reasons[k]
-    assert reasons[5], "a kind of task that is not covered is named"
-    assert said.has("unknown service type") or said.has("not covered yet")
+    assert "task 5 is a afrl.impact.CommRelayTask: no service here does this kind" in reasons[5]
+    assert said.has("task 5 is a afrl.impact.CommRelayTask")
     assert not said.has("fails at")
     names = one.bus.names()
     assert not any("1000" in name for name in names), "the task's service has ended"
@@ -198,3 +200,51 @@ def test_a_recorded_simulator_session_tells_the_world(
     assert states[400].Time > 600_000, "the newest state of each is kept"
     assert not one.manager.bridges[57].port.counts.refused
     assert not said.has("fails at")
+
+
+def test_a_client_s_task_service_takes_part_over_a_bridge(
+    tmp_path: Path, opened: list[Any]
+) -> None:
+    """A kind of task that nobody here does, done by a client that says how it is flown."""
+    one, _, port = tcp_server(tmp_path, more=PIPELINE)
+    opened.append(one)
+    client = Client(port)
+    opened.append(client)
+    for body in (*vehicle(1), lmcp.new("RendezvousTask", TaskID=9)):
+        client.send(body)
+    client.send(lmcp.new("TaskInitialized", TaskID=9))
+    client.send(request(9))
+
+    def told(kind: str) -> Any:
+        until(lambda: kind in client.kinds(), one)
+        found = next(m for m in client.got if m.descriptor.endswith(f".{kind}"))
+        return lmcp.binary.unpack(found.payload)
+
+    number = told("UniqueAutomationRequest").RequestID
+    parts = [option(9, 1, latitude=0.02), option(9, 2, latitude=0.04)]
+    client.send(options(number, 9, *parts, composition=".(p1 p2)"))
+    summary = told("TaskAssignmentSummary")
+    assert [(t.TaskID, t.OptionID) for t in summary.TaskList] == [(9, 1), (9, 2)]
+    for k in (1, 2):
+        until(lambda k=k: client.kinds().count("TaskImplementationRequest") == k, one)
+        asked = [m for m in client.got if m.descriptor.endswith(".TaskImplementationRequest")]
+        body = lmcp.binary.unpack(asked[-1].payload)
+        start = body.StartingWaypointID
+        points = [
+            lmcp.new("Waypoint", Number=start, Latitude=0.02 * k, AssociatedTasks=[9], Speed=20.0)
+        ]
+        client.send(
+            lmcp.new(
+                "TaskImplementationResponse",
+                ResponseID=body.RequestID,
+                CorrespondingAutomationRequestID=number,
+                TaskID=9,
+                OptionID=body.OptionID,
+                VehicleID=1,
+                TaskWaypoints=points,
+                FinalLocation=place(0.02 * k + 0.002),
+                FinalTime=body.TimeThreshold + 1000,
+            )
+        )
+    (command,) = told("AutomationResponse").MissionCommandList
+    assert [w.Latitude for w in command.WaypointList] == [0.02, 0.04]

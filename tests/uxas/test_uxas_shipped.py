@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from uxas_tools import write_cfg
+from uxas_tools import process, write_cfg
 
 from cratous.bridge import lmcp
 from cratous.services.cli import main
@@ -35,6 +35,27 @@ def test_every_configuration_is_accepted_and_says_what_it_lacks() -> None:
         said = [text for name, text in LACKING.items() if str(path).endswith(name)]
         assert len(notes) == len(said), (path, notes)
         assert all(text in note for text, note in zip(said, notes, strict=True))
+
+
+@pytest.mark.skipif(not SHIPPED.is_dir(), reason="no ../shared/examples")
+def test_every_configuration_starts_and_sends_what_is_due(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All services are made, and all message files read and decoded; bridges are left out."""
+    monkeypatch.chdir(tmp_path)
+    for path in CONFIGURATIONS:
+        config = read(path)
+        bridges = frozenset(entry.type for entry in config.entries if entry.kind == "Bridge")
+        one, said = process(path, virtual=True, without=bridges, data=tmp_path / "datawork")
+        try:
+            made = set(one.manager.services.values())
+            for entry in config.entries:
+                lacking = any(f"no service {entry.type} here" in line for line in said)
+                assert entry.kind == "Bridge" or entry.type in made or lacking, (path, entry.type)
+            one.run(0.5)
+            assert not said.has("ERROR"), (path, said)
+        finally:
+            one.close()
 
 
 @pytest.mark.skipif(not SHIPPED.is_dir(), reason="no ../shared/examples")
