@@ -19,6 +19,9 @@ from cratous.spec.mission.guarantees import exit_code
     type=click.Path(path_type=Path),
     help="Requirements of your own: a file *.req, or C2PO; LOG may be a CSV file then.",
 )
+@click.option(
+    "--model", is_flag=True, help="Is each event of authority a step of the proved system?"
+)
 @click.option("--verdicts", is_flag=True, help="Also each verdict, as `id:sample,T`, F or ?.")
 @click.option(
     "--attach",
@@ -51,6 +54,7 @@ from cratous.spec.mission.guarantees import exit_code
 def monitor(
     log: Path | None,
     requirements: Path | None,
+    model: bool,
     verdicts: bool,
     as_json: bool,
     allow_unproved: bool,
@@ -65,6 +69,10 @@ def monitor(
     (with --json a JSON object) when one is violated or unknown for the first time, all verdicts at the
     end. Nothing is sent to it.
 
+    With --model, replay all that concerns authority over the vehicles (takeovers, handbacks, commands
+    at the gate, heartbeats) through the steps that are proved together; the first event that is none
+    is named, and so is what is not looked at.
+
     Example:  cratous monitor out/crossing/log.sqlite
 
     Exit codes: 0 all requirements hold, 1 something is violated, 2 bad input, 3 something is
@@ -76,7 +84,7 @@ def monitor(
     if address is not None:
         from cratous.services.cli.monitor_attach import Live, attach
 
-        if requirements is None or verdicts:
+        if requirements is None or verdicts or model:
             raise BadInput("--attach watches requirements", expected="--requirements FILE.req")
         return attach(address, requirements, Live(**attached), as_json, allow_unproved)
     assert log is not None
@@ -84,12 +92,21 @@ def monitor(
         raise BadInput(
             f"--{given[0].replace('_', '-')} needs --attach", expected="--attach HOST:PORT"
         )
+    if model and requirements is not None:
+        raise BadInput("two questions at once", item="--model", expected="no --requirements")
     if requirements is not None:
         from cratous.services.cli.monitor_requirements import trace
 
         return trace(log, requirements, verdicts, as_json, allow_unproved)
     if verdicts:
         raise BadInput("there are no such verdicts", item="--verdicts", expected="--requirements")
+    from cratous.services.results.names import LOG_NAME
+
+    log = log / LOG_NAME if log.is_dir() else log
+    if model:
+        from cratous.services.cli import monitor_model
+
+        return monitor_model.model(log, as_json, allow_unproved)
     from cratous.core import ledger
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory, summary
@@ -97,13 +114,12 @@ def monitor(
     from cratous.services.certify.verdicts import constraint_rows, requirement_rows
     from cratous.services.cli.progress import waiting
     from cratous.services.cli.show import requirement_table
-    from cratous.services.results.names import LOG_NAME
 
     with waiting("holding the code against its proofs", as_json) as wait:
         standing = ledger.require(allow_unproved=allow_unproved)
         wait.at("judging the messages of the log")
         with counted() as calls:
-            judged = watch(log / LOG_NAME if log.is_dir() else log)
+            judged = watch(log)
     evidence = inventory(standing, calls.data())
     rows = constraint_rows(judged, "flight")
     code = exit_code([v.outcome for v in judged])

@@ -1,0 +1,64 @@
+"""`cratous monitor --model`: a flight's log against the composed steps of authority."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from cratous.spec.files.printable import json_text
+
+
+def model(log: Path, as_json: bool, allow_unproved: bool) -> int:
+    """Print whether each event of authority is a step of the model, or the first that is not; the exit code.
+
+    0 all are, 1 one is not, 3 all are by kernels that have no proof.
+    """
+    from cratous.core import ledger
+    from cratous.services.certify.rejudge import subject
+    from cratous.services.cli.show import say
+    from cratous.services.logs.log import read_envelopes, read_meta
+    from cratous.services.system_model import coverage
+    from cratous.services.system_model.replay import replay
+    from cratous.spec.errors import BadInput
+
+    standing = ledger.require(allow_unproved=allow_unproved)
+    mission, _ = subject(log)
+    avoidance = read_meta(log).get("avoidance", True)
+    if not isinstance(avoidance, bool):
+        raise BadInput(
+            "the log does not say how it was flown",
+            where=str(log),
+            item="meta.avoidance",
+            expected="true or false",
+            got=str(avoidance),
+        )
+    found = replay(mission, avoidance, read_envelopes(log))
+    code = 1 if found.finding is not None else 3 if standing.problems else 0
+    unseen = coverage.rows(found.passed)
+    if as_json:
+        data = {
+            "fits": found.finding is None,
+            "finding": found.finding._asdict() if found.finding is not None else None,
+            "events": dict(sorted(found.events.items())),
+            "vehicles_with_icarous": found.vehicles,
+            "steps": coverage.steps(),
+            "not_covered": unseen,
+            "proofs": standing.line,
+            "exit_code": code,
+        }
+        click.echo(json_text(data))
+        return code
+    events = ", ".join(f"{count} {kind}" for kind, count in sorted(found.events.items()))
+    if found.finding is not None:
+        say(f"DOES NOT FIT the model: {found.finding.text}")
+        say("what follows it in the log was not looked at")
+    else:
+        say(f"fits the model: each of {found.events.total()} events is a step of it")
+    say(f"events: {events or 'none'}; {found.vehicles} vehicles with ICAROUS")
+    for step, kernels in coverage.steps().items():
+        say(f"covered: {step} ({', '.join(k.rpartition('.')[2] for k in kernels)})")
+    for row in unseen:
+        say(f"not covered: {row}")
+    click.echo(f"proofs: {standing.line}")
+    return code

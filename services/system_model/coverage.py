@@ -1,0 +1,41 @@
+"""What a replay covers: the steps by their kernels, and what it does not look at."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from cratous.core.authority import cycle, gate, link_end
+from cratous.core.kernel import qualified
+
+STEPS = {
+    "the gate takes a command": (gate.gate_accepts, gate.gate_after),
+    "the gate changes at ICAROUS's wish": (cycle.gate_wished, gate.gate_takeover, gate.gate_offer),
+    "a heartbeat of ICAROUS": (cycle.cycle_begun, cycle.cycle_watched, cycle.cycle_flown),
+    "a SETMOD line at the UxAS end": (link_end.link_mode, link_end.suspended_after),
+    "a sign of life, or silence": (link_end.link_sign,),
+    "UxAS commands a track": (link_end.track_is_told,),
+}
+"""Each step of the model, and the kernels that answer it."""
+NOT_COVERED = (
+    "whether a conflict was foreseen or the way back free (either is allowed at each heartbeat)",
+    "when ICAROUS heard UxAS (an offer is allowed also while nothing goes to it)",
+    "SETMOD lines (not in the log: any may have come, also a forged one that is true)",
+    "silence that is not reported once ICAROUS has flown (its other lines count as signs of life)",
+    "notes on the link of lines that cannot be read",
+    "what a command says: the path, the velocity or the circle",
+    "reasons and intruders of changes of authority",
+    "the executive: tasks, plans, order and timing (G1 and G3 judge them)",
+    "motion of the aircraft (G1 and G2 judge it)",
+)
+"""What the model does not decide, in words."""
+
+
+def steps() -> dict[str, list[str]]:
+    """The kernels of each step, by their full names."""
+    return {step: [qualified(kernel) for kernel in kernels] for step, kernels in STEPS.items()}
+
+
+def rows(passed: Mapping[str, int]) -> list[str]:
+    """All that was not covered in this log. passed: messages that were not looked at, by topic."""
+    unread = [f"{count} {topic}: message not looked at" for topic, count in sorted(passed.items())]
+    return [*NOT_COVERED, *unread]

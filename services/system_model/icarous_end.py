@@ -1,0 +1,114 @@
+"""The ICAROUS instance of one vehicle as the model has it: every state that it can be in by what was logged.
+
+What an instance sees is not in the log: whether a conflict is foreseen, whether the way back is free, when it
+has heard UxAS. Each may be either way; what it then does is answered by the kernels that fly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from cratous.core.authority.cycle import (
+    Cycle,
+    Cycled,
+    cycle_begun,
+    cycle_flown,
+    cycle_watched,
+    gate_wished,
+)
+from cratous.core.authority.gate import ICAROUS, Gate, gate_accepts
+from cratous.core.authority.timeliness import in_time
+from cratous.services.icarous.instance import LINK_LOST_MS
+from cratous.services.icarous.return_to_path import PERSIST_MS, RELAPSE_MS
+from cratous.services.system_model.finding import Misfit
+from cratous.spec.authority.cycle import MONITOR, NOTHING
+
+START = Cycle(MONITOR, 0, False, 0, False, 0)
+TOO_LONG_MS = LINK_LOST_MS + 1
+ASKED = {
+    "wish": "what ICAROUS may do with its authority then (take over, offer or withdraw)",
+    "command": "no command, for ICAROUS does not fly the vehicle, or has commanded at this heartbeat already",
+    "silence": "a command of ICAROUS, which flies the vehicle, at this heartbeat",
+}
+
+
+class IcarousEnd:
+    """cycles: the states it can be in; beats: heartbeats so far; beat_ms: when the last was [ms], None before
+    the first; due: it has changed the authority, so a command has to follow; flown: it has ever commanded."""
+
+    def __init__(self) -> None:
+        self.cycles: frozenset[Cycle] = frozenset({START})
+        self.beats = 0
+        self.beat_ms: int | None = None
+        self.due = False
+        self.flown = False
+
+    def has_beaten(self, now_ms: int) -> bool:
+        """Its heartbeat of this instant is over, or has begun."""
+        return self.beat_ms is not None and in_time(self.beat_ms, now_ms, 0)
+
+    def wishes(self, gate: Gate, after: Gate, now_ms: int) -> None:
+        """The gate has changed at its wish, in its heartbeat; Misfit if no state wishes this."""
+        got = f"the gate went from {tuple(gate)} to {tuple(after)} (owner, epoch, offered)"
+        self._beat(
+            gate,
+            now_ms,
+            lambda does: does.act != NOTHING and gate_wished(gate, does.act) == after,
+            ASKED["wish"],
+            got,
+        )
+        self.due = True
+
+    def commands(self, gate: Gate, now_ms: int) -> None:
+        """It has sent a command; Misfit if it flies nothing, or its command of this heartbeat is there."""
+        self.flown = True
+        if self.due:
+            self.due = False
+            return
+        got = f"a command of ICAROUS; the gate is {tuple(gate)}"
+        self._beat(gate, now_ms, _goes_on, ASKED["command"], got)
+
+    def is_silent(self, gate: Gate, now_ms: int) -> None:
+        """Its heartbeat was one in which it watched and did nothing; Misfit if it has to command."""
+        self._beat(gate, now_ms, _watches, ASKED["silence"], "none")
+
+    def _beat(
+        self, gate: Gate, now_ms: int, fits: Callable[[Cycled], bool], expected: str, got: str
+    ) -> None:
+        if self.has_beaten(now_ms):
+            raise Misfit("a second heartbeat of ICAROUS at one instant", expected, got)
+        after = frozenset(d.cycle for d in self._may_do(gate, now_ms) if fits(d))
+        if not after:
+            raise Misfit("a heartbeat of ICAROUS", expected, got)
+        self.cycles, self.beat_ms = _foremost(after), now_ms
+        self.beats += 1
+
+    def _may_do(self, gate: Gate, now_ms: int) -> Iterator[Cycled]:
+        """All that it can do, whatever it sees."""
+        may = gate_accepts(gate, ICAROUS, gate.epoch)
+        for cycle in self.cycles:
+            begun = cycle_begun(cycle, may, now_ms)
+            for seen in (False, True):
+                if begun.mode == MONITOR:
+                    yield cycle_watched(begun, seen, now_ms, RELAPSE_MS)
+                    continue
+                for heard_ms in (now_ms, now_ms - TOO_LONG_MS):
+                    yield cycle_flown(begun, seen, heard_ms, now_ms, LINK_LOST_MS, PERSIST_MS)
+
+
+def _goes_on(does: Cycled) -> bool:
+    return does.act == NOTHING and does.cycle.mode != MONITOR
+
+
+def _watches(does: Cycled) -> bool:
+    return does.act == NOTHING and does.cycle.mode == MONITOR
+
+
+def _foremost(cycles: frozenset[Cycle]) -> frozenset[Cycle]:
+    """Without those that can do nothing that another cannot: of states that differ only in since when the
+    way back is free, the one where it has been for longest may offer whenever any other may, and needs not."""
+    longest: dict[Cycle, Cycle] = {}
+    for cycle in cycles:
+        alike = cycle._replace(free_ms=0)
+        longest[alike] = min(longest.get(alike, cycle), cycle)
+    return frozenset(longest.values())

@@ -1,0 +1,152 @@
+"""One vehicle in the model: its gate, its ICAROUS instance and the UxAS end, and the reports that are due."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cratous.core.authority.gate import ICAROUS, UXAS, Gate, gate_accepts, gate_after
+from cratous.services.system_model.finding import Misfit
+from cratous.services.system_model.icarous_end import IcarousEnd
+from cratous.services.system_model.uxas_end import UxasEnd
+
+REPORTS = ("GateState", "AuthorityChange", "CommandDropped")
+EXECUTIVE, LINK = "uxas/executive", "uxas/ics"
+OF_THE_LINK = ("Heartbeat", "BridgeStatus", "ModeRefused")
+NUMBERS = {"UxAS": UXAS, "ICAROUS": ICAROUS}
+NAMES = {number: name for name, number in NUMBERS.items()}
+Report = tuple[str, str, int, int]
+"""Kind; who owns it, or has sent what was dropped; epoch; offered (0 or 1), or the gate's epoch of one dropped."""
+
+
+class VehicleModel:
+    """The state of all three, as far as the log tells; due: reports that must come next, in order."""
+
+    def __init__(self, vehicle_id: int, has_instance: bool) -> None:
+        self.vehicle_id = vehicle_id
+        self.gate = Gate(UXAS, 0, False)
+        self.uxas = UxasEnd()
+        self.icarous = IcarousEnd() if has_instance else None
+        self.due: list[Report] = []
+
+    def event(self, short: str, source: str, body: Any, now_ms: int) -> None:
+        """An event of this vehicle; Misfit if it is no step from any state that it can be in."""
+        teller = f"vehicle/{self.vehicle_id}" if short in REPORTS else LINK
+        if short in (*REPORTS, *OF_THE_LINK) and source != teller:
+            raise Misfit(f"the sender of a {short}", teller, source)
+        if short in REPORTS:
+            self._report(short, body, now_ms)
+            return
+        self.nothing_due(f"{short} of {source}")
+        icarous = self.icarous
+        if icarous is not None and icarous.due and source != f"icarous/{self.vehicle_id}":
+            raise Misfit(
+                "a heartbeat of ICAROUS", "its command, for it changed the authority", short
+            )
+        self.uxas.hears(self.gate)
+        if short == "GatedCommand":
+            self._command(source, body, now_ms)
+        elif short == "Heartbeat":
+            self._beat(body, now_ms)
+        elif short == "BridgeStatus":
+            self.uxas.notes(body.Note, body.Alive, self.gate, now_ms)
+        elif short == "ModeRefused":
+            self.uxas.refuses(self.gate, bool(NUMBERS[body.Owner.name]), body.Epoch)
+        elif short == "TaskProgress" and source == LINK:
+            self.uxas.lets_go(self.gate)
+
+    def nothing_due(self, got: str) -> None:
+        """Misfit if a report has to come first."""
+        if self.due:
+            raise Misfit("a report of the gate", _said(self.due[0]), got)
+
+    def end_of_heartbeat(self, now_ms: int) -> None:
+        """A heartbeat's instant is over: ICAROUS has commanded, or watched and done nothing; UxAS has sent
+        its own, and said so if nothing has come for too long."""
+        icarous = self.icarous
+        if icarous is None:
+            return
+        if icarous.due:
+            raise Misfit(
+                "a heartbeat of ICAROUS", "its command after a change of authority", "none"
+            )
+        if not icarous.has_beaten(now_ms):
+            icarous.is_silent(self.gate, now_ms)
+        # lines of commands may be under way still once it has flown; before, heartbeats are all that comes
+        if self.uxas.open and not icarous.flown and self.uxas.is_silent(now_ms):
+            heard = f"nothing; the last heartbeat came at {self.uxas.heard_ms} ms"
+            raise Misfit("the link", "a report of silence", heard)
+
+    def _report(self, short: str, body: Any, now_ms: int) -> None:
+        got = _report_of(short, body)
+        if self.due:
+            if got != self.due[0]:
+                raise Misfit("a report of the gate", _said(self.due[0]), _said(got))
+            self.due.pop(0)
+            return
+        if short != "GateState" or self.icarous is None:
+            raise Misfit("a report of the gate", "none: nothing has led to it", _said(got))
+        self.uxas.hears(self.gate)
+        after = Gate(NUMBERS[body.Owner.name], body.Epoch, body.Offered)
+        self.icarous.wishes(self.gate, after, now_ms)
+        before, self.gate = self.gate, after
+        self.due += _changes(before, after)
+
+    def _command(self, source: str, body: Any, now_ms: int) -> None:
+        sender, before = NUMBERS[body.Sender.name], self.gate
+        by_icarous = sender == ICAROUS
+        own = f"icarous/{self.vehicle_id}"
+        senders = (own,) if by_icarous else (EXECUTIVE, LINK)
+        if source not in senders or (by_icarous and self.icarous is None):
+            expected = " or ".join(senders) if not by_icarous or self.icarous else "no instance"
+            raise Misfit(f"a command in the name of {body.Sender.name}", expected, source)
+        if self.icarous is not None and by_icarous:
+            self.icarous.commands(before, now_ms)
+            if not gate_accepts(before, ICAROUS, body.Epoch):
+                expected = f"epoch {before.epoch}, the present one"
+                raise Misfit("a command of ICAROUS", expected, f"epoch {body.Epoch}")
+        elif source == LINK:
+            self.uxas.takes_back(before, body.Epoch)
+        else:
+            self.uxas.tells(body.Epoch)
+        accepted = gate_accepts(before, sender, body.Epoch)
+        self.gate = after = gate_after(before, sender, body.Epoch)
+        if not accepted:
+            self.due.append(("CommandDropped", body.Sender.name, body.Epoch, before.epoch))
+        if after != before:
+            self.due.append(("GateState", NAMES[after.owner], after.epoch, int(after.offered)))
+        self.due += _changes(before, after)
+
+    def _beat(self, body: Any, now_ms: int) -> None:
+        if self.icarous is None:
+            raise Misfit("a heartbeat", "none, for the vehicle has no ICAROUS", body.Direction.name)
+        if body.Direction.name == "Down":
+            self.uxas.sends_beat(body.Sequence)
+            return
+        # the first heartbeat of this instant that comes up shows that the instance has had its turn
+        known = self.icarous.beats
+        if not self.icarous.has_beaten(now_ms) and body.Sequence == known + 1:
+            self.icarous.is_silent(self.gate, now_ms)
+        if body.Sequence not in range(1, self.icarous.beats + 1):
+            expected = f"a number that was sent: 1 to {self.icarous.beats}"
+            raise Misfit("a heartbeat from ICAROUS", expected, f"number {body.Sequence}")
+        self.uxas.hears_beat(now_ms)
+
+
+def _changes(before: Gate, after: Gate) -> list[Report]:
+    """The change of who owns the vehicle, if it is one."""
+    was, now = NAMES[before.owner], NAMES[after.owner]
+    return [("AuthorityChange", now, after.epoch, 0)] if was != now else []
+
+
+def _report_of(short: str, body: Any) -> Report:
+    if short == "CommandDropped":
+        return (short, body.Sender.name, body.Epoch, body.GateEpoch)
+    offered = int(body.Offered) if short == "GateState" else 0
+    return (short, body.Owner.name, body.Epoch, offered)
+
+
+def _said(report: Report) -> str:
+    short, who, epoch, last = report
+    if short == "CommandDropped":
+        return f"CommandDropped ({who}, epoch {epoch}, gate in epoch {last})"
+    return f"{short} ({who}, epoch {epoch}{', offered' if last else ''})"

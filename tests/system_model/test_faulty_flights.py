@@ -1,0 +1,49 @@
+"""Flights over a broken bridge fit the model: what a link does to messages is in it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from faulty_bridge import FAULTS, faulty
+from flight_tools import meeting, vehicle
+
+from cratous.bridge import lmcp
+from cratous.services.bus import Bus
+from cratous.services.flight.loop import fly
+from cratous.services.pipeline.plan import make_plan
+from cratous.services.system_model.replay import Replayed, replay
+from cratous.spec.mission import Mission, Position, Simulation, Task, TaskKind
+
+
+def judged(mission: Mission, kind: str, seed: int) -> Replayed:
+    bus, log = Bus(lmcp.full_names), list[Any]()
+    bus.tap(log.append)
+    with faulty(kind, seed):
+        fly(mission, make_plan(mission), bus)
+    return replay(mission, True, log)
+
+
+def changed(seed: int) -> Mission:
+    """The meeting with another course and speed of the traffic, and a second vehicle beside."""
+    (other,) = meeting().traffic
+    moved = other.position._replace(east_m=-2640.0 + 22.0 * 5 * seed)
+    second = Task(2, TaskKind.MUST_FLY, "", (Position(3000.0, 9000.0, 300.0),))
+    return replace(
+        meeting(),
+        vehicles=(vehicle(1, 0.0, 0.0), vehicle(2, 0.0, 9000.0)),
+        tasks=(*meeting().tasks, second),
+        traffic=(replace(other, position=moved),),
+        instances=(1, 2),
+        simulation=Simulation(limit_ms=300_000),
+    )
+
+
+@pytest.mark.parametrize("kind", FAULTS)
+@pytest.mark.parametrize("seed", range(3))
+def test_it_fits_whatever_the_link_does(kind: str, seed: int) -> None:
+    found = judged(changed(seed), kind, seed)
+    assert found.finding is None, found.finding.text
+    assert found.events["MissionEnd"] == 1
+    assert found.events["AuthorityChange"] > 0, "nothing was taken over: nothing was shown"
