@@ -1,5 +1,6 @@
 """The CRATOUS text protocol over TCP between processes: one end that listens, one that connects.
 
+Either of UxAS's end, which speaks first, and ICAROUS's may be the one that listens.
 Nothing here blocks and nothing raises because of a peer: what it sends is a record (a message, a refused
 or skipped line), its end is a `LinkEvent`. A peer that does not finish the handshake, sends faster than it
 may, sends nothing but what cannot be read, or falls silent, is dropped with the reason.
@@ -13,7 +14,7 @@ from typing import Any, NamedTuple
 
 import zmq
 
-from cratous.bridge.link import Link, LinkEvent, Listener, connect
+from cratous.bridge.link import Link, LinkEvent, Listener, connect_later
 from cratous.bridge.port import Address, Report, Tally, is_due
 from cratous.bridge.text_protocol.format import encode
 from cratous.bridge.text_protocol.handshake import (
@@ -36,13 +37,12 @@ from cratous.spec.errors import BadInput
 PROGRAM_LIMITS = Limits(10_000, 1000, 1000, 9999, 9999)
 """The largest counts that the two programs take; a vehicle's memory is bounded by them."""
 _READS = 16
-_PATIENCE_S = 0.5
-"""How long a client waits for a connection to come about before it goes on with its other work."""
-NOISE, SILENT, LATE, FAST = (
+NOISE, SILENT, LATE, FAST, NOBODY = (
     "nothing but what cannot be read",
     "silent",
     "handshake not finished in time",
     "sends faster than it may",
+    "nobody listens there",
 )
 
 
@@ -87,6 +87,7 @@ class Connection:
         self._parser = StreamParser(direction, limits=PROGRAM_LIMITS, original_peer=True)
         self.name = link.remote_name
         self._until_s: float | None = now_s + bounds.handshake_s
+        self.opened = False
         self._room, self._at_s, self._bad = bounds.burst_bytes, now_s, 0
         self.link.send(handshake.start())
 
@@ -100,6 +101,9 @@ class Connection:
         self.link.flush()
         self.link.drain(_READS)
         data = self.link.take()
+        if not self.opened and self.link.itself:
+            self.drop(NOBODY)
+            data = b""
         found = self._read(data) if data else []
         self._spend(len(data), now_s)
         if data and self._handshake.done:
@@ -126,6 +130,7 @@ class Connection:
                 self.drop(f"handshake failed: {self._handshake.failed}")
             if not self._handshake.done:
                 return found
+            self.opened, self.name = True, self.link.remote_name
             found.append(Opened(self.name))
             data = self._handshake.rest
         for record in self._parser.feed(data):
@@ -153,12 +158,14 @@ class TextPort:
         where: Address,
         *,
         server: bool,
+        listens: bool | None = None,
         bounds: Bounds | None = None,
         original: bool = False,
         secret: str = DEFAULT_SECRET,
         report: Report = lambda _severity, _text: None,
     ) -> None:
-        """server: UxAS's end, which listens (BadInput if it cannot); else ICAROUS's, see `dial`.
+        """server: UxAS's end, which speaks first; else ICAROUS's. listens: it waits for peers (BadInput
+        if it cannot listen), else it connects, see `dial`; as in the original, UxAS's end waits.
 
         original: the peers are the original's: no HELLO and HBEAT, its number formats, no count above
         what its arrays hold.
@@ -171,9 +178,14 @@ class TextPort:
         self._keys = itertools.count(1)
         self._listener: Listener | None = None
         self._closed = False
-        if server:
+        if server if listens is None else listens:
             host = "0.0.0.0" if where.everywhere else where.host
             self._listener = Listener(host, where.port)
+
+    @property
+    def listens(self) -> bool:
+        """True if it waits for its peers."""
+        return self._listener is not None
 
     @property
     def bound(self) -> tuple[str, int]:
@@ -198,10 +210,13 @@ class TextPort:
                 found.append((one.link.fileno(), flags))
         return found
 
-    def dial(self, now_s: float) -> int:
-        """Connect to the end that listens; the connection's key. BadInput if nobody is there."""
-        link = connect((self.where.host, self.where.port), _PATIENCE_S)
-        return self._join(link, ClientHandshake(self._secret), Direction.DOWN, now_s)
+    def dial(self, now_s: float, where: Address | None = None) -> int:
+        """Connect to an end that listens, `self.where` if none is said; the connection's key.
+
+        It does not wait: that nobody is there is the connection's `LinkEvent`.
+        """
+        where = where or self.where
+        return self._join(connect_later((where.host, where.port)), now_s)
 
     def step(self, now_s: float) -> list[Came]:
         """Accept, read, write; what has come, connection by connection, in order of arrival."""
@@ -267,9 +282,13 @@ class TextPort:
                 self._tally.refuse("too many connections", f"{self._bounds.connections} stand")
                 link.close()
                 continue
-            self._join(link, ServerHandshake(self._secret), Direction.UP, now_s)
+            self._join(link, now_s)
 
-    def _join(self, link: Link, handshake: Handshake, direction: Direction, now_s: float) -> int:
+    def _join(self, link: Link, now_s: float) -> int:
         key = next(self._keys)
+        kind, direction = (
+            (ServerHandshake, Direction.UP) if self._server else (ClientHandshake, Direction.DOWN)
+        )
+        handshake: Handshake = kind(self._secret)
         self._connections[key] = Connection(link, handshake, direction, self._bounds, now_s)
         return key

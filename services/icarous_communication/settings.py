@@ -15,8 +15,9 @@ ATTRIBUTES: Mapping[str, Attr] = {
     "RoutePlannerUsed": whole(-1, -1, 3),
     "DeviationAllowed": whole(None, 0),
     "DeviationOrigin": choice("line", "line", "path"),
-    # ours: where it listens, for whom, for how long it waits, and whom it waits for
-    "Address": Attr(default="tcp://127.0.0.1:5557"),
+    # ours: where it listens, or to whom it connects, for whom, for how long it waits, and whom it waits for
+    "Address": Attr(),
+    "Connect": Attr(),
     "VehicleIDs": Attr(),
     "Timeout_s": number(60.0),
     "Dialect": choice("cratous", "cratous", "original"),
@@ -27,16 +28,22 @@ FROM_LINE_M = 200.0
 """Less by this [m] where a configuration counts it from the line that is searched, as the original does."""
 
 
+LISTENS_AT = "tcp://127.0.0.1:5557"
+"""Where it listens if nothing else is said."""
+
+
 class Settings(NamedTuple):
-    """instances: how many to wait for; deviation_m: see DEVIATION_M; where: it listens; ids: of the
+    """instances: how many to wait for; deviation_m: see DEVIATION_M; where: it listens; to: the addresses
+    to connect to instead of that, one of each instance; ids: of the
     vehicles, none for the lowest known; wait_s: for the instances; original: the peers' dialect."""
 
     instances: int
     deviation_m: float = DEVIATION_M
-    where: Address = Address("tcp", "127.0.0.1", 5557, "tcp://127.0.0.1:5557")
+    where: Address = Address("tcp", "127.0.0.1", 5557, LISTENS_AT)
     ids: tuple[int, ...] = ()
     wait_s: float = 60.0
     original: bool = False
+    to: tuple[Address, ...] = ()
 
 
 def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
@@ -50,14 +57,44 @@ def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
             got=str(v["RoutePlannerUsed"]),
         )
     where = address(
-        v["Address"], ("tcp",), where=entry.where, item=f"{entry.type}.Address", free=True
+        v["Address"] or LISTENS_AT,
+        ("tcp",),
+        where=entry.where,
+        item=f"{entry.type}.Address",
+        free=True,
     )
     count, allowed = v["NumberOfUAVs"], v["DeviationAllowed"]
     deviation_m = DEVIATION_M if allowed is None else float(allowed)
     if allowed is not None and v["DeviationOrigin"] == "line":
         deviation_m = max(0.0, deviation_m - FROM_LINE_M)
     ids = _ids(entry, v["VehicleIDs"], count)
-    return Settings(count, deviation_m, where, ids, v["Timeout_s"], v["Dialect"] == "original")
+    original = v["Dialect"] == "original"
+    to = _to(entry, v["Connect"], count)
+    if to and (v["Address"] or original):
+        raise BadInput(
+            "Connect with what it excludes",
+            where=entry.where,
+            item=f"{entry.type}.Connect",
+            expected="neither Address, where it would listen, nor the original's instances, which "
+            "connect and do not listen",
+            got=f'Address="{v["Address"]}" Dialect="{v["Dialect"]}"',
+        )
+    return Settings(count, deviation_m, where, ids, v["Timeout_s"], original, to)
+
+
+def _to(entry: Entry, text: str, count: int) -> tuple[Address, ...]:
+    item = f"{entry.type}.Connect"
+    words = text.split()
+    to = tuple(address(word, ("tcp",), where=entry.where, item=item) for word in words)
+    if to and len({(one.host, one.port) for one in to}) != count:
+        raise BadInput(
+            "not the addresses of the instances",
+            where=entry.where,
+            item=item,
+            expected=f"{count} different addresses, as NumberOfUAVs says",
+            got=text[:80],
+        )
+    return to
 
 
 def _ids(entry: Entry, text: str, count: int) -> tuple[int, ...]:

@@ -334,10 +334,11 @@ def test_the_original_s_client_gets_what_it_can_hold(tmp_path: Path, opened: lis
             count += 1
 
 
-@pytest.mark.shows(SERVICE, "RoutePlannerUsed")
+@pytest.mark.shows(SERVICE, "RoutePlannerUsed", "Connect")
 def test_what_cannot_be_honoured_is_refused(tmp_path: Path, opened: list[Any]) -> None:
     for attributes, what in (
         ('NumberOfUAVs="1" RoutePlannerUsed="1"', "ICAROUS plans no routes for UxAS here"),
+        ('NumberOfUAVs="1" Connect="tcp://127.0.0.1:5600"', "Connect with what it excludes"),
         ("", "NumberOfUAVs"),
         ('NumberOfUAVs="2" VehicleIDs="3"', "2 different ids above 0"),
         ('NumberOfUAVs="1" DeviationOrigin="somewhere"', "line or path"),
