@@ -29,11 +29,15 @@ from cratous.bridge.text_protocol.messages import (
     FenceVertex,
     Heartbeat,
     Hello,
+    LinesMissing,
     Message,
+    NotKnown,
 )
 from cratous.bridge.text_protocol.parser import Record, StreamParser, WireError
 from cratous.spec.errors import BadInput
 
+OURS = (Hello, Heartbeat, LinesMissing, NotKnown)
+"""What a peer of the original's is not sent."""
 PROGRAM_LIMITS = Limits(10_000, 1000, 1000, 9999, 9999)
 """The largest counts that the two programs take; a vehicle's memory is bounded by them."""
 _READS = 16
@@ -241,7 +245,7 @@ class TextPort:
         one = self._connections.get(key)
         if one is None:
             return False
-        if self._original and isinstance(message, Hello | Heartbeat):
+        if self._original and isinstance(message, OURS):
             return True
         # the original writes fences in a form of which its own client misreads those of ten vertices
         original = self._original and not isinstance(message, FenceVertex)

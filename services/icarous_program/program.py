@@ -17,7 +17,7 @@ from cratous.bridge.link import LinkEvent
 from cratous.bridge.port import Report, Tally, is_due
 from cratous.bridge.redial import Redial
 from cratous.bridge.text_port import Came, Opened, TextPort
-from cratous.bridge.text_protocol import Hello, Message, Skipped
+from cratous.bridge.text_protocol import Hello, Message, NotKnown, Skipped, WireError
 from cratous.services.icarous_program.step import Answer, IcarousEnd, Note, Refuse, State, Tell
 from cratous.spec.errors import CratousError
 
@@ -114,6 +114,8 @@ class Program:
                 self._ended(came.key, detail or kind, now_s)
             case Message() as line:
                 self._line(line)
+            case WireError(kind=kind) if kind:
+                self._say(NotKnown(kind))
             case Skipped() as skipped:
                 self._tally.refuse("not known", skipped.text)
 
