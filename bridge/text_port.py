@@ -23,6 +23,7 @@ from cratous.bridge.text_protocol.handshake import (
     Handshake,
     ServerHandshake,
 )
+from cratous.bridge.text_protocol.keys import Keys
 from cratous.bridge.text_protocol.layouts import ORIGINAL_LIMITS, Limits
 from cratous.bridge.text_protocol.messages import (
     Direction,
@@ -34,6 +35,13 @@ from cratous.bridge.text_protocol.messages import (
     NotKnown,
 )
 from cratous.bridge.text_protocol.parser import Record, StreamParser, WireError
+from cratous.bridge.text_protocol.sealed import (
+    MOST_UNACKNOWLEDGED,
+    Seal,
+    SealedClient,
+    SealedHandshake,
+    SealedServer,
+)
 from cratous.spec.errors import BadInput
 
 OURS = (Hello, Heartbeat, LinesMissing, NotKnown)
@@ -41,12 +49,13 @@ OURS = (Hello, Heartbeat, LinesMissing, NotKnown)
 PROGRAM_LIMITS = Limits(10_000, 1000, 1000, 9999, 9999)
 """The largest counts that the two programs take; a vehicle's memory is bounded by them."""
 _READS = 16
-NOISE, SILENT, LATE, FAST, NOBODY = (
+NOISE, SILENT, LATE, FAST, NOBODY, DEAF = (
     "nothing but what cannot be read",
     "silent",
     "handshake not finished in time",
     "sends faster than it may",
     "nobody listens there",
+    "does not acknowledge what it is sent",
 )
 
 
@@ -89,11 +98,29 @@ class Connection:
         """direction: of what comes in. now_s: a clock that does not go back."""
         self.link, self._handshake, self._bounds = link, handshake, bounds
         self._parser = StreamParser(direction, limits=PROGRAM_LIMITS, original_peer=True)
-        self.name = link.remote_name
+        self._direction, self.name = direction, link.remote_name
         self._until_s: float | None = now_s + bounds.handshake_s
         self.opened = False
         self._room, self._at_s, self._bad = bounds.burst_bytes, now_s, 0
         self.link.send(handshake.start())
+
+    @property
+    def seal(self) -> Seal | None:
+        """Of the dialect v2, once hands are shaken."""
+        return self._handshake.seal if isinstance(self._handshake, SealedHandshake) else None
+
+    def send(self, line: bytes, now_s: float) -> bool:
+        """Queue a line; False if the peer is gone."""
+        seal = self.seal
+        if seal is None:
+            sealed = isinstance(
+                self._handshake, SealedHandshake
+            )  # then nothing goes before hands are shaken
+            return not sealed and self.link.send(line)
+        if seal.unacknowledged not in range(MOST_UNACKNOWLEDGED):
+            self.drop(DEAF)
+            return False
+        return self.link.send(seal.wrap(line, round(1000 * now_s)))
 
     @property
     def due_s(self) -> float | None:
@@ -131,13 +158,29 @@ class Connection:
         if not self._handshake.done:
             self.link.send(self._handshake.feed(data))
             if self._handshake.failed:
-                self.drop(f"handshake failed: {self._handshake.failed}")
+                self.link.flush()  # the reason goes before an end that came with it
+                self.link.ended = LinkEvent(
+                    "dropped", f"handshake failed: {self._handshake.failed}"
+                )
             if not self._handshake.done:
                 return found
             self.opened, self.name = True, self.link.remote_name
             found.append(Opened(self.name))
             data = self._handshake.rest
-        for record in self._parser.feed(data):
+            if self.seal is not None and self._direction is Direction.UP:
+                found.append(Hello(self.seal.vehicle_id))
+        wrong: list[Record] = []
+        if self.seal is not None:
+            data, refused = self.seal.feed(data)
+            wrong.extend(refused)
+        for record in [*self._parser.feed(data), *wrong]:
+            if self.seal is not None and isinstance(record, Hello):
+                if record.vehicle_id != self.seal.vehicle_id:
+                    self.drop(
+                        f"HELLO of vehicle {record.vehicle_id} by {self.seal.vehicle_id}'s key"
+                    )
+                    break
+                continue
             found.append(record)
             self._bad = self._bad + 1 if isinstance(record, WireError) else 0
             if self._bad > self._bounds.bad_lines:
@@ -165,14 +208,14 @@ class TextPort:
         listens: bool | None = None,
         bounds: Bounds | None = None,
         original: bool = False,
-        secret: str = DEFAULT_SECRET,
+        secret: str | Keys = DEFAULT_SECRET,
         report: Report = lambda _severity, _text: None,
     ) -> None:
         """server: UxAS's end, which speaks first; else ICAROUS's. listens: it waits for peers (BadInput
         if it cannot listen), else it connects, see `dial`; as in the original, UxAS's end waits.
 
         original: the peers are the original's: no HELLO and HBEAT, its number formats, no count above
-        what its arrays hold.
+        what its arrays hold. secret: of the compatible handshake; keys make the dialect v2.
         """
         self.where, self._server, self._original = where, server, original
         self._bounds, self._secret, self._report = bounds or Bounds(), secret, report
@@ -181,7 +224,7 @@ class TextPort:
         self._connections: dict[int, Connection] = {}
         self._keys = itertools.count(1)
         self._listener: Listener | None = None
-        self._closed = False
+        self._closed, self._now_s = False, 0.0
         if server if listens is None else listens:
             host = "0.0.0.0" if where.everywhere else where.host
             self._listener = Listener(host, where.port)
@@ -226,6 +269,7 @@ class TextPort:
         """Accept, read, write; what has come, connection by connection, in order of arrival."""
         if self._closed:
             return []
+        self._now_s = now_s
         self._accept(now_s)
         found: list[Came] = []
         for key, one in list(self._connections.items()):
@@ -255,7 +299,7 @@ class TextPort:
         except BadInput as error:
             self._tally.lose("message has no form on the wire", str(error))
             return False
-        if not one.link.send(data):
+        if not one.send(data, self._now_s):
             return False
         self.counts.sent += 1
         return True
@@ -290,9 +334,13 @@ class TextPort:
 
     def _join(self, link: Link, now_s: float) -> int:
         key = next(self._keys)
-        kind, direction = (
-            (ServerHandshake, Direction.UP) if self._server else (ClientHandshake, Direction.DOWN)
-        )
-        handshake: Handshake = kind(self._secret)
+        direction = Direction.UP if self._server else Direction.DOWN
+        handshake: Handshake
+        if isinstance(self._secret, str):
+            kind = ServerHandshake if self._server else ClientHandshake
+            handshake = kind(self._secret)
+        else:
+            sealed = SealedServer if self._server else SealedClient
+            handshake = sealed(keys=self._secret.by_vehicle)
         self._connections[key] = Connection(link, handshake, direction, self._bounds, now_s)
         return key

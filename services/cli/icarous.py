@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -25,6 +25,14 @@ if TYPE_CHECKING:
 @click.option(
     "--original", is_flag=True, help="UxAS's end is the original's: no HELLO, HBEAT and epochs."
 )
+@click.option("--v2", is_flag=True, help="Speak v2, which authenticates both ends, see --keys.")
+@click.option(
+    "--keys", type=click.Path(path_type=Path), metavar="FOLDER",
+    help="Folder with vehicle_ID.key, for --v2. [environment: CRATOUS_BRIDGE_KEY_ID]",
+)  # fmt: skip
+@click.option(
+    "--plain-beyond-loopback", is_flag=True, help="Another dialect than v2 to other machines too."
+)
 @click.option("--once", is_flag=True, help="End when the connection ends; else connect again.")
 @click.option(
     "--wait", type=click.FloatRange(0), default=60.0, show_default=True,
@@ -42,7 +50,7 @@ def icarous(
     wait: float,
     folder: Path | None,
     allow_unproved: bool,
-    **ends: str | None,
+    **link: Any,
 ) -> int:
     """Avoid traffic and zones for one vehicle, over the CRATOUS bridge.
 
@@ -58,12 +66,13 @@ def icarous(
     from cratous.bridge.port import address
     from cratous.bridge.text_port import TextPort
     from cratous.bridge.text_protocol.handshake import secret_of_environment
+    from cratous.bridge.text_protocol.keys import keys_of
     from cratous.core.ledger import require
     from cratous.services.icarous_program.program import Patience, Program
     from cratous.services.icarous_program.step import IcarousEnd
     from cratous.services.uxas.logs import Logs
 
-    given = [(name, text) for name, text in ends.items() if text is not None]
+    given = [(name, link[name]) for name in ("connect", "listen") if link[name] is not None]
     if len(given) != 1:
         raise click.UsageError("one of --connect and --listen is needed")
     ((name, text),) = given
@@ -71,6 +80,15 @@ def icarous(
     if listens and original:
         raise click.UsageError("the original's UxAS connects to nobody: --original needs --connect")
     where = address(f"tcp://{text}", ("tcp",), item=f"--{name}", free=listens)
+    if (link["keys"] and not link["v2"]) or (link["v2"] and original):
+        raise click.UsageError("--keys is of --v2, and --original speaks no v2")
+    if not (link["v2"] or where.loopback or link["plain_beyond_loopback"]):
+        raise BadInput(
+            "no authentication",
+            item=f"--{name}",
+            expected="--v2, an address of loopback, or --plain-beyond-loopback",
+            got=text,
+        )
     craft = craft_of(mission, vehicle, original)
     log = Logs(
         "WARN",
@@ -81,7 +99,7 @@ def icarous(
     try:
         standing = require(allow_unproved=allow_unproved)
         log("WARN" if standing.problems else "INFO", f"proofs: {standing.line}")
-        secret = secret_of_environment()
+        secret = keys_of((vehicle,), link["keys"]) if link["v2"] else secret_of_environment()
         port = TextPort(
             where, server=False, listens=listens, original=original, secret=secret, report=log
         )

@@ -70,7 +70,7 @@ class IcarousCommunicationService:
             listens=not settings.to,
             bounds=bounds,
             original=settings.original,
-            secret=secret,
+            secret=settings.keys or secret,
             report=report,
         )
         self._step = Communication(name, settings.deviation_m, settings.original)
@@ -199,6 +199,8 @@ class IcarousCommunicationService:
             lost = Lost(vid, now_ms, event)
             self._report("WARN", f"{self.name}: vehicle {vid}: {event.kind} {event.detail}")
             self._stepped(lambda state: self._step.lost(state, lost))
+        elif event.kind == "dropped":
+            self._tally.refuse("peer that speaks for no vehicle", event.detail)
 
     def _seated(self, key: int, vid: int) -> None:
         """A connection speaks for a vehicle from now on."""

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from cratous.bridge.port import Address, address
-from cratous.services.loading.uxas_settings import Attr, Entry, choice, number, whole
+from cratous.bridge.text_protocol.keys import Keys, keys_of
+from cratous.services.loading.uxas_settings import Attr, Entry, choice, flag, number, whole
 from cratous.spec.errors import BadInput
 
 MOST_INSTANCES = 64
@@ -20,7 +22,9 @@ ATTRIBUTES: Mapping[str, Attr] = {
     "Connect": Attr(),
     "VehicleIDs": Attr(),
     "Timeout_s": number(60.0),
-    "Dialect": choice("cratous", "cratous", "original"),
+    "Dialect": choice("cratous", "cratous", "original", "v2"),
+    "Keys": Attr(),
+    "PlainBeyondLoopback": flag(False),
 }
 DEVIATION_M = 500.0
 """How far from its leg a vehicle that avoids may be before its tasks are paused [m]."""
@@ -34,7 +38,7 @@ LISTENS_AT = "tcp://127.0.0.1:5557"
 
 class Settings(NamedTuple):
     """instances: how many to wait for; deviation_m: see DEVIATION_M; where: it listens; to: the addresses
-    to connect to instead of that, one of each instance; ids: of the
+    to connect to instead of that, one of each instance; keys: of the vehicles, then the dialect is v2; ids: of the
     vehicles, none for the lowest known; wait_s: for the instances; original: the peers' dialect."""
 
     instances: int
@@ -44,6 +48,7 @@ class Settings(NamedTuple):
     wait_s: float = 60.0
     original: bool = False
     to: tuple[Address, ...] = ()
+    keys: Keys | None = None
 
 
 def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
@@ -79,7 +84,32 @@ def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
             "connect and do not listen",
             got=f'Address="{v["Address"]}" Dialect="{v["Dialect"]}"',
         )
-    return Settings(count, deviation_m, where, ids, v["Timeout_s"], original, to)
+    keys = _keys(entry, v, ids, to or (where,))
+    return Settings(count, deviation_m, where, ids, v["Timeout_s"], original, to, keys)
+
+
+def _keys(
+    entry: Entry, v: Mapping[str, Any], ids: tuple[int, ...], ends: tuple[Address, ...]
+) -> Keys | None:
+    """The keys of v2; a dialect without authentication stays on this machine unless it is asked for."""
+    if v["Dialect"] == "v2":
+        if ids:
+            return keys_of(ids, Path(v["Keys"]) if v["Keys"] else None)
+        item, expected = "VehicleIDs", "the vehicles whose keys the dialect v2 needs"
+    elif v["Keys"]:
+        item, expected = "Keys", 'none, or Dialect="v2"'
+    elif all(one.loopback for one in ends) or v["PlainBeyondLoopback"]:
+        return None
+    else:
+        item, expected = "Dialect", 'v2, an address of loopback, or PlainBeyondLoopback="true"'
+    got = f'Dialect="{v["Dialect"]}" VehicleIDs="{v["VehicleIDs"]}" Keys="{v["Keys"]}"'
+    raise BadInput(
+        "no authentication",
+        where=entry.where,
+        item=f"{entry.type}.{item}",
+        expected=expected,
+        got=got,
+    )
 
 
 def _to(entry: Entry, text: str, count: int) -> tuple[Address, ...]:

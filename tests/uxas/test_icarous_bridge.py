@@ -112,6 +112,31 @@ def test_what_stands_on_the_wire_decides_and_a_cut_link_comes_again(
     assert "POSTN that this airframe cannot fly" in said(tmp_path)
 
 
+@pytest.mark.shows(SERVICE, "Keys")
+def test_v2_flies_with_the_key_and_refuses_another_on_both_ends(
+    tmp_path: Path, opened: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "keys").mkdir()
+    (tmp_path / "keys" / "vehicle_1.key").write_text("5a" * 32)
+    monkeypatch.setenv("CRATOUS_BRIDGE_KEY_1", "5b" * 32)
+    more = f'NumberOfUAVs="1" VehicleIDs="1" Dialect="v2" Keys="{tmp_path / "keys"}"'
+    cfg, sim_port, ics_port = configuration(tmp_path, more)
+    with command(tmp_path, "uxas", "-cfgPath", str(cfg)):
+        with icarous(tmp_path, ics_port, "--v2", "--wait", "4", "--log", "wrong") as wrong:
+            assert wrong.wait(60) == 3
+        text = "the key of vehicle 1 is another one here"
+        assert said(tmp_path).count(f"handshake failed: {text}") >= 1
+        assert f"UxAS refuses: {text}" in said(tmp_path)
+        with icarous(tmp_path, ics_port, "--v2", "--keys", str(tmp_path / "keys")):
+            sim = Simulator(sim_port, own(), Aircraft(90, 2000.0, 2300.0, 270.0))
+            opened.append(sim)
+            sim.client.send(way(*WAY), 1, 1)
+            sim.own.told(way(*WAY))
+            assert sim.fly(100, lambda: sim.own.steered), said(tmp_path)
+    assert "5a5a5a" not in said(tmp_path)
+    assert "5b5b5b" not in said(tmp_path)
+
+
 @pytest.mark.shows(SERVICE, "Connect")
 def test_uxas_connects_to_an_icarous_that_listens_and_again_after_a_cut(
     tmp_path: Path, opened: list[Any]
@@ -182,6 +207,9 @@ def test_the_command_says_what_is_wrong(
     ("arguments", "code", "text"),
     [
         ((), 2, "one of --connect and --listen is needed"),
+        (("--listen", "192.0.2.1:9"), 2, "no authentication"),
+        (("--listen", "127.0.0.1:0", "--keys", "."), 2, "--keys is of --v2"),
+        (("--listen", "127.0.0.1:0", "--v2"), 2, "no key of the bridge"),
         (("--listen", "127.0.0.1:0", "--original"), 2, "--original needs --connect"),
         (
             ("--listen", "127.0.0.1:0", "--wait", "0.3"),
