@@ -77,6 +77,14 @@ class Link:
             return "a peer that is gone"
 
     @property
+    def itself(self) -> bool:
+        """True for a connection to its own end: the system may give a client the port that it asks for."""
+        try:
+            return self.local == self.remote
+        except OSError:
+            return False
+
+    @property
     def waiting(self) -> int:
         """Bytes that the system has not taken yet."""
         return len(self._out)
@@ -222,6 +230,21 @@ def connect(address: tuple[str, int], timeout_s: float = 10.0) -> Link:
             expected="a listening peer",
             got=err.strerror or str(err),
         ) from None
+
+
+def connect_later(address: tuple[str, int]) -> Link:
+    """The client end of a connection that comes about later; that it does not is the link's end."""
+    host, _ = address
+    sock = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_STREAM)
+    sock.setblocking(False)
+    link = Link(sock)
+    try:
+        sock.connect(address)
+    except BlockingIOError:
+        pass  # on its way
+    except OSError as err:
+        link.ended = LinkEvent("error", err.strerror or str(err))
+    return link
 
 
 def connect_pair(listener: Listener, timeout_s: float = 10.0) -> tuple[Link, Link]:

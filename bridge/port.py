@@ -43,6 +43,11 @@ class Address(NamedTuple):
         """True if it means all interfaces of the machine."""
         return self.host == "*"
 
+    @property
+    def loopback(self) -> bool:
+        """True if it is of this machine alone."""
+        return self.host in ("localhost", "::1") or self.host.startswith("127.")
+
 
 @dataclass(frozen=True)
 class Limits:

@@ -1,5 +1,6 @@
 """The CRATOUS text protocol over TCP between processes: one end that listens, one that connects.
 
+Either of UxAS's end, which speaks first, and ICAROUS's may be the one that listens.
 Nothing here blocks and nothing raises because of a peer: what it sends is a record (a message, a refused
 or skipped line), its end is a `LinkEvent`. A peer that does not finish the handshake, sends faster than it
 may, sends nothing but what cannot be read, or falls silent, is dropped with the reason.
@@ -13,7 +14,7 @@ from typing import Any, NamedTuple
 
 import zmq
 
-from cratous.bridge.link import Link, LinkEvent, Listener, connect
+from cratous.bridge.link import Link, LinkEvent, Listener, connect_later
 from cratous.bridge.port import Address, Report, Tally, is_due
 from cratous.bridge.text_protocol.format import encode
 from cratous.bridge.text_protocol.handshake import (
@@ -22,27 +23,39 @@ from cratous.bridge.text_protocol.handshake import (
     Handshake,
     ServerHandshake,
 )
+from cratous.bridge.text_protocol.keys import Keys
 from cratous.bridge.text_protocol.layouts import ORIGINAL_LIMITS, Limits
 from cratous.bridge.text_protocol.messages import (
     Direction,
     FenceVertex,
     Heartbeat,
     Hello,
+    LinesMissing,
     Message,
+    NotKnown,
 )
 from cratous.bridge.text_protocol.parser import Record, StreamParser, WireError
+from cratous.bridge.text_protocol.sealed import (
+    MOST_UNACKNOWLEDGED,
+    Seal,
+    SealedClient,
+    SealedHandshake,
+    SealedServer,
+)
 from cratous.spec.errors import BadInput
 
+OURS = (Hello, Heartbeat, LinesMissing, NotKnown)
+"""What a peer of the original's is not sent."""
 PROGRAM_LIMITS = Limits(10_000, 1000, 1000, 9999, 9999)
 """The largest counts that the two programs take; a vehicle's memory is bounded by them."""
 _READS = 16
-_PATIENCE_S = 0.5
-"""How long a client waits for a connection to come about before it goes on with its other work."""
-NOISE, SILENT, LATE, FAST = (
+NOISE, SILENT, LATE, FAST, NOBODY, DEAF = (
     "nothing but what cannot be read",
     "silent",
     "handshake not finished in time",
     "sends faster than it may",
+    "nobody listens there",
+    "does not acknowledge what it is sent",
 )
 
 
@@ -85,10 +98,29 @@ class Connection:
         """direction: of what comes in. now_s: a clock that does not go back."""
         self.link, self._handshake, self._bounds = link, handshake, bounds
         self._parser = StreamParser(direction, limits=PROGRAM_LIMITS, original_peer=True)
-        self.name = link.remote_name
+        self._direction, self.name = direction, link.remote_name
         self._until_s: float | None = now_s + bounds.handshake_s
+        self.opened = False
         self._room, self._at_s, self._bad = bounds.burst_bytes, now_s, 0
         self.link.send(handshake.start())
+
+    @property
+    def seal(self) -> Seal | None:
+        """Of the dialect v2, once hands are shaken."""
+        return self._handshake.seal if isinstance(self._handshake, SealedHandshake) else None
+
+    def send(self, line: bytes, now_s: float) -> bool:
+        """Queue a line; False if the peer is gone."""
+        seal = self.seal
+        if seal is None:
+            sealed = isinstance(
+                self._handshake, SealedHandshake
+            )  # then nothing goes before hands are shaken
+            return not sealed and self.link.send(line)
+        if seal.unacknowledged not in range(MOST_UNACKNOWLEDGED):
+            self.drop(DEAF)
+            return False
+        return self.link.send(seal.wrap(line, round(1000 * now_s)))
 
     @property
     def due_s(self) -> float | None:
@@ -100,6 +132,9 @@ class Connection:
         self.link.flush()
         self.link.drain(_READS)
         data = self.link.take()
+        if not self.opened and self.link.itself:
+            self.drop(NOBODY)
+            data = b""
         found = self._read(data) if data else []
         self._spend(len(data), now_s)
         if data and self._handshake.done:
@@ -123,12 +158,29 @@ class Connection:
         if not self._handshake.done:
             self.link.send(self._handshake.feed(data))
             if self._handshake.failed:
-                self.drop(f"handshake failed: {self._handshake.failed}")
+                self.link.flush()  # the reason goes before an end that came with it
+                self.link.ended = LinkEvent(
+                    "dropped", f"handshake failed: {self._handshake.failed}"
+                )
             if not self._handshake.done:
                 return found
+            self.opened, self.name = True, self.link.remote_name
             found.append(Opened(self.name))
             data = self._handshake.rest
-        for record in self._parser.feed(data):
+            if self.seal is not None and self._direction is Direction.UP:
+                found.append(Hello(self.seal.vehicle_id))
+        wrong: list[Record] = []
+        if self.seal is not None:
+            data, refused = self.seal.feed(data)
+            wrong.extend(refused)
+        for record in [*self._parser.feed(data), *wrong]:
+            if self.seal is not None and isinstance(record, Hello):
+                if record.vehicle_id != self.seal.vehicle_id:
+                    self.drop(
+                        f"HELLO of vehicle {record.vehicle_id} by {self.seal.vehicle_id}'s key"
+                    )
+                    break
+                continue
             found.append(record)
             self._bad = self._bad + 1 if isinstance(record, WireError) else 0
             if self._bad > self._bounds.bad_lines:
@@ -153,15 +205,17 @@ class TextPort:
         where: Address,
         *,
         server: bool,
+        listens: bool | None = None,
         bounds: Bounds | None = None,
         original: bool = False,
-        secret: str = DEFAULT_SECRET,
+        secret: str | Keys = DEFAULT_SECRET,
         report: Report = lambda _severity, _text: None,
     ) -> None:
-        """server: UxAS's end, which listens (BadInput if it cannot); else ICAROUS's, see `dial`.
+        """server: UxAS's end, which speaks first; else ICAROUS's. listens: it waits for peers (BadInput
+        if it cannot listen), else it connects, see `dial`; as in the original, UxAS's end waits.
 
         original: the peers are the original's: no HELLO and HBEAT, its number formats, no count above
-        what its arrays hold.
+        what its arrays hold. secret: of the compatible handshake; keys make the dialect v2.
         """
         self.where, self._server, self._original = where, server, original
         self._bounds, self._secret, self._report = bounds or Bounds(), secret, report
@@ -170,10 +224,15 @@ class TextPort:
         self._connections: dict[int, Connection] = {}
         self._keys = itertools.count(1)
         self._listener: Listener | None = None
-        self._closed = False
-        if server:
+        self._closed, self._now_s = False, 0.0
+        if server if listens is None else listens:
             host = "0.0.0.0" if where.everywhere else where.host
             self._listener = Listener(host, where.port)
+
+    @property
+    def listens(self) -> bool:
+        """True if it waits for its peers."""
+        return self._listener is not None
 
     @property
     def bound(self) -> tuple[str, int]:
@@ -198,15 +257,19 @@ class TextPort:
                 found.append((one.link.fileno(), flags))
         return found
 
-    def dial(self, now_s: float) -> int:
-        """Connect to the end that listens; the connection's key. BadInput if nobody is there."""
-        link = connect((self.where.host, self.where.port), _PATIENCE_S)
-        return self._join(link, ClientHandshake(self._secret), Direction.DOWN, now_s)
+    def dial(self, now_s: float, where: Address | None = None) -> int:
+        """Connect to an end that listens, `self.where` if none is said; the connection's key.
+
+        It does not wait: that nobody is there is the connection's `LinkEvent`.
+        """
+        where = where or self.where
+        return self._join(connect_later((where.host, where.port)), now_s)
 
     def step(self, now_s: float) -> list[Came]:
         """Accept, read, write; what has come, connection by connection, in order of arrival."""
         if self._closed:
             return []
+        self._now_s = now_s
         self._accept(now_s)
         found: list[Came] = []
         for key, one in list(self._connections.items()):
@@ -226,7 +289,7 @@ class TextPort:
         one = self._connections.get(key)
         if one is None:
             return False
-        if self._original and isinstance(message, Hello | Heartbeat):
+        if self._original and isinstance(message, OURS):
             return True
         # the original writes fences in a form of which its own client misreads those of ten vertices
         original = self._original and not isinstance(message, FenceVertex)
@@ -236,7 +299,7 @@ class TextPort:
         except BadInput as error:
             self._tally.lose("message has no form on the wire", str(error))
             return False
-        if not one.link.send(data):
+        if not one.send(data, self._now_s):
             return False
         self.counts.sent += 1
         return True
@@ -267,9 +330,17 @@ class TextPort:
                 self._tally.refuse("too many connections", f"{self._bounds.connections} stand")
                 link.close()
                 continue
-            self._join(link, ServerHandshake(self._secret), Direction.UP, now_s)
+            self._join(link, now_s)
 
-    def _join(self, link: Link, handshake: Handshake, direction: Direction, now_s: float) -> int:
+    def _join(self, link: Link, now_s: float) -> int:
         key = next(self._keys)
+        direction = Direction.UP if self._server else Direction.DOWN
+        handshake: Handshake
+        if isinstance(self._secret, str):
+            kind = ServerHandshake if self._server else ClientHandshake
+            handshake = kind(self._secret)
+        else:
+            sealed = SealedServer if self._server else SealedClient
+            handshake = sealed(keys=self._secret.by_vehicle)
         self._connections[key] = Connection(link, handshake, direction, self._bounds, now_s)
         return key

@@ -11,6 +11,7 @@ import math
 from cratous.bridge.text_protocol.layouts import (
     LAYOUT_OF,
     ORIGINAL_LIMITS,
+    TEXT,
     FieldLayout,
     Kind,
     Limits,
@@ -69,6 +70,10 @@ def _text(
             if value == word.strip("_"):
                 return word
         raise wrong(" or ".join(word.strip("_") for word in field.words))
+    if field.kind is Kind.TEXT:
+        if not isinstance(value, str) or not TEXT.fullmatch(value):
+            raise wrong("1 to 40 letters, digits and _")
+        return value
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise wrong("a number")
     if not math.isfinite(value) or abs(value) >= LARGEST_NUMBER:

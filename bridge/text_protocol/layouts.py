@@ -6,6 +6,7 @@ fields in the order in which they are sent.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, fields
 from enum import Enum
 
@@ -18,7 +19,9 @@ from cratous.bridge.text_protocol.messages import (
     HardReset,
     Heartbeat,
     Hello,
+    LinesMissing,
     Message,
+    NotKnown,
     OwnPosition,
     RouteEnd,
     RoutePoint,
@@ -43,6 +46,7 @@ class Kind(Enum):
     COUNT = "%d.0"  # the .0 keeps the original's parser from reading the field before
     BARE = "%d"  # read with or without .0
     WORD = "one of the words"
+    TEXT = "letters, digits and _"
 
 
 @dataclass(frozen=True)
@@ -80,6 +84,8 @@ class Limits:
     waypoint_index: int = 49
 
 
+TEXT = re.compile(r"[A-Za-z0-9_]{1,40}")
+"""What a value of Kind.TEXT may be."""
 ORIGINAL_LIMITS = Limits()
 WIDE_LIMITS = Limits(100_000, 100_000, 100_000, 99_999, 99_999)
 
@@ -229,6 +235,19 @@ LAYOUTS: tuple[Layout, ...] = (
     ),
     Layout("RPRSP", _UP, RouteEnd, (), "ED"),
     Layout("HBEAT", _UP, Heartbeat, (_count("seq", "sequence", 0), _real("time", "time_s"))),
+    Layout(
+        "AGAIN",
+        _UP,
+        LinesMissing,
+        (
+            _word("what", "_WAYPT_", "_GEOFN_"),
+            _count("number", "number", 0),
+            _count("total", "total", 0),
+            _count("first", "first", 0),
+            _count("last", "last", 0),
+        ),
+    ),
+    Layout("NOCMD", _UP, NotKnown, (FieldLayout("kind", "kind", Kind.TEXT),)),
     Layout("HELLO", _UP, Hello, (_count("id", "vehicle_id", 0),)),
 )
 

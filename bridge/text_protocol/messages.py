@@ -236,3 +236,30 @@ class Hello(Message):
 
     tag: ClassVar[str] = "HELLO"
     vehicle_id: int
+
+
+@dataclass(frozen=True)
+class LinesMissing(Message):
+    """AGAIN (our dialect): lines of a plan (WAYPT) or zone (GEOFN) have not come, please again.
+
+    number: of the zone, 0 for the plan; total: its lines, 0 if not known; first, last: the first and last
+    that is missing, by index or vertex; last 0 for a zone of which nothing is known: all of it.
+    """
+
+    tag: ClassVar[str] = "AGAIN"
+    what: str
+    number: int
+    total: int
+    first: int
+    last: int
+
+
+@dataclass(frozen=True)
+class NotKnown(Message):
+    """NOCMD (our dialect): the answer to a COMND of a kind that ICAROUS does not know.
+
+    kind: as it came, with anything but letters, digits and _ shown as _, of at most 40 characters.
+    """
+
+    tag: ClassVar[str] = "NOCMD"
+    kind: str

@@ -17,6 +17,7 @@ from cratous.bridge.text_protocol.format import LARGEST_NUMBER
 from cratous.bridge.text_protocol.layouts import (
     LAYOUTS,
     ORIGINAL_LIMITS,
+    TEXT,
     FieldLayout,
     Kind,
     Layout,
@@ -35,13 +36,15 @@ _PRINTABLE = re.compile(rb"[\x20-\x7e]*\Z")
 
 @dataclass(frozen=True)
 class WireError:
-    """A line that is refused: its number and the column (both from 1) where it goes wrong."""
+    """A line that is refused: its number and the column (both from 1) where it goes wrong. kind: of a
+    COMND that is not known, the one that it names."""
 
     line: int
     column: int
     what: str
     expected: str
     got: str
+    kind: str = ""
 
     def __str__(self) -> str:
         text = f"line {self.line}, column {self.column}: {self.what}"
@@ -65,8 +68,9 @@ Record = Message | WireError | Skipped
 class _Bad(Exception):
     """Inside this module only: what is wrong with the line at hand."""
 
-    def __init__(self, column: int, what: str, expected: str, got: str) -> None:
+    def __init__(self, column: int, what: str, expected: str, got: str, kind: str = "") -> None:
         super().__init__(what)
+        self.kind = kind
         self.column, self.what, self.expected, self.got = column, what, expected, got
 
 
@@ -147,7 +151,8 @@ class StreamParser:
                 raise _Bad(at + 1, "byte that is not printable", "ASCII text", f"{line[at]:#04x}")
             records.extend(self._message(line.decode("ascii")))
         except _Bad as bad:
-            records.append(WireError(self._line, bad.column, bad.what, bad.expected, bad.got))
+            wrong = (bad.what, bad.expected, bad.got, bad.kind)
+            records.append(WireError(self._line, bad.column, *wrong))
 
     def _message(self, line: str) -> list[Record]:
         tag, _, rest = line.partition(",")
@@ -178,7 +183,8 @@ class StreamParser:
                 if piece in forms:
                     return forms[piece]
                 expected = " or ".join(layout.form for layout in layouts)
-                raise _Bad(place + 4, "unknown type", expected, repr(piece[4:44]))
+                kind = re.sub(r"[^A-Za-z0-9_]", "_", piece[4:44])
+                raise _Bad(place + 4, "unknown type", expected, repr(piece[4:44]), kind)
         raise _Bad(places[-1], "field missing", "type", "")
 
     def _fill(self, layout: Layout, own: str, pieces: list[str], places: list[int]) -> list[Record]:
@@ -224,6 +230,10 @@ class StreamParser:
             if text not in field.words:
                 raise _Bad(column, "unknown word", " or ".join(field.words), repr(text[:40]))
             return text.strip("_")
+        if field.kind is Kind.TEXT:
+            if not TEXT.fullmatch(text):
+                raise _Bad(column, "not a name", "1 to 40 letters, digits and _", repr(text[:40]))
+            return text
         match = _NUMBER.match(text) if len(text) <= _MAX_NUMBER else None
         if match is None:
             what = "number too long" if len(text) > _MAX_NUMBER else "not a number"

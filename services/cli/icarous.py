@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -20,9 +20,18 @@ if TYPE_CHECKING:
     "--mission", type=click.Path(path_type=Path), required=True,
     help="Where airframe, well clear volume and frame stand: a mission file or UxAS folder.",
 )  # fmt: skip
-@click.option("--connect", required=True, metavar="HOST:PORT", help="Where UxAS listens.")
+@click.option("--connect", metavar="HOST:PORT", help="Where UxAS listens.")
+@click.option("--listen", metavar="HOST:PORT", help="Where to wait for UxAS, which connects.")
 @click.option(
     "--original", is_flag=True, help="UxAS's end is the original's: no HELLO, HBEAT and epochs."
+)
+@click.option("--v2", is_flag=True, help="Speak v2, which authenticates both ends, see --keys.")
+@click.option(
+    "--keys", type=click.Path(path_type=Path), metavar="FOLDER",
+    help="Folder with vehicle_ID.key, for --v2. [environment: CRATOUS_BRIDGE_KEY_ID]",
+)  # fmt: skip
+@click.option(
+    "--plain-beyond-loopback", is_flag=True, help="Another dialect than v2 to other machines too."
 )
 @click.option("--once", is_flag=True, help="End when the connection ends; else connect again.")
 @click.option(
@@ -36,18 +45,19 @@ if TYPE_CHECKING:
 def icarous(
     vehicle: int,
     mission: Path,
-    connect: str,
     original: bool,
     once: bool,
     wait: float,
     folder: Path | None,
     allow_unproved: bool,
+    **link: Any,
 ) -> int:
     """Avoid traffic and zones for one vehicle, over the CRATOUS bridge.
 
     The other end is the service IcarousCommunicationService of a UxAS configuration. Own state, traffic,
     plan and zones come over the wire and are believed; steering goes back over it. The secret of the
-    handshake is CRATOUS_BRIDGE_SECRET of the environment, if that is set.
+    handshake is CRATOUS_BRIDGE_SECRET of the environment, if that is set. Either it connects to UxAS
+    (--connect), or it waits for a UxAS whose service names its address in Connect (--listen).
 
     Example:  cratous icarous --vehicle 1 --mission mission.yaml --connect 127.0.0.1:5557
 
@@ -56,12 +66,29 @@ def icarous(
     from cratous.bridge.port import address
     from cratous.bridge.text_port import TextPort
     from cratous.bridge.text_protocol.handshake import secret_of_environment
+    from cratous.bridge.text_protocol.keys import keys_of
     from cratous.core.ledger import require
     from cratous.services.icarous_program.program import Patience, Program
     from cratous.services.icarous_program.step import IcarousEnd
     from cratous.services.uxas.logs import Logs
 
-    where = address(f"tcp://{connect}", ("tcp",), item="--connect")
+    given = [(name, link[name]) for name in ("connect", "listen") if link[name] is not None]
+    if len(given) != 1:
+        raise click.UsageError("one of --connect and --listen is needed")
+    ((name, text),) = given
+    listens = name == "listen"
+    if listens and original:
+        raise click.UsageError("the original's UxAS connects to nobody: --original needs --connect")
+    where = address(f"tcp://{text}", ("tcp",), item=f"--{name}", free=listens)
+    if (link["keys"] and not link["v2"]) or (link["v2"] and original):
+        raise click.UsageError("--keys is of --v2, and --original speaks no v2")
+    if not (link["v2"] or where.loopback or link["plain_beyond_loopback"]):
+        raise BadInput(
+            "no authentication",
+            item=f"--{name}",
+            expected="--v2, an address of loopback, or --plain-beyond-loopback",
+            got=text,
+        )
     craft = craft_of(mission, vehicle, original)
     log = Logs(
         "WARN",
@@ -72,8 +99,10 @@ def icarous(
     try:
         standing = require(allow_unproved=allow_unproved)
         log("WARN" if standing.problems else "INFO", f"proofs: {standing.line}")
-        secret = secret_of_environment()
-        port = TextPort(where, server=False, original=original, secret=secret, report=log)
+        secret = keys_of((vehicle,), link["keys"]) if link["v2"] else secret_of_environment()
+        port = TextPort(
+            where, server=False, listens=listens, original=original, secret=secret, report=log
+        )
         program = Program(IcarousEnd(craft), port, log, Patience(wait, once))
 
         def stop(*_: object) -> None:
@@ -81,7 +110,13 @@ def icarous(
 
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, stop)
-        log("INFO", f"ICAROUS of vehicle {vehicle}, connecting to {connect}")
+        if listens:
+            at = ":".join(map(str, port.bound))
+            log("INFO", f"ICAROUS of vehicle {vehicle}, listens at {at}")
+            if where.everywhere:
+                log("WARN", "listens on all interfaces; whoever is there may connect")
+        else:
+            log("INFO", f"ICAROUS of vehicle {vehicle}, connecting to {text}")
         program.run()
     finally:
         log.close()

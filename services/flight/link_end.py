@@ -22,14 +22,19 @@ from cratous.bridge.text_protocol import (
     Attitude,
     HardReset,
     Heartbeat,
+    LinesMissing,
     Message,
+    NotKnown,
     SetMode,
+    StartMission,
+    Waypoint,
     WaypointReached,
 )
 from cratous.core.authority.gate import UXAS, Gate
 from cratous.core.authority.link_end import LinkEnd, link_mode, link_sign
 from cratous.core.routing.polylines import Track
 from cratous.services.flight import link_lines
+from cratous.services.flight.link_lines import MOST_AGAIN
 from cratous.services.flight.messages import (
     Beat,
     Connected,
@@ -52,6 +57,7 @@ from cratous.services.flight.messages import (
 )
 from cratous.services.flight.notices import mode_refused
 from cratous.services.mission.frames import Projection
+from cratous.services.pipeline.status import status
 from cratous.spec.authority.link_end import (
     ENDED,
     HEARD,
@@ -83,7 +89,8 @@ class Peer:
     end: who commands and whether it is heard, as the kernels have it; open: the connection stands;
     marks_m: arc length of each waypoint told, from from_m of the vehicle's track on; reached: how
     many of them are told to be reached; down: heartbeats sent; heard_ms: when it was last heard; gate: as
-    the vehicle has reported it last; way: the lines of the way told last.
+    the vehicle has reported it last; way: the lines of the way told last; again: how often lines of the
+    plan and of which zone were sent again, ((tag, zone), times).
     """
 
     vehicle_id: int
@@ -96,6 +103,7 @@ class Peer:
     down: int = 0
     gate: Gate = UNTOUCHED
     way: tuple[Message, ...] = ()
+    again: tuple[tuple[tuple[str, int], int], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -127,6 +135,8 @@ class UxasEnd:
     def handle(self, state: State, message: ToLinkEnd) -> Step:
         """One step: the state afterwards, and what to send, in order."""
         match message:
+            case Heard(_, now_ms, LinesMissing() as line) if state.peer(message.vehicle_id):
+                return self._again(state, message.vehicle_id, line, now_ms)
             case Connected(now_ms, vehicle_ids):
                 return self._connected(state, vehicle_ids, now_ms)
             case ZonesKnown(zones):
@@ -140,6 +150,43 @@ class UxasEnd:
             return state, ()
         after, out = self._of_one(peer, message)
         return state.with_peer(after), out
+
+    def _again(self, state: State, vehicle_id: int, line: LinesMissing, now_ms: int) -> Step:
+        """What an instance asks for again: those lines and the one that ends them, so often and no more."""
+        known = state.peer(vehicle_id)
+        assert known is not None
+        peer, out = _sign(replace(known, heard_ms=now_ms), HEARD, now_ms, "heard again")
+        told = self._again_lines(state, peer, line)
+        what = f"plan of {line.total}" if line.what == "WAYPT" else f"zone {line.number}"
+        key = (line.what, line.number if line.what == "GEOFN" else 0)
+        text = f"lines {line.first} to {line.last} of {what}"
+        times = dict(peer.again).get(key, 0)
+        if not told:
+            note = f"{text} are asked for again, and there are none"
+        elif times in range(MOST_AGAIN):
+            out, note = (*out, *_down(peer, told)), f"{text} are sent again"
+            peer = replace(peer, again=tuple({**dict(peer.again), key: times + 1}.items()))
+        else:
+            note = f"{text} are missing after they were sent again {times} times: not in force"
+            out = (
+                *out,
+                Say(status(0, "Error", [("reason", f"vehicle {vehicle_id}: {note}")]), NAME),
+            )
+        return state.with_peer(peer), (*out, _status(peer, peer.end.alive, now_ms, note))
+
+    def _again_lines(self, state: State, peer: Peer, line: LinesMissing) -> list[Message]:
+        """Those lines; all of it where ICAROUS knows another number of them."""
+        if line.what == "GEOFN":
+            if line.number not in range(1, len(state.zones) + 1):
+                return []
+            zone = state.zones[line.number - 1]
+            *corners, done = link_lines.fence(zone, line.number, self.projection)
+            return [*_between(corners, line, "vertex"), done]
+        points: list[Message] = [m for m in peer.way if isinstance(m, Waypoint)]
+        if len(points) != line.total:
+            return _way_on(peer)
+        reached = [WaypointReached(k) for k in range(peer.reached)]
+        return [*_between(points, line, "index"), StartMission(), *reached]
 
     def _of_one(self, peer: Peer, message: ToOne) -> tuple[Peer, tuple[FromLinkEnd, ...]]:
         """A message about one vehicle: nothing else is touched."""
@@ -169,7 +216,8 @@ class UxasEnd:
             old = state.peer(vid)
             peer = Peer(vid, now_ms)
             if old is not None:
-                peer = replace(old, heard_ms=now_ms, end=old.end._replace(alive=True), open=True)
+                end = old.end._replace(alive=True)
+                peer = replace(old, heard_ms=now_ms, end=end, open=True, again=())
                 state = state.with_peer(peer)
             else:
                 state = replace(state, peers=(*state.peers, peer))
@@ -184,6 +232,7 @@ class UxasEnd:
         out: list[FromLinkEnd] = []
         for peer in state.peers:
             out += _down(peer, fences if more else [HardReset(), *fences, *_way_on(peer)])
+            state = state.with_peer(replace(peer, again=()))
         return replace(state, zones=zones), tuple(out)
 
     def _fences(self, zones: tuple[Zone, ...], known: int) -> list[Message]:
@@ -196,7 +245,9 @@ class UxasEnd:
     def _route(self, peer: Peer, route: Route) -> tuple[Peer, tuple[FromLinkEnd, ...]]:
         track = Track(route.points)
         told = link_lines.way(track.points, route.speed_m_s, self.projection)
-        after = replace(peer, marks_m=track.s_m, from_m=route.from_m, reached=0, way=tuple(told))
+        after = replace(
+            peer, marks_m=track.s_m, from_m=route.from_m, reached=0, way=tuple(told), again=()
+        )
         return after, _down(peer, told)
 
     def _seen(self, peer: Peer, seen: Seen) -> OfOne:
@@ -226,6 +277,13 @@ ToOne = Route | Flown | Seen | Left | Heard | Unreadable | Lost | GateIs
 OfOne = tuple[Peer, tuple[FromLinkEnd, ...]]
 
 
+def _between(lines: Sequence[Message], asked: LinesMissing, number: str) -> list[Message]:
+    """The lines from the first to the last that is asked for."""
+    if len(lines) != asked.total:
+        return list(lines)
+    return [m for m in lines if getattr(m, number) in range(asked.first, asked.last + 1)]
+
+
 def _way_on(peer: Peer) -> list[Message]:
     """The way told last, and the waypoints of it that are reached."""
     return [*peer.way, *(WaypointReached(k) for k in range(peer.reached))]
@@ -246,6 +304,9 @@ def _heard(peer: Peer, line: Message, now_ms: int) -> OfOne:
     if isinstance(line, SetMode):
         peer, more = _mode(peer, line, now_ms)
         return peer, (*out, *more)
+    if isinstance(line, NotKnown):
+        note = f"ICAROUS does not know the command {line.kind}"
+        return peer, (*out, _status(peer, peer.end.alive, now_ms, note))
     return peer, out
 
 

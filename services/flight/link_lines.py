@@ -22,6 +22,9 @@ from cratous.spec.mission import Position, Zone, ZoneKind
 FAR_M = 1e6
 """Altitudes beyond this are sent as this [m]: no aircraft is there."""
 
+MOST_AGAIN = 5
+"""So often the missing lines of one plan or zone are sent again."""
+
 Aircraft = tuple[tuple[int, AirState], ...]
 Places = dict[int, tuple[float, float]]
 """Latitude and longitude by aircraft [deg]."""

@@ -1,6 +1,6 @@
 """The service IcarousCommunicationService: connections, seats and clock around the step of `step`.
 
-It listens for the ICAROUS instances and gives each its vehicle. A process that holds it waits for them
+It listens for the ICAROUS instances, or connects to each of them, and gives each its vehicle. A process that holds it waits for them
 before it says StartupComplete, and is refused when they do not come.
 """
 
@@ -11,6 +11,7 @@ from typing import Any
 
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.port import Report, Tally, is_due
+from cratous.bridge.redial import Redial
 from cratous.bridge.text_port import Bounds, Came, Opened, TextPort
 from cratous.bridge.text_protocol import Heartbeat, Hello, Message, Skipped
 from cratous.services.bus import Bus, Envelope, Wake
@@ -66,9 +67,10 @@ class IcarousCommunicationService:
         self.port = TextPort(
             settings.where,
             server=True,
+            listens=not settings.to,
             bounds=bounds,
             original=settings.original,
-            secret=secret,
+            secret=settings.keys or secret,
             report=report,
         )
         self._step = Communication(name, settings.deviation_m, settings.original)
@@ -79,6 +81,11 @@ class IcarousCommunicationService:
         self._started = False
         self._until_s: float | None = None
         self._say_s, self._said = 0.0, ""
+        self._redial = Redial(self.port, settings.to)
+        if settings.to:
+            text = ", ".join(one.text for one in settings.to)
+            report("INFO", f"{name}: connects to {text}")
+            return
         host, port = self.port.bound
         report("INFO", f"{name}: listens at {host}:{port}")
         if settings.where.everywhere:
@@ -128,6 +135,7 @@ class IcarousCommunicationService:
 
     def pump(self, now_s: float) -> int:
         """What has arrived, to the step; how much that was."""
+        self._redial.step(now_s)
         arrived = self.port.step(now_s)
         for came in arrived:
             self._came(came, now_s)
@@ -154,8 +162,12 @@ class IcarousCommunicationService:
         key = came.key
         match came.what:
             case Opened():
+                self._redial.opened(key)
                 self._refuse(key, self._seats.opened(key, now_s))
             case LinkEvent() as event:
+                said = self._redial.ended(key, event.detail or event.kind, now_s)
+                if said:
+                    self._report("WARN", f"{self.name}: {said}")
                 self._gone(key, event)
             case Hello(vid):
                 had = self._seats.vehicle(key)
@@ -187,6 +199,8 @@ class IcarousCommunicationService:
             lost = Lost(vid, now_ms, event)
             self._report("WARN", f"{self.name}: vehicle {vid}: {event.kind} {event.detail}")
             self._stepped(lambda state: self._step.lost(state, lost))
+        elif event.kind == "dropped":
+            self._tally.refuse("peer that speaks for no vehicle", event.detail)
 
     def _seated(self, key: int, vid: int) -> None:
         """A connection speaks for a vehicle from now on."""

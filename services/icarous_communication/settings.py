@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from cratous.bridge.port import Address, address
-from cratous.services.loading.uxas_settings import Attr, Entry, choice, number, whole
+from cratous.bridge.text_protocol.keys import Keys, keys_of
+from cratous.services.loading.uxas_settings import Attr, Entry, choice, flag, number, whole
 from cratous.spec.errors import BadInput
 
 MOST_INSTANCES = 64
@@ -15,11 +17,14 @@ ATTRIBUTES: Mapping[str, Attr] = {
     "RoutePlannerUsed": whole(-1, -1, 3),
     "DeviationAllowed": whole(None, 0),
     "DeviationOrigin": choice("line", "line", "path"),
-    # ours: where it listens, for whom, for how long it waits, and whom it waits for
-    "Address": Attr(default="tcp://127.0.0.1:5557"),
+    # ours: where it listens, or to whom it connects, for whom, for how long it waits, and whom it waits for
+    "Address": Attr(),
+    "Connect": Attr(),
     "VehicleIDs": Attr(),
     "Timeout_s": number(60.0),
-    "Dialect": choice("cratous", "cratous", "original"),
+    "Dialect": choice("cratous", "cratous", "original", "v2"),
+    "Keys": Attr(),
+    "PlainBeyondLoopback": flag(False),
 }
 DEVIATION_M = 500.0
 """How far from its leg a vehicle that avoids may be before its tasks are paused [m]."""
@@ -27,16 +32,23 @@ FROM_LINE_M = 200.0
 """Less by this [m] where a configuration counts it from the line that is searched, as the original does."""
 
 
+LISTENS_AT = "tcp://127.0.0.1:5557"
+"""Where it listens if nothing else is said."""
+
+
 class Settings(NamedTuple):
-    """instances: how many to wait for; deviation_m: see DEVIATION_M; where: it listens; ids: of the
+    """instances: how many to wait for; deviation_m: see DEVIATION_M; where: it listens; to: the addresses
+    to connect to instead of that, one of each instance; keys: of the vehicles, then the dialect is v2; ids: of the
     vehicles, none for the lowest known; wait_s: for the instances; original: the peers' dialect."""
 
     instances: int
     deviation_m: float = DEVIATION_M
-    where: Address = Address("tcp", "127.0.0.1", 5557, "tcp://127.0.0.1:5557")
+    where: Address = Address("tcp", "127.0.0.1", 5557, LISTENS_AT)
     ids: tuple[int, ...] = ()
     wait_s: float = 60.0
     original: bool = False
+    to: tuple[Address, ...] = ()
+    keys: Keys | None = None
 
 
 def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
@@ -50,14 +62,69 @@ def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
             got=str(v["RoutePlannerUsed"]),
         )
     where = address(
-        v["Address"], ("tcp",), where=entry.where, item=f"{entry.type}.Address", free=True
+        v["Address"] or LISTENS_AT,
+        ("tcp",),
+        where=entry.where,
+        item=f"{entry.type}.Address",
+        free=True,
     )
     count, allowed = v["NumberOfUAVs"], v["DeviationAllowed"]
     deviation_m = DEVIATION_M if allowed is None else float(allowed)
     if allowed is not None and v["DeviationOrigin"] == "line":
         deviation_m = max(0.0, deviation_m - FROM_LINE_M)
     ids = _ids(entry, v["VehicleIDs"], count)
-    return Settings(count, deviation_m, where, ids, v["Timeout_s"], v["Dialect"] == "original")
+    original = v["Dialect"] == "original"
+    to = _to(entry, v["Connect"], count)
+    if to and (v["Address"] or original):
+        raise BadInput(
+            "Connect with what it excludes",
+            where=entry.where,
+            item=f"{entry.type}.Connect",
+            expected="neither Address, where it would listen, nor the original's instances, which "
+            "connect and do not listen",
+            got=f'Address="{v["Address"]}" Dialect="{v["Dialect"]}"',
+        )
+    keys = _keys(entry, v, ids, to or (where,))
+    return Settings(count, deviation_m, where, ids, v["Timeout_s"], original, to, keys)
+
+
+def _keys(
+    entry: Entry, v: Mapping[str, Any], ids: tuple[int, ...], ends: tuple[Address, ...]
+) -> Keys | None:
+    """The keys of v2; a dialect without authentication stays on this machine unless it is asked for."""
+    if v["Dialect"] == "v2":
+        if ids:
+            return keys_of(ids, Path(v["Keys"]) if v["Keys"] else None)
+        item, expected = "VehicleIDs", "the vehicles whose keys the dialect v2 needs"
+    elif v["Keys"]:
+        item, expected = "Keys", 'none, or Dialect="v2"'
+    elif all(one.loopback for one in ends) or v["PlainBeyondLoopback"]:
+        return None
+    else:
+        item, expected = "Dialect", 'v2, an address of loopback, or PlainBeyondLoopback="true"'
+    got = f'Dialect="{v["Dialect"]}" VehicleIDs="{v["VehicleIDs"]}" Keys="{v["Keys"]}"'
+    raise BadInput(
+        "no authentication",
+        where=entry.where,
+        item=f"{entry.type}.{item}",
+        expected=expected,
+        got=got,
+    )
+
+
+def _to(entry: Entry, text: str, count: int) -> tuple[Address, ...]:
+    item = f"{entry.type}.Connect"
+    words = text.split()
+    to = tuple(address(word, ("tcp",), where=entry.where, item=item) for word in words)
+    if to and len({(one.host, one.port) for one in to}) != count:
+        raise BadInput(
+            "not the addresses of the instances",
+            where=entry.where,
+            item=item,
+            expected=f"{count} different addresses, as NumberOfUAVs says",
+            got=text[:80],
+        )
+    return to
 
 
 def _ids(entry: Entry, text: str, count: int) -> tuple[int, ...]:

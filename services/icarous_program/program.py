@@ -1,6 +1,6 @@
 """The loop of `cratous icarous`: one connection to UxAS, its lines to the step, the answers back.
 
-The connection that ends comes again, and UxAS tells everything anew on it; epochs go on. Time is that of
+Either the program connects, or it waits for UxAS to connect to it, one UxAS at a time. The connection that ends comes again, and UxAS tells everything anew on it; epochs go on. Time is that of
 POSTN, so nothing that is decided depends on the machine's clock.
 """
 
@@ -15,13 +15,12 @@ import zmq
 
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.port import Report, Tally, is_due
+from cratous.bridge.redial import Redial
 from cratous.bridge.text_port import Came, Opened, TextPort
-from cratous.bridge.text_protocol import Hello, Message, Skipped
+from cratous.bridge.text_protocol import Hello, Message, NotKnown, Skipped, WireError
 from cratous.services.icarous_program.step import Answer, IcarousEnd, Note, Refuse, State, Tell
-from cratous.spec.errors import BadInput, CratousError
+from cratous.spec.errors import CratousError
 
-_PAUSE_S = (0.1, 2.0)
-"""First and longest pause between attempts to connect."""
 _LONGEST_POLL_MS = 200  # so that a signal is seen
 
 
@@ -56,8 +55,8 @@ class Program:
         self._tally = Tally(f"vehicle {end.craft.config.vehicle_id}", report)
         self._key: int | None = None
         self._open = False
-        self._again_s, self._pause_s = clock(), _PAUSE_S[0]
-        self._until_s, self._why = clock() + patience.wait_s, "nobody listens there"
+        self._redial = Redial(port, () if port.listens else (port.where,))
+        self._until_s, self._why = clock() + patience.wait_s, "it has not connected"
 
     def run(self) -> None:
         """UxasGone if UxAS cannot be had."""
@@ -72,9 +71,7 @@ class Program:
 
     def turn(self) -> None:
         """Wait for the next thing, and do all that is there to do."""
-        now_s = self._clock()
-        if self._key is None and is_due(self._again_s, now_s):
-            self._dial(now_s)
+        self._redial.step(self._clock())
         self._wait()
         now_s = self._clock()
         for came in self._port.step(now_s):
@@ -82,17 +79,6 @@ class Program:
         if not self._open and is_due(self._until_s, now_s):
             where = self._port.where.text
             raise UxasGone(f"{where}: no UxAS for {self._patience.wait_s:g} s ({self._why})")
-
-    def _dial(self, now_s: float) -> None:
-        try:
-            self._key = self._port.dial(now_s)
-        except BadInput as error:
-            self._why = error.got or error.what
-            self._retry(now_s)
-
-    def _retry(self, now_s: float) -> None:
-        self._again_s = now_s + self._pause_s
-        self._pause_s = min(2 * self._pause_s, _PAUSE_S[1])
 
     def _wait(self) -> None:
         poller = zmq.Poller()
@@ -103,31 +89,46 @@ class Program:
             with contextlib.suppress(InterruptedError):
                 poller.poll(_LONGEST_POLL_MS)
         else:
-            time.sleep(min(_LONGEST_POLL_MS / 1000, self._pause_s))
+            time.sleep(max(0.0, min(_LONGEST_POLL_MS / 1000, self._pause_s())))
+
+    def _pause_s(self) -> float:
+        due_s = self._redial.due_s
+        return _LONGEST_POLL_MS / 1000 if due_s is None else due_s - self._clock()
 
     def _came(self, came: Came, now_s: float) -> None:
+        if self._open and came.key != self._key:
+            if isinstance(came.what, Opened):
+                self._port.drop(came.key, "another UxAS is connected")
+            elif isinstance(came.what, LinkEvent):
+                self._tally.refuse("second connection", f"{came.what.kind} {came.what.detail}")
+            return
         match came.what:
             case Opened(peer):
-                self._open, self._pause_s = True, _PAUSE_S[0]
+                self._open, self._key = True, came.key
+                self._redial.opened(came.key)
                 self._report("INFO", f"connected to UxAS at {peer}")
                 self._say(Hello(self._end.craft.config.vehicle_id))
                 self.state, answers = self._end.connected(self.state)
                 self._answer(answers)
             case LinkEvent(kind, detail):
-                self._ended(f"{kind} {detail}".strip(), now_s)
+                self._ended(came.key, detail or kind, now_s)
             case Message() as line:
                 self._line(line)
+            case WireError(kind=kind) if kind:
+                self._say(NotKnown(kind))
             case Skipped() as skipped:
                 self._tally.refuse("not known", skipped.text)
 
-    def _ended(self, why: str, now_s: float) -> None:
-        self._report("WARN", f"the connection to UxAS has ended: {why}")
+    def _ended(self, key: int, why: str, now_s: float) -> None:
+        said = self._redial.ended(key, why, now_s) or self._port.listens
         was_open, self._open, self._key, self._why = self._open, False, None, why
+        if said or was_open:
+            what = "has ended" if was_open else "has not come about"
+            self._report("WARN", f"the connection to UxAS {what}: {why}")
         if was_open:
             if self._patience.once:
                 raise UxasGone(f"{self._port.where.text}: {why}")
             self._until_s = now_s + self._patience.wait_s
-        self._retry(now_s)
 
     def _line(self, line: Message) -> None:
         try:

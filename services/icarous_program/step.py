@@ -17,6 +17,7 @@ from typing import NamedTuple
 from cratous.bridge.text_protocol import (
     Attitude,
     FenceDone,
+    FenceVertex,
     Message,
     OwnPosition,
     SetMode,
@@ -33,6 +34,15 @@ from cratous.services.flight.dynamics import MAX_ACCELERATION_M_S2, Limits, turn
 from cratous.services.icarous import state as icarous
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Foresees, Line, Sensed, Up, Wish
+from cratous.services.icarous_program.recovery import (
+    ASK_AGAIN_MS,
+    Part,
+    Parts,
+    asked,
+    of_plan,
+    of_zone,
+    take,
+)
 from cratous.spec.authority.cycle import OFFER, TAKE_OVER, WITHDRAW
 from cratous.spec.mission import Position, Velocity
 
@@ -94,13 +104,15 @@ class Craft:
 @dataclass(frozen=True)
 class State:
     """instance: what it remembers; gate: of its vehicle; seen: traffic by id; now_ms: time of the last
-    POSTN, None before the first on this connection; beat_ms: of the last heartbeat."""
+    POSTN, None before the first on this connection; beat_ms: of the last heartbeat; lost: plan and zones
+    of which lines are asked for again."""
 
     instance: icarous.State = field(default_factory=icarous.State)
     gate: Gate = UNTOUCHED
     seen: Mapping[int, Seen] = field(default_factory=dict)
     now_ms: int | None = None
     beat_ms: int = 0
+    lost: Parts = field(default_factory=dict)
 
 
 Step = tuple[State, tuple[Answer, ...]]
@@ -118,7 +130,7 @@ class IcarousEnd:
         The waypoints and zones told before stay until UxAS tells them again, as it does on each
         connection; epochs go on where they stand.
         """
-        state = replace(state, seen={}, now_ms=None)
+        state = replace(state, seen={}, now_ms=None, lost={})
         active = not gate_accepts(state.gate, UXAS, state.gate.epoch)
         return state, (Tell(SetMode("ACTIVE" if active else "PASSIVE", state.gate.epoch)),)
 
@@ -131,6 +143,39 @@ class IcarousEnd:
                 return self._traffic(state, line)
             case Attitude():
                 return state, ()
+        if self.craft.original:
+            return self._told(state, line)
+        taken = take(state.lost, line)
+        state, answers = replace(state, lost=taken.lost), list[Answer]()
+        for one in taken.told:
+            state, more = self._told(state, one)
+            answers += more
+        if taken.ask is not None:
+            state, more = self._ask(state, taken.lost[taken.ask])
+            answers += more
+        return state, tuple(answers)
+
+    def _ask(self, state: State, part: Part) -> Step:
+        """Ask for the missing lines of a plan or zone, or say that it was done often enough."""
+        after = asked(part, state.now_ms or 0)
+        if after is None:
+            lost = {key: one for key, one in state.lost.items() if key != part.key}
+            text = f"{part}; asked {part.asked} times: it is not in force"
+            return replace(state, lost=lost), (Note("ERROR", text),)
+        part, line = after
+        state = replace(state, lost={**state.lost, part.key: part})
+        return state, (Note("WARN", f"{part}; asked again, {part.asked}"), Tell(line))
+
+    def _lacking(self, state: State, *parts: Part) -> Step:
+        """Plan or zones have come with gaps: the rest is asked for, unless the peer is the original's."""
+        answers: list[Answer] = []
+        for part in () if self.craft.original else parts:
+            state, more = self._ask(state, part)
+            answers += more
+        return state, tuple(answers)
+
+    def _told(self, state: State, line: Message) -> Step:
+        """One line of mission and zones."""
         before = state.instance.told
         heard = Line(0 if state.now_ms is None else state.now_ms, line)
         instance, _ = self._instance.handle(state.instance, heard)
@@ -141,6 +186,8 @@ class IcarousEnd:
             if before.gathering and instance.told.waypoints is before.waypoints:
                 told = f"{len(before.gathering)} of {before.gathering[-1].total} waypoints"
                 answers.append(Refuse("plan with waypoints missing", told))
+                state, more = self._lacking(state, of_plan(before.gathering))
+                answers += more
             else:
                 takes = True  # a plan that is refused takes nothing: there is no way on to fly
                 count = len(instance.told.waypoints)
@@ -153,8 +200,18 @@ class IcarousEnd:
                 told = f"{len(before.vertices)} of {total} vertices, of zones {zones}"
                 told += f"; GEOFN_SEND of zone {line.zone}"
                 answers.append(Refuse("zone that is not whole: it is not in force", told))
+                ids = {v.zone for v in before.vertices} | ({line.zone} if line.zone else set())
+                parts = [of_zone(number, before.vertices) for number in sorted(ids)]
+                state, more = self._lacking(state, *parts)
+                answers += more
             else:
                 answers.append(Note("INFO", f"{len(instance.told.zones)} zones in force"))
+        if isinstance(line, FenceVertex):
+            others = {v.zone for v in before.vertices} - {line.zone}
+            if others and not instance.told.vertices[1:]:  # a zone whose GEOFN_SEND got lost
+                parts = [of_zone(number, before.vertices) for number in sorted(others)]
+                state, more = self._lacking(state, *parts)
+                answers += more
         if takes:
             state, more = self._taken(state)
             answers += more
@@ -234,10 +291,29 @@ class IcarousEnd:
                     answers.append(Note("INFO", f"{now_ms} ms: {one.resolution}"))
                 case Up():
                     answers.append(Tell(one.line))
+        state, more = self._overdue(state, now_ms)
+        answers += more
         if self.craft.original and state.gate.offered:
             state, more = self._taken(state)
             answers += more
         return state, tuple(answers)
+
+    def _overdue(self, state: State, now_ms: int) -> Step:
+        """Ask for what is open at a heartbeat: UxAS ends each plan and zone before it says POSTN."""
+        told, answers = state.instance.told, list[Answer]()
+        late = [p for p in state.lost.values() if lasted(p.at_ms, now_ms, ASK_AGAIN_MS)]
+        for part in late:
+            state, more = self._ask(state, part)
+            answers += more
+        if self.craft.original:
+            return state, tuple(answers)
+        open_parts = [of_zone(n, told.vertices) for n in sorted({v.zone for v in told.vertices})]
+        if told.gathering:
+            open_parts.append(of_plan(told.gathering))
+        told = replace(told, gathering=(), vertices=())
+        state = replace(state, instance=replace(state.instance, told=told))
+        state, more = self._lacking(state, *open_parts)
+        return state, (*answers, *more)
 
     def _flying(self, line: OwnPosition) -> tuple[Motion, Ability]:
         """The own state, and what the airframe can do at its present speed."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import socket
 import time
 from typing import Any
@@ -12,6 +13,7 @@ import pytest
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.port import address
+from cratous.bridge.redial import Redial
 from cratous.bridge.text_port import Bounds, Came, Opened, TextPort
 from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET
 from cratous.spec.errors import BadInput
@@ -80,6 +82,51 @@ def test_both_ends_meet_and_messages_go_both_ways(opened: list[Any]) -> None:
     assert not one.send(came.key, tp.WaypointReached(4))
 
 
+def test_the_end_of_icarous_may_be_the_one_that_listens(opened: list[Any]) -> None:
+    clock = Clock()
+    icarous = TextPort(at(), server=False, listens=True)
+    uxas = TextPort(at(icarous.bound[1]), server=True, listens=False)
+    opened += [icarous, uxas]
+    assert icarous.listens
+    assert not uxas.listens
+    key = uxas.dial(clock.now_s)
+    found: list[Came] = []
+    while not any(isinstance(came.what, Opened) for came in found):
+        icarous.step(clock.now_s)
+        found += uxas.step(clock.now_s)
+    assert uxas.send(key, tp.WaypointReached(4))
+    came = until(icarous, clock, lambda w: isinstance(w, tp.WaypointReached))[-1]
+    assert icarous.send(came.key, tp.SetMode("ACTIVE", 3))
+    assert until(uxas, clock, lambda w: w == tp.SetMode("ACTIVE", 3))
+    # one that says nothing gets nothing: UxAS's end speaks first
+    with raw(icarous, opened) as silent:
+        silent.settimeout(0.2)
+        icarous.step(clock.now_s)
+        with pytest.raises(TimeoutError):
+            silent.recv(100)
+
+
+def test_a_connection_is_made_again_after_pauses_and_an_end_is_said_once(opened: list[Any]) -> None:
+    with socket.socket() as held:
+        held.bind(("127.0.0.1", 0))  # and does not listen
+        where = at(held.getsockname()[1])
+        port, now_s, said = TextPort(where, server=False), 0.0, list[str]()
+        opened.append(port)
+        redial, attempts = Redial(port, (where,)), list[float]()
+        until_s = time.monotonic() + 20
+        while len(attempts) < 5:
+            assert time.monotonic() < until_s
+            redial.step(now_s)
+            for came in port.step(now_s):
+                assert isinstance(came.what, LinkEvent)
+                attempts.append(now_s)
+                said.append(redial.ended(came.key, came.what.detail, now_s))
+            if redial.due_s is not None:
+                now_s = redial.due_s
+    assert said == [f"{where.text}: Connection refused", "", "", "", ""]
+    assert [round(b - a, 6) for a, b in itertools.pairwise(attempts)] == [0.1, 0.2, 0.4, 0.8]
+
+
 def test_a_peer_that_ends_its_lines_with_cr_lf_is_read(opened: list[Any]) -> None:
     one, clock = server(opened), Clock()
     raw(one, opened, DEFAULT_SECRET.encode(), HEARTBEAT.replace(b"\n", b"\r\n"))
@@ -146,5 +193,7 @@ def test_more_peers_than_it_takes_are_closed_and_a_taken_port_is_refused(opened:
     with pytest.raises(BadInput, match="cannot listen"):
         TextPort(at(one.bound[1]), server=True)
     one.close()
-    with pytest.raises(BadInput, match="cannot connect"):
-        TextPort(at(one.where.port or 1), server=False).dial(0.0)
+    other, nobody = TextPort(at(one.where.port or 1), server=False), Clock()
+    opened.append(other)
+    other.dial(nobody.now_s)
+    until(other, nobody, ended("Connection refused"))

@@ -81,6 +81,9 @@ ORIGINAL_LINES = [
     (tp.RouteEnd(), "RPRSP,typeED,\n"),
     (tp.Heartbeat(7, 3.5), "HBEAT,seq7.0,time3.500000,\n"),
     (tp.Hello(400), "HELLO,id400.0,\n"),
+    (tp.LinesMissing("WAYPT", 0, 7, 2, 4),
+     "AGAIN,type_WAYPT_,number0.0,total7.0,first2.0,last4.0,\n"),
+    (tp.NotKnown("DIVE_NOW"), "NOCMD,kindDIVE_NOW,\n"),
 ]  # fmt: skip
 
 
@@ -230,6 +233,8 @@ def test_memory_is_bounded() -> None:
 def _value(field: FieldLayout) -> st.SearchStrategy[Any]:
     if field.kind is Kind.WORD:
         return st.sampled_from([word.strip("_") for word in field.words])
+    if field.kind is Kind.TEXT:
+        return st.from_regex(r"[A-Za-z0-9_]{1,40}", fullmatch=True)
     if field.kind in (Kind.COUNT, Kind.BARE):
         high = getattr(tp.ORIGINAL_LIMITS, field.high) if field.high else 10**9
         low = -(10**9) if field.low is None else field.low

@@ -55,16 +55,16 @@ CFG = """<UxAS FormatVersion="1.0" EntityID="100" EntityType="Aircraft">
     <SubscribeToMessage MessageType="uxas.messages.task"/>
     <SubscribeToMessage MessageType="cratous"/>
   </Bridge>
-  <Service Type="IcarousCommunicationService" Address="tcp://127.0.0.1:{ics}" {more}/>
+  <Service Type="IcarousCommunicationService" {where}="tcp://127.0.0.1:{ics}" {more}/>
 </UxAS>
 """
 
 
-def configuration(folder: Path, more: str) -> tuple[Path, int, int]:
-    """A cfg.xml in a folder, and the ports of simulator and ICAROUS."""
-    sim, ics = free_port(), free_port()
-    path = folder / "cfg.xml"
-    path.write_text(CFG.format(sim=sim, ics=ics, more=more))
+def configuration(folder: Path, more: str, connect: int | None = None) -> tuple[Path, int, int]:
+    """A cfg.xml in a folder, and the ports of simulator and ICAROUS. connect: there ICAROUS listens."""
+    sim, ics = free_port(), connect or free_port()
+    path, where = folder / "cfg.xml", "Address" if connect is None else "Connect"
+    path.write_text(CFG.format(sim=sim, ics=ics, more=more, where=where))
     return path, sim, ics
 
 
@@ -87,12 +87,12 @@ def command(folder: Path, *arguments: str) -> Iterator[subprocess.Popen[str]]:
             yield running
 
 
-def icarous(folder: Path, port: int, *more: str, vehicle: int = 1) -> Any:
-    """`cratous icarous` for a vehicle of `mission_file`."""
+def icarous(folder: Path, port: int, *more: str, vehicle: int = 1, end: str = "--connect") -> Any:
+    """`cratous icarous` for a vehicle of `mission_file`. end: --connect or --listen."""
     mission = mission_file(folder, vehicle)
     return command(
         folder, "icarous", "--vehicle", str(vehicle), "--mission", str(mission),
-        "--connect", f"127.0.0.1:{port}", *more,
+        end, f"127.0.0.1:{port}", *more,
     )  # fmt: skip
 
 

@@ -21,12 +21,19 @@ from bridge_flight import (
 )
 from uxas_tools import free_port
 
+from cratous.bridge.link import LinkEvent
+from cratous.bridge.port import Address
+from cratous.bridge.text_port import TextPort
 from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET, secret_of_environment
 from cratous.services.cli import main
 from cratous.spec.errors import BadInput
 
 SERVICE = "IcarousCommunicationService"
 WAY = ((0.0, 0.0), (1500.0, 0.0), (3500.0, 0.0), (4500.0, 0.0))
+
+
+def at(port: int) -> Address:
+    return Address("tcp", "127.0.0.1", port, f"tcp://127.0.0.1:{port}")
 
 
 def own() -> Aircraft:
@@ -105,10 +112,78 @@ def test_what_stands_on_the_wire_decides_and_a_cut_link_comes_again(
     assert "POSTN that this airframe cannot fly" in said(tmp_path)
 
 
+@pytest.mark.shows(SERVICE, "Keys")
+def test_v2_flies_with_the_key_and_refuses_another_on_both_ends(
+    tmp_path: Path, opened: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "keys").mkdir()
+    (tmp_path / "keys" / "vehicle_1.key").write_text("5a" * 32)
+    monkeypatch.setenv("CRATOUS_BRIDGE_KEY_1", "5b" * 32)
+    more = f'NumberOfUAVs="1" VehicleIDs="1" Dialect="v2" Keys="{tmp_path / "keys"}"'
+    cfg, sim_port, ics_port = configuration(tmp_path, more)
+    with command(tmp_path, "uxas", "-cfgPath", str(cfg)):
+        with icarous(tmp_path, ics_port, "--v2", "--wait", "4", "--log", "wrong") as wrong:
+            assert wrong.wait(60) == 3
+        text = "the key of vehicle 1 is another one here"
+        assert said(tmp_path).count(f"handshake failed: {text}") >= 1
+        assert f"UxAS refuses: {text}" in said(tmp_path)
+        with icarous(tmp_path, ics_port, "--v2", "--keys", str(tmp_path / "keys")):
+            sim = Simulator(sim_port, own(), Aircraft(90, 2000.0, 2300.0, 270.0))
+            opened.append(sim)
+            sim.client.send(way(*WAY), 1, 1)
+            sim.own.told(way(*WAY))
+            assert sim.fly(100, lambda: sim.own.steered), said(tmp_path)
+    assert "5a5a5a" not in said(tmp_path)
+    assert "5b5b5b" not in said(tmp_path)
+
+
+@pytest.mark.shows(SERVICE, "Connect")
+def test_uxas_connects_to_an_icarous_that_listens_and_again_after_a_cut(
+    tmp_path: Path, opened: list[Any]
+) -> None:
+    listening = free_port()
+    proxy = Proxy(listening)
+    opened.append(proxy)
+    cfg, sim_port, _ = configuration(tmp_path, 'NumberOfUAVs="1"', connect=proxy.port)
+    with (
+        command(tmp_path, "uxas", "-cfgPath", str(cfg)) as uxas,
+        icarous(tmp_path, listening, end="--listen") as pilot,
+    ):
+        sim = Simulator(sim_port, own(), Aircraft(90, 2000.0, 2300.0, 270.0))
+        opened.append(sim)
+        sim.client.send(way(*WAY), 1, 1)
+        sim.own.told(way(*WAY))
+        assert sim.fly(100, lambda: sim.own.steered), said(tmp_path)
+        # a second UxAS at the one that has one; only the end of the first makes room
+        second = TextPort(at(listening), server=True, listens=False)
+        opened.append(second)
+        second.dial(0.0)
+        ends = list[LinkEvent]()
+        assert sim.wait(
+            lambda: (
+                ends.extend(c.what for c in second.step(0.0) if isinstance(c.what, LinkEvent)),
+                ends,
+            )[1],
+            30.0,
+        )
+        proxy.cut()
+        assert sim.wait(lambda: any("not heard" in text for text in reasons(sim)), 30.0)
+        again = "connected again"
+        assert sim.wait(lambda: any(b.Note == again for b in sim.all("BridgeStatus")), 60.0)
+        assert sim.fly(700, lambda: 4 in sim.own.passed), said(tmp_path)
+        assert sim.nearest_m > 150.0
+        assert [c.Owner.name for c in sim.all("AuthorityChange")][-1] == "UxAS"
+        for one in (pilot, uxas):
+            one.terminate()
+            assert one.wait(20) == 0
+    assert "another UxAS is connected" in said(tmp_path)
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "text"),
     [
         (("--vehicle", "8"), 2, "the mission has no such vehicle"),
+        (("--vehicle", "1", "--listen", "127.0.0.1:0"), 2, "one of --connect and --listen"),
         (("--vehicle", "1", "--connect", "nowhere"), 2, "not an address"),
         (("--vehicle", "1", "--wait", "0.3"), 3, "no UxAS for 0.3 s (Connection refused)"),
     ],
@@ -125,6 +200,35 @@ def test_the_command_says_what_is_wrong(
     mission = str(mission_file(tmp_path))
     where = f"127.0.0.1:{free_port()}"
     assert main(["icarous", "--mission", mission, "--connect", where, *arguments]) == code
+    assert text in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "text"),
+    [
+        ((), 2, "one of --connect and --listen is needed"),
+        (("--listen", "192.0.2.1:9"), 2, "no authentication"),
+        (("--listen", "127.0.0.1:0", "--keys", "."), 2, "--keys is of --v2"),
+        (("--listen", "127.0.0.1:0", "--v2"), 2, "no key of the bridge"),
+        (("--listen", "127.0.0.1:0", "--original"), 2, "--original needs --connect"),
+        (
+            ("--listen", "127.0.0.1:0", "--wait", "0.3"),
+            3,
+            "no UxAS for 0.3 s (it has not connected)",
+        ),
+    ],
+)
+def test_an_icarous_that_listens_says_what_is_wrong(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    arguments: tuple[str, ...],
+    code: int,
+    text: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    mission = str(mission_file(tmp_path))
+    assert main(["icarous", "--mission", mission, "--vehicle", "1", *arguments]) == code
     assert text in capsys.readouterr().err
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+import re
 import socket
 import time
 from pathlib import Path
@@ -19,6 +20,8 @@ from cratous.bridge import text_protocol as tp
 from cratous.bridge.text_protocol.handshake import ClientHandshake
 from cratous.services.bus import Envelope
 from cratous.services.icarous_communication.service import NobodyCame
+from cratous.services.icarous_communication.settings import ATTRIBUTES, Settings, settings_of
+from cratous.services.loading.uxas_settings import Entry, values_of
 from cratous.spec.errors import BadInput
 
 SERVICE = "IcarousCommunicationService"
@@ -334,10 +337,39 @@ def test_the_original_s_client_gets_what_it_can_hold(tmp_path: Path, opened: lis
             count += 1
 
 
-@pytest.mark.shows(SERVICE, "RoutePlannerUsed")
+@pytest.mark.parametrize(
+    ("attributes", "item"),
+    [
+        ('Address="tcp://*:0"', "Dialect"),
+        ('Connect="tcp://192.0.2.1:9"', "Dialect"),
+        ('Keys="keys"', "Keys"),
+        ('Dialect="v2"', "VehicleIDs"),
+    ],
+)
+@pytest.mark.shows(SERVICE, "PlainBeyondLoopback")
+def test_what_is_not_authenticated_stays_on_this_machine_unless_asked_for(
+    attributes: str, item: str
+) -> None:
+    given = {"NumberOfUAVs": "1", **dict(re.findall(r'(\w+)="([^"]*)"', attributes))}
+
+    def settings(**more: str) -> Settings:
+        problems = list[BadInput]()
+        values = values_of(ATTRIBUTES, {**given, **more}, "cfg.xml", SERVICE, problems)
+        assert problems == []
+        return settings_of(Entry("Service", SERVICE, given, (), "cfg.xml"), values)
+
+    with pytest.raises(BadInput, match="no authentication") as wrong:
+        settings()
+    assert f"{SERVICE}.{item}" in str(wrong.value)
+    if item == "Dialect":
+        assert settings(PlainBeyondLoopback="true").keys is None
+
+
+@pytest.mark.shows(SERVICE, "RoutePlannerUsed", "Connect")
 def test_what_cannot_be_honoured_is_refused(tmp_path: Path, opened: list[Any]) -> None:
     for attributes, what in (
         ('NumberOfUAVs="1" RoutePlannerUsed="1"', "ICAROUS plans no routes for UxAS here"),
+        ('NumberOfUAVs="1" Connect="tcp://127.0.0.1:5600"', "Connect with what it excludes"),
         ("", "NumberOfUAVs"),
         ('NumberOfUAVs="2" VehicleIDs="3"', "2 different ids above 0"),
         ('NumberOfUAVs="1" DeviationOrigin="somewhere"', "line or path"),

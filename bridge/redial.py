@@ -1,0 +1,56 @@
+"""Connections that are made again whenever they end, with longer and longer pauses, never blocking."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from cratous.bridge.port import Address, is_due
+from cratous.bridge.text_port import TextPort
+
+PAUSE_S = (0.1, 2.0)
+"""First and longest pause between attempts to connect [s]."""
+
+
+@dataclass
+class _Target:
+    where: Address
+    key: int | None = None
+    again_s: float | None = None  # None: at once
+    pause_s: float = PAUSE_S[0]
+    why: str = ""  # the last attempt or connection has ended
+
+
+class Redial:
+    """Keeps one connection of a port to each of some addresses."""
+
+    def __init__(self, port: TextPort, where: Iterable[Address]) -> None:
+        self._port, self._targets = port, [_Target(one) for one in where]
+
+    @property
+    def due_s(self) -> float | None:
+        """When `step` has something to do; None while all addresses have a connection, or an attempt."""
+        times = [one.again_s or 0.0 for one in self._targets if one.key is None]
+        return min(times, default=None)
+
+    def step(self, now_s: float) -> None:
+        """Connect where there is no connection and the pause is over."""
+        for one in self._targets:
+            if one.key is None and (one.again_s is None or is_due(one.again_s, now_s)):
+                one.key = self._port.dial(now_s, one.where)
+
+    def opened(self, key: int) -> None:
+        """Hands were shaken on it: after its end the pauses begin anew."""
+        for one in self._targets:
+            if one.key == key:
+                one.pause_s, one.why = PAUSE_S[0], ""
+
+    def ended(self, key: int, why: str, now_s: float) -> str:
+        """It has ended: what to say of that, nothing if the attempt before has ended so as well."""
+        said = ""
+        for one in self._targets:
+            if one.key == key:
+                said = "" if why == one.why else f"{one.where.text}: {why}"
+                one.key, one.again_s, one.why = None, now_s + one.pause_s, why
+                one.pause_s = min(2 * one.pause_s, PAUSE_S[1])
+        return said

@@ -1,0 +1,52 @@
+"""Keys of the authenticated dialect: one for each vehicle, from a file or the environment, never shown."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from cratous.bridge.text_protocol.handshake import SECRET_LENGTH, is_secret
+from cratous.spec.errors import BadInput
+
+KEY_VARIABLE = "CRATOUS_BRIDGE_KEY_{}"
+"""The variable of the environment with the key of a vehicle."""
+
+
+@dataclass(frozen=True)
+class Keys:
+    """The keys that an end has, by vehicle."""
+
+    by_vehicle: Mapping[int, bytes] = field(repr=False)
+
+
+def keys_of(vehicle_ids: Iterable[int], folder: Path | None) -> Keys:
+    """The keys of these vehicles; BadInput if one is missing, see `key_of`."""
+    return Keys({number: key_of(number, folder) for number in vehicle_ids})
+
+
+def key_of(vehicle_id: int, folder: Path | None) -> bytes:
+    """The key of a vehicle: of the file `vehicle_ID.key` of a folder, or of the environment where no folder
+    is said. BadInput if there is none, or it is no key; it is never shown."""
+    if folder is None:
+        where, item = "environment", KEY_VARIABLE.format(vehicle_id)
+        text = os.environ.get(item)
+    else:
+        path = folder / f"vehicle_{vehicle_id}.key"
+        where, item = str(path), "key"
+        try:
+            with path.open("rb") as file:
+                text = file.read(SECRET_LENGTH + 3).decode("ascii", "replace").strip()
+        except OSError:
+            text = None
+    if text is None or not is_secret(text):
+        got = "nothing that can be read" if text is None else f"{len(text)} characters"
+        raise BadInput(
+            "no key of the bridge",
+            where=where,
+            item=item,
+            expected=f"{SECRET_LENGTH} hexadecimal characters for vehicle {vehicle_id}",
+            got=got,
+        )
+    return bytes.fromhex(text)

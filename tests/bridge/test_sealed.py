@@ -1,0 +1,237 @@
+"""The dialect v2: who has the key and who has not, and what becomes of packets that are replayed, forged,
+damaged, or of another connection."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cratous.bridge import text_protocol as tp
+from cratous.bridge.link import LinkEvent
+from cratous.bridge.port import Address
+from cratous.bridge.text_port import Came, Opened, TextPort
+from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET
+from cratous.bridge.text_protocol.keys import Keys, key_of, keys_of
+from cratous.bridge.text_protocol.sealed import (
+    DAMAGED,
+    FORGED,
+    REPLAYED,
+    WINDOW,
+    Seal,
+    SealedClient,
+    SealedServer,
+)
+from cratous.spec.errors import BadInput
+
+KEYS = Keys({1: b"a" * 32, 2: b"b" * 32})
+LINE = tp.encode(tp.SetMode("ACTIVE", 3))
+
+
+def at(port: int = 0) -> Address:
+    return Address("tcp", "127.0.0.1", port, f"tcp://127.0.0.1:{port}")
+
+
+def key(vehicle: int, other: bytes | None = None) -> Keys:
+    return Keys({vehicle: other or KEYS.by_vehicle[vehicle]})
+
+
+def seals(vehicle: int = 1) -> tuple[Seal, Seal]:
+    """ICAROUS's end and UxAS's of an opened connection."""
+    client, server = SealedClient(keys=key(vehicle).by_vehicle), SealedServer(keys=KEYS.by_vehicle)
+    client.feed(server.feed(client.feed(server.start())))
+    assert client.seal is not None
+    assert server.seal is not None
+    return client.seal, server.seal
+
+
+def meet(opened: list[Any], uxas: str | Keys, icarous: str | Keys) -> tuple[Any, ...]:
+    """Two ports, and all that comes until both are open or one has ended."""
+    one = TextPort(at(), server=True, secret=uxas)
+    other = TextPort(at(one.bound[1]), server=False, secret=icarous)
+    opened += [one, other]
+    found: tuple[list[Came], list[Came]] = ([], [])
+    other.dial(1.0)
+    until_s = time.monotonic() + 20
+    while not all(any(isinstance(c.what, Opened | LinkEvent) for c in came) for came in found):
+        assert time.monotonic() < until_s
+        found[0].extend(one.step(1.0))
+        found[1].extend(other.step(1.0))
+    return one, other, *found
+
+
+def ends(came: list[Came]) -> list[str]:
+    return [c.what.detail for c in came if isinstance(c.what, LinkEvent)]
+
+
+def wait(port: TextPort, done: Any) -> list[Came]:
+    found, until_s = list[Came](), time.monotonic() + 20
+    while not done(found):
+        assert time.monotonic() < until_s, found
+        found += port.step(1.0)
+    return found
+
+
+def test_both_prove_themselves_and_lines_go_both_ways(opened: list[Any]) -> None:
+    one, other, up, down = meet(opened, KEYS, key(2))
+    assert [c.what for c in up][1:] == [tp.Hello(2)]  # by its key, whatever it says
+    assert other.send(down[0].key, tp.SetMode("ACTIVE", 3))
+    found = wait(one, lambda f: any(isinstance(c.what, tp.SetMode) for c in f))
+    assert found[-1].what == tp.SetMode("ACTIVE", 3)
+    assert one.send(up[0].key, tp.WaypointReached(4))
+    assert wait(other, lambda f: f)[-1].what == tp.WaypointReached(4)
+    # what one end has is acknowledged by the next packet of it
+    assert [c.seal.unacknowledged for c in other._connections.values()] == [0]
+    assert [c.seal.unacknowledged for c in one._connections.values()] == [1]
+    # its key is that of vehicle 2
+    assert other.send(down[0].key, tp.Hello(1))
+    assert "HELLO of vehicle 1 by 2's key" in ends(wait(one, ends))
+
+
+@pytest.mark.parametrize(
+    ("uxas", "icarous", "at_uxas", "at_icarous"),
+    [
+        (KEYS, key(1, b"c" * 32), "the key of vehicle 1 is another one here",
+         "UxAS refuses: the key of vehicle 1 is another one here"),
+        (key(1), key(2), "no key of vehicle 2 here", "UxAS refuses: no key of vehicle 2 here"),
+    ],
+)  # fmt: skip
+def test_a_wrong_key_is_refused_with_the_reason_on_both_ends(
+    opened: list[Any], uxas: Keys, icarous: Keys, at_uxas: str, at_icarous: str
+) -> None:
+    _, _, up, down = meet(opened, uxas, icarous)
+    assert ends(up) == [f"handshake failed: {at_uxas}"]
+    assert ends(down) == [f"handshake failed: {at_icarous}"]
+
+
+def test_another_dialect_is_refused(opened: list[Any]) -> None:
+    one = TextPort(at(), server=True, secret=KEYS)
+    opened.append(one)
+    with socket.create_connection(one.bound, timeout=10) as sock:
+        sock.sendall(DEFAULT_SECRET.encode() + b"\n")
+        assert "handshake failed: another dialect than v2" in ends(wait(one, ends))
+    plain = TextPort(at(), server=True)
+    sealed = TextPort(at(plain.bound[1]), server=False, secret=key(1))
+    opened += [plain, sealed]
+    sealed.dial(1.0)
+    plain.step(1.0)
+    # HELLO of the other dialect is no line: nothing is sent to it, and the time runs out
+    end = time.monotonic() + 0.3
+    while time.monotonic() < end:
+        assert sealed.step(1.0) == []
+        plain.step(1.0)
+    assert "handshake not finished in time" in ends(sealed.step(100.0))
+
+
+def test_a_uxas_without_the_key_is_found_out() -> None:
+    client, liar = SealedClient(keys=key(1).by_vehicle), SealedServer(keys={1: b"x" * 32})
+    client.feed(liar.start())
+    client.feed(b"ok," + b"0" * 64 + b"\n")
+    assert client.failed == "the other end does not have the key of vehicle 1"
+    assert client.seal is None
+
+
+def test_a_replayed_packet_is_refused_counted_and_told(opened: list[Any]) -> None:
+    said = list[str]()
+    one = TextPort(at(), server=True, secret=KEYS, report=lambda _s, text: said.append(text))
+    opened.append(one)
+    with socket.create_connection(one.bound, timeout=0.05) as sock:
+        client = SealedClient(keys=key(1).by_vehicle)
+        until_s = time.monotonic() + 20
+        while not client.done:
+            assert time.monotonic() < until_s
+            one.step(1.0)
+            with contextlib.suppress(TimeoutError):
+                sock.sendall(client.feed(sock.recv(4096)))
+        assert client.seal is not None
+        packet = client.seal.wrap(LINE, 5)
+        sock.sendall(packet)
+        sock.sendall(packet)
+        found = wait(one, lambda f: any(isinstance(c.what, tp.WireError) for c in f))
+    modes = [c.what for c in found if isinstance(c.what, tp.SetMode)]
+    assert modes == [tp.SetMode("ACTIVE", 3)]
+    assert one.counts.refused[REPLAYED] == 1
+    assert any("replayed packet; expected a number from 2 to 1025; got 1" in text for text in said)
+
+
+def test_packets_of_another_connection_direction_or_vehicle_are_forged() -> None:
+    up, down = seals()
+    for stranger in (seals()[0], seals(2)[0], seals()[1]):
+        assert [w.what for w in down.feed(stranger.wrap(LINE, 0))[1]] == [FORGED]
+    assert [w.what for w in down.feed(down.wrap(LINE, 0))[1]] == [FORGED]  # sent back
+    assert down.feed(up.wrap(LINE, 0)) == (LINE, [])
+
+
+def test_what_the_other_end_signs_and_cannot_be_is_refused() -> None:
+    up, down = seals()
+    assert down.feed(up.wrap(LINE, 100))[0] == LINE
+    assert [w.what for w in down.feed(up.wrap(LINE, 99))[1]] == [FORGED]  # time goes back
+    up.mark = 7  # nothing was sent to it
+    assert [w.what for w in down.feed(up.wrap(LINE, 100))[1]] == [FORGED]
+    up.mark, up.sent = 0, down.mark + WINDOW
+    assert [w.what for w in down.feed(up.wrap(LINE, 100))[1]] == [REPLAYED]  # above the window
+    up.sent = down.mark + WINDOW - 1
+    assert down.feed(up.wrap(LINE, 100)) == (LINE, [])
+
+
+@given(st.lists(st.integers(0, 7), max_size=40), st.integers(1, 50))
+def test_in_any_order_each_packet_is_accepted_at_most_once(order: list[int], size: int) -> None:
+    up, down = seals()
+    lines = [tp.encode(tp.Heartbeat(k, 0.0)) for k in range(8)]
+    packets = [up.wrap(line, 0) for line in lines]
+    data = b"".join(packets[k] for k in order)
+    got = b""
+    for start in range(0, len(data), size):
+        got += down.feed(data[start : start + size])[0]
+    taken = got.splitlines(keepends=True)
+    expected, mark = [], -1
+    for k in order:
+        if k > mark:
+            expected.append(lines[k])
+            mark = k
+    assert taken == expected
+    assert len(set(taken)) == len(taken)
+
+
+@given(st.data())
+def test_a_changed_byte_is_never_believed(data: Any) -> None:
+    up, down = seals()
+    packet = up.wrap(LINE, 12)
+    place = data.draw(st.integers(0, len(packet) - 2))
+    byte = data.draw(st.integers(0, 255).filter(lambda b: b != packet[place]))
+    lines, wrong = down.feed(packet[:place] + bytes([byte]) + packet[place + 1 :])
+    assert lines == b""
+    assert {w.what for w in wrong} <= {DAMAGED, FORGED}
+    assert wrong
+
+
+def test_a_packet_without_an_end_is_bounded() -> None:
+    _, down = seals()
+    for _ in range(10):
+        down.feed(b"9" * 4000)
+    assert len(down._pending) < 9000
+
+
+def test_keys_come_from_files_or_the_environment_and_are_not_shown(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "vehicle_1.key").write_text("ab" * 32 + "\n")
+    assert keys_of((1,), tmp_path).by_vehicle == {1: b"\xab" * 32}
+    monkeypatch.setenv("CRATOUS_BRIDGE_KEY_2", "cd" * 32)
+    assert key_of(2, None) == b"\xcd" * 32
+    assert "ab" not in repr(keys_of((1,), tmp_path)).replace("vehicle", "")
+    assert "xab" not in repr(SealedClient(keys=keys_of((1,), tmp_path).by_vehicle))
+    (tmp_path / "vehicle_2.key").write_text("hunter2")
+    (tmp_path / "vehicle_3.key").write_text("ab" * 33)
+    for number in (2, 3, 4):
+        with pytest.raises(BadInput, match="no key of the bridge") as wrong:
+            key_of(number, tmp_path)
+        assert "hunter2" not in str(wrong.value)
+    with pytest.raises(BadInput, match="CRATOUS_BRIDGE_KEY_7"):
+        key_of(7, None)
