@@ -18,6 +18,16 @@ class Plane(NamedTuple):
     y: float
 
 
+class Thresholds(NamedTuple):
+    """Thresholds of a volume in space with either vertical lead: DTHR, ZTHR [m]; TTHR, TCOA, VMOD [s]."""
+
+    dthr_m: float
+    zthr_m: float
+    tthr_s: float
+    tcoa_s: float
+    vmod_s: float
+
+
 def dot(a: Plane, b: Plane) -> float:
     """Scalar product."""
     return a.x * b.x + a.y * b.y
@@ -235,14 +245,11 @@ def violation_taumod_at(
     v: Plane,
     sz: float,
     vz: float,
-    dthr: float,
-    zthr: float,
-    tthr: float,
-    tcoa: float,
-    vmod: float,
+    thresholds: Thresholds,
     t: float,
 ) -> bool:
     """Well clear by tau_mod, with either vertical lead, is lost after t seconds."""
+    dthr, zthr, tthr, tcoa, vmod = thresholds
     vertical = layer_violation_at(sz, vz, zthr, tcoa, vmod, t)
     return vertical and horizontal_violation_at(s, v, dthr, tthr, t)
 
@@ -252,14 +259,11 @@ def violation_tcpa_at(
     v: Plane,
     sz: float,
     vz: float,
-    dthr: float,
-    zthr: float,
-    tthr: float,
-    tcoa: float,
-    vmod: float,
+    thresholds: Thresholds,
     t: float,
 ) -> bool:
     """Well clear by the time of closest approach is lost after t seconds."""
+    dthr, zthr, tthr, tcoa, vmod = thresholds
     vertical = layer_violation_at(sz, vz, zthr, tcoa, vmod, t)
     return vertical and horizontal_violation_tcpa_at(s, v, dthr, tthr, t)
 
@@ -269,14 +273,11 @@ def violation_tep_at(
     v: Plane,
     sz: float,
     vz: float,
-    dthr: float,
-    zthr: float,
-    tthr: float,
-    tcoa: float,
-    vmod: float,
+    thresholds: Thresholds,
     t: float,
 ) -> bool:
     """Well clear by the time of entry is lost after t seconds."""
+    dthr, zthr, tthr, tcoa, vmod = thresholds
     vertical = layer_violation_at(sz, vz, zthr, tcoa, vmod, t)
     return vertical and horizontal_violation_tep_at(s, v, dthr, tthr, t)
 
