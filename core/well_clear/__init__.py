@@ -86,7 +86,7 @@ from cratous.core.well_clear.now import (
     violation_tcpa,
     violation_tep,
 )
-from cratous.core.well_clear.thresholds import Thresholds
+from cratous.core.well_clear.thresholds import StandardThresholds, Thresholds
 from cratous.spec.errors import BadInput
 
 NOW: dict[str, Any] = {"tau_mod": violation_taumod, "tcpa": violation_tcpa, "tep": violation_tep}
@@ -326,6 +326,7 @@ __all__ = [
     "Loss",
     "Losses",
     "Span",
+    "StandardThresholds",
     "Thresholds",
     "Volume",
     "Window",

@@ -8,7 +8,7 @@ violation begins and ends is told by `core.well_clear.interval`.
 from typing import NamedTuple
 
 from cratous.core.kernel import Vec2, kernel
-from cratous.core.well_clear.thresholds import Thresholds
+from cratous.core.well_clear.thresholds import StandardThresholds, Thresholds
 
 
 @kernel(implements="well_clear.parabola")
@@ -65,19 +65,17 @@ def vertical_window(sz: float, vz: float, zthr_m: float, tcoa_s: float, h_s: flo
     return Window(w, first, min(zthr_m - z, h_s * w))
 
 
-@kernel(implements="well_clear.violation_at", nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s"))
+@kernel(implements="well_clear.violation_at", nonnegative=("thresholds",))
 def violation_within(
     s: Vec2,
     v: Vec2,
     sz: float,
     vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
+    thresholds: StandardThresholds,
     h_s: float,
 ) -> bool:
     """True iff well clear is lost at some t in [0, h_s] if both fly straight on."""
+    dthr_m, zthr_m, tthr_s, tcoa_s = thresholds
     k, first, last = vertical_window(sz, vz, zthr_m, tcoa_s, h_s)
     if first > last:
         return False
