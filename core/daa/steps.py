@@ -36,10 +36,7 @@ def lost_before(before: bool, piece: bool) -> bool:
 
 
 way_conflicts = fold(
-    name="way_conflicts",
-    implements="daa.meaning.lost_somewhere",
-    step=lost_before,
-    start=False,
+    name="way_conflicts", implements="daa.meaning.lost_somewhere", step=lost_before, start=False
 )
 """Whether any of the pieces (lost,) of a way loses a volume."""
 

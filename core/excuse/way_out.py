@@ -38,10 +38,7 @@ def after_piece(so_far: int, known: bool, lost: bool, surely: bool) -> int:
 
 
 manoeuvre_judged = fold(
-    name="manoeuvre_judged",
-    implements="excuse.flown_step",
-    step=after_piece,
-    start=1,
+    name="manoeuvre_judged", implements="excuse.flown_step", step=after_piece, start=1
 )
 """A manoeuvre from its pieces (known, lost, surely)."""
 

@@ -13,6 +13,15 @@ def any_state(c: Claim) -> tuple[Any, Any, Any, Any]:
     return c.vector("s"), c.vector("v"), c.real("sz"), c.real("vz")
 
 
+def any_in_the_plane(c: Claim) -> tuple[Any, Any, Any, Any]:
+    """Any horizontal state `s` and `v`, and any thresholds `dthr` and `tthr`, none below 0."""
+    s, v = c.vector("s"), c.vector("v")
+    dthr, tthr = c.reals("dthr tthr")
+    c.premise(dthr >= 0)
+    c.premise(tthr >= 0)
+    return s, v, dthr, tthr
+
+
 def any_thresholds(c: Claim) -> Thresholds:
     """Any thresholds of a volume in space, none below 0: `dthr`, `zthr`, `tthr`, `tcoa`, `vmod`."""
     limits = Thresholds(*c.reals("dthr zthr tthr tcoa vmod"))

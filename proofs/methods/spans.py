@@ -11,7 +11,7 @@ from typing import Any
 
 from cratous.core.well_clear import times_vertical, vertical_interval
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.encounters import any_state, any_thresholds, by_name
+from cratous.proofs.methods.encounters import any_in_the_plane, any_state, any_thresholds, by_name
 from cratous.spec import well_clear
 
 
@@ -21,10 +21,8 @@ def horizontal_interval_is_exact(
     meant_horizontally_at: Any,
 ) -> None:
     """An instant of [B, T] violates the horizontal volume exactly if it lies in the span."""
-    s, v = c.vector("s"), c.vector("v")
-    dthr, tthr, begin, end, t = c.reals("dthr tthr begin end t")
-    c.premise(dthr >= 0)
-    c.premise(tthr >= 0)
+    s, v, dthr, tthr = any_in_the_plane(c)
+    begin, end, t = c.reals("begin end t")
     c.premise(begin <= t)
     c.premise(t <= end)
     span = c.use(horizontal_interval, s, v, dthr, tthr, begin, end)
@@ -37,10 +35,8 @@ def horizontal_interval_lies_within(
     horizontal_interval: Any,
 ) -> None:
     """A span that is not empty lies within [B, T]; an empty one is from 1 to 0."""
-    s, v = c.vector("s"), c.vector("v")
-    dthr, tthr, begin, end = c.reals("dthr tthr begin end")
-    c.premise(dthr >= 0)
-    c.premise(tthr >= 0)
+    s, v, dthr, tthr = any_in_the_plane(c)
+    begin, end = c.reals("begin end")
     first, last = c.use(horizontal_interval, s, v, dthr, tthr, begin, end)
     within = c.all_of(begin <= first, last <= end)
     c.show(c.implies(first <= last, within), "within [B, T]")

@@ -13,8 +13,40 @@ from cratous.core.kernel import Vec2
 from cratous.core.well_clear import layer_violation, vertical_interval
 from cratous.core.well_clear.thresholds import Thresholds
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.encounters import any_state, any_thresholds, by_name
+from cratous.proofs.methods.encounters import any_in_the_plane, any_state, any_thresholds, by_name
 from cratous.spec import well_clear
+
+
+def horizontal_is_its_definition(c: Claim, horizontal_now: Any, meant_horizontally: Any) -> None:
+    """The horizontal kernel says violated exactly where its definition does."""
+    s, v, dthr, tthr = any_in_the_plane(c)
+    verdict = c.use(horizontal_now, s, v, dthr, tthr)
+    c.show(c.same(verdict, c.define(meant_horizontally, s, v, dthr, tthr)))
+
+
+def decision_is_the_definition(c: Claim, decision: Any, meant_horizontally: Any) -> None:
+    """The decision on the invariants of a state is that of the definition on the state."""
+    s, v, dthr, tthr = any_in_the_plane(c)
+    ss, vv = s.x * s.x + s.y * s.y, v.x * v.x + v.y * v.y
+    sv, cross = s.x * v.x + s.y * v.y, s.x * v.y - s.y * v.x
+    verdict = c.use(decision, ss, vv, sv, cross, dthr * dthr, tthr)
+    c.show(c.same(verdict, c.define(meant_horizontally, s, v, dthr, tthr)))
+
+
+def horizontal_scales(
+    c: Claim, is_its_definition: str, horizontal_now: Any, meant_horizontally: Any
+) -> None:
+    """Kernel and definition give the same where s, DTHR and TTHR are scaled by the same factor above 0."""
+    s, v, dthr, tthr = any_in_the_plane(c)
+    k = c.real("k")
+    c.premise(k > 0)
+    here, scaled = (s, v, dthr, tthr), (Vec2(k * s.x, k * s.y), v, k * dthr, k * tthr)
+    for at, w, d, t in (here, scaled):
+        c.lemma(is_its_definition, s=at, v=w, dthr=d, tthr=t)
+    near, far = c.use(horizontal_now, *here), c.use(horizontal_now, *scaled)
+    c.show(c.same(near, far), "the kernel does not")
+    meant = c.define(meant_horizontally, *here), c.define(meant_horizontally, *scaled)
+    c.show(c.same(*meant), "the definition does not")
 
 
 def horizontal_is_monotone(
@@ -22,10 +54,8 @@ def horizontal_is_monotone(
     horizontal_now: Any,
 ) -> None:
     """The horizontal volume grows with DTHR and TTHR."""
-    s, v = c.vector("s"), c.vector("v")
-    dthr, tthr, dthr2, tthr2 = c.reals("dthr tthr dthr2 tthr2")
-    c.premise(dthr >= 0)
-    c.premise(tthr >= 0)
+    s, v, dthr, tthr = any_in_the_plane(c)
+    dthr2, tthr2 = c.reals("dthr2 tthr2")
     c.premise(dthr <= dthr2)
     c.premise(tthr <= tthr2)
     before = c.use(horizontal_now, s, v, dthr, tthr)

@@ -2,26 +2,19 @@
 the UxAS end says so and no longer counts the instance as heard; an instance that commands and does not hear
 UxAS opens no offer, so it goes on commanding."""
 
-from cratous.core.authority.cycle import Cycle, cycle_flown, gate_wished
-from cratous.core.authority.gate import Gate
-from cratous.core.authority.link_end import LinkEnd, link_mode, link_sign
+from cratous.core.authority.cycle import cycle_flown, gate_wished
+from cratous.core.authority.link_end import link_mode, link_sign
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.command import any_cycle, any_gate, any_link_end
 from cratous.spec.authority import cycle as instance
 from cratous.spec.authority import gate as authority
 from cratous.spec.authority import link_end
 
 
 def claim(c: Claim) -> None:
-    gate = Gate(c.integer("owner"), c.integer("gate_epoch"), c.boolean("offered"))
-    cycle = Cycle(
-        c.integer("mode"),
-        c.integer("relapses"),
-        c.boolean("handed"),
-        c.integer("handed_ms"),
-        c.boolean("free"),
-        c.integer("free_ms"),
-    )
-    end = LinkEnd(c.boolean("active"), c.integer("epoch"), c.boolean("alive"))
+    gate = any_gate(c)
+    cycle = any_cycle(c)
+    end = any_link_end(c)
     heard, now, bound, least = (c.integer(n) for n in ("heard", "now", "bound", "least"))
     says, began, free = c.boolean("says"), c.integer("began"), c.boolean("way_free")
     c.premise(c.all_of(bound >= 0, least >= 0, least <= 2**56))
