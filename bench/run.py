@@ -23,7 +23,7 @@ from cratous.core.geofence.planar import edges_of, locate
 from cratous.core.kernel import Vec2
 from cratous.core.readings.exact import exact, exactly
 from cratous.core.readings.machine.compiled import compiled
-from cratous.core.well_clear import horizontal_violation, violation_within
+from cratous.core.well_clear import StandardThresholds, horizontal_violation, violation_within
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
@@ -68,7 +68,8 @@ def rows() -> list[tuple[str, float, str, float]]:
     sz, vz = rng.normal(size=N) * 80, rng.normal(size=N) * 3
     predicate, within = compiled(horizontal_violation), compiled(violation_within)
     predicate(x[:2], y[:2], u[:2], v[:2], 150.0, 15.0)
-    limits = (150.0, 30.0, 15.0, 0.0, 60.0)
+    volume = StandardThresholds(150.0, 30.0, 15.0, 0.0)
+    limits = (*volume, 60.0)
     within(x[:2], y[:2], u[:2], v[:2], sz[:2], vz[:2], *limits)
     same = numpy_horizontal(x, y, u, v, 150.0, 15.0)
     if not np.array_equal(predicate(x, y, u, v, 150.0, 15.0), same):
@@ -78,12 +79,16 @@ def rows() -> list[tuple[str, float, str, float]]:
     found = [("well clear now, compiled", a, "the same in numpy", b)]
     some = range(2000)
     states = [(Vec2(x[i], y[i]), Vec2(u[i], v[i]), sz[i], vz[i]) for i in some]
-    plain = best(lambda: [violation_within(*s, *limits) for s in states]) / len(states) * 1e9
+    plain = best(lambda: [violation_within(*s, volume, 60.0) for s in states]) / len(states) * 1e9
     a = best(lambda: within(x, y, u, v, sz, vz, *limits)) / N * 1e9
     found.append(("well clear within 60 s, compiled", a, "CPython, doubles", plain))
     rational = [tuple(map(float, (*s[0], *s[1], s[2], s[3]))) for s in states]
     ready = [(Vec2(p, q), Vec2(r, s), z, w) for p, q, r, s, z, w in rational]
-    a = best(lambda: [exact(violation_within, *s, *limits) for s in ready[:300]], 3) / 300 * 1e9
+    a = (
+        best(lambda: [exact(violation_within, *s, volume, 60.0) for s in ready[:300]], 3)
+        / 300
+        * 1e9
+    )
     found.append(("well clear within 60 s, exact, one by one", a, "CPython, doubles", plain))
     sure = exactly(violation_within)
     sure(x[:2], y[:2], u[:2], v[:2], sz[:2], vz[:2], *limits)

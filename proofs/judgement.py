@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 from cratous.core import ledger as gate
 from cratous.core.ledger.package_home import Home
@@ -51,6 +52,18 @@ class Judgement:
         return not self.problems and all(t.proved for t in self.inventory.theorems)
 
 
+class Memory(NamedTuple):
+    """What is remembered from run to run: proofs, theorems as they were stated, and the folder in which the
+    relations of theorems are kept."""
+
+    cache: Cache | None = None
+    recall: Recall | None = None
+    relations: Path | None = None
+
+
+NOTHING = Memory()
+
+
 def judge(
     names: Iterable[str],
     home: Home,
@@ -58,23 +71,27 @@ def judge(
     whole: bool = True,
     tell: ledger.Listener | None = None,
     jobs: int | None = None,
-    cache: Cache | None = None,
-    recall: Recall | None = None,
-    keep: Path | None = None,
+    memory: Memory = NOTHING,
     machine: bool = True,
 ) -> Judgement:
     """Prove these theorems of a home, and look at its kernels and definitions.
 
-    whole: they are all that it has; keep: folder in which relations are kept from run to run;
+    whole: they are all that it has; memory: what is remembered from run to run;
     machine: compare kernels with their machine code too.
     Raises BadInput for a theorem that cannot be stated.
     """
     inventory = ledger.prove_all(
-        names, tell, home=home, jobs=jobs, cache=cache, recall=recall, machine=machine
+        names,
+        tell,
+        home=home,
+        jobs=jobs,
+        cache=memory.cache,
+        recall=memory.recall,
+        machine=machine,
     )
     findings = [str(finding) for finding in inventory.findings]
     # what is outside of the subset is not read any further
-    kept, stated = Kept(keep, home), [t.name for t in inventory.theorems]
+    kept, stated = Kept(memory.relations, home), [t.name for t in inventory.theorems]
     read = {} if findings else kept.all(stated, jobs or ledger.jobs_default())
     statements = {name: found.statement for name, found in read.items()}
     if not whole:

@@ -18,6 +18,25 @@ class Plane(NamedTuple):
     y: float
 
 
+class StandardThresholds(NamedTuple):
+    """Thresholds of the standard's volume in space: DTHR, ZTHR [m]; TTHR, TCOA [s]."""
+
+    dthr_m: float
+    zthr_m: float
+    tthr_s: float
+    tcoa_s: float
+
+
+class Thresholds(NamedTuple):
+    """Thresholds of a volume in space with either vertical lead: DTHR, ZTHR [m]; TTHR, TCOA, VMOD [s]."""
+
+    dthr_m: float
+    zthr_m: float
+    tthr_s: float
+    tcoa_s: float
+    vmod_s: float
+
+
 def dot(a: Plane, b: Plane) -> float:
     """Scalar product."""
     return a.x * b.x + a.y * b.y
@@ -80,17 +99,10 @@ def vertical_violation_at(sz: float, vz: float, zthr: float, tcoa: float, t: flo
 
 
 def violation_at(
-    s: Plane,
-    v: Plane,
-    sz: float,
-    vz: float,
-    dthr: float,
-    zthr: float,
-    tthr: float,
-    tcoa: float,
-    t: float,
+    s: Plane, v: Plane, sz: float, vz: float, thresholds: StandardThresholds, t: float
 ) -> bool:
     """Well clear is lost after t seconds of straight flight: both volumes at once."""
+    dthr, zthr, tthr, tcoa = thresholds
     return vertical_violation_at(sz, vz, zthr, tcoa, t) and horizontal_violation_at(
         s, v, dthr, tthr, t
     )
@@ -107,7 +119,7 @@ def violation(
     tcoa: float,
 ) -> bool:
     """Well clear is lost now."""
-    return violation_at(s, v, sz, vz, dthr, zthr, tthr, tcoa, 0)
+    return violation_at(s, v, sz, vz, StandardThresholds(dthr, zthr, tthr, tcoa), 0)
 
 
 def parabola(a: float, b: float, c: float, t: float) -> float:
@@ -235,14 +247,11 @@ def violation_taumod_at(
     v: Plane,
     sz: float,
     vz: float,
-    dthr: float,
-    zthr: float,
-    tthr: float,
-    tcoa: float,
-    vmod: float,
+    thresholds: Thresholds,
     t: float,
 ) -> bool:
     """Well clear by tau_mod, with either vertical lead, is lost after t seconds."""
+    dthr, zthr, tthr, tcoa, vmod = thresholds
     vertical = layer_violation_at(sz, vz, zthr, tcoa, vmod, t)
     return vertical and horizontal_violation_at(s, v, dthr, tthr, t)
 
@@ -252,14 +261,11 @@ def violation_tcpa_at(
     v: Plane,
     sz: float,
     vz: float,
-    dthr: float,
-    zthr: float,
-    tthr: float,
-    tcoa: float,
-    vmod: float,
+    thresholds: Thresholds,
     t: float,
 ) -> bool:
     """Well clear by the time of closest approach is lost after t seconds."""
+    dthr, zthr, tthr, tcoa, vmod = thresholds
     vertical = layer_violation_at(sz, vz, zthr, tcoa, vmod, t)
     return vertical and horizontal_violation_tcpa_at(s, v, dthr, tthr, t)
 
@@ -269,14 +275,11 @@ def violation_tep_at(
     v: Plane,
     sz: float,
     vz: float,
-    dthr: float,
-    zthr: float,
-    tthr: float,
-    tcoa: float,
-    vmod: float,
+    thresholds: Thresholds,
     t: float,
 ) -> bool:
     """Well clear by the time of entry is lost after t seconds."""
+    dthr, zthr, tthr, tcoa, vmod = thresholds
     vertical = layer_violation_at(sz, vz, zthr, tcoa, vmod, t)
     return vertical and horizontal_violation_tep_at(s, v, dthr, tthr, t)
 

@@ -73,10 +73,7 @@ def covers_step(ok: bool, mine: int, other: int) -> bool:
 
 
 covers = fold(
-    name="covers",
-    implements="assignment.search.is_covered_step",
-    step=covers_step,
-    start=True,
+    name="covers", implements="assignment.search.is_covered_step", step=covers_step, start=True
 )
 
 

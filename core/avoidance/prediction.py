@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from cratous.core.kernel import Vec2, driver
-from cratous.core.well_clear import violation, violation_within
+from cratous.core.well_clear import StandardThresholds, violation, violation_within
 from cratous.spec.mission import Position, Velocity, WellClear
 
 
@@ -103,12 +103,12 @@ def first_violation_s(
         return None
     for piece in pieces:
         s, v, sz, vz = _relative(piece, other, 0.0)
-        if not violation_within(s, v, sz, vz, *_thresholds(volume), piece.duration_s):
+        if not violation_within(s, v, sz, vz, _thresholds(volume), piece.duration_s):
             continue
         low, high = 0.0, piece.duration_s
         for _ in range(halvings):
             middle = (low + high) / 2
-            if violation_within(s, v, sz, vz, *_thresholds(volume), middle):
+            if violation_within(s, v, sz, vz, _thresholds(volume), middle):
                 high = middle
             else:
                 low = middle
@@ -131,5 +131,5 @@ def violated_s(
     return lost
 
 
-def _thresholds(volume: WellClear) -> tuple[float, float, float, float]:
-    return volume.dthr_m, volume.zthr_m, volume.tthr_s, volume.tcoa_s
+def _thresholds(volume: WellClear) -> StandardThresholds:
+    return StandardThresholds(volume.dthr_m, volume.zthr_m, volume.tthr_s, volume.tcoa_s)

@@ -14,6 +14,7 @@ from cratous.core.daa.records import Intruders, Looking, Manoeuvres, Regaining, 
 from cratous.core.daa.uncertainty import lost
 from cratous.core.daa.volume import in_conflict
 from cratous.core.kernel import Vec2, driver, fold, kernel
+from cratous.core.well_clear.thresholds import Thresholds
 
 
 @kernel(implements="daa.meaning.lost_on_piece")
@@ -35,10 +36,7 @@ def lost_before(before: bool, piece: bool) -> bool:
 
 
 way_conflicts = fold(
-    name="way_conflicts",
-    implements="daa.meaning.lost_somewhere",
-    step=lost_before,
-    start=False,
+    name="way_conflicts", implements="daa.meaning.lost_somewhere", step=lost_before, start=False
 )
 """Whether any of the pieces (lost,) of a way loses a volume."""
 
@@ -76,6 +74,7 @@ def safe_steps(
     last = own.shape[0] - 1
     found = False
     first = 0
+    kept_clear = Thresholds(radius_m, half_m, 0.0, 0.0, 0.0)
     for k in range(last + 1):
         safe[k] = True
     for k in range(last + 1):
@@ -134,14 +133,13 @@ def safe_steps(
                     if counted:
                         final_s = horizons[i]
                 if in_conflict(
-                    3, s, v, sz, vz, radius_m, half_m, 0.0, 0.0, 0.0,
-                    straight_from(at_s, 0.0), held_s - at_s,
-                ):  # fmt: skip
+                    3, s, v, sz, vz, kept_clear, straight_from(at_s, 0.0), held_s - at_s
+                ):
                     clear = False
                 if step_s > 0:
                     blocked = piece_counts(at_s, 0.0, final_s) and in_conflict(
-                        3, s, v, sz, vz, radius_m, half_m, 0.0, 0.0, 0.0, 0.0, piece_s,
-                    )  # fmt: skip
+                        3, s, v, sz, vz, kept_clear, 0.0, piece_s
+                    )
             if not clear:
                 red = True
                 first = q

@@ -9,6 +9,7 @@ The volume is the one by tau_mod. Source: RTCA DO-365B, appendix on SUM; the DAI
 """
 
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,11 +25,25 @@ from cratous.core.well_clear.interval import (
     vertical_interval,
     violation_interval_taumod,
 )
+from cratous.core.well_clear.thresholds import Thresholds
 
 SUM_KIND = 4
 """`spec.daa.parameters.TAUMOD_SUM` as a number of compiled drivers."""
 LEAST_ERROR = 0.001
 """If any uncertainty is above 0, all are at least this much [m, m/s]."""
+
+
+class Uncertainty(NamedTuple):
+    """How well a relative state is known, each >= 0.
+
+    es_m, ev_m_s: radii of the discs of horizontal position and velocity [m, m/s]; ez_m, ew_m_s: half
+    the intervals of altitude and climb rate [m, m/s].
+    """
+
+    es_m: float
+    ez_m: float
+    ev_m_s: float
+    ew_m_s: float
 
 
 @kernel(implements="daa.meaning.in_either")
@@ -157,20 +172,17 @@ def circle_span(
 
 @kernel(implements="daa.meaning.in_own_or_both")
 def uncertain_span(
-    s: Vec2, v: Vec2, sz: float, vz: float, es_m: float, ez_m: float, ev_m_s: float, ew_m_s: float,
-    dthr_m: float, zthr_m: float, tthr_s: float, tcoa_s: float, vmod_s: float, b_s: float,
+    s: Vec2, v: Vec2, sz: float, vz: float, error: Uncertainty, thresholds: Thresholds, b_s: float,
     t_s: float,
 ) -> Span:  # fmt: skip
     """First and last instant of [b_s, t_s], b_s >= 0, at which the volume may be violated.
 
-    es_m, ev_m_s: radii in which relative position and velocity are known [m, m/s]; ez_m, ew_m_s:
-    the same for altitude and climb rate; all > 0. The span of the volume itself is within it.
+    error: all > 0. The span of the volume itself is within it.
     """
-    nominal = violation_interval_taumod(
-        s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s
-    )
-    layer = layer_span(sz, vz, ez_m, ew_m_s, zthr_m, tcoa_s, vmod_s, t_s)
-    circle = circle_span(s, v, es_m, ev_m_s, dthr_m, tthr_s, t_s)
+    nominal = violation_interval_taumod(s, v, sz, vz, thresholds, b_s, t_s)
+    dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s = thresholds
+    layer = layer_span(sz, vz, error.ez_m, error.ew_m_s, zthr_m, tcoa_s, vmod_s, t_s)
+    circle = circle_span(s, v, error.es_m, error.ev_m_s, dthr_m, tthr_s, t_s)
     first = max(max(layer.first_s, circle.first_s), b_s)
     last = min(min(layer.last_s, circle.last_s), t_s)
     return span_hull(nominal, or_empty(first, last))
@@ -178,19 +190,16 @@ def uncertain_span(
 
 @kernel(implements="daa.meaning.in_own_or_both")
 def uncertain_conflict(
-    s: Vec2, v: Vec2, sz: float, vz: float, es_m: float, ez_m: float, ev_m_s: float, ew_m_s: float,
-    dthr_m: float, zthr_m: float, tthr_s: float, tcoa_s: float, vmod_s: float, b_s: float,
+    s: Vec2, v: Vec2, sz: float, vz: float, error: Uncertainty, thresholds: Thresholds, b_s: float,
     t_s: float,
 ) -> bool:  # fmt: skip
     """True iff the volume may be violated at some instant of [b_s, t_s]; arguments as for
     `uncertain_span`, uncertainties >= 0; with none it is the volume itself."""
-    if violation_during_taumod(s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s):
+    if violation_during_taumod(s, v, sz, vz, thresholds, b_s, t_s):
         return True
-    if es_m <= 0 or ez_m <= 0 or ev_m_s <= 0 or ew_m_s <= 0:
+    if error.es_m <= 0 or error.ez_m <= 0 or error.ev_m_s <= 0 or error.ew_m_s <= 0:
         return False
-    first, last = uncertain_span(
-        s, v, sz, vz, es_m, ez_m, ev_m_s, ew_m_s, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s
-    )
+    first, last = uncertain_span(s, v, sz, vz, error, thresholds, b_s, t_s)
     return first <= last
 
 
@@ -213,35 +222,39 @@ def lost(kind: int, state: Relative, w: np.ndarray, at_s: float, b_s: float, t_s
     velocity near and far, and the distance that is far. They hold at_s seconds before the state.
     """
     s, v, sz, vz = state.s, state.v, state.sz, state.vz
+    thresholds = Thresholds(w[0], w[1], w[2], w[3], w[4])
     if kind == SUM_KIND:
         back = Vec2(s.x - at_s * v.x, s.y - at_s * v.y)
         es, ez, ew = w[5], w[6], w[7]
         distance = sqrt(back.x * back.x + back.y * back.y)
         ev = speed_error(distance - es, w[8], w[9], w[10])
         if es > 0 or ez > 0 or ew > 0 or ev > 0:
-            return uncertain_conflict(
-                back, v, sz - at_s * vz, vz, max(es, LEAST_ERROR), max(ez, LEAST_ERROR),
-                max(ev, LEAST_ERROR), max(ew, LEAST_ERROR), w[0], w[1], w[2], w[3], w[4],
-                at_s + b_s, at_s + t_s,
+            error = Uncertainty(
+                max(es, LEAST_ERROR), max(ez, LEAST_ERROR), max(ev, LEAST_ERROR), max(ew, LEAST_ERROR)
             )  # fmt: skip
-    return in_conflict(kind, s, v, sz, vz, w[0], w[1], w[2], w[3], w[4], b_s, t_s)
+            return uncertain_conflict(
+                back, v, sz - at_s * vz, vz, error, thresholds, at_s + b_s, at_s + t_s
+            )
+    return in_conflict(kind, s, v, sz, vz, thresholds, b_s, t_s)
 
 
 @driver(checked_by=("conflict_span", "uncertain_span", "speed_error"))
 def lost_span(kind: int, state: Relative, w: np.ndarray, at_s: float, b_s: float, t_s: float):
     """First and last such instant; first > last if there is none. Arguments as for `lost`."""
     s, v, sz, vz = state.s, state.v, state.sz, state.vz
+    thresholds = Thresholds(w[0], w[1], w[2], w[3], w[4])
     if kind == SUM_KIND:
         back = Vec2(s.x - at_s * v.x, s.y - at_s * v.y)
         es, ez, ew = w[5], w[6], w[7]
         distance = sqrt(back.x * back.x + back.y * back.y)
         ev = speed_error(distance - es, w[8], w[9], w[10])
         if es > 0 or ez > 0 or ew > 0 or ev > 0:
-            first, last = uncertain_span(
-                back, v, sz - at_s * vz, vz, max(es, LEAST_ERROR), max(ez, LEAST_ERROR),
-                max(ev, LEAST_ERROR), max(ew, LEAST_ERROR), w[0], w[1], w[2], w[3], w[4],
-                at_s + b_s, at_s + t_s,
+            error = Uncertainty(
+                max(es, LEAST_ERROR), max(ez, LEAST_ERROR), max(ev, LEAST_ERROR), max(ew, LEAST_ERROR)
             )  # fmt: skip
+            first, last = uncertain_span(
+                back, v, sz - at_s * vz, vz, error, thresholds, at_s + b_s, at_s + t_s
+            )
             return first - at_s, last - at_s
-    first, last = conflict_span(kind, s, v, sz, vz, w[0], w[1], w[2], w[3], w[4], b_s, t_s)
+    first, last = conflict_span(kind, s, v, sz, vz, thresholds, b_s, t_s)
     return first, last

@@ -16,6 +16,7 @@ from cratous.core.well_clear.interval import (
     violation_interval_tcpa,
     violation_interval_tep,
 )
+from cratous.core.well_clear.thresholds import Thresholds
 
 
 @kernel(implements="daa.meaning.violated_at")
@@ -25,24 +26,20 @@ def in_conflict(
     v: Vec2,
     sz: float,
     vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
-    vmod_s: float,
+    thresholds: Thresholds,
     b_s: float,
     t_s: float,
 ) -> bool:
     """True iff the volume is violated at some t in [b_s, t_s] of straight flight.
 
     kind: 1 by tcpa, 2 by tep, 3 cylinder (tep with all times 0), any other by tau_mod;
-    thresholds >= 0 [m, s].
+    thresholds >= 0.
     """
     if kind == 1:
-        return violation_during_tcpa(s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s)
+        return violation_during_tcpa(s, v, sz, vz, thresholds, b_s, t_s)
     if kind == 2 or kind == 3:
-        return violation_during_tep(s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s)
-    return violation_during_taumod(s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s)
+        return violation_during_tep(s, v, sz, vz, thresholds, b_s, t_s)
+    return violation_during_taumod(s, v, sz, vz, thresholds, b_s, t_s)
 
 
 @kernel(implements="daa.meaning.violated_at")
@@ -52,11 +49,7 @@ def conflict_span(
     v: Vec2,
     sz: float,
     vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
-    vmod_s: float,
+    thresholds: Thresholds,
     b_s: float,
     t_s: float,
 ) -> Span:
@@ -65,11 +58,7 @@ def conflict_span(
     Arguments as for `in_conflict`.
     """
     if kind == 1:
-        return violation_interval_tcpa(
-            s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s
-        )
+        return violation_interval_tcpa(s, v, sz, vz, thresholds, b_s, t_s)
     if kind == 2 or kind == 3:
-        return violation_interval_tep(
-            s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s
-        )
-    return violation_interval_taumod(s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s)
+        return violation_interval_tep(s, v, sz, vz, thresholds, b_s, t_s)
+    return violation_interval_taumod(s, v, sz, vz, thresholds, b_s, t_s)

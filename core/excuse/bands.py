@@ -24,6 +24,7 @@ from cratous.core.excuse.state import OPEN, REFUSED, SURELY, Other, Tried
 from cratous.core.excuse.way_out import after_piece, manoeuvre_judged, piece_lost, way_out
 from cratous.core.kernel import Vec2, driver
 from cratous.core.readings.tiered import swift
+from cratous.core.well_clear.thresholds import Thresholds
 from cratous.spec.daa.parameters import Parameters
 
 
@@ -51,6 +52,11 @@ def judge_pieces(
         for p in range(first[m], first[m + 1]):
             for n in range(kinds.size):
                 known_s = pieces[p, 0]
+                w = volumes[n]
+                full = Thresholds(w[0], w[1], w[2], w[3], w[4])
+                smaller = Thresholds(
+                    w[0] * less, w[1] * less, w[2] * less, w[3] * less, w[4] * less
+                )
                 for q in range(begins[n], begins[n + 1]):
                     a_s = max(pieces[p, 0], others[q, 0])
                     b_s = min(pieces[p, 1], others[q, 1])
@@ -64,21 +70,12 @@ def judge_pieces(
                         pieces[p, 3] + u_s * pieces[p, 6] - others[q, 3] - w_s * others[q, 6],
                     )
                     sz = pieces[p, 4] + u_s * pieces[p, 7] - others[q, 4] - w_s * others[q, 7]
-                    lost = piece_lost(
-                        kinds[n], s, v, sz, vz, volumes[n, 0], volumes[n, 1], volumes[n, 2],
-                        volumes[n, 3], volumes[n, 4], b_s - a_s,
-                    )  # fmt: skip
-                    surely = lost and piece_lost(
-                        kinds[n], s, v, sz, vz, volumes[n, 0] * less, volumes[n, 1] * less,
-                        volumes[n, 2] * less, volumes[n, 3] * less, volumes[n, 4] * less, b_s - a_s,
-                    )  # fmt: skip
+                    lost = piece_lost(kinds[n], s, v, sz, vz, full, b_s - a_s)
+                    surely = lost and piece_lost(kinds[n], s, v, sz, vz, smaller, b_s - a_s)
                     so_far = after_piece(so_far, known_s >= a_s, lost, surely)
                     known_s = max(known_s, b_s)
                     if so_far < 0:
-                        when, _ = conflict_span(
-                            kinds[n], s, v, sz, vz, volumes[n, 0], volumes[n, 1], volumes[n, 2],
-                            volumes[n, 3], volumes[n, 4], 0.0, b_s - a_s,
-                        )  # fmt: skip
+                        when, _ = conflict_span(kinds[n], s, v, sz, vz, full, 0.0, b_s - a_s)
                         by[m] = n
                         facts[m, 0] = a_s + when
                         x, y = s.x + when * v.x, s.y + when * v.y

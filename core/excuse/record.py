@@ -21,6 +21,7 @@ from cratous.core.excuse.judgement import judged
 from cratous.core.excuse.state import UNDECIDED, WAY_OUT, Judgement, Other
 from cratous.core.excuse.way_out import is_excused, piece_lost, way_out
 from cratous.core.kernel import Vec2
+from cratous.core.well_clear.thresholds import Thresholds
 from cratous.spec.daa.parameters import DEG, G_M_S2, TAUMOD, Parameters
 from cratous.spec.mission import Vehicle, WellClear
 
@@ -146,7 +147,13 @@ def lost_now(own: Aircraft, other: Other) -> bool:
     v = Vec2(own.ve_m_s - first[5], own.vn_m_s - first[6])
     return bool(
         piece_lost(
-            other.kind, s, v, own.alt_m - first[4], own.vu_m_s - first[7], *other.thresholds, 0.0
+            other.kind,
+            s,
+            v,
+            own.alt_m - first[4],
+            own.vu_m_s - first[7],
+            Thresholds(*other.thresholds),
+            0.0,
         )
     )
 

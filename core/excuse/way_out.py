@@ -7,20 +7,18 @@ way out). Which pieces there are, and what is known of the other aircraft, is th
 
 from cratous.core.daa.volume import in_conflict
 from cratous.core.kernel import Vec2, fold, kernel
+from cratous.core.well_clear.thresholds import Thresholds
 
 
 @kernel(implements="excuse.lost_at")
 def piece_lost(
-    kind: int, s: Vec2, v: Vec2, sz: float, vz: float, dthr_m: float, zthr_m: float, tthr_s: float,
-    tcoa_s: float, vmod_s: float, piece_s: float,
-) -> bool:  # fmt: skip
+    kind: int, s: Vec2, v: Vec2, sz: float, vz: float, thresholds: Thresholds, piece_s: float
+) -> bool:
     """True iff the volume is violated at some instant of a straight piece of piece_s seconds.
 
     Relative state at its begin, ownship minus other; kind and thresholds as for `in_conflict`.
     """
-    return in_conflict(
-        kind, s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, 0, piece_s
-    )  # fmt: skip
+    return in_conflict(kind, s, v, sz, vz, thresholds, 0, piece_s)
 
 
 @kernel(implements="excuse.flown_step")
@@ -40,10 +38,7 @@ def after_piece(so_far: int, known: bool, lost: bool, surely: bool) -> int:
 
 
 manoeuvre_judged = fold(
-    name="manoeuvre_judged",
-    implements="excuse.flown_step",
-    step=after_piece,
-    start=1,
+    name="manoeuvre_judged", implements="excuse.flown_step", step=after_piece, start=1
 )
 """A manoeuvre from its pieces (known, lost, surely)."""
 

@@ -71,10 +71,7 @@ def ended_before(ok: bool, known: bool, end: int, at: int, lo: int) -> bool:
 
 
 all_ended_before = fold(
-    name="all_ended_before",
-    implements="executive.preceded_by",
-    step=ended_before,
-    start=True,
+    name="all_ended_before", implements="executive.preceded_by", step=ended_before, start=True
 )
 
 
@@ -85,10 +82,7 @@ def begun_before(ok: bool, known: bool, start: int, at: int, lo: int) -> bool:
 
 
 some_begun_before = fold(
-    name="some_begun_before",
-    implements="executive.followed",
-    step=begun_before,
-    start=False,
+    name="some_begun_before", implements="executive.followed", step=begun_before, start=False
 )
 
 

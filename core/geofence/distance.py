@@ -79,10 +79,7 @@ def nearest_step(least: int, a: Vec2, b: Vec2, p: Vec2, d_m: float) -> int:
 
 
 boundary_against = fold(
-    name="boundary_against",
-    implements="geofence.against",
-    step=nearest_step,
-    start=1,
+    name="boundary_against", implements="geofence.against", step=nearest_step, start=1
 )
 
 
@@ -145,8 +142,5 @@ def approach_step(near: bool, a: Vec2, b: Vec2, p: Vec2, q: Vec2, d_m: float) ->
 
 
 comes_within = fold(
-    name="comes_within",
-    implements="geofence.any_step",
-    step=approach_step,
-    start=False,
+    name="comes_within", implements="geofence.any_step", step=approach_step, start=False
 )

@@ -98,10 +98,7 @@ def contact_step(met: bool, a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> bool:
 
 
 meets_boundary = fold(
-    name="meets_boundary",
-    implements="geofence.any_step",
-    step=contact_step,
-    start=False,
+    name="meets_boundary", implements="geofence.any_step", step=contact_step, start=False
 )
 
 
@@ -148,10 +145,7 @@ def area_step(twice: float, a: Vec2, b: Vec2, p: Vec2) -> float:
 
 
 twice_area: Fold[float] = fold(
-    name="twice_area",
-    implements="geofence.swept",
-    step=area_step,
-    start=0,
+    name="twice_area", implements="geofence.swept", step=area_step, start=0
 )
 
 

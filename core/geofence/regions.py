@@ -68,15 +68,9 @@ def anywhere_step(greatest: int, place: int) -> int:
 
 
 place_in_all = fold(
-    name="place_in_all",
-    implements="geofence.intersection_step",
-    step=everywhere_step,
-    start=1,
+    name="place_in_all", implements="geofence.intersection_step", step=everywhere_step, start=1
 )
 
 place_in_any = fold(
-    name="place_in_any",
-    implements="geofence.union_step",
-    step=anywhere_step,
-    start=-1,
+    name="place_in_any", implements="geofence.union_step", step=anywhere_step, start=-1
 )

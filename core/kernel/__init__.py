@@ -38,7 +38,8 @@ class Entry:
     """One registered function: its qualified name, what it is, what it implements, the function.
 
     uses: kernels that a fold is made of, or that decide for a driver as its author names them (see
-    `checkers`); nonnegative: arguments for which a number below 0 means nothing; supports: the kernel
+    `checkers`); nonnegative: arguments for which a number below 0 means nothing, of a record
+    all its numbers; supports: the kernel
     or fold of which it is a part, which has the definition (see `supported`); restates: what a formula
     is for that its definition only repeats.
     """
@@ -149,7 +150,7 @@ def kernel(
 
     implements: its definition in `spec`, as `module.function`; or supports: the kernel or fold that
     it is a step of, which calls it and has a definition. restates: what the formula is for, where
-    the definition can only repeat it. nonnegative: arguments that the theorems take to be at least
+    the definition can only repeat it. nonnegative: arguments (a record for all its numbers) that the theorems take to be at least
     0 and that come from outside, as thresholds do; the exact and the enclosed reading refuse a
     number below 0 there. Raises ValueError for a name that is no argument, and unless exactly one
     of implements and supports is given.

@@ -5,7 +5,7 @@ the two move apart: every other tube outgrows every hold. Definitions: `spec.per
 """
 
 from cratous.core.kernel import Vec2, kernel
-from cratous.core.permit.pieces import Growth
+from cratous.core.permit.pieces import Growth, Margins, Tube
 
 
 @kernel(supports="beside_for_ever")
@@ -37,21 +37,20 @@ def above_for_ever(sz: float, vz: float, growth: Growth) -> bool:
     return growth.gain_m_s2 == 0 and sz > growth.start_m and vz >= growth.rate_m_s
 
 
-@kernel(implements="permit.motion.hit_at", nonnegative=("radius_m", "half_m", "rho_m"))
+@kernel(implements="permit.motion.hit_at", nonnegative=("margins",))
 def hold_clear(
     s: Vec2,
     v: Vec2,
     sz: float,
     vz: float,
-    wide: Growth,
-    high: Growth,
-    radius_m: float,
-    half_m: float,
-    rho_m: float,
+    tube: Tube,
+    margins: Margins,
 ) -> bool:
     """True only if the cylinder is not entered at any instant from now on, whatever place the vehicle has
     within rho_m and the intruder in its tube. s, v, sz, vz: own reference minus prediction [m, m/s]; of
     a hold the reference stands."""
+    wide, high = tube
+    radius_m, half_m, rho_m = margins
     around = Growth(wide.start_m + radius_m + rho_m, wide.rate_m_s, wide.gain_m_s2)
     layer = Growth(high.start_m + half_m + rho_m, high.rate_m_s, high.gain_m_s2)
     if above_for_ever(sz, vz, layer) or above_for_ever(0 - sz, 0 - vz, layer):

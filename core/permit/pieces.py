@@ -20,6 +20,22 @@ class Growth(NamedTuple):
     gain_m_s2: float
 
 
+class Tube(NamedTuple):
+    """How far an intruder may be from its straight prediction: horizontally, and in altitude."""
+
+    wide: Growth
+    high: Growth
+
+
+class Margins(NamedTuple):
+    """How far off is clear, each >= 0: radius_m, half_m: of the cylinder about the intruder [m]; rho_m: how
+    far the vehicle may be from its reference, also in altitude [m]."""
+
+    radius_m: float
+    half_m: float
+    rho_m: float
+
+
 class Meeting(NamedTuple):
     """An intruder as a trajectory begins: the own reference minus its prediction s [m], sz [m, up]; its
     velocity w [m/s], wz [m/s, up]; its tube; radius_m, half_height_m: of the cylinder to keep clear."""
@@ -80,21 +96,20 @@ def above_during(sz: float, vz: float, growth: Growth, d_s: float) -> bool:
     return sz > growth.start_m and sz + d_s * vz > reach_after(growth, d_s)
 
 
-@kernel(implements="permit.motion.hit_at", nonnegative=("radius_m", "half_m", "rho_m", "d_s"))
+@kernel(implements="permit.motion.hit_at", nonnegative=("margins", "d_s"))
 def piece_clear(
     s: Vec2,
     v: Vec2,
     sz: float,
     vz: float,
-    wide: Growth,
-    high: Growth,
-    radius_m: float,
-    half_m: float,
-    rho_m: float,
+    tube: Tube,
+    margins: Margins,
     d_s: float,
 ) -> bool:
     """True only if the cylinder is not entered at any instant of [0, d_s], whatever place the vehicle has
     within rho_m and the intruder in its tube. s, v, sz, vz: own reference minus prediction [m, m/s]."""
+    wide, high = tube
+    radius_m, half_m, rho_m = margins
     around = Growth(wide.start_m + radius_m + rho_m, wide.rate_m_s, wide.gain_m_s2)
     layer = Growth(high.start_m + half_m + rho_m, high.rate_m_s, high.gain_m_s2)
     if above_during(sz, vz, layer, d_s) or above_during(0 - sz, 0 - vz, layer, d_s):
@@ -126,11 +141,8 @@ def flight_step(
         Vec2(v.x - meeting.w.x, v.y - meeting.w.y),
         meeting.sz + flight.up_m - t * meeting.wz,
         climb_m_s - meeting.wz,
-        growth_after(meeting.wide, t),
-        growth_after(meeting.high, t),
-        meeting.radius_m,
-        meeting.half_height_m,
-        rho_m,
+        Tube(growth_after(meeting.wide, t), growth_after(meeting.high, t)),
+        Margins(meeting.radius_m, meeting.half_height_m, rho_m),
         d_s,
     )
     up = flight.up_m + d_s * climb_m_s
@@ -176,11 +188,8 @@ def part_step(
             Vec2(v.x - meeting.w.x, v.y - meeting.w.y),
             meeting.sz + (flight.up_m + flown * climb_m_s) - at * meeting.wz,
             climb_m_s - meeting.wz,
-            growth_after(meeting.wide, at),
-            growth_after(meeting.high, at),
-            meeting.radius_m,
-            meeting.half_height_m,
-            rho_m,
+            Tube(growth_after(meeting.wide, at), growth_after(meeting.high, at)),
+            Margins(meeting.radius_m, meeting.half_height_m, rho_m),
             d_s - flown,
         )
     up = flight.up_m + d_s * climb_m_s

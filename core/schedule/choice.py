@@ -16,8 +16,5 @@ def as_asked_step(ok: bool, least: int, most: int, times: int) -> bool:
 
 
 as_asked = fold(
-    name="as_asked",
-    implements="schedule.flown_as_asked",
-    step=as_asked_step,
-    start=True,
+    name="as_asked", implements="schedule.flown_as_asked", step=as_asked_step, start=True
 )

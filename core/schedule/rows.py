@@ -43,10 +43,7 @@ def schedule_step(ok: bool, kind: int, start: int, end: int, ref: int, lo: int, 
 
 
 schedule_holds = fold(
-    name="schedule_holds",
-    implements="schedule.rows_hold_step",
-    step=schedule_step,
-    start=True,
+    name="schedule_holds", implements="schedule.rows_hold_step", step=schedule_step, start=True
 )
 
 

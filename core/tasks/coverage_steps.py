@@ -23,10 +23,7 @@ def within_step(so_far: bool, a: Vec2, b: Vec2, centre: Vec2, half: float) -> bo
 
 
 square_within = fold(
-    name="square_within",
-    implements="geofence.every_step",
-    step=within_step,
-    start=True,
+    name="square_within", implements="geofence.every_step", step=within_step, start=True
 )
 
 

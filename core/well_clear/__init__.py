@@ -86,6 +86,7 @@ from cratous.core.well_clear.now import (
     violation_tcpa,
     violation_tep,
 )
+from cratous.core.well_clear.thresholds import StandardThresholds, Thresholds
 from cratous.spec.errors import BadInput
 
 NOW: dict[str, Any] = {"tau_mod": violation_taumod, "tcpa": violation_tcpa, "tep": violation_tep}
@@ -104,7 +105,7 @@ TIMES: dict[str, Any] = {
     "tcpa": violation_times_tcpa,
     "tep": violation_times_tep,
 }
-THRESHOLDS = ("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s")
+THRESHOLDS = Thresholds._fields
 
 
 @dataclass(frozen=True)
@@ -142,9 +143,9 @@ class Volume:
                 )
 
     @property
-    def thresholds(self) -> tuple[Any, ...]:
+    def thresholds(self) -> Thresholds:
         """The five thresholds in the kernels' order."""
-        return tuple(getattr(self, name) for name in THRESHOLDS)
+        return Thresholds(*[getattr(self, name) for name in THRESHOLDS])
 
 
 def cylinder(radius_m: Any, half_height_m: Any) -> Volume:
@@ -316,7 +317,8 @@ def _verdict(kernel: Any, columns: list[Any]) -> Any:
     if any(column.ndim for column in columns):
         return exactly(kernel)(*columns)
     x, y, u, w, z, vz, *rest = (float(column) for column in columns)
-    return bool(exact(kernel, Vec2(x, y), Vec2(u, w), z, vz, *rest))
+    limits, span = Thresholds(*rest[:5]), rest[5:]
+    return bool(exact(kernel, Vec2(x, y), Vec2(u, w), z, vz, limits, *span))
 
 
 __all__ = [
@@ -324,6 +326,8 @@ __all__ = [
     "Loss",
     "Losses",
     "Span",
+    "StandardThresholds",
+    "Thresholds",
     "Volume",
     "Window",
     "course_reaches",

@@ -8,6 +8,7 @@ violation begins and ends is told by `core.well_clear.interval`.
 from typing import NamedTuple
 
 from cratous.core.kernel import Vec2, kernel
+from cratous.core.well_clear.thresholds import StandardThresholds, Thresholds
 
 
 @kernel(implements="well_clear.parabola")
@@ -64,19 +65,17 @@ def vertical_window(sz: float, vz: float, zthr_m: float, tcoa_s: float, h_s: flo
     return Window(w, first, min(zthr_m - z, h_s * w))
 
 
-@kernel(implements="well_clear.violation_at", nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s"))
+@kernel(implements="well_clear.violation_at", nonnegative=("thresholds",))
 def violation_within(
     s: Vec2,
     v: Vec2,
     sz: float,
     vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
+    thresholds: StandardThresholds,
     h_s: float,
 ) -> bool:
     """True iff well clear is lost at some t in [0, h_s] if both fly straight on."""
+    dthr_m, zthr_m, tthr_s, tcoa_s = thresholds
     k, first, last = vertical_window(sz, vz, zthr_m, tcoa_s, h_s)
     if first > last:
         return False
@@ -141,24 +140,21 @@ def layer_window(
 
 @kernel(
     implements="well_clear.violation_taumod_at",
-    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+    nonnegative=("thresholds",),
 )
 def violation_during_taumod(
     s: Vec2,
     v: Vec2,
     sz: float,
     vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
-    vmod_s: float,
+    thresholds: Thresholds,
     b_s: float,
     t_s: float,
 ) -> bool:
     """True iff well clear by tau_mod is lost at some t in [b_s, t_s] of straight flight."""
     if b_s > t_s:
         return False
+    dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s = thresholds
     k, first, last = layer_window(sz + b_s * vz, vz, zthr_m, tcoa_s, vmod_s, t_s - b_s)
     if first > last:
         return False
@@ -168,24 +164,21 @@ def violation_during_taumod(
 
 @kernel(
     implements="well_clear.violation_tcpa_at",
-    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+    nonnegative=("thresholds",),
 )
 def violation_during_tcpa(
     s: Vec2,
     v: Vec2,
     sz: float,
     vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
-    vmod_s: float,
+    thresholds: Thresholds,
     b_s: float,
     t_s: float,
 ) -> bool:
     """True iff well clear by the time of closest approach is lost at some t in [b_s, t_s] of straight flight."""
     if b_s > t_s:
         return False
+    dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s = thresholds
     k, first, last = layer_window(sz + b_s * vz, vz, zthr_m, tcoa_s, vmod_s, t_s - b_s)
     if first > last:
         return False
@@ -195,24 +188,21 @@ def violation_during_tcpa(
 
 @kernel(
     implements="well_clear.violation_tep_at",
-    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+    nonnegative=("thresholds",),
 )
 def violation_during_tep(
     s: Vec2,
     v: Vec2,
     sz: float,
     vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
-    vmod_s: float,
+    thresholds: Thresholds,
     b_s: float,
     t_s: float,
 ) -> bool:
     """True iff well clear by the time of entry is lost at some t in [b_s, t_s] of straight flight."""
     if b_s > t_s:
         return False
+    dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s = thresholds
     k, first, last = layer_window(sz + b_s * vz, vz, zthr_m, tcoa_s, vmod_s, t_s - b_s)
     if first > last:
         return False
@@ -232,4 +222,6 @@ def cylinder_during(
     t_s: float,
 ) -> bool:
     """True iff the intruder is inside the closed cylinder at some t in [b_s, t_s]."""
-    return violation_during_tep(s, v, sz, vz, radius_m, half_height_m, 0, 0, 0, b_s, t_s)
+    return violation_during_tep(
+        s, v, sz, vz, Thresholds(radius_m, half_height_m, 0, 0, 0), b_s, t_s
+    )

@@ -5,9 +5,8 @@ s [m], v [m/s]; sz, vz up. Every volume is violated during one closed interval o
 two instants tell all. An interval kernel gives `Span(first_s, last_s)` for [b_s, t_s]; where no
 instant violates, or b_s > t_s, it gives Span(1, 0), always: ask `first_s <= last_s`.
 
-Kernels in space take (s, v, sz, vz, dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s, b_s, t_s); all
-thresholds are >= 0, and tcoa_s or vmod_s is switched off by 0. They are called one state at a
-time, or over arrays: `compiled(kernel)(sx, sy, vx, vy, sz, vz, dthr_m, ..., t_s)` broadcasts its
+Kernels in space take (s, v, sz, vz, thresholds, b_s, t_s); all `Thresholds` are >= 0, and tcoa_s or
+vmod_s is switched off by 0. They are called one state at a time, or over arrays: `compiled(kernel)(sx, sy, vx, vy, sz, vz, dthr_m, ..., t_s)` broadcasts its
 columns and gives a Span of arrays. They divide and take roots: whether there is an instant at all
 is decided exactly by `core.well_clear.during`; the `times_` kernels give the instants where there
 is one, without asking, so that their enclosures stay narrow.
@@ -17,6 +16,7 @@ from math import sqrt
 from typing import NamedTuple
 
 from cratous.core.kernel import Vec2, kernel
+from cratous.core.well_clear.thresholds import Thresholds
 
 
 class Span(NamedTuple):
@@ -180,44 +180,38 @@ def horizontal_interval_tep(
 # -- in space -------------------------------------------------------------------------------
 @kernel(
     implements="well_clear.violation_taumod_at",
-    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+    nonnegative=("thresholds",),
 )
 def violation_interval_taumod(
     s: Vec2,
     v: Vec2,
     sz: float,
     vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
-    vmod_s: float,
+    thresholds: Thresholds,
     b_s: float,
     t_s: float,
 ) -> Span:
     """The instants of [b_s, t_s] at which well clear by tau_mod is lost; Span(1, 0) if none."""
+    dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s = thresholds
     begin, end = vertical_interval(sz, vz, zthr_m, tcoa_s, vmod_s, b_s, t_s)
     return horizontal_interval_taumod(s, v, dthr_m, tthr_s, begin, end)
 
 
 @kernel(
     implements="well_clear.violation_taumod_at",
-    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+    nonnegative=("thresholds",),
 )
 def violation_times_taumod(
     s: Vec2,
     v: Vec2,
     sz: float,
     vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
-    vmod_s: float,
+    thresholds: Thresholds,
     b_s: float,
     t_s: float,
 ) -> Span:
     """First and last instant of [b_s, t_s] at which well clear by tau_mod is lost, if any is."""
+    dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s = thresholds
     begin, end = times_vertical(sz, vz, zthr_m, tcoa_s, vmod_s, b_s, t_s)
     first, last = times_taumod(s, v, dthr_m, tthr_s, begin, end)
     # within [b_s, t_s] in every reading, however wide the enclosure of a tiny speed
@@ -226,44 +220,38 @@ def violation_times_taumod(
 
 @kernel(
     implements="well_clear.violation_tcpa_at",
-    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+    nonnegative=("thresholds",),
 )
 def violation_interval_tcpa(
     s: Vec2,
     v: Vec2,
     sz: float,
     vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
-    vmod_s: float,
+    thresholds: Thresholds,
     b_s: float,
     t_s: float,
 ) -> Span:
     """The instants of [b_s, t_s] at which well clear by tcpa is lost; Span(1, 0) if none."""
+    dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s = thresholds
     begin, end = vertical_interval(sz, vz, zthr_m, tcoa_s, vmod_s, b_s, t_s)
     return horizontal_interval_tcpa(s, v, dthr_m, tthr_s, begin, end)
 
 
 @kernel(
     implements="well_clear.violation_tcpa_at",
-    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+    nonnegative=("thresholds",),
 )
 def violation_times_tcpa(
     s: Vec2,
     v: Vec2,
     sz: float,
     vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
-    vmod_s: float,
+    thresholds: Thresholds,
     b_s: float,
     t_s: float,
 ) -> Span:
     """First and last instant of [b_s, t_s] at which well clear by tcpa is lost, if any is."""
+    dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s = thresholds
     begin, end = times_vertical(sz, vz, zthr_m, tcoa_s, vmod_s, b_s, t_s)
     first, last = times_tcpa(s, v, dthr_m, tthr_s, begin, end)
     # within [b_s, t_s] in every reading, however wide the enclosure of a tiny speed
@@ -272,44 +260,38 @@ def violation_times_tcpa(
 
 @kernel(
     implements="well_clear.violation_tep_at",
-    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+    nonnegative=("thresholds",),
 )
 def violation_interval_tep(
     s: Vec2,
     v: Vec2,
     sz: float,
     vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
-    vmod_s: float,
+    thresholds: Thresholds,
     b_s: float,
     t_s: float,
 ) -> Span:
     """The instants of [b_s, t_s] at which well clear by tep is lost; Span(1, 0) if none."""
+    dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s = thresholds
     begin, end = vertical_interval(sz, vz, zthr_m, tcoa_s, vmod_s, b_s, t_s)
     return horizontal_interval_tep(s, v, dthr_m, tthr_s, begin, end)
 
 
 @kernel(
     implements="well_clear.violation_tep_at",
-    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+    nonnegative=("thresholds",),
 )
 def violation_times_tep(
     s: Vec2,
     v: Vec2,
     sz: float,
     vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
-    vmod_s: float,
+    thresholds: Thresholds,
     b_s: float,
     t_s: float,
 ) -> Span:
     """First and last instant of [b_s, t_s] at which well clear by tep is lost, if any is."""
+    dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s = thresholds
     begin, end = times_vertical(sz, vz, zthr_m, tcoa_s, vmod_s, b_s, t_s)
     first, last = times_tep(s, v, dthr_m, tthr_s, begin, end)
     # within [b_s, t_s] in every reading, however wide the enclosure of a tiny speed
@@ -329,7 +311,9 @@ def cylinder_interval(
 ) -> Span:
     """The instants of [b_s, t_s] inside the closed cylinder; Span(1, 0) if none."""
     # entering within 0 s is being within
-    return violation_interval_tep(s, v, sz, vz, radius_m, half_height_m, 0, 0, 0, b_s, t_s)
+    return violation_interval_tep(
+        s, v, sz, vz, Thresholds(radius_m, half_height_m, 0, 0, 0), b_s, t_s
+    )
 
 
 @kernel(implements="well_clear.cylinder_violation_at", nonnegative=("radius_m", "half_height_m"))
@@ -345,4 +329,4 @@ def cylinder_times(
 ) -> Span:
     """First and last instant of [b_s, t_s] inside the closed cylinder, if any is."""
     # entering within 0 s is being within
-    return violation_times_tep(s, v, sz, vz, radius_m, half_height_m, 0, 0, 0, b_s, t_s)
+    return violation_times_tep(s, v, sz, vz, Thresholds(radius_m, half_height_m, 0, 0, 0), b_s, t_s)

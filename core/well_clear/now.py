@@ -7,6 +7,7 @@ but for `cylinder_conflict`.
 """
 
 from cratous.core.kernel import Vec2, kernel
+from cratous.core.well_clear.thresholds import Thresholds
 
 
 @kernel(implements="well_clear.horizontal_violation", nonnegative=("dthr_m", "tthr_s"))
@@ -161,60 +162,51 @@ def layer_violation(sz: float, vz: float, zthr_m: float, tcoa_s: float, vmod_s: 
 # -- in space -------------------------------------------------------------------------------
 @kernel(
     implements="well_clear.violation_taumod_at",
-    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+    nonnegative=("thresholds",),
 )
 def violation_taumod(
     s: Vec2,
     v: Vec2,
     sz: float,
     vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
-    vmod_s: float,
+    thresholds: Thresholds,
 ) -> bool:
     """True iff well clear by tau_mod is lost now; vertically by TCOA or VMOD."""
+    dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s = thresholds
     vertical = layer_violation(sz, vz, zthr_m, tcoa_s, vmod_s)
     return vertical and horizontal_violation(s, v, dthr_m, tthr_s)
 
 
 @kernel(
     implements="well_clear.violation_tcpa_at",
-    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+    nonnegative=("thresholds",),
 )
 def violation_tcpa(
     s: Vec2,
     v: Vec2,
     sz: float,
     vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
-    vmod_s: float,
+    thresholds: Thresholds,
 ) -> bool:
     """True iff well clear by the time of closest approach is lost now; vertically by TCOA or VMOD."""
+    dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s = thresholds
     vertical = layer_violation(sz, vz, zthr_m, tcoa_s, vmod_s)
     return vertical and horizontal_violation_tcpa(s, v, dthr_m, tthr_s)
 
 
 @kernel(
     implements="well_clear.violation_tep_at",
-    nonnegative=("dthr_m", "zthr_m", "tthr_s", "tcoa_s", "vmod_s"),
+    nonnegative=("thresholds",),
 )
 def violation_tep(
     s: Vec2,
     v: Vec2,
     sz: float,
     vz: float,
-    dthr_m: float,
-    zthr_m: float,
-    tthr_s: float,
-    tcoa_s: float,
-    vmod_s: float,
+    thresholds: Thresholds,
 ) -> bool:
     """True iff well clear by the time of entry is lost now; vertically by TCOA or VMOD."""
+    dthr_m, zthr_m, tthr_s, tcoa_s, vmod_s = thresholds
     vertical = layer_violation(sz, vz, zthr_m, tcoa_s, vmod_s)
     return vertical and horizontal_violation_tep(s, v, dthr_m, tthr_s)
 

@@ -12,6 +12,7 @@ from typing import Any
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import layer_window
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_state, any_thresholds
 from cratous.spec import well_clear
 
 
@@ -26,11 +27,10 @@ def detection_has_a_witness(
 ) -> None:
     """Where a volume is detected in [B, T], the first instant of the horizontal span in the window violates it."""
     flat_detection, flat_lies_within, flat_is_exact, flat_scales = lemmas
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
+    dthr, zthr, tthr, tcoa, vmod = limits
     begin, end, t = c.reals("begin end t")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
     c.opaque(
         horizontal_interval,
         horizontal_during,
@@ -38,8 +38,7 @@ def detection_has_a_witness(
         meant_horizontally,
         well_clear.layer_violation,
     )
-    limits = (dthr, zthr, tthr, tcoa, vmod)
-    detected = c.use(violation_during, s, v, sz, vz, *limits, begin, end)
+    detected = c.use(violation_during, s, v, sz, vz, limits, begin, end)
     c.show(c.implies(begin > end, c.negation(detected)), "nothing where B is after T")
     up = {"sz": sz + begin * vz, "vz": vz, "zthr": zthr, "tcoa": tcoa, "vmod": vmod}
     runs = begin <= end
@@ -78,7 +77,7 @@ def detection_has_a_witness(
         (Vec2(at.x + scaled * v.x, at.y + scaled * v.y), v, dthr * k, tthr * k),
         (Vec2(k * there.x, k * there.y), v, k * dthr, k * tthr),
     )
-    lost = c.define(meant_at, s, v, sz, vz, *limits, t)
+    lost = c.define(meant_at, s, v, sz, vz, limits, t)
     c.show(c.implies(detected, c.all_of(begin <= t, t <= end, lost)), "lost at the instant")
 
 
@@ -92,11 +91,10 @@ def detection_is_the_interval(
 ) -> None:
     """A volume is detected in [B, T] exactly where the span of its interval is not empty."""
     has_a_witness, is_exact, ends_violate, misses_none = lemmas
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
+    dthr, zthr, tthr, tcoa, vmod = limits
     begin, end, witness = c.reals("begin end witness")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
     c.opaque(
         horizontal_interval,
         layer_window,
@@ -104,9 +102,8 @@ def detection_is_the_interval(
         violation_interval,
         meant_at,
     )
-    limits = (dthr, zthr, tthr, tcoa, vmod)
-    detected = c.use(violation_during, s, v, sz, vz, *limits, begin, end)
-    first, last = c.use(violation_interval, s, v, sz, vz, *limits, begin, end)
+    detected = c.use(violation_during, s, v, sz, vz, limits, begin, end)
+    first, last = c.use(violation_interval, s, v, sz, vz, limits, begin, end)
     values = {
         "s": s, "v": v, "sz": sz, "vz": vz, "begin": begin, "end": end,
         "dthr": dthr, "zthr": zthr, "tthr": tthr, "tcoa": tcoa, "vmod": vmod,
@@ -137,11 +134,10 @@ def detection_misses_no_instant(
 ) -> None:
     """Where no volume is detected in [B, T], no instant of it violates the volume."""
     flat_is_exact, flat_detection, flat_scales = lemmas
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
+    dthr, zthr, tthr, tcoa, vmod = limits
     begin, end, t = c.reals("begin end t")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
     c.premise(begin <= t)
     c.premise(t <= end)
     c.opaque(
@@ -151,8 +147,7 @@ def detection_misses_no_instant(
         meant_horizontally,
         well_clear.layer_violation,
     )
-    limits = (dthr, zthr, tthr, tcoa, vmod)
-    detected = c.use(violation_during, s, v, sz, vz, *limits, begin, end)
+    detected = c.use(violation_during, s, v, sz, vz, limits, begin, end)
     up = {"sz": sz + begin * vz, "vz": vz, "zthr": zthr, "tcoa": tcoa, "vmod": vmod}
     c.lemma("well_clear_layer_window_is_exact", h=end - begin, t=t - begin, **up)
     k, first, last = c.use(layer_window, sz + begin * vz, vz, zthr, tcoa, vmod, end - begin)
@@ -175,7 +170,7 @@ def detection_misses_no_instant(
     c.lemma(flat_detection, when=inside, h=length, **flat)
     there = Vec2(s.x + t * v.x, s.y + t * v.y)
     c.lemma(flat_scales, s=there, v=v, dthr=dthr, tthr=tthr, k=k)
-    lost = c.define(meant_at, s, v, sz, vz, *limits, t)
+    lost = c.define(meant_at, s, v, sz, vz, limits, t)
     c.show(c.implies(lost, detected))
 
 

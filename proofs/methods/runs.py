@@ -2,13 +2,13 @@
 
 `Claim.fold` shows that two results are equal. Here an invariant of the accumulators of several folds, of
 kernels and of definitions, is carried along the items, and what follows from it need not be an equation. Base:
-no item yet. Step: any further item that satisfies what `item` states of it. Use: the goal on the results.
+no item yet. Step: any further item that satisfies what `Items.each` states of it. Use: the goal on the results.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 from cratous.core.kernel import Fold, qualified
 from cratous.proofs.claim import Claim
@@ -22,41 +22,47 @@ Run = tuple[Fold[Any], Any, tuple[Any, ...]]
 """A fold, an arbitrary accumulator of it, and its context."""
 
 
+class Items(NamedTuple):
+    """The arbitrary values of one item; each(accumulators): what every item satisfies, given those before it."""
+
+    values: tuple[Any, ...]
+    each: Callable[[list[Any]], Any] = lambda accumulators: True
+
+
 def along_items(
     c: Claim,
     runs: Sequence[Run],
     *,
-    item: tuple[Any, ...],
+    item: Items,
     invariant: Callable[[list[Any]], Any],
     goal: Callable[[list[Any]], Any],
     text: str,
     models: Sequence[Run] = (),
-    each: Callable[[list[Any]], Any] = lambda accumulators: True,
     known: Callable[[list[Any]], None] = lambda accumulators: None,
 ) -> None:
     """Show `goal(results)` of folds over the same items, of any number.
 
-    item: the arbitrary values of one item; invariant(accumulators): what holds after any number of items;
-    each(accumulators): what an item satisfies; known(accumulators): uses lemmas on one more item, from
-    the accumulators before it; models: folds of definitions, whose accumulators come after the others'.
+    invariant(accumulators): what holds after any number of items; known(accumulators): uses lemmas on one
+    more item, from the accumulators before it; models: folds of definitions, whose accumulators come after the others'.
     """
     if c.prefix:
         return  # used as a lemma, an induction has no goals to offer, as with `Claim.fold`
+    values, each = item
     if isinstance(c, OnNumbers):
         both = (*runs, *models)
         inductions.along_items(
-            c, both, item=item, invariant=invariant, goal=goal, text=text, each=each, known=known
+            c, both, item=values, invariant=invariant, goal=goal, text=text, each=each, known=known
         )
         return
     folds = [REPLACED.get(fold, fold) for fold, _, _ in (*runs, *models)]
     accumulators = [acc for _, acc, _ in (*runs, *models)]
     contexts = [context for _, _, context in (*runs, *models)]
     readers = [c.use] * len(runs) + [c.define] * len(models)
-    arbitrary(c.premises, tuple(accumulators), (item, tuple(contexts)))
+    arbitrary(c.premises, tuple(accumulators), (values, tuple(contexts)))
     # base and use hold of no item at all, so nothing may be given about one
-    arbitrary([], item, tuple(contexts))
+    arbitrary([], values, tuple(contexts))
     for premise in c.premises:
-        shared = sorted(free_names(premise) & names_in(item))
+        shared = sorted(free_names(premise) & names_in(values))
         if shared:
             raise ValueError(f"a premise restricts the item's {shared[0]}: put it into `each`")
     for fold in folds[: len(runs)]:
@@ -65,7 +71,7 @@ def along_items(
     starts = [fold.start for fold in folds]
     before = len(c.facts)
     held, base = statement(invariant(accumulators)), statement(invariant(starts))
-    own = spread(names_in(item), c)
+    own = spread(names_in(values), c)
     for term in (held, base):
         shared = sorted(free_names(term) & own)
         if shared:
@@ -77,7 +83,7 @@ def along_items(
     c._grant(statement(c.all_of(invariant(accumulators), each(accumulators))))
     known(accumulators)
     after = [
-        read(fold.step, acc, *item, *context)
+        read(fold.step, acc, *values, *context)
         for read, fold, acc, context in zip(readers, folds, accumulators, contexts, strict=True)
     ]
     c._owe("step", f"{text}: one more item", statement(invariant(after)))
@@ -88,7 +94,7 @@ def along_items(
         for read, fold, acc in zip(readers, folds, accumulators, strict=True)
     ]
     wanted = statement(goal(results))
-    shared = sorted(free_names(wanted) & spread(names_in(item), c))
+    shared = sorted(free_names(wanted) & spread(names_in(values), c))
     if shared:
         raise ValueError(f"the goal depends on the item's {shared[0]}: there may be none")
     c._owe("use", f"{text}: no more items", wanted)

@@ -11,6 +11,7 @@ from typing import Any
 
 from cratous.core.well_clear import times_vertical, vertical_interval
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_in_the_plane, any_state, any_thresholds, by_name
 from cratous.spec import well_clear
 
 
@@ -20,10 +21,8 @@ def horizontal_interval_is_exact(
     meant_horizontally_at: Any,
 ) -> None:
     """An instant of [B, T] violates the horizontal volume exactly if it lies in the span."""
-    s, v = c.vector("s"), c.vector("v")
-    dthr, tthr, begin, end, t = c.reals("dthr tthr begin end t")
-    c.premise(dthr >= 0)
-    c.premise(tthr >= 0)
+    s, v, dthr, tthr = any_in_the_plane(c)
+    begin, end, t = c.reals("begin end t")
     c.premise(begin <= t)
     c.premise(t <= end)
     span = c.use(horizontal_interval, s, v, dthr, tthr, begin, end)
@@ -36,10 +35,8 @@ def horizontal_interval_lies_within(
     horizontal_interval: Any,
 ) -> None:
     """A span that is not empty lies within [B, T]; an empty one is from 1 to 0."""
-    s, v = c.vector("s"), c.vector("v")
-    dthr, tthr, begin, end = c.reals("dthr tthr begin end")
-    c.premise(dthr >= 0)
-    c.premise(tthr >= 0)
+    s, v, dthr, tthr = any_in_the_plane(c)
+    begin, end = c.reals("begin end")
     first, last = c.use(horizontal_interval, s, v, dthr, tthr, begin, end)
     within = c.all_of(begin <= first, last <= end)
     c.show(c.implies(first <= last, within), "within [B, T]")
@@ -57,11 +54,10 @@ def interval_ends_violate(
 ) -> None:
     """The first and the last instant of a span violate; an empty span is from 1 to 0."""
     flat_lies_within, is_exact = lemmas
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
+    dthr, zthr, tthr, tcoa, vmod = limits
     begin, end = c.reals("begin end")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
     c.opaque(
         horizontal_interval,
         vertical_interval,
@@ -69,8 +65,8 @@ def interval_ends_violate(
         well_clear.layer_violation_at,
     )
     state = {"s": s, "v": v, "sz": sz, "vz": vz, "begin": begin, "end": end}
-    limits = {"dthr": dthr, "zthr": zthr, "tthr": tthr, "tcoa": tcoa, "vmod": vmod}
-    first, last = c.use(violation_interval, s, v, sz, vz, dthr, zthr, tthr, tcoa, vmod, begin, end)
+    size = by_name(limits)
+    first, last = c.use(violation_interval, s, v, sz, vz, limits, begin, end)
     up = {"sz": sz, "vz": vz, "zthr": zthr, "tcoa": tcoa, "vmod": vmod}
     c.lemma("well_clear_vertical_interval_lies_within", begin=begin, end=end, **up)
     low, high = c.use(vertical_interval, sz, vz, zthr, tcoa, vmod, begin, end)
@@ -80,8 +76,8 @@ def interval_ends_violate(
     c.show(c.implies(first <= last, within), "within [B, T]")
     c.show(c.implies(first > last, c.all_of(first == 1, last == 0)), "one empty span")
     for name, t in (("first", first), ("last", last)):
-        c.lemma(is_exact, when=first <= last, t=t, **state, **limits)
-        arguments = (s, v, sz, vz, dthr, zthr, tthr, tcoa, vmod, t)
+        c.lemma(is_exact, when=first <= last, t=t, **state, **size)
+        arguments = (s, v, sz, vz, limits, t)
         lost = c.define(meant_at, *arguments)
         c.show(c.implies(first <= last, lost), f"lost at the {name} instant")
 
@@ -96,11 +92,10 @@ def interval_is_exact(
 ) -> None:
     """An instant of [B, T] violates the volume exactly if it lies in the span."""
     flat_is_exact, flat_lies_within = lemmas
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
+    dthr, zthr, tthr, tcoa, vmod = limits
     begin, end, t = c.reals("begin end t")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
     c.premise(begin <= t)
     c.premise(t <= end)
     c.opaque(
@@ -109,7 +104,7 @@ def interval_is_exact(
         meant_horizontally_at,
         well_clear.layer_violation_at,
     )
-    span = c.use(violation_interval, s, v, sz, vz, dthr, zthr, tthr, tcoa, vmod, begin, end)
+    span = c.use(violation_interval, s, v, sz, vz, limits, begin, end)
     up = {"sz": sz, "vz": vz, "zthr": zthr, "tcoa": tcoa, "vmod": vmod}
     c.lemma("well_clear_vertical_interval_is_exact", begin=begin, end=end, t=t, **up)
     first, last = c.use(vertical_interval, sz, vz, zthr, tcoa, vmod, begin, end)
@@ -117,7 +112,7 @@ def interval_is_exact(
     inside = c.define(well_clear.in_span, first, last, t)
     c.lemma(flat_is_exact, when=inside, t=t, **flat)
     c.lemma(flat_lies_within, **flat)
-    arguments = (s, v, sz, vz, dthr, zthr, tthr, tcoa, vmod, t)
+    arguments = (s, v, sz, vz, limits, t)
     lost = c.define(meant_at, *arguments)
     c.show(c.same(lost, c.define(well_clear.in_span, *span, t)))
 
@@ -131,23 +126,20 @@ def times_are_exact(
 ) -> None:
     """Where an instant of [B, T] violates, exactly those from the first to the last time do."""
     is_exact, are_the_interval = lemmas
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
     begin, end, some, t = c.reals("begin end some t")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
     for instant in (some, t):
         c.premise(c.all_of(begin <= instant, instant <= end))
     c.opaque(violation_interval, violation_times, meant_at)
-    limits = (dthr, zthr, tthr, tcoa, vmod)
-    size = {"dthr": dthr, "zthr": zthr, "tthr": tthr, "tcoa": tcoa, "vmod": vmod}
+    size = by_name(limits)
     state = {"s": s, "v": v, "sz": sz, "vz": vz, "begin": begin, "end": end}
     for instant in (some, t):
         c.lemma(is_exact, t=instant, **state, **size)
     c.lemma(are_the_interval, **state, **size)
-    c.premise(c.define(meant_at, s, v, sz, vz, *limits, some))
-    times = c.use(violation_times, s, v, sz, vz, *limits, begin, end)
-    lost = c.define(meant_at, s, v, sz, vz, *limits, t)
+    c.premise(c.define(meant_at, s, v, sz, vz, limits, some))
+    times = c.use(violation_times, s, v, sz, vz, limits, begin, end)
+    lost = c.define(meant_at, s, v, sz, vz, limits, t)
     c.show(c.same(lost, c.define(well_clear.in_span, *times, t)))
 
 
@@ -159,18 +151,16 @@ def times_are_the_interval(
     violation_times: Any,
 ) -> None:
     """Where a span is not empty, the first and last time are its ends."""
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
+    dthr, zthr, tthr, tcoa, vmod = limits
     begin, end = c.reals("begin end")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
     up = c.use(vertical_interval, sz, vz, zthr, tcoa, vmod, begin, end)
     plain = c.use(times_vertical, sz, vz, zthr, tcoa, vmod, begin, end)
     c.show(c.implies(up.first_s <= up.last_s, c.same(plain, up)), "vertical")
     flat = c.use(horizontal_interval, s, v, dthr, tthr, begin, end)
     plain = c.use(horizontal_times, s, v, dthr, tthr, begin, end)
     c.show(c.implies(flat.first_s <= flat.last_s, c.same(plain, flat)), "horizontal")
-    limits = (dthr, zthr, tthr, tcoa, vmod, begin, end)
-    span = c.use(violation_interval, s, v, sz, vz, *limits)
-    times = c.use(violation_times, s, v, sz, vz, *limits)
+    span = c.use(violation_interval, s, v, sz, vz, limits, begin, end)
+    times = c.use(violation_times, s, v, sz, vz, limits, begin, end)
     c.show(c.implies(span.first_s <= span.last_s, c.same(times, span)), "in space")

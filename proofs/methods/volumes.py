@@ -11,8 +11,42 @@ from typing import Any
 
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import layer_violation, vertical_interval
+from cratous.core.well_clear.thresholds import Thresholds
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_in_the_plane, any_state, any_thresholds, by_name
 from cratous.spec import well_clear
+
+
+def horizontal_is_its_definition(c: Claim, horizontal_now: Any, meant_horizontally: Any) -> None:
+    """The horizontal kernel says violated exactly where its definition does."""
+    s, v, dthr, tthr = any_in_the_plane(c)
+    verdict = c.use(horizontal_now, s, v, dthr, tthr)
+    c.show(c.same(verdict, c.define(meant_horizontally, s, v, dthr, tthr)))
+
+
+def decision_is_the_definition(c: Claim, decision: Any, meant_horizontally: Any) -> None:
+    """The decision on the invariants of a state is that of the definition on the state."""
+    s, v, dthr, tthr = any_in_the_plane(c)
+    ss, vv = s.x * s.x + s.y * s.y, v.x * v.x + v.y * v.y
+    sv, cross = s.x * v.x + s.y * v.y, s.x * v.y - s.y * v.x
+    verdict = c.use(decision, ss, vv, sv, cross, dthr * dthr, tthr)
+    c.show(c.same(verdict, c.define(meant_horizontally, s, v, dthr, tthr)))
+
+
+def horizontal_scales(
+    c: Claim, is_its_definition: str, horizontal_now: Any, meant_horizontally: Any
+) -> None:
+    """Kernel and definition give the same where s, DTHR and TTHR are scaled by the same factor above 0."""
+    s, v, dthr, tthr = any_in_the_plane(c)
+    k = c.real("k")
+    c.premise(k > 0)
+    here, scaled = (s, v, dthr, tthr), (Vec2(k * s.x, k * s.y), v, k * dthr, k * tthr)
+    for at, w, d, t in (here, scaled):
+        c.lemma(is_its_definition, s=at, v=w, dthr=d, tthr=t)
+    near, far = c.use(horizontal_now, *here), c.use(horizontal_now, *scaled)
+    c.show(c.same(near, far), "the kernel does not")
+    meant = c.define(meant_horizontally, *here), c.define(meant_horizontally, *scaled)
+    c.show(c.same(*meant), "the definition does not")
 
 
 def horizontal_is_monotone(
@@ -20,10 +54,8 @@ def horizontal_is_monotone(
     horizontal_now: Any,
 ) -> None:
     """The horizontal volume grows with DTHR and TTHR."""
-    s, v = c.vector("s"), c.vector("v")
-    dthr, tthr, dthr2, tthr2 = c.reals("dthr tthr dthr2 tthr2")
-    c.premise(dthr >= 0)
-    c.premise(tthr >= 0)
+    s, v, dthr, tthr = any_in_the_plane(c)
+    dthr2, tthr2 = c.reals("dthr2 tthr2")
     c.premise(dthr <= dthr2)
     c.premise(tthr <= tthr2)
     before = c.use(horizontal_now, s, v, dthr, tthr)
@@ -41,21 +73,19 @@ def volume_is_convex(
     meant_at: Any,
 ) -> None:
     """What violates at two instants of straight flight violates between them."""
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
     early, middle, late = c.reals("early middle late")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
     c.premise(early <= middle)
     c.premise(middle <= late)
     c.opaque(violation_interval, meant_at)
-    limits = {"dthr": dthr, "zthr": zthr, "tthr": tthr, "tcoa": tcoa, "vmod": vmod}
+    size = by_name(limits)
     state = {"s": s, "v": v, "sz": sz, "vz": vz, "begin": early, "end": late}
-    c.use(violation_interval, s, v, sz, vz, *limits.values(), early, late)
+    c.use(violation_interval, s, v, sz, vz, limits, early, late)
     lost = []
     for t in (early, middle, late):
-        c.lemma(lemma, t=t, **state, **limits)
-        arguments = (s, v, sz, vz, *limits.values(), t)
+        c.lemma(lemma, t=t, **state, **size)
+        arguments = (s, v, sz, vz, limits, t)
         lost.append(c.define(meant_at, *arguments))
     c.show(c.implies(c.all_of(lost[0], lost[2]), lost[1]))
 
@@ -75,8 +105,8 @@ def volume_is_monotone(
         c.premise(low >= 0)
         c.premise(low <= high)
     c.opaque(horizontal_now, layer_violation)
-    before = c.use(violation_now, s, v, sz, vz, *small)
-    after = c.use(violation_now, s, v, sz, vz, *great)
+    before = c.use(violation_now, s, v, sz, vz, Thresholds(*small))
+    after = c.use(violation_now, s, v, sz, vz, Thresholds(*great))
     (dthr, zthr, tthr, tcoa, vmod), (dthr2, zthr2, tthr2, tcoa2, vmod2) = small, great
     c.lemma(
         lemma,
@@ -97,13 +127,11 @@ def volume_is_symmetric(
     violation_interval: Any,
 ) -> None:
     """Seen from the intruder, the verdict now and the span are the same."""
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
+    dthr, zthr, tthr, tcoa, vmod = limits
     begin, end = c.reals("begin end")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
     c.opaque(horizontal_interval, horizontal_now, layer_violation, vertical_interval)
-    limits = (dthr, zthr, tthr, tcoa, vmod)
     back = (Vec2(0 - s.x, 0 - s.y), Vec2(0 - v.x, 0 - v.y), 0 - sz, 0 - vz)
     low, high = c.use(vertical_interval, sz, vz, zthr, tcoa, vmod, begin, end)
     low_back, high_back = c.use(vertical_interval, 0 - sz, 0 - vz, zthr, tcoa, vmod, begin, end)
@@ -120,10 +148,10 @@ def volume_is_symmetric(
         (back[0], back[1], dthr, tthr, low, high),
         (back[0], back[1], dthr, tthr, low_back, high_back),
     )
-    ours = c.use(violation_now, s, v, sz, vz, *limits)
-    c.show(c.same(ours, c.use(violation_now, *back, *limits)), "now")
-    span = c.use(violation_interval, s, v, sz, vz, *limits, begin, end)
-    c.show(c.same(span, c.use(violation_interval, *back, *limits, begin, end)), "the span")
+    ours = c.use(violation_now, s, v, sz, vz, limits)
+    c.show(c.same(ours, c.use(violation_now, *back, limits)), "now")
+    span = c.use(violation_interval, s, v, sz, vz, limits, begin, end)
+    c.show(c.same(span, c.use(violation_interval, *back, limits, begin, end)), "the span")
 
 
 def violation_is_its_definition(
@@ -134,16 +162,14 @@ def violation_is_its_definition(
     meant_at: Any,
 ) -> None:
     """The kernel in space says lost now exactly where its definition does."""
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
-    limits = (dthr, zthr, tthr, tcoa, vmod)
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
+    dthr, zthr, tthr, tcoa, vmod = limits
     c.opaque(meant_horizontally, well_clear.layer_violation)
-    lost = c.define(meant_at, s, v, sz, vz, *limits, sz - sz)
+    lost = c.define(meant_at, s, v, sz, vz, limits, sz - sz)
     c.lemma(lemma, s=s, v=v, dthr=dthr, tthr=tthr)
     c.lemma(
         "well_clear_layer_violation_is_its_definition",
         sz=sz, vz=vz, zthr=zthr, tcoa=tcoa, vmod=vmod,
     )  # fmt: skip
-    c.show(c.same(c.use(violation_now, s, v, sz, vz, *limits), lost))
+    c.show(c.same(c.use(violation_now, s, v, sz, vz, limits), lost))

@@ -181,7 +181,7 @@ def prove(
     from cratous.core.ledger import records
     from cratous.proofs import ledger
     from cratous.proofs.engine import cache, prover
-    from cratous.proofs.judgement import judge
+    from cratous.proofs.judgement import Memory, judge
     from cratous.proofs.ledger import report_formats
     from cratous.proofs.ledger.proof_recall import Recall
     from cratous.proofs.ledger.text_cache import Remembered
@@ -228,7 +228,7 @@ def prove(
         raise BadInput("the package has no theorems", where=home.name, expected="one file a claim")
     workers = jobs or ledger.jobs_default()
     store = cache.standard()
-    memory = Recall(private_cache() / "theorems", home)
+    recall = Recall(private_cache() / "theorems", home)
     remembered = Remembered(private_cache() / "remembered", home)
     bar = Bar("proving", len(names), not as_json and sys.stderr.isatty())
     with bar:
@@ -238,9 +238,7 @@ def prove(
             whole=whole,
             tell=lambda progress: bar.step(progress.name, progress.done, progress.of),
             jobs=workers,
-            cache=store,
-            recall=memory,
-            keep=private_cache() / "relations",
+            memory=Memory(store, recall, private_cache() / "relations"),
         )
     inventory = judged.inventory
     theorems = list(inventory.theorems)

@@ -29,6 +29,7 @@ from cratous.core.daa.volume import in_conflict
 from cratous.core.kernel import Vec2
 from cratous.core.readings.exact import exact
 from cratous.core.readings.machine.compiled import machine
+from cratous.core.well_clear.thresholds import Thresholds
 from cratous.services.conform.values import finite, numbers
 from cratous.spec.daa.parameters import Parameters
 
@@ -38,11 +39,13 @@ def _with(driver: Any, **kernels: Any) -> Any:
     return FunctionType(driver.__code__, {**driver.__globals__, **kernels}, driver.__name__)
 
 
-def _exact_conflict(kind: int, s: Vec2, v: Vec2, *rest: float) -> bool:
+def _exact_conflict(
+    kind: int, s: Vec2, v: Vec2, sz: float, vz: float, thresholds: Thresholds, *span: float
+) -> bool:
     """`in_conflict` on the rationals that the doubles are."""
-    numbers_of = (Vec2(*map(float, s)), Vec2(*map(float, v)))
-    arguments: tuple[Any, ...] = (int(kind), *numbers_of, *map(float, rest))
-    return bool(exact(in_conflict, *arguments))
+    state = (Vec2(*map(float, s)), Vec2(*map(float, v)), float(sz), float(vz))
+    limits = Thresholds(*map(float, thresholds))
+    return bool(exact(in_conflict, int(kind), *state, limits, *map(float, span)))
 
 
 def exact_evaluate() -> Callable[..., bool]:

@@ -38,16 +38,17 @@ def close_starts(mission: Mission, where: Where) -> Iterator[BadInput]:
 
 def lost_at_start(mission: Mission, a: Vehicle, b: Vehicle) -> bool:
     """Whether well clear of two vehicles is lost at the start; exact, by the kernel `violation_within`."""
-    from cratous.core.well_clear import violation_within
+    from cratous.core.well_clear import StandardThresholds, violation_within
 
     exact: Any = Fraction
     s = [exact(p) - exact(q) for p, q in zip(a.position, b.position, strict=True)]
     v = [exact(p) - exact(q) for p, q in zip(_velocity(a), _velocity(b), strict=True)]
     volume = mission.daa.well_clear
-    dthr, zthr = exact(volume.dthr_m), exact(volume.zthr_m)
-    tthr, tcoa = exact(volume.tthr_s), exact(volume.tcoa_s)
+    limits = StandardThresholds(
+        exact(volume.dthr_m), exact(volume.zthr_m), exact(volume.tthr_s), exact(volume.tcoa_s)
+    )
     apart, moving, zero = Vec2(s[0], s[1]), Vec2(v[0], v[1]), exact(0)
-    return bool(violation_within(apart, moving, s[2], zero, dthr, zthr, tthr, tcoa, zero))
+    return bool(violation_within(apart, moving, s[2], zero, limits, zero))
 
 
 def _velocity(vehicle: Vehicle) -> tuple[float, float]:

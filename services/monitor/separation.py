@@ -19,7 +19,7 @@ from cratous.core.excuse.record import Scene
 from cratous.core.excuse.watch import LossWatch, pair_excused
 from cratous.core.excuse.way_out import is_excused, way_out
 from cratous.core.kernel import Vec2, qualified
-from cratous.core.well_clear import violation_within
+from cratous.core.well_clear import StandardThresholds, violation_within
 from cratous.services.monitor.excuses import evidence, sentence
 from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.required_rows import Watched, alone_item, pair_item, pairs_of
@@ -61,7 +61,7 @@ class SeparationWatch:
         volume = mission.daa.well_clear
         self._volume = volume
         exact: Any = Fraction
-        self._thresholds = (
+        self._thresholds = StandardThresholds(
             exact(volume.dthr_m),
             exact(volume.zthr_m),
             exact(volume.tthr_s),
@@ -100,7 +100,7 @@ class SeparationWatch:
         s_h: Any = Vec2(*s0[:2])  # type: ignore[arg-type]
         v_h: Any = Vec2(*v[:2])  # type: ignore[arg-type]
         sz, vz, span = (_any(x) for x in (s0[2], v[2], h))
-        lost = violation_within(s_h, v_h, sz, vz, *self._thresholds, span)
+        lost = violation_within(s_h, v_h, sz, vz, self._thresholds, span)
         pair.checks += 1
         self._measure(pair, before[own], before[other])
         self._measure(pair, after[own], after[other])

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from cratous.spec.well_clear import (
     Plane,
+    Thresholds,
     dot,
     horizontal_violation_at,
     in_span,
@@ -29,6 +30,26 @@ class Vertical(NamedTuple):
     w: float
 
 
+class Relative(NamedTuple):
+    """Ownship minus intruder, or how far that may be off: horizontal position and velocity, altitude
+    and climb rate [m, m/s]."""
+
+    s: Plane
+    v: Plane
+    sz: float
+    vz: float
+
+
+class Uncertainty(NamedTuple):
+    """How far off a relative state may be: radii of horizontal position and velocity, es_m and ev_m_s,
+    and as much up or down in altitude and climb rate, ez_m and ew_m_s [m, m/s]."""
+
+    es_m: float
+    ez_m: float
+    ev_m_s: float
+    ew_m_s: float
+
+
 class Span(NamedTuple):
     """Instants from the first to the last; none where the last is before the first."""
 
@@ -37,15 +58,14 @@ class Span(NamedTuple):
 
 
 def violated_at(
-    kind: int, s: Plane, v: Plane, sz: float, vz: float, dthr: float, zthr: float, tthr: float,
-    tcoa: float, vmod: float, t: float,
-) -> bool:  # fmt: skip
+    kind: int, s: Plane, v: Plane, sz: float, vz: float, thresholds: Thresholds, t: float
+) -> bool:
     """The volume of that kind is violated after t seconds; kind 3, a cylinder, is tep without times."""
     if kind == 1:
-        return violation_tcpa_at(s, v, sz, vz, dthr, zthr, tthr, tcoa, vmod, t)
+        return violation_tcpa_at(s, v, sz, vz, thresholds, t)
     if kind == 2 or kind == 3:
-        return violation_tep_at(s, v, sz, vz, dthr, zthr, tthr, tcoa, vmod, t)
-    return violation_taumod_at(s, v, sz, vz, dthr, zthr, tthr, tcoa, vmod, t)
+        return violation_tep_at(s, v, sz, vz, thresholds, t)
+    return violation_taumod_at(s, v, sz, vz, thresholds, t)
 
 
 def counts(at: float, begin: float, end: float) -> bool:
@@ -160,19 +180,24 @@ def in_area(east: float, north: float, alt: float, radius: float, height: float)
 
 
 def may_be_violated_at(
-    s: Plane, v: Plane, sz: float, vz: float, ds: Plane, dv: Plane, dz: float, dw: float, es: float,
-    ez: float, ev: float, ew: float, dthr: float, zthr: float, tthr: float, tcoa: float, vmod: float,
-    t: float,
-) -> bool:  # fmt: skip
-    """The true state may be off by (ds, dz) and (dv, dw), and then the volume is violated at t."""
-    if not well_within(ds, es) or not well_within(dv, ev):
+    state: Relative, off: Relative, error: Uncertainty, thresholds: Thresholds, t: float
+) -> bool:
+    """The true state may be off by so much, and then the volume is violated at t."""
+    if not well_within(off.s, error.es_m) or not well_within(off.v, error.ev_m_s):
         return False
     if not layer_may_be_violated_at(
-        Vertical(sz, vz), Vertical(dz, dw), Vertical(ez, ew), zthr, tcoa, vmod, t
+        Vertical(state.sz, state.vz),
+        Vertical(off.sz, off.vz),
+        Vertical(error.ez_m, error.ew_m_s),
+        thresholds.zthr_m,
+        thresholds.tcoa_s,
+        thresholds.vmod_s,
+        t,
     ):
         return False
-    p, q = Plane(s.x + ds.x, s.y + ds.y), Plane(v.x + dv.x, v.y + dv.y)
-    return violation_taumod_at(p, q, sz + dz, vz + dw, dthr, zthr, tthr, tcoa, vmod, t)
+    p = Plane(state.s.x + off.s.x, state.s.y + off.s.y)
+    q = Plane(state.v.x + off.v.x, state.v.y + off.v.y)
+    return violation_taumod_at(p, q, state.sz + off.sz, state.vz + off.vz, thresholds, t)
 
 
 def layer_may_be_violated_at(

@@ -30,6 +30,29 @@ class Off(NamedTuple):
     z: float
 
 
+class Offs(NamedTuple):
+    """How far the vehicle is off its reference, and the intruder off its prediction."""
+
+    own: Off
+    other: Off
+
+
+class Tube(NamedTuple):
+    """How far an intruder may be from its straight prediction: horizontally, and in altitude."""
+
+    wide: Growth
+    high: Growth
+
+
+class Margins(NamedTuple):
+    """The cylinder about the intruder, radius and half height [m], and how far the vehicle may be from its
+    reference, rho_m [m]."""
+
+    radius_m: float
+    half_m: float
+    rho_m: float
+
+
 def reach(growth: Growth, t: float) -> float:
     """The radius after t seconds [m]."""
     return growth.start_m + growth.rate_m_s * t + growth.gain_m_s2 * t * t
@@ -46,18 +69,10 @@ def may_be_off(off: Off, wide: float, high: float) -> bool:
     return beside and -high <= off.z and off.z <= high
 
 
-def enters_at(
-    s: Plane,
-    sz: float,
-    own: Off,
-    other: Off,
-    rho: float,
-    wide: float,
-    high: float,
-    radius: float,
-    half: float,
-) -> bool:
-    """Vehicle and intruder may be off by `own` and `other`, and then the cylinder is entered."""
+def enters_at(s: Plane, sz: float, offs: Offs, wide: float, high: float, margins: Margins) -> bool:
+    """Vehicle and intruder may be off by so much, and then the cylinder is entered."""
+    radius, half, rho = margins
+    own, other = offs
     possible = may_be_off(own, rho, rho) and may_be_off(other, wide, high)
     apart = Plane(s.x + own.x - other.x, s.y + own.y - other.y)
     return possible and cylinder_violation(apart, sz + own.z - other.z, radius, half)
@@ -68,18 +83,14 @@ def hit_at(
     v: Plane,
     sz: float,
     vz: float,
-    own: Off,
-    other: Off,
-    rho: float,
-    wide: Growth,
-    high: Growth,
-    radius: float,
-    half: float,
+    offs: Offs,
+    tube: Tube,
+    margins: Margins,
     t: float,
 ) -> bool:
     """The cylinder is entered t seconds after the piece has begun. THERE ARE t and both offs."""
     at = position(s, v, t)
-    return enters_at(at, sz + t * vz, own, other, rho, reach(wide, t), reach(high, t), radius, half)
+    return enters_at(at, sz + t * vz, offs, reach(tube.wide, t), reach(tube.high, t), margins)
 
 
 def reached_at(s: Plane, v: Plane, growth: Growth, t: float) -> bool:
@@ -143,8 +154,7 @@ def way_step(
     duration: float,
     rho: float,
     meeting: Meeting,
-    own: Off,
-    other: Off,
+    offs: Offs,
     at: float,
 ) -> Way:
     """One more piece is flown. The instant `at` [s from the beginning] may lie in it."""
@@ -158,13 +168,10 @@ def way_step(
     entered = within_it and enters_at(
         there,
         height,
-        own,
-        other,
-        rho,
+        offs,
         reach(meeting.wide, at),
         reach(meeting.high, at),
-        meeting.radius_m,
-        meeting.half_height_m,
+        Margins(meeting.radius_m, meeting.half_height_m, rho),
     )
     return Way(
         way.hit or entered,

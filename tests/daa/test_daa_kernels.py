@@ -15,11 +15,12 @@ from cratous.core.daa.grid import grid
 from cratous.core.daa.state import HDIR
 from cratous.core.daa.steps import piece_counts, straight_from, until, way_conflicts
 from cratous.core.daa.turn import turn_offset, turned
-from cratous.core.daa.uncertainty import uncertain_span
+from cratous.core.daa.uncertainty import Uncertainty, uncertain_span
 from cratous.core.daa.volume import in_conflict
 from cratous.core.daa.zones import contours, hazard_zone
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear.interval import violation_interval_taumod
+from cratous.core.well_clear.thresholds import Thresholds
 from cratous.spec.daa import meaning as daa_meaning
 from cratous.spec.daa.parameters import CYLINDER, TAUMOD, TCPA, TEP, Parameters, Volume
 from cratous.spec.daa.presets import preset
@@ -36,22 +37,22 @@ def test_steps_against_sampled_instants():
     for _ in range(300):
         s, v = Vec2(*rng.normal(size=2) * 3000), Vec2(*rng.normal(size=2) * 100)
         sz, vz = rng.normal() * 200, rng.normal() * 5
-        volume = (1222.0, 137.0, 35.0, 0.0, 0.0)
+        volume = Thresholds(1222.0, 137.0, 35.0, 0.0, 0.0)
         kind = int(rng.integers(0, 4))
         at, begin, end = rng.uniform(0, 20), rng.uniform(0, 20), rng.uniform(20, 60)
-        red = in_conflict(kind, s, v, sz, vz, *volume, straight_from(at, begin), end - at)
+        red = in_conflict(kind, s, v, sz, vz, volume, straight_from(at, begin), end - at)
         lost = any(
             daa_meaning.lost_from_step(
-                daa_meaning.violated_at(kind, s, v, sz, vz, *volume, t), t, at, begin, end
+                daa_meaning.violated_at(kind, s, v, sz, vz, volume, t), t, at, begin, end
             )
             for t in np.linspace(0, 60, 121)
         )
         found += lost
         assert red or not lost
-        blocked = piece_counts(at, begin, end) and in_conflict(kind, s, v, sz, vz, *volume, 0, 2.0)
+        blocked = piece_counts(at, begin, end) and in_conflict(kind, s, v, sz, vz, volume, 0, 2.0)
         on_piece = any(
             daa_meaning.lost_on_piece(
-                daa_meaning.violated_at(kind, s, v, sz, vz, *volume, t), t, 2.0, at, begin, end
+                daa_meaning.violated_at(kind, s, v, sz, vz, volume, t), t, 2.0, at, begin, end
             )
             for t in np.linspace(0, 2, 9)
         )
@@ -91,17 +92,17 @@ def test_a_climb_is_flown(vz: float, target: float):
 def test_uncertainty_covers_sampled_true_states():
     rng = np.random.default_rng(9)
     lost = missed = 0
-    limits = (1222.0, 137.0, 35.0, 0.0, 0.0)
+    limits = Thresholds(1222.0, 137.0, 35.0, 0.0, 0.0)
     for _ in range(300):
         s, v = Vec2(*rng.normal(size=2) * 3000), Vec2(*rng.normal(size=2) * 80)
         sz, vz, es, ez, ev, ew = *(rng.normal(size=2) * (150, 5)), 80.0, 40.0, 5.0, 2.0
-        span = uncertain_span(s, v, sz, vz, es, ez, ev, ew, *limits, 0.0, 60.0)
+        span = uncertain_span(s, v, sz, vz, Uncertainty(es, ez, ev, ew), limits, 0.0, 60.0)
         for _ in range(10):
             d, e = rng.normal(size=2), rng.normal(size=2)
             d, e = d / np.hypot(*d) * es * rng.random(), e / np.hypot(*e) * ev * rng.random()
             dz, dw = rng.uniform(-ez, ez), rng.uniform(-ew, ew)
             true = (Vec2(s.x + d[0], s.y + d[1]), Vec2(v.x + e[0], v.y + e[1]), sz + dz, vz + dw)
-            first, last = violation_interval_taumod(*true, *limits, 0.0, 60.0)
+            first, last = violation_interval_taumod(*true, limits, 0.0, 60.0)
             if first <= last:
                 lost += 1
                 missed += not (span.first_s <= first + 1e-6 and last <= span.last_s + 1e-6)
@@ -118,12 +119,12 @@ def test_hazard_zones_are_where_the_volume_is_violated(kind: int):
     volume = Volume(kind, 1200.0, 100.0, 30.0 if kind != CYLINDER else 0.0)
     shape = Polygon(hazard_zone(own, other, volume).points)
     assert shape.is_valid
-    limits = (volume.dthr_m, volume.zthr_m, volume.tthr_s, 0.0, 0.0)
+    limits = Thresholds(volume.dthr_m, volume.zthr_m, volume.tthr_s, 0.0, 0.0)
     v = Vec2(own.ve_m_s - other.ve_m_s, own.vn_m_s - other.vn_m_s)
     rng = np.random.default_rng(2)
     inside = 0
     for x, y in rng.uniform(-7000, 7000, (1200, 2)):
-        lost = in_conflict(kind, Vec2(-x, -y), v, 0.0, 0.0, *limits, 0.0, 0.0)
+        lost = in_conflict(kind, Vec2(-x, -y), v, 0.0, 0.0, limits, 0.0, 0.0)
         inside += lost
         if abs(shape.exterior.distance(Point(x, y))) > 5.0:
             assert shape.contains(Point(x, y)) == lost, (x, y)

@@ -36,6 +36,7 @@ from cratous.core.excuse.state import (
 from cratous.core.excuse.way_out import both_say, is_excused, manoeuvre_judged, way_out
 from cratous.core.kernel import Vec2
 from cratous.core.readings.machine.compiled import machine
+from cratous.core.well_clear.thresholds import Thresholds
 from cratous.services.cli.daa import daa
 from cratous.spec import excuse
 from cratous.spec.daa import meaning as daa_meaning
@@ -166,7 +167,9 @@ def test_every_answer_holds_at_sampled_instants(p: Parameters) -> None:
                 there = [q[2 + k] + begin * q[5 + k] for k in range(3)]
                 s, v = Vec2(x - there[0], y - there[1]), Vec2(vx - q[5], vy - q[6])
                 for t in np.linspace(0, end - begin, 9)[1:-1].tolist():
-                    lost = daa_meaning.violated_at(kind, s, v, z - there[2], vz - q[7], *limits, t)
+                    lost = daa_meaning.violated_at(
+                        kind, s, v, z - there[2], vz - q[7], Thresholds(*limits), t
+                    )
                     if lost:
                         assert one.answer == REFUSED
                         assert one.at_s is not None

@@ -15,7 +15,7 @@ import pytest
 
 from cratous.bridge import lmcp
 from cratous.core.kernel import Vec2
-from cratous.core.well_clear import violation_within
+from cratous.core.well_clear import StandardThresholds, violation_within
 from cratous.services.bus import Bus
 from cratous.services.flight.loop import FlightResult, fly
 from cratous.spec.mission import (
@@ -99,8 +99,8 @@ def losses(log: list[Any], volume: WellClear = VOLUME, step_s: float = 0.25) -> 
             s = Vec2(a.North - b.North, a.East - b.East)
             v = Vec2(a.VelocityNorth - b.VelocityNorth, a.VelocityEast - b.VelocityEast)
             sz, vz = a.Altitude - b.Altitude, b.VelocityDown - a.VelocityDown
-            limits = (volume.dthr_m, volume.zthr_m, volume.tthr_s, volume.tcoa_s)
-            if violation_within(s, v, sz, vz, *limits, step_s):
+            limits = StandardThresholds(volume.dthr_m, volume.zthr_m, volume.tthr_s, volume.tcoa_s)
+            if violation_within(s, v, sz, vz, limits, step_s):
                 lost.append(time)
     return lost
 

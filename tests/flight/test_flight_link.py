@@ -12,7 +12,7 @@ from flight_tools import VOLUME, flown, meeting, of_type, vehicle
 from cratous.bridge import lmcp
 from cratous.bridge.loopback import Bridge
 from cratous.core.kernel import Vec2
-from cratous.core.well_clear import violation_within
+from cratous.core.well_clear import StandardThresholds, violation_within
 from cratous.services.bus import Bus
 from cratous.services.flight.loop import fly
 from cratous.services.icarous.instance import Instance
@@ -44,13 +44,13 @@ def test_link_cut_before_the_encounter(monkeypatch: pytest.MonkeyPatch) -> None:
     assert result.takeovers == 1
     assert result.outcome == "limit"
     states = [b for b in log if type(b).__name__ == "TruthState"]
-    limits = (VOLUME.dthr_m, VOLUME.zthr_m, VOLUME.tthr_s, VOLUME.tcoa_s)
+    limits = StandardThresholds(VOLUME.dthr_m, VOLUME.zthr_m, VOLUME.tthr_s, VOLUME.tcoa_s)
     for _, group in itertools.groupby(states, key=lambda s: s.Time):
         a, b = group
         s = Vec2(a.North - b.North, a.East - b.East)
         v = Vec2(a.VelocityNorth - b.VelocityNorth, a.VelocityEast - b.VelocityEast)
         lost = violation_within(
-            s, v, a.Altitude - b.Altitude, b.VelocityDown - a.VelocityDown, *limits, 0.25
+            s, v, a.Altitude - b.Altitude, b.VelocityDown - a.VelocityDown, limits, 0.25
         )
         assert not lost
 

@@ -173,16 +173,16 @@ def test_well_clear_agrees_with_the_proved_kernel():
     from typing import Any
 
     from cratous.core.kernel import Vec2
-    from cratous.core.well_clear import violation_within
+    from cratous.core.well_clear import StandardThresholds, violation_within
 
     random, lost = np.random.default_rng(1), 0
     for k in range(800):
         volume = (VOLUME, EARLY)[k % 2]
         s = [Fraction(int(x)) for x in random.integers((-14, -14, -6), (15, 15, 7))]
         v = [Fraction(int(x)) for x in random.integers(-3, 4, 3)]
-        sizes: list[Any] = list(map(Fraction, volume))
+        sizes: Any = StandardThresholds(*map(Fraction, volume))
         place: Any = (Vec2(*s[:2]), Vec2(*v[:2]), s[2], v[2])
-        theirs = violation_within(*place, *sizes, Fraction(5))
+        theirs = violation_within(*place, sizes, Fraction(5))
         assert lost_within(s, v, Fraction(5), volume) == bool(theirs)
         lost += bool(theirs)
     assert 50 < lost < 750

@@ -13,8 +13,10 @@ from cratous.core.kernel import Vec2
 from cratous.core.permit.for_ever import above_for_ever, beside_for_ever, hold_clear
 from cratous.core.permit.pieces import (
     Growth,
+    Margins,
     Meeting,
     Piece,
+    Tube,
     permitted,
     permitted_from,
     reach_after,
@@ -101,7 +103,7 @@ def test_what_is_permitted_from_an_instant_on_is_not_hit_after_it(
         other = off(data.draw(st.sampled_from(ROUND)), wide, -high)
         way = motion.Way(False, 0, 0, 0, 0)
         for piece in pieces:
-            way = motion.way_step(way, *piece, meeting, own, other, at)  # type: ignore[arg-type]
+            way = motion.way_step(way, *piece, meeting, motion.Offs(own, other), at)  # type: ignore[arg-type]
         assert not motion.way_result(way)
 
 
@@ -164,12 +166,13 @@ def test_a_hold_that_is_clear_is_never_hit(
     quarters: int,
 ) -> None:
     s, sz, v, vz, wide, high, radius, half = meeting
-    if not hold_clear(s, v, sz, vz, wide, high, radius, half, rho):  # type: ignore[arg-type]
+    tube, margins = Tube(wide, high), Margins(radius, half, rho)
+    if not hold_clear(s, v, sz, vz, tube, margins):
         return
     for t in (Fraction(quarters, 4), Fraction(quarters) * 1000):
         own = off(one, rho, rho)
         other = off(two, reach_after(wide, t), -reach_after(high, t))  # type: ignore[arg-type]
-        args = (s, v, sz, vz, own, other, rho, wide, high, radius, half, t)
+        args = (s, v, sz, vz, motion.Offs(own, other), tube, margins, t)
         assert not motion.hit_at(*args)  # type: ignore[arg-type]
 
 
@@ -193,5 +196,6 @@ def test_a_hold_that_is_clear_is_never_hit(
 def test_which_holds_are_clear_for_ever(
     s: Vec2, v: Vec2, sz: float, vz: float, wide: Growth, clear: bool
 ) -> None:
-    assert hold_clear(s, v, sz, vz, wide, STEADY, 150.0, 30.0, 5.0) is clear
-    assert exact(hold_clear, s, v, sz, vz, wide, STEADY, 150.0, 30.0, 5.0) is clear
+    around = (Tube(wide, STEADY), Margins(150.0, 30.0, 5.0))
+    assert hold_clear(s, v, sz, vz, *around) is clear
+    assert exact(hold_clear, s, v, sz, vz, *around) is clear

@@ -49,7 +49,7 @@ def hit(
     """The definition's fold."""
     way = motion.Way(False, 0, 0, 0, 0)
     for piece in pieces:
-        way = motion.way_step(way, *piece, meeting, own, other, at)  # type: ignore[arg-type]
+        way = motion.way_step(way, *piece, meeting, motion.Offs(own, other), at)  # type: ignore[arg-type]
     return motion.way_result(way)
 
 

@@ -57,7 +57,7 @@ ATTACKS = {
         "proofs/theorems/well_clear/violation_is_symmetric.py", "c.show(c.same(ours, theirs))",
         "c.show(c.same(ours, ours))", "violation: changed since the proof: its theorems"),
     "a lemma weakened": (
-        "proofs/theorems/well_clear/horizontal_violation_scales.py", "c.premise(k > 0)",
+        "proofs/methods/volumes.py", "c.premise(k > 0)",
         "c.premise(k == 1)", "violation_within: changed since the proof: its theorems"),
     "a theorem's sentence": (
         "proofs/theorems/well_clear/violation_is_symmetric.py", "Well clear is symmetric", "All is well",

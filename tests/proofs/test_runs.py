@@ -9,7 +9,7 @@ import z3
 
 from cratous.core.geofence.regions import place_in_all, place_in_any
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.runs import along_items
+from cratous.proofs.methods.runs import Items, along_items
 
 
 def stated(**other: Any) -> Claim:
@@ -17,7 +17,7 @@ def stated(**other: Any) -> Claim:
     c = Claim()
     place, least, most = c.whole("place"), c.whole("least"), c.whole("most")
     given: dict[str, Any] = {
-        "item": (place,),
+        "item": Items((place,)),
         "invariant": lambda state: c.any_of(state[0] <= state[1], state[0] == 1),
         "goal": lambda results: c.any_of(results[0] <= results[1], results[0] == 1),
         "text": "order",
@@ -54,7 +54,7 @@ def test_what_does_not_hold_is_not() -> None:
 
 def test_an_item_may_be_restricted_for_the_step_alone() -> None:
     low = stated(
-        each=lambda c, place: lambda state: place >= 1,
+        item=lambda c, place: Items((place,), each=lambda state: place >= 1),
         invariant=lambda c, place: lambda state: state[0] == 1,
         goal=lambda c, place: lambda results: results[0] == 1,
     )
@@ -79,7 +79,7 @@ def test_no_premise_restricts_what_is_arbitrary() -> None:
             along_items(
                 c,
                 [(place_in_all, values["least"], ())],
-                item=(values["place"],),
+                item=Items((values["place"],)),
                 invariant=lambda state: state[0] <= 1,
                 goal=lambda results: results[0] <= 1,
                 text="",

@@ -10,12 +10,14 @@ import pytest
 
 from cratous.core import kernel as kernels
 from cratous.core.authority.timeliness import lasted, too_early
+from cratous.core.kernel import Vec2
 from cratous.core.readings.enclosed import enclosed
 from cratous.core.readings.exact import exact, exactly
 from cratous.core.readings.exact.certainty import outward_margin
 from cratous.core.well_clear import during as well_clear_during
 from cratous.core.well_clear import interval as well_clear_interval
 from cratous.core.well_clear import now as well_clear_now
+from cratous.core.well_clear.thresholds import Thresholds
 from cratous.spec.errors import BadInput
 
 
@@ -54,6 +56,25 @@ def test_in_the_enclosed_reading():
     low, high = enclosed(outward_margin)([-1.0, 2.0], 0.5, 0.0)
     assert np.all(low <= [0.5, 1.0])
     assert np.all(high >= [0.5, 1.0])
+
+
+def test_of_a_record_all_numbers_are_meant():
+    state = (Vec2(3000.0, 0.0), Vec2(-60.0, 0.0), 0.0, 0.0)
+    for k, name in enumerate(Thresholds._fields):
+        limits = [1222.0, 137.0, 35.0, 0.0, 0.0]
+        limits[k] = -1.0
+        with pytest.raises(BadInput) as caught:
+            exact(well_clear_during.violation_during_taumod, *state, Thresholds(*limits), 0.0, 9.0)
+        assert (caught.value.item, caught.value.got) == (f"thresholds.{name}", "-1.0")
+        columns = [3000.0, 0.0, -60.0, 0.0, 0.0, 0.0, *limits, 0.0, [9.0, 10.0]]
+        columns[6 + k] = [1.0, -1.0]
+        for reading, function in (
+            (exactly, well_clear_during.violation_during_taumod),
+            (enclosed, well_clear_interval.violation_times_taumod),
+        ):
+            with pytest.raises(BadInput) as caught:
+                reading(function)(*columns)
+            assert caught.value.item == f"thresholds.{name}[1]"
 
 
 def test_a_name_that_is_no_argument_is_refused():

@@ -40,11 +40,12 @@ def test_vertical_violation_is_the_definition(sz, vz, zthr, tcoa):
 
 
 @settings(max_examples=200)
-@given(vectors, vectors, small, small, positive, positive, positive, positive, positive)
-def test_violation_within_covers_every_instant(s, v, sz, vz, dthr, zthr, tthr, tcoa, h):
-    predicted = well_clear.violation_within(s, v, sz, vz, dthr, zthr, tthr, tcoa, h)
+@given(vectors, vectors, small, small, st.tuples(*[positive] * 4), positive)
+def test_violation_within_covers_every_instant(s, v, sz, vz, sizes, h):
+    limits = well_clear.StandardThresholds(*sizes)
+    predicted = well_clear.violation_within(s, v, sz, vz, limits, h)
     instants = [h * k / 24 for k in range(25)]
-    seen = any(meaning.violation_at(s, v, sz, vz, dthr, zthr, tthr, tcoa, t) for t in instants)
+    seen = any(meaning.violation_at(s, v, sz, vz, limits, t) for t in instants)
     assert predicted or not seen
 
 
@@ -94,11 +95,11 @@ def test_compiled_reading_equals_cpython():
     rng = np.random.default_rng(7)
     s, v = rng.normal(size=(2, 2000)) * 400, rng.normal(size=(2, 2000)) * 25
     sz, vz = rng.normal(size=(2, 2000)) * np.array([[60], [3]])
-    limits = (150.0, 30.0, 15.0, 5.0, 60.0)
-    got = compiled(well_clear.violation_within)(*s, *v, sz, vz, *limits)
+    limits = well_clear.StandardThresholds(150.0, 30.0, 15.0, 5.0)
+    got = compiled(well_clear.violation_within)(*s, *v, sz, vz, *limits, 60.0)
     rows = zip(*(x.tolist() for x in (*s, *v, sz, vz)), strict=True)
     wanted = [
-        well_clear.violation_within(Vec2(a, b), Vec2(c, d), e, f, *limits)
+        well_clear.violation_within(Vec2(a, b), Vec2(c, d), e, f, limits, 60.0)
         for a, b, c, d, e, f in rows
     ]
     assert got.tolist() == wanted

@@ -63,17 +63,17 @@ def test_verdicts_and_instants_are_those_of_the_definition(model: str):
     for s, v, limits, begin, end in cases:
         volume = Volume(*limits, model=model)
         state = (meaning.Plane(*map(Fraction, s[:2])), meaning.Plane(*map(Fraction, v[:2])))
-        up, rate, thresholds = Fraction(s[2]), Fraction(v[2]), [Fraction(x) for x in limits]
+        up, rate, sizes = Fraction(s[2]), Fraction(v[2]), meaning.Thresholds(*map(Fraction, limits))
         found = loss(s, v, volume, begin, end)
         lost_some += found is not None
         assert is_lost_during(s, v, volume, begin, end) == (found is not None)
-        assert is_violated(s, v, volume) == defined(*state, up, rate, *thresholds, Fraction(0))
+        assert is_violated(s, v, volume) == defined(*state, up, rate, sizes, Fraction(0))
         for k in range(9):
             t = Fraction(begin) + (Fraction(end) - Fraction(begin)) * k / 8
             inside = found is not None and found.first_s.high <= t <= found.last_s.low
             outside = found is None or t < found.first_s.low or t > found.last_s.high
             if inside or outside:
-                assert defined(*state, up, rate, *thresholds, t) == inside
+                assert defined(*state, up, rate, sizes, t) == inside
     assert 20 < lost_some < 380
 
 
@@ -142,14 +142,17 @@ def test_spans_on_doubles_are_the_kernels():
     volume = Volume(150.0, 30.0, 15.0, 20.0, 5.0)
     spans = spans_on_doubles(s, v, volume, 0.0, 60.0)
     kernel = well_clear.violation_interval_taumod
-    limits = (150.0, 30.0, 15.0, 20.0, 5.0, 0.0, 60.0)
+    limits = well_clear.Thresholds(150.0, 30.0, 15.0, 20.0, 5.0)
+    span = (0.0, 60.0)
     wanted = [
-        kernel(Vec2(*p[:2].tolist()), Vec2(*w[:2].tolist()), float(p[2]), float(w[2]), *limits)
+        kernel(
+            Vec2(*p[:2].tolist()), Vec2(*w[:2].tolist()), float(p[2]), float(w[2]), limits, *span
+        )
         for p, w in zip(s, v, strict=True)
     ]
     assert list(zip(*(part.tolist() for part in spans), strict=True)) == wanted
     with pytest.raises(BadInput, match="out does not fit"):
-        compiled(kernel)(*np.zeros((6, 2)), *limits, out=(np.empty(2),))
+        compiled(kernel)(*np.zeros((6, 2)), *limits, *span, out=(np.empty(2),))
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from __future__ import annotations
 import functools
 import inspect
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
 from typing import Any
 
@@ -258,11 +258,21 @@ def exact(function: Callable[..., Any] | Fold[Any], *args: Any) -> Any:
         raise NotFinite("an argument is not finite", where=name_) from error
 
 
+def _labelled(values: Iterable[tuple[str, Any]]) -> Iterator[tuple[str, Any]]:
+    """Names and values, those of records field by field as in the labels of columns."""
+    for label, value in values:
+        if hasattr(value, "_fields"):
+            fields = ((f"{label}.{field}", part) for field, part in value._asdict().items())
+            yield from _labelled(fields)
+        else:
+            yield label, value
+
+
 def _one(function: Callable[..., Any], args: tuple[Any, ...]) -> Any:
     names = nonnegative(function)
     if names:
         parameters = inspect.signature(function).parameters
-        refuse_negative(function.__name__, names, zip(parameters, args, strict=False))
+        refuse_negative(function.__name__, names, _labelled(zip(parameters, args, strict=False)))
     source = _filterable(function)
     row = _numbers(args) if source is not None else []
     if source is None or not _fits(source, row):

@@ -23,12 +23,13 @@ def nonnegative(function: Callable[..., Any]) -> tuple[str, ...]:
 def refuse_negative(where: str, names: tuple[str, ...], columns: Iterable[tuple[str, Any]]) -> None:
     """Raise BadInput for the first number below 0 in one of these columns.
 
-    columns: label and value or array; where: the kernel's name.
+    columns: label and value or array; where: the kernel's name. The name of a record means each of its
+    numbers, whose labels are `record.field`.
     """
     if not names:
         return
     for label, value in columns:
-        if label not in names:
+        if label.split(".")[0] not in names:
             continue
         array = np.asarray(value)
         # what is infinite is refused as such

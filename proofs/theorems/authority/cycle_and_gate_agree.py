@@ -3,7 +3,6 @@ if the gate lets it and offers exactly if an offer is open; so every velocity th
 and when UxAS has taken an offer the instance lets go at the next heartbeat."""
 
 from cratous.core.authority.cycle import (
-    Cycle,
     cycle_begun,
     cycle_flown,
     cycle_watched,
@@ -11,25 +10,16 @@ from cratous.core.authority.cycle import (
 )
 from cratous.core.authority.gate import Gate, gate_accepts, gate_after
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.command import any_cycle, any_times
 from cratous.spec.authority import cycle as authority_cycle
 from cratous.spec.authority import gate as authority
 
 
 def claim(c: Claim) -> None:
     gate = Gate(c.integer("owner"), c.integer("epoch"), c.boolean("offered"))
-    cycle = Cycle(
-        c.integer("mode"),
-        c.integer("relapses"),
-        c.boolean("handed"),
-        c.integer("handed_ms"),
-        c.boolean("free"),
-        c.integer("free_ms"),
-    )
-    now, soon, heard, bound, least = (
-        c.integer(name) for name in ("now", "soon", "heard", "bound", "least")
-    )
+    cycle = any_cycle(c)
+    now, soon, heard, bound, least = any_times(c)
     foreseen, free = c.boolean("foreseen"), c.boolean("way_free")
-    c.premise(c.all_of(soon >= 0, bound >= 0, least >= 0, least <= 2**56))
     c.premise(c.define(authority.well_formed, gate))
     c.premise(c.define(authority_cycle.agree, cycle, gate))  # at the start, and after each step
 

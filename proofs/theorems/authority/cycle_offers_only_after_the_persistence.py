@@ -2,26 +2,17 @@
 the next offer at least the time passes that is asked for; and nothing is offered to a UxAS that is not
 heard."""
 
-from cratous.core.authority.cycle import Cycle, cycle_flown, cycle_watched, patience
+from cratous.core.authority.cycle import cycle_flown, cycle_watched, patience
 from cratous.core.authority.timeliness import in_time
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.command import any_cycle, any_times
 from cratous.spec.authority import cycle as authority_cycle
 
 
 def claim(c: Claim) -> None:
-    cycle = Cycle(
-        c.integer("mode"),
-        c.integer("relapses"),
-        c.boolean("handed"),
-        c.integer("handed_ms"),
-        c.boolean("free"),
-        c.integer("free_ms"),
-    )
-    now, soon, heard, bound, least = (
-        c.integer(name) for name in ("now", "soon", "heard", "bound", "least")
-    )
+    cycle = any_cycle(c)
+    now, soon, heard, bound, least = any_times(c)
     foreseen, free, begun = c.boolean("foreseen"), c.boolean("way_free"), c.integer("begun")
-    c.premise(c.all_of(soon >= 0, bound >= 0, least >= 0, least <= 2**56))
     c.premise(begun <= now)  # begun: the takeover, or the last instant at which it was not free
 
     taken = c.use(cycle_watched, cycle, foreseen, now, soon)

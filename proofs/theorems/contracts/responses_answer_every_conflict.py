@@ -2,17 +2,16 @@
 zones, else by one that is, and by a refusal only if there is none; one that is not ours by leaving it.
 Off the mission without a conflict the vehicle keeps to the same, unless it is sent back."""
 
-from cratous.core.contracts.responses import Response, manoeuvre_act, response_step
+from cratous.core.contracts.responses import manoeuvre_act, response_step
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.responding import any_response
 from cratous.spec.contracts import responses
 
 
 def claim(c: Claim) -> None:
-    before = Response(c.integer("state"), c.boolean("off"))
-    names = ("conflict", "ours", "good", "found", "free", "lasted", "taken")
-    conflict, ours, good, found, free, lasted, taken = (c.boolean(name) for name in names)
-    c.premise(c.define(responses.consistent, before.state, before.off))
-    step = c.use(response_step, before, conflict, ours, good, found, free, lasted, taken)
+    before, told = any_response(c)
+    conflict, ours, good, found = told.conflict, told.ours, told.good, told.found
+    step = c.use(response_step, before, *told)
     act = step.act
     answer = c.define(responses.answered, ours, before.off, good, found, act)
     c.show(c.implies(conflict, answer), "every conflict is answered")

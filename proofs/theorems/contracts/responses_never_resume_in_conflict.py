@@ -2,17 +2,16 @@
 free and has been for long enough, unless it says that it is back; and once the way is not
 free any more, a vehicle that was sent back is held again at once."""
 
-from cratous.core.contracts.responses import Response, response_step
+from cratous.core.contracts.responses import response_step
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.responding import any_response
 from cratous.spec.contracts import responses
 
 
 def claim(c: Claim) -> None:
-    before = Response(c.integer("state"), c.boolean("off"))
-    names = ("conflict", "ours", "good", "found", "free", "lasted", "taken")
-    conflict, ours, good, found, free, lasted, taken = (c.boolean(name) for name in names)
-    c.premise(c.define(responses.consistent, before.state, before.off))
-    step = c.use(response_step, before, conflict, ours, good, found, free, lasted, taken)
+    before, told = any_response(c)
+    conflict, free, lasted, taken = told.conflict, told.free, told.lasted, told.taken
+    step = c.use(response_step, before, *told)
     sent = c.same(step.act, responses.SEND_BACK)
     may = c.define(responses.may_be_sent_back, conflict, free, lasted)
     c.show(

@@ -2,17 +2,16 @@
 while it is others', on hold or resume while off the mission without one, on mission else; and each
 step keeps it consistent with whether the vehicle is off its mission."""
 
-from cratous.core.contracts.responses import Response, response_step
+from cratous.core.contracts.responses import response_step
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.responding import any_response
 from cratous.spec.contracts import responses
 
 
 def claim(c: Claim) -> None:
-    before = Response(c.integer("state"), c.boolean("off"))
-    names = ("conflict", "ours", "good", "found", "free", "lasted", "taken")
-    conflict, ours, good, found, free, lasted, taken = (c.boolean(name) for name in names)
-    c.premise(c.define(responses.consistent, before.state, before.off))
-    step = c.use(response_step, before, conflict, ours, good, found, free, lasted, taken)
+    before, told = any_response(c)
+    conflict, ours, taken = told.conflict, told.ours, told.taken
+    step = c.use(response_step, before, *told)
     state, off = step.response
     c.show(c.define(responses.consistent, 0, False), "at the start")
     c.show(c.define(responses.consistent, state, off), "consistent after every step")

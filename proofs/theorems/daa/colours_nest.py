@@ -3,6 +3,7 @@ span of time lies within the other's, then what conflicts with the severe region
 milder one: no value is free in MID and not in NEAR."""
 
 from cratous.core.daa.volume import conflict_span, in_conflict
+from cratous.core.well_clear.thresholds import Thresholds
 from cratous.proofs.claim import Claim
 from cratous.proofs.theorems.daa.conflict_has_an_instant import witnesses
 from cratous.spec import well_clear
@@ -24,9 +25,9 @@ def claim(c: Claim) -> None:
     state = {"s": s, "v": v, "sz": sz, "vz": vz}
     limits = dict(zip(names.split(), severe, strict=True))
     greater = dict(zip(names.split(), mild, strict=True))
-    red = c.use(in_conflict, kind, s, v, sz, vz, *severe, begin, end)
-    first, _ = c.use(conflict_span, kind, s, v, sz, vz, *severe, begin, end)
-    some = witnesses(c, "", (s, v, sz, vz), tuple(severe), begin, end)
+    red = c.use(in_conflict, kind, s, v, sz, vz, Thresholds(*severe), begin, end)
+    first, _ = c.use(conflict_span, kind, s, v, sz, vz, Thresholds(*severe), begin, end)
+    some = witnesses(c, "", (s, v, sz, vz), Thresholds(*severe), begin, end)
     c.lemma(
         "daa_conflict_has_an_instant", kind=kind, begin=begin, end=end, **some, **state, **limits
     )
@@ -36,4 +37,4 @@ def claim(c: Claim) -> None:
         "daa_conflict_misses_no_instant",
         when=red, kind=kind, t=first, begin=begin2, end=end2, **state, **greater,
     )  # fmt: skip
-    c.show(c.implies(red, c.use(in_conflict, kind, s, v, sz, vz, *mild, begin2, end2)))
+    c.show(c.implies(red, c.use(in_conflict, kind, s, v, sz, vz, Thresholds(*mild), begin2, end2)))

@@ -17,7 +17,9 @@ from cratous.core.well_clear import (
     violation_interval_tcpa,
     violation_interval_tep,
 )
+from cratous.core.well_clear.thresholds import Thresholds
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_state, any_thresholds, by_name
 from cratous.spec import well_clear
 from cratous.spec.daa import meaning as daa_meaning
 
@@ -29,7 +31,7 @@ HORIZONTAL = {
 
 
 def witnesses(
-    c: Claim, label: str, state: tuple[Any, ...], limits: tuple[Any, ...], begin: Any, end: Any
+    c: Claim, label: str, state: tuple[Any, ...], limits: Thresholds, begin: Any, end: Any
 ) -> dict[str, Any]:
     """For each kind the instant that stands for a detection, named by the equation that defines it."""
     s, v, sz, vz = state
@@ -52,11 +54,9 @@ def witnesses(
 
 def claim(c: Claim) -> None:
     kind = c.integer("kind")
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
     begin, end = c.reals("begin end")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
     c.opaque(
         violation_during_taumod,
         violation_during_tcpa,
@@ -68,9 +68,8 @@ def claim(c: Claim) -> None:
         well_clear.violation_tcpa_at,
         well_clear.violation_tep_at,
     )
-    limits = (dthr, zthr, tthr, tcoa, vmod)
     state = {"s": s, "v": v, "sz": sz, "vz": vz, "begin": begin, "end": end}
-    full = {"dthr": dthr, "zthr": zthr, "tthr": tthr, "tcoa": tcoa, "vmod": vmod}
+    full = by_name(limits)
     found = witnesses(c, "", (s, v, sz, vz), limits, begin, end)
     for part, name, size in (
         ("a", "taumod", full),
@@ -80,16 +79,16 @@ def claim(c: Claim) -> None:
         witness = found[f"witness_{part}"]
         c.lemma(f"well_clear_detection_{name}_is_the_interval", witness=witness, **state, **size)
         c.lemma(f"well_clear_interval_{name}_first_and_last_violate", **state, **size)
-    detected = c.use(in_conflict, kind, s, v, sz, vz, *limits, begin, end)
-    first, last = c.use(conflict_span, kind, s, v, sz, vz, *limits, begin, end)
+    detected = c.use(in_conflict, kind, s, v, sz, vz, limits, begin, end)
+    first, last = c.use(conflict_span, kind, s, v, sz, vz, limits, begin, end)
     for interval, at_instant in (
         (violation_interval_taumod, well_clear.violation_taumod_at),
         (violation_interval_tcpa, well_clear.violation_tcpa_at),
         (violation_interval_tep, well_clear.violation_tep_at),
     ):
-        entry, _ = c.use(interval, s, v, sz, vz, *limits, begin, end)
-        one, other = (s, v, sz, vz, *limits, entry), (s, v, sz, vz, *limits, first)
+        entry, _ = c.use(interval, s, v, sz, vz, limits, begin, end)
+        one, other = (s, v, sz, vz, limits, entry), (s, v, sz, vz, limits, first)
         c.congruence(at_instant, one, other)
-    lost = c.define(daa_meaning.violated_at, kind, s, v, sz, vz, *limits, first)
+    lost = c.define(daa_meaning.violated_at, kind, s, v, sz, vz, limits, first)
     c.show(c.same(detected, first <= last), "detection")
     c.show(c.implies(detected, c.all_of(begin <= first, first <= end, lost)), "first instant")

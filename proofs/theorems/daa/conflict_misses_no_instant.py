@@ -8,17 +8,16 @@ from cratous.core.well_clear import (
     violation_during_tep,
 )
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_state, any_thresholds, by_name
 from cratous.spec import well_clear
 from cratous.spec.daa import meaning as daa_meaning
 
 
 def claim(c: Claim) -> None:
     kind = c.integer("kind")
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
     begin, end, t = c.reals("begin end t")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
     c.premise(begin <= t)
     c.premise(t <= end)
     c.opaque(
@@ -29,11 +28,10 @@ def claim(c: Claim) -> None:
         well_clear.violation_tcpa_at,
         well_clear.violation_tep_at,
     )
-    limits = (dthr, zthr, tthr, tcoa, vmod)
     state = {"s": s, "v": v, "sz": sz, "vz": vz, "begin": begin, "end": end, "t": t}
-    size = {"dthr": dthr, "zthr": zthr, "tthr": tthr, "tcoa": tcoa, "vmod": vmod}
+    size = by_name(limits)
     for name in ("taumod", "tcpa", "tep"):
         c.lemma(f"well_clear_detection_{name}_misses_no_instant", **state, **size)
-    found = c.use(in_conflict, kind, s, v, sz, vz, *limits, begin, end)
-    lost = c.define(daa_meaning.violated_at, kind, s, v, sz, vz, *limits, t)
+    found = c.use(in_conflict, kind, s, v, sz, vz, limits, begin, end)
+    lost = c.define(daa_meaning.violated_at, kind, s, v, sz, vz, limits, t)
     c.show(c.implies(lost, found))

@@ -4,20 +4,19 @@ flight from it within the horizon, at which the volume is violated; the times ke
 from cratous.core.daa.steps import piece_counts, straight_from
 from cratous.core.daa.volume import conflict_span, in_conflict
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_state, any_thresholds
 from cratous.proofs.theorems.daa.conflict_has_an_instant import witnesses
 from cratous.spec.daa import meaning as daa_meaning
 
 
 def claim(c: Claim) -> None:
     kind = c.integer("kind")
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
+    dthr, zthr, tthr, tcoa, vmod = limits
     piece, at, begin, end = c.reals("piece at begin end")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
     c.opaque(in_conflict, conflict_span, daa_meaning.violated_at)
-    limits = (dthr, zthr, tthr, tcoa, vmod)
-    state = (kind, s, v, sz, vz, *limits)
+    state = (kind, s, v, sz, vz, limits)
     known = {
         "kind": kind, "s": s, "v": v, "sz": sz, "vz": vz, "dthr": dthr, "zthr": zthr, "tthr": tthr,
         "tcoa": tcoa, "vmod": vmod,

@@ -3,28 +3,36 @@ the spans of altitude and circle share; and a conflict is found exactly if the v
 or nothing is known exactly and that span holds an instant: where nothing is, exactly if there is an
 instant of the volume's own or one that the spans of altitude and circle share."""
 
-from cratous.core.daa.uncertainty import circle_span, layer_span, uncertain_conflict, uncertain_span
+from cratous.core.daa.uncertainty import (
+    Uncertainty,
+    circle_span,
+    layer_span,
+    uncertain_conflict,
+    uncertain_span,
+)
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear.during import layer_window, violation_during_taumod
 from cratous.core.well_clear.interval import (
     horizontal_interval_taumod,
     violation_interval_taumod,
 )
+from cratous.core.well_clear.thresholds import Thresholds
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_state
 from cratous.spec import well_clear
 from cratous.spec.daa import meaning as daa_meaning
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    s, v, sz, vz = any_state(c)
+    limits = Thresholds(*c.reals("dthr zthr tthr tcoa vmod"))
+    dthr, zthr, tthr, tcoa, vmod = limits
     es, ez, ev, ew, begin, end, t = c.reals("es ez ev ew begin end t")
     c.opaque(violation_during_taumod, violation_interval_taumod, circle_span, layer_span)
     c.opaque(horizontal_interval_taumod, layer_window)
-    limits = (dthr, zthr, tthr, tcoa, vmod)
-    state = (s, v, sz, vz, es, ez, ev, ew, *limits, begin, end)
+    state = (s, v, sz, vz, Uncertainty(es, ez, ev, ew), limits, begin, end)
     span = c.use(uncertain_span, *state)
-    own = c.use(violation_interval_taumod, s, v, sz, vz, *limits, begin, end)
+    own = c.use(violation_interval_taumod, s, v, sz, vz, limits, begin, end)
     layer = c.use(layer_span, sz, vz, ez, ew, zthr, tcoa, vmod, end)
     circle = c.use(circle_span, s, v, es, ev, dthr, tthr, end)
     spans = [daa_meaning.Span(*span_of) for span_of in (own, layer, circle)]
@@ -33,7 +41,7 @@ def claim(c: Claim) -> None:
     for instant in span:
         at = c.define(daa_meaning.in_own_or_both, *spans, begin, end, instant)
         c.show(c.implies(span.first_s <= span.last_s, at), "is the least")
-    plain = c.use(violation_during_taumod, s, v, sz, vz, *limits, begin, end)
+    plain = c.use(violation_during_taumod, s, v, sz, vz, limits, begin, end)
     unknown = c.all_of(es > 0, ez > 0, ev > 0, ew > 0, span.first_s <= span.last_s)
     c.show(c.same(c.use(uncertain_conflict, *state), c.any_of(plain, unknown)), "a conflict")
     sizes = c.all_of(*[threshold >= 0 for threshold in limits])

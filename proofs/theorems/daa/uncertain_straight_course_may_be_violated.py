@@ -4,9 +4,11 @@ rate, as far off as they may be, violate the layer; a state that is farther off 
 
 from itertools import combinations
 
-from cratous.core.daa.uncertainty import circle_straight
+from cratous.core.daa.records import Relative
+from cratous.core.daa.uncertainty import Uncertainty, circle_straight
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear.interval import horizontal_interval_taumod
+from cratous.core.well_clear.thresholds import Thresholds
 from cratous.proofs.claim import Claim
 from cratous.spec import well_clear
 from cratous.spec.daa import meaning as daa_meaning
@@ -39,8 +41,12 @@ def claim(c: Claim) -> None:
         s, v = [Vec2(size * ahead.x, size * ahead.y) for size in (distance, -speed)]
         return c.define(
             daa_meaning.may_be_violated_at,
-            s, v, sz, vz, nearer, faster, dz, dw, es, ez, ev, ew, dthr, zthr, tthr, tcoa, vmod, t,
-        )  # fmt: skip
+            Relative(s, v, sz, vz),
+            Relative(nearer, faster, dz, dw),
+            Uncertainty(es, ez, ev, ew),
+            Thresholds(dthr, zthr, tthr, tcoa, vmod),
+            t,
+        )
 
     worst = may_be_violated(*[Vec2(size * ahead.x, size * ahead.y) for size in (-es, -ev)])
     for one, other in combinations(c.calls(well_clear.horizontal_violation), 2):

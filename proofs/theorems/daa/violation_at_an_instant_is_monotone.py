@@ -3,6 +3,7 @@ lost with greater ones."""
 
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import horizontal_violation, layer_violation
+from cratous.core.well_clear.thresholds import Thresholds
 from cratous.proofs.claim import Claim
 from cratous.spec import well_clear
 
@@ -44,6 +45,6 @@ def claim(c: Claim) -> None:
         ),
         "horizontally",
     )
-    before = c.define(well_clear.violation_taumod_at, s, v, sz, vz, *small, t)
-    after = c.define(well_clear.violation_taumod_at, s, v, sz, vz, *great, t)
+    before = c.define(well_clear.violation_taumod_at, s, v, sz, vz, Thresholds(*small), t)
+    after = c.define(well_clear.violation_taumod_at, s, v, sz, vz, Thresholds(*great), t)
     c.show(c.implies(before, after))

@@ -4,24 +4,23 @@ volume: for every kind of volume and every state."""
 from cratous.core.daa.volume import in_conflict
 from cratous.core.excuse.way_out import after_piece, piece_lost
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_state, any_thresholds
 from cratous.spec import excuse
 from cratous.spec.daa import meaning as daa_meaning
 
 
 def claim(c: Claim) -> None:
     kind, so_far = c.integer("kind"), c.integer("so_far")
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
+    dthr, zthr, tthr, tcoa, vmod = limits
     piece, t = c.reals("piece t")
     known, surely = c.boolean("known"), c.boolean("surely")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
     c.premise(c.any_of(so_far == -1, so_far == 0, so_far == 1))
     c.opaque(in_conflict, daa_meaning.violated_at)
-    limits = (dthr, zthr, tthr, tcoa, vmod)
-    violated = c.define(daa_meaning.violated_at, kind, s, v, sz, vz, *limits, t)
+    violated = c.define(daa_meaning.violated_at, kind, s, v, sz, vz, limits, t)
     then = c.define(excuse.lost_at, violated, t, piece)
-    lost = c.use(piece_lost, kind, s, v, sz, vz, *limits, piece)
+    lost = c.use(piece_lost, kind, s, v, sz, vz, limits, piece)
     c.lemma(
         "daa_conflict_misses_no_instant", when=then, kind=kind, s=s, v=v, sz=sz, vz=vz, dthr=dthr,
         zthr=zthr, tthr=tthr, tcoa=tcoa, vmod=vmod, begin=t - t, end=piece, t=t,

@@ -4,6 +4,7 @@ instant of the piece, which the times kernel names, the volume is violated."""
 from cratous.core.daa.volume import conflict_span, in_conflict
 from cratous.core.excuse.way_out import after_piece, piece_lost
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_state, any_thresholds
 from cratous.proofs.theorems.daa.conflict_has_an_instant import witnesses
 from cratous.spec import excuse
 from cratous.spec.daa import meaning as daa_meaning
@@ -11,16 +12,14 @@ from cratous.spec.daa import meaning as daa_meaning
 
 def claim(c: Claim) -> None:
     kind, so_far = c.integer("kind"), c.integer("so_far")
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
+    dthr, zthr, tthr, tcoa, vmod = limits
     piece = c.real("piece")
     known, surely = c.boolean("known"), c.boolean("surely")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
     c.premise(c.any_of(so_far == 0, so_far == 1))
     c.opaque(in_conflict, conflict_span, daa_meaning.violated_at)
-    limits = (dthr, zthr, tthr, tcoa, vmod)
-    state = (kind, s, v, sz, vz, *limits)
+    state = (kind, s, v, sz, vz, limits)
     lost = c.use(piece_lost, *state, piece)
     zero = piece - piece
     first, _ = c.use(conflict_span, *state, zero, piece)

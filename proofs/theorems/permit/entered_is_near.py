@@ -2,24 +2,25 @@
 the prediction than the cylinder, rho and the tube together, horizontally and in altitude."""
 
 from cratous.core.kernel import Vec2
-from cratous.core.permit.pieces import Growth, reach_after
+from cratous.core.permit.pieces import Growth, Tube, reach_after
 from cratous.core.permit.tubes import disc_within
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_state
+from cratous.proofs.methods.meetings import about, any_margins, any_offs
 from cratous.spec import well_clear
 from cratous.spec.permit import motion
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, rho, radius, half, t = c.reals("sz vz rho radius half t")
-    wide = Growth(*c.reals("wide_start wide_rate wide_gain"))
-    high = Growth(*c.reals("high_start high_rate high_gain"))
-    own, other = (motion.Off(*c.reals(f"{n}_x {n}_y {n}_z")) for n in ("own", "other"))
-    c.premise(c.all_of(rho >= 0, radius >= 0, half >= 0))
+    s, v, sz, vz = any_state(c)
+    margins, offs, t = any_margins(c), any_offs(c), c.real("t")
+    wide, high = (Growth(*c.reals(f"{n}_start {n}_rate {n}_gain")) for n in ("wide", "high"))
+    tube = Tube(wide, high)
+    radius, _, rho = margins
+    own, other = offs
     c.opaque(disc_within, well_clear.within)
-    hit = c.define(motion.hit_at, s, v, sz, vz, own, other, rho, wide, high, radius, half, t)
-    around = Growth(wide.start_m + radius + rho, wide.rate_m_s, wide.gain_m_s2)
-    layer = Growth(high.start_m + half + rho, high.rate_m_s, high.gain_m_s2)
+    hit = c.define(motion.hit_at, s, v, sz, vz, offs, tube, margins, t)
+    around, layer = about(tube, margins)
     far = c.use(reach_after, wide, t)
     c.step(c.implies(hit, far >= 0), "a tube")
     # from where both are, back to the reference, and back to the prediction

@@ -2,26 +2,26 @@
 not above the tube with the cylinder, not below it, and not beside it."""
 
 from cratous.core.permit.for_ever import above_for_ever, beside_for_ever, hold_clear
-from cratous.core.permit.pieces import Growth
+from cratous.core.permit.pieces import Growth, Tube
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_state
+from cratous.proofs.methods.meetings import about, any_margins
 from cratous.spec.permit import motion
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, rho, radius, half = c.reals("sz vz rho radius half")
+    s, v, sz, vz = any_state(c)
+    margins = any_margins(c)
     wide_start, wide_rate, high_start, high_rate = c.reals(
         "wide_start wide_rate high_start high_rate"
     )
     down, up, far, vertex, root = c.reals("down up far vertex root")
     c.premise(c.all_of(wide_start >= 0, wide_rate >= 0, high_start >= 0, high_rate >= 0))
-    c.premise(c.all_of(rho >= 0, radius >= 0, half >= 0))
-    none = rho - rho
-    wide, high = Growth(wide_start, wide_rate, none), Growth(high_start, high_rate, none)
-    around = Growth(wide_start + radius + rho, wide_rate, none)
-    layer = Growth(high_start + half + rho, high_rate, none)
+    none = far - far
+    tube = Tube(Growth(wide_start, wide_rate, none), Growth(high_start, high_rate, none))
+    around, layer = about(tube, margins)
     c.opaque(above_for_ever, beside_for_ever, motion.reached_at, motion.levelled_at)
-    clear = c.use(hold_clear, s, v, sz, vz, wide, high, radius, half, rho)
+    clear = c.use(hold_clear, s, v, sz, vz, tube, margins)
     met = []
     # where the layer climbs faster, or sinks, it is there at an instant, which is named
     for z, w, then in ((sz, vz, down), (0 - sz, 0 - vz, up)):

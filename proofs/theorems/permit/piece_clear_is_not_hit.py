@@ -2,39 +2,38 @@
 piece, whatever place the vehicle has within rho of its reference and the intruder in its tube, horizontally
 and in altitude, however fast the tube grows."""
 
-from cratous.core.permit.pieces import Growth, above_during, beside_during, piece_clear
+from cratous.core.permit.pieces import above_during, beside_during, piece_clear
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_state
+from cratous.proofs.methods.meetings import (
+    about,
+    any_margins,
+    any_offs,
+    any_tube,
+    growth_by_name,
+    margins_by_name,
+    offs_by_name,
+    tube_by_name,
+)
 from cratous.spec.permit import motion
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, rho, radius, half, d, t = c.reals("sz vz rho radius half d t")
-    wide = Growth(*c.reals("wide_start wide_rate wide_gain"))
-    high = Growth(*c.reals("high_start high_rate high_gain"))
-    own, other = (motion.Off(*c.reals(f"{n}_x {n}_y {n}_z")) for n in ("own", "other"))
-    for growth in (wide, high):
-        c.premise(c.all_of(growth.start_m >= 0, growth.rate_m_s >= 0, growth.gain_m_s2 >= 0))
-    c.premise(c.all_of(rho >= 0, radius >= 0, half >= 0))
+    s, v, sz, vz = any_state(c)
+    tube, margins, offs = any_tube(c), any_margins(c), any_offs(c)
+    d, t = c.reals("d t")
     c.premise(c.all_of(t >= 0, t <= d))
     c.opaque(above_during, beside_during, motion.reached_at, motion.levelled_at, motion.enters_at)
-    clear = c.use(piece_clear, s, v, sz, vz, wide, high, radius, half, rho, d)
-    around = Growth(wide.start_m + radius + rho, wide.rate_m_s, wide.gain_m_s2)
-    layer = Growth(high.start_m + half + rho, high.rate_m_s, high.gain_m_s2)
-    named = {"start": layer.start_m, "rate": layer.rate_m_s, "gain": layer.gain_m_s2}
+    clear = c.use(piece_clear, s, v, sz, vz, tube, margins, d)
+    around, layer = about(tube, margins)
+    named = growth_by_name(layer)
     c.lemma("permit_above_is_exact", sz=sz, vz=vz, d=d, t=t, **named)
     c.lemma("permit_above_is_exact", sz=0 - sz, vz=0 - vz, d=d, t=t, **named)
-    wider = {"start": around.start_m, "rate": around.rate_m_s, "gain": around.gain_m_s2}
+    wider = growth_by_name(around)
     c.lemma("permit_beside_misses_no_instant", s=s, v=v, d=d, t=t, **wider)
-    hit = c.define(motion.hit_at, s, v, sz, vz, own, other, rho, wide, high, radius, half, t)
-    tubes = {
-        "wide_start": wide.start_m, "wide_rate": wide.rate_m_s, "wide_gain": wide.gain_m_s2,
-        "high_start": high.start_m, "high_rate": high.rate_m_s, "high_gain": high.gain_m_s2,
-    }  # fmt: skip
-    offs = {"own_x": own.x, "own_y": own.y, "own_z": own.z}
-    others = {"other_x": other.x, "other_y": other.y, "other_z": other.z}
-    size = {"rho": rho, "radius": radius, "half": half}
+    hit = c.define(motion.hit_at, s, v, sz, vz, offs, tube, margins, t)
     c.lemma(
-        "permit_entered_is_near", s=s, v=v, sz=sz, vz=vz, t=t, **size, **tubes, **offs, **others
-    )
+        "permit_entered_is_near", s=s, v=v, sz=sz, vz=vz, t=t,
+        **margins_by_name(margins), **tube_by_name(tube), **offs_by_name(offs),
+    )  # fmt: skip
     c.show(c.implies(clear, c.negation(hit)))

@@ -4,48 +4,28 @@ from every instant on, for every number of pieces."""
 from typing import Any
 
 from cratous.core.kernel import Vec2
-from cratous.core.permit.pieces import (
-    Flight,
-    Growth,
-    Meeting,
-    permitted,
-    permitted_from,
-    piece_clear,
-)
+from cratous.core.permit.pieces import Flight, permitted, permitted_from, piece_clear
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.meetings import any_meeting
 from cratous.proofs.methods.runs import along_items
-from cratous.spec.permit import motion
+from cratous.proofs.methods.trajectories import (
+    any_piece,
+    as_item,
+    asked,
+    by_name,
+    later,
+    only_grows,
+)
 
 
 def claim(c: Claim) -> None:
-    wide = Growth(*c.reals("wide_start wide_rate wide_gain"))
-    high = Growth(*c.reals("high_start high_rate high_gain"))
-    s, w = c.vector("s"), c.vector("w")
-    sz, wz, radius, half, gone = c.reals("sz wz radius half gone")
-    meeting = Meeting(s, sz, w, wz, wide, high, radius, half)
-    for growth in (wide, high):
-        c.premise(c.all_of(growth.start_m >= 0, growth.rate_m_s >= 0, growth.gain_m_s2 >= 0))
-    c.premise(c.all_of(radius >= 0, half >= 0))
-    v = c.vector("v")
-    vz, d, rho = c.reals("vz duration rho")
+    gone = c.real("gone")
+    meeting, piece = any_meeting(c), any_piece(c)
     c.opaque(piece_clear)
 
-    def seen(flight: Any, flown: Any) -> tuple[Any, ...]:
-        """What the kernel of a piece is asked after part of it has been flown."""
-        at = flight.time_s + flown
-        north, east = flight.north_m + flown * v.x, flight.east_m + flown * v.y
-        return (
-            Vec2(s.x + north - at * w.x, s.y + east - at * w.y),
-            Vec2(v.x - w.x, v.y - w.y),
-            sz + (flight.up_m + flown * vz) - at * wz,
-            vz - wz,
-            c.define(motion.later, wide, at),
-            c.define(motion.later, high, at),
-            radius,
-            half,
-            rho,
-            d - flown,
-        )
+    def seen(flight: Any, flown: Any) -> Any:
+        place = (flight.north_m, flight.east_m, flight.up_m, flight.time_s)
+        return asked(c, meeting, piece, place, flown)
 
     def invariant(state: list[Any]) -> Any:
         whole, part = state
@@ -61,43 +41,29 @@ def claim(c: Claim) -> None:
         flown, its = (
             c.when(gone - f.time_s >= 0, gone - f.time_s, f.time_s - f.time_s) for f in state
         )
-        inside = time + d >= gone
         begun = seen(whole, time - time)
-        for growth in (wide, high):
-            faster = time * growth.gain_m_s2
-            c.step(c.all_of(faster >= 0, time * growth.rate_m_s >= 0), "no growth below 0")
-            c.step(time * faster >= 0, "nor what it adds")
-        tubes = {
-            f"{name}_{field}": value
-            for name, growth in (("wide", begun[4]), ("high", begun[5]))
-            for field, value in zip(("start", "rate", "gain"), growth, strict=True)
-        }
-        at, rel, z, wrel = begun[:4]
-        asked = {"s": at, "v": rel, "sz": z, "vz": wrel, "radius": radius, "half": half, "rho": rho}
+        only_grows(c, meeting, time)
         c.lemma(
             "permit_piece_that_is_clear_has_a_clear_tail",
-            when=inside,
-            d=d,
+            when=time + piece.duration_s >= gone,
             k=flown,
-            **asked,
-            **tubes,
+            **by_name(begun),
         )
+        at, rel, z, wrel, tube, margins, _ = begun
         shifted = (
             Vec2(at.x + flown * rel.x, at.y + flown * rel.y), rel, z + flown * wrel, wrel,
-            c.define(motion.later, begun[4], flown), c.define(motion.later, begun[5], flown),
-            radius, half, rho, d - flown,
+            later(c, tube, flown), margins, piece.duration_s - flown,
         )  # fmt: skip
-        c.congruence(piece_clear, shifted, seen(whole, flown))
-        c.congruence(piece_clear, seen(part, its), seen(whole, flown))
+        c.congruence(piece_clear, shifted, tuple(seen(whole, flown)))
+        c.congruence(piece_clear, tuple(seen(part, its)), tuple(seen(whole, flown)))
 
     names = ("whole", "part")
     states = [Flight(c.boolean(n), *c.reals(f"{n}_n {n}_e {n}_u {n}_t")) for n in names]
     along_items(
         c,
         [(permitted, states[0], (meeting,)), (permitted_from, states[1], (meeting, gone))],
-        item=(v, vz, d, rho),
+        item=as_item(c, piece),
         invariant=invariant,
-        each=lambda state: c.all_of(d >= 0, rho >= 0),
         known=known,
         goal=lambda results: c.implies(results[0], results[1]),
         text="the tail",

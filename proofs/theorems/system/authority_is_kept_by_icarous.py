@@ -2,35 +2,22 @@
 state the link: what gate, ICAROUS and the UxAS end keep together holds, no epoch goes back, every message that
 was ever sent remains what a message must be, and a command that was made before a change of authority does not act."""
 
-from cratous.core.authority.cycle import Cycle, cycle_flown, cycle_watched, gate_wished
+from cratous.core.authority.cycle import cycle_flown, cycle_watched, gate_wished
 from cratous.core.authority.gate import Gate, gate_accepts
-from cratous.core.authority.link_end import LinkEnd
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.command import any_cycle, any_gate, any_link_end, any_times
 from cratous.spec.authority import cycle as instance
 from cratous.spec.system import authority as system
 
 
 def claim(c: Claim) -> None:
-    gate = Gate(c.integer("owner"), c.integer("gate_epoch"), c.boolean("offered"))
-    cycle = Cycle(
-        c.integer("mode"),
-        c.integer("relapses"),
-        c.boolean("handed"),
-        c.integer("handed_ms"),
-        c.boolean("free"),
-        c.integer("free_ms"),
-    )
-    end, suspended = (
-        LinkEnd(c.boolean("active"), c.integer("epoch"), c.boolean("alive")),
-        c.boolean("suspended"),
-    )
+    gate = any_gate(c)
+    cycle = any_cycle(c)
+    end, suspended = any_link_end(c), c.boolean("suspended")
     foreseen, free = c.boolean("foreseen"), c.boolean("way_free")
-    now, soon, heard, bound, least = (
-        c.integer(name) for name in ("now", "soon", "heard", "bound", "least")
-    )
+    now, soon, heard, bound, least = any_times(c)
     report = Gate(c.integer("report_owner"), c.integer("report_epoch"), c.boolean("report_offered"))
     sent, sender = c.integer("sent_epoch"), c.integer("sender")
-    c.premise(c.all_of(soon >= 0, bound >= 0, least >= 0, least <= 2**56))
     c.premise(c.define(system.holds, gate, cycle, end, suspended))
     watched = c.use(cycle_watched, cycle, foreseen, now, soon)
     flown = c.use(cycle_flown, cycle, free, heard, now, bound, least)

@@ -3,28 +3,18 @@ keep together holds once ICAROUS has taken notice at its next heartbeat; one tha
 epoch, from one who may command in it, and after one of UxAS none of ICAROUS acts in that epoch; UxAS takes
 no offer that it has not heard of; every message that was ever sent remains what a message must be."""
 
-from cratous.core.authority.cycle import Cycle, cycle_begun
+from cratous.core.authority.cycle import cycle_begun
 from cratous.core.authority.gate import Gate, gate_accepts, gate_after
-from cratous.core.authority.link_end import LinkEnd
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.command import any_cycle, any_gate, any_link_end
 from cratous.spec.authority import gate as authority
 from cratous.spec.system import authority as system
 
 
 def claim(c: Claim) -> None:
-    gate = Gate(c.integer("owner"), c.integer("gate_epoch"), c.boolean("offered"))
-    cycle = Cycle(
-        c.integer("mode"),
-        c.integer("relapses"),
-        c.boolean("handed"),
-        c.integer("handed_ms"),
-        c.boolean("free"),
-        c.integer("free_ms"),
-    )
-    end, suspended = (
-        LinkEnd(c.boolean("active"), c.integer("epoch"), c.boolean("alive")),
-        c.boolean("suspended"),
-    )
+    gate = any_gate(c)
+    cycle = any_cycle(c)
+    end, suspended = any_link_end(c), c.boolean("suspended")
     sender, epoch, now = c.integer("sender"), c.integer("command_epoch"), c.integer("now")
     c.premise(c.define(system.holds, gate, cycle, end, suspended))
     acts = c.use(gate_accepts, gate, sender, epoch)

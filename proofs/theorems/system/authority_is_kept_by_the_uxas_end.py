@@ -2,32 +2,21 @@
 ever sent, and whatever sign of life or silence: what gate, ICAROUS and the UxAS end keep together holds
 afterwards, the epoch that UxAS believes in does not go back, and what UxAS then sends is what a message must be."""
 
-from cratous.core.authority.cycle import Cycle
 from cratous.core.authority.gate import Gate
 from cratous.core.authority.link_end import (
-    LinkEnd,
     link_mode,
     link_sign,
     suspended_after,
 )
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.command import any_cycle, any_gate, any_link_end
 from cratous.spec.system import authority as system
 
 
 def claim(c: Claim) -> None:
-    gate = Gate(c.integer("owner"), c.integer("gate_epoch"), c.boolean("offered"))
-    cycle = Cycle(
-        c.integer("mode"),
-        c.integer("relapses"),
-        c.boolean("handed"),
-        c.integer("handed_ms"),
-        c.boolean("free"),
-        c.integer("free_ms"),
-    )
-    end, suspended = (
-        LinkEnd(c.boolean("active"), c.integer("epoch"), c.boolean("alive")),
-        c.boolean("suspended"),
-    )
+    gate = any_gate(c)
+    cycle = any_cycle(c)
+    end, suspended = any_link_end(c), c.boolean("suspended")
     report = Gate(c.integer("report_owner"), c.integer("report_epoch"), c.boolean("report_offered"))
     says, began = c.boolean("says"), c.integer("began")
     c.premise(c.define(system.holds, gate, cycle, end, suspended))

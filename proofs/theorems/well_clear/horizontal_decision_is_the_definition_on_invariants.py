@@ -3,21 +3,9 @@ relative state."""
 
 from cratous.core.well_clear import horizontal_decision
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.volumes import decision_is_the_definition
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    dthr, tthr = c.reals("dthr tthr")
-    c.premise(dthr >= 0)
-    c.premise(tthr >= 0)
-    verdict = c.use(
-        horizontal_decision,
-        s.x * s.x + s.y * s.y,
-        v.x * v.x + v.y * v.y,
-        s.x * v.x + s.y * v.y,
-        s.x * v.y - s.y * v.x,
-        dthr * dthr,
-        tthr,
-    )
-    c.show(c.same(verdict, c.define(well_clear.horizontal_violation, s, v, dthr, tthr)))
+    decision_is_the_definition(c, horizontal_decision, well_clear.horizontal_violation)

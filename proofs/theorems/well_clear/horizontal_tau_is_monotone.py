@@ -3,18 +3,8 @@ vanish."""
 
 from cratous.core.well_clear import horizontal_violation_tau
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.volumes import horizontal_is_monotone
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    dthr, tthr, dthr2, tthr2 = c.reals("dthr tthr dthr2 tthr2")
-    c.premise(dthr >= 0)
-    c.premise(tthr >= 0)
-    c.premise(dthr <= dthr2)
-    c.premise(tthr <= tthr2)
-    before = c.use(horizontal_violation_tau, s, v, dthr, tthr)
-    wider = c.use(horizontal_violation_tau, s, v, dthr2, tthr)
-    c.step(c.implies(before, wider), "in DTHR")
-    after = c.use(horizontal_violation_tau, s, v, dthr2, tthr2)
-    c.step(c.implies(wider, after), "in TTHR")
-    c.show(c.implies(before, after), "in both")
+    horizontal_is_monotone(c, horizontal_now=horizontal_violation_tau)

@@ -3,13 +3,9 @@
 
 from cratous.core.well_clear import horizontal_violation_tcpa
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.volumes import horizontal_is_its_definition
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    dthr, tthr = c.reals("dthr tthr")
-    c.premise(dthr >= 0)
-    c.premise(tthr >= 0)
-    verdict = c.use(horizontal_violation_tcpa, s, v, dthr, tthr)
-    c.show(c.same(verdict, c.define(well_clear.horizontal_violation_tcpa, s, v, dthr, tthr)))
+    horizontal_is_its_definition(c, horizontal_violation_tcpa, well_clear.horizontal_violation_tcpa)

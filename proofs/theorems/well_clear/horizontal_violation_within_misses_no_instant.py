@@ -4,14 +4,13 @@ zero."""
 
 from cratous.core.well_clear import horizontal_violation_within
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_in_the_plane
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    dthr, tthr, h, t = c.reals("dthr tthr h t")
-    c.premise(dthr >= 0)
-    c.premise(tthr >= 0)
+    s, v, dthr, tthr = any_in_the_plane(c)
+    h, t = c.reals("h t")
     c.premise(t >= 0)
     c.premise(t <= h)
     predicted = c.use(horizontal_violation_within, s, v, dthr, tthr, h)

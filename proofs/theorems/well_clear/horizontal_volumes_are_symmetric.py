@@ -12,6 +12,7 @@ from cratous.core.well_clear import (
     horizontal_violation_tep,
 )
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_in_the_plane
 
 NOW = (
     horizontal_violation, horizontal_violation_tcpa, horizontal_violation_tep,
@@ -21,10 +22,8 @@ SPANS = (horizontal_interval_taumod, horizontal_interval_tcpa, horizontal_interv
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    dthr, tthr, begin, end = c.reals("dthr tthr begin end")
-    c.premise(dthr >= 0)
-    c.premise(tthr >= 0)
+    s, v, dthr, tthr = any_in_the_plane(c)
+    begin, end = c.reals("begin end")
     back_s, back_v = Vec2(0 - s.x, 0 - s.y), Vec2(0 - v.x, 0 - v.y)
     for kernel in NOW:
         ours, theirs = (c.use(kernel, p, w, dthr, tthr) for p, w in ((s, v), (back_s, back_v)))

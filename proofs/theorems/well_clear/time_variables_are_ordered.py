@@ -9,14 +9,12 @@ from cratous.core.well_clear import (
     horizontal_violation_tep,
 )
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_in_the_plane
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    dthr, tthr = c.reals("dthr tthr")
-    c.premise(dthr >= 0)
-    c.premise(tthr >= 0)
+    s, v, dthr, tthr = any_in_the_plane(c)
     c.premise(c.negation(c.define(well_clear.within, s, dthr)))
     c.premise(c.define(well_clear.passes_within, s, v, dthr))
     tep = c.define(well_clear.time_of_entry, s, v, dthr)

@@ -7,15 +7,14 @@ from cratous.core.well_clear import (
     violation_times_tep,
 )
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_state, any_thresholds
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
     begin, end = c.reals("begin end")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
     c.premise(begin <= end)
     kernels = {
         "tau_mod": violation_times_taumod,
@@ -23,6 +22,6 @@ def claim(c: Claim) -> None:
         "tep": violation_times_tep,
     }
     for name, kernel in kernels.items():
-        times = c.use(kernel, s, v, sz, vz, dthr, zthr, tthr, tcoa, vmod, begin, end)
+        times = c.use(kernel, s, v, sz, vz, limits, begin, end)
         c.show(c.define(well_clear.in_span, begin, end, times.first_s), f"first, {name}")
         c.show(c.define(well_clear.in_span, begin, end, times.last_s), f"last, {name}")

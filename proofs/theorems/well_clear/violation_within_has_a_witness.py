@@ -4,6 +4,7 @@ instant of least modified-tau margin."""
 
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import horizontal_violation_within, vertical_window, violation_within
+from cratous.core.well_clear.thresholds import StandardThresholds
 from cratous.proofs.claim import Claim
 from cratous.spec import well_clear
 
@@ -19,7 +20,8 @@ def claim(c: Claim) -> None:
         well_clear.horizontal_violation,
         well_clear.vertical_violation_at,
     )
-    predicted = c.use(violation_within, s, v, sz, vz, dthr, zthr, tthr, tcoa, h)
+    limits = StandardThresholds(dthr, zthr, tthr, tcoa)
+    predicted = c.use(violation_within, s, v, sz, vz, limits, h)
     k, first, last = c.use(vertical_window, sz, vz, zthr, tcoa, h)
     window = {"sz": sz, "vz": vz, "zthr": zthr, "tcoa": tcoa, "h": h}
     c.lemma("well_clear_vertical_window_is_exact", t=h - h, **window)
@@ -43,7 +45,7 @@ def claim(c: Claim) -> None:
             (Vec2(at.x + scaled * v.x, at.y + scaled * v.y), v, dthr * k, tthr * k),
             (Vec2(k * there.x, k * there.y), v, k * dthr, k * tthr),
         )
-        violated = c.define(well_clear.violation_at, s, v, sz, vz, dthr, zthr, tthr, tcoa, t)
+        violated = c.define(well_clear.violation_at, s, v, sz, vz, limits, t)
         lost.append(c.all_of(inside, violated))
         there_at = c.define(well_clear.horizontal_violation_at, at, v, dthr * k, tthr * k, scaled)
         named = c.all_of(predicted, scaled >= 0, scaled <= length, there_at)

@@ -3,6 +3,7 @@
 
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import horizontal_violation_within, vertical_window, violation_within
+from cratous.core.well_clear.thresholds import StandardThresholds
 from cratous.proofs.claim import Claim
 from cratous.spec import well_clear
 
@@ -19,7 +20,8 @@ def claim(c: Claim) -> None:
         well_clear.horizontal_violation,
         well_clear.vertical_violation_at,
     )
-    predicted = c.use(violation_within, s, v, sz, vz, dthr, zthr, tthr, tcoa, h)
+    limits = StandardThresholds(dthr, zthr, tthr, tcoa)
+    predicted = c.use(violation_within, s, v, sz, vz, limits, h)
     k, first, last = c.use(vertical_window, sz, vz, zthr, tcoa, h)
     c.lemma("well_clear_vertical_window_is_exact", sz=sz, vz=vz, zthr=zthr, tcoa=tcoa, h=h, t=t)
     inside = c.all_of(first <= t * k, t * k <= last)
@@ -36,5 +38,5 @@ def claim(c: Claim) -> None:
     )
     there = Vec2(s.x + t * v.x, s.y + t * v.y)
     c.lemma("well_clear_horizontal_violation_scales", s=there, v=v, dthr=dthr, tthr=tthr, k=k)
-    lost = c.define(well_clear.violation_at, s, v, sz, vz, dthr, zthr, tthr, tcoa, t)
+    lost = c.define(well_clear.violation_at, s, v, sz, vz, limits, t)
     c.show(c.implies(lost, predicted))

@@ -1,6 +1,7 @@
 """With VMOD switched off the combined kernel for tau_mod is the one by TCOA alone, the standard's."""
 
 from cratous.core.well_clear import violation, violation_taumod
+from cratous.core.well_clear.thresholds import Thresholds
 from cratous.proofs.claim import Claim
 
 
@@ -10,4 +11,8 @@ def claim(c: Claim) -> None:
     for threshold in (dthr, zthr, tthr, tcoa):
         c.premise(threshold >= 0)
     standard = c.use(violation, s, v, sz, vz, dthr, zthr, tthr, tcoa)
-    c.show(c.same(c.use(violation_taumod, s, v, sz, vz, dthr, zthr, tthr, tcoa, 0), standard))
+    c.show(
+        c.same(
+            c.use(violation_taumod, s, v, sz, vz, Thresholds(dthr, zthr, tthr, tcoa, 0)), standard
+        )
+    )

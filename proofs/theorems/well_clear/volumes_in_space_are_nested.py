@@ -12,13 +12,13 @@ from cratous.core.well_clear import (
     violation_tep,
 )
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_state, any_thresholds
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, vmod = c.reals("sz vz dthr zthr tthr tcoa vmod")
-    for threshold in (dthr, zthr, tthr, tcoa, vmod):
-        c.premise(threshold >= 0)
+    s, v, sz, vz = any_state(c)
+    limits = any_thresholds(c)
+    dthr, zthr, tthr, *_ = limits
     c.opaque(
         horizontal_violation,
         horizontal_violation_tau,
@@ -26,7 +26,7 @@ def claim(c: Claim) -> None:
         horizontal_violation_tep,
     )
     c.lemma("well_clear_volumes_are_nested", s=s, v=v, dthr=dthr, tthr=tthr)
-    state = (s, v, sz, vz, dthr, zthr, tthr, tcoa, vmod)
+    state = (s, v, sz, vz, limits)
     inside = c.use(cylinder_violation, s, sz, dthr, zthr)
     tcpa, modified, tep = (
         c.use(kernel, *state) for kernel in (violation_tcpa, violation_taumod, violation_tep)

@@ -1,0 +1,42 @@
+"""What theorems on who commands are about: any gate, any ICAROUS instance, any UxAS end, any times."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cratous.core.authority.cycle import Cycle
+from cratous.core.authority.gate import Gate
+from cratous.core.authority.link_end import LinkEnd
+from cratous.proofs.claim import Claim
+
+
+def any_gate(c: Claim) -> Gate:
+    """Any gate: who commands, `owner`, since which `gate_epoch`, and whether that is `offered`."""
+    return Gate(c.integer("owner"), c.integer("gate_epoch"), c.boolean("offered"))
+
+
+def any_cycle(c: Claim) -> Cycle:
+    """Any ICAROUS instance between two heartbeats."""
+    return Cycle(
+        c.integer("mode"),
+        c.integer("relapses"),
+        c.boolean("handed"),
+        c.integer("handed_ms"),
+        c.boolean("free"),
+        c.integer("free_ms"),
+    )
+
+
+def any_link_end(c: Claim) -> LinkEnd:
+    """Any UxAS end of the link to one instance."""
+    return LinkEnd(c.boolean("active"), c.integer("epoch"), c.boolean("alive"))
+
+
+def any_times(c: Claim) -> tuple[Any, ...]:
+    """Any time `now`, how `soon` a loss is acted on, when UxAS was `heard` and for how long that counts,
+    `bound`, and the `least` time to the next offer [ms]; lengths of time are not below 0."""
+    now, soon, heard, bound, least = (
+        c.integer(name) for name in ("now", "soon", "heard", "bound", "least")
+    )
+    c.premise(c.all_of(soon >= 0, bound >= 0, least >= 0, least <= 2**56))
+    return now, soon, heard, bound, least

@@ -1,0 +1,86 @@
+"""What theorems on a vehicle that meets an intruder are about: any tube, places within it, a cylinder."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cratous.core.permit.pieces import Growth, Margins, Meeting, Tube
+from cratous.proofs.claim import Claim
+from cratous.spec.permit import motion
+
+FIELDS = ("start", "rate", "gain")
+
+
+def any_tube(c: Claim) -> Tube:
+    """Any tube: radii `wide_start`, ..., `high_gain`; nothing of it below 0."""
+    tube = _tube(c)
+    _none_shrinks(c, tube)
+    return tube
+
+
+def any_offs(c: Claim) -> motion.Offs:
+    """Any places: the vehicle off its reference by `own_x`, ..., the intruder off its prediction."""
+    own, other = (motion.Off(*c.reals(f"{name}_x {name}_y {name}_z")) for name in ("own", "other"))
+    return motion.Offs(own, other)
+
+
+def any_margins(c: Claim) -> Margins:
+    """Any cylinder of `radius` and `half` height, and any `rho` about the reference; none below 0."""
+    margins = Margins(c.real("radius"), c.real("half"), c.real("rho"))
+    c.premise(c.all_of(margins.rho_m >= 0, margins.radius_m >= 0, margins.half_m >= 0))
+    return margins
+
+
+def any_meeting(c: Claim) -> Meeting:
+    """Any intruder as a trajectory begins: its place `s`, `sz`, its velocity `w`, `wz`, its tube, and the
+    cylinder of `radius` and `half` height to keep clear; no radius below 0 or shrinking."""
+    tube = _tube(c)
+    s, w = c.vector("s"), c.vector("w")
+    sz, wz, radius, half = c.reals("sz wz radius half")
+    _none_shrinks(c, tube)
+    c.premise(c.all_of(radius >= 0, half >= 0))
+    return Meeting(s, sz, w, wz, tube.wide, tube.high, radius, half)
+
+
+def about(tube: Tube, margins: Margins) -> tuple[Growth, Growth]:
+    """How near the reference may come to the prediction: horizontally, and in altitude."""
+    wide, high = tube
+    around = Growth(wide.start_m + margins.radius_m + margins.rho_m, wide.rate_m_s, wide.gain_m_s2)
+    layer = Growth(high.start_m + margins.half_m + margins.rho_m, high.rate_m_s, high.gain_m_s2)
+    return around, layer
+
+
+def growth_by_name(growth: Growth) -> dict[str, Any]:
+    """A radius under the names that theorems give it, for lemmas."""
+    return dict(zip(FIELDS, growth, strict=True))
+
+
+def tube_by_name(tube: Tube) -> dict[str, Any]:
+    """A tube under the names that theorems give it, for lemmas."""
+    parts = (("wide", tube.wide), ("high", tube.high))
+    return {
+        f"{name}_{field}": v
+        for name, growth in parts
+        for field, v in zip(FIELDS, growth, strict=True)
+    }
+
+
+def margins_by_name(margins: Margins) -> dict[str, Any]:
+    """Margins under the names that theorems give them, for lemmas."""
+    return {"radius": margins.radius_m, "half": margins.half_m, "rho": margins.rho_m}
+
+
+def offs_by_name(offs: motion.Offs) -> dict[str, Any]:
+    """Places under the names that theorems give them, for lemmas."""
+    parts = (("own", offs.own), ("other", offs.other))
+    return {f"{name}_{axis}": v for name, off in parts for axis, v in zip("xyz", off, strict=True)}
+
+
+def _tube(c: Claim) -> Tube:
+    wide, high = (Growth(*c.reals(f"{n}_start {n}_rate {n}_gain")) for n in ("wide", "high"))
+    return Tube(wide, high)
+
+
+def _none_shrinks(c: Claim, tube: Tube) -> None:
+    for growth in tube:
+        c.premise(c.all_of(growth.start_m >= 0, growth.rate_m_s >= 0, growth.gain_m_s2 >= 0))
