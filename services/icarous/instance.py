@@ -123,15 +123,15 @@ class Instance:
     ) -> tuple[tuple[Threat, ...], Conflict | None]:
         """All predicted losses of well clear, and the conflict to act on."""
         scene = scene_of(self.config, state, sensed)
-        pieces, volume = predicted(self.config, state, sensed, scene)
+        ahead = predicted(self.config, state, sensed, scene)
         limits = nearest(sensed.ability, scene.volume, self.config.heartbeat_ms)
         own, seen = self.config.vehicle_id, sensed.intruders
-        found = threats(own, pieces, seen, volume, state.threats, sensed.now_ms, limits, in_turn)
+        found = threats(own, ahead, seen, state.threats, sensed.now_ms, limits, in_turn)
         urgent = most_urgent(found)
         if urgent is not None:
             return found, Conflict("traffic", urgent.intruder_id, urgent.first_violation_s)
-        if len(pieces) == 1:
-            zone_s = zone_ahead_s(sensed.motion, sensed.ability, pieces, state.told.zones)
+        if len(ahead.pieces) == 1 and not ahead.holds:
+            zone_s = zone_ahead_s(sensed.motion, sensed.ability, ahead.pieces, state.told.zones)
             if zone_s is not None:
                 return found, Conflict("zone", 0, zone_s)
         return found, None
