@@ -28,6 +28,8 @@ ROUTE_MARGIN = 1.1
 
 LAP_LEGS = 72
 """A lap of a hold is flown as a polyline of this many legs."""
+CLIMB_LAPS = 100
+"""A loiter climbs for at most so many laps: one that climbs too slowly stays lower."""
 
 
 class Phase(IntEnum):
@@ -192,8 +194,10 @@ def lap_points(hold: Hold, start: Position) -> tuple[Position, ...]:
 
 
 def raised(lap: tuple[Position, ...], to_m: float, slope: float) -> tuple[Position, ...]:
-    """Laps that climb from the lap's height to another, at most `slope` metres per metre flown."""
+    """At most CLIMB_LAPS laps that climb from the lap's height to another, or as near as they come, at most
+    `slope` metres per metre flown."""
     points, alt, last = [lap[0]], lap[0].alt_m, lap[0]
+    to_m = min(to_m, alt + CLIMB_LAPS * slope * polyline_length_m(lap))
     while alt < to_m - 1e-6:
         for p in lap[1:]:
             leg_m = math.hypot(p.north_m - last.north_m, p.east_m - last.east_m)
