@@ -1,8 +1,8 @@
-"""Whether a vehicle may hold at the end of its way: what permits it, by traffic and by zones.
+"""Whether a vehicle may fly a way to its end, and hold there: what permits it, by traffic and by zones.
 
 The hold is a disc that stands. Intruders are taken to fly straight on, as everywhere in prediction: their tubes
-have no width. The proved kernels keep the closed cylinder of the volume; that the way before the hold keeps its
-volume is the caller's to check.
+have no width. The proved kernels keep the closed cylinder of the volume; that the way keeps its thresholds of time
+too is the caller's to check.
 """
 
 from __future__ import annotations
@@ -72,6 +72,16 @@ def hold_permits(
     if exact(above_during, -met.sz, met.wz, layer, hold.duration_s):
         return True
     return bool(exact(permitted, [moving(hold, hold_m)], met))
+
+
+@driver(checked_by=("permitted",))
+def way_permits(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
+    """True only if a way, from its first piece to its last, keeps the closed cylinder of a volume clear of an
+    intruder that flies straight on."""
+    if not pieces:
+        return True
+    met = meeting(pieces[0].position, other, volume)
+    return bool(exact(permitted, [moving(piece, 0.0) for piece in pieces], met))
 
 
 @driver(checked_by=("locate", "comes_within", "keep_out_leg_ok", "keep_in_leg_ok"))

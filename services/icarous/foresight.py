@@ -9,6 +9,7 @@ from cratous.core.avoidance.manoeuvre import velocity_of, way_along
 from cratous.core.avoidance.prediction import Piece, buffered
 from cratous.core.avoidance.resolution import Choice, Scene, first_zone_s, resolve
 from cratous.core.avoidance.way_ahead import near_line, there_within
+from cratous.core.permit.remainder import way_permits
 from cratous.services.icarous.ending import Ahead, horizon_s, with_hold
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.return_to_path import bearing_rad, flat, goal_index, way_back
@@ -55,9 +56,13 @@ def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahe
     return Ahead((Piece(0.0, lookahead_s, motion.position, v),), (scene.volume,))
 
 
-def way_back_is_free(config: Config, state: State, sensed: Sensed) -> bool:
+def way_back_is_free(config: Config, state: State, sensed: Sensed, in_turn: frozenset[int]) -> bool:
     """The way onto the path and along it, up to the hold at its end, is free of predicted conflict over the
-    look-ahead."""
+    look-ahead. Against the intruders that were avoided it is permitted to the end of what was told: one that flies
+    straight on is not met again.
+
+    in_turn: the intruders in a turn: of where they will be beyond the look-ahead a straight line says nothing.
+    """
     told, scene = state.told, scene_of(config, state, sensed)
     if not told.waypoints:
         return predicted(config, state, sensed, scene).first_of_all_s(scene.intruders) is None
@@ -69,7 +74,13 @@ def way_back_is_free(config: Config, state: State, sensed: Sensed) -> bool:
     ahead = with_hold(way, sensed, scene, config.daa.well_clear, TURN_MARGIN)
     if ahead.first_of_all_s(scene.intruders) is not None:
         return False
-    return first_zone_s(ahead.pieces, scene.zones, 5.0) is None
+    if first_zone_s(ahead.pieces, scene.zones, 5.0) is not None:
+        return False
+    whole = way_back(sensed.motion, radius_m, points, math.inf).pieces
+    met = set(state.avoided) - in_turn
+    return all(
+        way_permits(whole, other, scene.volume) for other in scene.intruders if other.id in met
+    )
 
 
 def manoeuvre(config: Config, state: State, sensed: Sensed) -> tuple[State, Choice]:

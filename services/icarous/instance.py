@@ -99,7 +99,7 @@ class Instance:
         if watches:
             state, out = self._watch(state, sensed, in_turn)
         else:
-            state, out = self._fly(state, sensed)
+            state, out = self._fly(state, sensed, in_turn)
         beat = Heartbeat(sequence=state.beats, time_s=sensed.now_ms / 1000)
         return state, (*out, Up(self.config.vehicle_id, beat))
 
@@ -110,7 +110,8 @@ class Instance:
         cycled = cycle_watched(state.cycle, conflict is not None, sensed.now_ms, RELAPSE_MS)
         if cycled.act == NOTHING or conflict is None:
             return replace(state, cycle=cycled.cycle), ()
-        state = replace(state, cycle=cycled.cycle, goal=state.told.next_index)
+        avoided = tuple(sorted({*state.avoided, conflict.intruder_id}))
+        state = replace(state, cycle=cycled.cycle, goal=state.told.next_index, avoided=avoided)
         state, choice = manoeuvre(self.config, state, sensed)
         vid, first_s = self.config.vehicle_id, conflict.first_s
         reason = f"{conflict.why}: loss predicted in {first_s:.1f} s"
@@ -136,9 +137,9 @@ class Instance:
                 return found, Conflict("zone", 0, zone_s)
         return found, None
 
-    def _fly(self, state: State, sensed: Sensed) -> Step:
+    def _fly(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
         """AVOID and HANDBACK: fly the manoeuvre, and see whether the way back is free."""
-        free = way_back_is_free(self.config, state, sensed)
+        free = way_back_is_free(self.config, state, sensed, in_turn)
         heard_ms, before = state.told.heard_ms, state.held
         cycled = cycle_flown(state.cycle, free, heard_ms, sensed.now_ms, LINK_LOST_MS, PERSIST_MS)
         state, choice = manoeuvre(self.config, replace(state, cycle=cycled.cycle), sensed)

@@ -17,7 +17,7 @@ from cratous.core.avoidance.prediction import Intruder, Piece, after, first_viol
 from cratous.core.avoidance.resolution import Scene, first_conflict_s, resolve
 from cratous.core.geofence.mission_legs import leg_ok
 from cratous.services.icarous.ending import Ahead
-from cratous.services.icarous.foresight import describe, predicted
+from cratous.services.icarous.foresight import describe, predicted, way_back_is_free
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.return_to_path import PERSIST_MS as FREE_MS
@@ -318,3 +318,34 @@ def test_a_waypoint_passed_abeam_is_no_goal() -> None:
     assert goal_index(NORTH, 85.0, bend, 0) == 1  # the way on leads off at a right angle
     assert goal_index(NORTH._replace(position=Position(500.0, -1.0, 300.0)), 0.3, bend, 0) == 0
     assert goal_index(NORTH._replace(position=Position(500.0, -1.0, 300.0)), 0.4, bend, 0) == 1
+
+
+# ---- when it hands back --------------------------------------------------------------------------
+
+LONG = (Position(-1000.0, 0.0, 300.0), Position(6000.0, 0.0, 300.0))
+
+
+@pytest.mark.parametrize(
+    ("avoided", "in_turn", "late_s", "free"),
+    [
+        ((9,), (), 0.0, False),  # met again in two minutes, twice the look-ahead
+        ((), (), 0.0, True),  # it has not taken over for that one: there is time
+        ((8,), (), 0.0, True),
+        ((9,), (9,), 0.0, True),  # a straight line says nothing of one that turns
+        ((9,), (), 30.0, True),  # passes behind
+        ((9,), (), 12.1, True),
+        ((9,), (), 12.0, False),  # nearest 186.7 m, where 187.5 m are kept
+    ],
+)
+def test_who_was_avoided_is_not_met_again(
+    avoided: tuple[int, ...], in_turn: tuple[int, ...], late_s: float, free: bool
+) -> None:
+    meets_s = 120.0
+    other = Intruder(
+        9,
+        Position(22.0 * meets_s, -22.0 * (meets_s + late_s), 300.0),
+        Velocity(0.0, 22.0, 0.0),
+    )
+    state = State(told=Told(waypoints=LONG, next_index=1), goal=1, avoided=avoided)
+    sensed = Sensed(0, NORTH, ABILITY, (other,), Gate(0, 0, False))
+    assert way_back_is_free(CONFIG, state, sensed, frozenset(in_turn)) is free
