@@ -129,6 +129,13 @@ def outcome(flying: int, away: int, expected: int, left: int, now: int, limit: i
     return LIMIT
 
 
+def is_given_up(takeovers: int, most: int, under: int, longest: int, given_up: bool) -> bool:
+    """A leg is given up exactly if ICAROUS has taken the vehicle over more than `most` times on it, or has
+    flown it for more than `longest` in all."""
+    within = not (takeovers > most) and not under > longest
+    return given_up != within
+
+
 class Answer(NamedTuple):
     """For what a plan is asked afterwards, and what is done."""
 

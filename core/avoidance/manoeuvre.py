@@ -124,6 +124,19 @@ def way_along(
     return Way(tuple(pieces), Piece(t, horizon_s - t, p, last))
 
 
+def looked_at(way: Way, horizon_s: float) -> Way:
+    """The same way, no farther than horizon_s [s]."""
+    pieces = tuple(
+        piece._replace(duration_s=min(piece.duration_s, horizon_s - piece.start_s))
+        for piece in way.pieces
+        if piece.start_s < horizon_s
+    )
+    beyond = way.beyond
+    if beyond is None or beyond.start_s >= horizon_s:
+        return Way(pieces, None)
+    return Way(pieces, beyond._replace(duration_s=horizon_s - beyond.start_s))
+
+
 def along(
     now: Motion, points: Sequence[Position], horizon_s: float, start_s: float = 0.0
 ) -> tuple[Piece, ...]:

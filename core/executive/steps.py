@@ -133,6 +133,15 @@ def flight_outcome(flying: int, away: int, expected: int, left: int, now: int, l
     return 0
 
 
+@kernel(implements="executive.is_given_up")
+def leg_given_up(takeovers: int, most: int, under: int, longest: int) -> bool:
+    """True iff a leg is given up: ICAROUS has taken over too often on it, or flown for too long.
+
+    takeovers, most: how often, and how often it may; under, longest: how long in all, and may [ms].
+    """
+    return takeovers > most or under > longest
+
+
 class Answered(NamedTuple):
     """For what a plan is asked afterwards, and what to do: 0 nothing, 1 fly the plan, 2 fail all that is
     left, 3 fail the late task."""

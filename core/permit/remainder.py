@@ -1,9 +1,8 @@
-"""Whether a vehicle may fly the rest of its way and then hold: what permits it, piece by piece.
+"""Whether a vehicle may fly a way to its end, and hold there: what permits it, by traffic and by zones.
 
-The hold is a disc that stands about the end of the way; what lies beyond is not looked at. Intruders are taken
-to fly straight on, as everywhere in prediction: their tubes have no width. On this way the proved fold
-`permitted` keeps the closed cylinder of the volume, the hold included; that the pieces before it keep its
-time thresholds too is the caller's to check.
+The hold is a disc that stands. Intruders are taken to fly straight on, as everywhere in prediction: their tubes
+have no width. The proved kernels keep the closed cylinder of the volume; that the way keeps its thresholds of time
+too is the caller's to check.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from cratous.core.avoidance.prediction import Intruder, Piece
 from cratous.core.geofence.distance import comes_within
 from cratous.core.geofence.planar import edges_of, keep_in_leg_ok, keep_out_leg_ok, locate
 from cratous.core.kernel import Vec2, driver
-from cratous.core.permit.pieces import Growth, Meeting, permitted
+from cratous.core.permit.pieces import Growth, Meeting, above_during, permitted
 from cratous.core.readings.exact import exact
 from cratous.spec.mission import Position, Velocity, WellClear, Zone, ZoneKind
 
@@ -53,21 +52,36 @@ def moving(piece: Piece, rho_m: float) -> Moving:
     return Vec2(v.north_m_s, v.east_m_s), -v.down_m_s, piece.duration_s, rho_m
 
 
-@driver(checked_by=("permitted",))
-def traffic_permits(
-    pieces: Sequence[Piece],
-    intruders: Sequence[Intruder],
-    volume: WellClear,
-    rho_m: float,
-    hold_m: float,
+@driver(checked_by=("above_during", "permitted"))
+def hold_permits(
+    hold: Piece, other: Intruder, volume: WellClear, hold_m: float, rise_m: float
 ) -> bool:
-    """True iff pieces, the last of which is a hold, are permitted against every intruder.
+    """True only if a hold, from its start on for its duration, keeps the closed cylinder of a volume clear of an
+    intruder that flies straight on.
 
-    rho_m, hold_m: how far the vehicle may be from its way, and from the middle of the hold [m], >= 0.
+    hold_m, rise_m: how far the vehicle may be from the middle of the hold, and off its height [m], >= 0.
     """
-    trajectory = [moving(piece, rho_m) for piece in pieces[:-1]] + [moving(pieces[-1], hold_m)]
-    start = pieces[0].position
-    return all(exact(permitted, trajectory, meeting(start, other, volume)) for other in intruders)
+    p, w, t = other.position, other.velocity, hold.start_s
+    then = Position(
+        p.north_m + w.north_m_s * t, p.east_m + w.east_m_s * t, p.alt_m - w.down_m_s * t
+    )
+    met = meeting(hold.position, other._replace(position=then), volume)
+    layer = Growth(volume.zthr_m + rise_m, 0, 0)
+    if exact(above_during, met.sz, -met.wz, layer, hold.duration_s):
+        return True
+    if exact(above_during, -met.sz, met.wz, layer, hold.duration_s):
+        return True
+    return bool(exact(permitted, [moving(hold, hold_m)], met))
+
+
+@driver(checked_by=("permitted",))
+def way_permits(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
+    """True only if a way, from its first piece to its last, keeps the closed cylinder of a volume clear of an
+    intruder that flies straight on."""
+    if not pieces:
+        return True
+    met = meeting(pieces[0].position, other, volume)
+    return bool(exact(permitted, [moving(piece, 0.0) for piece in pieces], met))
 
 
 @driver(checked_by=("locate", "comes_within", "keep_out_leg_ok", "keep_in_leg_ok"))

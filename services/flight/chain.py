@@ -10,8 +10,9 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Container
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
+from typing import NamedTuple
 
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.routing.dubins import polyline_length_m
@@ -27,6 +28,8 @@ ROUTE_MARGIN = 1.1
 
 LAP_LEGS = 72
 """A lap of a hold is flown as a polyline of this many legs."""
+CLIMB_LAPS = 100
+"""A loiter climbs for at most so many laps: one that climbs too slowly stays lower."""
 
 
 class Phase(IntEnum):
@@ -35,13 +38,39 @@ class Phase(IntEnum):
     TRANSIT, WAIT, TASK, DONE = executive.TRANSIT, executive.WAIT, executive.TASK, executive.DONE
 
 
+class Leg(NamedTuple):
+    """What ICAROUS did on the way to an item and on its path. takeovers: so many; under_ms: it flew so long
+    until taken_ms, when it took over last; because: why it did then."""
+
+    takeovers: int = 0
+    under_ms: int = 0
+    taken_ms: int = 0
+    because: str = ""
+
+    def taken(self, now_ms: int) -> Leg:
+        """ICAROUS takes over."""
+        return self._replace(takeovers=self.takeovers + 1, taken_ms=now_ms)
+
+    def given_back(self, now_ms: int) -> Leg:
+        """UxAS flies again."""
+        return self._replace(under_ms=self.flown_ms(True, now_ms))
+
+    def flown_ms(self, suspended: bool, now_ms: int) -> int:
+        """How long ICAROUS has flown on this leg [ms]. suspended: it does now."""
+        return self.under_ms + (now_ms - self.taken_ms if suspended else 0)
+
+    def next(self, now_ms: int) -> Leg:
+        """The leg after this one, in which ICAROUS goes on flying if it does."""
+        return Leg(0, 0, now_ms, self.because)
+
+
 @dataclass(frozen=True)
 class Chain:
     """Where one vehicle is in its plan; each method gives the chain as it is afterwards. s_m: progress on `track`, measured at since_ms.
 
     join_m: arc length on `track` at which the planned path begins again after an interruption;
     base_m: arc length of the task's path that `track` stands for beyond join_m; away: the path
-    of the task has been left and is not reached again yet; told_version: the route_version that
+    of the task has been left and is not reached again yet; leg: what ICAROUS did on it; told_version: the route_version that
     ICAROUS was told, -1 for none.
     """
 
@@ -61,6 +90,7 @@ class Chain:
     told_version: int = -1
     suspended: bool = False
     away: bool = False
+    leg: Leg = field(default_factory=Leg)
 
     @property
     def item(self) -> PlanItem | None:
@@ -164,8 +194,10 @@ def lap_points(hold: Hold, start: Position) -> tuple[Position, ...]:
 
 
 def raised(lap: tuple[Position, ...], to_m: float, slope: float) -> tuple[Position, ...]:
-    """Laps that climb from the lap's height to another, at most `slope` metres per metre flown."""
+    """At most CLIMB_LAPS laps that climb from the lap's height to another, or as near as they come, at most
+    `slope` metres per metre flown."""
     points, alt, last = [lap[0]], lap[0].alt_m, lap[0]
+    to_m = min(to_m, alt + CLIMB_LAPS * slope * polyline_length_m(lap))
     while alt < to_m - 1e-6:
         for p in lap[1:]:
             leg_m = math.hypot(p.north_m - last.north_m, p.east_m - last.east_m)

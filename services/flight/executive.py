@@ -21,10 +21,12 @@ from cratous.services.flight import (
     executive_outputs,
     interruption,
     left_out,
+    legs,
     task_transitions,
 )
 from cratous.services.flight.executive_state import Asked, Config, Out, State
 from cratous.services.flight.messages import (
+    Because,
     Begin,
     Closing,
     FromExecutive,
@@ -82,6 +84,8 @@ class Executive:
                 state = self._answered(state, message, out)
             case Suspend():
                 state = interruption.suspend(state, message, out)
+            case Because():
+                state = interruption.because(state, message)
             case TakeBack():
                 state = interruption.take_back(self.config, state, message, out)
             case Report(now_ms):
@@ -128,6 +132,7 @@ class Executive:
         state = task_transitions.settle(self.config, state, out)
         if not self._beats(state):
             return self._commands(state, versions, out)
+        state = legs.give_up(self.config, state, out)
         state, late = deadlines.watch(state)
         return self._deadlines(state, late, versions, out)
 

@@ -9,9 +9,10 @@ from cratous.core.executive.steps import way_act
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.executive_outputs import command, route
 from cratous.services.flight.executive_state import Config, Out, State
-from cratous.services.flight.messages import Left, Suspend, TakeBack
+from cratous.services.flight.messages import Because, Left, Suspend, TakeBack
 from cratous.services.flight.remaining_path import leaving_m
 from cratous.services.flight.task_transitions import NO_WAY, circling, fail, progress
+from cratous.spec.authority.cycle import TAKE_OVER
 from cratous.spec.executive import FAIL_TASK
 from cratous.spec.mission import Position
 
@@ -26,6 +27,8 @@ def suspend(state: State, message: Suspend, out: Out) -> State:
         chain,
         replace(chain, suspended=suspended_after(chain.suspended, message.act)),
     )
+    if chain.suspended and not was.suspended:
+        chain = replace(chain, leg=chain.leg.taken(message.now_ms))
     left = _resume_point(chain)
     if left is not None:
         out.append(Left(message.vehicle_id, left))
@@ -34,6 +37,15 @@ def suspend(state: State, message: Suspend, out: Out) -> State:
             said = progress(chain, message.now_ms, "Suspended", note, chain.served())
             out.append(said._replace(source=NAME))
     return state.put(chain)
+
+
+def because(state: State, message: Because) -> State:
+    """Why ICAROUS takes over, for the record of the leg."""
+    chain = state.find(message.vehicle_id)
+    if chain is None or message.act != TAKE_OVER:
+        return state
+    text = message.reason + (f" with {message.intruder_id}" if message.intruder_id else "")
+    return state.put(replace(chain, leg=chain.leg._replace(because=text)))
 
 
 def _resume_point(chain: Chain) -> Position | None:
@@ -47,6 +59,8 @@ def take_back(config: Config, state: State, message: TakeBack, out: Out) -> Stat
     vid, now_ms = message.vehicle_id, message.now_ms
     state = replace(state, epochs=tuple({**dict(state.epochs), vid: message.epoch}.items()))
     chain = state.chain(vid)
+    if chain.suspended:
+        chain = replace(chain, leg=chain.leg.given_back(now_ms))
     chain = replace(chain, suspended=suspended_after(chain.suspended, message.act))
     ways, air = config.ways(state.zones), state.air(vid)
     back = ways.back(chain, air)

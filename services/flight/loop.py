@@ -29,6 +29,7 @@ from cratous.services.flight.link_end import UxasEnd
 from cratous.services.flight.messages import (
     AskPlan,
     Beat,
+    Because,
     Begin,
     Choose,
     Closing,
@@ -246,6 +247,7 @@ class _Flight:
                     self._vehicle(vid, answer)
                 case Wish(vid):
                     self._vehicle(vid, Wished(self.now_ms, answer))
+                    self._executive(Because(*answer))
                 case OnBoard(vid, sensed):
                     self._instance(vid, sensed)
                 case Foresees(vid):

@@ -182,6 +182,15 @@ class Suspend(NamedTuple):
     act: int
 
 
+class Because(NamedTuple):
+    """The vehicle has told what its ICAROUS does with authority (act: as in `Wish`), and why."""
+
+    vehicle_id: int
+    act: int
+    reason: str
+    intruder_id: int
+
+
 class TakeBack(NamedTuple):
     """A vehicle is offered back; commands of this epoch take it. act: as in `Suspend`."""
 
@@ -292,5 +301,7 @@ class OnBoard(NamedTuple):
 ToVehicle = Commanded | Wished | LimitsAre | Look | Sense | Choose | Move
 FromVehicle = Say | GateIs | OnBoard
 
-ToExecutive = Begin | SetOut | Tick | Planned | NotPlanned | Report | Closing | Suspend | TakeBack
+ToExecutive = (
+    Begin | SetOut | Tick | Planned | NotPlanned | Report | Closing | Because | Suspend | TakeBack
+)
 FromExecutive = Say | ZonesKnown | Route | Flown | Left | Look | LimitsAre | AskPlan | Over

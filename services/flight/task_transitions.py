@@ -58,7 +58,7 @@ def begin(config: Config, state: State, out: Out) -> State:
         chain = Chain(vehicle, items, -1, Phase.DONE, track, air.speed_m_s)
         old = state.find(vehicle.id)
         if old is not None:
-            chain = replace(chain, version=old.version, suspended=old.suspended)
+            chain = replace(chain, version=old.version, suspended=old.suspended, leg=old.leg)
         state = next_item(config, state.put(chain), chain, state.now_ms, out)
     return settle(config, state, out)
 
@@ -149,7 +149,7 @@ def _start(state: State, chain: Chain, item: PlanItem, at_ms: int, out: Out) -> 
 def next_item(config: Config, state: State, chain: Chain, at_ms: int, out: Out) -> State:
     """On the way to the next item of a chain that has not failed; circling where there is none. An item
     to which no way keeps the zones fails."""
-    chain = replace(chain, k=chain.next_k(dict(state.failed)))
+    chain = replace(chain, k=chain.next_k(dict(state.failed)), leg=chain.leg.next(at_ms))
     state = state.put(chain)
     item, air = chain.item, state.air(chain.vehicle.id)
     if item is None:

@@ -1,51 +1,113 @@
 """The end of the way that an instance was told: the hold there is looked at, and nothing beyond it.
 
-UxAS tells the way for farther than is looked, or to its end; there the vehicle loiters. An intruder or a zone
-that lies behind the end is in nobody's way, so the way is predicted to the hold, if that is permitted
-(`core.permit.remainder`); else straight on, as before.
+UxAS tells the way for farther than is looked, or to its end; there the vehicle loiters, and nothing is ever
+predicted straight on past it. The circle touches the end, to the right or to the left, so both are looked at:
+each is a disc that stands beside the end, which proved kernels permit or not. Zones are not the hold's to
+watch: UxAS circles where they are kept, or says that it does not.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
-from cratous.core.avoidance.manoeuvre import Way
-from cratous.core.avoidance.prediction import Piece
+from cratous.core.avoidance.manoeuvre import Way, looked_at
+from cratous.core.avoidance.prediction import Intruder, Piece, first_violation_s
 from cratous.core.avoidance.resolution import Scene
-from cratous.core.permit.remainder import hold_at, traffic_permits, zones_permit
+from cratous.core.permit.remainder import hold_at, hold_permits, zones_permit
 from cratous.services.icarous.messages import Sensed
-from cratous.spec.mission import WellClear
+from cratous.spec.mission import Position, WellClear
 
 TRACKING_S = 1.0
 """A circle is flown to less than what the vehicle flies in this time [s]."""
-HOLD_RADII = 2.0
-"""A loiter that touches the end of the way is within this many of its radii of it."""
+WIDEST = 1.5
+"""Where a zone is in the way of the circle it is up to so much wider."""
+
+
+class Hold(NamedTuple):
+    """A disc that stands, as a piece of flight, and its radius [m]: the vehicle is within it."""
+
+    piece: Piece
+    radius_m: float
 
 
 class Ahead(NamedTuple):
-    """The way that is predicted, and the volume that it has to keep clear."""
+    """The way that is predicted, the volumes that it keeps clear, and the holds of which one may end it.
+
+    volumes: each is kept by the way; held: the volume whose cylinder the holds keep clear; rise_m: how far a
+    hold may be off its height [m].
+    """
 
     pieces: tuple[Piece, ...]
-    volume: WellClear
+    volumes: tuple[WellClear, ...]
+    holds: tuple[Hold, ...] = ()
+    held: WellClear | None = None
+    rise_m: float = 0.0
+
+    def first_s(self, other: Intruder) -> float | None:
+        """When the way, or the hold that ends it, first comes too near to an intruder [s], or None."""
+        times = [first_violation_s(self.pieces, other, volume) for volume in self.volumes]
+        if self.held is not None:
+            times += [self._held_s(hold, other, self.held) for hold in self.holds]
+        return min((t for t in times if t is not None), default=None)
+
+    def first_of_all_s(self, others: Sequence[Intruder]) -> float | None:
+        """The same of all intruders."""
+        return min((t for other in others if (t := self.first_s(other)) is not None), default=None)
+
+    def _held_s(self, hold: Hold, other: Intruder, volume: WellClear) -> float | None:
+        if hold_permits(hold.piece, other, volume, hold.radius_m, self.rise_m):
+            return None
+        wide = cylinder(volume.dthr_m + hold.radius_m, volume.zthr_m + self.rise_m)
+        found = first_violation_s((hold.piece,), other, wide)
+        return hold.piece.start_s if found is None else found
+
+
+def cylinder(radius_m: float, half_m: float) -> WellClear:
+    """A volume without thresholds of time."""
+    return WellClear(radius_m, half_m, 0.0, 0.0)
+
+
+def horizon_s(scene: Scene) -> float:
+    """How far a way is followed [s]: thresholds of time reach so far past what is looked at."""
+    return scene.lookahead_s + scene.volume.tthr_s
 
 
 def with_hold(way: Way, sensed: Sensed, scene: Scene, own: WellClear, margin: float) -> Ahead:
-    """The predicted way, and after its end the hold there; straight on where that is not permitted.
+    """What is looked at of a predicted way, and where it ends sooner the holds of which one follows.
 
-    own: the mission's volume, without buffer; margin: a loiter is flown this much wider than the tightest
-    turn. A way that ends in a permitted hold keeps the buffered cylinder to its end; for the times
-    that are left before it the mission's own thresholds do.
+    way: followed to `horizon_s`; own: the mission's volume, without buffer; margin: a loiter is flown this
+    much wider than the tightest turn. A way to its end keeps the buffered cylinder, and the mission's own
+    thresholds of time: how long it goes on is known.
     """
+    pieces, beyond = looked_at(way, scene.lookahead_s)
     if way.beyond is None:
-        return Ahead(way.pieces, scene.volume)
-    beyond, motion = way.beyond, sensed.motion
-    if way.pieces:
-        radius_m = margin * motion.speed_m_s / sensed.ability.turn_rate_rad_s
-        # the circle, and how far off it the vehicle may be
-        hold_m = HOLD_RADII * radius_m + TRACKING_S * motion.speed_m_s
-        place = beyond.position
-        held = (*way.pieces, hold_at(place, beyond.start_s, beyond.start_s + beyond.duration_s))
-        free = zones_permit(place, scene.zones, hold_m)
-        if free and traffic_permits(held, scene.intruders, scene.volume, 0.0, hold_m):
-            return Ahead(held, own)
-    return Ahead((*way.pieces, beyond), scene.volume)
+        return Ahead(pieces, (scene.volume,))
+    around = cylinder(scene.volume.dthr_m, scene.volume.zthr_m)
+    rise_m = TRACKING_S * sensed.ability.max_climb_m_s
+    holds = _holds(beyond, sensed, scene, margin) if beyond is not None else ()
+    return Ahead(pieces, (own, around), holds, around, rise_m)
+
+
+def _holds(beyond: Piece, sensed: Sensed, scene: Scene, margin: float) -> tuple[Hold, ...]:
+    """Where the loiter at the end may be. beyond: straight flight from the end on, for the time that is left."""
+    motion = sensed.motion
+    radius_m = margin * motion.speed_m_s / sensed.ability.turn_rate_rad_s
+    off_m = TRACKING_S * motion.speed_m_s
+    end, v = beyond.position, beyond.velocity
+    heading = math.atan2(v.east_m_s, v.north_m_s)
+    until_s = beyond.start_s + beyond.duration_s
+    beside = [
+        Position(
+            end.north_m - side * radius_m * math.sin(heading),
+            end.east_m + side * radius_m * math.cos(heading),
+            end.alt_m,
+        )
+        for side in (1, -1)
+    ]
+    if all(zones_permit(centre, scene.zones, radius_m + off_m) for centre in beside):
+        places, disc_m = beside, radius_m + off_m
+    else:  # a wider circle, on either side
+        places, disc_m = [end], 2 * WIDEST * radius_m + off_m
+    return tuple(Hold(hold_at(place, beyond.start_s, until_s), disc_m) for place in places)

@@ -7,9 +7,10 @@ from dataclasses import replace
 
 from cratous.core.avoidance.manoeuvre import velocity_of, way_along
 from cratous.core.avoidance.prediction import Piece, buffered
-from cratous.core.avoidance.resolution import Choice, Scene, first_conflict_s, first_zone_s, resolve
+from cratous.core.avoidance.resolution import Choice, Scene, first_zone_s, resolve
 from cratous.core.avoidance.way_ahead import near_line, there_within
-from cratous.services.icarous.ending import Ahead, with_hold
+from cratous.core.permit.remainder import way_permits
+from cratous.services.icarous.ending import Ahead, horizon_s, with_hold
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.return_to_path import bearing_rad, flat, goal_index, way_back
 from cratous.services.icarous.state import Config, State
@@ -19,6 +20,8 @@ ON_PATH_M = 30.0
 """Nearer than this to its path a vehicle is taken to fly along it; else straight on [m]."""
 REACHED_S = 0.5
 """A waypoint that is nearer than this [s of flight] is as good as reached."""
+PASSED_S = 2.0
+"""The last waypoint has been passed just now if it is nearer than this [s of flight]."""
 TURN_MARGIN = 1.1
 """The way back is made of turns this much wider than the tightest."""
 
@@ -42,27 +45,42 @@ def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahe
             # a waypoint that is as good as reached says nothing about the direction of flight
             if len(ahead) > 1 and there_within(here, goal, motion.speed_m_s, REACHED_S):
                 ahead = ahead[1:]
-            way = way_along(motion, ahead, lookahead_s)
+            way = way_along(motion, ahead, horizon_s(scene))
             return with_hold(way, sensed, scene, config.daa.well_clear, TURN_MARGIN)
+    passed = bool(told.waypoints) and index >= len(told.waypoints)
+    if passed and there_within(here, flat(told.waypoints[-1]), motion.speed_m_s, PASSED_S):
+        # until another way is told the vehicle circles here
+        way = way_along(motion, (), horizon_s(scene))
+        return with_hold(way, sensed, scene, config.daa.well_clear, TURN_MARGIN)
     v = velocity_of(motion.heading_rad, motion.speed_m_s, motion.climb_m_s)
-    return Ahead((Piece(0.0, lookahead_s, motion.position, v),), scene.volume)
+    return Ahead((Piece(0.0, lookahead_s, motion.position, v),), (scene.volume,))
 
 
-def way_back_is_free(config: Config, state: State, sensed: Sensed) -> bool:
-    """The way onto the path and along it is free of predicted conflict over the look-ahead."""
+def way_back_is_free(config: Config, state: State, sensed: Sensed, in_turn: frozenset[int]) -> bool:
+    """The way onto the path and along it, up to the hold at its end, is free of predicted conflict over the
+    look-ahead. Against the intruders that were avoided it is permitted to the end of what was told: one that flies
+    straight on is not met again.
+
+    in_turn: the intruders in a turn: of where they will be beyond the look-ahead a straight line says nothing.
+    """
     told, scene = state.told, scene_of(config, state, sensed)
     if not told.waypoints:
-        pieces, volume = predicted(config, state, sensed, scene)
-    else:
-        points = told.waypoints[min(state.goal, len(told.waypoints) - 1) :]
-        if told.resume is not None:
-            points = (told.resume, *told.waypoints[min(told.next_index, len(told.waypoints)) :])
-        radius_m = TURN_MARGIN * sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
-        way = way_back(sensed.motion, radius_m, points, scene.lookahead_s)
-        pieces, volume = with_hold(way, sensed, scene, config.daa.well_clear, TURN_MARGIN)
-    if first_conflict_s(pieces, scene._replace(volume=volume)) is not None:
+        return predicted(config, state, sensed, scene).first_of_all_s(scene.intruders) is None
+    points = told.waypoints[min(state.goal, len(told.waypoints) - 1) :]
+    if told.resume is not None:
+        points = (told.resume, *told.waypoints[min(told.next_index, len(told.waypoints)) :])
+    radius_m = TURN_MARGIN * sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
+    way = way_back(sensed.motion, radius_m, points, horizon_s(scene))
+    ahead = with_hold(way, sensed, scene, config.daa.well_clear, TURN_MARGIN)
+    if ahead.first_of_all_s(scene.intruders) is not None:
         return False
-    return first_zone_s(pieces, scene.zones, 5.0) is None if len(pieces) > 1 else True
+    if first_zone_s(ahead.pieces, scene.zones, 5.0) is not None:
+        return False
+    whole = way_back(sensed.motion, radius_m, points, math.inf).pieces
+    met = set(state.avoided) - in_turn
+    return all(
+        way_permits(whole, other, scene.volume) for other in scene.intruders if other.id in met
+    )
 
 
 def manoeuvre(config: Config, state: State, sensed: Sensed) -> tuple[State, Choice]:

@@ -99,7 +99,7 @@ class Instance:
         if watches:
             state, out = self._watch(state, sensed, in_turn)
         else:
-            state, out = self._fly(state, sensed)
+            state, out = self._fly(state, sensed, in_turn)
         beat = Heartbeat(sequence=state.beats, time_s=sensed.now_ms / 1000)
         return state, (*out, Up(self.config.vehicle_id, beat))
 
@@ -110,7 +110,8 @@ class Instance:
         cycled = cycle_watched(state.cycle, conflict is not None, sensed.now_ms, RELAPSE_MS)
         if cycled.act == NOTHING or conflict is None:
             return replace(state, cycle=cycled.cycle), ()
-        state = replace(state, cycle=cycled.cycle, goal=state.told.next_index)
+        avoided = tuple(sorted({*state.avoided, conflict.intruder_id}))
+        state = replace(state, cycle=cycled.cycle, goal=state.told.next_index, avoided=avoided)
         state, choice = manoeuvre(self.config, state, sensed)
         vid, first_s = self.config.vehicle_id, conflict.first_s
         reason = f"{conflict.why}: loss predicted in {first_s:.1f} s"
@@ -123,22 +124,22 @@ class Instance:
     ) -> tuple[tuple[Threat, ...], Conflict | None]:
         """All predicted losses of well clear, and the conflict to act on."""
         scene = scene_of(self.config, state, sensed)
-        pieces, volume = predicted(self.config, state, sensed, scene)
+        ahead = predicted(self.config, state, sensed, scene)
         limits = nearest(sensed.ability, scene.volume, self.config.heartbeat_ms)
         own, seen = self.config.vehicle_id, sensed.intruders
-        found = threats(own, pieces, seen, volume, state.threats, sensed.now_ms, limits, in_turn)
+        found = threats(own, ahead, seen, state.threats, sensed.now_ms, limits, in_turn)
         urgent = most_urgent(found)
         if urgent is not None:
             return found, Conflict("traffic", urgent.intruder_id, urgent.first_violation_s)
-        if len(pieces) == 1:
-            zone_s = zone_ahead_s(sensed.motion, sensed.ability, pieces, state.told.zones)
+        if len(ahead.pieces) == 1 and not ahead.holds:
+            zone_s = zone_ahead_s(sensed.motion, sensed.ability, ahead.pieces, state.told.zones)
             if zone_s is not None:
                 return found, Conflict("zone", 0, zone_s)
         return found, None
 
-    def _fly(self, state: State, sensed: Sensed) -> Step:
+    def _fly(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
         """AVOID and HANDBACK: fly the manoeuvre, and see whether the way back is free."""
-        free = way_back_is_free(self.config, state, sensed)
+        free = way_back_is_free(self.config, state, sensed, in_turn)
         heard_ms, before = state.told.heard_ms, state.held
         cycled = cycle_flown(state.cycle, free, heard_ms, sensed.now_ms, LINK_LOST_MS, PERSIST_MS)
         state, choice = manoeuvre(self.config, replace(state, cycle=cycled.cycle), sensed)

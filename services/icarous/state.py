@@ -33,7 +33,7 @@ class Config(NamedTuple):
 class State:
     """cycle: who flies, as the kernels have it; told: what has come over the bridge; threats and
     courses: of the last heartbeat; held: the manoeuvre being flown; goal: index of the waypoint that
-    it makes for; beats: heartbeats so far."""
+    it makes for; beats: heartbeats so far; avoided: the intruders for which it has taken over."""
 
     cycle: Cycle = START
     told: Told = field(default_factory=Told)
@@ -42,3 +42,4 @@ class State:
     held: Choice | None = None
     goal: int = 0
     beats: int = 0
+    avoided: tuple[int, ...] = ()

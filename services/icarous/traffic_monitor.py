@@ -15,8 +15,9 @@ from cratous.core.authority.gate import gives_way
 from cratous.core.authority.right_of_way import must_act
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Ability, smallest_turn
-from cratous.core.avoidance.prediction import Intruder, Piece, first_violation_s
+from cratous.core.avoidance.prediction import Intruder
 from cratous.core.avoidance.way_ahead import turns
+from cratous.services.icarous.ending import Ahead
 from cratous.spec.mission import WellClear
 
 PERSIST_MS = 2000
@@ -91,9 +92,8 @@ def turning(now: Tracks, before: Tracks, dt_s: float) -> frozenset[int]:
 
 def threats(
     own_id: int,
-    pieces: tuple[Piece, ...],
+    ahead: Ahead,
     intruders: tuple[Intruder, ...],
-    volume: WellClear,
     before: tuple[Threat, ...],
     now_ms: int,
     limits: Nearest,
@@ -107,7 +107,7 @@ def threats(
     since = {threat.intruder_id: threat.since_ms for threat in before}
     found = []
     for other in intruders:
-        first = first_violation_s(pieces, other, volume)
+        first = ahead.first_s(other)
         if first is None:
             continue
         seen_ms = since.get(other.id, now_ms)

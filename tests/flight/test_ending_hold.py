@@ -6,7 +6,6 @@ import math
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import pytest
 from flight_tools import flown, of_type
@@ -16,28 +15,38 @@ from cratous.core.authority.gate import Gate
 from cratous.core.avoidance.manoeuvre import way_along
 from cratous.core.avoidance.prediction import Intruder
 from cratous.core.avoidance.resolution import Scene
-from cratous.core.permit.remainder import STANDING, traffic_permits, zones_permit
+from cratous.core.permit.remainder import STANDING, hold_at, hold_permits, zones_permit
 from cratous.core.routing.polylines import Track
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.remaining_path import points_ahead
-from cratous.services.icarous.ending import HOLD_RADII, TRACKING_S, with_hold
+from cratous.services.icarous.ending import TRACKING_S, WIDEST, Ahead, horizon_s, with_hold
 from cratous.services.icarous.messages import Sensed
 from cratous.services.loading import load
 from cratous.services.pipeline.plan import make_plan
-from cratous.spec.mission import Position, Task, TaskKind, Velocity, Zone, ZoneKind
+from cratous.spec.mission import (
+    Position,
+    Task,
+    TaskKind,
+    Velocity,
+    WellClear,
+    Zone,
+    ZoneKind,
+)
 
 MISSION = Path(__file__).resolve().parents[1] / "missions" / "hovering_behind.yaml"
 GOAL = Position(600.0, 0.0, 300.0)
-HOLD_M = HOLD_RADII * 1.1 * 22.0 / 0.26 + TRACKING_S * 22.0
+RADIUS_M = 1.1 * 22.0 / 0.26
+HOLD_M = RADIUS_M + TRACKING_S * 22.0
+RISE_M = TRACKING_S * 4.0
 
 
 def standing(north_m: float, east_m: float = 0.0, alt_m: float = 300.0) -> Intruder:
     return Intruder(9, Position(north_m, east_m, alt_m), STANDING)
 
 
-def ahead(*others: Intruder, zones: tuple[Zone, ...] = (), horizon_s: float = 60.0) -> Any:
-    scene = Scene(others, zones, WIDE, horizon_s)
-    way = way_along(NORTH, (GOAL,), horizon_s)
+def ahead(*others: Intruder, zones: tuple[Zone, ...] = (), lookahead_s: float = 60.0) -> Ahead:
+    scene = Scene(others, zones, WIDE, lookahead_s)
+    way = way_along(NORTH, (GOAL,), horizon_s(scene))
     sensed = Sensed(0, NORTH, ABILITY, others, Gate(0, 0, False))
     return with_hold(way, sensed, scene, VOLUME, 1.1)
 
@@ -47,36 +56,58 @@ def wall(south_m: float) -> Zone:
     return Zone(1, ZoneKind.KEEP_OUT, sides, 0.0, 1000.0)
 
 
-NEAR_M = 600.0 + WIDE.dthr_m + HOLD_M
+# straight behind, as far from the middle of either circle as the cylinder reaches
+NEAR_M = 600.0 + math.sqrt((WIDE.dthr_m + HOLD_M) ** 2 - RADIUS_M**2)
+ABOVE_M = 300 + WIDE.zthr_m + RISE_M
+ARRIVAL_S = 600.0 / 22.0
 
 
 @pytest.mark.parametrize(
-    ("others", "holds"),
+    ("other", "first_s"),
     [
-        ((), True),
-        ((standing(NEAR_M + 0.1),), True),
-        ((standing(NEAR_M - 0.1),), False),  # in the way of the hold
-        ((standing(NEAR_M - 0.1, alt_m=300 + WIDE.zthr_m + HOLD_M + 0.1),), True),  # above it
-        ((standing(300.0, 180.0),), False),  # beside the way, within the cylinder
-        ((standing(300.0, 195.0),), False),  # beside the way, and within that of the hold
+        (standing(5000.0), None),
+        (standing(600.0 + 400.0, 400.0), None),
+        (standing(600.0, 2 * RADIUS_M), ARRIVAL_S),  # in the way of the hold, to the right or left
+        (standing(600.0, -2 * RADIUS_M), ARRIVAL_S),
+        (standing(600.0, 0.0, ABOVE_M + 0.1), None),  # above it
+        (standing(600.0, RADIUS_M, ABOVE_M - 0.1), ARRIVAL_S),
         # comes through the hold later, or in so long that it is not looked at
-        ((Intruder(9, Position(2000.0, 0.0, 300.0), Velocity(-30.0, 0.0, 0.0)),), False),
-        ((Intruder(9, Position(4000.0, 0.0, 300.0), Velocity(-30.0, 0.0, 0.0)),), True),
+        (Intruder(9, Position(2000.0, 0.0, 300.0), Velocity(-30.0, 0.0, 0.0)), 30.0),
+        (Intruder(9, Position(4000.0, 0.0, 300.0), Velocity(-30.0, 0.0, 0.0)), None),
     ],
 )
-def test_when_the_hold_is_permitted(others: tuple[Intruder, ...], holds: bool) -> None:
-    pieces, volume = ahead(*others)
-    assert (pieces[-1].velocity == STANDING) is holds
-    assert pieces[-1].position == GOAL
-    assert volume == (VOLUME if holds else WIDE)
-    assert sum(piece.duration_s for piece in pieces) == pytest.approx(60.0)
+def test_the_way_and_the_hold_are_looked_at(other: Intruder, first_s: float | None) -> None:
+    found = ahead(other).first_s(other)
+    if first_s is None:
+        assert found is None
+    else:
+        assert found is not None
+        assert found <= first_s + 5.0
+
+
+@pytest.mark.parametrize(("off_m", "clear"), [(0.1, True), (-0.1, False)])
+def test_where_the_hold_ends(off_m: float, clear: bool) -> None:
+    slow = WellClear(VOLUME.dthr_m, VOLUME.zthr_m, 0.0, 0.0)  # so that the way itself is clear
+    other = standing(NEAR_M + off_m)
+    found = ahead(other)
+    assert (found._replace(volumes=(slow,)).first_s(other) is None) is clear
+    assert len(found.holds) == 2
+    assert sum(piece.duration_s for piece in found.pieces) == pytest.approx(ARRIVAL_S)
+    assert [hold.piece.start_s for hold in found.holds] == pytest.approx([ARRIVAL_S, ARRIVAL_S])
+
+
+def test_a_zone_near_the_hold_makes_it_wider() -> None:
+    clear = ahead(zones=(wall(GOAL.north_m + HOLD_M + 0.1),))
+    assert [hold.radius_m for hold in clear.holds] == pytest.approx([HOLD_M, HOLD_M])
+    (wide,) = ahead(zones=(wall(GOAL.north_m + HOLD_M - 0.1),)).holds
+    assert wide.piece.position == GOAL
+    assert wide.radius_m == pytest.approx(2 * WIDEST * RADIUS_M + TRACKING_S * 22.0)
 
 
 @pytest.mark.parametrize(("gap_m", "holds"), [(HOLD_M + 0.1, True), (HOLD_M - 0.1, False)])
-def test_the_hold_keeps_clear_of_zones(gap_m: float, holds: bool) -> None:
+def test_zones_permit_a_disc(gap_m: float, holds: bool) -> None:
     zone = wall(GOAL.north_m + gap_m)
     assert zones_permit(GOAL, (zone,), HOLD_M) is holds
-    assert (ahead(zones=(zone,)).pieces[-1].velocity == STANDING) is holds
     assert zones_permit(GOAL, (replace(zone, floor_m=301.0),), HOLD_M)
     inside = replace(zone, kind=ZoneKind.KEEP_IN)
     assert not zones_permit(GOAL, (inside,), HOLD_M)
@@ -88,22 +119,34 @@ def test_a_zone_with_padding_is_refused() -> None:
 
 
 def test_a_way_that_is_longer_than_is_looked_has_no_hold() -> None:
-    pieces, volume = ahead(horizon_s=20.0)
-    assert pieces[-1].velocity != STANDING
-    assert volume == WIDE
+    # it ends while thresholds of time reach past what is looked at: the mission's own are kept
+    soon = ahead(lookahead_s=20.0)
+    assert (soon.holds, soon.volumes[0]) == ((), VOLUME)
+    assert sum(piece.duration_s for piece in soon.pieces) == pytest.approx(20.0)
+    later = ahead(lookahead_s=ARRIVAL_S - WIDE.tthr_s - 0.1)
+    assert (later.holds, later.volumes) == ((), (WIDE,))
 
 
-def test_it_is_decided_on_the_very_numbers() -> None:
-    way = way_along(NORTH, (GOAL,), 60.0)
-    assert way.beyond is not None
-    held = (*way.pieces, way.beyond._replace(velocity=STANDING))
+@pytest.mark.parametrize("start_s", [0.0, 12.5])
+def test_it_is_decided_on_the_very_numbers(start_s: float) -> None:
+    hold = hold_at(GOAL, start_s, 60.0)
     touching = standing(GOAL.north_m + 150.0 + 64.0)
-    assert not traffic_permits(held, (touching,), VOLUME, 0.0, 64.0)
+    assert not hold_permits(hold, touching, VOLUME, 64.0, 3.0)
     just = math.nextafter(touching.position.north_m, math.inf)
-    assert traffic_permits(held, (standing(just),), VOLUME, 0.0, 64.0)
+    assert hold_permits(hold, standing(just), VOLUME, 64.0, 3.0)
+    assert not hold_permits(hold, standing(GOAL.north_m, 0.0, 333.0), VOLUME, 64.0, 3.0)
+    above = standing(GOAL.north_m, 0.0, math.nextafter(333.0, math.inf))
+    assert hold_permits(hold, above, VOLUME, 64.0, 3.0)
 
 
-@pytest.mark.parametrize("behind_m", [450.0, 700.0, 1100.0])
+def test_who_flies_through_before_the_hold_begins_is_in_nobodys_way() -> None:
+    other = Intruder(9, Position(1000.0, 0.0, 300.0), Velocity(-40.0, 0.0, 0.0))
+    assert not hold_permits(hold_at(GOAL, 0.0, 60.0), other, VOLUME, 64.0, 3.0)
+    assert not hold_permits(hold_at(GOAL, 10.0, 60.0), other, VOLUME, 64.0, 3.0)
+    assert hold_permits(hold_at(GOAL, 16.0, 60.0), other, VOLUME, 64.0, 3.0)
+
+
+@pytest.mark.parametrize("behind_m", [405.0, 450.0, 700.0, 1100.0])
 def test_a_drone_that_hovers_behind_the_goal_is_in_nobodys_way(behind_m: float) -> None:
     mission = load(MISSION)
     (drone,) = mission.traffic
@@ -132,3 +175,12 @@ def test_the_way_is_told_to_its_end_or_farther_than_is_looked() -> None:
         length = sum(math.dist(a, b) for a, b in pairwise(beyond))
         assert length >= asked_m or told[-1] == items[-1].path[-1]
     assert told[-1] == items[-1].path[-1]
+
+
+def test_the_end_of_a_way_beside_a_zone_is_flown() -> None:
+    """The line of flight goes on into a zone, where the vehicle never flies: it would circle before it."""
+    mission = load(MISSION)
+    zone = replace(wall(1500.0 + 200.0), padding_m=0.0)
+    result, log = flown(replace(mission, traffic=(), zones=(zone,)))
+    assert (result.outcome, result.takeovers) == ("complete", 0)
+    assert not of_type(log, "Conflict")

@@ -17,7 +17,7 @@ from cratous.core.avoidance.prediction import Intruder, Piece, after, first_viol
 from cratous.core.avoidance.resolution import Scene, first_conflict_s, resolve
 from cratous.core.geofence.mission_legs import leg_ok
 from cratous.services.icarous.ending import Ahead
-from cratous.services.icarous.foresight import describe, predicted
+from cratous.services.icarous.foresight import describe, predicted, way_back_is_free
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.return_to_path import PERSIST_MS as FREE_MS
@@ -201,17 +201,17 @@ def test_when_nothing_is_free_it_says_so() -> None:
 
 
 LIMITS = nearest(ABILITY, WIDE, 500)
+AHEAD = Ahead(straight(), (WIDE,))
 
 
 def seen(own: int, other: Intruder, since_ms: int | None, in_turn: bool = False) -> bool:
     """Whether vehicle `own` acts now on a threat first seen at since_ms (None: just now)."""
-    before = threats(own, straight(), (other,), WIDE, (), since_ms or 0, LIMITS)
+    before = threats(own, AHEAD, (other,), (), since_ms or 0, LIMITS)
     now_ms = 10_000
     found = threats(
         own,
-        straight(),
+        AHEAD,
         (other,),
-        WIDE,
         before if since_ms is not None else (),
         now_ms,
         LIMITS,
@@ -270,14 +270,17 @@ WAY = (Position(-1000.0, 0.0, 300.0), Position(100.0, 0.0, 300.0), Position(100.
 @pytest.mark.parametrize(
     ("next_index", "north_m", "east_m", "pieces"),
     [
-        (0, 0.0, 0.0, 1),  # not on its way to a waypoint yet: straight on
-        (1, 0.0, 0.0, 3),  # along both legs that are left, and on
-        (1, 0.0, 29.9, 3),
-        (1, 0.0, -30.1, 1),  # off the path
-        (1, 89.1, 0.0, 2),  # the next waypoint is as good as reached: 10.9 m at 22 m/s
-        (1, 88.9, 0.0, 3),
-        (2, 101.0, 895.0, 2),  # but the last one is flown to
-        (3, 0.0, 0.0, 1),  # past the last
+        (0, 0.0, 0.0, -1),  # not on its way to a waypoint yet: straight on
+        (1, 0.0, 0.0, 2),  # along both legs that are left
+        (1, 0.0, 29.9, 2),
+        (1, 0.0, -30.1, -1),  # off the path
+        (1, 89.1, 0.0, 1),  # the next waypoint is as good as reached: 10.9 m at 22 m/s
+        (1, 88.9, 0.0, 2),
+        (2, 101.0, 895.0, 1),  # but the last one is flown to
+        (2, 100.0, 899.9, 0),  # at the last one: it holds there
+        (3, 100.0, 943.9, 0),  # just past the last: it holds
+        (3, 100.0, 944.1, -1),
+        (3, 0.0, 0.0, -1),  # far past the last
     ],
 )
 def test_which_way_is_predicted(
@@ -288,10 +291,12 @@ def test_which_way_is_predicted(
     found = predicted(
         CONFIG, state, Sensed(0, now, ABILITY, (), Gate(0, 0, False)), Scene((), (), WIDE, 60.0)
     )
-    assert len(found.pieces) == pieces
-    if pieces == 1:
+    if pieces < 0:  # straight on, and no hold
         straight = Piece(0.0, 60.0, now.position, velocity_of(0.0, 22.0, 0.0))
-        assert found == Ahead((straight,), WIDE)
+        assert found == Ahead((straight,), (WIDE,))
+    else:
+        assert len(found.pieces) == pieces
+        assert len(found.holds) == 2
 
 
 @pytest.mark.parametrize(
@@ -313,3 +318,34 @@ def test_a_waypoint_passed_abeam_is_no_goal() -> None:
     assert goal_index(NORTH, 85.0, bend, 0) == 1  # the way on leads off at a right angle
     assert goal_index(NORTH._replace(position=Position(500.0, -1.0, 300.0)), 0.3, bend, 0) == 0
     assert goal_index(NORTH._replace(position=Position(500.0, -1.0, 300.0)), 0.4, bend, 0) == 1
+
+
+# ---- when it hands back --------------------------------------------------------------------------
+
+LONG = (Position(-1000.0, 0.0, 300.0), Position(6000.0, 0.0, 300.0))
+
+
+@pytest.mark.parametrize(
+    ("avoided", "in_turn", "late_s", "free"),
+    [
+        ((9,), (), 0.0, False),  # met again in two minutes, twice the look-ahead
+        ((), (), 0.0, True),  # it has not taken over for that one: there is time
+        ((8,), (), 0.0, True),
+        ((9,), (9,), 0.0, True),  # a straight line says nothing of one that turns
+        ((9,), (), 30.0, True),  # passes behind
+        ((9,), (), 12.1, True),
+        ((9,), (), 12.0, False),  # nearest 186.7 m, where 187.5 m are kept
+    ],
+)
+def test_who_was_avoided_is_not_met_again(
+    avoided: tuple[int, ...], in_turn: tuple[int, ...], late_s: float, free: bool
+) -> None:
+    meets_s = 120.0
+    other = Intruder(
+        9,
+        Position(22.0 * meets_s, -22.0 * (meets_s + late_s), 300.0),
+        Velocity(0.0, 22.0, 0.0),
+    )
+    state = State(told=Told(waypoints=LONG, next_index=1), goal=1, avoided=avoided)
+    sensed = Sensed(0, NORTH, ABILITY, (other,), Gate(0, 0, False))
+    assert way_back_is_free(CONFIG, state, sensed, frozenset(in_turn)) is free

@@ -1,0 +1,59 @@
+"""The legs of chains that ICAROUS does not leave: they are given up by name, so that nothing waits for ever.
+
+A leg is the way to an item and the item's path. How often ICAROUS may take over on it, and for how long it may
+fly in all, is bounded; the kernel `leg_given_up` decides. The task then fails as blocked, with what ICAROUS said
+last, and the vehicle makes for its next one. One that has none left circles where it is, so that it can be
+handed back wherever that is permitted.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from cratous.core.executive.steps import leg_given_up
+from cratous.services.flight.chain import Chain
+from cratous.services.flight.executive_outputs import route
+from cratous.services.flight.executive_state import Config, Out, State
+from cratous.services.flight.task_transitions import circling, fail
+
+MOST_TAKEOVERS = 12
+"""On one leg ICAROUS takes over at most this often."""
+LONGEST_LOOKAHEADS = 5
+"""On one leg it flies for at most this many times its look-ahead."""
+ANEW_MS = 10_000
+"""A vehicle with nothing left circles where it is, which is found anew after this long under ICAROUS [ms]."""
+
+
+def give_up(config: Config, state: State, out: Out) -> State:
+    """Fail the items whose legs are given up, and tell ICAROUS where its vehicle goes instead."""
+    longest_ms = round(1000 * LONGEST_LOOKAHEADS * state.mission.daa.lookahead_s)
+    for vid in config.instances:
+        chain = state.find(vid)
+        if chain is None:
+            continue
+        under_ms = chain.leg.flown_ms(chain.suspended, state.now_ms)
+        if chain.item is None:
+            if chain.suspended and leg_given_up(0, 0, under_ms, ANEW_MS):
+                state = _circle_here(config, state, chain, out)
+        elif leg_given_up(chain.leg.takeovers, MOST_TAKEOVERS, under_ms, longest_ms):
+            state = fail(config, state, chain.item.task_id, _blocked(chain, under_ms), out)
+            if state.chain(vid).suspended:
+                state = route(state, vid, out)
+    return state
+
+
+def _blocked(chain: Chain, under_ms: int) -> str:
+    """Why a leg is given up."""
+    leg, times = chain.leg, "once" if chain.leg.takeovers == 1 else f"{chain.leg.takeovers} times"
+    last = leg.because or "what it did not say"
+    return (
+        f"blocked: ICAROUS took vehicle {chain.vehicle.id} over {times} on this leg and flew it for"
+        f" {under_ms / 1000:g} s, last because of {last}"
+    )
+
+
+def _circle_here(config: Config, state: State, chain: Chain, out: Out) -> State:
+    track = circling(config, state, chain, 0.0, out)
+    chain = chain.enter(chain.phase, track, state.now_ms)
+    state = state.put(replace(chain, leg=chain.leg.next(state.now_ms)))
+    return route(state, chain.vehicle.id, out)

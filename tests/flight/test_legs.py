@@ -1,0 +1,84 @@
+"""A leg that ICAROUS does not leave is given up by name, and its vehicle is handed back."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from flight_tools import flown, of_type
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cratous.core.executive.steps import leg_given_up
+from cratous.services.campaign.changing import changing_mission
+from cratous.services.flight import legs
+from cratous.services.flight.chain import Leg
+from cratous.services.loading import load
+from cratous.spec.mission import Position
+
+MISSION = Path(__file__).resolve().parents[1] / "missions" / "hovering_behind.yaml"
+
+
+@pytest.mark.parametrize(
+    ("takeovers", "under_ms", "over"),
+    [(0, 0, False), (3, 5000, False), (4, 0, True), (0, 5001, True)],
+)
+def test_when_a_leg_is_given_up(takeovers: int, under_ms: int, over: bool) -> None:
+    assert leg_given_up(takeovers, 3, under_ms, 5000) is over
+
+
+@given(st.lists(st.tuples(st.integers(0, 9000), st.integers(0, 9000)), max_size=8))
+def test_a_leg_counts_takeovers_and_the_time_under_icarous(times: list[tuple[int, int]]) -> None:
+    leg, now, under = Leg(), 0, 0
+    for flies, avoids in times:
+        now += flies
+        assert leg.flown_ms(False, now) == under
+        leg = leg.taken(now)
+        now, under = now + avoids, under + avoids
+        assert leg.flown_ms(True, now) == under
+        leg = leg.given_back(now)
+    assert (leg.takeovers, leg.under_ms) == (len(times), under)
+    assert leg.next(now).flown_ms(True, now + 7) == 7
+
+
+def test_a_goal_that_cannot_be_reached_clear_is_blocked() -> None:
+    """A drone hovers 350 m behind the only goal: on the way there well clear would be lost 38 m before it."""
+    mission = load(MISSION)
+    (drone,) = mission.traffic
+    behind = replace(drone, position=Position(1500.0 + 350.0, 0.0, 300.0))
+    limit = replace(mission.simulation, limit_ms=1_000_000)
+    result, log = flown(replace(mission, traffic=(behind,), simulation=limit))
+    assert result.outcome == "failed"
+    assert result.end_ms < 400_000  # before: at its limit
+    assert result.takeovers <= legs.MOST_TAKEOVERS
+    (why,) = result.failed.values()
+    assert why.startswith("blocked: ICAROUS took vehicle 1 over ")
+    assert why.endswith(" with 90")
+    last = of_type(log, "AuthorityChange")[-1]
+    assert last.Owner.name == "UxAS"
+
+
+def test_few_takeovers_are_allowed_where_few_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A way that ICAROUS takes over again and again is given up after as many takeovers as it may have."""
+    monkeypatch.setattr(legs, "MOST_TAKEOVERS", 1)
+    mission = load(MISSION)
+    (drone,) = mission.traffic
+    behind = replace(drone, position=Position(1500.0 + 350.0, 0.0, 300.0))
+    result, log = flown(replace(mission, traffic=(behind,)))
+    (why,) = result.failed.values()
+    assert "over 2 times on this leg" in why
+    taken = of_type(log, "AuthorityChange")
+    failed = next(b.Time for b in of_type(log, "TaskProgress") if b.Phase.name == "Failed")
+    assert sum(b.Owner.name == "ICAROUS" and failed >= b.Time for b in taken) == 2
+
+
+def test_a_changed_mission_ends_beside_a_zone(tmp_path: Path) -> None:
+    """Seed 49 of the changed missions ended at its limit, at the end of a way before a zone."""
+    import yaml
+
+    path = tmp_path / "49.yaml"
+    path.write_text(yaml.safe_dump(changing_mission("changes", 49, 6)))
+    result, _ = flown(load(path))
+    assert (result.outcome, result.takeovers) == ("complete", 0)
+    assert result.end_ms < 180_000
