@@ -56,34 +56,54 @@ def _name(value: Any, names: tuple[str, ...]) -> str:
     return names[value] if isinstance(value, int) else str(value)
 
 
-def read_flight(rows: Iterable[Row], vehicles: Iterable[int]) -> Flight:
-    """Follow the messages of a log; `vehicles` are ours, anything else that flies is traffic."""
-    flight = Flight()
-    owners = dict.fromkeys(vehicles, "UxAS")
-    last: dict[int, list[float]] = {}
-    open_takeover: dict[int, dict[str, Any]] = {}
-    for row in rows:
+class FlightReader:
+    """Follows the messages of a log, one at a time; `flight` is what is known so far.
+
+    last: of each aircraft the newest row, also where it is not in the track.
+    """
+
+    def __init__(self, vehicles: Iterable[int]) -> None:
+        """vehicles: ours; anything else that flies is traffic."""
+        self.flight = Flight()
+        self.last: dict[int, list[float]] = {}
+        self._owners = dict.fromkeys(vehicles, "UxAS")
+        self._open_takeover: dict[int, dict[str, Any]] = {}
+
+    def add(self, row: Row) -> None:
+        """Take the next message."""
+        flight = self.flight
         short = row.topic.rpartition(".")[2]
         flight.counts[row.topic] = flight.counts.get(row.topic, 0) + 1
         flight.end_ms = max(flight.end_ms, row.time_ms)
         if short == "AirVehicleState" and row.time_ms % FOOTPRINT_PERIOD_MS == 0:
             _footprints(flight, row.time_ms, json.loads(row.body))
         if not row.topic.startswith("cratous."):
-            continue
+            return
         body = json.loads(row.body)
         if short == "TruthState":
-            _truth(flight, body, owners, last)
+            _truth(flight, body, self._owners, self.last)
         elif short == "AuthorityChange":
-            _authority(flight, body, owners, last, open_takeover)
+            _authority(flight, body, self._owners, self.last, self._open_takeover)
         elif short == "TaskProgress":
             _progress(flight, body)
         else:
             _event(flight, short, body)
-    for number, point in last.items():
-        track = flight.tracks[number]
-        if track[-1] is not point:
-            track.append(point)
-    return flight
+
+    def finish(self) -> Flight:
+        """The flight, with the newest row of each aircraft at the end of its track."""
+        for number, point in self.last.items():
+            track = self.flight.tracks[number]
+            if track[-1] is not point:
+                track.append(point)
+        return self.flight
+
+
+def read_flight(rows: Iterable[Row], vehicles: Iterable[int]) -> Flight:
+    """What the messages of a log say; `vehicles` are ours, anything else that flies is traffic."""
+    reader = FlightReader(vehicles)
+    for row in rows:
+        reader.add(row)
+    return reader.finish()
 
 
 def _truth(

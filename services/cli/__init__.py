@@ -47,7 +47,7 @@ COMMANDS = {
     "uxas": "Run a UxAS configuration: services and bridges.",
     "icarous": "Avoid for one vehicle, over the CRATOUS bridge to UxAS.",
     "sim": "Simulate the aircraft of an AMASE scenario, and be its AMASE on the network.",
-    "serve": "Replay a run or a message log in the browser.",
+    "serve": "Fly a mission, or replay a run or a message log, in the browser.",
     "algebra": "Check, draw or enumerate a process-algebra text.",
     "warm": "Compile ahead what commands would compile when they need it.",
     "version": "Print the version.",

@@ -11,12 +11,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from cratous.services.certify.timeline import Flight, read_flight
+from cratous.services.ground_station.flown import STATE, FlownRecording
 from cratous.services.ground_station.positions import Positions
 from cratous.services.ground_station.shapes import Shapes
 from cratous.services.ground_station.verdicts import verdicts_of
-from cratous.services.logs.entry import Entry, any_data, to_text
-from cratous.services.logs.log import Row
+from cratous.services.logs.entry import Entry, any_data
 from cratous.services.logs.records import from_data, to_data
 from cratous.services.logs.source import Source, open_log
 from cratous.services.mission.frames import Projection
@@ -25,10 +24,6 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame, Mission
 
 FORMAT = "cratous-recording/1"
-READ_BY_FLIGHT = "cratous."
-"""Types of flights of ours begin so."""
-HEARTBEAT, GATED = "cratous.Heartbeat", "cratous.GatedCommand"
-LINK, STATE = "cratous.BridgeStatus", "afrl.cmasi.AirVehicleState"
 CLOCKS = {"afrl.cmasi.SessionStatus": "ScenarioTime", STATE: "Time"}
 """Where the messages of a capture that has no times say what time it is [ms]."""
 TIMELESS = ("frames", "lmcp")
@@ -75,102 +70,16 @@ def _log(source: Source) -> dict[str, Any]:
 
 def _flown(source: Source, mission: Mission) -> dict[str, Any]:
     """A flight of ours, by its mission and what its messages say."""
-    to_local = Projection(mission.frame).to_local
-    shapes, links = Shapes(to_local), _Links()
-    place = ""
-
-    def rows() -> Iterator[Row]:
-        nonlocal place
-        for entry in source.entries():
-            place = entry.place
-            if entry.topic == LINK:
-                links.add(entry)
-            if entry.topic == HEARTBEAT:
-                continue
-            if entry.topic == GATED or not entry.topic.startswith(READ_BY_FLIGHT):
-                shapes.add(entry, entry.time_ms)
-                if entry.topic != STATE:
-                    continue
-            yield Row(entry.seq, entry.time_ms, entry.source, entry.topic, to_text(entry))
-
+    flown = FlownRecording(mission)
     try:
-        flight = read_flight(rows(), (vehicle.id for vehicle in mission.vehicles))
+        for entry in source.entries():
+            flown.add(entry)
     except (LookupError, TypeError, ValueError) as error:
         raise BadInput(
-            "a message lacks what its type has", where=place, expected="a message of a flight",
+            "a message lacks what its type has", where=flown.place, expected="a message of a flight",
             got=f"{type(error).__name__}: {error}"[:120],
         ) from None  # fmt: skip
-    plain = to_data(mission)
-    zones = [{**zone, "from_ms": 0} for zone in plain["zones"]]
-    zones += [
-        {**c["zone"], "from_ms": c["at_ms"]} for c in plain.get("changes", ()) if c.get("zone")
-    ]
-    return {
-        "name": mission.name,
-        "source": "mission",
-        "frame": plain["frame"],
-        "end_ms": flight.end_ms,
-        "outcome": flight.outcome,
-        "vehicles": [_ours(vehicle) for vehicle in plain["vehicles"]],
-        "volume": plain["daa"]["well_clear"],
-        "tasks": [_task(task) for task in plain["tasks"]],
-        "zones": zones,
-        "routes": shapes.routes,
-        "tracks": {str(number): track for number, track in sorted(flight.tracks.items())},
-        "footprints": _footprints(flight, to_local),
-        "authority": flight.authority,
-        "takeovers": flight.takeovers,
-        "phases": flight.phases,
-        "links": links.found,
-        "events": flight.events,
-        "unread": shapes.unread,
-    }
-
-
-def _ours(vehicle: dict[str, Any]) -> dict[str, Any]:
-    return {key: vehicle[key] for key in ("id", "label", "protected")}
-
-
-def _task(task: dict[str, Any]) -> dict[str, Any]:
-    places = [[place["north_m"], place["east_m"]] for place in task["points"]]
-    reach_m = task["radius_m"] or task["extent_m"]
-    return {
-        "id": task["id"], "label": task["label"], "kind": task["kind"], "points": places,
-        "radius_m": reach_m, "closed": task["kind"] == "area_search" and not reach_m,
-    }  # fmt: skip
-
-
-def _footprints(flight: Flight, to_local: Any) -> list[dict[str, Any]]:
-    return [
-        {
-            "task": task,
-            "vehicle": one["vehicle"],
-            "time_ms": one["time_ms"],
-            "corners": [[round(x, 1) for x in to_local(*corner)] for corner in one["corners"]],
-        }
-        for task, found in sorted(flight.footprints.items())
-        for one in found
-    ]
-
-
-class _Links:
-    """What the bridge said of its links."""
-
-    def __init__(self) -> None:
-        self.found: list[dict[str, Any]] = []
-
-    def add(self, entry: Entry) -> None:
-        body, _ = any_data(entry)
-        if not isinstance(body, dict):
-            return
-        self.found.append(
-            {
-                "time_ms": entry.time_ms,
-                "vehicle": body.get("VehicleID"),
-                "alive": body.get("Alive") is True,
-                "note": str(body.get("Note", "")),
-            }
-        )
+    return flown.whole()
 
 
 def _told(source: Source) -> dict[str, Any]:

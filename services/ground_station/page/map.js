@@ -15,6 +15,9 @@ export class FlightMap {
     this.listen();
   }
 
+  // the recording has grown
+  grown() { this.bounds = extent(this.recording); }
+
   // the view that shows everything
   whole() {
     const box = this.canvas.getBoundingClientRect(), b = this.bounds;

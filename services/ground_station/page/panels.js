@@ -84,9 +84,11 @@ export function verdicts(recording, state, go) {
     by("verdicts-note").textContent = `Not judged here: ${said.why_none}.`;
     return;
   }
-  by("overall").textContent = said.overall;
+  const so_far = said.so_far_ms !== undefined;
+  by("overall").textContent = so_far ? `so far ${said.overall}` : said.overall;
   by("overall").className = said.overall;
-  by("verdicts-note").textContent = "As report.json says; `cratous certify` holds it against the log. A time is where the margin is least, or where it broke.";
+  by("verdicts-at").textContent = so_far ? `so far, at ${seconds(said.so_far_ms)}` : "on the whole flight";
+  by("verdicts-note").textContent = so_far ? "What is not broken is unknown until the flight has ended; margins are the least so far." : "As report.json says; `cratous certify` holds it against the log. A time is where the margin is least, or where it broke.";
   const rank = { violated: 0, unknown: 1, excused: 2, holds: 3 };
   const parts = said.details.filter(one => one.verdict !== "holds" || one.time_ms !== null)
     .sort((a, b) => rank[a.verdict] - rank[b.verdict]);
