@@ -11,6 +11,7 @@ from cratous.services.logs.log import Row
 from cratous.services.logs.records import to_data
 from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Mission
+from cratous.spec.mission.changes import VEHICLE_LOST, without_vehicles
 
 READ_BY_FLIGHT = "cratous."
 """Types of flights of ours begin so."""
@@ -60,6 +61,7 @@ class FlownRecording:
             "volume": plain["daa"]["well_clear"],
             "tasks": [_task(task) for task in plain["tasks"]],
             "zones": zones,
+            "absences": _absences(self._mission),
         }
 
     def whole(self) -> dict[str, Any]:
@@ -83,6 +85,21 @@ class FlownRecording:
     def footprints(self) -> list[dict[str, Any]]:
         """What was seen so far, in the frame of the page."""
         return _footprints(self.reader.flight, self._to_local)
+
+
+def _absences(mission: Mission) -> list[dict[str, Any]]:
+    """From when to when [ms] a vehicle takes no part, and whether it is lost or has not joined yet."""
+    instants = sorted({0, *(change.at_ms for change in mission.changes)})
+    found: list[dict[str, Any]] = []
+    for begin_ms, end_ms in zip(instants, [*instants[1:], None], strict=True):
+        for number, change in without_vehicles(mission, begin_ms).items():
+            why = "lost" if change.kind == VEHICLE_LOST else "not joined"
+            before = next((one for one in reversed(found) if one["vehicle"] == number), None)
+            if before is not None and before["to_ms"] == begin_ms and before["why"] == why:
+                before["to_ms"] = end_ms
+                continue
+            found.append({"vehicle": number, "from_ms": begin_ms, "to_ms": end_ms, "why": why})
+    return found
 
 
 def _ours(vehicle: dict[str, Any]) -> dict[str, Any]:

@@ -113,6 +113,7 @@ def _told(source: Source) -> dict[str, Any]:
         "volume": None,
         "tasks": shapes.tasks if shapes else [],
         "zones": shapes.zones if shapes else [],
+        "absences": [],
         "routes": shapes.routes if shapes else [],
         "tracks": positions.tracks(),
         "footprints": [],

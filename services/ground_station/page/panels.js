@@ -42,7 +42,7 @@ export function aircraft(recording, state, words) {
       const who = authorityAt(recording, Number(id), state.time), badge = document.createElement("b");
       badge.textContent = who.name ?? "not in the log";
       badge.className = who.name === "ICAROUS" ? "icarous" : "";
-      const why = who.name === "ICAROUS" ? ` since ${seconds(who.since)}: ${who.reason}` : "";
+      const why = who.away ? ` since ${seconds(who.since)}: it takes no part in the mission` : who.name === "ICAROUS" ? ` since ${seconds(who.since)}: ${who.reason}` : "";
       told.append("authority ", badge, `${why} · link ${link(recording, Number(id), state.time)}${phase(recording, Number(id), state.time)}`);
     } else {
       told.append(seen ? "others' traffic" : at ? `not seen since ${seconds(at.last)}` : "not there yet");
