@@ -20,13 +20,10 @@ LINK, STATE = "cratous.BridgeStatus", "afrl.cmasi.AirVehicleState"
 
 
 class FlownRecording:
-    """Takes the messages of a flight in their order.
-
-    place: the message that was taken last, as an error names it.
-    """
+    """Takes the messages of a flight in their order."""
 
     def __init__(self, mission: Mission) -> None:
-        self.place = ""
+        self._last: Entry | None = None
         self._mission, self._plain = mission, to_data(mission)
         self._to_local = Projection(mission.frame).to_local
         self.shapes, self.links = Shapes(self._to_local), Links()
@@ -34,17 +31,22 @@ class FlownRecording:
 
     def add(self, entry: Entry) -> None:
         """Take the next message. Raises LookupError, TypeError or ValueError if it lacks something."""
-        self.place = entry.place
-        if entry.topic == LINK:
-            self.links.add(entry)
-        if entry.topic == HEARTBEAT:
+        self._last = entry
+        topic = entry.topic
+        if topic == HEARTBEAT:
             return
-        if entry.topic == GATED or not entry.topic.startswith(READ_BY_FLIGHT):
+        if topic == LINK:
+            self.links.add(entry)
+        if (topic == GATED or not topic.startswith(READ_BY_FLIGHT)) and topic != STATE:
             self.shapes.add(entry, entry.time_ms)
-            if entry.topic != STATE:
-                return
-        row = Row(entry.seq, entry.time_ms, entry.source, entry.topic, to_text(entry))
-        self.reader.add(row)
+            return
+        body = entry.body if isinstance(entry.body, str) else to_text(entry)
+        self.reader.add(Row(entry.seq, entry.time_ms, entry.source, topic, body))
+
+    @property
+    def place(self) -> str:
+        """The message that was taken last, as an error names it."""
+        return "" if self._last is None else self._last.place
 
     def first(self) -> dict[str, Any]:
         """What the mission says; nothing of what was flown."""

@@ -39,10 +39,11 @@ def recording(path: Path) -> dict[str, Any]:
     folder = path if path.is_dir() else None
     with open_log(path) as source:
         try:
-            if folder is not None and (folder / REPORT_NAME).exists():
-                source.verify()  # verdicts are shown of the log that they were made of, and of no other
+            # verdicts are shown of the log that they were made of, and of no other
+            judged = folder is not None and (folder / REPORT_NAME).exists()
+            entries = source.verified_entries() if judged else source.entries()
             mission = _mission(source)
-            found = _flown(source, mission) if mission is not None else _told(source)
+            found = _flown(entries, mission) if mission is not None else _told(source, entries)
             found["log"] = _log(source)
         except BadInput as error:
             error.where = f"{source.path}, {error.where}" if error.where else str(source.path)
@@ -68,11 +69,11 @@ def _log(source: Source) -> dict[str, Any]:
     }
 
 
-def _flown(source: Source, mission: Mission) -> dict[str, Any]:
+def _flown(entries: Iterator[Entry], mission: Mission) -> dict[str, Any]:
     """A flight of ours, by its mission and what its messages say."""
     flown = FlownRecording(mission)
     try:
-        for entry in source.entries():
+        for entry in entries:
             flown.add(entry)
     except (LookupError, TypeError, ValueError) as error:
         raise BadInput(
@@ -82,13 +83,13 @@ def _flown(source: Source, mission: Mission) -> dict[str, Any]:
     return flown.whole()
 
 
-def _told(source: Source) -> dict[str, Any]:
+def _told(source: Source, entries: Iterator[Entry]) -> dict[str, Any]:
     """A log of others: states, routes and zones as its messages tell them."""
     positions, end_ms = Positions(), 0
     shapes: Shapes | None = None
     waiting: list[tuple[Entry, int]] = []
     events: list[dict[str, Any]] = []
-    for entry, time_ms in _timed(source):
+    for entry, time_ms in _timed(source, entries):
         end_ms = max(end_ms, time_ms)
         positions.add(entry, time_ms)
         waiting.append((entry, time_ms))
@@ -126,11 +127,11 @@ def _told(source: Source) -> dict[str, Any]:
     }
 
 
-def _timed(source: Source) -> Iterator[tuple[Entry, int]]:
+def _timed(source: Source, entries: Iterator[Entry]) -> Iterator[tuple[Entry, int]]:
     """The messages with their times after the first of them [ms]; time never goes back."""
     begin_ms: int | None = None
     now_ms = 0
-    for entry in source.entries():
+    for entry in entries:
         told: Any = entry.time_ms
         if source.kind in TIMELESS:
             body, _ = any_data(entry) if entry.topic in CLOCKS else ({}, None)
