@@ -7,6 +7,7 @@ again from the same log.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
@@ -18,6 +19,14 @@ FOOTPRINT_PERIOD_MS = 2000
 FEW = 80
 PHASES = ("Planned", "Transit", "Waiting", "Active", "Suspended", "Complete", "Failed")
 OWNERS = ("UxAS", "ICAROUS")
+_WHOLE = "(0|[1-9][0-9]{0,17})"
+_DECIMAL = r"(-?(?:0|[1-9][0-9]*)\.[0-9]+(?:e[+-]?[0-9]+)?)"
+TRUTH = re.compile(
+    rf'\{{"\$type":"CRATOUS/TruthState","VehicleID":{_WHOLE},"Time":{_WHOLE},"North":{_DECIMAL},'
+    rf'"East":{_DECIMAL},"Altitude":{_DECIMAL},"VelocityNorth":{_DECIMAL},"VelocityEast":{_DECIMAL},'
+    rf'"VelocityDown":{_DECIMAL},"Heading":{_DECIMAL},"Cooperative":(?:true|false)\}}'
+)
+"""A whole TruthState as it is written; one that is written otherwise is read as any JSON."""
 
 
 @dataclass
@@ -56,54 +65,73 @@ def _name(value: Any, names: tuple[str, ...]) -> str:
     return names[value] if isinstance(value, int) else str(value)
 
 
-def read_flight(rows: Iterable[Row], vehicles: Iterable[int]) -> Flight:
-    """Follow the messages of a log; `vehicles` are ours, anything else that flies is traffic."""
-    flight = Flight()
-    owners = dict.fromkeys(vehicles, "UxAS")
-    last: dict[int, list[float]] = {}
-    open_takeover: dict[int, dict[str, Any]] = {}
-    for row in rows:
+class FlightReader:
+    """Follows the messages of a log, one at a time; `flight` is what is known so far.
+
+    last: of each aircraft the newest row, also where it is not in the track.
+    """
+
+    def __init__(self, vehicles: Iterable[int]) -> None:
+        """vehicles: ours; anything else that flies is traffic."""
+        self.flight = Flight()
+        self.last: dict[int, list[float]] = {}
+        self._owners = dict.fromkeys(vehicles, "UxAS")
+        self._open_takeover: dict[int, dict[str, Any]] = {}
+
+    def add(self, row: Row) -> None:
+        """Take the next message."""
+        flight = self.flight
         short = row.topic.rpartition(".")[2]
         flight.counts[row.topic] = flight.counts.get(row.topic, 0) + 1
         flight.end_ms = max(flight.end_ms, row.time_ms)
         if short == "AirVehicleState" and row.time_ms % FOOTPRINT_PERIOD_MS == 0:
             _footprints(flight, row.time_ms, json.loads(row.body))
         if not row.topic.startswith("cratous."):
-            continue
-        body = json.loads(row.body)
+            return
         if short == "TruthState":
-            _truth(flight, body, owners, last)
-        elif short == "AuthorityChange":
-            _authority(flight, body, owners, last, open_takeover)
+            self._truth(row.body)
+            return
+        body = json.loads(row.body)
+        if short == "AuthorityChange":
+            _authority(flight, body, self._owners, self.last, self._open_takeover)
         elif short == "TaskProgress":
             _progress(flight, body)
         else:
             _event(flight, short, body)
-    for number, point in last.items():
-        track = flight.tracks[number]
-        if track[-1] is not point:
+
+    def _truth(self, text: str) -> None:
+        said = TRUTH.fullmatch(text)
+        if said is not None:  # nearly all of a log: JSON's own reader takes several times as long
+            number, time_ms = int(said[1]), int(said[2])
+            place = [float(said[3]), float(said[4]), float(said[5])]
+        else:
+            body = json.loads(text)
+            number, time_ms = int(body["VehicleID"]), int(body["Time"])
+            place = [body["North"], body["East"], body["Altitude"]]
+        owner = OWNERS.index(self._owners.get(number, "UxAS"))
+        point = [time_ms, round(place[0], 1), round(place[1], 1), round(place[2], 1), owner]
+        track = self.flight.tracks.setdefault(number, [])
+        # the same instants for every vehicle, so that distances can be read off two tracks
+        due = not track or time_ms // TRACK_PERIOD_MS != track[-1][0] // TRACK_PERIOD_MS
+        if due or track[-1][4] != owner:
             track.append(point)
-    return flight
+        self.last[number] = point
+
+    def finish(self) -> Flight:
+        """The flight, with the newest row of each aircraft at the end of its track."""
+        for number, point in self.last.items():
+            track = self.flight.tracks[number]
+            if track[-1] is not point:
+                track.append(point)
+        return self.flight
 
 
-def _truth(
-    flight: Flight, body: dict[str, Any], owners: dict[int, str], last: dict[int, list[float]]
-) -> None:
-    number, time_ms = int(body["VehicleID"]), int(body["Time"])
-    owner = OWNERS.index(owners.get(number, "UxAS"))
-    point = [
-        time_ms,
-        round(body["North"], 1),
-        round(body["East"], 1),
-        round(body["Altitude"], 1),
-        owner,
-    ]
-    track = flight.tracks.setdefault(number, [])
-    # the same instants for every vehicle, so that distances can be read off two tracks
-    due = not track or time_ms // TRACK_PERIOD_MS != track[-1][0] // TRACK_PERIOD_MS
-    if due or track[-1][4] != owner:
-        track.append(point)
-    last[number] = point
+def read_flight(rows: Iterable[Row], vehicles: Iterable[int]) -> Flight:
+    """What the messages of a log say; `vehicles` are ours, anything else that flies is traffic."""
+    reader = FlightReader(vehicles)
+    for row in rows:
+        reader.add(row)
+    return reader.finish()
 
 
 def _authority(

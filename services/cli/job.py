@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from cratous.services.mission.availability import absent
 from cratous.services.mission.wind import known_at
@@ -31,6 +31,16 @@ class Settings:
     daa: bool = True
     allow_unproved: bool = False
     command: str = ""
+
+
+class Onlooker(Protocol):
+    """Sees a mission while it is run, and changes nothing of it but when it goes on."""
+
+    def joined(self, bus: Any) -> None:
+        """The bus, before anything is on it."""
+
+    def planned(self, checks: list[Verdict], monitor: Any) -> None:
+        """The plan is checked and flies now, watched by the monitor."""
 
 
 def silent(_text: str) -> None:
@@ -101,7 +111,11 @@ def folder_name(mission: Mission) -> str:
 
 
 def run_mission(
-    mission: Mission, folder: Path, settings: Settings, tell: Tell = silent
+    mission: Mission,
+    folder: Path,
+    settings: Settings,
+    tell: Tell = silent,
+    onlooker: Onlooker | None = None,
 ) -> dict[str, Any]:
     """Fly one mission and write log and report into `folder`; returns the report as data."""
     from cratous.core import ledger
@@ -109,13 +123,18 @@ def run_mission(
 
     standing = ledger.require(allow_unproved=settings.allow_unproved)
     tell(f"proofs: {standing.line}")
-    report = fly_mission(mission, folder, settings, standing, tell)
+    report = fly_mission(mission, folder, settings, standing, tell, onlooker)
     write_report(report, folder)
     return report
 
 
 def fly_mission(
-    mission: Mission, folder: Path, settings: Settings, standing: Any, tell: Tell = silent
+    mission: Mission,
+    folder: Path,
+    settings: Settings,
+    standing: Any,
+    tell: Tell = silent,
+    onlooker: Onlooker | None = None,
 ) -> dict[str, Any]:
     """Fly one mission and write its log into `folder`; returns the report as data.
 
@@ -151,6 +170,8 @@ def fly_mission(
     }
     with LogWriter(log, **meta) as writer:
         bus.tap(writer.tap)
+        if onlooker is not None:
+            onlooker.joined(bus)
         bus.tap(planning_told(_passing(tell), len(mission.tasks)))
         with counted() as calls:
             plan, checks = plan_and_check(mission, bus)
@@ -163,6 +184,8 @@ def fly_mission(
             writer.note("plan", to_data(plan))
             monitor = Monitor(mission, plan, lambda v: tell(f"VIOLATION {sentence(v)}"))
             bus.tap(monitor.tap)
+            if onlooker is not None:
+                onlooker.planned(checks, monitor)
             fly(mission, plan, bus, daa=settings.daa, progress=_progress(tell))
             verdicts = monitor.verdicts()
         counts = calls.data()

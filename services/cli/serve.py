@@ -1,44 +1,75 @@
-"""`cratous serve`: the ground station, a run or a message log in the browser."""
+"""`cratous serve`: the ground station, a flight, a run or a message log in the browser."""
 
 from __future__ import annotations
 
+import shlex
 import signal
 import threading
+from contextlib import ExitStack, closing
 from pathlib import Path
+from typing import Any
 
 import click
 
+MISSIONS = (".yaml", ".yml")
+FLIGHT = "cratous.services.cli.serve_flight"
+
 
 @click.command()
-@click.argument("run", metavar="RUN", type=click.Path(path_type=Path))
+@click.argument("run", metavar="RUN|MISSION", type=click.Path(path_type=Path))
 @click.option(
     "--port", type=click.IntRange(0, 65535), default=8760, show_default=True,
     help="Port on 127.0.0.1; 0 takes a free one.",
 )  # fmt: skip
-def serve(run: Path, port: int) -> int:
-    """Replay a RUN in the browser: the folder of `cratous run`, or a message log of any format.
+@click.option("--out", type=click.Path(path_type=Path), help="MISSION: folder for results. [out]")
+@click.option("--seed", type=click.IntRange(0), help="MISSION: variant; 0 is as written.")
+@click.option("--no-daa", is_flag=True, help="MISSION: avoidance off; the requirements stay.")
+@click.option("--allow-unproved", is_flag=True, help="MISSION: fly kernels without proof.")
+def serve(
+    run: Path, port: int, out: Path | None, seed: int | None, no_daa: bool, allow_unproved: bool
+) -> int:
+    """Replay a RUN in the browser, or fly a MISSION there.
 
-    Map with tracks, routes, zones, tasks and takeovers, altitudes over time, verdicts of the run's
-    report, and events to jump to. Open the address that is printed; the address of the page names
-    the instant, so it can be kept. Only this machine reaches it, and nothing comes from elsewhere.
+    RUN is the folder of `cratous run`, or a message log of any format. MISSION is a mission file
+    (*.yaml): it is planned at once, and flies, pauses and stops as the page says; the results are
+    those of `cratous run`, in out/<mission>/, if it flies to its end. Whoever has the whole address
+    that is printed may command the flight, from one page at a time.
+
+    Map with tracks, routes, zones, tasks and takeovers, altitudes over time, verdicts, and events to
+    jump to. The address of the page names the instant, so it can be kept. Only this machine reaches
+    it, and nothing comes from elsewhere.
 
     Example:  cratous serve out/crossing
 
     Exit codes: 0 asked to end (Ctrl-C, SIGTERM), 2 bad input.
     """
+    from cratous.services.ground_station.live_session import LiveSession
     from cratous.services.ground_station.recording import recording
-    from cratous.services.ground_station.server import GroundStation, Recorded
+    from cratous.services.ground_station.server import GroundStation, LiveRecorded, Recorded
     from cratous.services.logs.source import open_log
     from cratous.spec.errors import BadInput
     from cratous.spec.files.printable import printable
-
-    open_log(run).close()  # what is no log is told before anything listens
 
     def failed(error: Exception) -> None:
         name = "" if isinstance(error, BadInput) else f"{type(error).__name__}: "
         click.echo(printable(f"cratous: {name}{error}"), err=True)
 
-    with GroundStation(Recorded(lambda: recording(run), failed), port) as server:
+    def replayed(path: Path) -> Recorded:
+        return Recorded(lambda: recording(path), failed)
+
+    with ExitStack() as stack:
+        if run.is_file() and run.suffix in MISSIONS:
+            asked = _asked(run, out or Path("out"), seed or 0, no_daa, allow_unproved)
+            live = stack.enter_context(closing(LiveSession(FLIGHT, asked)))
+            shown = LiveRecorded(live, lambda folder: replayed(Path(folder)))
+            server = stack.enter_context(GroundStation(shown, port, live))
+            url = f"{server.url}?token={live.token}"
+        else:
+            if out is not None or seed is not None or no_daa or allow_unproved:
+                raise click.UsageError("--out, --seed, --no-daa, --allow-unproved need a MISSION")
+            open_log(run).close()  # what is no log is told before anything listens
+            server = stack.enter_context(GroundStation(replayed(run), port))
+            url = server.url
 
         def stop(*_: object) -> None:
             # from a thread: it waits for the loop that this signal interrupts
@@ -46,6 +77,21 @@ def serve(run: Path, port: int) -> int:
 
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, stop)
-        click.echo(printable(f"{run}: {server.url} (Ctrl-C ends it)"))
+        click.echo(printable(f"{run}: {url} (Ctrl-C ends it)"))
         server.serve_forever(poll_interval=0.2)
     return 0
+
+
+def _asked(
+    mission: Path, out: Path, seed: int, no_daa: bool, allow_unproved: bool
+) -> dict[str, Any]:
+    """What the flight's process is asked for; its report names the command that does the same."""
+    from cratous.services.cli.run import shown_path
+
+    command = ["cratous", "run", shown_path(mission)]
+    command += ["--no-daa"] * no_daa + ["--allow-unproved"] * allow_unproved
+    command += ["--seed", str(seed)] if seed else []
+    return {
+        "path": str(mission), "out": str(out), "seed": seed, "daa": not no_daa,
+        "allow_unproved": allow_unproved, "command": shlex.join(command),
+    }  # fmt: skip

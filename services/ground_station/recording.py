@@ -11,12 +11,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from cratous.services.certify.timeline import Flight, read_flight
+from cratous.services.ground_station.flown import STATE, FlownRecording
 from cratous.services.ground_station.positions import Positions
 from cratous.services.ground_station.shapes import Shapes
 from cratous.services.ground_station.verdicts import verdicts_of
-from cratous.services.logs.entry import Entry, any_data, to_text
-from cratous.services.logs.log import Row
+from cratous.services.logs.entry import Entry, any_data
 from cratous.services.logs.records import from_data, to_data
 from cratous.services.logs.source import Source, open_log
 from cratous.services.mission.frames import Projection
@@ -25,10 +24,6 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame, Mission
 
 FORMAT = "cratous-recording/1"
-READ_BY_FLIGHT = "cratous."
-"""Types of flights of ours begin so."""
-HEARTBEAT, GATED = "cratous.Heartbeat", "cratous.GatedCommand"
-LINK, STATE = "cratous.BridgeStatus", "afrl.cmasi.AirVehicleState"
 CLOCKS = {"afrl.cmasi.SessionStatus": "ScenarioTime", STATE: "Time"}
 """Where the messages of a capture that has no times say what time it is [ms]."""
 TIMELESS = ("frames", "lmcp")
@@ -44,10 +39,11 @@ def recording(path: Path) -> dict[str, Any]:
     folder = path if path.is_dir() else None
     with open_log(path) as source:
         try:
-            if folder is not None and (folder / REPORT_NAME).exists():
-                source.verify()  # verdicts are shown of the log that they were made of, and of no other
+            # verdicts are shown of the log that they were made of, and of no other
+            judged = folder is not None and (folder / REPORT_NAME).exists()
+            entries = source.verified_entries() if judged else source.entries()
             mission = _mission(source)
-            found = _flown(source, mission) if mission is not None else _told(source)
+            found = _flown(entries, mission) if mission is not None else _told(source, entries)
             found["log"] = _log(source)
         except BadInput as error:
             error.where = f"{source.path}, {error.where}" if error.where else str(source.path)
@@ -73,113 +69,27 @@ def _log(source: Source) -> dict[str, Any]:
     }
 
 
-def _flown(source: Source, mission: Mission) -> dict[str, Any]:
+def _flown(entries: Iterator[Entry], mission: Mission) -> dict[str, Any]:
     """A flight of ours, by its mission and what its messages say."""
-    to_local = Projection(mission.frame).to_local
-    shapes, links = Shapes(to_local), _Links()
-    place = ""
-
-    def rows() -> Iterator[Row]:
-        nonlocal place
-        for entry in source.entries():
-            place = entry.place
-            if entry.topic == LINK:
-                links.add(entry)
-            if entry.topic == HEARTBEAT:
-                continue
-            if entry.topic == GATED or not entry.topic.startswith(READ_BY_FLIGHT):
-                shapes.add(entry, entry.time_ms)
-                if entry.topic != STATE:
-                    continue
-            yield Row(entry.seq, entry.time_ms, entry.source, entry.topic, to_text(entry))
-
+    flown = FlownRecording(mission)
     try:
-        flight = read_flight(rows(), (vehicle.id for vehicle in mission.vehicles))
+        for entry in entries:
+            flown.add(entry)
     except (LookupError, TypeError, ValueError) as error:
         raise BadInput(
-            "a message lacks what its type has", where=place, expected="a message of a flight",
+            "a message lacks what its type has", where=flown.place, expected="a message of a flight",
             got=f"{type(error).__name__}: {error}"[:120],
         ) from None  # fmt: skip
-    plain = to_data(mission)
-    zones = [{**zone, "from_ms": 0} for zone in plain["zones"]]
-    zones += [
-        {**c["zone"], "from_ms": c["at_ms"]} for c in plain.get("changes", ()) if c.get("zone")
-    ]
-    return {
-        "name": mission.name,
-        "source": "mission",
-        "frame": plain["frame"],
-        "end_ms": flight.end_ms,
-        "outcome": flight.outcome,
-        "vehicles": [_ours(vehicle) for vehicle in plain["vehicles"]],
-        "volume": plain["daa"]["well_clear"],
-        "tasks": [_task(task) for task in plain["tasks"]],
-        "zones": zones,
-        "routes": shapes.routes,
-        "tracks": {str(number): track for number, track in sorted(flight.tracks.items())},
-        "footprints": _footprints(flight, to_local),
-        "authority": flight.authority,
-        "takeovers": flight.takeovers,
-        "phases": flight.phases,
-        "links": links.found,
-        "events": flight.events,
-        "unread": shapes.unread,
-    }
+    return flown.whole()
 
 
-def _ours(vehicle: dict[str, Any]) -> dict[str, Any]:
-    return {key: vehicle[key] for key in ("id", "label", "protected")}
-
-
-def _task(task: dict[str, Any]) -> dict[str, Any]:
-    places = [[place["north_m"], place["east_m"]] for place in task["points"]]
-    reach_m = task["radius_m"] or task["extent_m"]
-    return {
-        "id": task["id"], "label": task["label"], "kind": task["kind"], "points": places,
-        "radius_m": reach_m, "closed": task["kind"] == "area_search" and not reach_m,
-    }  # fmt: skip
-
-
-def _footprints(flight: Flight, to_local: Any) -> list[dict[str, Any]]:
-    return [
-        {
-            "task": task,
-            "vehicle": one["vehicle"],
-            "time_ms": one["time_ms"],
-            "corners": [[round(x, 1) for x in to_local(*corner)] for corner in one["corners"]],
-        }
-        for task, found in sorted(flight.footprints.items())
-        for one in found
-    ]
-
-
-class _Links:
-    """What the bridge said of its links."""
-
-    def __init__(self) -> None:
-        self.found: list[dict[str, Any]] = []
-
-    def add(self, entry: Entry) -> None:
-        body, _ = any_data(entry)
-        if not isinstance(body, dict):
-            return
-        self.found.append(
-            {
-                "time_ms": entry.time_ms,
-                "vehicle": body.get("VehicleID"),
-                "alive": body.get("Alive") is True,
-                "note": str(body.get("Note", "")),
-            }
-        )
-
-
-def _told(source: Source) -> dict[str, Any]:
+def _told(source: Source, entries: Iterator[Entry]) -> dict[str, Any]:
     """A log of others: states, routes and zones as its messages tell them."""
     positions, end_ms = Positions(), 0
     shapes: Shapes | None = None
     waiting: list[tuple[Entry, int]] = []
     events: list[dict[str, Any]] = []
-    for entry, time_ms in _timed(source):
+    for entry, time_ms in _timed(source, entries):
         end_ms = max(end_ms, time_ms)
         positions.add(entry, time_ms)
         waiting.append((entry, time_ms))
@@ -204,6 +114,7 @@ def _told(source: Source) -> dict[str, Any]:
         "volume": None,
         "tasks": shapes.tasks if shapes else [],
         "zones": shapes.zones if shapes else [],
+        "absences": [],
         "routes": shapes.routes if shapes else [],
         "tracks": positions.tracks(),
         "footprints": [],
@@ -216,11 +127,11 @@ def _told(source: Source) -> dict[str, Any]:
     }
 
 
-def _timed(source: Source) -> Iterator[tuple[Entry, int]]:
+def _timed(source: Source, entries: Iterator[Entry]) -> Iterator[tuple[Entry, int]]:
     """The messages with their times after the first of them [ms]; time never goes back."""
     begin_ms: int | None = None
     now_ms = 0
-    for entry in source.entries():
+    for entry in entries:
         told: Any = entry.time_ms
         if source.kind in TIMELESS:
             body, _ = any_data(entry) if entry.topic in CLOCKS else ({}, None)

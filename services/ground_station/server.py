@@ -1,20 +1,24 @@
 """Serves the page and one recording over HTTP, to this machine alone.
 
 It listens on 127.0.0.1 and answers only requests whose Host header names it so, since a page of
-somewhere else could reach it under a name of its own (DNS rebinding). It takes GET and HEAD alone,
-gives out the files of the page and the recording, and nothing of the disk by a name from outside.
+somewhere else could reach it under a name of its own (DNS rebinding). It gives out the files of the
+page and the recording, and nothing of the disk by a name from outside. Of a replay it takes GET and
+HEAD alone; while a mission is flown, commands too, from its own page (Origin) with the token.
 """
 
 from __future__ import annotations
 
 import gzip
+import json
 import threading
 from collections.abc import Callable
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
+from urllib.parse import parse_qs
 
+from cratous.services.ground_station.live_session import LiveSession, NotObeyed
 from cratous.spec.errors import BadInput
 from cratous.spec.files.printable import json_text
 
@@ -22,6 +26,8 @@ HOST = "127.0.0.1"
 REQUEST_S = 10.0
 """So long a client may take for its request."""
 MOST_AT_ONCE = 32
+LONGEST = 1000
+"""Of a command [bytes]."""
 TYPES = {
     "html": "text/html; charset=utf-8",
     "css": "text/css; charset=utf-8",
@@ -93,14 +99,43 @@ def _json(status: HTTPStatus, data: dict[str, Any]) -> Answer:
     return Answer(status, "application/json", body, gzip.compress(body, 3))
 
 
+class Recording(Protocol):
+    """What is shown."""
+
+    def answer(self) -> Answer:
+        """As JSON, or why there is none; waits until that is known."""
+
+
+class LiveRecorded:
+    """A mission that is flown: what it says, and once the flight has ended, its results."""
+
+    def __init__(self, live: LiveSession, replay: Callable[[str], Recorded]) -> None:
+        """replay: of a folder of results."""
+        self._live, self._replay = live, replay
+        self._results: Recorded | None = None
+        self._opening = threading.Lock()
+
+    def answer(self) -> Answer:
+        """See `Recording`."""
+        if self._live.status["state"] == "ended":
+            with self._opening:
+                self._results = self._results or self._replay(self._live.status["folder"])
+            return self._results.answer()
+        try:
+            return _json(HTTPStatus.OK, {**self._live.begun(), "live": True})
+        except BadInput as error:
+            return _json(HTTPStatus.UNPROCESSABLE_ENTITY, error.data())
+
+
 class GroundStation(ThreadingHTTPServer):
     """The server; `serve_forever` answers until `shutdown`."""
 
     daemon_threads = True
 
-    def __init__(self, recorded: Recorded, port: int) -> None:
-        """port: 0 takes a free one. Raises BadInput if it cannot be had."""
-        self.recorded, self.pages = recorded, page_files()
+    def __init__(self, recorded: Recording, port: int, live: LiveSession | None = None) -> None:
+        """port: 0 takes a free one; live: the flight that is shown, if it is one. Raises BadInput if
+        the port cannot be had."""
+        self.recorded, self.live, self.pages = recorded, live, page_files()
         self._places = threading.Semaphore(MOST_AT_ONCE)
         try:
             super().__init__((HOST, port), _Handler)
@@ -140,14 +175,64 @@ class _Handler(BaseHTTPRequestHandler):
     def do_HEAD(self) -> None:
         self._send(self._found(), body=False)
 
-    def _found(self) -> Answer:
+    def do_POST(self) -> None:
+        if self.server.live is None:
+            self.send_error(HTTPStatus.NOT_IMPLEMENTED)
+            return
+        self.close_connection = True
+        self._send(self._elsewhere() or self._order(self.server.live), body=True)
+
+    def _elsewhere(self) -> Answer | None:
+        """The refusal of a request that calls the server by another name; None for its own."""
         hosts = self.headers.get_all("Host", [])
-        if len(hosts) != 1 or hosts[0].lower() not in self.server.names:
-            told = f"this server is {self.server.url} and answers to no other name"
-            return _json(HTTPStatus.MISDIRECTED_REQUEST, {"error": told})
-        path = self.path.partition("?")[0]
+        if len(hosts) == 1 and hosts[0].lower() in self.server.names:
+            return None
+        told = f"this server is {self.server.url} and answers to no other name"
+        return _json(HTTPStatus.MISDIRECTED_REQUEST, {"error": told})
+
+    def _order(self, live: LiveSession) -> Answer:
+        """A command for the flight."""
+        if self.path != "/command":
+            return _json(HTTPStatus.NOT_FOUND, {"error": "there is no such page"})
+        if self.headers.get("Origin", "") != f"http://{self.headers['Host'].lower()}":
+            return _json(HTTPStatus.FORBIDDEN, {"error": "commands come from this page alone"})
+        if self.headers.get("Content-Type") != "application/json":
+            return _json(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, {"error": "expected JSON"})
+        length = self.headers.get("Content-Length", "")
+        if not (length.isascii() and length.isdigit() and 0 < int(length[:9]) <= LONGEST):
+            told = f"expected 1 to {LONGEST} bytes, with Content-Length"
+            return _json(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, {"error": told})
+        try:
+            asked = json.loads(self.rfile.read(int(length)))
+        except (ValueError, RecursionError):
+            return _json(HTTPStatus.BAD_REQUEST, {"error": "this is no JSON"})
+        try:
+            live.order(*self._sender(), asked)
+        except NotObeyed as refused:
+            return _json(HTTPStatus(refused.status), {"error": refused.why})
+        return _json(HTTPStatus.OK, {"done": True})
+
+    def _sender(self) -> tuple[str, str]:
+        """Token and number of the page, as it gives them."""
+        return self.headers.get("X-Cratous-Token", ""), self.headers.get("X-Cratous-Page", "")[:64]
+
+    def _told(self, live: LiveSession, query: str) -> Answer:
+        """What is new of the flight, from the number of an update on."""
+        first = parse_qs(query).get("from", ["0"])[0]
+        if not (first.isascii() and first.isdigit() and len(first) < 10):
+            told = f"expected from=N, the number of an update; got {first[:20]!r}"
+            return _json(HTTPStatus.BAD_REQUEST, {"error": told})
+        return _json(HTTPStatus.OK, {**live.told(int(first)), "who": live.who(*self._sender())})
+
+    def _found(self) -> Answer:
+        elsewhere = self._elsewhere()
+        if elsewhere is not None:
+            return elsewhere
+        path, _, query = self.path.partition("?")
         if path == "/recording.json":
             return self.server.recorded.answer()
+        if path == "/live.json" and self.server.live is not None:
+            return self._told(self.server.live, query)
         found = self.server.pages.get(path)
         return found or _json(HTTPStatus.NOT_FOUND, {"error": "there is no such page"})
 

@@ -41,6 +41,11 @@ def verdicts_of(folder: Path | None, digest: str | None) -> dict[str, Any]:
     log = report.get("log")
     if not isinstance(log, dict) or digest is None or log.get("digest") != digest:
         return {"why_none": OTHER_LOG}
+    return shown(report, where)
+
+
+def shown(report: dict[str, Any], where: str) -> dict[str, Any]:
+    """What the page shows of the verdicts of a report. Raises BadInput where one is damaged."""
     return {
         "overall": str(report.get("verdict")),
         "requirements": _rows(report, "requirements", where),

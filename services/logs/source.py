@@ -65,8 +65,15 @@ class Source:
 
     def verify(self) -> None:
         """BadInput if the log is damaged."""
-        for _ in self.entries():
+        for _ in self.verified_entries():
             pass
+
+    def verified_entries(self) -> Iterator[Entry]:
+        """All messages; BadInput, at the latest after the last, if they are not what was logged.
+
+        What is made of them counts only once this has ended without it.
+        """
+        return self.entries()
 
     def close(self) -> None:
         """Let go of the file."""
@@ -113,8 +120,8 @@ class DatabaseSource(Source):
     def holes(self) -> int:
         return 0 if "selected" in self._log.meta() else self._log.holes()
 
-    def verify(self) -> None:
-        self._log.verify()
+    def verified_entries(self) -> Iterator[Entry]:
+        return self._log.verified_entries()
 
     def close(self) -> None:
         self._log.close()

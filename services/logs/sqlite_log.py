@@ -21,9 +21,11 @@ from cratous.spec.files.limits import CELL_BYTES, json_of
 ERRORS = (sqlite3.DatabaseError, UnicodeDecodeError)
 TABLE_NAMES = "SELECT name FROM sqlite_master WHERE type = 'table'"
 """Names of tables alone: the rows of a view have no end that could be foreseen."""
-
-
+UNDECODED, NO_TEXT = "Could not decode to UTF-8", "text that is not UTF-8"
 OPTIONAL_KINDS = frozenset((str, type(None)))
+_OF_MESSAGE = (int, int, str, str, str)
+PLAIN_KINDS = frozenset((_OF_MESSAGE, (*_OF_MESSAGE, *[type(None)] * 5)))
+"""Of the rows of a flight; all others that are right take longer to tell."""
 
 
 class Closing(NamedTuple):
@@ -45,7 +47,9 @@ class TopicCount(NamedTuple):
 def damaged(path: Path, error: Exception, read: int | None = None) -> BadInput:
     """The error for a log that cannot be read to its end."""
     how_far = "" if read is None else f" after {read} messages"
-    return BadInput(f"the log is damaged{how_far} ({error})", where=str(path))
+    # the library's own sentence goes on with the text itself, however long it is
+    what = NO_TEXT if str(error).startswith(UNDECODED) else str(error)
+    return BadInput(f"the log is damaged{how_far} ({what})", where=str(path))
 
 
 class SqliteLog:
@@ -150,16 +154,28 @@ class SqliteLog:
 
     def verify(self) -> None:
         """BadInput if the database or its messages are not what the writer left."""
+        for _ in self.verified_entries():
+            pass
+
+    def verified_entries(self) -> Iterator[Entry]:
+        """All messages; BadInput, after the last of them, if they are not what the writer left.
+
+        What is made of them counts only once this has ended without it.
+        """
         found = self._column("PRAGMA integrity_check(1)")
         if found != ["ok"]:
             raise damaged(self.path, ValueError(str(found[0])[:200]))
-        closing = self.closing()
-        if closing is not None and (digest := self.digest()) != closing.digest:
+        closing, digest = self.closing(), Digest()
+        for entry in self.entries():
+            if closing is not None:
+                digest.feed(entry)
+            yield entry
+        if closing is not None and digest.hex() != closing.digest:
             raise BadInput(
                 "the messages are not those that were logged",
                 where=str(self.path),
                 expected=f"digest {closing.digest}",
-                got=digest,
+                got=digest.hex(),
             )
 
     def close(self) -> None:
@@ -176,6 +192,8 @@ class SqliteLog:
 def entry_of(row: tuple[Any, ...]) -> Entry:
     """The entry of a row; sqlite3.DatabaseError if a value is not of its kind."""
     entry = Entry(*row)
+    if tuple(map(type, row)) in PLAIN_KINDS:
+        return entry
     right = type(entry.seq) is type(entry.time_ms) is int
     right = right and type(entry.source) is type(entry.topic) is str
     right = right and type(entry.body) in (str, bytes)
@@ -211,7 +229,6 @@ def _connect(path: Path, mode: str) -> sqlite3.Connection:
         f"{path.resolve().as_uri()}?mode={mode}", uri=True, check_same_thread=False, timeout=10
     )
     try:
-        database.text_factory = _text
         database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, CELL_BYTES)
         database.execute("PRAGMA trusted_schema = OFF")
         database.execute("PRAGMA query_only = ON")
@@ -220,13 +237,6 @@ def _connect(path: Path, mode: str) -> sqlite3.Connection:
         database.close()
         raise
     return database
-
-
-def _text(data: bytes) -> str:
-    try:
-        return data.decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise sqlite3.DatabaseError(f"text that is not UTF-8: {error}") from None
 
 
 def tables_of(path: Path) -> set[str]:

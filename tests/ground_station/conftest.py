@@ -5,10 +5,17 @@ from pathlib import Path
 
 import pytest
 
-CROSSING = Path(__file__).resolve().parents[2] / "examples" / "crossing" / "mission.yaml"
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+CROSSING, POPUP = (EXAMPLES / name / "mission.yaml" for name in ("crossing", "popup"))
 
 
 @pytest.fixture
 def crossing(fly_once: Callable[[Path], Path]) -> Path:
     """The results of a flight in which ICAROUS takes over vehicle 2 and hands it back."""
     return fly_once(CROSSING)
+
+
+@pytest.fixture
+def popup(fly_once: Callable[[Path], Path]) -> Path:
+    """The results of a flight in which vehicle 2 is lost at 60 s."""
+    return fly_once(POPUP)

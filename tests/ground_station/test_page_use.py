@@ -98,3 +98,18 @@ def test_the_map_draws_the_takeover_in_its_colour(page: Page) -> None:
     page.value("location.hash = '#t=60&theme=light'")
     page.until("document.getElementById('clock').textContent.startsWith('00:01:00.0')")
     assert page.value(count) > 300
+
+
+def test_of_a_lost_vehicle_it_is_not_said_that_uxas_commands_it(
+    popup: Path, tmp_path: Path
+) -> None:
+    second = "document.querySelectorAll(\"#aircraft tr[data-aircraft='2']\")[1].textContent"
+    with serving(popup) as (_, port), browsing(tmp_path) as page:
+        page.go(f"http://127.0.0.1:{port}/#t=59.9")
+        page.until(READY)
+        assert page.value(second).startswith("authority UxAS")
+        page.value("location.hash = '#t=60'")
+        page.until("document.getElementById('clock').textContent.startsWith('00:01:00.0')")
+        assert page.value(second).startswith("authority lost since 60.0 s: it takes no part")
+        assert "authority UxAS" in page.text("aircraft")  # vehicle 1 flies on
+        assert page.logged == []

@@ -82,6 +82,11 @@ def test_it_takes_nothing(port: int) -> None:
     assert ask(port, "/", "HEAD").body == b""
 
 
+def test_when_a_vehicle_takes_no_part_is_what_the_mission_says(popup: Path) -> None:
+    lost = {"vehicle": 2, "from_ms": 60_000, "to_ms": None, "why": "lost"}
+    assert recording(popup)["absences"] == [lost]
+
+
 def test_a_recording_is_what_the_flight_s_report_says(port: int, crossing: Path) -> None:
     got = ask(port, "/recording.json", Accept_Encoding="gzip")
     assert got.headers["content-encoding"] == "gzip"

@@ -10,6 +10,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -32,11 +33,55 @@ class Got(NamedTuple):
         return json.loads(gzip.decompress(self.body) if packed else self.body)
 
 
+class Served(NamedTuple):
+    """`cratous serve MISSION`: the process, its port, and what commands need."""
+
+    process: subprocess.Popen[str]
+    port: int
+    token: str
+
+    @property
+    def url(self) -> str:
+        """The address that it printed."""
+        return f"http://127.0.0.1:{self.port}/?token={self.token}"
+
+    def children(self) -> list[int]:
+        """The processes that it started."""
+        number = self.process.pid
+        return [int(n) for n in Path(f"/proc/{number}/task/{number}/children").read_text().split()]
+
+    def order(self, page: str = "a", body: bytes | None = None, **asked: Any) -> Got:
+        """A command of a page."""
+        return self.sent(page, json.dumps(asked).encode() if body is None else body)
+
+    def sent(self, page: str, body: bytes, **changed: str) -> Got:
+        """A request with the headers of a page, but for those that are changed."""
+        own = f"127.0.0.1:{self.port}"
+        headers = {
+            "Origin": f"http://{own}", "Content-Type": "application/json", "Host": own,
+            "X-Cratous-Token": self.token, "X-Cratous-Page": page, "Content-Length": str(len(body)),
+            **{name.replace("_", "-"): value for name, value in changed.items()},
+        }  # fmt: skip
+        return ask(self.port, "/command", "POST", body, **headers)
+
+    def told(self, first: int = 0, page: str = "a") -> Any:
+        """What is new from an update on."""
+        named = {"X-Cratous-Token": self.token, "X-Cratous-Page": page}
+        return ask(self.port, f"/live.json?from={first}", **named).data()
+
+    def until(self, *states: str) -> Any:
+        """How the flight is once it is in one of these states."""
+        until_s = time.monotonic() + LIMIT_S
+        while (status := self.told()["status"])["state"] not in states:
+            assert time.monotonic() < until_s, status
+            time.sleep(0.05)
+        return status
+
+
 @contextlib.contextmanager
-def serving(path: Path) -> Iterator[tuple[subprocess.Popen[str], int]]:
-    """`cratous serve PATH` on a free port: the process and the port; it is ended at the end."""
+def _started(*words: str, cwd: Path | None = None) -> Iterator[tuple[subprocess.Popen[str], str]]:
     running = subprocess.Popen(
-        [sys.executable, "-m", "cratous", "serve", str(path), "--port", "0"],
+        [sys.executable, "-m", "cratous", "serve", *words, "--port", "0"], cwd=cwd,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         env={**os.environ, "PYTHONUNBUFFERED": "1"},
     )  # fmt: skip
@@ -44,21 +89,36 @@ def serving(path: Path) -> Iterator[tuple[subprocess.Popen[str], int]]:
         assert running.stdout is not None
         line = running.stdout.readline()
         assert "http://127.0.0.1:" in line, line
-        yield running, int(line.partition("http://127.0.0.1:")[2].partition("/")[0])
+        yield running, line.partition("http://127.0.0.1:")[2]
     finally:
         if running.poll() is None:
             running.kill()
         running.communicate(timeout=LIMIT_S)
 
 
-def ask(port: int, path: str, method: str = "GET", **headers: str) -> Got:
+@contextlib.contextmanager
+def serving(path: Path) -> Iterator[tuple[subprocess.Popen[str], int]]:
+    """`cratous serve PATH` on a free port: the process and the port; it is ended at the end."""
+    with _started(str(path)) as (running, line):
+        yield running, int(line.partition("/")[0])
+
+
+@contextlib.contextmanager
+def flying(mission: Path, out: Path, cwd: Path | None = None) -> Iterator[Served]:
+    """`cratous serve MISSION --out OUT` on a free port; it is ended at the end."""
+    with _started(str(mission), "--out", str(out), cwd=cwd) as (running, line):
+        port, _, token = line.partition(" ")[0].partition("/?token=")
+        yield Served(running, int(port), token)
+
+
+def ask(port: int, path: str, method: str = "GET", body: bytes = b"", /, **headers: str) -> Got:
     """One request; `Host` in the headers takes the place of the true one."""
     line = http.client.HTTPConnection("127.0.0.1", port, timeout=LIMIT_S)
     try:
         line.putrequest(method, path, skip_host="Host" in headers, skip_accept_encoding=True)
         for name, value in headers.items():
             line.putheader(name.replace("_", "-"), value)
-        line.endheaders()
+        line.endheaders(body or None)
         answer = line.getresponse()
         found = {name.lower(): value for name, value in answer.getheaders()}
         return Got(answer.status, found, answer.read())

@@ -13,8 +13,13 @@ export class AltitudeChart {
       const box = canvas.getBoundingClientRect();
       go((event.offsetX - LEFT) / (box.width - LEFT - RIGHT) * recording.end_ms);
     });
+    this.grown();
+  }
+
+  // the recording has grown
+  grown() {
     let low = Infinity, high = -Infinity;
-    for (const track of Object.values(recording.tracks)) for (const row of track) { low = Math.min(low, row[3]); high = Math.max(high, row[3]); }
+    for (const track of Object.values(this.recording.tracks)) for (const row of track) { low = Math.min(low, row[3]); high = Math.max(high, row[3]); }
     this.low = low; this.high = high;
   }
 

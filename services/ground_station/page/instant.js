@@ -43,10 +43,18 @@ export function lastOf(list, vehicle, time) {
   return found;
 }
 
-// who commands: {name, reason, since}; name is null where the log does not say
+// while it takes no part: {why, from_ms, to_ms}; undefined while it does
+export function absenceAt(recording, vehicle, time) {
+  return recording.absences.find(a => a.vehicle === vehicle && a.from_ms <= time && (a.to_ms === null || time < a.to_ms));
+}
+
+// who commands: {name, reason, since}; name is null where the log does not say. A vehicle that is lost, or
+// has not joined, takes no part (away): its name is why, unless its ICAROUS took over
 export function authorityAt(recording, vehicle, time) {
   if (recording.authority === null) return { name: null };
   const change = lastOf(recording.authority, vehicle, time);
+  const away = absenceAt(recording, vehicle, time);
+  if (away && change?.owner !== "ICAROUS") return { name: away.why, since: away.from_ms, away: true };
   if (!change) return { name: "UxAS", reason: "since the start", since: 0 };
   return { name: change.owner, reason: change.reason, since: change.time_ms };
 }

@@ -2,6 +2,7 @@
 
 import * as address from "./address.js";
 import { AltitudeChart } from "./altitude.js";
+import { Live } from "./live.js";
 import { FlightMap } from "./map.js";
 import * as panels from "./panels.js";
 import { clock, words } from "./units.js";
@@ -47,16 +48,38 @@ class Station {
     by("name").textContent = recording.name;
     document.title = `${recording.name} – CRATOUS ground station`;
     const log = recording.log;
-    by("source").textContent = [`${log.file} (${log.kind})`, recording.outcome, log.end && !log.digest ? log.end : "", log.missing ? `${log.missing} messages are missing` : "", recording.unread ? `${recording.unread} messages could not be decoded` : ""].filter(Boolean).join(" · ");
+    by("source").textContent = recording.live ? "flown now" : [`${log.file} (${log.kind})`, recording.outcome, log.end && !log.digest ? log.end : "", log.missing ? `${log.missing} messages are missing` : "", recording.unread ? `${recording.unread} messages could not be decoded` : ""].filter(Boolean).join(" · ");
     by("slider").max = recording.end_ms;
     by("rate").append(...address.RATES.map(rate => new Option(`${rate}×`, rate)));
     panels.events(recording, go);
     panels.verdicts(recording, this.state, go);
     panels.tasks(recording, this.state);
+    this.live = null;
     this.listen();
+    if (recording.live) this.fly();
+  }
+
+  // a flight that is flown now: the newest instant is shown unless the operator looks back
+  fly() {
+    this.follow = true;
+    for (const id of ["play", "rate-box"]) by(id).hidden = true;
+    this.live = new Live(this.recording, updates => this.grown(updates));
+  }
+
+  grown(updates) {
+    const { recording } = this, go = time => this.go(time);
+    this.ids = Object.keys(recording.tracks);
+    this.map.grown();
+    this.chart.grown();
+    by("slider").max = recording.end_ms;
+    if (updates.some(update => update.more?.events)) panels.events(recording, go);
+    if (updates.some(update => update.set?.verdicts)) panels.verdicts(recording, this.state, go);
+    if (this.follow) this.state.time = recording.end_ms;
+    this.draw(true);
   }
 
   go(time) {
+    this.follow = time >= this.recording.end_ms;
     this.state.time = Math.min(Math.max(time, 0), this.recording.end_ms);
     this.draw(true);
   }
@@ -68,6 +91,7 @@ class Station {
   }
 
   play(on) {
+    if (this.live) { this.live.toggle(); return; }
     if (on && this.state.time >= this.recording.end_ms) this.state.time = 0;
     this.playing = on;
     this.last = performance.now();
@@ -106,6 +130,7 @@ class Station {
   }
 
   rate(by_) {
+    if (this.live) { this.live.rate(by_); return; }
     const k = address.RATES.indexOf(this.state.rate) + by_;
     this.state.rate = address.RATES[Math.min(Math.max(k, 0), address.RATES.length - 1)];
     this.draw(true);
@@ -123,6 +148,7 @@ class Station {
     on("play", () => this.play(!this.playing));
     on("step", () => this.go(this.state.time + 1000));
     on("back", () => this.go(this.state.time - 1000));
+    on("now", () => this.go(this.recording.end_ms));
     on("after", () => this.event(1));
     on("before", () => this.event(-1));
     on("units", () => this.turn("units"));
@@ -175,7 +201,7 @@ try {
   by("station").hidden = false;
   const station = new Station(recording);
   station.draw(true);
-  if (!Object.keys(recording.tracks).length) {
+  if (!recording.live && !Object.keys(recording.tracks).length) {
     by("message").hidden = false;
     by("message").textContent = "This log has no positions of aircraft; its events are listed beside the map.";
   }

@@ -15,6 +15,9 @@ export class FlightMap {
     this.listen();
   }
 
+  // the recording has grown
+  grown() { this.bounds = extent(this.recording); }
+
   // the view that shows everything
   whole() {
     const box = this.canvas.getBoundingClientRect(), b = this.bounds;
@@ -151,7 +154,7 @@ export class FlightMap {
     const at = positionAt(this.recording.tracks[id], state.time);
     if (!at) return;
     const [x, y] = this.xy(at.north, at.east), ink = colorOf(this.recording, id), pen = this.pen;
-    const commands = authorityAt(this.recording, Number(id), state.time).name;
+    const who = authorityAt(this.recording, Number(id), state.time), commands = who.name;
     pen.save();
     pen.translate(x, y);
     pen.rotate((at.course || 0) * Math.PI / 180);
@@ -168,8 +171,9 @@ export class FlightMap {
     }
     const vehicle = this.recording.vehicles.find(v => String(v.id) === id);
     const name = vehicle ? vehicle.label || id : `traffic ${id}`;
+    const away = who.away ? ` ${who.name}` : "";
     const rest = at.seen ? words.altitude(at.alt) : "not seen any more";
-    this.label(`${name} ${rest}${at.seen && commands === "ICAROUS" ? " ICAROUS" : ""}`, x + 15, y - 10, ink);
+    this.label(`${name} ${rest}${at.seen && commands === "ICAROUS" ? " ICAROUS" : away}`, x + 15, y - 10, ink);
   }
 
   zoom(by, x, y) {

@@ -42,7 +42,7 @@ export function aircraft(recording, state, words) {
       const who = authorityAt(recording, Number(id), state.time), badge = document.createElement("b");
       badge.textContent = who.name ?? "not in the log";
       badge.className = who.name === "ICAROUS" ? "icarous" : "";
-      const why = who.name === "ICAROUS" ? ` since ${seconds(who.since)}: ${who.reason}` : "";
+      const why = who.away ? ` since ${seconds(who.since)}: it takes no part in the mission` : who.name === "ICAROUS" ? ` since ${seconds(who.since)}: ${who.reason}` : "";
       told.append("authority ", badge, `${why} · link ${link(recording, Number(id), state.time)}${phase(recording, Number(id), state.time)}`);
     } else {
       told.append(seen ? "others' traffic" : at ? `not seen since ${seconds(at.last)}` : "not there yet");
@@ -84,9 +84,11 @@ export function verdicts(recording, state, go) {
     by("verdicts-note").textContent = `Not judged here: ${said.why_none}.`;
     return;
   }
-  by("overall").textContent = said.overall;
+  const so_far = said.so_far_ms !== undefined;
+  by("overall").textContent = so_far ? `so far ${said.overall}` : said.overall;
   by("overall").className = said.overall;
-  by("verdicts-note").textContent = "As report.json says; `cratous certify` holds it against the log. A time is where the margin is least, or where it broke.";
+  by("verdicts-at").textContent = so_far ? `so far, at ${seconds(said.so_far_ms)}` : "on the whole flight";
+  by("verdicts-note").textContent = so_far ? "What is not broken is unknown until the flight has ended; margins are the least so far." : "As report.json says; `cratous certify` holds it against the log. A time is where the margin is least, or where it broke.";
   const rank = { violated: 0, unknown: 1, excused: 2, holds: 3 };
   const parts = said.details.filter(one => one.verdict !== "holds" || one.time_ms !== null)
     .sort((a, b) => rank[a.verdict] - rank[b.verdict]);

@@ -1,0 +1,88 @@
+"""The process in which `cratous serve MISSION` flies: commands on its stdin, what is new on its stdout.
+
+Both are JSON, one object a line. When stdin ends, whoever started it is gone, and it ends too.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+import threading
+from pathlib import Path
+from typing import Any
+
+from cratous.services.cli.job import Settings, folder_name, run_mission
+from cratous.services.cli.stopping import Stopped, stoppable
+from cratous.services.ground_station.live_flight import LiveFlight, forward
+from cratous.services.results.folder import results_folder
+from cratous.spec.errors import BadInput, CratousError
+from cratous.spec.files.printable import json_text
+
+
+def main(asked: dict[str, Any]) -> int:
+    """Fly a mission. asked: path, seed, out, and what `Settings` takes; returns the exit code."""
+    out, writing = os.dup(1), threading.Lock()
+    os.dup2(2, 1)  # whatever else prints does not come between the lines
+
+    def send(update: dict[str, Any]) -> None:
+        data = json_text(update).encode() + b"\n"
+        with writing:
+            while data:
+                data = data[os.write(out, data) :]
+
+    def status(state: str, **more: Any) -> None:
+        send({"status": {"state": state, **more}})
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who started this
+    try:
+        with stoppable():
+            return _fly(asked, send, status)
+    except Stopped:
+        status("stopped", text="The flight was stopped; no results were written.")
+        return 1
+    except CratousError as error:
+        told = error.data() if isinstance(error, BadInput) else {"error": str(error)}
+        status("failed", text=str(error), error=told)
+        return 2
+
+
+def _fly(asked: dict[str, Any], send: Any, status: Any) -> int:
+    from cratous.services.loading import load
+
+    mission = load(Path(asked["path"]), asked["seed"])
+    target = Path(asked["out"]) / folder_name(mission)
+    read, write = os.pipe()
+    live = LiveFlight(mission, send, write)
+    judged = forward(read, send)
+    threading.Thread(target=_commands, args=(live,), daemon=True).start()
+    settings = Settings(asked["daa"], asked["allow_unproved"], asked["command"])
+
+    def tell(text: str) -> None:
+        if not text.startswith("\r") or "of flight" not in text:
+            send({"status": {"text": text.strip()}})
+
+    status("planning")
+    with results_folder(target, tell) as folder:
+        report = run_mission(mission, folder, settings, tell, live)
+    live.tell()
+    live.verdicts(report)
+    os.close(write)
+    judged.join()
+    status("ended", text=f"{report['verdict'].upper()}: results in {target}", folder=str(target))
+    return 0
+
+
+def _commands(live: LiveFlight) -> None:
+    """Do what is asked for, line by line; stopping is a signal, so that it also ends a search."""
+    for line in sys.stdin:
+        asked = json.loads(line)
+        if asked.get("do") == "stop":
+            break
+        live.command(asked)
+    os.kill(os.getpid(), signal.SIGTERM)
+
+
+if __name__ == "__main__":
+    sys.exit(main(json.loads(sys.argv[1])))

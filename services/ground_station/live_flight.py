@@ -1,0 +1,192 @@
+"""A flight as it is told while it is flown: what is new on the page, as JSON lines, and its commands.
+
+It looks at the messages and calls no kernel, so what the flight counts and writes is the same as
+without it. Verdicts so far are asked of the monitor in a fork of the process, for the same reason.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.services.certify.verdicts import constraint_rows, plan_rows, requirement_rows
+from cratous.services.ground_station.flown import FlownRecording
+from cratous.services.ground_station.pace import RATES, Pace
+from cratous.services.ground_station.verdicts import shown
+from cratous.services.logs.entry import Entry
+from cratous.spec.files.printable import json_text
+from cratous.spec.mission import Mission
+from cratous.spec.mission.guarantees import Outcome, Verdict, worst
+
+TOLD_S = 0.1
+"""So often, at most, it is told what is new."""
+JUDGED_S = 1.0
+"""So often, at most, the monitor is asked for the verdicts so far."""
+GROWING = ("authority", "phases", "events", "routes", "links")
+Send = Callable[[dict[str, Any]], None]
+
+
+class LiveFlight:
+    """Taps a bus, holds the flight to its pace and sends what is new.
+
+    send: gets each update, from any thread; judged: descriptor of a pipe to which verdicts are written,
+    a line each.
+    """
+
+    def __init__(self, mission: Mission, send: Send, judged: int) -> None:
+        self.pace = Pace()
+        self._send, self._judged = send, judged
+        self._recording = FlownRecording(mission)
+        self._sent: dict[str, int] = dict.fromkeys(GROWING, 0)
+        self._points: dict[int, int] = {}
+        self._seen: dict[str, str] = {}
+        self._now_ms = 0
+        self._told_s = self._asked_s = 0.0
+        self._asked_ms = -1
+        self._judge = 0
+        self._checks: list[Verdict] = []
+        self._monitor: Any = None
+        send({"begin": self._begin()})
+
+    def _begin(self) -> dict[str, Any]:
+        empty: dict[str, Any] = {key: [] for key in (*GROWING, "takeovers", "footprints")}
+        return {
+            **self._recording.first(), **empty, "tracks": {}, "end_ms": 0, "outcome": "in flight", "unread": 0,
+            "verdicts": {"why_none": "the flight has not begun"},
+        }  # fmt: skip
+
+    def joined(self, bus: Any) -> None:
+        """See `job.Onlooker`."""
+        bus.tap(self._tap)
+
+    def planned(self, checks: list[Verdict], monitor: Any) -> None:
+        """See `job.Onlooker`."""
+        self._checks, self._monitor = checks, monitor
+        self.tell()
+
+    def command(self, asked: dict[str, Any]) -> None:
+        """Do what the operator asks for: play, pause, step or rate."""
+        what = asked.get("do")
+        if what == "play":
+            self.pace.play()
+        elif what == "pause":
+            self.pace.pause()
+        elif what == "step":
+            self.pace.step()
+        elif what == "rate" and asked.get("rate") in RATES:
+            self.pace.set_rate(float(asked["rate"]))
+        self.state()
+
+    def state(self) -> None:
+        """Send whether it flies, and how fast."""
+        state = "paused" if self.pace.paused else "flying"
+        if self._monitor is not None:
+            self._send({"status": {"state": state, "rate": self.pace.rate}})
+
+    def _tap(self, envelope: Any) -> None:
+        if envelope.time_ms > self._now_ms:  # the first message of a step
+            if time.monotonic() - self._told_s >= TOLD_S:
+                self.tell()
+                if time.monotonic() - self._asked_s >= JUDGED_S:
+                    self._ask()
+            self.pace.wait(envelope.time_ms, self._standing)
+            self._now_ms = envelope.time_ms
+        body = lmcp.to_json(envelope.body)
+        self._recording.add(
+            Entry(envelope.seq, envelope.time_ms, envelope.source, envelope.topic, body)
+        )
+
+    def _standing(self) -> None:
+        """Everything up to where it stands is told and judged."""
+        self._reap(wait=True)
+        self.tell()
+        self._ask()
+
+    def tell(self) -> None:
+        """Send what is new since the last time."""
+        self._told_s = time.monotonic()
+        recording, flight = self._recording, self._recording.reader.flight
+        lists: dict[str, list[Any]] = {
+            "authority": flight.authority, "phases": flight.phases, "events": flight.events,
+            "routes": recording.shapes.routes, "links": recording.links.found,
+        }  # fmt: skip
+        more = {key: rows[self._sent[key] :] for key, rows in lists.items()}
+        self._sent = {key: len(rows) for key, rows in lists.items()}
+        tracks = {
+            str(number): track[self._points.get(number, 0) :]
+            for number, track in flight.tracks.items()
+        }
+        self._points = {number: len(track) for number, track in flight.tracks.items()}
+        update: dict[str, Any] = {
+            "more": {key: rows for key, rows in more.items() if rows},
+            "tracks": {number: rows for number, rows in tracks.items() if rows},
+            "heads": {str(number): row for number, row in recording.reader.last.items()},
+            "set": {"end_ms": flight.end_ms},
+        }
+        seen = [(task, rows[-1]["time_ms"]) for task, rows in flight.footprints.items()]
+        for key, mark, rows_of in (
+            ("takeovers", json_text(flight.takeovers), lambda: flight.takeovers),
+            ("footprints", json_text(seen), recording.footprints),
+        ):
+            if self._seen.get(key, "[]") != mark:
+                self._seen[key] = mark
+                update["set"][key] = rows_of()
+        self._send(update)
+        self.state()
+
+    def verdicts(self, report: dict[str, Any]) -> None:
+        """Send the verdicts of the report of the whole flight."""
+        self._reap(wait=True)
+        self._send({"set": {"verdicts": shown(report, "report")}})
+
+    def _ask(self) -> None:
+        """Ask a copy of this process for the verdicts so far; nothing if one is at it still."""
+        if self._monitor is None or self._now_ms == self._asked_ms or not self._reap(wait=False):
+            return
+        self._asked_s, self._asked_ms = time.monotonic(), self._now_ms
+        child = os.fork()
+        if child:
+            self._judge = child
+            return
+        try:
+            data = json_text(self._so_far()).encode() + b"\n"
+            while data:
+                data = data[os.write(self._judged, data) :]
+        finally:
+            os._exit(0)  # nothing of the flight is cleaned up by its copy
+
+    def _so_far(self) -> dict[str, Any]:
+        rows = plan_rows(self._checks) + constraint_rows(self._monitor.verdicts(), "flight")
+        found = {
+            "requirements": requirement_rows(rows),
+            "constraints": rows,
+            "verdict": worst([Outcome(row["verdict"]) for row in rows]),
+        }
+        return {"set": {"verdicts": {**shown(found, "monitor"), "so_far_ms": self._now_ms}}}
+
+    def _reap(self, *, wait: bool) -> bool:
+        """True iff no copy is at work any more."""
+        if self._judge:
+            done, _ = os.waitpid(self._judge, 0 if wait else os.WNOHANG)
+            if not done:
+                return False
+            self._judge = 0
+        return True
+
+
+def forward(source: int, send: Send) -> threading.Thread:
+    """A thread that sends each line of a pipe on, until it is closed."""
+
+    def run() -> None:
+        with os.fdopen(source, encoding="utf-8") as lines:
+            for line in lines:
+                send(json.loads(line))
+
+    thread = threading.Thread(target=run, daemon=True)
+    thread.start()
+    return thread

@@ -1,0 +1,160 @@
+"""The flight's process as the server has it: what it told so far, whether it lives, who commands it."""
+
+from __future__ import annotations
+
+import hmac
+import json
+import secrets
+import subprocess
+import sys
+import threading
+import time
+from contextlib import suppress
+from typing import Any
+
+from cratous.services.ground_station.pace import RATES
+from cratous.spec.errors import BadInput
+
+ABSENT_S = 3.0
+"""A page that has not asked for so long commands no more."""
+MOST_TOLD = 300
+"""Updates in one answer."""
+OVER = ("ended", "stopped", "failed", "lost")
+ORDERS = ("play", "pause", "step", "rate", "stop", "take")
+ENDING_S = 20.0
+
+
+class NotObeyed(Exception):
+    """A command that is not obeyed; status: of HTTP."""
+
+    def __init__(self, status: int, why: str) -> None:
+        super().__init__(why)
+        self.status, self.why = status, why
+
+
+class LiveSession:
+    """Starts the flight's process and keeps all that it tells, in order.
+
+    token: whoever has it may command, one page at a time. status: state and text for the page.
+    """
+
+    def __init__(self, module: str, asked: dict[str, Any]) -> None:
+        """module: what flies, as `python -m` takes it; asked: its argument."""
+        self.token = secrets.token_urlsafe(24)
+        self.status: dict[str, Any] = {"state": "loading", "rate": 1.0, "text": ""}
+        self._updates: list[str] = []
+        self._begin: dict[str, Any] | None = None
+        self._changed = threading.Condition()
+        self._operator, self._seen_s = "", 0.0
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", module, json.dumps(asked)],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, encoding="utf-8",
+        )  # fmt: skip
+        threading.Thread(target=self._listen, daemon=True).start()
+
+    @property
+    def pid(self) -> int:
+        """Of the process that flies."""
+        return self._process.pid
+
+    def _listen(self) -> None:
+        assert self._process.stdout is not None
+        for line in self._process.stdout:
+            try:
+                told = json.loads(line)
+            except ValueError:
+                break  # it was cut off in the middle of a line
+            with self._changed:
+                if "begin" in told:
+                    self._begin = told["begin"]
+                elif "status" in told:
+                    self.status = {**self.status, **told["status"]}
+                else:
+                    self._updates.append(line)
+                self._changed.notify_all()
+        code = self._process.wait()
+        with self._changed:
+            if self.status["state"] not in OVER:
+                how = f"signal {-code}" if code < 0 else f"exit code {code}"
+                self.status = {
+                    **self.status, "state": "lost",
+                    "text": f"The process that flies ended without a word ({how}). What is shown is "
+                    "what it told before; the flight has no results.",
+                }  # fmt: skip
+            self._changed.notify_all()
+
+    def begun(self) -> dict[str, Any]:
+        """What the mission says, for a page that opens; waits for it. Raises BadInput if there is none."""
+        with self._changed:
+            self._changed.wait_for(lambda: self._begin is not None or self.status["state"] in OVER)
+            if self._begin is None:
+                error = self.status.get("error") or {"error": self.status["text"]}
+                known = {
+                    key: str(error.get(key, "")) for key in ("where", "item", "expected", "got")
+                }
+                raise BadInput(str(error.get("error")), **known)
+            return self._begin
+
+    def told(self, first: int) -> dict[str, Any]:
+        """The updates from a number on, some hundreds at most, and how the flight is."""
+        with self._changed:
+            found = self._updates[first : first + MOST_TOLD]
+            total, status = len(self._updates), dict(self.status)
+        return {
+            "updates": [json.loads(line) for line in found],
+            "next": first + len(found),
+            "more": first + len(found) < total,
+            "status": status,
+        }
+
+    def knows(self, token: str) -> bool:
+        """True iff it is the token."""
+        return hmac.compare_digest(token.encode(), self.token.encode())
+
+    def who(self, token: str, page: str) -> str:
+        """What a page may do that asks how it stands: "you" command, "other" does, or only "watch"."""
+        if not self.knows(token) or not page:
+            return "watch"
+        with self._changed:
+            now_s = time.monotonic()
+            if self._operator != page and now_s - self._seen_s < ABSENT_S:
+                return "other"
+            self._operator, self._seen_s = page, now_s
+            return "you"
+
+    def order(self, token: str, page: str, asked: Any) -> None:
+        """Obey a command of a page. Raises NotObeyed, with why."""
+        if not self.knows(token):
+            raise NotObeyed(
+                403, "commands need the token of the address that `cratous serve` printed"
+            )
+        if not isinstance(asked, dict) or asked.get("do") not in ORDERS or not page:
+            raise NotObeyed(400, f"expected one of {', '.join(ORDERS)}")
+        if asked["do"] == "rate" and asked.get("rate") not in RATES:
+            raise NotObeyed(400, f"expected a rate of {', '.join(f'{rate:g}' for rate in RATES)}")
+        if asked["do"] == "take":
+            with self._changed:
+                self._operator, self._seen_s = page, time.monotonic()
+            return
+        if self.who(token, page) != "you":
+            raise NotObeyed(409, "another page commands this flight")
+        if self.status["state"] in OVER:
+            raise NotObeyed(409, "the flight is over")
+        self._say({key: asked[key] for key in ("do", "rate") if key in asked})
+
+    def _say(self, asked: dict[str, Any]) -> None:
+        assert self._process.stdin is not None
+        with self._changed, suppress(OSError, ValueError):  # gone: `_listen` says so
+            self._process.stdin.write(json.dumps(asked) + "\n")
+            self._process.stdin.flush()
+
+    def close(self) -> None:
+        """End the process if it flies; a flight that is not over leaves no results."""
+        assert self._process.stdin is not None
+        with self._changed, suppress(OSError):
+            self._process.stdin.close()
+        try:
+            self._process.wait(ENDING_S)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()

@@ -1,0 +1,86 @@
+"""When a flight goes on: paused, for a step, or at so many times the speed of the clock."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+
+RATES = (0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0)
+STEP_MS = 1000
+
+
+class Pace:
+    """Holds a flight back. `wait` is called by the flight, everything else by whoever commands it.
+
+    A flight that is slower than its rate does not catch up later. It begins paused.
+    """
+
+    def __init__(self) -> None:
+        self._changed = threading.Condition()
+        self._rate, self._paused = 1.0, True
+        self._now_ms, self._until_ms = 0, 0
+        self._since: tuple[float, int] | None = None
+        """Clock [s] and time of the flight [ms] from which the rate counts."""
+
+    @property
+    def rate(self) -> float:
+        """Seconds of flight in a second of the clock."""
+        return self._rate
+
+    @property
+    def paused(self) -> bool:
+        """Whether the flight stands, or will after its step."""
+        return self._paused
+
+    def play(self) -> None:
+        """Go on at the rate."""
+        with self._changed:
+            self._paused, self._since = False, None
+            self._changed.notify_all()
+
+    def pause(self) -> None:
+        """Stand."""
+        with self._changed:
+            self._paused, self._until_ms = True, self._now_ms
+            self._changed.notify_all()
+
+    def step(self) -> None:
+        """Fly a second as fast as it goes, then stand."""
+        with self._changed:
+            self._paused, self._until_ms = True, self._now_ms + STEP_MS
+            self._changed.notify_all()
+
+    def set_rate(self, rate: float) -> None:
+        """Take one of RATES."""
+        with self._changed:
+            self._rate, self._since = rate, None
+            self._changed.notify_all()
+
+    def due(self, time_ms: int) -> float | None:
+        """How long it is until the flight may be at a time [s], at most 0 if now; None if paused."""
+        if self._paused:
+            return 0.0 if time_ms <= self._until_ms else None
+        now_s = time.monotonic()
+        if self._since is None:
+            self._since = (now_s, self._now_ms)
+        left_s = self._since[0] + (time_ms - self._since[1]) / 1000 / self._rate - now_s
+        if left_s < 0:
+            self._since = (now_s, time_ms)
+        return left_s
+
+    def wait(self, time_ms: int, standing: Callable[[], None]) -> None:
+        """Return when the flight may be at that time [ms]; `standing` is called when it is paused."""
+        told = False
+        while True:
+            with self._changed:
+                left_s = self.due(time_ms)
+                if left_s is not None and left_s <= 0:
+                    self._now_ms = time_ms
+                    return
+                if told or left_s is not None:
+                    told = told and left_s is None
+                    self._changed.wait(left_s)
+                    continue
+            standing()
+            told = True

@@ -1,0 +1,109 @@
+// A flight that is flown now: asks the server what is new, and sends the operator's commands.
+
+import { RATES } from "./address.js";
+import { seconds } from "./units.js";
+
+const EVERY_MS = 150, PATIENCE = 5;
+const OVER = ["ended", "stopped", "failed", "lost"];
+const by = id => document.getElementById(id);
+
+export class Live {
+  // changed: called when the recording has grown; moved: whether only its end moved
+  constructor(recording, changed) {
+    this.recording = recording;
+    this.changed = changed;
+    this.token = new URLSearchParams(location.search).get("token") || "";
+    this.page = crypto.randomUUID();
+    this.next = 0;
+    this.failures = 0;
+    this.heads = {};
+    this.status = { state: "loading", rate: 1, text: "" };
+    this.who = "watch";
+    by("live").hidden = false;
+    by("live-rate").append(...RATES.map(rate => new Option(`${rate}×`, rate)));
+    const on = (id, act) => by(id).addEventListener("click", act);
+    on("fly", () => this.toggle());
+    on("fly-step", () => this.order({ do: "step" }));
+    on("take", () => this.order({ do: "take" }));
+    on("stop", () => by("confirm-stop").showModal());
+    on("stop-not", () => by("confirm-stop").close());
+    on("stop-yes", () => { by("confirm-stop").close(); this.order({ do: "stop" }); });
+    on("results", () => location.reload());
+    by("live-rate").addEventListener("change", () => this.order({ do: "rate", rate: Number(by("live-rate").value) }));
+    this.show();
+    this.poll();
+  }
+
+  get over() { return OVER.includes(this.status.state); }
+
+  toggle() { this.order({ do: this.status.state === "flying" ? "pause" : "play" }); }
+
+  rate(way) {
+    const k = RATES.indexOf(this.status.rate) + way;
+    if (RATES[k]) this.order({ do: "rate", rate: RATES[k] });
+  }
+
+  headers() { return { "X-Cratous-Token": this.token, "X-Cratous-Page": this.page }; }
+
+  async order(asked) {
+    try {
+      const headers = { ...this.headers(), "Content-Type": "application/json" };
+      const answer = await fetch("/command", { method: "POST", headers, body: JSON.stringify(asked) });
+      this.refused = answer.ok ? "" : `Not done: ${(await answer.json()).error}.`;
+    } catch (error) {
+      this.refused = `Not done: the server does not answer (${error.message}).`;
+    }
+    this.show();
+  }
+
+  async poll() {
+    let told = null;
+    try {
+      const answer = await fetch(`/live.json?from=${this.next}`, { headers: this.headers() });
+      if (answer.ok) told = await answer.json();
+    } catch { /* counted below */ }
+    this.failures = told ? 0 : this.failures + 1;
+    if (told) {
+      told.updates.forEach(update => this.take(update));
+      this.next = told.next;
+      this.status = told.status;
+      this.who = told.who;
+      if (told.updates.length) this.changed(told.updates);
+    }
+    this.show();
+    if (!(told && this.over && !told.more)) setTimeout(() => this.poll(), told?.more ? 0 : EVERY_MS);
+  }
+
+  // an update into the recording; a head is the newest place, until the next one comes
+  take(update) {
+    const { tracks } = this.recording;
+    for (const [key, rows] of Object.entries(update.more || {})) this.recording[key].push(...rows);
+    if (update.heads) for (const id of Object.keys(this.heads)) if (tracks[id].at(-1) === this.heads[id]) tracks[id].pop();
+    for (const [id, rows] of Object.entries(update.tracks || {})) (tracks[id] ??= []).push(...rows);
+    if (update.heads) {
+      this.heads = {};
+      for (const [id, row] of Object.entries(update.heads)) {
+        tracks[id] ??= [];
+        if (!tracks[id].length || tracks[id].at(-1)[0] < row[0]) { tracks[id].push(row); this.heads[id] = row; }
+      }
+    }
+    Object.assign(this.recording, update.set || {});
+  }
+
+  show() {
+    const { state, rate, text } = this.status, lost = this.failures >= PATIENCE;
+    const may = this.who === "you" && !this.over && !lost, ready = may && ["paused", "flying"].includes(state);
+    by("live-state").textContent = lost ? "server lost" : state;
+    by("live-state").className = lost ? "lost" : state;
+    by("live-text").textContent = lost ? "The server does not answer: what is shown is what it told last. Is `cratous serve` still running?" : text || "";
+    by("fly").textContent = state === "flying" ? "Pause" : "Fly";
+    for (const id of ["fly", "fly-step", "live-rate"]) by(id).disabled = !ready;
+    by("stop").disabled = !may;
+    by("take").hidden = this.who !== "other" || this.over;
+    by("results").hidden = state !== "ended";
+    if (document.activeElement !== by("live-rate") || !ready) by("live-rate").value = rate;
+    const roles = { you: "This page commands the flight.", other: "Another page commands this flight; this one watches.", watch: "This page watches: to command, open the whole address that `cratous serve` printed." };
+    by("live-who").textContent = [this.over ? "" : roles[this.who], this.refused].filter(Boolean).join(" ");
+    by("live").setAttribute("aria-label", `Flight: ${state} at ${seconds(this.recording.end_ms)}`);
+  }
+}
