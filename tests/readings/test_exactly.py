@@ -178,7 +178,11 @@ def test_scalar_form_is_that_on_rationals() -> None:
 
             meant = nonnegative(kernel)
             made = {name: value(kind) for name, kind in hints.items()}
-            args = [abs(arg) if name in meant else arg for name, arg in made.items()]
+
+            def at_least_0(arg: Any) -> Any:
+                return type(arg)(*map(abs, arg)) if isinstance(arg, tuple) else abs(arg)
+
+            args = [at_least_0(arg) if name in meant else arg for name, arg in made.items()]
             wanted = kernel(*[reading._rational(arg) for arg in args])
             got = exact(kernel, *args)
             assert got == wanted

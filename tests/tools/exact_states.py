@@ -54,7 +54,9 @@ def states(kernel: Any, kind: str, n: int, seed: int) -> list[np.ndarray]:
             columns.append(rng.integers(-4, 5, n) * scale)
     meant = nonnegative(kernel)
     labels = program(kernel).labels
-    return [np.abs(c) if n in meant else c for n, c in zip(labels, columns, strict=True)]
+    return [
+        np.abs(c) if n.split(".")[0] in meant else c for n, c in zip(labels, columns, strict=True)
+    ]
 
 
 def on_circle(n: int, low: int = -90, high: int = 90) -> list[np.ndarray]:
