@@ -49,7 +49,7 @@ COMMANDS = {
     "icarous": "Avoid for one vehicle, over the CRATOUS bridge to UxAS.",
     "sim": "Simulate the aircraft of an AMASE scenario, and be its AMASE on the network.",
     "check": "Check mission files and algebra texts; nothing is planned.",
-    "serve": "Fly a mission, or replay a run or a message log, in the browser.",
+    "serve": "Fly a mission, or replay one or two runs or a message log, in the browser.",
     "algebra": "Check, draw or enumerate a process-algebra text.",
     "warm": "Compile ahead what commands would compile when they need it.",
     "version": "Print the version.",

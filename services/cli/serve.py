@@ -1,7 +1,8 @@
-"""`cratous serve`: the ground station, a flight, a run or a message log in the browser."""
+"""`cratous serve`: the ground station, a flight, a run, two runs or a message log in the browser."""
 
 from __future__ import annotations
 
+import functools
 import shlex
 import signal
 import threading
@@ -17,6 +18,7 @@ FLIGHT = "cratous.services.cli.serve_flight"
 
 @click.command()
 @click.argument("run", metavar="RUN|MISSION", type=click.Path(path_type=Path))
+@click.argument("other", metavar="[RUN_B]", required=False, type=click.Path(path_type=Path))
 @click.option(
     "--port", type=click.IntRange(0, 65535), default=8760, show_default=True,
     help="Port on 127.0.0.1; 0 takes a free one.",
@@ -26,26 +28,44 @@ FLIGHT = "cratous.services.cli.serve_flight"
 @click.option("--no-daa", is_flag=True, help="MISSION: avoidance off; the requirements stay.")
 @click.option("--allow-unproved", is_flag=True, help="MISSION: fly kernels without proof.")
 def serve(
-    run: Path, port: int, out: Path | None, seed: int | None, no_daa: bool, allow_unproved: bool
+    run: Path,
+    other: Path | None,
+    port: int,
+    out: Path | None,
+    seed: int | None,
+    no_daa: bool,
+    allow_unproved: bool,
 ) -> int:
-    """Replay a RUN in the browser, or fly a MISSION there.
+    """Replay a RUN in the browser, or two side by side, or fly a MISSION there.
 
     RUN is the folder of `cratous run`, or a message log of any format. MISSION is a mission file
     (*.yaml): it is planned at once, and flies, pauses and stops as the page says; the results are
     those of `cratous run`, in out/<mission>/, if it flies to its end. Whoever has the whole address
     that is printed may command the flight, from one page at a time.
 
+    RUN RUN_B are two runs of missions in the same frame: one clock, a map, altitudes and events of
+    each, and a table of what one alone has or has otherwise, such as takeovers and verdicts, with
+    instants to jump to.
+
     Map with tracks, routes, zones, tasks and takeovers, altitudes over time, verdicts, and events to
     jump to. The address of the page names the instant, so it can be kept. Only this machine reaches
     it, and nothing comes from elsewhere.
 
+    \b
     Example:  cratous serve out/crossing
+              cratous serve out/crossing bare/crossing
 
     Exit codes: 0 asked to end (Ctrl-C, SIGTERM), 2 bad input.
     """
+    from cratous.services.ground_station.comparison import check_comparable, comparison
     from cratous.services.ground_station.live_session import LiveSession
     from cratous.services.ground_station.recording import recording
-    from cratous.services.ground_station.server import GroundStation, LiveRecorded, Recorded
+    from cratous.services.ground_station.server import (
+        PAGE_OF_TWO,
+        GroundStation,
+        LiveRecorded,
+        Recorded,
+    )
     from cratous.services.logs.source import open_log
     from cratous.spec.errors import BadInput
     from cratous.spec.files.printable import printable
@@ -57,8 +77,11 @@ def serve(
     def replayed(path: Path) -> Recorded:
         return Recorded(lambda: recording(path), failed)
 
+    missions = [path for path in (run, other) if path and _is_mission(path)]
+    if other is not None and missions:
+        raise click.UsageError(f"two runs are shown side by side, and {missions[0]} is a mission")
     with ExitStack() as stack:
-        if run.is_file() and run.suffix in MISSIONS:
+        if missions:
             asked = _asked(run, out or Path("out"), seed or 0, no_daa, allow_unproved)
             live = stack.enter_context(closing(LiveSession(FLIGHT, asked)))
             shown = LiveRecorded(live, lambda folder: replayed(Path(folder)))
@@ -68,7 +91,12 @@ def serve(
             if out is not None or seed is not None or no_daa or allow_unproved:
                 raise click.UsageError("--out, --seed, --no-daa, --allow-unproved need a MISSION")
             open_log(run).close()  # what is no log is told before anything listens
-            server = stack.enter_context(GroundStation(replayed(run), port))
+            if other is None:
+                server = stack.enter_context(GroundStation(replayed(run), port))
+            else:
+                check_comparable(run, other)
+                both = Recorded(functools.partial(comparison, run, other), failed)
+                server = stack.enter_context(GroundStation(both, port, first=PAGE_OF_TWO))
             url = server.url
 
         def stop(*_: object) -> None:
@@ -77,9 +105,14 @@ def serve(
 
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, stop)
-        click.echo(printable(f"{run}: {url} (Ctrl-C ends it)"))
+        name = f"{run}" if other is None else f"{run} and {other}"
+        click.echo(printable(f"{name}: {url} (Ctrl-C ends it)"))
         server.serve_forever(poll_interval=0.2)
     return 0
+
+
+def _is_mission(path: Path) -> bool:
+    return path.is_file() and path.suffix in MISSIONS
 
 
 def _asked(

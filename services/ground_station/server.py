@@ -1,4 +1,4 @@
-"""Serves the page and one recording over HTTP, to this machine alone.
+"""Serves the page and what it shows, a recording or two, over HTTP, to this machine alone.
 
 It listens on 127.0.0.1 and answers only requests whose Host header names it so, since a page of
 somewhere else could reach it under a name of its own (DNS rebinding). It gives out the files of the
@@ -28,6 +28,7 @@ REQUEST_S = 10.0
 MOST_AT_ONCE = 32
 LONGEST = 1000
 """Of a command [bytes]."""
+PAGE, PAGE_OF_TWO = "index.html", "compare.html"
 TYPES = {
     "html": "text/html; charset=utf-8",
     "css": "text/css; charset=utf-8",
@@ -55,15 +56,15 @@ class Answer(NamedTuple):
     packed: bytes | None = None
 
 
-def page_files() -> dict[str, Answer]:
-    """The files of the page by their path."""
+def page_files(first: str = PAGE) -> dict[str, Answer]:
+    """The files of the page by their path; first: PAGE or PAGE_OF_TWO, which `/` is."""
     found = {}
     for file in files(__package__).joinpath("page").iterdir():
         kind = TYPES.get(file.name.rpartition(".")[2])
         if kind is not None:
             found[f"/{file.name}"] = Answer(HTTPStatus.OK, kind, file.read_bytes())
-    found["/"] = found.pop("/index.html")
-    return found
+    pages = {page: found.pop(f"/{page}") for page in (PAGE, PAGE_OF_TWO)}
+    return {**found, "/": pages[first]}
 
 
 class Recorded:
@@ -132,10 +133,12 @@ class GroundStation(ThreadingHTTPServer):
 
     daemon_threads = True
 
-    def __init__(self, recorded: Recording, port: int, live: LiveSession | None = None) -> None:
-        """port: 0 takes a free one; live: the flight that is shown, if it is one. Raises BadInput if
-        the port cannot be had."""
-        self.recorded, self.live, self.pages = recorded, live, page_files()
+    def __init__(
+        self, recorded: Recording, port: int, live: LiveSession | None = None, first: str = PAGE
+    ) -> None:
+        """port: 0 takes a free one; live: the flight that is shown, if it is one; first: which page
+        shows it. Raises BadInput if the port cannot be had."""
+        self.recorded, self.live, self.pages = recorded, live, page_files(first)
         self._places = threading.Semaphore(MOST_AT_ONCE)
         try:
             super().__init__((HOST, port), _Handler)

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from cratous.services.cli import main
+
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 CROSSING, POPUP = (EXAMPLES / name / "mission.yaml" for name in ("crossing", "popup"))
 
@@ -19,3 +21,12 @@ def crossing(fly_once: Callable[[Path], Path]) -> Path:
 def popup(fly_once: Callable[[Path], Path]) -> Path:
     """The results of a flight in which vehicle 2 is lost at 60 s."""
     return fly_once(POPUP)
+
+
+@pytest.fixture(scope="session")
+def crossing_alone(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The results of the same mission without ICAROUS."""
+    out = tmp_path_factory.mktemp("alone")
+    words = ["run", str(CROSSING), "--no-daa", "--allow-unproved", "--quiet"]
+    assert main([*words, "--out", str(out)]) == 1  # the two are not well clear
+    return out / "crossing"

@@ -19,7 +19,7 @@ def _text(markup: str) -> str:
 
 
 def _table(document: str, name: str) -> str:
-    found = re.search(rf'<(table|ol) id="{name}">(.*?)</\1>', document, re.DOTALL)
+    found = re.search(rf'<(table|ol) id="{name}"[^>]*>(.*?)</\1>', document, re.DOTALL)
     assert found, name
     return found.group(2)
 

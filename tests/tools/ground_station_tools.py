@@ -97,9 +97,9 @@ def _started(*words: str, cwd: Path | None = None) -> Iterator[tuple[subprocess.
 
 
 @contextlib.contextmanager
-def serving(path: Path) -> Iterator[tuple[subprocess.Popen[str], int]]:
-    """`cratous serve PATH` on a free port: the process and the port; it is ended at the end."""
-    with _started(str(path)) as (running, line):
+def serving(*paths: Path) -> Iterator[tuple[subprocess.Popen[str], int]]:
+    """`cratous serve PATH...` on a free port: the process and the port; it is ended at the end."""
+    with _started(*map(str, paths)) as (running, line):
         yield running, int(line.partition("/")[0])
 
 

@@ -6,7 +6,7 @@ import { seconds } from "./units.js";
 const FEW = 6;
 const by = id => document.getElementById(id);
 
-function cell(row, text, classes = "", tag = "td") {
+export function cell(row, text, classes = "", tag = "td") {
   const made = document.createElement(tag);
   made.textContent = text;
   if (classes) made.className = classes;
@@ -14,13 +14,13 @@ function cell(row, text, classes = "", tag = "td") {
   return made;
 }
 
-function table(id, heads, rows) {
+export function table(id, heads, rows) {
   const head = document.createElement("tr");
   for (const [text, classes] of heads) cell(head, text, classes, "th");
   by(id).replaceChildren(...(rows.length ? [head, ...rows] : []));
 }
 
-function row(...cells) {
+export function row(...cells) {
   const made = document.createElement("tr");
   for (const [text, classes] of cells) cell(made, text, classes);
   return made;
@@ -122,8 +122,8 @@ export function tasks(recording, state) {
 }
 
 // made once; `mark` shows which of them is the last at an instant
-export function events(recording, go) {
-  by("events").replaceChildren(...recording.events.map(event => {
+export function events(recording, go, list = by("events")) {
+  list.replaceChildren(...recording.events.map(event => {
     const item = document.createElement("li"), jump = document.createElement("button");
     jump.type = "button";
     jump.textContent = `${seconds(event.time_ms)}  ${event.vehicle === null ? "" : `vehicle ${event.vehicle}: `}${event.text}`;
@@ -133,8 +133,8 @@ export function events(recording, go) {
   }));
 }
 
-export function mark(recording, state) {
+export function mark(recording, state, list = by("events")) {
   let last = -1;
   recording.events.forEach((event, k) => { if (event.time_ms <= state.time) last = k; });
-  [...by("events").children].forEach((item, k) => { item.className = k === last ? "now" : k > last ? "ahead" : ""; });
+  [...list.children].forEach((item, k) => { item.className = k === last ? "now" : k > last ? "ahead" : ""; });
 }

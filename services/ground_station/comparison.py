@@ -1,0 +1,260 @@
+"""Two runs side by side, as plain data: both recordings and the rows in which they differ.
+
+A row says what was told by one run alone, or otherwise by the other, with the instants [ms after
+mission start]. What comes several times, such as takeovers of a vehicle, is paired by its number:
+the third with the third. Nothing is judged; equal means equal data, without any tolerance.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from cratous.services.ground_station.recording import recording
+from cratous.services.logs.records import from_data, to_data
+from cratous.services.logs.source import open_log
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Mission
+
+FORMAT = "cratous-comparison/1"
+ELSEWHERE = re.compile(r"ICAROUS takes over|handed back to|task \d+: |end of mission: ")
+"""Events that the authority, the phases and the end of a flight tell, too."""
+PLAN = "plan accepted"
+SETTINGS = ("avoidance", "seed")
+"""Beside the mission, what a run says of how it was made."""
+OTHERWISE = "otherwise than A"
+
+
+class Said(NamedTuple):
+    """What one run says; value: all of it, by which it is compared; time_ms: None without an instant."""
+
+    item: str
+    text: str
+    time_ms: int | None
+    value: Any
+
+
+def check_comparable(run: Path, other: Path) -> None:
+    """Raises BadInput unless both are runs of missions in the same frame."""
+    frames = [(path, _meta(path)[0].frame) for path in (run, other)]
+    (_, first), (path, second) = frames
+    if first != second:
+        raise BadInput(
+            "the missions of the two runs have other frames: one map cannot show both",
+            where=str(path), item="mission.frame", expected=f"that of {run}: {to_data(first)}",
+            got=str(to_data(second)),
+        )  # fmt: skip
+
+
+def comparison(run: Path, other: Path) -> dict[str, Any]:
+    """All that is shown of two runs. Raises BadInput as `recording` and `check_comparable` do."""
+    check_comparable(run, other)
+    a, b = ({**recording(path), "run": str(path)} for path in (run, other))
+    rows = _settings(*_meta(run), *_meta(other))
+    for kind, said in KINDS.items():
+        rows += _rows(kind, said(a), said(b))
+    rows += _parting(a["tracks"], b["tracks"])
+    unknown = [
+        f"{name}: {one['verdicts']['why_none']}"
+        for name, one in (("A", a), ("B", b))
+        if "why_none" in one["verdicts"]
+    ]
+    return {"format": FORMAT, "a": a, "b": b, "differences": rows, "verdicts_why_none": unknown}
+
+
+def _meta(path: Path) -> tuple[Mission, dict[str, Any]]:
+    """The mission of a run and all else that its log says at the beginning."""
+    with open_log(path) as source:
+        meta = source.meta()
+    if "mission" not in meta:
+        raise BadInput(
+            "two runs are shown in the frame of their missions, and this log names none",
+            where=str(path), item="meta.mission", expected="a run of `cratous run`",
+            got=f"a log of kind {source.kind}",
+        )  # fmt: skip
+    try:
+        return from_data(Mission, meta["mission"], "meta.mission"), meta
+    except BadInput as error:
+        error.where = error.where or str(path)
+        raise
+
+
+def _settings(
+    mission: Mission, meta: dict[str, Any], other: Mission, other_meta: dict[str, Any]
+) -> list[dict[str, Any]]:
+    """What was set otherwise: the parts of the mission, avoidance, seed."""
+    found = []
+    for name in SETTINGS:
+        sides = [Said(name, str(m[name]).lower(), None, m[name]) for m in (meta, other_meta) if name in m]  # fmt: skip
+        if len(sides) == 2:
+            found += _rows("setting", sides[:1], sides[1:])
+    one, two = to_data(mission), to_data(other)
+    for name in one:
+        sides = [Said(f"mission: {name}", _short(data[name]), None, data[name]) for data in (one, two)]  # fmt: skip
+        found += _rows("setting", sides[:1], sides[1:])
+    return found
+
+
+def _short(value: Any) -> str:
+    if isinstance(value, list | dict) and len(str(value)) > 40:
+        return f"{len(value)} entries"
+    return str(value)
+
+
+def _numbered(said: Iterable[Said]) -> dict[tuple[str, int], Said]:
+    """By item and its number in the order of the log."""
+    count: Counter[str] = Counter()
+    found = {}
+    for one in said:
+        count[one.item] += 1
+        found[one.item, count[one.item]] = one
+    return found
+
+
+def _rows(kind: str, a: Iterable[Said], b: Iterable[Said]) -> list[dict[str, Any]]:
+    """The rows of one kind, in the order of their instants; what is equal has none."""
+    one, two = _numbered(a), _numbered(b)
+    found = []
+    for key in {**one, **two}:
+        left, right = one.get(key), two.get(key)
+        if left is not None and right is not None and left.value == right.value:
+            continue
+        side = "only A" if right is None else "only B" if left is None else "different"
+        item = key[0] if key[1] == 1 else f"{key[0]}, number {key[1]}"
+        times = [said.time_ms for said in (left, right) if said and said.time_ms is not None]
+        row = {"kind": kind, "item": item, "side": side, "a": _cell(left), "b": _cell(right)}
+        if row["a"] == row["b"]:  # what differs is more than what is told of it
+            row["b"] = _cell(right, f", {OTHERWISE}")
+        found.append((min(times, default=-1), row))
+    return [row for _, row in sorted(found, key=lambda one: one[0])]
+
+
+def _cell(said: Said | None, more: str = "") -> dict[str, Any] | None:
+    return None if said is None else {"text": said.text + more, "time_ms": said.time_ms}
+
+
+def _parting(
+    a: dict[str, list[list[float]]], b: dict[str, list[list[float]]]
+) -> list[dict[str, Any]]:
+    """For each aircraft whose track is not the same in both, the first instant at which it is not."""
+    found = []
+    for number in {**a, **b}:
+        one, two = ([row[:4] for row in tracks.get(number, ())] for tracks in (a, b))
+        if one == two:
+            continue
+        k = next((k for k, (x, y) in enumerate(zip(one, two, strict=False)) if x != y), None)
+        k = min(len(one), len(two)) if k is None else k
+        sides = [
+            [Said(f"track of {number}", *_from(rows, k), rows)] if rows else []
+            for rows in (one, two)
+        ]  # fmt: skip
+        found += _rows("track", *sides)
+    return found
+
+
+def _from(rows: list[list[float]], k: int) -> tuple[str, int]:
+    """What is told of a track whose row k is not in the other one, and when."""
+    if k < len(rows):
+        time_ms, north_m, east_m, alt_m = rows[k]
+        return f"north {north_m:.1f} m, east {east_m:.1f} m, altitude {alt_m:.1f} m", int(time_ms)
+    return "its last place", int(rows[-1][0])
+
+
+def _requirements(run: dict[str, Any]) -> list[Said]:
+    return [
+        _verdict(f"{row['requirement']} {row['title']}".strip(), row)
+        for row in run["verdicts"].get("requirements", ())
+    ]
+
+
+def _parts(run: dict[str, Any]) -> list[Said]:
+    return [
+        _verdict(f"{row['requirement']} {row['item']}", row)
+        for row in run["verdicts"].get("details", ())
+    ]
+
+
+def _verdict(item: str, row: dict[str, Any]) -> Said:
+    margin = row["margin"]
+    text = row["verdict"] if margin is None else f"{row['verdict']}, {margin:.4g} {row['unit']}"
+    told = margin is not None or row["verdict"] != "holds"
+    return Said(item, text.strip(), row["time_ms"] if told else None, (row["verdict"], margin))
+
+
+def _authority(run: dict[str, Any]) -> list[Said]:
+    found = []
+    for change in run["authority"] or ():
+        away = change["owner"] == "ICAROUS"
+        what = "takeover" if away else "handback"
+        of = f" because of {change['intruder']}" if away and change["intruder"] else ""
+        value = (change["time_ms"], change["reason"], change["intruder"])
+        text = f"{change['reason']}{of}"
+        found.append(Said(f"{what} of vehicle {change['vehicle']}", text, change["time_ms"], value))
+    return found
+
+
+def _plans(run: dict[str, Any]) -> list[Said]:
+    return [
+        Said("plan", event["text"], event["time_ms"], (event["time_ms"], event["text"]))
+        for event in run["events"]
+        if event["text"].startswith(PLAN)
+    ]
+
+
+def _routes(run: dict[str, Any]) -> list[Said]:
+    return [
+        Said(
+            f"route of vehicle {route['vehicle']}",
+            f"{route['sender'] or 'plan'}, {len(route['points'])} waypoints",
+            route["time_ms"],
+            (route["time_ms"], route["sender"], route["points"]),
+        )
+        for route in run["routes"]
+    ]
+
+
+def _phases(run: dict[str, Any]) -> list[Said]:
+    return [
+        Said(
+            f"task {one['task']} {one['phase'].lower()}",
+            f"vehicle {one['vehicle']}",
+            one["time_ms"],
+            (one["time_ms"], one["vehicle"]),
+        )
+        for one in run["phases"]
+    ]
+
+
+def _others(run: dict[str, Any]) -> list[Said]:
+    """Events that no other kind tells."""
+    return [
+        Said(
+            event["text"] if event["vehicle"] is None else f"vehicle {event['vehicle']}",
+            event["text"],
+            event["time_ms"],
+            (event["time_ms"], event["text"]),
+        )
+        for event in run["events"]
+        if not event["text"].startswith(PLAN) and not ELSEWHERE.match(event["text"])
+    ]
+
+
+def _end(run: dict[str, Any]) -> list[Said]:
+    value = (run["end_ms"], run["outcome"])
+    return [Said("end of mission", str(run["outcome"]), run["end_ms"], value)]
+
+
+KINDS: dict[str, Callable[[dict[str, Any]], list[Said]]] = {
+    "verdict": _requirements,
+    "authority": _authority,
+    "task": _phases,
+    "plan": _plans,
+    "route": _routes,
+    "event": _others,
+    "end": _end,
+    "verdict in detail": _parts,
+}
+"""What is compared, in the order of the page."""
