@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 from cratous.judge.fields import Node
@@ -15,7 +15,9 @@ SEARCHES = ("line_search", "point_search", "area_search", "pattern_search")
 KINDS = (*SEARCHES, "must_fly", "loiter")
 Said = dict[int, tuple[tuple[int, bool], ...]]
 """By number: when it was said to take part (True) or not any more, in the order of time [ms]."""
-CHANGES = ("zone", "vehicle_lost", "vehicle_joins", "task_added", "task_removed", "wind")
+CHANGES = (
+    "zone", "zone_ends", "vehicle_lost", "vehicle_joins", "task_added", "task_removed", "wind",
+)  # fmt: skip
 
 
 class Camera(NamedTuple):
@@ -58,7 +60,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Zone:
-    """A polygon (north, east) between two altitudes, known from an instant on.
+    """A polygon (north, east) between two altitudes, known from an instant on, and until one if it ends.
 
     padding_m widens a keep-out and narrows a keep-in, by distance.
     """
@@ -70,6 +72,11 @@ class Zone:
     ceiling_m: float
     padding_m: float = 0.0
     from_ms: int = 0
+    until_ms: int | None = None
+
+    def over(self, time_ms: int) -> bool:
+        """Whether it binds no leg that begins at an instant, because it has ended."""
+        return self.until_ms is not None and time_ms >= self.until_ms
 
 
 class Traffic(NamedTuple):
@@ -143,11 +150,13 @@ def from_log(data: Node) -> Mission:
     """The mission that the log's meta data carry; BadInput if they do not fit."""
     frame, simulation, daa = data["frame"], data["simulation"], data["daa"]["well_clear"]
     zones = [zone(z) for z in data["zones"]]
-    said = []
+    said, ends = [], []
     for change in data["changes"]:
         kind, at = change["kind"].one_of(*CHANGES), _not_negative(change["at_ms"])
         if kind == "zone":
             zones.append(zone(change["zone"], at))
+        elif kind == "zone_ends":
+            ends.append((change["zone_id"], at))
         elif kind != "wind":
             number = change["vehicle" if kind.startswith("vehicle") else "task"].whole
             said.append((kind, number, at))
@@ -158,7 +167,7 @@ def from_log(data: Node) -> Mission:
         longitude_deg=frame["longitude_deg"].real,
         vehicles=by_id([_vehicle(v) for v in data["vehicles"]], data["vehicles"]),
         tasks=by_id([_task(t) for t in data["tasks"]], data["tasks"]),
-        zones=tuple(zones),
+        zones=with_ends(zones, ends),
         traffic=tuple(_traffic(t) for t in data["traffic"]),
         relations=data["relations"].text,
         instances=frozenset(n.whole for n in data["instances"]),
@@ -202,6 +211,19 @@ def zone(data: Node, from_ms: int = 0) -> Zone:
     if found.padding_m < 0:
         raise data["padding_m"].wrong("0 or more")
     return found
+
+
+def with_ends(zones: Sequence[Zone], ends: Sequence[tuple[Node, int]]) -> tuple[Zone, ...]:
+    """The zones, with the instant at which each ends, if one does; BadInput for an end of none of them.
+
+    ends: the id of a zone, and when [ms].
+    """
+    known, until = {one.id: one.from_ms for one in zones}, dict[int, int]()
+    for number, at in ends:
+        if number.whole in until or at <= known.get(number.whole, at):
+            raise number.wrong("a zone that is known by then, once")
+        until[number.whole] = at
+    return tuple(replace(one, until_ms=until.get(one.id)) for one in zones)
 
 
 def refuse_bad_ring(ring: tuple[Point, ...], data: Node) -> None:

@@ -45,12 +45,14 @@ class _Reader:
     def mission(self) -> m.Mission:
         root = self.root
         zones = [self.zone(z, 0) for z in root.get("zones", [])]
-        said = []
+        said, ends = [], []
         for change in root.get("changes", []):
             at = _ms(change["at_s"])
             for name in m.CHANGES:
                 if name == "zone" and change.has(name):
                     zones.append(self.zone(change[name], at))
+                elif name == "zone_ends" and change.has(name):
+                    ends.append((change[name], at))
                 elif name != "wind" and change.has(name):
                     said.append((name, change[name].whole, at))
         vehicles = [self.vehicle(v) for v in root["vehicles"]]
@@ -65,7 +67,7 @@ class _Reader:
             longitude_deg=self.origin[1],
             vehicles=m.by_id(vehicles, root["vehicles"]),
             tasks=m.by_id([self.task(t) for t in root["tasks"]], root["tasks"]),
-            zones=tuple(zones),
+            zones=m.with_ends(zones, ends),
             traffic=tuple(self.traffic(t) for t in root.get("traffic", [])),
             relations=root.get("relations", "").text,
             instances=frozenset(guarded[: max(count, 0)]),

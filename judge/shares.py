@@ -31,7 +31,8 @@ def forbidden_note(flight: Flight, task: Task) -> str:
     if track is None or index >= len(track.states):
         return ""
     here = track.states[index]
-    known = [zone for zone in flight.mission.zones if zone.from_ms <= flight.log.end_ms]
+    end_ms = flight.log.end_ms
+    known = [z for z in flight.mission.zones if z.from_ms <= end_ms and not z.over(end_ms)]
     fences = [(zone.id, Fence(zone)) for zone in known]
     points, met, names = 0, 0, set[int]()
     for north_m, east_m in _points(task):

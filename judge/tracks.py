@@ -58,6 +58,12 @@ class Track:
         """Why the way is not known throughout; empty if it is."""
         return self.flaws[0].why if self.flaws else ""
 
+    def doubt_before(self, time_ms: int | None) -> str:
+        """Why the way is not known throughout up to an instant; None: to the end."""
+        if time_ms is None:
+            return self.doubt
+        return next((flaw.why for flaw in self.flaws if flaw.first_ms < time_ms), "")
+
     def from_index(self, time_ms: int) -> int:
         """Index of the first state at or after an instant."""
         return bisect_left(self.times, time_ms)

@@ -136,9 +136,11 @@ def _row(vehicle: int, zone: Zone, track: Track) -> Row:
     fence = Fence(zone)
     checks = 0
     for before, after in track.legs(first):
+        if zone.over(before.time_ms):
+            break  # a leg that begins before the end is held to the zone, as a whole
         checks += 1
         if fence.breaks(before, after):
             note = f"broken on the leg from {seconds(before.time_ms)}"
             return Row("G1", subject, item, VIOLATED, note, before.time_ms, checks)
     row = Row("G1", subject, item, HOLDS, f"{checks} flown legs", checks=checks)
-    return doubted(row, track.doubt)
+    return doubted(row, track.doubt_before(zone.until_ms))

@@ -15,7 +15,7 @@ NOTHING, LAP, START, GO_ON, LAST_LAP = 0, 1, 2, 3, 4
 """What is done at the end of a track: nothing; a lap of the hold; begin the task; end it and go on
 to the next item; another lap at the end of the chain."""
 STANDS_BY, PLAN_ANEW, GIVE_UP = 0, 1, 2
-LOST, JOINS, ADDED, REMOVED, OTHER = 1, 2, 3, 4, 5
+LOST, JOINS, ADDED, REMOVED, OTHER, ZONE_ENDED = 1, 2, 3, 4, 5, 6
 GOES_ON, COMPLETE, FAILED_FLIGHT, LIMIT = 0, 1, 2, 3
 FOR_NOTHING, FOR_CHANGE, FOR_DEADLINE = 0, 1, 2
 """For what a plan has been asked: for nothing, after a change, for a deadline that cannot be kept."""
@@ -105,11 +105,13 @@ def late_answer(under_way: bool, may_plan: bool, torn: bool) -> int:
 
 
 def change_counts(kind: int, left: int, ended: bool) -> bool:
-    """Work is taken from someone, nobody has it any more, or there may be more of it or more hands."""
+    """Work is taken from someone, nobody has it any more, there may be more of it or more hands, or a zone
+    does not forbid any more what is left undone."""
     orphaned = kind == LOST and left > 0
+    freed = kind == ZONE_ENDED and not left <= 0
     withdrawn = kind == REMOVED and not ended
     hands = kind == JOINS
-    return orphaned or withdrawn or hands or kind == ADDED
+    return orphaned or withdrawn or hands or freed or kind == ADDED
 
 
 def all_over(flying: int, away: int, expected: int) -> bool:

@@ -107,10 +107,11 @@ def late_act(under_way: bool, may_plan: bool, torn: bool) -> int:
 def change_counts(kind: int, left: int, ended: bool) -> bool:
     """True iff a change by itself asks for another plan.
 
-    kind: 1 a vehicle is lost, 2 one joins, 3 a task is added, 4 a task is removed, 5 anything else;
-    left: how many tasks the vehicle has left; ended: the task has ended.
+    kind: 1 a vehicle is lost, 2 one joins, 3 a task is added, 4 a task is removed, 5 anything else,
+    6 a zone ends; left: how many tasks the vehicle has left, or the plan leaves undone, in whole or in part,
+    that the zone may have forbidden; ended: the task has ended.
     """
-    if kind == 1:
+    if kind == 1 or kind == 6:
         return left > 0
     if kind == 4:
         return not ended

@@ -65,6 +65,7 @@ def map_view(report: dict[str, Any]) -> dict[str, Any]:
     shown += [(v["position"]["north_m"], v["position"]["east_m"]) for v in mission["vehicles"]]
     zones = [(zone, None) for zone in mission["zones"]]
     zones += [(c["zone"], c["at_ms"] / 1000) for c in mission.get("changes", []) if c["zone"]]
+    ends = {c["zone_id"]: c["at_ms"] / 1000 for c in mission.get("changes", []) if "zone_id" in c}
     for zone, _ in zones:
         if zone["kind"] == "keep_out":
             shown += [(corner[0], corner[1]) for corner in zone["vertices"]]
@@ -78,6 +79,7 @@ def map_view(report: dict[str, Any]) -> dict[str, Any]:
                 "id": zone["id"],
                 "points": scale.line(zone["vertices"]),
                 "from_s": from_s,
+                "until_s": ends.get(zone["id"]),
                 "at": scale.xy(*zone["vertices"][0]),
             }
             for zone, from_s in zones

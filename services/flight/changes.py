@@ -10,7 +10,13 @@ from cratous.services.flight.executive_outputs import command_all
 from cratous.services.flight.executive_state import Asked, Config, Out, State
 from cratous.services.flight.messages import AskPlan, LimitsAre, Say, ZonesKnown
 from cratous.services.flight.notices import mission_change, plan_accepted
-from cratous.services.flight.replan_triggers import handed_over, left_by, nobody_may, touched_by
+from cratous.services.flight.replan_triggers import (
+    handed_over,
+    left_by,
+    nobody_may,
+    touched_by,
+    undone_by,
+)
 from cratous.services.flight.task_transitions import begin, give_up, progress
 from cratous.services.mission.availability import absent
 from cratous.services.mission.wind import all_in_wind, in_wind, known_at, told, wind_at
@@ -18,7 +24,7 @@ from cratous.services.planning.zones import hard_zones
 from cratous.spec.executive import FOR_CHANGE
 from cratous.spec.mission import Change
 from cratous.spec.mission.asked import asked
-from cratous.spec.mission.changes import split, words
+from cratous.spec.mission.changes import ZONE_ENDS, ZoneEnd, split, words
 from cratous.spec.mission.plan import Plan, left_out_of
 
 NAME = "uxas"
@@ -58,13 +64,19 @@ def change(config: Config, state: State, due: Sequence[Change], out: Out) -> Sta
     """These changes are known now; if they ask for another plan, that is asked for."""
     known = known_at(config.mission, state.now_ms, dict(state.ends))
     state, blown = blow(config, replace(state, known=known), out)
-    zones = hard_zones(tuple(c.zone for c in due if c.zone is not None))
+    ended = {c.zone_id for c in due if isinstance(c, ZoneEnd)}
+    zones = hard_zones(tuple(c.zone for c in due if c.zone and c.zone.id not in ended))
+    kept = tuple(zone for zone in state.zones if zone.id not in ended)
     # ICAROUS is told every way anew: its own zones bind it too
     chains = tuple(replace(chain, told_version=-1) for chain in state.chains)
-    state = replace(state, zones=(*state.zones, *zones), chains=chains)
+    state = replace(state, zones=(*kept, *zones), chains=chains)
     out.append(ZonesKnown(state.zones))
     what = "; ".join(words(c) for c in due)
-    touched = touched_by(due, zones, state.by_vehicle(), dict(state.ends), dict(state.aircraft))
+    settled = dict(state.ends).keys() | dict(state.failed).keys()
+    undone = {c: undone_by(c, state.plan, settled) for c in due if c.kind == ZONE_ENDS}
+    touched = touched_by(
+        due, zones, state.by_vehicle(), dict(state.ends), dict(state.aircraft), undone
+    )
     why = "; ".join(text for text in (blown, touched) if text)
     if not why:
         _tell(state, what, "the plan holds as it is", out)

@@ -54,11 +54,13 @@ from cratous.spec.executive import (
     GOES_ON,
     LIMIT,
 )
-from cratous.spec.mission.changes import TASK_ADDED, VEHICLE_JOINS, WIND, split
+from cratous.spec.mission.changes import TASK_ADDED, VEHICLE_JOINS, WIND, ZONE_ENDS, split
 
 OUTCOMES = {GOES_ON: "", COMPLETE: "complete", FAILED_FLIGHT: "failed", LIMIT: "limit"}
 BRINGS_WORK = (TASK_ADDED, VEHICLE_JOINS)
-"""The end of the mission waits for changes of these kinds; and for the wind, if a task is left out."""
+"""The end of the mission waits for changes of these kinds."""
+MAY_FREE_WORK = (WIND, ZONE_ENDS)
+"""And for these, if a task is left out."""
 
 Step = tuple[State, tuple[FromExecutive, ...]]
 Versions = tuple[tuple[int, int], ...]
@@ -206,7 +208,7 @@ class Executive:
         now_ms, limit_ms = message.now_ms, self.config.mission.simulation.limit_ms
         flying = sum(chain.item is not None for chain in state.chains)
         away = [vid for vid, gate in message.gates if gate.owner != UXAS]
-        kinds = (*BRINGS_WORK, *((WIND,) if state.left_out else ()))
+        kinds = (*BRINGS_WORK, *(MAY_FREE_WORK if state.left_out else ()))
         expected = sum(c.kind in kinds for c in state.to_come)
         todo = len(changes.left(state)) if not flying else 0  # while some fly it is no matter
         how = OUTCOMES[flight_outcome(flying, len(away), expected, todo, now_ms, limit_ms)]

@@ -11,14 +11,22 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState
 from cratous.spec import executive
 from cratous.spec.mission import Change, Mission, Zone
-from cratous.spec.mission.changes import TASK_ADDED, TASK_REMOVED, VEHICLE_JOINS, VEHICLE_LOST
-from cratous.spec.mission.plan import Plan, left_out_of, left_out_text
+from cratous.spec.mission.changes import (
+    TASK_ADDED,
+    TASK_REMOVED,
+    VEHICLE_JOINS,
+    VEHICLE_LOST,
+    ZONE_ENDS,
+    ZoneEnd,
+)
+from cratous.spec.mission.plan import Plan, in_part_of, left_out_of, left_out_text
 
 KINDS = {
     VEHICLE_LOST: executive.LOST,
     VEHICLE_JOINS: executive.JOINS,
     TASK_ADDED: executive.ADDED,
     TASK_REMOVED: executive.REMOVED,
+    ZONE_ENDS: executive.ZONE_ENDED,
 }
 
 
@@ -64,26 +72,41 @@ def nobody_may(known: Mission, left: Collection[int], absent: Mapping[int, str])
     return "; ".join(parts)
 
 
+def undone_by(change: Change, plan: Plan, settled: Collection[int]) -> list[int]:
+    """The tasks that the plan leaves out, for whatever reason, or does in part because of the zone that ends.
+
+    settled: tasks that have ended, or were given up for good.
+    """
+    if not isinstance(change, ZoneEnd):
+        return []
+    tasks = {one.task_id for one in left_out_of(plan)}
+    tasks |= {one.task_id for one in in_part_of(plan) if change.zone_id in one.zones}
+    return sorted(tasks.difference(settled))
+
+
 def touched_by(
     due: Sequence[Change],
     zones: Sequence[Zone],
     chains: Mapping[int, Chain],
     ended: Collection[int],
     states: Mapping[int, AirState],
+    undone: Mapping[Change, Sequence[int]],
 ) -> str:
     """Why what has become known asks for another plan; empty if it does not.
 
     The kernel `change_counts` says which changes do by themselves. A new zone does if a leg that is still to be flown breaks it (kernels by `first_bad_leg`).
-    ended: the tasks that are complete.
+    ended: the tasks that are complete; undone: the tasks of `undone_by`, by change.
     """
     left = left_by(chains)
     for change in due:
         kind = KINDS.get(change.kind, executive.OTHER)
-        tasks = left.get(change.vehicle, [])
+        tasks = undone.get(change, left.get(change.vehicle, []))
         if not change_counts(kind, len(tasks), change.task in ended):
             continue
         if kind == executive.LOST:
             return f"vehicle {change.vehicle} leaves {tasks_text(tasks)}"
+        if kind == executive.ZONE_ENDED:
+            return f"{tasks_text(tasks)} may be done, or done whole, without it"
         if kind == executive.REMOVED:
             return f"task {change.task} is left out"
         return "what is left is shared out again"

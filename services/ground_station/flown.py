@@ -55,6 +55,8 @@ class FlownRecording:
         zones += [
             {**c["zone"], "from_ms": c["at_ms"]} for c in plain.get("changes", ()) if c.get("zone")
         ]
+        ends = {c["zone_id"]: c["at_ms"] for c in plain.get("changes", ()) if "zone_id" in c}
+        zones = [{**zone, "to_ms": ends.get(zone["id"])} for zone in zones]
         return {
             "name": self._mission.name,
             "source": "mission",

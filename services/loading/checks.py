@@ -14,6 +14,7 @@ from math import hypot, isfinite
 
 from cratous.core.geofence.planar import edges_of, keep_in_leg_ok, keep_out_leg_ok, locate
 from cratous.core.kernel import Vec2
+from cratous.core.schedule.rows import runs_forward
 from cratous.services.loading.polygons import polygon_problem
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission, Pattern, Position, TaskKind, Zone, ZoneKind, changes
@@ -323,6 +324,35 @@ def change_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
                 expected=f"a {name} that takes part from the start",
                 got="all of them come later",
             )
+
+
+def zone_end_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
+    """Ends in flight of zones that do not exist, have ended before, or bind no leg until then."""
+    step_ms = mission.simulation.step_ms
+    known = {zone.id: 0 for zone in mission.zones}
+    known |= {c.zone.id: c.at_ms for c in mission.changes if c.zone is not None}
+    ended = dict[int, int]()
+    for k, change in enumerate(mission.changes):
+        if not isinstance(change, changes.ZoneEnd):
+            continue
+        number, item = change.zone_id, f"changes[{k}].zone_ends"
+        at_s = f"{change.at_ms / 1000:g} s"
+        if number not in known:
+            names = ", ".join(map(str, sorted(known))) or "no zone, for there is none"
+            what, expected, got = f"zone {number} does not exist", f"one of {names}", str(number)
+        elif number in ended:
+            what, expected = f"zone {number} ends twice", "each zone at most once"
+            got = f"at {ended[number] / 1000:g} s and at {at_s}"
+        # what becomes known between two steps is known at the second
+        elif runs_forward(-(-change.at_ms // step_ms), -(-known[number] // step_ms)):
+            what = f"zone {number} ends before a leg is flown under it"
+            from_s = f"{known[number] / 1000:g} s"
+            expected = f"an end after {from_s}, when it is known, by a step of {step_ms} ms or more"
+            item, got = f"changes[{k}].at_s", at_s
+        else:
+            ended[number] = change.at_ms
+            continue
+        yield BadInput(what, where=where(item), item=item, expected=expected, got=got)
 
 
 def start_problems(mission: Mission, where: Where) -> Iterator[BadInput]:

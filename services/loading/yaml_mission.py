@@ -18,6 +18,7 @@ from cratous.services.loading.checks import (
     mission_problems,
     start_problems,
     too_many_instances,
+    zone_end_problems,
 )
 from cratous.services.loading.document import Document, item_key, read_document
 from cratous.services.loading.places import Places
@@ -42,7 +43,7 @@ from cratous.spec.mission import (
     ZoneKind,
     changes,
 )
-from cratous.spec.mission.changes import WIND, WindChange
+from cratous.spec.mission.changes import WIND, ZONE_ENDS, WindChange, ZoneEnd
 
 DEFAULT_WELL_CLEAR = WellClear(dthr_m=150.0, zthr_m=30.0, tthr_s=15.0, tcoa_s=0.0)
 
@@ -72,7 +73,7 @@ def finish(mission: Mission, where: Any) -> Mission:
     """Check a mission, pad its zones and hold the starts against them."""
     later = tuple(c.zone for c in mission.changes if c.zone is not None)
     refuse(mission_problems(replace(mission, zones=(*mission.zones, *later)), where))
-    refuse(list(change_problems(mission, where)))
+    refuse([*change_problems(mission, where), *zone_end_problems(mission, where)])
     notes: list[str] = []
     problems: list[BadInput] = []
 
@@ -202,6 +203,8 @@ def _change(data: dict[str, Any], places: Places) -> Change:
     at_ms, value = round(float(data["at_s"]) * 1000), data[kind]
     if kind == changes.ZONE:
         return Change(at_ms, kind, zone=_zone(value, places))
+    if kind == ZONE_ENDS:
+        return ZoneEnd(at_ms, kind, zone_id=int(value))
     if kind == WIND:
         return WindChange(
             at_ms, kind, north_m_s=float(value["north_m_s"]), east_m_s=float(value["east_m_s"])

@@ -9,7 +9,7 @@ from typing import Any
 from cratous.core.algebra.steps import Ran, in_order
 from cratous.core.kernel import qualified
 from cratous.core.schedule.choice import as_asked
-from cratous.core.schedule.rows import eligible, runs_forward
+from cratous.core.schedule.rows import eligible
 from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok
 from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.relations import branch_rows, by_term, is_choice
@@ -32,8 +32,11 @@ WAITS = {AFTER_END: 1, AFTER_START: 2}
 
 @dataclass
 class Fence:
-    """What has been seen of one vehicle and one zone."""
+    """What has been seen of one vehicle and one zone. first, last: the positions of the vehicle's track
+    between which it was held to the zone."""
 
+    first: int
+    last: int
     checks: int = 0
     broken_ms: int | None = None
 
@@ -69,11 +72,14 @@ class ConstraintWatch:
         """Check the leg of every protected vehicle of ours against every zone that is known."""
         for vehicle in sorted(self._protected & before.keys() & after.keys()):
             p, q = before[vehicle].position, after[vehicle].position
-            self._tracks.setdefault(vehicle, [p]).append(q)
-            for zone, since_ms in zones_of(self._mission, after[vehicle].time_ms):
-                if not runs_forward(since_ms, before[vehicle].time_ms):
+            track = self._tracks.setdefault(vehicle, [p])
+            track.append(q)
+            for bound in zones_of(self._mission, after[vehicle].time_ms):
+                if not bound.binds(before[vehicle].time_ms):
                     continue
-                fence = self._fences.setdefault((vehicle, zone.id), Fence())
+                zone, last = bound.zone, len(track) - 1
+                fence = self._fences.setdefault((vehicle, zone.id), Fence(last - 1, last))
+                fence.last = last
                 fence.checks += 1
                 if not exact_leg_ok(p, q, zone) and fence.broken_ms is None:
                     fence.broken_ms = before[vehicle].time_ms
@@ -81,7 +87,7 @@ class ConstraintWatch:
 
     def _fence_verdict(self, vehicle: int, zone: Zone, fence: Fence, unseen: str) -> Verdict:
         broken = fence.broken_ms is not None
-        distance = distance_m(self._tracks[vehicle], zone)
+        distance = distance_m(self._tracks[vehicle][fence.first : fence.last + 1], zone)
         note = f"{fence.checks} flown legs"
         outcome = Outcome.HOLDS
         if broken:
@@ -114,11 +120,12 @@ class ConstraintWatch:
         ]
 
     def _zones(self, seen: Watched, ending: Ending) -> Iterator[Verdict]:
-        for zone, since_ms in zones_of(self._mission, seen.end_ms):
+        for zone, since_ms, until_ms in zones_of(self._mission, seen.end_ms):
+            held_ms = seen.end_ms if until_ms is None else min(until_ms, seen.end_ms)
             for vehicle in sorted(self._protected):
                 fence = self._fences.get((vehicle, zone.id))
                 if fence is not None:
-                    unseen = self._presence.unseen(vehicle, (since_ms, seen.end_ms), ending)
+                    unseen = self._presence.unseen(vehicle, (since_ms, held_ms), ending)
                     yield self._fence_verdict(vehicle, zone, fence, unseen)
 
     def _relations(self, seen: Watched, ending: Ending) -> Iterator[Verdict]:

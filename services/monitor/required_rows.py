@@ -15,7 +15,7 @@ from cratous.services.monitor.plan_check import WHOLE
 from cratous.services.monitor.relations import first_choices
 from cratous.spec.mission import Mission, Zone
 from cratous.spec.mission.asked import asked
-from cratous.spec.mission.changes import asked_by
+from cratous.spec.mission.changes import ZoneEnd, asked_by
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
 CHOICE = "flight: no task of another choice of the relations"
@@ -29,6 +29,19 @@ class Row(NamedTuple):
     requirement: str
     item: str
     vehicles: tuple[int, ...] = ()
+
+
+class Bound(NamedTuple):
+    """A zone, and since when and until when it binds [ms]; None: to the end."""
+
+    zone: Zone
+    since_ms: int
+    until_ms: int | None = None
+
+    def binds(self, begin_ms: int) -> bool:
+        """Whether a leg that begins at this instant is held to the zone: as a whole, if the zone ends in it."""
+        over = self.until_ms is not None and runs_forward(self.until_ms, begin_ms)
+        return runs_forward(self.since_ms, begin_ms) and not over
 
 
 PLAN_ROWS = (Row("G1", WHOLE), Row("G1", "plan: all order and timing rows at once"))
@@ -86,16 +99,18 @@ def beat_item(vehicle: int, way: str) -> str:
     return f"heartbeat {WAYS[way]} the ICAROUS instance of {vehicle}"
 
 
-def zones_of(mission: Mission, end_ms: int) -> list[tuple[Zone, int]]:
-    """The zones that are known before an instant, each with since when [ms].
+def zones_of(mission: Mission, end_ms: int) -> list[Bound]:
+    """The zones that are known before an instant, those too that have ended, each with its time.
 
-    What becomes known between two instants of the simulation binds from the later one on.
+    What becomes known between two instants of the simulation is known at the later one: a zone that appears
+    binds from then on, one that ends binds until then.
     """
     step_ms = mission.simulation.step_ms
-    late = [(c.zone, -(-c.at_ms // step_ms) * step_ms) for c in mission.changes if c.zone]
-    return [(z, 0) for z in mission.zones] + [
-        (z, at) for z, at in late if not runs_forward(end_ms, at)
-    ]
+    times = [(c, -(-c.at_ms // step_ms) * step_ms) for c in mission.changes]
+    ends = {c.zone_id: at for c, at in times if isinstance(c, ZoneEnd)}
+    late = [(c.zone, at) for c, at in times if c.zone and not runs_forward(end_ms, at)]
+    known = [*((zone, 0) for zone in mission.zones), *late]
+    return [Bound(zone, since_ms, ends.get(zone.id)) for zone, since_ms in known]
 
 
 def pairs_of(mission: Mission, end_ms: int) -> dict[tuple[int, int], Span]:
@@ -135,8 +150,8 @@ def relation_items(seen: Watched, present: Collection[str]) -> list[str]:
 def promised(seen: Watched, present: Collection[str] = ()) -> Iterator[Row]:
     """Every row that a judged flight must have; present: items of G1 that it has."""
     mission, guarded = seen.mission, [v.id for v in seen.mission.vehicles if v.protected]
-    for zone, _ in zones_of(mission, seen.end_ms):
-        yield from (Row("G1", fence_item(zone, vehicle), (vehicle,)) for vehicle in guarded)
+    for bound in zones_of(mission, seen.end_ms):
+        yield from (Row("G1", fence_item(bound.zone, vehicle), (vehicle,)) for vehicle in guarded)
     yield Row("G1", CHOICE)
     yield from (Row("G1", item) for item in relation_items(seen, present))
     for task in seen.tasks:

@@ -13,7 +13,7 @@ from cratous.spec.mission import Change, Mission
 
 VEHICLE_LOST, VEHICLE_JOINS = "vehicle_lost", "vehicle_joins"
 TASK_ADDED, TASK_REMOVED = "task_added", "task_removed"
-ZONE = "zone"
+ZONE, ZONE_ENDS = "zone", "zone_ends"
 WIND = "wind"
 
 
@@ -25,6 +25,13 @@ class WindChange(Change):
     east_m_s: float = 0.0
 
 
+@dataclass(frozen=True)
+class ZoneEnd(Change):
+    """From now on the zone with this id binds nobody any more. A leg that was begun before is still held to it."""
+
+    zone_id: int = 0
+
+
 def words(change: Change) -> str:
     """A change in words."""
     if change.kind == ZONE and change.zone is not None:
@@ -33,6 +40,8 @@ def words(change: Change) -> str:
         return f"{kind} zone {change.zone.id}{label} appears"
     if isinstance(change, WindChange):
         return f"wind to {change.north_m_s:g} m/s north, {change.east_m_s:g} m/s east"
+    if isinstance(change, ZoneEnd):
+        return f"zone {change.zone_id} ends"
     return {
         VEHICLE_LOST: f"vehicle {change.vehicle} is lost",
         VEHICLE_JOINS: f"vehicle {change.vehicle} joins",
@@ -48,7 +57,7 @@ def split(changes: Iterable[Change], now_ms: int) -> tuple[list[Change], list[Ch
 
 
 def known_at(mission: Mission, now_ms: int, done: Iterable[int] = ()) -> Mission:
-    """The mission as it is known at an instant: its zones, and who and what takes part.
+    """The mission as it is known at an instant: the zones that have not ended, and who and what takes part.
 
     A vehicle takes part until it is lost, and from when it joins; a task from when it is requested until it
     is removed, unless it is among those `done`. What was said last counts, and what is first said to
@@ -57,12 +66,13 @@ def known_at(mission: Mission, now_ms: int, done: Iterable[int] = ()) -> Mission
     if not mission.changes:
         return mission
     happened, _ = split(mission.changes, now_ms)
-    zones = [c.zone for c in happened if c.kind == ZONE and c.zone is not None]
+    appeared = (c.zone for c in happened if c.kind == ZONE and c.zone is not None)
+    ended = {c.zone_id for c in happened if isinstance(c, ZoneEnd)}
     away = without_vehicles(mission, now_ms)
     known = _without_tasks(mission, _gone(mission, now_ms).keys() - set(done))
     return replace(
         known,
-        zones=(*mission.zones, *zones),
+        zones=tuple(z for z in (*mission.zones, *appeared) if z.id not in ended),
         vehicles=tuple(v for v in mission.vehicles if v.id not in away),
         changes=(),
     )

@@ -45,6 +45,8 @@ from cratous.spec.mission.changes import (
     VEHICLE_JOINS,
     VEHICLE_LOST,
     WIND,
+    ZONE_ENDS,
+    ZoneEnd,
 )
 
 
@@ -161,14 +163,17 @@ def test_a_settled_task_does_not_fail_again(monkeypatch: pytest.MonkeyPatch) -> 
         (Change(0, TASK_REMOVED, task=1), "task 1 is left out"),
         (Change(0, TASK_REMOVED, task=2), ""),
         (Change(0, WIND), ""),
+        (ZoneEnd(0, ZONE_ENDS, zone_id=9), "task 3 may be done, or done whole, without it"),
+        (ZoneEnd(0, ZONE_ENDS, zone_id=8), ""),
     ],
 )
 def test_which_changes_ask_for_another_plan(
     monkeypatch: pytest.MonkeyPatch, change: Change, why: str
 ) -> None:
-    assert touched_by([change], (), {}, {2}, {}) == why
+    undone = {ZoneEnd(0, ZONE_ENDS, zone_id=9): [3]}
+    assert touched_by([change], (), {}, {2}, {}, undone) == why
     monkeypatch.setattr(replan_triggers, "change_counts", lambda *_: False)
-    assert touched_by([change], (), {}, {2}, {}) == ""
+    assert touched_by([change], (), {}, {2}, {}, undone) == ""
 
 
 def test_a_chain_is_left_as_it_is_by_what_follows_it() -> None:

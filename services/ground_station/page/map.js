@@ -32,7 +32,7 @@ export class FlightMap {
     this.pen = pen;
     const { time } = state, recording = this.recording;
     this.grid(width, height, words);
-    for (const zone of recording.zones) if (zone.from_ms <= time) this.zone(zone);
+    for (const zone of recording.zones) if (zone.from_ms <= time && time < (zone.to_ms ?? Infinity)) this.zone(zone);
     for (const seen of recording.footprints) if (seen.time_ms <= time) this.footprint(seen);
     for (const task of recording.tasks) this.task(task);
     for (const [id, route] of routesAt(recording, time)) this.route(id, route);
