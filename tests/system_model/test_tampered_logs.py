@@ -31,7 +31,13 @@ from cratous.services.logs.log import LogWriter, read_envelopes, read_meta
 from cratous.services.system_model.replay import Replayed, replay
 
 FlyOnce = Callable[[Path], Path]
-EXAMPLES = ("crossing", "popup", "relations", "search", "partial")
+EXAMPLES = (
+    "crossing",
+    "popup",
+    "relations",
+    pytest.param("search", marks=pytest.mark.long),
+    pytest.param("partial", marks=pytest.mark.long),
+)
 
 
 def log_of(fly_once: FlyOnce, root: Path, name: str) -> Path:
