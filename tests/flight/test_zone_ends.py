@@ -22,7 +22,7 @@ from cratous.services.cli.job import Settings, run_mission
 from cratous.services.loading import load
 from cratous.services.monitor.required_rows import zones_of
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Change, Mission, Simulation, Zone, ZoneKind
+from cratous.spec.mission import Change, Mission, Position, Simulation, TaskKind, Zone, ZoneKind
 from cratous.spec.mission.changes import ZONE, ZONE_ENDS, ZoneEnd, known_at, words
 
 FILE = Path(__file__).resolve().parents[1] / "missions" / "zone_ends.yaml"
@@ -131,6 +131,18 @@ def test_icarous_forgets_the_zone_and_keeps_the_rest(monkeypatch: pytest.MonkeyP
     assert [m.zone for m in told[:k] if isinstance(m, FenceDone)] == [1, 2]
     assert [m.zone for m in told[k:] if isinstance(m, FenceDone)] == [1]
     assert any(isinstance(m, StartMission) for m in told[k:])
+
+
+def test_the_end_of_the_mission_waits_for_a_zone_that_keeps_a_task_out(tmp_path: Path) -> None:
+    mission = load(FILE)
+    near = replace(
+        mission.tasks[0], kind=TaskKind.MUST_FLY, points=(Position(-1800.0, 0.0, 400.0),)
+    )
+    report, rows = flight(replace(mission, tasks=(near, mission.tasks[1])), tmp_path)
+    assert outcomes(rows) == {"task 7": "holds", "task 8": "holds"}
+    done = {one["task"]: one["time_ms"] for one in report["flight"]["served"]}
+    assert done[7] < END_MS < done[8]
+    assert [one.line() for one in judge(tmp_path).disagreements] == []
 
 
 def test_nothing_is_planned_anew_where_the_plan_is_whole(tmp_path: Path) -> None:
