@@ -111,13 +111,15 @@ class Bridge:
                 got=", ".join(map(str, vehicle_ids)),
             )
         self._limits, self._original, self._watchdog_s = limits, original, watchdog_s
+        self._secret, self._segmenter = secret, segmenter
+        self.now_ms = 0  # virtual time, kept by whoever exchanges; only faults depend on it
         self.counters = {direction: Counters() for direction in Direction}
         self._uxas: dict[int, _End] = {}
         self._icarous: dict[int, _End] = {}
         self._links: list[Link] = []
         self._listener = Listener(host, port)
         try:
-            self._open(sorted(vehicle_ids), secret, segmenter)
+            self._open(sorted(vehicle_ids))
         except BaseException:
             self.close()
             raise
@@ -148,6 +150,10 @@ class Bridge:
                     delivered.append(Delivered(vehicle_id, direction, record))
         return delivered
 
+    def opened_anew(self) -> list[int]:
+        """The vehicles whose connections stand again since the last call; without faults none breaks."""
+        return []
+
     def alive(self, vehicle_id: int) -> bool:
         """True while both ends of the vehicle's connection can send."""
         return self._uxas[vehicle_id].link.alive and self._icarous[vehicle_id].link.alive
@@ -157,6 +163,14 @@ class Bridge:
         pump(self._links, self._watchdog_s)  # unread bytes would turn the end of file into a reset
         self._icarous[vehicle_id].link.close()
         pump(self._links, self._watchdog_s)
+
+    def reopen(self, vehicle_ids: Sequence[int]) -> None:
+        """New connections for vehicles whose connections are broken, with a handshake of their own."""
+        for vid in vehicle_ids:
+            for end in (self._uxas[vid], self._icarous[vid]):
+                end.link.close()
+                self._links.remove(end.link)
+        self._open(sorted(vehicle_ids))
 
     def close(self) -> None:
         """Close all sockets; safe to call twice."""
@@ -169,6 +183,11 @@ class Bridge:
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         self.close()
+
+    def _hand_over(self, vehicle_id: int, direction: Direction, data: bytes) -> bool:
+        """Give the bytes of a line to the sending end's socket; False if the link is dead."""
+        ends = self._uxas if direction is Direction.DOWN else self._icarous
+        return ends[vehicle_id].send(data)
 
     def _send(
         self, ends: dict[int, _End], vehicle_id: int, message: Message, direction: Direction
@@ -187,14 +206,15 @@ class Bridge:
                 got=direction_of(message).value,
             )
         data = encode(message, original=self._original, limits=self._limits)
-        if not ends[vehicle_id].send(data):
+        if not self._hand_over(vehicle_id, direction, data):
             return False
         count = self.counters[direction]
         count.messages += 1
         count.bytes += len(data)
         return True
 
-    def _open(self, vehicle_ids: Sequence[int], secret: str, segmenter: Segmenter | None) -> None:
+    def _open(self, vehicle_ids: Sequence[int]) -> None:
+        secret, segmenter = self._secret, self._segmenter
         servers: list[tuple[_End, Handshake]] = []
         clients: list[tuple[_End, Handshake]] = []
         for vehicle_id in vehicle_ids:

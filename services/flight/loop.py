@@ -74,7 +74,7 @@ from cratous.services.icarous.messages import (
 )
 from cratous.services.mission.frames import Projection
 from cratous.spec.errors import NoPlan
-from cratous.spec.mission import Mission
+from cratous.spec.mission import FaultySimulation, Mission
 from cratous.spec.mission.plan import Plan
 
 Segmenter = Callable[[bytes], Iterable[bytes]]
@@ -100,8 +100,17 @@ def fly(
     then.
     """
     instances = tuple(sorted(mission.instances)) if daa else ()
-    with Bridge(instances, segmenter=segmenter) as bridge:
+    with _bridge(mission, instances, segmenter) as bridge:
         return _Flight(mission, plan, bus, bridge, instances).run(progress)
+
+
+def _bridge(mission: Mission, instances: tuple[int, ...], segmenter: Segmenter | None) -> Bridge:
+    """The bridge of the flight, with the faults that the mission asks for."""
+    if not isinstance(mission.simulation, FaultySimulation):
+        return Bridge(instances, segmenter=segmenter)
+    from cratous.bridge.faults import FaultyBridge
+
+    return FaultyBridge(instances, mission.simulation.bridge_faults, segmenter=segmenter)
 
 
 Answer = FromExecutive | FromLinkEnd | FromVehicle | FromInstance
@@ -168,6 +177,9 @@ class _Flight:
         self._executive(Report(now))
         if not self.instances:
             return
+        self.bridge.now_ms = now
+        for vid in self.bridge.opened_anew():
+            self._link(Connected(now, (vid,)))
         self._link(Beat(now, self._everyone()))
         self._exchange()
         for vid in self.instances:

@@ -26,12 +26,14 @@ from cratous.services.loading.polygons import padded
 from cratous.services.loading.problems import refuse
 from cratous.services.loading.schema import schema_problems
 from cratous.services.loading.start_distances import close_starts
+from cratous.services.loading.yaml_bridge_faults import yaml_bridge_faults
 from cratous.services.loading.yaml_task import yaml_task
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import (
     Camera,
     Change,
     Daa,
+    FaultySimulation,
     Frame,
     Mission,
     Simulation,
@@ -43,6 +45,7 @@ from cratous.spec.mission import (
     ZoneKind,
     changes,
 )
+from cratous.spec.mission.bridge_faults import words
 from cratous.spec.mission.changes import WIND, ZONE_ENDS, WindChange, ZoneEnd
 
 DEFAULT_WELL_CLEAR = WellClear(dthr_m=150.0, zthr_m=30.0, tthr_s=15.0, tcoa_s=0.0)
@@ -94,6 +97,8 @@ def finish(mission: Mission, where: Any) -> Mission:
         for k, c in enumerate(mission.changes)
     )
     refuse(problems)
+    if isinstance(mission.simulation, FaultySimulation):
+        notes.append(words(mission.simulation.bridge_faults))
     mission = replace(mission, zones=zones, changes=known, notes=(*mission.notes, *notes))
     refuse(list(start_problems(mission, where)))
     return mission
@@ -129,7 +134,7 @@ def _mission(document: Document, seed: int) -> Mission:
         cost=data.get("cost", "MINMAX"),
         order=data.get("order", "time"),
         instances=_instances(document, vehicles),
-        simulation=_simulation(data.get("simulation", {})),
+        simulation=_simulation(document, data.get("simulation", {})),
         changes=tuple(_change(entry, places) for entry in data.get("changes", [])),
         seed=seed,
         node_limit=_nodes(data.get("search", {})),
@@ -237,10 +242,12 @@ def _daa(data: dict[str, Any]) -> Daa:
     return Daa(replace(DEFAULT_WELL_CLEAR, **volume), **rest, close_starts=close)
 
 
-def _simulation(data: dict[str, Any]) -> Simulation:
+def _simulation(document: Document, data: dict[str, Any]) -> Simulation:
     found: dict[str, int] = {
         name: int(data[name]) for name in ("step_ms", "heartbeat_ms") if name in data
     }
     if "limit_s" in data:
         found["limit_ms"] = round(float(data["limit_s"]) * 1000)
-    return Simulation(**found)
+    if "bridge_faults" not in data:
+        return Simulation(**found)
+    return FaultySimulation(**found, bridge_faults=yaml_bridge_faults(document))

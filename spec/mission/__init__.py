@@ -12,6 +12,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import NamedTuple
 
+from cratous.spec.mission.bridge_faults import BridgeFaults
+
 
 class Position(NamedTuple):
     """A point in the mission frame: north and east [m], altitude MSL [m]."""
@@ -248,6 +250,13 @@ class Simulation:
     step_ms: int = 250
     heartbeat_ms: int = 500
     limit_ms: int = 7_200_000
+
+
+@dataclass(frozen=True)
+class FaultySimulation(Simulation):
+    """The same with faults of the bridge."""
+
+    bridge_faults: BridgeFaults = field(default_factory=BridgeFaults)
 
 
 @dataclass(frozen=True)

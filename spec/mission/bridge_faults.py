@@ -1,0 +1,59 @@
+"""Faults of the bridge that a mission asks for: what its connections do to lines, seeded."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+LONGEST_DELAY_MS = 5000
+"""No line is delayed by more [ms]."""
+
+
+@dataclass(frozen=True)
+class BridgeFaults:
+    """What happens on every connection of the bridge, the same for the same seed.
+
+    Shares are of the lines of either direction, each line by itself: loss, repeat (comes twice), reorder (takes
+    another place among the lines of its beat), truncation (its end is missing, the new line too),
+    corruption (one byte is another). delay_ms: each line comes up to this much later, drawn evenly. forged_modes:
+    share of the beats at which a SETMOD of any mode and an epoch from 0 to 5 comes to UxAS that ICAROUS did not send.
+    cut_ms, reconnect_ms: every connection breaks, and is opened anew. stops_reading_ms, reads_again_ms:
+    ICAROUS takes nothing from its connection from the one to the other, which breaks when too much waits.
+    """
+
+    seed: int = 0
+    loss: float = 0.0
+    repeat: float = 0.0
+    reorder: float = 0.0
+    truncation: float = 0.0
+    corruption: float = 0.0
+    delay_ms: int = 0
+    forged_modes: float = 0.0
+    cut_ms: int | None = None
+    reconnect_ms: int | None = None
+    stops_reading_ms: int | None = None
+    reads_again_ms: int | None = None
+
+
+SHARES = ("loss", "repeat", "reorder", "truncation", "corruption", "forged_modes")
+INSTANTS = {
+    "cut_ms": "cut",
+    "reconnect_ms": "opened anew",
+    "stops_reading_ms": "ICAROUS stops reading",
+    "reads_again_ms": "ICAROUS reads again",
+}
+
+
+def words(faults: BridgeFaults) -> str:
+    """The faults in words, for reports; those that are not asked for are left out."""
+    said = [
+        f"{name.replace('_', ' ')} {getattr(faults, name):g}"
+        for name in SHARES
+        if getattr(faults, name)
+    ]
+    if faults.delay_ms:
+        said.append(f"delay up to {faults.delay_ms / 1000:g} s")
+    for name, text in INSTANTS.items():
+        at_ms = getattr(faults, name)
+        if at_ms is not None:
+            said.append(f"{text} at {at_ms / 1000:g} s")
+    return f"bridge faults are injected (seed {faults.seed}): {', '.join(said) or 'none'}"

@@ -1,0 +1,107 @@
+"""Faults of the bridge that a mission asks for: each happens, the same for the same seed, and the flight fits."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from flight_tools import meeting
+from loading_tools import small
+
+from cratous.bridge import lmcp
+from cratous.services.bus import Bus
+from cratous.services.flight.loop import fly
+from cratous.services.loading import load
+from cratous.services.pipeline.plan import make_plan
+from cratous.services.system_model.replay import replay
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import FaultySimulation, Mission
+from cratous.spec.mission.bridge_faults import BridgeFaults
+
+FAULTS = {
+    "loss": BridgeFaults(1, loss=0.4),
+    "repeat": BridgeFaults(2, repeat=0.5),
+    "reorder": BridgeFaults(3, reorder=0.5),
+    "truncation": BridgeFaults(4, truncation=0.2),
+    "corruption": BridgeFaults(5, corruption=0.2),
+    "delay": BridgeFaults(6, delay_ms=5000),
+    "forged": BridgeFaults(7, forged_modes=0.5),
+    "cut": BridgeFaults(8, cut_ms=20_000),
+    "reconnect": BridgeFaults(9, cut_ms=20_000, reconnect_ms=30_000),
+    "stops_reading": BridgeFaults(10, stops_reading_ms=10_000),
+    "reads_again": BridgeFaults(11, stops_reading_ms=10_000, reads_again_ms=40_000),
+}
+
+
+def flown(faults: BridgeFaults | None) -> tuple[Mission, list[Any]]:
+    mission = replace(meeting(), simulation=replace(meeting().simulation, limit_ms=150_000))
+    if faults is not None:
+        simulation = FaultySimulation(limit_ms=150_000, bridge_faults=faults)
+        mission = replace(mission, simulation=simulation)
+    bus, log = Bus(lmcp.full_names), list[Any]()
+    bus.tap(log.append)
+    fly(mission, make_plan(mission), bus)
+    return mission, log
+
+
+def said(log: list[Any]) -> list[str]:
+    return [repr(one.body) for one in log]
+
+
+@pytest.fixture(scope="module")
+def usual() -> list[str]:
+    return said(flown(None)[1])
+
+
+@pytest.mark.parametrize("kind", FAULTS)
+def test_each_fault_changes_the_flight_and_it_fits(kind: str, usual: list[str]) -> None:
+    mission, log = flown(FAULTS[kind])
+    found = replay(mission, True, log)
+    assert found.finding is None, found.finding.text
+    assert found.events["MissionEnd"] == 1
+    if kind not in ("repeat", "reorder", "stops_reading", "reads_again"):
+        assert said(log) != usual
+
+
+def test_the_same_seed_gives_the_same_flight() -> None:
+    assert said(flown(FAULTS["loss"])[1]) == said(flown(FAULTS["loss"])[1])
+
+
+def test_a_connection_is_opened_anew() -> None:
+    notes = [o.body.Note for o in flown(FAULTS["reconnect"])[1] if o.topic.endswith("BridgeStatus")]
+    assert any("link lost" in note for note in notes)
+    assert "connected again" in notes
+
+
+@pytest.mark.parametrize(
+    "section",
+    [
+        {"loss": 1.5},
+        {"delay_s": 6},
+        {"reconnect_s": 5},
+        {"cut_s": 9, "reconnect_s": 9},
+        {"reads_again_s": 2},
+        {"gone": 1},
+    ],
+)
+def test_what_cannot_be_is_refused(section: dict[str, float], tmp_path: Path) -> None:
+    path = tmp_path / "mission.yaml"
+    path.write_text(yaml.safe_dump({**small(), "simulation": {"bridge_faults": section}}))
+    with pytest.raises(BadInput, match="bridge_faults"):
+        load(path)
+
+
+def test_it_is_told_in_the_notes_of_the_mission(tmp_path: Path) -> None:
+    path = tmp_path / "mission.yaml"
+    section = {"seed": 3, "loss": 0.5, "delay_s": 2, "cut_s": 9}
+    path.write_text(yaml.safe_dump({**small(), "simulation": {"bridge_faults": section}}))
+    mission = load(path)
+    assert mission.simulation == FaultySimulation(
+        bridge_faults=BridgeFaults(3, loss=0.5, delay_ms=2000, cut_ms=9000)
+    )
+    assert mission.notes[-1] == (
+        "bridge faults are injected (seed 3): loss 0.5, delay up to 2 s, cut at 9 s"
+    )
