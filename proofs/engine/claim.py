@@ -22,9 +22,11 @@ from cratous.proofs.engine import closed
 from cratous.proofs.engine.closed import TRUE, path_to
 from cratous.proofs.engine.induction import Induction, arbitrary
 from cratous.proofs.engine.lift import CLOSED, OPAQUE, REPLACED, VISITS, Visit, join, lift
+from cratous.proofs.engine.obligation import Obligation
 from cratous.proofs.engine.symbolic import (
     INT64,
     RANGE,
+    LiftError,
     SymBool,
     SymInt,
     SymMask,
@@ -33,6 +35,7 @@ from cratous.proofs.engine.symbolic import (
 )
 from cratous.proofs.engine.terms import (
     Stub,
+    alike,
     depending,
     fields_of_both,
     flatten,
@@ -46,21 +49,11 @@ NAME = re.compile(r"[A-Za-z_]\w*(\.\w+)*", re.ASCII)
 """Names of a claim's values; the prover's own symbols have ! or # in theirs."""
 
 
-@dataclass(frozen=True)
-class Obligation:
-    """Something to prove: under `given`, `goal`. kind: goal, defined, base, step, use, lemma."""
-
-    kind: str
-    text: str
-    given: tuple[z3.BoolRef, ...]
-    goal: z3.BoolRef
-
-
-@dataclass
+@dataclass(repr=False)
 class Claim:
     """The theorem under construction.
 
-    asked: whether it asked for the calls of an opaque function; asking: its lemmas that did.
+    asked: whether it asked for the calls of an opaque function; asking: its lemmas that did; hidden: it finds none.
     """
 
     prefix: str = ""
@@ -74,6 +67,7 @@ class Claim:
     lemmas: list[str] = field(default_factory=list)
     asking: set[str] = field(default_factory=set)
     asked: bool = False
+    hidden: bool = False
     assumptions: list[tuple[str, str, str]] = field(default_factory=list)
     goals: list[z3.BoolRef] = field(default_factory=list)
     stubs: dict[Callable[..., Any], Stub] = field(default_factory=dict)
@@ -91,6 +85,9 @@ class Claim:
     stated: int = 0
     uses: list[closed.Call] = field(default_factory=list)
     told: closed.Told = field(default_factory=closed.Told)
+
+    def __repr__(self) -> str:
+        raise LiftError("a claim is made into text")
 
     def _value(self, name: str, make: Callable[[str], Any]) -> Any:
         if name in self.names:
@@ -164,8 +161,7 @@ class Claim:
         return self._lift(kernel, args, where=where)
 
     def _name(self) -> None:
-        # the theorem is about the kernels that it uses, and that it or a lemma looks into
-        for kernel in self.used:
+        for kernel in self.used:  # and those that it or a lemma looks into
             if kernel not in self.stubs or kernel in self.vouched:
                 self._about(kernel)
 
@@ -190,7 +186,7 @@ class Claim:
     def calls(self, function: Callable[..., Any]) -> list[tuple[Any, ...]]:
         """The arguments of every call of an opaque function so far."""
         self.asked = True
-        return list(self.stubs[function].calls)
+        return [] if self.hidden else list(self.stubs[function].calls)
 
     def congruence(
         self, function: Callable[..., Any], one: tuple[Any, ...], other: tuple[Any, ...]
@@ -261,10 +257,8 @@ class Claim:
 
     def show(self, goal: Any, text: str = "the claim") -> None:
         """What must follow; later statements may use it."""
-        term = statement(goal)
-        self._owe("goal", text, term)
-        self.goals.append(term)
-        self.facts.append(term)
+        Claim.step(self, goal, text)
+        self.goals.append(self.facts[-1])
 
     def step(self, goal: Any, text: str) -> None:
         """Show something on the way: it may be used here, but a lemma's user does not see it."""
@@ -286,24 +280,16 @@ class Claim:
 
         What is opaque here is opaque in the lemma too.
         """
-        if self.load is None:
-            raise RuntimeError("lemmas need a loader")
         if name in self.circle:
             way = " -> ".join([*self.circle[self.circle.index(name) :], name])
             raise ValueError(f"the lemmas go in a circle: {way}")
-        number = sum(other == name for other in self.lemmas)
-        prefix = f"{self.prefix}{name}!{number}!"
-        inner = Claim(
-            prefix=prefix,
-            circle=(*self.circle, name),
-            fixed=flatten(values),
-            load=self.load,
-            stubs=dict(self.stubs),
-        )
-        self.load(name)(inner)
-        self.asking |= {name} if inner.asked else set()
-        strangers = sorted(set(inner.fixed) - inner.names)
-        if strangers:
+        inner = self._lemma(name, values, hidden=False)
+        if inner.asked:
+            self.asking.add(name)
+            blind = self._lemma(name, values, hidden=True)
+            if not (alike(inner.goals, blind.goals) and alike(inner.premises, blind.premises)):
+                raise ValueError(f"what the lemma {name} shows hangs on the calls that it meets")
+        if strangers := sorted(set(inner.fixed) - inner.names):
             raise ValueError(f"the lemma {name} has no value called {', '.join(strangers)}")
         self.vouched |= inner.vouched | (set(inner.used) - inner.unseen)
         self._name()
@@ -314,6 +300,21 @@ class Claim:
             self._owe("lemma", f"premise of {name}", z3.Implies(given, premise))
         self.facts += [z3.Implies(given, goal) for goal in inner.goals]
         self.facts += inner.roots
+
+    def _lemma(self, name: str, values: dict[str, Any], *, hidden: bool) -> Claim:
+        number = sum(other == name for other in self.lemmas)
+        inner = Claim(
+            prefix=f"{self.prefix}{name}!{number}!",
+            circle=(*self.circle, name),
+            fixed=flatten(values),
+            load=self.load,
+            stubs=dict(self.stubs),
+            hidden=hidden,
+        )
+        if self.load is None:
+            raise RuntimeError("lemmas need a loader")
+        self.load(name)(inner)
+        return inner
 
     def implies(self, if_: Any, then: Any) -> Any:
         """If the one then the other."""
@@ -359,17 +360,16 @@ class Claim:
 
         acc and model are arbitrary accumulators of kernel and definition. Base: `relation` holds
         at the start. Step: if it holds before any item it holds after it. Use: where it holds the
-        results are equal; without a finish the accumulator is the result. The three together are the induction over the number of items, provided
-        that the accumulators are arbitrary: that they are distinct free values which no premise
-        restricts, and on which the item does not depend, is checked here, and that the relation
-        does not depend on the item (see `induction`). What is to be known of the accumulators
-        belongs into `relation`. A premise on the item is one on every item; base and use do not
-        have it, since there may be no item.
+        results are equal; without a finish the accumulator is the result. The three are the induction over
+        the number of items, provided that the accumulators are distinct free values which no premise
+        restricts, and that neither they nor the relation know the item: checked here (see `induction`).
+        What is to be known of the accumulators belongs into `relation`. A premise on the item is one on
+        every item; base and use do not have it, since there may be no item.
         """
         if self.prefix:
             return  # used as a lemma, a fold has no goals to offer
         kernel_fold = REPLACED.get(kernel_fold, kernel_fold)
-        arbitrary(self.premises, (acc, model), (item, context))
+        arbitrary(self, (acc, model), (item, context))
         self._about(kernel_fold)
         induction = Induction(self, acc, model, item)
         before = statement(relation(acc, model))

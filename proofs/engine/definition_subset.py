@@ -77,8 +77,6 @@ class DefinitionKinds(Kinds):
         else:
             home, name = sys.modules.get(str(self.scope["__name__"])), ast.unparse(node)
         said = constant(home, name) if isinstance(home, types.ModuleType) else NOTHING
-        if said is NOTHING and isinstance(node, ast.Name) and name in self.scope:
-            return  # imported: its own module has it
         if said is NOTHING or said != value or type(said) is not type(value):
             raise Refused(
                 node,

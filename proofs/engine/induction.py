@@ -56,25 +56,35 @@ def spread(names: set[str], claim: Claim) -> set[str]:
         found |= more
 
 
-def arbitrary(premises: list[z3.BoolRef], accumulators: Any, others: Any) -> None:
-    """Refuse accumulators over which no induction runs."""
+def arbitrary(claim: Claim, accumulators: Any, others: Any) -> None:
+    """Refuse accumulators over which no induction runs; ValueError.
+
+    They are free values; neither premises nor others know them, nor what opaque functions make of them.
+    """
     own = [known(leaf) for leaf in leaves(accumulators)]
     if any(not z3.is_const(t) or t.decl().kind() != z3.Z3_OP_UNINTERPRETED for t in own):
         raise ValueError("a fold's accumulators are arbitrary values, not terms or literals")
     names = {str(term) for term in own}
     if len(names) < len(own):
         raise ValueError("a fold's accumulators are distinct values")
+    names = spread(names, claim)
     for leaf in leaves(others):
         shared = sorted(names & free_names(known(leaf)))
         if shared:
             raise ValueError(f"an item or context depends on the accumulator {shared[0]}")
-    for premise in premises:
+    for premise in claim.premises:
         shared = sorted(names & free_names(premise))
         if shared:
             raise ValueError(
                 f"a premise restricts the accumulator {shared[0]}: no step keeps to it; "
                 "put it into the relation (an unbounded integer is `c.whole`)"
             )
+
+
+def no_more_premises(claim: Claim, number: int) -> None:
+    """Refuse premises beyond so many; ValueError."""
+    if len(claim.premises) != number:
+        raise ValueError("an induction's relation and steps state no premises")
 
 
 def _apart(what: str, value: Any, others: set[str]) -> None:
@@ -123,8 +133,7 @@ class Induction:
         acc = spread(names_in(self.acc), self.claim)
         _apart("the definition's step", after, acc)
         _apart("the definition's result", result, acc | spread(names_in(self.item), self.claim))
-        if len(self.claim.premises) != len(self.premises):
-            raise ValueError("an induction's relation and steps state no premises")
+        no_more_premises(self.claim, len(self.premises))
 
     @contextmanager
     def without_items(self) -> Iterator[None]:

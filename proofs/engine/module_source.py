@@ -10,15 +10,19 @@ import ast
 import functools
 import inspect
 import os
+import sys
 import types
 from fractions import Fraction
 from typing import Any
+
+from cratous.core.kernel.sources import PACKAGES
 
 NOTHING = object()
 PARTS = (
     ast.Constant, ast.BinOp, ast.UnaryOp, ast.Tuple, ast.Name, ast.Call, ast.operator, ast.unaryop,
     ast.expr_context, ast.Starred,
 )  # fmt: skip
+IMPORTS = 10
 KNOWN = {"Fraction": Fraction, "tuple": tuple, "range": range}
 
 
@@ -64,11 +68,19 @@ def _bound_name(node: ast.AST) -> str:
     return node.id if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) else ""
 
 
-def constant(module: types.ModuleType, name: str) -> Any:
-    """The value that a module's file gives a name; NOTHING where it gives none, or more than one."""
-    return _constants(str(module.__file__), os.stat(str(module.__file__)).st_mtime_ns).get(
-        name, NOTHING
-    )
+def constant(module: types.ModuleType, name: str, imports: int = IMPORTS) -> Any:
+    """The value that a module's file gives a name, or that of the file from which it imports it.
+
+    NOTHING where neither gives one, or more than one. imports: so many files may hand it on.
+    """
+    file = str(module.__file__)
+    changed_ns = os.stat(file).st_mtime_ns
+    found = _imported(file, changed_ns, name) if imports else None
+    if found is None:
+        return _constants(file, changed_ns).get(name, NOTHING)
+    home, its = found
+    source = sys.modules.get(home) if home.split(".")[0] in PACKAGES else None
+    return NOTHING if source is None else constant(source, its, imports - 1)
 
 
 @functools.cache
@@ -90,6 +102,19 @@ def _constants(file: str, changed_ns: int) -> dict[str, Any]:
                 if isinstance(one, ast.Name):
                     known[one.id] = NOTHING if one.id in known else _value(said, known)
     return known
+
+
+def _imported(file: str, changed_ns: int, name: str) -> tuple[str, str] | None:
+    """The module, and the name there, from which a file imports a name, once and at its top."""
+    found = [
+        (str(node.module), alias.name)
+        for node in _parsed(file, changed_ns).body
+        if isinstance(node, ast.ImportFrom) and not node.level
+        for alias in node.names
+        if (alias.asname or alias.name) == name
+    ]
+    once = len(_bindings(file, changed_ns).get(name, [])) == 1
+    return found[0] if found and once else None
 
 
 def _value(node: ast.expr, known: dict[str, Any]) -> Any:

@@ -24,11 +24,12 @@ from cratous.core.kernel.sources import altered, ours, place, position
 from cratous.core.ledger.package_home import Home
 from cratous.proofs.engine import definition_subset, plain_numbers, reachable_paths
 from cratous.proofs.engine.cache import Answer, Cache
-from cratous.proofs.engine.claim import Claim, Obligation
+from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.counterexample import Model, Watched, story, telling
 from cratous.proofs.engine.cpu_limit import OutOfTime, cpu_limit
 from cratous.proofs.engine.lemma_calls import hangs_on_calls
 from cratous.proofs.engine.lift import LiftError
+from cratous.proofs.engine.obligation import Obligation
 from cratous.proofs.engine.obligation_hash import Hasher
 from cratous.proofs.engine.outcomes import Outcome, Owed, Ran, restored
 from cratous.proofs.engine.smtlib import logic_of, question, smt2, sorts

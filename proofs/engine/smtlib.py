@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import z3
 
-from cratous.proofs.engine.claim import Obligation
+from cratous.proofs.engine.obligation import Obligation
 
 Seen = dict[int, tuple[z3.ExprRef, set[str]]]
 """What `sorts` found of terms, by their id; the term beside it keeps the id its own."""

@@ -83,6 +83,9 @@ class Sym:
     def __str__(self) -> str:
         raise LiftError("a symbolic value is made into text")
 
+    def __repr__(self) -> str:
+        raise LiftError("a symbolic value is made into text")
+
     def __format__(self, how: str) -> str:
         raise LiftError("a symbolic value is made into text")
 
@@ -93,12 +96,17 @@ class Sym:
         raise LiftError("a symbolic value is taken for a double")
 
 
+def told(value: Any) -> str:
+    """A value for a message."""
+    return " ".join(str(value.term).split()) if isinstance(value, Sym) else repr(value)
+
+
 def equality(one: Any, other: Any) -> SymBool:
     """Whether two numbers, masks or truth values of one kind are equal; LiftError for two kinds."""
     left, right = _raw(one), _raw(other)
     if left is None or right is None:
         strange = one if left is None else other
-        raise LiftError(f"{strange!r} is compared, which is no value of the kernel subset")
+        raise LiftError(f"{told(strange)} is compared, which is no value of the kernel subset")
     if z3.is_bv(left) or z3.is_bv(right):
         mask, value = (one, other) if isinstance(one, SymMask) else (other, one)
         return SymBool(mask._operand(value) == mask.term)
@@ -145,7 +153,7 @@ class SymBool(Sym):
     def _truth(self, other: object) -> z3.BoolRef:
         raw = _raw(other)
         if raw is None or not z3.is_bool(raw):
-            raise LiftError(f"a truth value is compared with {other!r}, which is none")
+            raise LiftError(f"a truth value is compared with {told(other)}, which is none")
         return raw
 
 
@@ -196,7 +204,7 @@ def _compare(name: str) -> Callable[[Sym, Any], Any]:
             return SymBool(relation[name](*pair))
         if name in ("eq", "ne"):
             # Python would fall back to identity and answer without a word
-            raise LiftError(f"a number is compared with {other!r}, which is none")
+            raise LiftError(f"a number is compared with {told(other)}, which is none")
         return NotImplemented
 
     return method
@@ -341,7 +349,7 @@ class SymMask(Sym):
     def _operand(self, other: object) -> z3.ExprRef:
         raw = self._with(other)
         if raw is None:
-            raise LiftError(f"a mask is compared with {other!r}, which is none")
+            raise LiftError(f"a mask is compared with {told(other)}, which is none")
         return raw
 
 
@@ -352,7 +360,7 @@ def root(value: Any) -> Any:
     """
     term = _raw(value)
     if term is None or not (z3.is_real(term) or z3.is_int_value(term)):
-        raise LiftError(f"sqrt of {value!r}, which is no real number")
+        raise LiftError(f"sqrt of {told(value)}, which is no real number")
     term = as_real(term)
     result = z3.Real("sqrt!" + hashlib.sha256(term.sexpr().encode()).hexdigest()[:16])
     if not PATHS:

@@ -7,7 +7,7 @@ that stands for a function which is not looked into.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from typing import Any, get_type_hints
 
@@ -25,6 +25,7 @@ from cratous.proofs.engine.symbolic import (
     SymReal,
     _raw,
     as_real,
+    told,
     wrap,
 )
 
@@ -91,6 +92,11 @@ def fields_of_both(a: Any, b: Any) -> list[tuple[Any, Any]]:
         names = f"{type(a).__name__} and {type(b).__name__}"
         raise TypeError(f"records of two kinds are compared: {names}")
     return list(zip(a, b, strict=True))
+
+
+def alike(one: Sequence[z3.ExprRef], other: Sequence[z3.ExprRef]) -> bool:
+    """The same terms in the same order."""
+    return len(one) == len(other) and all(a.eq(b) for a, b in zip(one, other, strict=True))
 
 
 def free_names(term: z3.ExprRef) -> set[str]:
@@ -193,7 +199,7 @@ def known(value: Any) -> z3.ExprRef:
     """The term of a value or literal; TypeError for anything else."""
     term = _raw(value)
     if term is None:
-        raise TypeError(f"{value!r} is no value of the kernel subset")
+        raise TypeError(f"{told(value)} is no value of the kernel subset")
     return term
 
 
@@ -205,4 +211,4 @@ def statement(value: Any) -> z3.BoolRef:
         return z3.BoolVal(value)
     if isinstance(value, SymBool):
         return value.term
-    raise TypeError(f"{value!r} is no statement")
+    raise TypeError(f"{told(value)} is no statement")

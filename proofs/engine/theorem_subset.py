@@ -274,6 +274,12 @@ class _Function:
             raise _Refused(node, "a call of what has no name", "name it first")
         if isinstance(node, ast.Compare) and not all(isinstance(o, COMPARISONS) for o in node.ops):
             raise _Refused(node, "`is`", "==, or c.same of two values")
+        if isinstance(node, ast.Lambda):
+            for default in (*node.args.defaults, *node.args.kw_defaults):
+                if default is not None:
+                    self.expression(default)
+            _Function(None, self.imported, nested=True).expression(node.body)
+            return
         at_once = isinstance(node, ast.Call | ast.Starred)
         for part in _parts(node):
             self.expression(part, consumed=at_once or isinstance(part, ast.Starred))
@@ -291,6 +297,7 @@ class _Function:
             raise _Refused(
                 node, f"{node.attr!r} of the claim", "its statements: c.show, c.premise, ..."
             )
+        # another call of it would find more of them
         if node.attr == "calls" and self.nested:
             raise _Refused(node, "c.calls in an inner function", "c.calls in `claim`")
 
@@ -311,8 +318,6 @@ def _parts(node: ast.expr) -> Iterator[ast.expr]:
             yield part.value
         elif isinstance(part, ast.comprehension):
             yield from part.ifs
-        elif isinstance(part, ast.arguments):
-            yield from [d for d in (*part.defaults, *part.kw_defaults) if d is not None]
 
 
 def _targets(node: ast.stmt, *, made_here: bool) -> Iterator[ast.Name]:

@@ -54,10 +54,13 @@ def check_values(scope: dict[str, Any], tree: ast.Module, path: Path) -> None:
             if isinstance(value, types.FunctionType) and of_theorems(value):
                 _check_file(value.__module__)
     defined = {id(node) for node in _defined(tree)}
+    types_ = {id(part) for node in _annotations(tree) for part in ast.walk(node)}
     for node in ast.walk(tree):
         found, value = _meant(node, scope)
         if not found:
             continue
+        if value is Claim and id(node) not in types_:
+            refuse(node, "a theorem makes no claim of its own: it is given one")
         if isinstance(node, ast.Attribute) and not _may_be_used(value):
             refuse(node, f"a theorem's file does not use {ast.unparse(node)!r}")
         # what is outside of the subset in a kernel is told where it is lifted
@@ -75,7 +78,7 @@ def _may_be_used(value: Any) -> bool:
     entry = entry_of(value)
     if entry is not None:
         return entry.kind != "driver"
-    if value is Claim or value is Fold or is_record(value):
+    if value is Claim or value is Fold or is_record(value) or _of_methods(value):
         return True
     if isinstance(value, bool | int | float | Fraction | str):
         return True
@@ -85,6 +88,13 @@ def _may_be_used(value: Any) -> bool:
     if isinstance(value, types.FunctionType) and ours(value):
         return of_theorems(value) or value.__module__.split(".")[1:2] == ["spec"]
     return typing.get_origin(value) is not None
+
+
+def _of_methods(value: Any) -> bool:
+    """A tuple with names that a method of proof is given."""
+    home = str(getattr(value, "__module__", ""))
+    named = isinstance(value, type) and value.__bases__ == (tuple,)
+    return named and home.startswith("cratous.proofs.methods.")
 
 
 def _meant(node: ast.AST, scope: dict[str, Any]) -> tuple[bool, Any]:
@@ -105,6 +115,15 @@ def _defined(tree: ast.Module) -> Iterator[ast.expr]:
         if isinstance(by, ast.Attribute) and by.attr == "define":
             assert isinstance(node, ast.Call)
             yield node.args[0]
+
+
+def _annotations(tree: ast.Module) -> Iterator[ast.expr]:
+    """The types that are written in a file."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.arg | ast.AnnAssign) and node.annotation is not None:
+            yield node.annotation
+        if isinstance(node, ast.FunctionDef) and node.returns is not None:
+            yield node.returns
 
 
 _CHECKED: set[tuple[str, int]] = set()

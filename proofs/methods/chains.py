@@ -14,7 +14,7 @@ from typing import Any
 
 from cratous.core.kernel import Fold, qualified
 from cratous.proofs.claim import Claim
-from cratous.proofs.engine.induction import arbitrary
+from cratous.proofs.engine.induction import arbitrary, no_more_premises
 from cratous.proofs.engine.lift import REPLACED
 from cratous.proofs.engine.terms import statement
 from cratous.proofs.running import inductions
@@ -38,7 +38,7 @@ def closed_chain(
     """Show `goal(results)` of folds that run over the edges of one closed chain, of any length.
 
     invariant(accumulators, first, last): what holds after any number of edges; edge(a, b): uses
-    lemmas and premises on one more edge; begin(first): premises on the first vertex; goal(results): what follows for the folds' results. models: folds
+    lemmas and premises on one more edge, which do not speak of accumulators; begin(first): premises on the first vertex; goal(results): what follows for the folds' results. models: folds
     over definitions, which run along; their accumulators and results come after the others.
     """
     if c.prefix:
@@ -54,27 +54,35 @@ def closed_chain(
     accumulators = [acc for _, acc, _ in (*runs, *models)]
     contexts = [context for _, _, context in (*runs, *models)]
     readers = [c.use] * len(runs) + [c.define] * len(models)
-    arbitrary(c.premises, tuple(accumulators), tuple(contexts))
+    arbitrary(c, tuple(accumulators), tuple(contexts))
     for fold in folds[: len(runs)]:
         if qualified(fold) not in c.kernels:
             c.kernels.append(qualified(fold))
     begin(first)
+    of_first = list(c.premises)
     starts = [fold.start for fold in folds]
     c._owe("base", f"{text}: a chain without edges", statement(invariant(starts, first, first)))
     # the folds are run only where the invariant holds, so what they owe is owed there
     before = len(c.facts)
     c._grant(statement(invariant(accumulators, first, last)))
+    no_more_premises(c, len(of_first))
     edge(last, to)
+    of_edge = list(c.premises)
     after = [
         read(fold.step, acc, last, to, *context)
         for read, fold, acc, context in zip(readers, folds, accumulators, contexts, strict=True)
     ]
     c._owe("step", f"{text}: one more edge", statement(invariant(after, first, to)))
-    c.facts = c.facts[:before]
+    # at the end there is no further edge, so nothing is given of one
+    no_more_premises(c, len(of_edge))
+    c.premises, c.facts = list(of_first), c.facts[:before]
     c._grant(statement(invariant(accumulators, first, first)))
     results = [
         acc if fold.finish is None else read(fold.finish, acc)
         for read, fold, acc in zip(readers, folds, accumulators, strict=True)
     ]
     c._owe("use", f"{text}: the chain is closed", statement(goal(results)))
-    c.facts, c.granted = c.facts[:before], ()
+    no_more_premises(c, len(of_first))
+    c.premises, c.facts, c.granted = of_edge, c.facts[:before], ()
+    # begin and edge restrict vertices alone
+    arbitrary(c, tuple(accumulators), tuple(contexts))

@@ -29,7 +29,8 @@ from cratous.core.readings.exact.error_bounds import FLOOR, TINY, UNIT
 from cratous.core.readings.exact.float_filter import Certain, Filter, Step, filtered
 from cratous.core.readings.graph import program
 from cratous.core.readings.graph.nodes import Node, NotInSubset, Program, leaves
-from cratous.proofs.engine.claim import Claim, Obligation
+from cratous.proofs.engine.claim import Claim
+from cratous.proofs.engine.obligation import Obligation
 from cratous.proofs.engine.symbolic import Sym, wrap
 from cratous.spec import rounding
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from cratous.core.kernel import Fold, qualified
 from cratous.proofs.claim import Claim
-from cratous.proofs.engine.induction import arbitrary, names_in, spread
+from cratous.proofs.engine.induction import arbitrary, names_in, no_more_premises, spread
 from cratous.proofs.engine.lift import REPLACED
 from cratous.proofs.engine.terms import free_names, statement
 from cratous.proofs.running import inductions
@@ -23,10 +23,10 @@ Run = tuple[Fold[Any], Any, tuple[Any, ...]]
 
 
 class Items(NamedTuple):
-    """The arbitrary values of one item; each(accumulators): what every item satisfies, given those before it."""
+    """The arbitrary values of one item; each: what every item satisfies."""
 
     values: tuple[Any, ...]
-    each: Callable[[list[Any]], Any] = lambda accumulators: True
+    each: Any = True
 
 
 def along_items(
@@ -43,7 +43,7 @@ def along_items(
     """Show `goal(results)` of folds over the same items, of any number.
 
     invariant(accumulators): what holds after any number of items; known(accumulators): uses lemmas on one
-    more item, from the accumulators before it; models: folds of definitions, whose accumulators come after the others'.
+    more item, from the accumulators before it, and states no premises; models: folds of definitions, whose accumulators come after the others'.
     """
     if c.prefix:
         return  # used as a lemma, an induction has no goals to offer, as with `Claim.fold`
@@ -58,20 +58,19 @@ def along_items(
     accumulators = [acc for _, acc, _ in (*runs, *models)]
     contexts = [context for _, _, context in (*runs, *models)]
     readers = [c.use] * len(runs) + [c.define] * len(models)
-    arbitrary(c.premises, tuple(accumulators), (values, tuple(contexts)))
+    arbitrary(c, tuple(accumulators), (values, tuple(contexts), each))
+    own = spread(names_in(values), c)
     # base and use hold of no item at all, so nothing may be given about one
-    arbitrary([], values, tuple(contexts))
-    for premise in c.premises:
-        shared = sorted(free_names(premise) & names_in(values))
-        if shared:
-            raise ValueError(f"a premise restricts the item's {shared[0]}: put it into `each`")
+    if shared := sorted(own & names_in(tuple(contexts))):
+        raise ValueError(f"the context depends on the item's {shared[0]}: it is the same for each")
+    if shared := sorted(own & set().union(*map(free_names, c.premises))):
+        raise ValueError(f"a premise restricts the item's {shared[0]}: put it into `each`")
     for fold in folds[: len(runs)]:
         if qualified(fold) not in c.kernels:
             c.kernels.append(qualified(fold))
     starts = [fold.start for fold in folds]
     before = len(c.facts)
     held, base = statement(invariant(accumulators)), statement(invariant(starts))
-    own = spread(names_in(values), c)
     for term in (held, base):
         shared = sorted(free_names(term) & own)
         if shared:
@@ -80,22 +79,28 @@ def along_items(
             )
     c._owe("base", f"{text}: no items", base)
     # the folds are run only where the invariant holds, so what they owe is owed there
-    c._grant(statement(c.all_of(invariant(accumulators), each(accumulators))))
+    of_any = list(c.premises)
+    if each is not True:
+        c.premise(each)
+    of_item = list(c.premises)
+    c._grant(held)
     known(accumulators)
     after = [
         read(fold.step, acc, *values, *context)
         for read, fold, acc, context in zip(readers, folds, accumulators, contexts, strict=True)
     ]
     c._owe("step", f"{text}: one more item", statement(invariant(after)))
-    c.facts = c.facts[:before]
+    no_more_premises(c, len(of_item))
+    c.premises, c.facts = list(of_any), c.facts[:before]
     c._grant(held)
     results = [
         acc if fold.finish is None else read(fold.finish, acc)
         for read, fold, acc in zip(readers, folds, accumulators, strict=True)
     ]
     wanted = statement(goal(results))
-    shared = sorted(free_names(wanted) & spread(names_in(values), c))
+    shared = sorted(free_names(wanted) & spread(own, c))
     if shared:
         raise ValueError(f"the goal depends on the item's {shared[0]}: there may be none")
     c._owe("use", f"{text}: no more items", wanted)
-    c.facts, c.granted = c.facts[:before], ()
+    no_more_premises(c, len(of_any))
+    c.premises, c.facts, c.granted = of_item, c.facts[:before], ()

@@ -21,7 +21,7 @@ from typing import Any
 import z3
 
 from cratous.proofs.claim import Claim
-from cratous.proofs.engine.induction import arbitrary, names_in, spread
+from cratous.proofs.engine.induction import arbitrary, names_in, no_more_premises, spread
 from cratous.proofs.engine.terms import free_names, statement
 from cratous.proofs.running import inductions
 from cratous.proofs.running.statement import OnNumbers
@@ -60,7 +60,7 @@ def every_term(
             related=related, alike=alike, text=text,
         )  # fmt: skip
         return
-    arbitrary(c.premises, (so_far, operand), node)
+    arbitrary(c, (so_far, operand), node)
     premises = list(c.premises)
     of_task, of_node = spread(names_in(task), c), spread(names_in(node), c)
     with _without(c, of_node):
@@ -90,8 +90,7 @@ def every_term(
         c.facts, c.granted = c.facts[:kept], ()
     for what, result in (("with an operand more", meant), ("of the whole", meaning)):
         _apart(f"the meaning {what}", result, of_kernel)
-    if len(c.premises) != len(premises):
-        raise ValueError("an induction's relation and steps state no premises")
+    no_more_premises(c, len(premises))
 
 
 @contextmanager

@@ -39,7 +39,7 @@ def any_piece(c: Claim) -> Piece:
 
 def as_item(c: Claim, piece: Piece) -> Items:
     """The piece as any item of a trajectory: its duration and its rho are not below 0."""
-    return Items(tuple(piece), lambda state: c.all_of(piece.duration_s >= 0, piece.rho_m >= 0))
+    return Items(tuple(piece), c.all_of(piece.duration_s >= 0, piece.rho_m >= 0))
 
 
 def asked(c: Claim, meeting: Meeting, piece: Piece, place: tuple[Any, ...], flown: Any) -> Asked:

@@ -13,8 +13,9 @@ import z3
 
 from cratous.core.kernel import REGISTRY, Fold, qualified
 from cratous.core.ledger.package_home import PRODUCT, Home
-from cratous.proofs.engine.claim import Claim, Obligation
+from cratous.proofs.engine.claim import Claim
 from cratous.proofs.engine.lift import REPLACED, LiftError
+from cratous.proofs.engine.obligation import Obligation
 from cratous.proofs.engine.theorem_files import FOLDER, load_claim, load_lemma
 
 

@@ -79,7 +79,7 @@ def along_items(
     invariant: Callable[[list[Any]], Any],
     goal: Callable[[list[Any]], Any],
     text: str,
-    each: Callable[[list[Any]], Any],
+    each: Any,
     known: Callable[[list[Any]], None],
 ) -> None:
     """`proofs.methods.runs.along_items`: one more item, or up to LONGEST of the same."""
@@ -90,9 +90,8 @@ def along_items(
     if count == 1 and truth(invariant(arbitrary)):
         c.show(goal(_results(c, runs, arbitrary)), f"{text}: no more items")
         values = arbitrary
+    c.premise(each)
     for k in range(count):
-        if not truth(each(values)):
-            break
         known(values)
         values = _stepped(c, runs, values, item)
         c.show(invariant(values), f"{text}: after {k + 1} more items")

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import z3
 
 from cratous.core.kernel import Fold
-from cratous.proofs.engine.claim import Obligation
+from cratous.proofs.engine.obligation import Obligation
 from cratous.proofs.engine.terms import known
 
 CLAUSES_MAX = 12

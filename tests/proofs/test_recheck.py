@@ -11,7 +11,7 @@ import z3
 from cratous.core import ledger as gate
 from cratous.proofs import ledger, recheck
 from cratous.proofs.engine import prover
-from cratous.proofs.engine.claim import Obligation
+from cratous.proofs.engine.obligation import Obligation
 from cratous.proofs.mutation.keys import Store
 from cratous.spec.errors import BadInput
 

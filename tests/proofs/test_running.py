@@ -49,7 +49,7 @@ FALSE = {
 INDUCTIONS = {
     "along_items": """    item = (c.real("x"), c.real("y"))
     along_items(
-        c, [(Fold("sum", "", lambda acc, x, y: acc + x, 0), c.real("acc"), ())], item=(item, lambda a: True),
+        c, [(Fold("sum", "", lambda acc, x, y: acc + x, 0), c.real("acc"), ())], item=(item, True),
         invariant=lambda a: a[0] >= 0, goal=lambda r: r[0] >= 0, text="sums",
     )
 """,

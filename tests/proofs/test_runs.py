@@ -54,7 +54,7 @@ def test_what_does_not_hold_is_not() -> None:
 
 def test_an_item_may_be_restricted_for_the_step_alone() -> None:
     low = stated(
-        item=lambda c, place: Items((place,), each=lambda state: place >= 1),
+        item=lambda c, place: Items((place,), each=c.all_of(place >= 1, place <= 9)),
         invariant=lambda c, place: lambda state: state[0] == 1,
         goal=lambda c, place: lambda results: results[0] == 1,
     )

@@ -39,7 +39,7 @@ def test_an_induction_says_over_what_it_runs_and_what_it_keeps() -> None:
 
 
 def _one(goal: z3.BoolRef, *given: z3.BoolRef) -> str:
-    from cratous.proofs.engine.claim import Obligation
+    from cratous.proofs.engine.obligation import Obligation
 
     owed = Obligation("goal", "the author's words", given, goal)
     return sentence(
