@@ -18,7 +18,7 @@ from typing import Any
 import z3
 
 from cratous.core.kernel import Fold, Vec2, entry_of, qualified
-from cratous.proofs.engine import closed
+from cratous.proofs.engine import closed, hidden_calls
 from cratous.proofs.engine.closed import TRUE, path_to
 from cratous.proofs.engine.induction import Induction, arbitrary
 from cratous.proofs.engine.lift import CLOSED, OPAQUE, REPLACED, VISITS, Visit, join, lift
@@ -35,7 +35,6 @@ from cratous.proofs.engine.symbolic import (
 )
 from cratous.proofs.engine.terms import (
     Stub,
-    alike,
     depending,
     fields_of_both,
     flatten,
@@ -286,9 +285,9 @@ class Claim:
         inner = self._lemma(name, values, hidden=False)
         if inner.asked:
             self.asking.add(name)
-            blind = self._lemma(name, values, hidden=True)
-            if not (alike(inner.goals, blind.goals) and alike(inner.premises, blind.premises)):
-                raise ValueError(f"what the lemma {name} shows hangs on the calls that it meets")
+            hidden_calls.show_nothing_else(
+                name, inner, lambda: self._lemma(name, values, hidden=True)
+            )
         if strangers := sorted(set(inner.fixed) - inner.names):
             raise ValueError(f"the lemma {name} has no value called {', '.join(strangers)}")
         self.vouched |= inner.vouched | (set(inner.used) - inner.unseen)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from cratous.proofs.engine.claim import Claim
-from cratous.proofs.engine.terms import alike
+from cratous.proofs.engine.hidden_calls import same
 from cratous.proofs.engine.theorem_files import load_claim, load_lemma
 
 
@@ -32,4 +32,4 @@ def hangs_on_calls(name: str, folder: Path) -> bool:
         without = read(hidden=True, stubs=dict(plain.stubs))
     except (ValueError, TypeError, IndexError):
         return True  # it takes them for granted
-    return not (alike(plain.goals, without.goals) and alike(plain.premises, without.premises))
+    return not same(plain, without)

@@ -7,7 +7,7 @@ that stands for a function which is not looked into.
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from fractions import Fraction
 from typing import Any, get_type_hints
 
@@ -94,11 +94,6 @@ def fields_of_both(a: Any, b: Any) -> list[tuple[Any, Any]]:
     return list(zip(a, b, strict=True))
 
 
-def alike(one: Sequence[z3.ExprRef], other: Sequence[z3.ExprRef]) -> bool:
-    """The same terms in the same order."""
-    return len(one) == len(other) and all(a.eq(b) for a, b in zip(one, other, strict=True))
-
-
 def free_names(term: z3.ExprRef) -> set[str]:
     """The names of the values in a term."""
     return {str(value) for value in free_values([term])}
@@ -170,6 +165,8 @@ def _is_of(value: Any, kind: Any) -> bool:
     if hasattr(kind, "_fields"):
         fields = get_type_hints(kind)
         parts = [fields[part] for part in kind._fields]
+        if getattr(value, "_fields", kind._fields) != kind._fields:
+            return False  # a stub reads them by place, the function by name
         return (
             isinstance(value, tuple) and len(value) == len(parts) and all(map(_is_of, value, parts))
         )
