@@ -12,6 +12,12 @@ from cratous.services.cli import main
 from cratous.spec.errors import BadInput
 
 CASES = list(case.cases())
+NEAR_MISSES = [one for one in CASES if one.verdict == "accepted"]
+# all that must be refused, and every third near miss; `cratous prove --self-test` tries them all
+TRIED = [
+    pytest.param(one, marks=pytest.mark.long) if one in NEAR_MISSES and k % 3 else one
+    for k, one in enumerate(CASES)
+]
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -20,7 +26,7 @@ def _prepared() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("one", CASES, ids=lambda one: one.id)
+@pytest.mark.parametrize("one", TRIED, ids=lambda one: one.id)
 def test_the_prover_judges_it_as_it_must(one: case.Case) -> None:
     assert trial.attempt(one).wrong == "", one.because
 
