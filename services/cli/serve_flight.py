@@ -16,6 +16,7 @@ from typing import Any
 from cratous.services.cli.job import Settings, folder_name, run_mission
 from cratous.services.cli.stopping import Stopped, stoppable
 from cratous.services.ground_station.live_flight import LiveFlight, forward
+from cratous.services.ground_station.pace import Ended
 from cratous.services.results.folder import results_folder
 from cratous.spec.errors import BadInput, CratousError
 from cratous.spec.files.printable import json_text
@@ -39,7 +40,7 @@ def main(asked: dict[str, Any]) -> int:
     try:
         with stoppable():
             return _fly(asked, send, status)
-    except Stopped:
+    except (Stopped, Ended):
         status("stopped", text="The flight was stopped; no results were written.")
         return 1
     except CratousError as error:
@@ -81,6 +82,8 @@ def _commands(live: LiveFlight) -> None:
         if asked.get("do") == "stop":
             break
         live.command(asked)
+    # the signal may meet the flight where Python drops what it raises, as within a fork
+    live.pace.end()
     os.kill(os.getpid(), signal.SIGTERM)
 
 

@@ -10,6 +10,10 @@ RATES = (0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0
 STEP_MS = 1000
 
 
+class Ended(Exception):
+    """The flight is not to go on."""
+
+
 class Pace:
     """Holds a flight back. `wait` is called by the flight, everything else by whoever commands it.
 
@@ -18,7 +22,7 @@ class Pace:
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
-        self._rate, self._paused = 1.0, True
+        self._rate, self._paused, self._ended = 1.0, True, False
         self._now_ms, self._until_ms = 0, 0
         self._since: tuple[float, int] | None = None
         """Clock [s] and time of the flight [ms] from which the rate counts."""
@@ -43,6 +47,12 @@ class Pace:
         """Stand."""
         with self._changed:
             self._paused, self._until_ms = True, self._now_ms
+            self._changed.notify_all()
+
+    def end(self) -> None:
+        """Let the flight go no further: its next `wait` raises Ended."""
+        with self._changed:
+            self._ended = True
             self._changed.notify_all()
 
     def step(self) -> None:
@@ -70,10 +80,12 @@ class Pace:
         return left_s
 
     def wait(self, time_ms: int, standing: Callable[[], None]) -> None:
-        """Return when the flight may be at that time [ms]; `standing` is called when it is paused."""
+        """Return when the flight may be at that time [ms]; `standing` is called when it is paused. Raises Ended."""
         told = False
         while True:
             with self._changed:
+                if self._ended:
+                    raise Ended
                 left_s = self.due(time_ms)
                 if left_s is not None and left_s <= 0:
                     self._now_ms = time_ms

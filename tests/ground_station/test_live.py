@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from ground_station_tools import LIMIT_S, Served, ask, flying
 
-from cratous.services.ground_station.pace import STEP_MS, Pace
+from cratous.services.ground_station.pace import STEP_MS, Ended, Pace
 
 ROOT = Path(__file__).resolve().parents[2]
 CROSSING = Path("examples/crossing/mission.yaml")
@@ -181,6 +181,24 @@ def test_the_flight_ends_with_its_server(live: Served, tmp_path: Path, number: i
         assert time.monotonic() < until_s, "the flight's process is still there"
         time.sleep(0.05)
     assert not (tmp_path / "live").exists()
+
+
+def test_a_flight_that_is_to_end_waits_no_more() -> None:
+    """Also where the signal that ends it was lost."""
+    pace, ended = Pace(), threading.Event()
+
+    def fly() -> None:
+        with pytest.raises(Ended):
+            pace.wait(1000, lambda: None)
+        ended.set()
+
+    thread = threading.Thread(target=fly, daemon=True)
+    thread.start()
+    assert not ended.wait(0.1)
+    pace.end()
+    assert ended.wait(LIMIT_S)
+    with pytest.raises(Ended):
+        pace.wait(0, lambda: None)
 
 
 def test_a_bad_mission_is_told_with_file_and_place(tmp_path: Path) -> None:
