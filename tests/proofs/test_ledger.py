@@ -256,7 +256,7 @@ def test_a_ledger_that_was_sealed_again_is_caught_by_proving(
     assert wanted in done.stdout + done.stderr
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_driver_that_no_longer_calls_its_checker_is_refused_by_the_prover(product: Path) -> None:
     file = product / "cratous" / "core" / "avoidance" / "prediction.py"
     original = file.read_text()

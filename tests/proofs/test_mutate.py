@@ -136,6 +136,7 @@ def test_faults_are_killed_by_the_theorem_that_they_break():
     assert not REPLACED
 
 
+@pytest.mark.long
 def test_a_missing_theorem_shows_as_a_survivor_with_its_diff_and_a_witness():
     weak = mutate.run(
         ["gives_way"], keys=Keys(theorems=["authority_exactly_one_gives_way"]), premises=False
@@ -301,6 +302,7 @@ def test_what_is_skipped_is_not_judged():
     assert nothing == MutationReport((), ())
 
 
+@pytest.mark.long
 def test_premises_count_where_a_theorem_looks_into_nothing():
     """All that it is about is opaque, so it meets no mutant; its premises may be idle all the same."""
     name = "well_clear_tep_is_convex"

@@ -196,6 +196,7 @@ def test_the_start_is_quick(arguments: list[str], limit_s: float):
     assert min(spent) < limit_s, spent
 
 
+@pytest.mark.long
 def test_mutation_of_functions_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
     """A pattern that only functions match proves and mutates what meets them."""
     asked = []
@@ -211,6 +212,7 @@ def test_mutation_of_functions_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
     assert main(["prove", "--only", "no_such_function", "--mutate"]) == 2
 
 
+@pytest.mark.long
 def test_only_what_the_record_does_not_know_is_mutated(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
