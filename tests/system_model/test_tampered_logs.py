@@ -34,7 +34,7 @@ FlyOnce = Callable[[Path], Path]
 EXAMPLES = (
     "crossing",
     "popup",
-    "relations",
+    pytest.param("relations", marks=pytest.mark.long),
     pytest.param("search", marks=pytest.mark.long),
     pytest.param("partial", marks=pytest.mark.long),
 )
