@@ -90,11 +90,16 @@ def attach(
             stores.append(stack.enter_context(LogStore(live.keep, origin=where.text)))
             messages = _recorded(messages, stores[0])
         told: set[tuple[str, str]] = set()
-        for _ in watch.rows(rows_of_messages(messages, wanted)):
+        rows = rows_of_messages(
+            messages, wanted, lambda entry: find("refused", entry.time_ms * 10**6)
+        )
+        for _ in watch.rows(rows):
             for event, one in _news(watch, told):
                 _tell(event, one, as_json)
                 if event == "violated" and words:
                     _run(words, one)
+        if watch.sampling.is_late(attached.now_ms() * 10**6):
+            find("silent", watch.sampling.last)
     return print_result(watch.result(), remarks, standing, True, None, as_json)
 
 

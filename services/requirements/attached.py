@@ -76,6 +76,6 @@ class Attached:
 
     def _count_refused(self) -> None:
         refused = sum(self._port.counts.refused.values())
-        for _ in range(min(refused - self._refused, 1)):
+        if refused != self._refused:
             self._find("refused", self.now_ms() * 10**6)
         self._refused = refused

@@ -25,9 +25,10 @@ SAYS = {
     "open": "the log has no end: it is being written, or its writer was stopped",
     "lost": "messages of the log are missing",
     "cut": "the connection was lost, and messages with it",
+    "silent": "nothing came any more before the watch ended",
     "refused": "bytes came that are no message",
 }
-NOT_WHOLE = ("order", "open", "lost", "cut", "refused")
+NOT_WHOLE = ("order", "open", "lost", "cut", "silent", "refused")
 """Where one of these was found nothing holds, since more could be known."""
 
 
@@ -64,7 +65,8 @@ class Sampling:
         """All that was found so far; signals of which no value came are among them."""
         never = [Finding("never", name, -1, 1) for name in self.signals if name not in self.seen]
         gone = {one.signal for one in never}
-        return [f for f in self._found.values() if f.signal not in gone] + never
+        found = list(self._found.values())  # another thread may read it while samples come
+        return [f for f in found if f.signal not in gone] + never
 
     @property
     def is_whole(self) -> bool:
@@ -77,12 +79,16 @@ class Sampling:
             if time <= self.last:
                 self.find("order", "", time)
                 continue
-            if self.gap_ns and self.last >= 0 and time - self.last > self.gap_ns:
+            if self.is_late(time):
                 self.find("gap", "", self.last)
                 # when the next one was due nothing is known
                 yield self.last + self.gap_ns, dict.fromkeys(self.signals)
             self.last = time
             yield time, {name: self._value(name, time, row) for name in self.signals}
+
+    def is_late(self, time: int) -> bool:
+        """Whether a time [ns] is further from the last sample than the trace says."""
+        return self.gap_ns > 0 and self.last >= 0 and time - self.last > self.gap_ns
 
     def _value(self, name: str, time: int, row: Mapping[str, float | None]) -> float | None:
         if name in row:

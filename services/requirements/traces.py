@@ -6,7 +6,7 @@ messages of one instant are one row. In CSV an empty cell brings no value.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from fractions import Fraction
 from itertools import groupby
 from math import isfinite
@@ -112,9 +112,16 @@ def _of_log(trace: Path, wanted: Mapping[str, Signal]) -> Iterator[Row]:
     yield from rows_of_messages(source.entries(), wanted)
 
 
-def rows_of_messages(entries: Iterable[Entry], wanted: Mapping[str, Signal]) -> Iterator[Row]:
-    """The rows of messages in the order of their times; those of one instant are one row."""
-    for time_ms, parts in groupby(_of_messages(entries, wanted), key=itemgetter(0)):
+def rows_of_messages(
+    entries: Iterable[Entry],
+    wanted: Mapping[str, Signal],
+    unread: Callable[[Entry], None] | None = None,
+) -> Iterator[Row]:
+    """The rows of messages in the order of their times; those of one instant are one row.
+
+    unread: is told of a message that cannot be decoded, and it is left out; without it BadInput is raised.
+    """
+    for time_ms, parts in groupby(_of_messages(entries, wanted, unread), key=itemgetter(0)):
         row: dict[str, float | None] = {}
         for _, part in parts:
             row.update(part)
@@ -122,14 +129,22 @@ def rows_of_messages(entries: Iterable[Entry], wanted: Mapping[str, Signal]) -> 
 
 
 def _of_messages(
-    entries: Iterable[Entry], wanted: Mapping[str, Signal]
+    entries: Iterable[Entry],
+    wanted: Mapping[str, Signal],
+    unread: Callable[[Entry], None] | None,
 ) -> Iterator[tuple[int, Mapping[str, float | None]]]:
     """The time [ms] of each message that has a signal, and what it has."""
     for entry in entries:
         mine = {n: s for n, s in wanted.items() if _is(entry.topic, s.message)}
         if not mine:
             continue
-        data = to_data(entry)
+        try:
+            data = to_data(entry)
+        except BadInput:
+            if unread is None:
+                raise
+            unread(entry)
+            continue
         found = {
             name: _field(data, signal, name, entry)
             for name, signal in mine.items()

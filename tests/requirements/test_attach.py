@@ -132,6 +132,26 @@ def test_a_connection_that_is_lost_is_made_again_and_nothing_holds_then(
     assert {r["verdict"] for r in again["requirements"]} == {"unknown"}
 
 
+def test_of_a_peer_that_falls_silent_nothing_holds(peers, requirements, tmp_path, capsys):
+    peer, log = peers([_state(300), _state(310)]), tmp_path / "kept.sqlite"
+    assert _attach(peer.port, requirements, "--keep", str(log), "--json", seconds=2.6) == 3
+    said = json.loads(capsys.readouterr().out)
+    assert "silent" in {finding["kind"] for finding in said["findings"]}
+    assert {r["verdict"] for r in said["requirements"]} == {"unknown"}
+    assert main(["monitor", str(log), "--requirements", str(requirements)]) == 3
+
+
+def test_a_damaged_message_ends_no_watch(peers, requirements, capsys):
+    whole = sentinel.unframe(_state(300))
+    # the frame is whole, the message in it has another checksum
+    damaged = sentinel.frame(whole[:-1] + bytes([whole[-1] ^ 1]))
+    peer = peers([_state(300), damaged, _state(310)])
+    assert _attach(peer.port, requirements, "--json", seconds=0.6) == 3
+    said = json.loads(capsys.readouterr().out)
+    assert "refused" in {finding["kind"] for finding in said["findings"]}
+    assert said["requirements"][0]["holds"] == 2
+
+
 def test_a_command_is_started_once_for_a_requirement(peers, requirements, tmp_path, capsys):
     peer = peers([_state(300), _state(80), _state(70), _state(60)])
     told = tmp_path / "told"
