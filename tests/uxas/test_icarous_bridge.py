@@ -179,13 +179,38 @@ def test_uxas_connects_to_an_icarous_that_listens_and_again_after_a_cut(
     assert "another UxAS is connected" in said(tmp_path)
 
 
+CONNECT = ("--connect", "{where}")
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "text"),
     [
-        (("--vehicle", "8"), 2, "the mission has no such vehicle"),
-        (("--vehicle", "1", "--listen", "127.0.0.1:0"), 2, "one of --connect and --listen"),
-        (("--vehicle", "1", "--connect", "nowhere"), 2, "not an address"),
-        (("--vehicle", "1", "--wait", "0.3"), 3, "no UxAS for 0.3 s (Connection refused)"),
+        ((*CONNECT, "--vehicle", "8"), 2, "the mission has no such vehicle"),
+        (
+            (*CONNECT, "--vehicle", "1", "--listen", "127.0.0.1:0"),
+            2,
+            "one of --connect and --listen",
+        ),
+        ((*CONNECT, "--vehicle", "1", "--connect", "nowhere"), 2, "not an address"),
+        (
+            (*CONNECT, "--vehicle", "1", "--wait", "0.3"),
+            3,
+            "no UxAS for 0.3 s (Connection refused)",
+        ),
+        (("--vehicle", "1"), 2, "one of --connect and --listen is needed"),
+        (("--vehicle", "1", "--listen", "192.0.2.1:9"), 2, "no authentication"),
+        (("--vehicle", "1", "--listen", "127.0.0.1:0", "--keys", "."), 2, "--keys is of --v2"),
+        (("--vehicle", "1", "--listen", "127.0.0.1:0", "--v2"), 2, "no key of the bridge"),
+        (
+            ("--vehicle", "1", "--listen", "127.0.0.1:0", "--original"),
+            2,
+            "--original needs --connect",
+        ),
+        (
+            ("--vehicle", "1", "--listen", "127.0.0.1:0", "--wait", "0.3"),
+            3,
+            "no UxAS for 0.3 s (it has not connected)",
+        ),
     ],
 )
 def test_the_command_says_what_is_wrong(
@@ -197,38 +222,9 @@ def test_the_command_says_what_is_wrong(
     text: str,
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    mission = str(mission_file(tmp_path))
     where = f"127.0.0.1:{free_port()}"
-    assert main(["icarous", "--mission", mission, "--connect", where, *arguments]) == code
-    assert text in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    ("arguments", "code", "text"),
-    [
-        ((), 2, "one of --connect and --listen is needed"),
-        (("--listen", "192.0.2.1:9"), 2, "no authentication"),
-        (("--listen", "127.0.0.1:0", "--keys", "."), 2, "--keys is of --v2"),
-        (("--listen", "127.0.0.1:0", "--v2"), 2, "no key of the bridge"),
-        (("--listen", "127.0.0.1:0", "--original"), 2, "--original needs --connect"),
-        (
-            ("--listen", "127.0.0.1:0", "--wait", "0.3"),
-            3,
-            "no UxAS for 0.3 s (it has not connected)",
-        ),
-    ],
-)
-def test_an_icarous_that_listens_says_what_is_wrong(
-    tmp_path: Path,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-    arguments: tuple[str, ...],
-    code: int,
-    text: str,
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    mission = str(mission_file(tmp_path))
-    assert main(["icarous", "--mission", mission, "--vehicle", "1", *arguments]) == code
+    words = [word.format(where=where) for word in arguments]
+    assert main(["icarous", "--mission", str(mission_file(tmp_path)), *words]) == code
     assert text in capsys.readouterr().err
 
 

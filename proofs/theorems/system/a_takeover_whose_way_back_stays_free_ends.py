@@ -3,9 +3,10 @@ times the least time UxAS, if it is heard then, is offered control; the UxAS end
 back, whatever it believed; the command that it then sends acts, and UxAS alone commands."""
 
 from cratous.core.authority.cycle import Cycle, cycle_flown, gate_wished
-from cratous.core.authority.gate import Gate, gate_after
-from cratous.core.authority.link_end import LinkEnd, link_mode, suspended_after
+from cratous.core.authority.gate import gate_after
+from cratous.core.authority.link_end import link_mode, suspended_after
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.command import any_cycle, any_gate, any_link_end
 from cratous.spec.authority import cycle as instance
 from cratous.spec.authority import link_end
 from cratous.spec.system import authority as system
@@ -13,19 +14,8 @@ from cratous.spec.system import ending
 
 
 def claim(c: Claim) -> None:
-    gate = Gate(c.integer("owner"), c.integer("gate_epoch"), c.boolean("offered"))
-    cycle = Cycle(
-        c.integer("mode"),
-        c.integer("relapses"),
-        c.boolean("handed"),
-        c.integer("handed_ms"),
-        c.boolean("free"),
-        c.integer("free_ms"),
-    )
-    end, suspended = (
-        LinkEnd(c.boolean("active"), c.integer("epoch"), c.boolean("alive")),
-        c.boolean("suspended"),
-    )
+    gate, cycle = any_gate(c), any_cycle(c)
+    end, suspended = any_link_end(c), c.boolean("suspended")
     heard, now, bound, least, begun = (
         c.integer(name) for name in ("heard", "now", "bound", "least", "begun")
     )

@@ -2,26 +2,18 @@
 long as it lasts: the UxAS end says so and no longer counts the instance as heard; an instance that commands opens
 no offer at that heartbeat or a later one, and goes on commanding."""
 
-from cratous.core.authority.cycle import Cycle, cycle_flown, gate_wished
-from cratous.core.authority.gate import Gate
-from cratous.core.authority.link_end import LinkEnd, link_mode, link_sign
+from cratous.core.authority.cycle import cycle_flown, gate_wished
+from cratous.core.authority.link_end import link_mode, link_sign
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.command import any_cycle, any_gate, any_link_end
 from cratous.spec.authority import cycle as instance
 from cratous.spec.authority import gate as authority
 from cratous.spec.authority import link_end
 
 
 def claim(c: Claim) -> None:
-    gate = Gate(c.integer("owner"), c.integer("gate_epoch"), c.boolean("offered"))
-    cycle = Cycle(
-        c.integer("mode"),
-        c.integer("relapses"),
-        c.boolean("handed"),
-        c.integer("handed_ms"),
-        c.boolean("free"),
-        c.integer("free_ms"),
-    )
-    end = LinkEnd(c.boolean("active"), c.integer("epoch"), c.boolean("alive"))
+    gate, cycle = any_gate(c), any_cycle(c)
+    end = any_link_end(c)
     heard, before, now, later = (c.integer(n) for n in ("heard", "before", "now", "later"))
     bound, period, least = c.integer("bound"), c.integer("period"), c.integer("least")
     says, began, free = c.boolean("says"), c.integer("began"), c.boolean("way_free")

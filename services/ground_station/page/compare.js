@@ -7,10 +7,9 @@ import { FlightMap } from "./map.js";
 import { open, source, theme } from "./opening.js";
 import { cell, events, mark, row, table } from "./panels.js";
 import { Playback } from "./playback.js";
-import { clock, seconds, words } from "./units.js";
+import { seconds, words } from "./units.js";
 
 const by = id => document.getElementById(id);
-const SLOW_MS = 200; // lists and address follow at this pace while it plays
 const NEAR_MS = 50; // a row is marked while the clock stands on its instant, to a tenth of a second
 
 // a run that ends before the other one, on the clock of both
@@ -74,7 +73,6 @@ class Pair extends Playback {
     super();
     this.end_ms = Math.max(found.a.end_ms, found.b.end_ms);
     this.differences = found.differences;
-    this.slow = 0;
     this.panes = [["a", "b"], ["b", "a"]].map(([side, other]) => new Pane(side, onClockTo(this.end_ms, found[side]), alone(found[side].events, found[other].events), this));
     const [a, b] = this.panes;
     this.maps = [a.map, b.map];
@@ -134,14 +132,7 @@ class Pair extends Playback {
     // one view for both: of two maps of other heights the whole flight fits into either
     const view = state.view || this.maps.map(map => map.whole()).sort((one, two) => one.scale - two.scale)[0];
     for (const pane of this.panes) pane.draw({ ...state, view }, said);
-    by("slider").value = state.time;
-    by("clock").textContent = `${clock(state.time)} of ${clock(this.end_ms)}`;
-    const now = performance.now();
-    if (!whole && now - this.slow < SLOW_MS) return;
-    this.slow = now;
-    by("play").textContent = this.playing ? "Pause" : "Play";
-    by("rate").value = state.rate;
-    by("units").textContent = state.aviation ? "aviation units" : "SI units";
+    if (!this.bar(whole)) return;
     for (const pane of this.panes) pane.lists(state);
     const near = one => one && one.time_ms !== null && Math.abs(one.time_ms - state.time) <= NEAR_MS;
     this.rows.forEach((made, k) => made.classList.toggle("near", !!(near(this.differences[k].a) || near(this.differences[k].b))));

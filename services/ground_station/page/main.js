@@ -7,16 +7,14 @@ import { FlightMap } from "./map.js";
 import { open, source, theme } from "./opening.js";
 import * as panels from "./panels.js";
 import { Playback } from "./playback.js";
-import { clock, words } from "./units.js";
+import { words } from "./units.js";
 
 const by = id => document.getElementById(id);
-const SLOW_MS = 200; // tables and address follow at this pace while it plays
 
 class Station extends Playback {
   constructor(recording) {
     super();
     this.recording = recording;
-    this.slow = 0;
     const go = time => this.go(time);
     this.map = new FlightMap(by("map"), recording, view => { this.state.view = view; this.draw(true); });
     this.chart = new AltitudeChart(by("altitude"), recording, go);
@@ -69,14 +67,7 @@ class Station extends Playback {
     theme(state.theme);
     this.map.draw(state, said);
     this.chart.draw(state, said);
-    by("slider").value = state.time;
-    by("clock").textContent = `${clock(state.time)} of ${clock(recording.end_ms)}`;
-    const now = performance.now();
-    if (!whole && now - this.slow < SLOW_MS) return;
-    this.slow = now;
-    by("play").textContent = this.playing ? "Pause" : "Play";
-    by("rate").value = state.rate;
-    by("units").textContent = state.aviation ? "aviation units" : "SI units";
+    if (!this.bar(whole)) return;
     panels.aircraft(recording, state, said);
     panels.pairs(recording, state, said);
     panels.tasks(recording, state);

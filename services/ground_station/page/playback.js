@@ -1,8 +1,10 @@
 // The clock of a page that replays: go, play, step, next event, rate; its buttons and keys.
 
 import * as address from "./address.js";
+import { clock } from "./units.js";
 
 const by = id => document.getElementById(id);
+const SLOW_MS = 200; // what follows at a slower pace while it plays
 const MOVES = { ArrowLeft: [60, 0], ArrowRight: [-60, 0], ArrowUp: [0, 60], ArrowDown: [0, -60] };
 
 // whoever extends it gives `end_ms`, `instants` of the events, `ids` of the aircraft, `maps`, and `draw`
@@ -10,6 +12,7 @@ export class Playback {
   constructor() {
     this.state = { time: 0, rate: 1, picked: null, theme: null, aviation: false, view: null };
     this.playing = false;
+    this.slow = 0;
   }
 
   go(time) {
@@ -51,6 +54,19 @@ export class Playback {
     if (what === "units") this.state.aviation = !this.state.aviation;
     if (what === "whole") this.state.view = null;
     this.draw(true);
+  }
+
+  // draws the clock; gives whether it is time for what follows at a slower pace: lists and address
+  bar(whole) {
+    const { state } = this, now = performance.now();
+    by("slider").value = state.time;
+    by("clock").textContent = `${clock(state.time)} of ${clock(this.end_ms)}`;
+    if (!whole && now - this.slow < SLOW_MS) return false;
+    this.slow = now;
+    by("play").textContent = this.playing ? "Pause" : "Play";
+    by("rate").value = state.rate;
+    by("units").textContent = state.aviation ? "aviation units" : "SI units";
+    return true;
   }
 
   zoom(factor) { this.maps[0].zoom(factor); }
