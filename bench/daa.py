@@ -101,7 +101,7 @@ def rows() -> Rows:
     found: Rows = []
     for n in SAMPLES:
         ours, theirs = bands_ms(n)
-        peer = "bar: 300 ms" if theirs is None else "DAIDALUS v2.0.4, C++ -O3"
+        peer = "bar: 300 ms" if theirs is None else "the program that $DAIDALUS_PEER names"
         ns = (BAR_MS if theirs is None else theirs) * 1e6
         found.append((f"bands in four dimensions, {n} intruders", ours * 1e6, peer, ns))
     bar = f"bar: {BAR_ENCOUNTERS_S:,} a second"
