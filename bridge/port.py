@@ -10,7 +10,9 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
+from ipaddress import ip_address
 from typing import Any, NamedTuple, Protocol
 
 from cratous.spec.errors import BadInput
@@ -46,7 +48,9 @@ class Address(NamedTuple):
     @property
     def loopback(self) -> bool:
         """True if it is of this machine alone."""
-        return self.host in ("localhost", "::1") or self.host.startswith("127.")
+        with suppress(ValueError):
+            return ip_address(self.host).is_loopback
+        return self.host == "localhost"  # any other name may be that of another machine
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,5 @@
-"""Connections that are made again whenever they end, with longer and longer pauses, never blocking."""
+"""Connections that are made again whenever they end, with longer and longer pauses; waiting for nothing but the
+look-up of a host's name."""
 
 from __future__ import annotations
 
@@ -19,6 +20,7 @@ class _Target:
     again_s: float | None = None  # None: at once
     pause_s: float = PAUSE_S[0]
     why: str = ""  # the last attempt or connection has ended
+    opened_s: float | None = None
 
 
 class Redial:
@@ -39,17 +41,20 @@ class Redial:
             if one.key is None and (one.again_s is None or is_due(one.again_s, now_s)):
                 one.key = self._port.dial(now_s, one.where)
 
-    def opened(self, key: int) -> None:
-        """Hands were shaken on it: after its end the pauses begin anew."""
+    def opened(self, key: int, now_s: float) -> None:
+        """Hands were shaken on it: if it stands for a while, the pauses begin anew after its end."""
         for one in self._targets:
             if one.key == key:
-                one.pause_s, one.why = PAUSE_S[0], ""
+                one.opened_s = now_s
 
     def ended(self, key: int, why: str, now_s: float) -> str:
         """It has ended: what to say of that, nothing if the attempt before has ended so as well."""
         said = ""
         for one in self._targets:
             if one.key == key:
+                if one.opened_s is not None and is_due(one.opened_s + PAUSE_S[1], now_s):
+                    one.pause_s, one.why = PAUSE_S[0], ""
+                one.opened_s = None
                 said = "" if why == one.why else f"{one.where.text}: {why}"
                 one.key, one.again_s, one.why = None, now_s + one.pause_s, why
                 one.pause_s = min(2 * one.pause_s, PAUSE_S[1])

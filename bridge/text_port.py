@@ -1,9 +1,10 @@
 """The CRATOUS text protocol over TCP between processes: one end that listens, one that connects.
 
 Either of UxAS's end, which speaks first, and ICAROUS's may be the one that listens.
-Nothing here blocks and nothing raises because of a peer: what it sends is a record (a message, a refused
-or skipped line), its end is a `LinkEvent`. A peer that does not finish the handshake, sends faster than it
-may, sends nothing but what cannot be read, or falls silent, is dropped with the reason.
+Nothing here blocks, but for the look-up of a host's name, and nothing raises because of a peer: what it sends
+is a record (a message, a refused or skipped line), its end is a `LinkEvent`. A peer that does not finish the
+handshake, sends faster than it may, sends nothing but what cannot be read, or falls silent, is dropped with
+the reason.
 """
 
 from __future__ import annotations
@@ -49,6 +50,8 @@ OURS = (Hello, Heartbeat, LinesMissing, NotKnown)
 PROGRAM_LIMITS = Limits(10_000, 1000, 1000, 9999, 9999)
 """The largest counts that the two programs take; a vehicle's memory is bounded by them."""
 _READS = 16
+PATIENCE_S = 1.0
+"""So long a connection that has not shaken hands keeps its place where others wait for one [s]."""
 NOISE, SILENT, LATE, FAST, NOBODY, DEAF = (
     "nothing but what cannot be read",
     "silent",
@@ -100,7 +103,7 @@ class Connection:
         self._parser = StreamParser(direction, limits=PROGRAM_LIMITS, original_peer=True)
         self._direction, self.name = direction, link.remote_name
         self._until_s: float | None = now_s + bounds.handshake_s
-        self.opened = False
+        self.begun_s, self.opened = now_s, False
         self._room, self._at_s, self._bad = bounds.burst_bytes, now_s, 0
         self.link.send(handshake.start())
 
@@ -111,12 +114,11 @@ class Connection:
 
     def send(self, line: bytes, now_s: float) -> bool:
         """Queue a line; False if the peer is gone."""
+        if not isinstance(self._handshake, SealedHandshake):
+            return self.link.send(line)
         seal = self.seal
         if seal is None:
-            sealed = isinstance(
-                self._handshake, SealedHandshake
-            )  # then nothing goes before hands are shaken
-            return not sealed and self.link.send(line)
+            return False  # nothing goes before hands are shaken
         if seal.unacknowledged not in range(MOST_UNACKNOWLEDGED):
             self.drop(DEAF)
             return False
@@ -260,7 +262,7 @@ class TextPort:
     def dial(self, now_s: float, where: Address | None = None) -> int:
         """Connect to an end that listens, `self.where` if none is said; the connection's key.
 
-        It does not wait: that nobody is there is the connection's `LinkEvent`.
+        It waits for the look-up of a name alone: that nobody is there is the connection's `LinkEvent`.
         """
         where = where or self.where
         return self._join(connect_later((where.host, where.port)), now_s)
@@ -326,11 +328,19 @@ class TextPort:
 
     def _accept(self, now_s: float) -> None:
         while self._listener is not None and (link := self._listener.accept()) is not None:
-            if len(self._connections) >= self._bounds.connections:
+            if len(self._connections) >= self._bounds.connections and not self._made_room(now_s):
                 self._tally.refuse("too many connections", f"{self._bounds.connections} stand")
                 link.close()
                 continue
             self._join(link, now_s)
+
+    def _made_room(self, now_s: float) -> bool:
+        """Whether the oldest connection that has taken its time to shake hands was dropped for another one."""
+        for one in self._connections.values():
+            if not one.opened and one.link.alive and is_due(one.begun_s + PATIENCE_S, now_s):
+                one.drop("handshake not finished when others came")
+                return True
+        return False
 
     def _join(self, link: Link, now_s: float) -> int:
         key = next(self._keys)

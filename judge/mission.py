@@ -112,6 +112,7 @@ class Mission:
     volume: Volume
     step_ms: int = 250
     heartbeat_ms: int = 500
+    faulty_bridge: bool = False
     limit_ms: int = 7_200_000
     seed: int = 0
     vehicle_said: Said = field(default_factory=dict)
@@ -174,6 +175,7 @@ def from_log(data: Node) -> Mission:
         volume=volume,
         step_ms=positive(simulation["step_ms"]),
         heartbeat_ms=positive(simulation["heartbeat_ms"]),
+        faulty_bridge=simulation.has("bridge_faults"),
         limit_ms=positive(simulation["limit_ms"]),
         seed=data["seed"].whole,
         vehicle_said=said_of(said, "vehicle_joins", "vehicle_lost"),

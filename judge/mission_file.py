@@ -74,6 +74,7 @@ class _Reader:
             volume=m.Volume(*(volume.get(n, usual[n]).real for n in m.Volume._fields)),
             step_ms=m.positive(simulation.get("step_ms", 250)),
             heartbeat_ms=m.positive(simulation.get("heartbeat_ms", 500)),
+            faulty_bridge=simulation.has("bridge_faults"),
             limit_ms=_ms(simulation.get("limit_s", 7200)),
             vehicle_said=m.said_of(said, "vehicle_joins", "vehicle_lost"),
             task_said=m.said_of(said, "task_added", "task_removed"),

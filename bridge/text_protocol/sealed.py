@@ -33,7 +33,11 @@ WINDOW = 1024
 MOST_UNACKNOWLEDGED = 100_000
 """So many packets may be on their way without a word that they have come."""
 MOST_LINE = MAX_LINE + 256
-REPLAYED, FORGED, DAMAGED = "replayed packet", "forged packet", "damaged packet"
+REPLAYED, FORGED, DAMAGED = (
+    "packet number that came before or is far ahead",
+    "forged packet",
+    "damaged packet",
+)
 Nonce = Callable[[int], bytes]
 _HEX32, _HEX64 = rb"[0-9a-f]{32}", rb"[0-9a-f]{64}"
 _FIRST = re.compile(NAME + rb",(" + _HEX32 + rb")\Z")
@@ -55,8 +59,8 @@ class Seal:
     """The packets of one connection, both ways. out_key, in_key: of the directions."""
 
     vehicle_id: int
-    out_key: bytes
-    in_key: bytes
+    out_key: bytes = field(repr=False)
+    in_key: bytes = field(repr=False)
     sent: int = 0
     acknowledged: int = 0
     mark: int = 0

@@ -162,7 +162,7 @@ class IcarousCommunicationService:
         key = came.key
         match came.what:
             case Opened():
-                self._redial.opened(key)
+                self._redial.opened(key, now_s)
                 self._refuse(key, self._seats.opened(key, now_s))
             case LinkEvent() as event:
                 said = self._redial.ended(key, event.detail or event.kind, now_s)

@@ -116,7 +116,7 @@ def _to(entry: Entry, text: str, count: int) -> tuple[Address, ...]:
     item = f"{entry.type}.Connect"
     words = text.split()
     to = tuple(address(word, ("tcp",), where=entry.where, item=item) for word in words)
-    if to and len({(one.host, one.port) for one in to}) != count:
+    if to and not len(to) == len({(one.host, one.port) for one in to}) == count:
         raise BadInput(
             "not the addresses of the instances",
             where=entry.where,

@@ -105,7 +105,7 @@ class Program:
         match came.what:
             case Opened(peer):
                 self._open, self._key = True, came.key
-                self._redial.opened(came.key)
+                self._redial.opened(came.key, now_s)
                 self._report("INFO", f"connected to UxAS at {peer}")
                 self._say(Hello(self._end.craft.config.vehicle_id))
                 self.state, answers = self._end.connected(self.state)

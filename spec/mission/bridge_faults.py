@@ -15,7 +15,7 @@ class BridgeFaults:
     Shares are of the lines of either direction, each line by itself: loss, repeat (comes twice), reorder (takes
     another place among the lines of its beat), truncation (its end is missing, the new line too),
     corruption (one byte is another). delay_ms: each line comes up to this much later, drawn evenly. forged_modes:
-    share of the beats at which a SETMOD of any mode and an epoch from 0 to 5 comes to UxAS that ICAROUS did not send.
+    share of the exchanges, two a heartbeat, at which a SETMOD of any mode and an epoch from 0 to 5 comes to UxAS that ICAROUS did not send.
     cut_ms, reconnect_ms: every connection breaks, and is opened anew. stops_reading_ms, reads_again_ms:
     ICAROUS takes nothing from its connection from the one to the other, which breaks when too much waits.
     """

@@ -6,6 +6,7 @@ from __future__ import annotations
 import contextlib
 import socket
 import time
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +17,13 @@ from hypothesis import strategies as st
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.port import Address
-from cratous.bridge.text_port import Came, Opened, TextPort
+from cratous.bridge.text_port import DEAF, MOST_UNACKNOWLEDGED, Came, Opened, TextPort
 from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET
 from cratous.bridge.text_protocol.keys import Keys, key_of, keys_of
 from cratous.bridge.text_protocol.sealed import (
     DAMAGED,
     FORGED,
+    NAME,
     REPLAYED,
     WINDOW,
     Seal,
@@ -110,6 +112,41 @@ def test_a_wrong_key_is_refused_with_the_reason_on_both_ends(
     assert ends(down) == [f"handshake failed: {at_icarous}"]
 
 
+def test_a_recorded_opening_opens_nothing() -> None:
+    """Each end's nonce is new, so neither half of an opening is worth anything a second time."""
+    keys = key(1).by_vehicle
+    server, client = SealedServer(keys=keys), SealedClient(keys=keys)
+    answer = client.feed(server.start())
+    assert server.feed(answer).startswith(b"ok,")
+    again = SealedServer(keys=keys)
+    again.start()
+    assert again.feed(answer).startswith(b"error,")
+    assert again.seal is None
+    server, client = SealedServer(keys=keys), SealedClient(keys=keys)
+    first = server.start()
+    last = server.feed(client.feed(first))
+    another = SealedClient(keys=keys)
+    another.feed(first)
+    another.feed(last)
+    assert another.failed
+    assert another.seal is None
+
+
+def test_its_own_proof_sent_back_proves_nothing() -> None:
+    client = SealedClient(keys=key(1).by_vehicle)
+    said = client.feed(NAME + b"," + b"0" * 32 + b"\n")
+    client.feed(b"ok," + said.rstrip().split(b",")[-1] + b"\n")
+    assert client.failed == "the other end does not have the key of vehicle 1"
+    assert client.seal is None
+
+
+def test_an_opening_without_an_end_is_given_up() -> None:
+    server = SealedServer(keys=key(1).by_vehicle)
+    server.start()
+    server.feed(b"9" * 5000)
+    assert server.failed == "no line of the opening of v2"
+
+
 def test_another_dialect_is_refused(opened: list[Any]) -> None:
     one = TextPort(at(), server=True, secret=KEYS)
     opened.append(one)
@@ -157,7 +194,11 @@ def test_a_replayed_packet_is_refused_counted_and_told(opened: list[Any]) -> Non
     modes = [c.what for c in found if isinstance(c.what, tp.SetMode)]
     assert modes == [tp.SetMode("ACTIVE", 3)]
     assert one.counts.refused[REPLAYED] == 1
-    assert any("replayed packet; expected a number from 2 to 1025; got 1" in text for text in said)
+    assert any(
+        "packet number that came before or is far ahead; expected a number from 2 to 1025; got 1"
+        in text
+        for text in said
+    )
 
 
 def test_packets_of_another_connection_direction_or_vehicle_are_forged() -> None:
@@ -174,7 +215,9 @@ def test_what_the_other_end_signs_and_cannot_be_is_refused() -> None:
     assert [w.what for w in down.feed(up.wrap(LINE, 99))[1]] == [FORGED]  # time goes back
     up.mark = 7  # nothing was sent to it
     assert [w.what for w in down.feed(up.wrap(LINE, 100))[1]] == [FORGED]
-    up.mark, up.sent = 0, down.mark + WINDOW
+    up.mark, up.vehicle_id = 0, 2  # the key is that of vehicle 1
+    assert [w.what for w in down.feed(up.wrap(LINE, 100))[1]] == [FORGED]
+    up.vehicle_id, up.sent = 1, down.mark + WINDOW
     assert [w.what for w in down.feed(up.wrap(LINE, 100))[1]] == [REPLAYED]  # above the window
     up.sent = down.mark + WINDOW - 1
     assert down.feed(up.wrap(LINE, 100)) == (LINE, [])
@@ -209,6 +252,36 @@ def test_a_changed_byte_is_never_believed(data: Any) -> None:
     assert lines == b""
     assert {w.what for w in wrong} <= {DAMAGED, FORGED}
     assert wrong
+
+
+def test_what_the_wire_changed_is_told_from_what_somebody_forged() -> None:
+    up, down = seals()
+    packet = up.wrap(LINE, 12)
+    changed = packet[:-2] + bytes([packet[-2] ^ 1]) + packet[-1:]
+    assert [w.what for w in down.feed(changed)[1]] == [DAMAGED]
+    head, body = b",".join(changed.split(b",")[:4]), changed.split(b",", 6)[6].rstrip(b"\n")
+    parts = changed.split(b",", 6)
+    parts[4] = b"%08x" % zlib.crc32(head + b"," + body)
+    assert [w.what for w in down.feed(b",".join(parts))[1]] == [FORGED]
+
+
+def test_nothing_goes_before_hands_are_shaken_nor_to_an_end_that_acknowledges_nothing(
+    opened: list[Any],
+) -> None:
+    one, _, up, _ = meet(opened, KEYS, key(2))
+    connection = one._connections[up[0].key]
+    assert connection.seal is not None
+    connection.seal.sent = connection.seal.acknowledged + MOST_UNACKNOWLEDGED
+    assert not one.send(up[0].key, tp.WaypointReached(4))
+    assert DEAF in " ".join(ends(wait(one, ends)))
+    stranger = TextPort(at(one.bound[1]), server=False, secret=key(1))
+    opened.append(stranger)
+    assert not stranger.send(stranger.dial(1.0), tp.Hello(1))
+
+
+def test_keys_of_a_connection_are_not_shown() -> None:
+    up, _ = seals()
+    assert "_key" not in repr(up)
 
 
 def test_a_packet_without_an_end_is_bounded() -> None:

@@ -14,7 +14,7 @@ from cratous.bridge import text_protocol as tp
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.port import address
 from cratous.bridge.redial import Redial
-from cratous.bridge.text_port import Bounds, Came, Opened, TextPort
+from cratous.bridge.text_port import PATIENCE_S, Bounds, Came, Opened, TextPort
 from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET
 from cratous.spec.errors import BadInput
 
@@ -175,6 +175,56 @@ def test_an_unfinished_line_and_one_that_is_too_long_are_said(opened: list[Any])
     texts = [w.what for _, w in found if isinstance(w, tp.WireError)]
     assert texts == ["line too long", "message cut off"]
     assert one.counts.refused["line too long"] == 1
+
+
+def test_strangers_that_say_nothing_keep_nobody_out(opened: list[Any]) -> None:
+    one, clock = server(opened, connections=2), Clock()
+    for _ in range(2):
+        raw(one, opened)
+    end = time.monotonic() + 10
+    while len(one._connections) < 2:
+        assert time.monotonic() < end
+        one.step(clock.now_s)
+    clock.now_s += PATIENCE_S
+    raw(one, opened, DEFAULT_SECRET.encode())
+    assert until(one, clock, lambda w: isinstance(w, Opened))
+
+
+def test_a_connection_that_opens_and_ends_at_once_is_not_made_again_at_once() -> None:
+    class Refusing:
+        def dial(self, now_s: float, where: Any) -> int:
+            return 1
+
+    redial, now_s, said, attempts = Redial(Refusing(), (at(1),)), 0.0, list[str](), list[float]()
+    for _ in range(6):
+        redial.step(now_s)
+        attempts.append(now_s)
+        redial.opened(1, now_s)
+        said.append(redial.ended(1, "another UxAS is connected", now_s))
+        now_s = redial.due_s
+    assert sum(map(bool, said)) == 1
+    assert [round(b - a, 6) for a, b in itertools.pairwise(attempts)] == [0.1, 0.2, 0.4, 0.8, 1.6]
+    redial.step(now_s)
+    redial.opened(1, now_s)
+    assert redial.ended(1, "another UxAS is connected", now_s + 60.0)  # it stood for a while
+    assert redial.due_s == pytest.approx(now_s + 60.1)
+
+
+@pytest.mark.parametrize(
+    ("host", "is_here"),
+    [
+        ("127.0.0.1", True),
+        ("127.1.2.3", True),
+        ("::1", True),
+        ("localhost", True),
+        ("127.evil.invalid", False),
+        ("localhost.example.org", False),
+        ("10.0.0.1", False),
+        ("*", False),
+    ],
+)
+def test_a_name_is_of_this_machine_only_if_it_says_so(host: str, is_here: bool) -> None:
+    assert at(1)._replace(host=host).loopback == is_here
 
 
 def test_more_peers_than_it_takes_are_closed_and_a_taken_port_is_refused(opened: list[Any]) -> None:

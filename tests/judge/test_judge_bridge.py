@@ -101,6 +101,21 @@ def test_heartbeats(tmp_path: Path) -> None:
     assert beats(tmp_path, instances=[]) == "unknown"
 
 
+def test_a_heartbeat_that_comes_again_or_too_late_is_no_sign_of_life(tmp_path: Path) -> None:
+    def said(skip: list[int], extra: list[tuple[int, int]]) -> set[str]:
+        scene = Scene(instances=[1]).straight(1, (0, 0, 300), NORTH)
+        scene.beats(1, skip)
+        for at, number in extra:
+            for way in ("Down", "Up"):
+                scene.say(at, "Heartbeat", VehicleID=1, Time=at, Direction=way, Sequence=number)
+        found = verdicts(scene.judged(tmp_path))
+        return {v for k, v in found.items() if k.startswith("heartbeat")}
+
+    assert said([], [(3100, 2), (4100, 7)]) == {"holds"}
+    assert said([5, 6, 7], []) == {"violated"}
+    assert said([5, 6, 7], [(2600, 2), (3100, 3), (3600, 5)]) == {"violated"}
+
+
 def test_a_declared_silence_is_safe_or_not(tmp_path: Path) -> None:
     quiet = range(4, 12)
     assert beats(tmp_path, quiet, [(2500, False), (6000, True)]) == "unknown"

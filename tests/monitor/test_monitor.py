@@ -11,6 +11,7 @@ from cratous.bridge import lmcp
 from cratous.services.monitor import Monitor
 from cratous.spec.mission import (
     Daa,
+    FaultySimulation,
     Frame,
     Mission,
     Position,
@@ -21,6 +22,7 @@ from cratous.spec.mission import (
     Zone,
     ZoneKind,
 )
+from cratous.spec.mission.bridge_faults import BridgeFaults
 from cratous.spec.mission.guarantees import Outcome
 from cratous.spec.mission.plan import Plan, PlanItem
 
@@ -319,6 +321,41 @@ def test_a_silent_bridge_is_seen_and_a_missing_one_is_unknown():
     assert verdict.margin == pytest.approx(-1.0)
     none = watch(mission(instances=()), [*apart(), *done()])["G5"]
     assert none.outcome is Outcome.UNKNOWN
+
+
+def again(number: int, *times: int) -> list[tuple[int, Any]]:
+    """A heartbeat that comes again at these times, both ways of both vehicles."""
+    return [
+        (ms, lmcp.new("Heartbeat", VehicleID=v, Time=ms, Direction=way, Sequence=number))
+        for ms in times
+        for v in (1, 2)
+        for way in ("Down", "Up")
+    ]
+
+
+def in_order(messages: list[tuple[int, Any]]) -> list[tuple[int, Any]]:
+    return sorted(messages, key=lambda one: one[0])
+
+
+def test_a_heartbeat_that_comes_again_or_too_late_is_no_sign_of_life():
+    whole = in_order([*beats(3000), *again(1, 1200, 2700), *again(3, 2600)])
+    assert watch(mission(), [*apart(), *whole, *done()])["G5"].outcome is Outcome.HOLDS
+    gap = in_order([m for m in beats(3000) if not 700 < m[0] < 2300] + again(1, 1000, 1500, 2000))
+    verdict = watch(mission(), [*apart(), *gap, *done()])["G5"]
+    assert verdict.outcome is Outcome.VIOLATED
+    assert verdict.margin == pytest.approx(-1.0)
+
+
+def test_of_a_bridge_that_was_made_to_fail_nobody_knows_what_came_down():
+    faulty = mission(simulation=FaultySimulation(bridge_faults=BridgeFaults(loss=0.5)))
+    seen = watch(faulty, [*apart(), *beats(3000), *done()])
+    ways = {way: seen[f"G5:heartbeat {way} the ICAROUS instance of 1"] for way in ("to", "from")}
+    assert {way: v.outcome for way, v in ways.items()} == {
+        "to": Outcome.UNKNOWN,
+        "from": Outcome.HOLDS,
+    }
+    assert "whether they came is not logged" in ways["to"].note
+    assert ways["to"].kernels == ()
 
 
 def test_messages_that_stop_leave_it_unknown():
