@@ -6,11 +6,20 @@ everything else goes by messages.
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from cratous.services.bus import Envelope
 from cratous.services.pipeline.places import RequestPlaces
 from cratous.services.planning.inputs import Inputs
+
+
+class Outside(NamedTuple):
+    """For vehicles that fly by messages alone: what is done so that an autopilot and its payloads can.
+
+    separation_m: least distance of waypoints, as the configuration says [m]; 0: all are sent.
+    """
+
+    separation_m: float = 50.0
 
 
 class Known(Protocol):
@@ -35,6 +44,10 @@ class Source(Protocol):
     @property
     def world(self) -> Known:
         """What is known by id."""
+
+    @property
+    def outside(self) -> Outside | None:
+        """How plans go out; None: the flight is the mission's own, which flies paths and views as planned."""
 
     def hear(self, envelope: Envelope, now_ms: int) -> None:
         """A message of one of these types."""
