@@ -40,15 +40,22 @@ class Flight(NamedTuple):
         return next(c for c in commands if vehicle == c.VehicleID)
 
 
-def fly(cfg: Path, events: Iterable[Event], seconds: float, said: Sequence[Any] = ()) -> Flight:
-    """A configuration without bridges beside a scenario; said: (time [s], message) of a client."""
+def fly(
+    cfg: Path,
+    events: Iterable[Event],
+    seconds: float,
+    said: Sequence[Any] = (),
+    heard: tuple[str, ...] = COMMANDS,
+) -> Flight:
+    """A configuration without bridges beside a scenario; said: (time [s], message) of a client; heard: what
+    the simulator is told."""
     flight, orders, later = Flight([]), list[Any](), sorted(said, key=lambda pair: pair[0])
     with process(cfg, virtual=True)[0] as one:
         world = World(events, seconds)
 
         def tap(envelope: Envelope) -> None:
             flight.told.append((world.time_s, envelope))
-            if envelope.topic in COMMANDS:
+            if envelope.topic in heard:
                 orders.append(envelope.body)
 
         one.bus.tap(tap)

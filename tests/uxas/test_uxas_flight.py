@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
 import pytest
-from pipeline_tools import PIPELINE, request, vehicle
-from uxas_flight import Flight, fly
+from pipeline_tools import PIPELINE, Rig, must_fly, place, request, vehicle
+from uxas_flight import COMMANDS, Flight, across_m, fly, local, share_seen
 from uxas_tools import write_cfg
 
 from cratous.bridge import lmcp
@@ -25,8 +26,8 @@ def line(number: int, *points: tuple[float, float]) -> Any:
     )
 
 
-BEND = ((0.02, 0.0), (0.05, 0.0), (0.07, 0.03), (0.10, 0.03))
-NEXT = ((0.11, 0.04), (0.13, 0.04))
+ZIGZAG = tuple((0.02 + 0.003 * k, 0.001 * (-1) ** k) for k in range(12))
+NEXT = ((0.08, 0.01), (0.10, 0.01))
 
 
 def aircraft() -> list[Any]:
@@ -44,7 +45,9 @@ def aircraft() -> list[Any]:
     ]
 
 
-def flown(folder: Path, *tasks: Any, seconds: float, more: Any = (), **attributes: str) -> Flight:
+def flown(
+    folder: Path, *tasks: Any, seconds: float, heard: tuple[str, ...] = COMMANDS, **attributes: str
+) -> Flight:
     """Vehicle 1 does tasks in their order, by a whole UxAS."""
     kinds = (*PIPELINE, "WaypointPlanManagerService")
     attributes = {"WaypointPlanManagerService": 'VehicleID="1"', **attributes}
@@ -52,23 +55,23 @@ def flown(folder: Path, *tasks: Any, seconds: float, more: Any = (), **attribute
     events = [Event(0.1 * k, body, "") for k, body in enumerate(aircraft())]
     order = ".(" + " ".join(f"p{task.TaskID}" for task in tasks) + ")"
     asked = request(*(task.TaskID for task in tasks), TaskRelationships=order)
-    said = [(1.0, task) for task in tasks] + [(BEGIN_S, asked), *more]
-    return fly(write_cfg(folder, text), events, seconds, said)
+    said = [(1.0, task) for task in tasks] + [(BEGIN_S, asked)]
+    return fly(write_cfg(folder, text), events, seconds, said, heard)
 
 
 @pytest.fixture(scope="module")
-def bend(tmp_path_factory: pytest.TempPathFactory) -> Flight:
-    """Two lines, one after the other."""
-    folder = tmp_path_factory.mktemp("bend")
-    return flown(folder, line(5, *BEND), line(6, *NEXT), seconds=1400.0)
+def zigzag(tmp_path_factory: pytest.TempPathFactory) -> Flight:
+    """Two lines, one after the other; the first is narrower in its bends than the aircraft can turn."""
+    folder = tmp_path_factory.mktemp("zigzag")
+    return flown(folder, line(5, *ZIGZAG), line(6, *NEXT), seconds=700.0)
 
 
 @pytest.mark.shows(TASKS, "EntityState", "TaskActive", "TaskComplete")
-def test_tasks_are_active_and_complete_with_the_states_that_say_so(bend: Flight) -> None:
+def test_tasks_are_active_and_complete_with_the_states_that_say_so(zigzag: Flight) -> None:
     """The last task too: the path ends with a waypoint that bears none."""
     lives = list[tuple[str, int, float]]()
     listed: tuple[int, ...] = ()
-    for body in bend.states(1):
+    for body in zigzag.states(1):
         now = tuple(body.AssociatedTasks)
         lives += [("TaskComplete", task, body.Time) for task in listed if task not in now]
         lives += [("TaskActive", task, body.Time) for task in now if task not in listed]
@@ -77,7 +80,7 @@ def test_tasks_are_active_and_complete_with_the_states_that_say_so(bend: Flight)
         (kind, body.TaskID, at)
         for kind, body, at in (
             (type(e.body).__name__, e.body, getattr(e.body, field))
-            for _, e in bend.told
+            for _, e in zigzag.told
             for field in ("TimeTaskActivated", "TimeTaskCompleted")
             if hasattr(e.body, field) and hasattr(e.body, "TaskID")
             if type(e.body).__name__ in ("TaskActive", "TaskComplete")
@@ -87,8 +90,93 @@ def test_tasks_are_active_and_complete_with_the_states_that_say_so(bend: Flight)
         ("TaskActive", 5), ("TaskComplete", 5), ("TaskActive", 6), ("TaskComplete", 6),
     ]  # fmt: skip
     assert told == lives
-    last = bend.command(1).WaypointList[-1]
+    last = zigzag.command(1).WaypointList[-1]
     assert not last.AssociatedTasks
-    before = bend.command(1).WaypointList[-2]
+    before = zigzag.command(1).WaypointList[-2]
     assert (before.AssociatedTasks, before.NextWaypoint) == ([6], last.Number)
     assert (before.Latitude, before.Longitude) == (last.Latitude, last.Longitude)
+
+
+@pytest.mark.shows(TASKS, "VehicleActionCommand")
+def test_the_camera_looks_at_a_line_as_long_as_it_is_searched(zigzag: Flight) -> None:
+    """With each state that lists the task, and once when it is complete; and all of the line is seen."""
+    for number, points in ((5, ZIGZAG), (6, NEXT)):
+        listed = [number in body.AssociatedTasks for body in zigzag.states(1)]
+        looks = [
+            action
+            for command in zigzag.of("VehicleActionCommand")
+            for action in command.VehicleActionList
+            if number in action.AssociatedTaskList
+        ]
+        assert len(looks) == sum(listed) + 1
+        assert {type(look).__name__ for look in looks} == {"GimbalStareAction"}
+        path = local(line(1, *points).PointList, place(*points[0]))
+        at = local([look.Starepoint for look in looks], place(*points[0]))
+        assert max(across_m(at, path)) < 1.0
+        assert math.dist(at[-1], path[-1]) < 30.0
+        assert seen_of(zigzag, number, points) == 1
+
+
+def seen_of(flight: Flight, number: int, points: Any) -> float:
+    """The share of a line that is seen from the first state that lists it to the last before the next task."""
+    tasks = [body.AssociatedTasks for body in flight.states(1)]
+    first = next(k for k, now in enumerate(tasks) if number in now)
+    last = next((k for k, now in enumerate(tasks) if set(now) - {number} and k > first), None)
+    return share_seen(line(1, *points).PointList, flight.states(1)[first:last])
+
+
+def test_without_these_commands_less_of_the_line_is_seen(tmp_path: Path) -> None:
+    alone = flown(tmp_path, line(5, *ZIGZAG), seconds=600.0, heard=COMMANDS[:1])
+    assert seen_of(alone, 5, ZIGZAG) < 0.96
+
+
+def shape(kind: str, **more: Any) -> Any:
+    """A task around 0.03 N, 0 E."""
+    middle = place(0.03).copy(Altitude=0.0)
+    area = lmcp.new("Rectangle", CenterPoint=middle, Width=1_000.0, Height=800.0)
+    where = {"AreaSearchTask": {"SearchArea": area}, "PointSearchTask": {"SearchLocation": middle}}
+    return lmcp.new(kind, TaskID=5, **where[kind], **more)
+
+
+def looks_of(rig: Rig) -> list[Any]:
+    return [a for command in rig.got("VehicleActionCommand") for a in command.VehicleActionList]
+
+
+def test_over_an_area_the_gimbal_is_held_at_the_planned_view(tmp_path: Path) -> None:
+    """A view to the east: the azimuth turns against the heading; straight down it does not."""
+    east = lmcp.new("Wedge", AzimuthCenterline=90.0, VerticalCenterline=-60.0)
+    rig = Rig(tmp_path)
+    rig.tell(*aircraft(), shape("AreaSearchTask", ViewAngleList=[east]), request(5))
+    state = aircraft()[1].copy(AssociatedTasks=[5], Heading=30.0)
+    rig.tell(state, state.copy(Heading=-150.0, Time=1))
+    assert [(a.type_name, a.PayloadID) for a in looks_of(rig)] == [
+        ("CMASI/GimbalAngleAction", 1)
+    ] * 2
+    angles = [(a.Azimuth, a.Elevation) for a in looks_of(rig)]
+    assert angles == [pytest.approx((60.0, -60.0)), pytest.approx((-120.0, -60.0))]
+    rig.tell(shape("AreaSearchTask"), request(5))
+    rig.tell(state)
+    assert (looks_of(rig)[-1].Azimuth, looks_of(rig)[-1].Elevation) == (0.0, -90.0)
+
+
+def test_a_point_is_stared_at_and_what_needs_no_look_is_not(tmp_path: Path) -> None:
+    rig = Rig(tmp_path)
+    rig.tell(*aircraft(), shape("PointSearchTask"), must_fly(6), request(5))
+    state = aircraft()[1].copy(AssociatedTasks=[5])
+    rig.tell(state.copy(AssociatedTasks=[]), state, vehicle(2, 0.01)[1].copy(AssociatedTasks=[5]))
+    (look,) = looks_of(rig)
+    at = (look.Starepoint.Latitude, look.Starepoint.Longitude)
+    assert at == pytest.approx((0.03, 0.0), abs=1e-6)
+    rig.tell(request(6))
+    rig.tell(state, state.copy(AssociatedTasks=[6]))
+    assert len(rig.got("TaskActive")) == 2
+    assert len(looks_of(rig)) == 1, "the plan that looked at the point is withdrawn"
+
+
+def test_a_state_at_no_place_steers_nothing_and_is_logged(tmp_path: Path) -> None:
+    rig = Rig(tmp_path)
+    rig.tell(*aircraft(), shape("PointSearchTask"), request(5))
+    state = aircraft()[1].copy(AssociatedTasks=[5])
+    rig.tell(state.copy(Location=place(math.nan)), state.copy(Time=1))
+    assert len(looks_of(rig)) == 1
+    assert rig.said.has("not a place")
