@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from flight_tools import flown, of_type
+from flight_tools import flown, meeting, of_type
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -14,7 +15,14 @@ from cratous.core.executive.steps import leg_given_up
 from cratous.services.campaign.changing import changing_mission
 from cratous.services.flight import legs
 from cratous.services.flight.chain import Leg
+from cratous.services.flight.dynamics import AirState
+from cratous.services.flight.executive import Executive
+from cratous.services.flight.executive_state import Config, first_state
+from cratous.services.flight.messages import Begin, Route, SetOut, Suspend, Tick
 from cratous.services.loading import load
+from cratous.services.mission.frames import Projection
+from cratous.services.pipeline.plan import make_plan
+from cratous.spec.authority.link_end import SUSPEND
 from cratous.spec.mission import Change, Position, Task, TaskKind
 from cratous.spec.mission.changes import TASK_ADDED
 
@@ -75,6 +83,25 @@ def test_few_takeovers_are_allowed_where_few_are(monkeypatch: pytest.MonkeyPatch
     taken = of_type(log, "AuthorityChange")
     failed = next(b.Time for b in of_type(log, "TaskProgress") if b.Phase.name == "Failed")
     assert sum(b.Owner.name == "ICAROUS" and failed >= b.Time for b in taken) == 2
+
+
+def test_a_vehicle_with_nothing_left_under_icarous_circles_where_it_is() -> None:
+    """Every 10 s ICAROUS is told a circle about the place to which it has taken the vehicle meanwhile."""
+    mission = replace(meeting(), traffic=())
+    actor = Executive(Config(mission, Projection(mission.frame), (1,)))
+    state = first_state(mission, replace(make_plan(mission), items=()))
+    air = AirState(Position(0.0, 0.0, 300.0), 0.0, 22.0, 0.0)
+    for message in (Begin(0, ((1, air),)), SetOut(), Suspend(1, 500, SUSPEND)):
+        state, _ = actor.handle(state, message)
+    told = dict[int, tuple[float, float]]()
+    for now_ms in range(500, 32_000, 500):
+        place = Position(22.0 * now_ms / 1000, 1500.0, 300.0)
+        state, out = actor.handle(state, Tick(now_ms, ((1, air._replace(position=place)),)))
+        for route in (one for one in out if isinstance(one, Route)):
+            off = [math.dist(point[:2], place[:2]) for point in route.points]
+            told[now_ms] = (min(off), max(off))
+    assert list(told) == [11_000, 21_500]
+    assert all(near < 1.0 and far < 250.0 for near, far in told.values())
 
 
 def blocked(*, plans_change: bool) -> tuple[int, str]:
