@@ -170,7 +170,9 @@ def test_what_was_flown_in_part_to_its_end_is_not_flown_again(tmp_path: Path) ->
     assert outcomes(rows) == {"task 7": "violated", "task 8": "holds"}
 
 
-@pytest.mark.parametrize(("settled", "expected"), [((), [7, 8]), ((7,), [8]), ((8,), [7]), ((7, 8), [])])
+@pytest.mark.parametrize(
+    ("settled", "expected"), [((), [7, 8]), ((7,), [8]), ((8,), [7]), ((7, 8), [])]
+)
 def test_the_end_of_a_zone_brings_back_no_task_that_has_had_its_end(
     settled: tuple[int, ...], expected: list[int]
 ) -> None:
