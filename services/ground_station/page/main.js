@@ -20,7 +20,7 @@ class Station extends Playback {
     this.chart = new AltitudeChart(by("altitude"), recording, go);
     by("name").textContent = recording.name;
     document.title = `${recording.name} – CRATOUS ground station`;
-    by("source").textContent = recording.live ? "flown now" : source(recording);
+    if (!recording.live) by("source").textContent = source(recording);
     this.listen();
     panels.events(recording, go);
     panels.verdicts(recording, this.state, go);
