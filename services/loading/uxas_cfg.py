@@ -32,6 +32,17 @@ PLAYED = frozenset(
     }
 )
 """Services of UxAS whose part is played by ours."""
+WRAPPED = {
+    "CoordinatedAutomationRequest": "OriginalRequest",
+    "TaskAutomationRequest": "OriginalRequest",
+    "ImpactAutomationRequest": "TrialRequest",
+}
+"""Messages around an automation request, and where they have it."""
+
+
+def is_request(kind: str) -> bool:
+    """True for a type of message that asks for a plan."""
+    return kind == "AutomationRequest" or kind in WRAPPED
 
 
 @dataclass(frozen=True)
@@ -91,10 +102,7 @@ def read_all(path: Path) -> Configuration:
         return first
     # what each asks for, once: the same request from two processes is one request
     requests = {
-        sent.where
-        for one in found
-        for sent in one.messages
-        if type(sent.body).__name__.endswith("AutomationRequest")
+        sent.where for one in found for sent in one.messages if is_request(type(sent.body).__name__)
     }
     planning = {
         (kind, tuple(sorted(attributes.items())))
