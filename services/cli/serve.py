@@ -44,8 +44,8 @@ def serve(
     that is printed may command the flight, from one page at a time.
 
     RUN RUN_B are two runs of missions in the same frame: one clock, a map, altitudes and events of
-    each, and a table of what one alone has or has otherwise, such as takeovers and verdicts, with
-    instants to jump to.
+    each, and a table of what only one of them has or what is not the same in both, such as takeovers
+    and verdicts, with instants to jump to.
 
     Map with tracks, routes, zones, tasks and takeovers, altitudes over time, verdicts, and events to
     jump to. The address of the page names the instant, so it can be kept. Only this machine reaches

@@ -81,8 +81,10 @@ class FlownRecording:
             "authority": flight.authority,
             "takeovers": flight.takeovers,
             "phases": flight.phases,
+            "in_phase": flight.in_phase,
             "links": self.links.found,
             "events": flight.events,
+            "event_kinds": flight.event_kinds,
             "unread": self.shapes.unread,
         }
 
