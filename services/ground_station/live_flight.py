@@ -58,7 +58,7 @@ class LiveFlight:
     def _begin(self) -> dict[str, Any]:
         empty: dict[str, Any] = {key: [] for key in (*GROWING, "takeovers", "footprints")}
         return {
-            **self._recording.first(), **empty, "tracks": {}, "end_ms": 0, "outcome": "in flight", "unread": 0,
+            **self._recording.first(), **empty, "tracks": {}, "bands": {}, "end_ms": 0, "outcome": "in flight", "unread": 0,
             "verdicts": {"why_none": "the flight has not begun"},
         }  # fmt: skip
 
