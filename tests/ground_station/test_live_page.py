@@ -43,7 +43,7 @@ def _speed(page: Page, rate: int) -> None:
 
 def test_a_mission_is_flown_paused_stepped_and_its_results_are_replayed(page: Page) -> None:
     assert page.text("live-who") == "This page commands the flight."
-    assert "authority UxAS" in page.text("aircraft")
+    page.until("document.getElementById('aircraft').textContent.includes('authority UxAS')")
     page.click("#fly-step")
     page.until(f"{NEWEST_MS} === 1000")
     _speed(page, 50)
