@@ -14,15 +14,10 @@ PERIOD_MS = 1000
 
 
 class Bands:
-    """Reads them in the order of the log.
-
-    found: by the number of a vehicle the first message of each second: its time [ms], the own heading
-    [degrees], bands (from and to, clockwise [degrees], and the region) and intruders (number, time to
-    the violation [s], alert level); what is not finite is None. unread: messages that do not fit.
-    """
+    """Reads them in the order of the log. unread: how many messages do not fit."""
 
     def __init__(self) -> None:
-        self.found: dict[str, list[dict[str, Any]]] = {}
+        self._rows: dict[str, dict[int, dict[str, Any]]] = {}
         self.unread = 0
 
     def add(self, entry: Entry, time_ms: int) -> None:
@@ -34,9 +29,17 @@ class Bands:
         if row is None:
             self.unread += 1
             return
-        rows = self.found.setdefault(str(row.pop("vehicle")), [])
-        if not rows or time_ms // PERIOD_MS != rows[-1]["time_ms"] // PERIOD_MS:
-            rows.append(row)
+        # the first of each second stays
+        self._rows.setdefault(str(row.pop("vehicle")), {}).setdefault(time_ms // PERIOD_MS, row)
+
+    @property
+    def found(self) -> dict[str, list[dict[str, Any]]]:
+        """By the number of a vehicle, the first message of each second, in the order of time.
+
+        Time [ms], own heading [degrees], bands (from and to, clockwise [degrees], and region) and
+        intruders (number, time to the violation [s], alert level); what is not finite is None.
+        """
+        return {vehicle: [rows[k] for k in sorted(rows)] for vehicle, rows in self._rows.items()}
 
 
 def _row(body: Any, time_ms: int) -> dict[str, Any] | None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from cratous.services.loading.request_kinds import is_request
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import integer_of
 from cratous.spec.files.text_file import bytes_of
@@ -32,17 +33,6 @@ PLAYED = frozenset(
     }
 )
 """Services of UxAS whose part is played by ours."""
-WRAPPED = {
-    "CoordinatedAutomationRequest": "OriginalRequest",
-    "TaskAutomationRequest": "OriginalRequest",
-    "ImpactAutomationRequest": "TrialRequest",
-}
-"""Messages around an automation request, and where they have it."""
-
-
-def is_request(kind: str) -> bool:
-    """True for a type of message that asks for a plan."""
-    return kind == "AutomationRequest" or kind in WRAPPED
 
 
 @dataclass(frozen=True)

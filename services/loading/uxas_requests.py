@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from cratous.services.loading.uxas_cfg import Configuration, is_request
+from cratous.services.loading.request_kinds import is_request
+from cratous.services.loading.uxas_cfg import Configuration
 
 
 def requests_of(cfg: Configuration) -> tuple[Configuration, ...]:
