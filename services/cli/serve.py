@@ -46,8 +46,8 @@ def serve(
     that is printed may command the flight, from one page at a time.
 
     RUN RUN_B are two runs of missions in the same frame: one clock, a map, altitudes and events of
-    each, and a table of what one alone has or has otherwise, such as takeovers and verdicts, with
-    instants to jump to.
+    each, and a table of what only one of them has or what is not the same in both, such as takeovers
+    and verdicts, with instants to jump to.
 
     With --edit the mission is edited: on the map, as text, its relations with the place of an error
     while they are typed; it is planned as it stands, and saved to its file.

@@ -1,6 +1,7 @@
 // The map: north up, one scale, metres of the mission frame. Everything is drawn anew for an instant.
 
-import { UNSEEN_MS, authorityAt, lastAt, positionAt } from "./instant.js";
+import { ring } from "./bands.js";
+import { UNSEEN_MS, authorityAt, bandsAt, lastAt, positionAt } from "./instant.js";
 import { color, colorOf, niceStep, sized } from "./canvas.js";
 import { words } from "./units.js";
 
@@ -44,6 +45,8 @@ export class FlightMap {
     for (const [id, route] of routesAt(recording, time)) this.route(id, route);
     for (const id of Object.keys(recording.tracks)) this.trail(id, time);
     for (const takeover of recording.takeovers) if (takeover.from_ms <= time) this.takeover(takeover);
+    const said = bandsAt(recording, state), at = said?.row && positionAt(recording.tracks[said.id] ?? [], time);
+    if (at && at.seen) ring(this, ...this.xy(at.north, at.east), said.row);
     for (const id of Object.keys(recording.tracks)) this.aircraft(id, state, words);
   }
 
