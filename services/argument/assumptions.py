@@ -83,9 +83,10 @@ def assumed(report: Data) -> list[Assumed]:
 
 def _of_report(row: Data) -> Assumed:
     state, note = row["state"], row["note"]
-    said = f"{state}: {note}" if note else str(state)
-    if state == BROKEN:
-        said = f"{state} at {row['since_ms'] / 1000:.2f} s: {note}"
+    when = f" at {row['since_ms'] / 1000:.2f} s" if state == BROKEN else ""
+    said = f"{state}{when}{f': {note}' if note else ''}"
+    if row["observed"] is not None and row["bound"] is not None:
+        said += f" ({row['observed']:.4g} of {row['bound']:.4g} {row['unit']} at worst)"
     # anything but a plain yes is no yes
     word = "Watched" if state in (HELD, BROKEN) else "Not watched"
     names = frozenset(f"{folder}{name}" for name in row["theorems"] for folder in FOLDERS)

@@ -40,9 +40,8 @@ def argument(report: Data, unshown: Iterable[tuple[str, str]]) -> dict[str, Elem
         for theorem in one.theorems:
             proofs.context[theorem] = (*proofs.context.get(theorem, ()), name)
             if one.broken:
-                proofs.without[theorem] = (
-                    f"An assumption broke in this run: {one.text}, {one.broken}"
-                )
+                said = f"An assumption broke in this run: {one.text}, {one.broken}."
+                proofs.without[theorem] = f"{proofs.without.get(theorem, '')} {said}".strip()
     chains = traced(report)
     rows = list(zip(report["constraints"], chains["rows"], strict=True))
     guarantees = Guarantees(found, proofs, chains, by_id)
@@ -66,6 +65,7 @@ def _top(
         Element(
             "S-guarantees", Kind.STRATEGY,
             f"Over the {len(goals)} guarantees, each for all of its constraints", tuple(goals),
+            state=worst(states),
         )
     )  # fmt: skip
     held = [goal for goal, one in zip(goals, states, strict=True) if one is State.SUPPORTED]

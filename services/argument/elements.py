@@ -23,7 +23,7 @@ class Kind(StrEnum):
 
 
 class State(StrEnum):
-    """How a goal stands in this run. What is not supported is said before anything else of the text."""
+    """How a goal, or all below a strategy, stands in this run. What is not supported is said before anything else of the text."""
 
     SUPPORTED = "supported"
     NOTHING = "nothing to check"
@@ -48,7 +48,7 @@ OF_VERDICT = {
 
 @dataclass(frozen=True)
 class Element:
-    """One element. supported_by, in_context_of: ids; state: of goals, SUPPORTED for all else.
+    """One element. supported_by, in_context_of: ids; state: of goals and strategies, SUPPORTED for all else.
 
     A goal or strategy with nothing below it is undeveloped.
     """
@@ -69,6 +69,11 @@ class Element:
     def shown(self) -> str:
         """The text with its state before it, unless it is supported."""
         return self.text if self.state is State.SUPPORTED else f"{self.state.upper()}: {self.text}"
+
+
+def counted(number: int, what: str) -> str:
+    """A number and what there is of it, as `1 call` or `2 calls`."""
+    return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def worst(states: Iterable[State]) -> State:

@@ -12,6 +12,7 @@ from cratous.services.argument.elements import (
     Element,
     Kind,
     State,
+    counted,
     worst,
 )
 from cratous.services.argument.proved import Proofs
@@ -48,11 +49,9 @@ class Guarantees:
         goals = [
             self._rows(wanted.id, number, group) for number, group in enumerate(_groups(rows), 1)
         ]
-        states = [self._argument.state(goal) for goal in goals]
-        state = worst(states) if rows else State.UNKNOWN
-        state = State.UNKNOWN if state is State.NOTHING else state
+        state = worst(self._argument.state(goal) for goal in goals)
+        state = State.UNKNOWN if state is State.NOTHING else state  # nothing was seen of it
         system = self._system(wanted.id)
-        state = worst((state, self._argument.state(system)))
         below: tuple[str, ...] = (system,)
         if goals:
             strategy = Element(
@@ -61,13 +60,14 @@ class Guarantees:
                 "Over each constraint that plan check and monitor judged in this run "
                 f"({len(rows)}), and the kernels that decided it",
                 tuple(goals),
+                state=state,
             )
             below = (self._argument.add(strategy), system)
         return self._argument.add(
             Element(
                 wanted.id, Kind.GOAL,
                 f"{wanted.id} {wanted.title}: {wanted.text} In this run: {_counted(rows)}.",
-                below, (), state,
+                below, (), worst((state, self._argument.state(system))),
             )
         )  # fmt: skip
 
@@ -151,9 +151,10 @@ def _evidence(of: str, number: int, rows: list[Data]) -> Element:
     """That the rows are in the report, and were found in the log again."""
     kinds = ", ".join(sorted({row["kind"] for row in rows}))
     checks = sum(row["checks"] for row in rows)
-    several = f"{len(rows)} rows" if len(rows) > 1 else "the row"
     margins = [row for row in rows if row["margin"] is not None]
-    text = f"report.json, {several}: holds by {checks} checks ({kinds})"
+    text = (
+        f"report.json, {counted(len(rows), 'row')}: holds by {counted(checks, 'check')} ({kinds})"
+    )
     if len({row["unit"] for row in margins}) == 1:
         least = min(margins, key=lambda row: float(row["margin"]))
         text += f", margin {least['margin']:.4g} {least['unit']}"

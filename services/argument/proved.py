@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from cratous.services.argument.elements import Argument, Element, Kind, State
+from cratous.services.argument.elements import Argument, Element, Kind, State, counted
 
 Data = dict[str, Any]
 SAME = ("sentence", "statement", "status", "obligations", "premises")
@@ -38,7 +38,9 @@ class Proofs:
         chain: of `trace`, from the kernel to theorems and definition; name: a shorter one; drivers: in
         which it decides.
         """
-        calls = f"{chain['calls']} calls" if chain["calls"] else "compiled into what was called"
+        calls = (
+            counted(chain["calls"], "call") if chain["calls"] else "compiled into what was called"
+        )
         inside = ", ".join(drivers)
         text = f"Kernel {name} ({calls} in this run{f', in {inside}' if inside else ''}): "
         text += chain["status"] or "not in the report"
@@ -130,9 +132,10 @@ class Proofs:
             Element(
                 f"Sn-{name}",
                 Kind.SOLUTION,
-                f"Record in the ledger: proved by {self._solver}, {found['obligations']} obligations, "
-                f"premises {found['premises']}, {len(found['assumptions'])} assumptions in the proof; "
-                f"{known} of its {len(found['kernels'])} kernels ran in this run",
+                f"Record in the ledger: proved by {self._solver}, "
+                f"{counted(found['obligations'], 'obligation')}, premises {found['premises']}, "
+                f"{counted(len(found['assumptions']), 'assumption')} in the proof; {known} of its "
+                f"{counted(len(found['kernels']), 'kernel')} ran in this run",
             )
         )
 

@@ -116,7 +116,7 @@ def test_a_row_that_does_not_hold_is_not_supported(
     assert goal.text.endswith("At 1.50 s")
     assert goal.undeveloped
     assert solutions(elements, goal.id) == []
-    for name in (requirement, "G-run"):
+    for name in (requirement, f"S-{requirement}-run", "S-guarantees", "G-run"):
         assert elements[name].state == verdict
         assert elements[name].shown.startswith(f"{verdict.upper()}: ")
     data = document(elements.values())
@@ -225,6 +225,7 @@ def assumption(state: str, theorem: str, *of: str, note: str = "as seen") -> dic
     return {
         "name": "n", "text": f"assumed, and {state}", "theorems": [theorem], "guarantees": list(of),
         "state": state, "since_ms": 12_340 if state == "broken" else None, "note": note,
+        "observed": None, "bound": 1.0, "unit": "s",
     }  # fmt: skip
 
 
@@ -235,12 +236,13 @@ def test_assumptions_stand_with_what_was_seen_of_them(report: dict[str, Any]) ->
         assumption("not observed", silence, "G5"),
         assumption("held", "permitted_has_no_hit", "G2"),
     ]
+    report["assumptions"][0]["observed"] = 0.5
     elements = argument(report, ())
     well_formed(elements)
     theorem = elements[f"G-theorem-{SYSTEM}"]
     texts = [elements[name].text for name in theorem.in_context_of]
     assert texts == [
-        "assumed, and held. Watched in this run: held: as seen",
+        "assumed, and held. Watched in this run: held: as seen (0.5 of 1 s at worst)",
         "assumed, and not observed. Not watched in this run: not observed: as seen",
     ]
     assert (theorem.state, elements["G5"].state) == (State.SUPPORTED, State.SUPPORTED)
