@@ -168,6 +168,7 @@ def test_a_theorem_that_is_no_longer_on_record_supports_nothing(
         del records["theorems"][theorem]
     elif how == "not proved":
         records["theorems"][theorem]["status"] = how
+        report["proofs"]["theorems"][theorem]["status"] = how
     else:
         records["theorems"][theorem]["statement"] += " and more"
     monkeypatch.setattr(ledger, "read", lambda: records)
