@@ -50,6 +50,9 @@ def well_formed(elements: dict[str, Element]) -> None:
     assert faults(data) == []
     assert yaml.safe_load(yaml_text(data, ["head"])) == data
     for one in elements.values():
+        marked = [one.state.replace(" ", "-")] if one.state is not State.SUPPORTED else None
+        assert data[one.id].get("classes") == marked
+        assert data[one.id]["text"].startswith(f"{one.state.upper()}: ") == bool(marked)
         if one.kind in (Kind.GOAL, Kind.STRATEGY):
             assert one.undeveloped == (not one.supported_by)
             assert one.undeveloped == data[one.id].get("undeveloped", False)
