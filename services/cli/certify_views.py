@@ -19,6 +19,7 @@ OPTIONS = (
     click.option("--junit", is_flag=True, help="Write junit.xml: a test case a constraint."),
     click.option("--sarif", is_flag=True, help="Write report.sarif: what is not shown to hold."),
     click.option("--csv", is_flag=True, help="Write constraints.csv."),
+    click.option("--argument", is_flag=True, help="Write argument.yaml and .svg: the assurance argument (GSN)."),
     click.option("--mission", type=click.Path(path_type=Path), help="Mission file, for lines in SARIF."),
     click.option("--sign", is_flag=True, help="Sign a statement over results and views (Ed25519)."),
     click.option(
@@ -48,6 +49,7 @@ class Asked(NamedTuple):
     junit: bool
     sarif: bool
     csv: bool
+    argument: bool
     mission: Path | None
     sign: bool
     verify: bool
@@ -57,7 +59,8 @@ class Asked(NamedTuple):
     @property
     def anything(self) -> bool:
         """Whether anything is to be written."""
-        return self.junit or self.sarif or self.csv or self.sign or self.out is not None
+        named = self.junit or self.sarif or self.csv or self.argument
+        return named or self.sign or self.out is not None
 
     def folder(self, results: Path) -> Path:
         """Where views and statement stand."""
@@ -91,7 +94,7 @@ def verified(results: Path, asked: Asked, as_json: bool) -> int:
     from cratous.services.attestation.verification import signed_folder, verify
     from cratous.services.cli.judge import judgement
 
-    if asked.sign or asked.junit or asked.sarif or asked.csv or asked.mission:
+    if asked.sign or asked.junit or asked.sarif or asked.csv or asked.argument or asked.mission:
         raise click.UsageError("--verify writes nothing")
     if asked.public_key is None:
         raise click.UsageError("--verify needs --public-key")
@@ -119,10 +122,20 @@ def verified(results: Path, asked: Asked, as_json: bool) -> int:
 def write(done: Any, results: Path, asked: Asked, key: Any) -> list[str]:
     """Write what was asked for of a confirmed judgement; returns what to say of it."""
     from cratous.services.attestation.findings import Subject
-    from cratous.services.attestation.names import CSV_NAME, JUNIT_NAME, SARIF_NAME, VIEWS
+    from cratous.services.attestation.names import (
+        ARGUMENT_NAME,
+        CSV_NAME,
+        DRAWING_NAME,
+        JUNIT_NAME,
+        SARIF_NAME,
+        VIEWS,
+    )
     from cratous.services.attestation.writing import Wanted, write_views
 
-    chosen = ((asked.junit, JUNIT_NAME), (asked.sarif, SARIF_NAME), (asked.csv, CSV_NAME))
+    chosen = (
+        (asked.junit, JUNIT_NAME), (asked.sarif, SARIF_NAME), (asked.csv, CSV_NAME),
+        (asked.argument, ARGUMENT_NAME), (asked.argument, DRAWING_NAME),
+    )  # fmt: skip
     names = tuple(name for wanted, name in chosen if wanted) or VIEWS
     target = asked.folder(results)
     inside = f"{target.name}: " if target.resolve().parent == results.resolve() else None
