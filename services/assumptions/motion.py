@@ -152,8 +152,8 @@ class IntruderWatch:
         off = _off(here.position, after(Piece(0.0, t_s, p, v), t_s))
         self._record.see(math.hypot(off.north_m, off.east_m))
         text = (
-            f"aircraft {other}, which {own} avoids, is {math.hypot(off.north_m, off.east_m):.1f} m beside and "
-            f"{abs(off.alt_m):.1f} m above or below where it was predicted at {base.time_ms / 1000:.2f} s"
+            f"aircraft {other}, which {own} avoids, is {math.hypot(off.north_m, off.east_m):.4g} m beside and "
+            f"{abs(off.alt_m):.4g} m above or below where it was predicted at {base.time_ms / 1000:.2f} s"
         )
         self._record.check(is_within(off, self._room), here.time_ms, own, text)
 
@@ -257,7 +257,7 @@ class TrackingWatch:
         beside_m = math.hypot(off.north_m, off.east_m)
         self._record.see(beside_m)
         text = (
-            f"vehicle {number} is {beside_m:.1f} m beside and {abs(off.alt_m):.1f} m above or below the path of its "
+            f"vehicle {number} is {beside_m:.4g} m beside and {abs(off.alt_m):.4g} m above or below the path of its "
             f"command of {path.since_ms / 1000:.2f} s"
         )
         self._record.check(is_within(off, self._room), here.time_ms, number, text)

@@ -62,6 +62,8 @@ class Record:
         """One look, and what was measured in it."""
         self.checks += 1
         if value is not None:
+            # what no number says is as far off as can be
+            value = float_info.max if value != value else value
             most = value if self.extreme is None else max(self.extreme, value)
             self.extreme = min(most, float_info.max)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import json
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -25,7 +26,7 @@ from tampering import (
 )
 
 from cratous.bridge import lmcp
-from cratous.services.assumptions import sentence
+from cratous.services.assumptions import AssumptionWatch, sentence
 from cratous.services.assumptions.link import DeliveryWatch
 from cratous.services.assumptions.listing import LISTING
 from cratous.services.assumptions.observed import Message, State
@@ -198,11 +199,11 @@ BREAKS: dict[str, tuple[Change, str]] = {
     "settled tasks": (flown_again, "task 1 is active after it was complete"),
     "intruder in its tube": (
         lambda log: aside(90, taken_ms() + 3000, East=20.0)(log),
-        "aircraft 90, which 1 avoids, is 20.0 m beside",
+        "aircraft 90, which 1 avoids, is 20 m beside",
     ),
     "tracking": (
         lambda log: aside(1, taken_ms() + 3000, Altitude=5.0)(log),
-        "m beside and 5.0 m above or below the path",
+        "m beside and 5 m above or below the path",
     ),
 }
 
@@ -329,6 +330,26 @@ def test_a_vehicle_that_gets_no_command_is_named() -> None:
 def test_messages_without_a_sender_leave_open_who_reports() -> None:
     rows = tampered(lambda log: log.__setitem__(slice(None), [replace(o, source="") for o in log]))
     assert rows["reports of the gate"]["note"] == "the messages do not name their senders"
+
+
+@pytest.mark.parametrize("far", [1e308, -1e308])
+def test_places_and_speeds_that_no_aircraft_has_are_told_in_numbers(far: float) -> None:
+    def change(log: Log) -> None:
+        now_ms = taken_ms()
+        fields = ("North", "East", "Altitude", "VelocityNorth", "VelocityEast", "VelocityDown")
+        for number in (1, 90):
+            for k in (0, 4, 5):
+                aside(number, now_ms + 250 * k, **dict.fromkeys(fields, far * (-1) ** k))(log)
+
+    log = [copy.copy(one) for one in flown(WHOLE)]
+    change(log)
+    watch = AssumptionWatch(WHOLE)
+    for one in log:
+        watch.tap(one.topic.rpartition(".")[2], one)
+    rows = {row["name"]: row for row in watch.rows(log[-1].time_ms, True)}
+    for name in ("intruder in its tube", "tracking"):
+        assert rows[name]["state"] == "broken"
+        json.dumps(rows[name], allow_nan=False)
 
 
 def test_a_break_is_told_once_at_the_moment_it_is_seen() -> None:
