@@ -1,8 +1,4 @@
-"""What the theorems on the composed system assume, and how each assumption was watched in a run.
-
-A report that has a section `assumptions` says both. Of one that has none nothing was watched: then the
-list of `docs/proofs/assumptions.md` stands here with that word.
-"""
+"""What the theorems on the composed system assume, and how each assumption was watched in a run."""
 
 from __future__ import annotations
 
@@ -10,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from cratous.services.argument.elements import Element, Kind
+from cratous.spec.errors import BadInput
 
 Data = dict[str, Any]
 SECTION = "assumptions"
@@ -34,31 +31,6 @@ BEARS_ON: dict[str, tuple[str, ...]] = {
 }
 """Which theorem on the composed system says something of which guarantee."""
 PLACED = frozenset(name for names in BEARS_ON.values() for name in names)
-LISTED: tuple[tuple[str, tuple[str, ...]], ...] = (
-    ("the three parts begin as they must (UxAS commands in epoch 0)", AUTHORITY),
-    ("a report of the gate is one that the vehicle has made", (UXAS_END,)),
-    ("a command names an epoch that its sender has been told", (GATE,)),
-    ("the gate keeps its epoch (no restart that forgets it)", AUTHORITY),
-    ("ICAROUS looks at the gate at each heartbeat before it does anything", (GATE,)),
-    ("UxAS commands nothing while it is suspended", (UXAS_END,)),
-    ("the clock of one end does not step back", (SILENCE,)),
-    ("heartbeats are at most a period apart", (SILENCE,)),
-    ("the way back is free from some heartbeat on, at each", (TAKEOVER_ENDS,)),
-    ("ICAROUS hears UxAS when the time is over", (TAKEOVER_ENDS,)),
-    (
-        "a SETMOD line of the offer reaches UxAS, and its command reaches the gate, before the way "
-        "is not free again",
-        (TAKEOVER_ENDS,),
-    ),
-    ("the UxAS end's answers are carried out (suspended, taken back)", (UXAS_END,)),
-    (
-        "the executive asks `flight_outcome` at the end of each step, and counts vehicles away by "
-        "their gates",
-        (MISSION_ENDS, TAKEOVER_LASTS),
-    ),
-    ("another plan brings no task back that has ended or failed", (MISSION_ENDS,)),
-)
-"""Assumption and theorems, as the page has them."""
 
 
 class Assumed(NamedTuple):
@@ -73,12 +45,14 @@ class Assumed(NamedTuple):
 
 
 def assumed(report: Data) -> list[Assumed]:
-    """The assumptions of a run, in the order of the report, or of the page."""
-    rows = report.get(SECTION)
-    if rows is None:
-        unwatched = "Not watched in this run"
-        return [Assumed(text, frozenset(t), frozenset(), unwatched) for text, t in LISTED]
-    return [_of_report(row) for row in rows]
+    """The assumptions of a run, in the order of the report. Raises BadInput for a report without them."""
+    if SECTION not in report:
+        raise BadInput(
+            "the report says nothing of assumptions",
+            item=SECTION,
+            expected="a report of a version that watches them",
+        )
+    return [_of_report(row) for row in report[SECTION]]
 
 
 def _of_report(row: Data) -> Assumed:

@@ -115,6 +115,8 @@ def summary(report: dict[str, Any], folder: Path | None) -> dict[str, Any]:
 
 
 def _show(report: dict[str, Any], folder: Path) -> None:
+    from cratous.services.assumptions import sentence
+
     flight = report["flight"]
     requirement_table(report["requirements"])
     for served in flight["served"]:
@@ -124,6 +126,9 @@ def _show(report: dict[str, Any], folder: Path) -> None:
             f"p{served['task']}: {served['phase'].lower()} by {who} "
             f"at {served['time_ms'] / 1000:.1f} s, {100 * served['served']:.1f} % served{note}"
         )
+    for row in report["assumptions"]:
+        if row["state"] == "broken":
+            say(f"assumption {row['name']}: {sentence(row)}")
     count = len(flight["takeovers"])
     say(
         f"{report['verdict'].upper()}: {flight['outcome']}, {flight['end_ms'] / 1000:.1f} s of "

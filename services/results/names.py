@@ -11,3 +11,5 @@ MANIFEST_NAME = "manifest.json"
 NAMES = (REPORT_NAME, HTML_NAME, MAP_NAME, LOG_NAME, CERTIFICATE_NAME, MANIFEST_NAME)
 BESIDE_LOG = tuple(LOG_NAME + end for end in ("-journal", "-wal", "-shm"))
 """SQLite would take these for part of a new log."""
+ASSUMPTIONS = "assumptions"
+"""Where a log's meta has the assumptions of the system theorems that broke while it was flown."""

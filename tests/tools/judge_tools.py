@@ -90,7 +90,7 @@ def with_monitor(log: Path) -> Path:
     from cratous.services.certify.rejudge import watch
     from cratous.services.certify.verdicts import constraint_rows
 
-    return with_report(log, constraint_rows(watch(log), "flight"))
+    return with_report(log, constraint_rows(watch(log).verdicts, "flight"))
 
 
 def with_report(log: Path, rows: list[dict[str, Any]]) -> Path:
