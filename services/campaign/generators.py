@@ -20,7 +20,7 @@ ALTITUDE_M = 300.0
 COMMON: Ranges = {
     "own_speed_m_s": (18, 28), "speed_m_s": (15, 40), "time_s": (70, 110), "miss_m": (-50, 50),
     "height_m": (-20, 20), "area_m": (-3000, 3000), "zone_gap_m": (100, 600), "zone_size_m": (200, 600),
-    "zone_place": (-0.6, 0.4),
+    "zone_place": (-0.6, 0.4), "bend_m": (-150, 150),
 }  # fmt: skip
 KINDS: dict[str, Ranges] = {
     "aimed": {"angle_deg": (0, 360), "miss_m": (0, 0), "height_m": (0, 0)},
@@ -31,6 +31,8 @@ KINDS: dict[str, Ranges] = {
 }
 CHANGES, MOST_CHANGES = "changes", 6
 """The kind of `services.campaign.changing`, which has no ranges; it draws so many changes at most."""
+BEND = 1000
+"""Tasks where the way bends are numbered from here on."""
 MIRRORED = ("converging",)
 """Kinds whose angle may be to either side."""
 
@@ -79,7 +81,7 @@ def mission_of(
     time, speed = draw("time_s"), draw("own_speed_m_s")
     way = speed * time
     vehicles = [_vehicle(1, (-way, 0.0, ALTITUDE_M), 0.0, speed)]
-    tasks = [_task(1, (way, 0.0, ALTITUDE_M))]
+    tasks = [*_bends(draw, data, way), _task(1, (way, 0.0, ALTITUDE_M))]
     traffic = []
     for k in range(1, data.get("intruders", 1) + 1):
         start, course_deg, fast = _intruder(draw, k, time)
@@ -152,6 +154,14 @@ def _vehicle(number: int, start: Point, course_deg: float, speed: float) -> dict
 def _turned(course_deg: float) -> float:
     """The same course between -180 and 180 degrees."""
     return round((course_deg + 180) % 360 - 180, 3)
+
+
+def _bends(draw: Draw, data: dict[str, Any], way: float) -> Iterator[dict[str, Any]]:
+    """Tasks on the vehicle's way, evenly spaced to its end, each beside the straight path."""
+    bends = data.get("bends", 0)
+    for k in range(1, bends + 1):
+        place = (2 * k / (bends + 1) - 1) * way, draw("bend_m", k), ALTITUDE_M
+        yield {**_task(1, place), "id": BEND + k}
 
 
 def _task(number: int, place: Point) -> dict[str, Any]:

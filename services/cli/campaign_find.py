@@ -30,13 +30,15 @@ def searched(
     from cratous.services.campaign.runs import Run
     from cratous.services.campaign.search import Search
     from cratous.services.campaign.store import Store
-    from cratous.services.cli.campaign_flight import FUNCTION
+    from cratous.services.cli.encounter_flight import function_of
 
     ledger.require(allow_unproved=how["allow_unproved"])
     version = version_digest()
     search = Search(campaign, requirement, version, how["allow_unproved"])
     with Store(place) as store, engine(how["workers"], how["scheduler"]) as made:
-        conduct = Conduct(campaign, store, FUNCTION, version, how["allow_unproved"])
+        conduct = Conduct(
+            campaign, store, function_of(campaign.kind), version, how["allow_unproved"]
+        )
         course = Course(budget)
 
         def fly(runs: Iterable[Run]) -> list[Any]:

@@ -1,0 +1,184 @@
+"""Campaigns of encounters: flown as a whole flight flies them, judged, the same by however many workers."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from cratous.judge.encounter import judge_encounter
+from cratous.services.campaign.definition import Campaign, load_campaign
+from cratous.services.campaign.encounters import states_of
+from cratous.services.campaign.generators import mission_of
+from cratous.services.campaign.runs import runs_of
+from cratous.services.cli import main
+from cratous.services.cli.encounter_flight import fly_run
+from cratous.services.flight.encounter import Encounter, fly_encounter
+from cratous.services.loading import load
+from cratous.spec.errors import BadInput
+
+GENERATOR = {"kind": "converging", "ranges": {"time_s": [35, 50]}}
+PLACE = {"north_m": 500, "east_m": 0, "alt_m": 300}
+HEAD = "name: trial\nkind: encounters\n"
+
+
+def _written(folder: Path, generator: dict[str, Any], seed: int, **more: Any) -> Path:
+    data, _ = mission_of(generator, "trial", seed)
+    file = folder / "mission.yaml"
+    file.write_text(yaml.safe_dump({**data, "simulation": {"limit_s": 60}, **more}))
+    return file
+
+
+def _campaign(folder: Path, text: str) -> Campaign:
+    file = folder / "campaign.yaml"
+    file.write_text(HEAD + text)
+    return load_campaign(file, None, ())
+
+
+@pytest.mark.parametrize(("kind", "zones"), [("converging", 0), ("aimed", 2)])
+def test_it_is_flown_as_a_whole_flight_is(tmp_path: Path, kind: str, zones: int) -> None:
+    """Until the handback to the millimetre, since the way back from the bridge takes a heartbeat more."""
+    from cratous.services.cli.job import new_bus, plan_and_check
+    from cratous.services.flight.loop import fly
+
+    mission = load(_written(tmp_path, {**GENERATOR, "kind": kind, "zones_beside": zones}, 2))
+    alone = fly_encounter(mission)
+    bus, whole, handbacks = new_bus(), dict[int, tuple[float, ...]](), list[int]()
+
+    def tap(envelope: Any) -> None:
+        name, body = envelope.topic.rpartition(".")[2], envelope.body
+        if name == "TruthState" and body.VehicleID == 1:
+            whole[body.Time] = (body.North, body.East, body.Altitude)
+        if name == "AuthorityChange" and body.Owner.name == "UxAS":
+            handbacks.append(envelope.time_ms)
+
+    bus.tap(tap)
+    plan, _ = plan_and_check(mission, bus)
+    result = fly(mission, plan, bus)
+    assert alone.takeovers == result.takeovers == 1
+    for now_ms, aircraft in alone.instants:
+        apart = math.dist(dict(aircraft)[1].position, whole[now_ms])
+        assert apart < (0.001 if now_ms < min(handbacks) - 20_000 else 5.0), now_ms
+
+
+def test_without_avoidance_well_clear_is_lost(tmp_path: Path) -> None:
+    campaign = _campaign(
+        tmp_path,
+        "generator: {kind: head_on, ranges: {time_s: [30, 40]}}\nseeds: [1, 2]\n"
+        "options: [{name: avoiding}, {name: bare, daa: false}]\n",
+    )
+    results = [fly_run(run.decides) for run in runs_of(campaign, "v", True)]
+    verdicts = [result["requirements"]["G2"]["verdict"] for result in results]
+    assert verdicts == ["holds", "violated"] * 2
+    for result in results:
+        assert result["judge"]["disagreements"] == []
+        assert result["judge"]["guarantees"]["G2"] == result["requirements"]["G2"]["verdict"]
+        assert result["end_ms"] == 60_000
+        assert result["takeovers"] == (result["requirements"]["G2"]["verdict"] == "holds")
+
+
+def _bent(folder: Path) -> tuple[Path, Encounter]:
+    ranges = {"time_s": [30, 40], "bend_m": [60, 160]}
+    file = _written(folder, {"kind": "random", "intruders": 0, "bends": 6, "ranges": ranges}, 1)
+    return file, fly_encounter(load(file))
+
+
+def test_points_are_judged_by_where_the_vehicle_was(tmp_path: Path) -> None:
+    file, flown = _bent(tmp_path)
+    assert flown.reached[1] >= 4
+    (row,) = judge_encounter(file, states_of(flown), flown.reached)[-1:]
+    assert (row.guarantee, row.verdict, row.checks) == ("G3", "holds", flown.reached[1])
+    # the same flight does not pass what is moved away, nor more points than there are
+    data = yaml.safe_load(file.read_text())
+    data["tasks"][1]["points"][0]["east_m"] -= 200
+    file.write_text(yaml.safe_dump(data))
+    assert judge_encounter(file, states_of(flown), flown.reached)[-1].verdict == "violated"
+    assert judge_encounter(file, states_of(flown), {1: 50})[-1].verdict == "unknown"
+    assert judge_encounter(file, states_of(flown), {})[-1].verdict == "unknown"
+
+
+def test_points_out_of_turn_are_violated(tmp_path: Path) -> None:
+    file, flown = _bent(tmp_path)
+    data = yaml.safe_load(file.read_text())
+    data["tasks"][1:3] = reversed(data["tasks"][1:3])
+    file.write_text(yaml.safe_dump(data))
+    assert judge_encounter(file, states_of(flown), flown.reached)[-1].verdict == "violated"
+
+
+def test_a_gap_in_what_was_seen_is_unknown(tmp_path: Path) -> None:
+    file, flown = _bent(tmp_path)
+    holed = flown._replace(instants=flown.instants[:50] + flown.instants[60:])
+    row = judge_encounter(file, states_of(holed), flown.reached)[-1]
+    assert (row.guarantee, row.verdict) == ("G3", "unknown")
+    with pytest.raises(BadInput, match="nobody was seen"):
+        judge_encounter(file, {}, {})
+    with pytest.raises(BadInput, match="states"):
+        judge_encounter(file, {1: [[0, 1.0]]}, {1: 0})
+
+
+@pytest.mark.parametrize(
+    ("more", "item"),
+    [
+        ({"relations": "p1"}, "relations"),
+        ({"changes": [{"at_s": 1, "vehicle_lost": 1}]}, "changes"),
+        ({"simulation": {"bridge_faults": {"seed": 1, "loss": 0.5}}}, "bridge_faults"),
+        ({"tasks": [{"id": 1, "kind": "loiter", "points": [PLACE], "duration_s": 9}]}, "task 1"),
+        ({"tasks": [{"id": 1, "kind": "must_fly", "points": [PLACE]}]}, "task 1"),
+    ],
+)
+def test_what_an_encounter_does_not_fly_is_refused(
+    tmp_path: Path, more: dict[str, Any], item: str
+) -> None:
+    with pytest.raises(BadInput, match="along points") as refused:
+        fly_encounter(load(_written(tmp_path, GENERATOR, 1, **more)))
+    assert item in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [
+        ("requirements: [G5]\n", "G5"),
+        ("judge: false\n", "always judged"),
+        ("duration_s: 0\n", "duration_s"),
+        ("kind: missions\nduration_s: 9\n", "no duration"),
+        ("generator: {kind: changes}\n", "no changes"),
+    ],
+)
+def test_bad_campaigns_of_encounters_are_named(tmp_path: Path, text: str, named: str) -> None:
+    base = "" if "generator" in text else "generator: {kind: aimed}\n"
+    file = tmp_path / "campaign.yaml"
+    head = HEAD.replace("kind: encounters\n", "") if "kind: missions" in text else HEAD
+    file.write_text(head + base + text + "seeds: [1, 2]\n")
+    with pytest.raises(BadInput, match=named):
+        load_campaign(file, None, ())
+
+
+def test_a_kind_and_a_duration_are_another_run(tmp_path: Path) -> None:
+    one = _campaign(tmp_path, "generator: {kind: aimed}\nseeds: [1, 1]\n")
+    others = replace(one, duration_s=61.0), replace(one, kind="missions")
+    names = {run.id for c in (one, *others) for run in runs_of(c, "v", False)}
+    assert len(names) == 3
+
+
+@pytest.mark.slow
+def test_the_number_of_workers_changes_nothing_and_what_is_stored_is_not_flown_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("distributed")
+    file = tmp_path / "campaign.yaml"
+    file.write_text(f"{HEAD}generator: {{kind: converging, ranges: {{time_s: [35, 50]}}}}\n")
+    texts = []
+    for name, seeds, workers in (("one", "1-3", "1"), ("one", "1-8", "1"), ("two", "1-8", "2")):
+        arguments = ["campaign", str(file), "--seeds", seeds, "--workers", workers]
+        arguments += ["--reports", "1", "--allow-unproved", "-o", str(tmp_path / name)]
+        assert main(arguments) in (0, 3)
+        capsys.readouterr()
+        texts.append((tmp_path / name / "campaign.json").read_bytes())
+    assert texts[1] == texts[2]
+    (mission,) = (tmp_path / "two" / "flights").iterdir()
+    assert mission.suffix == ".yaml"
+    assert load(mission).simulation.limit_ms == 60_000
