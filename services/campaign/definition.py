@@ -11,6 +11,7 @@ from typing import Any
 
 from cratous.services.campaign.encounters import REQUIREMENTS as HELD
 from cratous.services.campaign.generators import CHANGES
+from cratous.services.campaign.recorded import ENDINGS, mission_of_states
 from cratous.services.loading import load
 from cratous.services.loading.document import Document, parse_document, read_document
 from cratous.services.loading.problems import refuse
@@ -124,7 +125,15 @@ def load_campaign(path: Path, seeds: range | None, options: tuple[Option, ...]) 
     return found
 
 
-def _source(path: Path) -> Source:
+def _source(path: Path, kind: str = MISSIONS, duration_s: float = DURATION_S) -> Source:
+    if path.suffix.lower() in ENDINGS:
+        if kind != ENCOUNTERS:
+            raise BadInput(
+                "a file of states is no whole mission", where=str(path), item="missions",
+                expected=f"a mission (.yaml), or kind: {ENCOUNTERS}", got=path.suffix,
+            )  # fmt: skip
+        data = mission_of_states(path, duration_s)
+        return Source(data["name"], "", Document(str(path), data, {}))
     text = text_of(path, MISSION_BYTES, "a mission file")
     document = parse_document(text, str(path))
     load(path)  # what is wrong with it as it is written is said before anything is flown
@@ -143,6 +152,7 @@ def _campaign(document: Document, folder: Path, seeds: range | None) -> Campaign
             raise _wrong(document, ("seeds",), "no seeds", expected, f"{first}, {last}")
         seeds = range(first, last + 1)
     kind = data.get("kind", MISSIONS)
+    duration_s = float(data.get("duration_s", DURATION_S))
     usual = HELD if kind == ENCOUNTERS else ALL
     options = tuple(
         Option(o["name"], o.get("daa", True), tuple(sorted(o.get("set", {}).items())))
@@ -150,7 +160,9 @@ def _campaign(document: Document, folder: Path, seeds: range | None) -> Campaign
     )
     return Campaign(
         name=data["name"],
-        missions=tuple(_source(folder / name) for name in data.get("missions", [])),
+        missions=tuple(
+            _source(folder / name, kind, duration_s) for name in data.get("missions", [])
+        ),
         generator=data.get("generator"),
         seeds=seeds or range(0),
         vary=tuple(_variable(document, k, v) for k, v in enumerate(data.get("vary", []))),
@@ -160,7 +172,7 @@ def _campaign(document: Document, folder: Path, seeds: range | None) -> Campaign
         limits=Limits(**data.get("limits", {})),
         description=data.get("description", ""),
         kind=kind,
-        duration_s=float(data.get("duration_s", DURATION_S)),
+        duration_s=duration_s,
     )
 
 

@@ -8,12 +8,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import seeded_faults
 import yaml
+from seeded_faults import seeded
 
 from cratous.judge.encounter import judge_encounter
 from cratous.services.campaign.definition import Campaign, load_campaign
 from cratous.services.campaign.encounters import states_of
 from cratous.services.campaign.generators import mission_of
+from cratous.services.campaign.outcomes import outcome_of
 from cratous.services.campaign.runs import runs_of
 from cratous.services.cli import main
 from cratous.services.cli.encounter_flight import fly_run
@@ -182,3 +185,84 @@ def test_the_number_of_workers_changes_nothing_and_what_is_stored_is_not_flown_a
     (mission,) = (tmp_path / "two" / "flights").iterdir()
     assert mission.suffix == ".yaml"
     assert load(mission).simulation.limit_ms == 60_000
+
+
+def test_a_separation_that_is_too_small_is_refused_and_found(tmp_path: Path) -> None:
+    """Five per cent less than the volume that is asked for: no proof vouches for it, and the first encounter shows it."""
+    campaign = _campaign(
+        tmp_path,
+        "generator: {kind: converging, ranges: {time_s: [35, 50]}}\nseeds: [1, 1]\n"
+        "options: [{name: narrow, set: {daa.buffer: 1.02}}]\n",
+    )
+    (asked,), (allowed,) = (list(runs_of(campaign, "v", allow)) for allow in (False, True))
+    right = fly_run(allowed.decides)
+    assert right["requirements"]["G2"]["verdict"] == "holds"
+    with seeded("separation"):
+        refused, wrong = fly_run(asked.decides), fly_run(allowed.decides)
+    assert refused["kind"] == "refused"
+    assert "not its file's" in refused["why"][0]
+    assert not wrong["proved"]
+    assert wrong["requirements"]["G2"]["verdict"] == "violated"
+    assert wrong["judge"]["guarantees"]["G2"] == "violated"
+    assert outcome_of(wrong, ("G2",)) == "violated"
+    assert outcome_of({**right, "proved": False}, ("G2",)) == "unknown"
+
+
+def test_a_skipped_point_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file, _ = _bent(tmp_path)
+    data = yaml.safe_load(file.read_text())
+    data["tasks"][2]["points"][0]["east_m"] = -50.0  # the others lie to the right
+    file.write_text(yaml.safe_dump(data))
+    flown = fly_encounter(load(file))
+    assert judge_encounter(file, states_of(flown), flown.reached)[-1].verdict == "holds"
+    monkeypatch.setattr(seeded_faults, "is_skipped", lambda path: path[0].east_m == -50.0)
+    with seeded("waypoint"):
+        flown = fly_encounter(load(file))
+    assert flown.reached[1] >= 4
+    row = judge_encounter(file, states_of(flown), flown.reached)[-1]
+    assert row.verdict == "violated"
+    assert "point 3 of" in row.note
+
+
+def test_a_file_of_states_is_an_encounter(tmp_path: Path, root: Path) -> None:
+    """The first step of the file, in its own words: 150 kt north, one head-on and one from the right."""
+    states = root / "examples" / "encounters" / "two_intruders.daa"
+    wide = "{dthr_m: 1219.2, zthr_m: 137.16, tthr_s: 35, tcoa_s: 0}"
+    vary = f"vary: [{{item: daa.well_clear, values: [{wide}]}}, {{item: daa.lookahead_s, values: [120]}}]"
+    campaign = _campaign(
+        tmp_path,
+        f"missions: ['{states}']\nduration_s: 150\nseeds: [1, 1]\n{vary}\n"
+        "options: [{name: avoiding}, {name: bare, daa: false}]\n",
+    )
+    avoiding, bare = (fly_run(run.decides) for run in runs_of(campaign, "v", True))
+    assert avoiding["requirements"]["G2"]["verdict"] == "holds"
+    assert bare["requirements"]["G2"]["verdict"] == "violated"
+    run = next(runs_of(campaign, "v", True))
+    data = yaml.safe_load(run.decides["mission"])
+    assert run.mission == "two_intruders"
+    assert data["vehicles"][0]["speed_m_s"] == pytest.approx(150 * 1852 / 3600, abs=1e-6)
+    north, east = data["traffic"]
+    assert north["position"]["north_m"] == pytest.approx(10 * 1852)
+    assert north["velocity"]["north_m_s"] == pytest.approx(-180 * 1852 / 3600)
+    assert north["velocity"]["down_m_s"] == pytest.approx(150 * 0.3048 / 60)
+    assert east["velocity"]["east_m_s"] == pytest.approx(-200 * 1852 / 3600)
+    assert east["position"]["alt_m"] == pytest.approx(5100 * 0.3048)
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "named"),
+    [
+        ("missions", None, "no whole mission"),
+        ("encounters", "NAME sx sy sz vx vy vz time\nown 0 0 900 0 40 0 0\n", "nobody is met"),
+        ("encounters", "nonsense\n", "states.daa"),
+    ],
+)
+def test_bad_files_of_states_are_named(
+    tmp_path: Path, root: Path, kind: str, text: str | None, named: str
+) -> None:
+    known = root / "examples" / "encounters" / "two_intruders.daa"
+    (tmp_path / "states.daa").write_text(known.read_text() if text is None else text)
+    file = tmp_path / "campaign.yaml"
+    file.write_text(f"name: trial\nkind: {kind}\nmissions: [states.daa]\n")
+    with pytest.raises(BadInput, match=named):
+        load_campaign(file, None, ())
