@@ -266,3 +266,22 @@ def test_bad_files_of_states_are_named(
     file.write_text(f"name: trial\nkind: {kind}\nmissions: [states.daa]\n")
     with pytest.raises(BadInput, match=named):
         load_campaign(file, None, ())
+
+
+@pytest.mark.slow
+def test_a_search_finds_an_encounter_and_its_file_shows_it_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, out = tmp_path / "campaign.yaml", tmp_path / "out"
+    file.write_text(
+        f"{HEAD}generator: {{kind: head_on, ranges: {{time_s: [30, 40]}}}}\nseeds: [5, 6]\n"
+        "options: [{name: bare, daa: false}]\n"
+    )
+    arguments = ["--find", "G2", "--budget", "1", "--allow-unproved", "-o", str(out)]
+    assert main(["campaign", str(file), *arguments]) == 1
+    assert "trial-bare-seed5, after 1 runs" in capsys.readouterr().out
+    case = out / "found-G2.yaml"
+    assert "in this encounter (flown without avoidance)" in case.read_text()
+    mission = load(case)
+    again = judge_encounter(case, states_of(fly_encounter(mission, daa=False)), {1: 0})
+    assert [row.verdict for row in again if row.guarantee == "G2"] == ["violated"]
