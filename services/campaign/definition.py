@@ -9,7 +9,9 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+from cratous.services.campaign.encounters import REQUIREMENTS as HELD
 from cratous.services.campaign.generators import CHANGES
+from cratous.services.campaign.recorded import ENDINGS, mission_of_states
 from cratous.services.loading import load
 from cratous.services.loading.document import Document, parse_document, read_document
 from cratous.services.loading.problems import refuse
@@ -20,6 +22,10 @@ from cratous.spec.files.text_file import text_of
 
 MOST_RUNS = 1_000_000
 ALL = ("G1", "G2", "G3", "G4", "G5")
+MISSIONS, ENCOUNTERS = "missions", "encounters"
+"""Kinds: whole flights, or short ones by the steps of avoidance and motion alone."""
+DURATION_S = 60.0
+"""How long an encounter is flown [s]."""
 
 
 @dataclass(frozen=True)
@@ -77,6 +83,8 @@ class Campaign:
     judge: bool = True
     limits: Limits = field(default_factory=Limits)
     description: str = ""
+    kind: str = MISSIONS
+    duration_s: float = DURATION_S
 
     @property
     def random(self) -> bool:
@@ -117,7 +125,15 @@ def load_campaign(path: Path, seeds: range | None, options: tuple[Option, ...]) 
     return found
 
 
-def _source(path: Path) -> Source:
+def _source(path: Path, kind: str = MISSIONS, duration_s: float = DURATION_S) -> Source:
+    if path.suffix.lower() in ENDINGS:
+        if kind != ENCOUNTERS:
+            raise BadInput(
+                "a file of states is no whole mission", where=str(path), item="missions",
+                expected=f"a mission (.yaml), or kind: {ENCOUNTERS}", got=path.suffix,
+            )  # fmt: skip
+        data = mission_of_states(path, duration_s)
+        return Source(data["name"], "", Document(str(path), data, {}))
     text = text_of(path, MISSION_BYTES, "a mission file")
     document = parse_document(text, str(path))
     load(path)  # what is wrong with it as it is written is said before anything is flown
@@ -135,21 +151,28 @@ def _campaign(document: Document, folder: Path, seeds: range | None) -> Campaign
             expected = "the first seed, then the last"
             raise _wrong(document, ("seeds",), "no seeds", expected, f"{first}, {last}")
         seeds = range(first, last + 1)
+    kind = data.get("kind", MISSIONS)
+    duration_s = float(data.get("duration_s", DURATION_S))
+    usual = HELD if kind == ENCOUNTERS else ALL
     options = tuple(
         Option(o["name"], o.get("daa", True), tuple(sorted(o.get("set", {}).items())))
         for o in data.get("options", [])
     )
     return Campaign(
         name=data["name"],
-        missions=tuple(_source(folder / name) for name in data.get("missions", [])),
+        missions=tuple(
+            _source(folder / name, kind, duration_s) for name in data.get("missions", [])
+        ),
         generator=data.get("generator"),
         seeds=seeds or range(0),
         vary=tuple(_variable(document, k, v) for k, v in enumerate(data.get("vary", []))),
         options=options or (Option(),),
-        requirements=tuple(sorted(set(data.get("requirements", ALL)))),
+        requirements=tuple(sorted(set(data.get("requirements", usual)))),
         judge=data.get("judge", True),
         limits=Limits(**data.get("limits", {})),
         description=data.get("description", ""),
+        kind=kind,
+        duration_s=duration_s,
     )
 
 
@@ -168,6 +191,7 @@ def _ordered(document: Document, key: tuple[str | int, ...], low: float, high: f
 
 
 def _check(campaign: Campaign, document: Document) -> None:
+    _check_kind(campaign, document)
     made = campaign.generator or {"kind": ""}
     for item in sorted(made.keys() - {"kind"}):
         if (item == "most_changes") != (made["kind"] == CHANGES):
@@ -201,6 +225,23 @@ def _check(campaign: Campaign, document: Document) -> None:
     runs = max(1, len(campaign.missions)) * len(campaign.options) * max(1, len(campaign.seeds))
     if runs > MOST_RUNS:
         raise _wrong(document, ("seeds",), "too many runs", f"at most {MOST_RUNS}", str(runs))
+
+
+def _check_kind(campaign: Campaign, document: Document) -> None:
+    """Encounters are held to what can be seen of them, and always judged; whole flights end by themselves."""
+    if campaign.kind == MISSIONS:
+        if isinstance(document.data, dict) and "duration_s" in document.data:
+            what = "a whole flight has no duration"
+            raise _wrong(document, ("duration_s",), what, f"kind: {ENCOUNTERS}", MISSIONS)
+        return
+    for name in sorted(set(campaign.requirements) - set(HELD)):
+        what = "an encounter has no bridge and no log, so nothing is known of it"
+        raise _wrong(document, ("requirements",), what, ", ".join(HELD), name)
+    if not campaign.judge:
+        raise _wrong(document, ("judge",), "encounters are always judged", "true", "false")
+    if (campaign.generator or {}).get("kind") == CHANGES:
+        what = "an encounter has no changes in flight"
+        raise _wrong(document, ("generator", "kind"), what, "another kind", CHANGES)
 
 
 def _wrong(

@@ -17,10 +17,12 @@ from cratous.services.campaign.changing import changing_mission
 
 Ranges = dict[str, tuple[float, float]]
 ALTITUDE_M = 300.0
+FRAME = {"latitude_deg": 45.0, "longitude_deg": -120.0}
+"""Where missions that are made lie."""
 COMMON: Ranges = {
     "own_speed_m_s": (18, 28), "speed_m_s": (15, 40), "time_s": (70, 110), "miss_m": (-50, 50),
     "height_m": (-20, 20), "area_m": (-3000, 3000), "zone_gap_m": (100, 600), "zone_size_m": (200, 600),
-    "zone_place": (-0.6, 0.4),
+    "zone_place": (-0.6, 0.4), "bend_m": (-150, 150),
 }  # fmt: skip
 KINDS: dict[str, Ranges] = {
     "aimed": {"angle_deg": (0, 360), "miss_m": (0, 0), "height_m": (0, 0)},
@@ -31,6 +33,8 @@ KINDS: dict[str, Ranges] = {
 }
 CHANGES, MOST_CHANGES = "changes", 6
 """The kind of `services.campaign.changing`, which has no ranges; it draws so many changes at most."""
+BEND = 1000
+"""Tasks where the way bends are numbered from here on."""
 MIRRORED = ("converging",)
 """Kinds whose angle may be to either side."""
 
@@ -78,13 +82,13 @@ def mission_of(
         return made, draw
     time, speed = draw("time_s"), draw("own_speed_m_s")
     way = speed * time
-    vehicles = [_vehicle(1, (-way, 0.0, ALTITUDE_M), 0.0, speed)]
-    tasks = [_task(1, (way, 0.0, ALTITUDE_M))]
+    vehicles = [vehicle_at(1, (-way, 0.0, ALTITUDE_M), 0.0, speed)]
+    tasks = [*_bends(draw, data, way), _task(1, (way, 0.0, ALTITUDE_M))]
     traffic = []
     for k in range(1, data.get("intruders", 1) + 1):
         start, course_deg, fast = _intruder(draw, k, time)
         if data.get("cooperative", False):
-            vehicles.append(_vehicle(k + 1, start, course_deg, fast))
+            vehicles.append(vehicle_at(k + 1, start, course_deg, fast))
             tasks.append(_task(k + 1, _ahead(start, course_deg, 2 * fast * time)))
         else:
             traffic.append(
@@ -93,7 +97,7 @@ def mission_of(
     mission = {
         "name": f"{name}-{seed}",
         "description": f"{draw.kind}, made by a campaign with seed {seed}",
-        "frame": {"latitude_deg": 45.0, "longitude_deg": -120.0},
+        "frame": dict(FRAME),
         "vehicles": vehicles,
         "tasks": tasks,
         "traffic": traffic,
@@ -141,7 +145,8 @@ def _zones(draw: Draw, data: dict[str, Any], way: float) -> Iterator[dict[str, A
         }
 
 
-def _vehicle(number: int, start: Point, course_deg: float, speed: float) -> dict[str, Any]:
+def vehicle_at(number: int, start: Point, course_deg: float, speed: float) -> dict[str, Any]:
+    """A vehicle of a mission file, with the limits that all made ones have, on a course [degrees] at a speed [m/s]."""
     return {
         "id": number, "position": _at(start), "heading_deg": _turned(course_deg), "speed_m_s": speed,
         "min_speed_m_s": round(0.7 * speed, 3), "max_speed_m_s": round(1.4 * speed, 3),
@@ -152,6 +157,14 @@ def _vehicle(number: int, start: Point, course_deg: float, speed: float) -> dict
 def _turned(course_deg: float) -> float:
     """The same course between -180 and 180 degrees."""
     return round((course_deg + 180) % 360 - 180, 3)
+
+
+def _bends(draw: Draw, data: dict[str, Any], way: float) -> Iterator[dict[str, Any]]:
+    """Tasks on the vehicle's way, evenly spaced to its end, each beside the straight path."""
+    bends = data.get("bends", 0)
+    for k in range(1, bends + 1):
+        place = (2 * k / (bends + 1) - 1) * way, draw("bend_m", k), ALTITUDE_M
+        yield {**_task(1, place), "id": BEND + k}
 
 
 def _task(number: int, place: Point) -> dict[str, Any]:

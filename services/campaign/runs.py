@@ -8,7 +8,14 @@ from dataclasses import dataclass
 from random import Random
 from typing import Any
 
-from cratous.services.campaign.definition import Campaign, Option, Source, Variable
+from cratous.services.campaign.definition import (
+    ENCOUNTERS,
+    MISSIONS,
+    Campaign,
+    Option,
+    Source,
+    Variable,
+)
 from cratous.services.campaign.generators import mission_of
 from cratous.services.campaign.identity import fingerprint
 from cratous.services.loading.document import item_key
@@ -20,7 +27,7 @@ class Run:
     """One run. id: a digest of all that decides its result, `decides`.
 
     decides: mission (text of the file), seed (of the mission's own variants, 0 for none), daa,
-    allow_unproved, judge, version. drawn: what was drawn for it, by name.
+    allow_unproved, judge, version, kind. drawn: what was drawn for it, by name.
     """
 
     id: str
@@ -69,7 +76,7 @@ class Made:
             self.drawn, self.bounds = dict(draw.drawn), dict(draw.bounds)
         else:
             self._name, self._own_seed = source.name, seed if source.varies else 0
-            unchanged = not campaign.vary and not option.changes
+            unchanged = not campaign.vary and not option.changes and campaign.kind == MISSIONS
             self._text = source.text if unchanged else ""
             self.data = copy.deepcopy(source.document.data)
         for variable in campaign.vary:
@@ -78,6 +85,9 @@ class Made:
             if variable.bounds is not None:
                 self.bounds[variable.item] = variable.bounds
             put(self.data, variable.item, value)
+        self._kind = campaign.kind
+        if campaign.kind == ENCOUNTERS:
+            put(self.data, "simulation.limit_s", campaign.duration_s)
         for item, value in option.changes:
             put(self.data, item, value)
 
@@ -92,6 +102,7 @@ class Made:
         decides = {
             "mission": self._text or _text(self.data), "seed": self._own_seed, "daa": self._option.daa,
             "judge": self._judge, "allow_unproved": allow_unproved, "version": version,
+            "kind": self._kind,
         }  # fmt: skip
         option, drawn = self._option.name, self.drawn
         return Run(fingerprint(decides), self._name, option, self._seed, decides, drawn)

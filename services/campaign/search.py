@@ -44,7 +44,10 @@ class Found:
 
 
 class Search:
-    """One search: for a requirement, under the first option, over the first mission or the generator."""
+    """One search: for a requirement, under the first option, over the first mission or the generator.
+
+    Its missions are numbered from the campaign's first seed on, and another first seed is another search.
+    """
 
     def __init__(
         self, campaign: Campaign, requirement: str, version: str, allow_unproved: bool
@@ -57,7 +60,8 @@ class Search:
             )  # fmt: skip
         self._campaign, self._requirement = campaign, requirement
         self._version, self._allow_unproved = version, allow_unproved
-        bounds = self._made(1, {}).bounds
+        self._first = campaign.seeds.start if campaign.seeds else 1
+        bounds = self._made(self._first, {}).bounds
         self._space = {
             name: (low, high) for name, (low, high) in sorted(bounds.items()) if low < high
         }
@@ -76,7 +80,8 @@ class Search:
         """Search with at most so many runs, then make what fails small with half as many more."""
         found = Found(self._requirement)
         while len(found.points) < budget and found.failing is None:
-            numbers = range(len(found.points) + 1, min(budget, len(found.points) + BATCH) + 1)
+            count = len(found.points)
+            numbers = range(self._first + count, self._first + min(budget, count + BATCH))
             points = [self._point(number, found) for number in numbers]
             made = [self._made(n, p) for n, p in zip(numbers, points, strict=True)]
             rows = fly(one.run(self._version, self._allow_unproved) for one in made)
@@ -94,7 +99,7 @@ class Search:
 
     def _point(self, number: int, found: Found) -> dict[str, float]:
         """The values of a point: of a batch, around the best so far."""
-        batch, place = divmod(number - 1, BATCH)
+        batch, place = divmod(number - self._first, BATCH)
         told = [p for p in found.points[: batch * BATCH] if p["margin"] is not None]
         elite = sorted(told, key=_rank)[:ELITE]
         point = {}

@@ -115,12 +115,14 @@ def conducted(
     from cratous.services.campaign.identity import version_digest
     from cratous.services.campaign.store import Store
     from cratous.services.campaign.summary import build
-    from cratous.services.cli.campaign_flight import FUNCTION
+    from cratous.services.cli.encounter_flight import function_of
 
     ledger.require(allow_unproved=how["allow_unproved"])  # before any process is begun
     version = version_digest()
     with Store(place) as store:
-        conduct = Conduct(campaign, store, FUNCTION, version, how["allow_unproved"])
+        conduct = Conduct(
+            campaign, store, function_of(campaign.kind), version, how["allow_unproved"]
+        )
         seeds, missions = max(1, len(campaign.seeds)), max(1, len(campaign.missions))
         course = Course(seeds * missions * len(campaign.options))
         with engine(how["workers"], how["scheduler"]) as made:
@@ -136,24 +138,27 @@ def conducted(
 def _reports(
     conduct: Any, rows: list[Any], campaign: Any, place: Path, count: int, tell: Tell
 ) -> dict[str, str]:
-    """Fly the worst again, keep their reports, and hold each against what was stored; links by name."""
+    """Fly the worst again and hold each against what was stored; keep its mission and, of a whole flight, its
+    report; links to these by name."""
     from cratous.core.files.whole_file import write_atomically
     from cratous.services.campaign import worker
+    from cratous.services.campaign.definition import MISSIONS
     from cratous.services.campaign.summary import worst
     from cratous.services.results.names import HTML_NAME
     from cratous.spec.errors import Refused
 
-    links = {}
+    links, whole = {}, campaign.kind == MISSIONS
     try:
         for row in worst(rows, campaign.requirements)[:count]:
             folder = place / "flights" / row.run.name
             link = f"flights/{row.run.name}/{HTML_NAME}"
             stored = row.result or {}
-            if _is_kept(folder, stored.get("log", "")):
+            if whole and _is_kept(folder, stored.get("log", "")):
                 links[row.run.name] = link
                 continue
             tell(f"report of {row.run.name}")
-            answer = worker.attempt(conduct.task(row.run, keep=str(folder)))
+            keep = {"keep": str(folder)} if whole else {}
+            answer = worker.attempt(conduct.task(row.run, **keep))
             if "lost" in answer:
                 tell(f"no report of {row.run.name}: {answer['lost']}")
                 continue
@@ -162,7 +167,9 @@ def _reports(
                     f"{row.run.name} flown again gives another result: {_other(answer, stored)}; "
                     "the stored results of this version are not to be trusted"
                 )
-            links[row.run.name] = link
+            if whole:
+                links[row.run.name] = link
+            folder.parent.mkdir(parents=True, exist_ok=True)
             mission = folder.parent / f"{row.run.name}.yaml"
             write_atomically(mission, row.run.decides["mission"])
     finally:

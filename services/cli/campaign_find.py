@@ -30,13 +30,15 @@ def searched(
     from cratous.services.campaign.runs import Run
     from cratous.services.campaign.search import Search
     from cratous.services.campaign.store import Store
-    from cratous.services.cli.campaign_flight import FUNCTION
+    from cratous.services.cli.encounter_flight import function_of
 
     ledger.require(allow_unproved=how["allow_unproved"])
     version = version_digest()
     search = Search(campaign, requirement, version, how["allow_unproved"])
     with Store(place) as store, engine(how["workers"], how["scheduler"]) as made:
-        conduct = Conduct(campaign, store, FUNCTION, version, how["allow_unproved"])
+        conduct = Conduct(
+            campaign, store, function_of(campaign.kind), version, how["allow_unproved"]
+        )
         course = Course(budget)
 
         def fly(runs: Iterable[Run]) -> list[Any]:
@@ -63,11 +65,16 @@ def searched(
 
 
 def _case(mission: dict[str, Any], requirement: str, decides: dict[str, Any]) -> str:
-    """The mission file, with what is expected of it."""
+    """The mission file, with what is expected of it; of an encounter nothing is, where it is flown whole."""
     import yaml
 
+    from cratous.services.campaign.definition import ENCOUNTERS
     from cratous.services.cli.campaign_flight import command
 
+    if decides["kind"] == ENCOUNTERS:
+        text = yaml.safe_dump(mission, sort_keys=False, allow_unicode=True)
+        how = "flown" if decides["daa"] else "flown without avoidance"
+        return f"# {requirement} is violated in this encounter ({how}), found by a search and made small\n{text}"
     without = {"exit_code": 1, "violated": [requirement]}
     expect = {"exit_code": 1} if decides["daa"] else {"without_daa": without}
     text = yaml.safe_dump({**mission, "expect": expect}, sort_keys=False, allow_unicode=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Callable
 from functools import cache
 from math import degrees
 from pathlib import Path
@@ -24,11 +25,22 @@ def fly_run(task: dict[str, Any]) -> dict[str, Any]:
     results, None if only the result is wanted.
     """
     keep = task.get("keep")
+
+    def flown(file: Path, task: dict[str, Any]) -> dict[str, Any]:
+        return _flown(file, task, file.parent if keep is None else Path(keep))
+
+    return result_of_file(task, flown)
+
+
+def result_of_file(
+    task: dict[str, Any], fly: Callable[[Path, dict[str, Any]], dict[str, Any]]
+) -> dict[str, Any]:
+    """What flying a task's mission, as a file in a folder of its own, comes to; errors are results too."""
     with TemporaryDirectory(prefix="cratous-") as scratch:
         file = Path(scratch) / "mission.yaml"
         file.write_text(task["mission"], encoding="utf-8")
         try:
-            return _flown(file, task, Path(scratch) if keep is None else Path(keep))
+            return fly(file, task)
         except NoPlan as error:
             return {"kind": NO_PLAN, "why": list(error.reasons)}
         except Refused as error:
@@ -46,7 +58,7 @@ def _plain(error: CratousError, file: Path) -> str:
 
 
 @cache
-def _standing(allow_unproved: bool) -> Any:
+def standing(allow_unproved: bool) -> Any:
     """The gate, once for this process: what it has loaded does not change."""
     from cratous.core import ledger
 
@@ -57,17 +69,17 @@ def _flown(file: Path, task: dict[str, Any], out: Path) -> dict[str, Any]:
     from cratous.services.loading import load
 
     mission = load(file, task["seed"])
-    standing = _standing(task["allow_unproved"])
+    proofs = standing(task["allow_unproved"])
     settings = Settings(task["daa"], task["allow_unproved"], command(task))
     if task.get("keep") is not None:
         from cratous.services.certify.report import write_report
         from cratous.services.results.folder import results_folder
 
         with results_folder(out) as folder:
-            report = fly_mission(mission, folder, settings, standing)
+            report = fly_mission(mission, folder, settings, proofs)
             write_report(report, folder)
             return _result(mission, report, folder, task)
-    report = fly_mission(mission, out, settings, standing)
+    report = fly_mission(mission, out, settings, proofs)
     return _result(mission, report, out, task)
 
 

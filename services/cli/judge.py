@@ -76,3 +76,10 @@ def judgement(log: Path, mission: Path | None = None) -> Any:
     from cratous.judge import judge as decide
 
     return decide(log, mission)
+
+
+def encounter_rows(file: Path, states: Any, reached: Any) -> list[Any]:
+    """What the judge says of a short flight without a log: its rows. See `cratous.judge.encounter`."""
+    from cratous.judge.encounter import judge_encounter
+
+    return judge_encounter(file, states, reached)

@@ -57,6 +57,12 @@ class Ways:
         track = chains.transit_track(item, state.position)
         if self._there(state, track.points[0]):
             return track
+        return self.new_transit(chain, state)
+
+    def new_transit(self, chain: Chain, state: AirState) -> Track | None:
+        """A new way to the item from where the vehicle is; None if there is none."""
+        item = chain.item
+        assert item is not None
         way = self._to(chain, state, chains.start_pose(item))
         return Track(way) if way else None
 

@@ -103,7 +103,7 @@ class VehicleNode:
             case Look():
                 return state, (self._say(self._air_vehicle_state(state, message)),)
             case Sense():
-                return state, (self._sensed(state, message),)
+                return state, (self.sensed(state, message),)
             case Choose():
                 return self._choose(state), ()
             case Move():
@@ -118,11 +118,8 @@ class VehicleNode:
         sender = ICAROUS if command.Sender.name == SENDERS[ICAROUS] else UXAS
         if not gate_accepts(before, sender, command.Epoch):
             return state, (self._say(dropped(command, message.now_ms, sender, before)),)
-        after = replace(
-            state,
-            gate=gate_after(before, sender, command.Epoch),
-            command=decode(self.projection, command.Command, state.air.heading_rad),
-        )
+        wanted = decode(self.projection, command.Command, state.air.heading_rad)
+        after = commanded(state, sender, command.Epoch, wanted)
         return after, self._notices(before, after, message.now_ms, HANDED_BACK, 0)
 
     def _wished(self, state: State, message: Wished) -> Step:
@@ -159,7 +156,7 @@ class VehicleNode:
         roll_rad = math.atan(moved.speed_m_s * turn / dt / 9.80665)
         return replace(state, air=moved, command=command, roll_rad=roll_rad)
 
-    def _sensed(self, state: State, message: Sense) -> OnBoard:
+    def sensed(self, state: State, message: Sense) -> OnBoard:
         """What the vehicle's ICAROUS instance gets: own state, what the airframe can do at its present
         speed, everybody else, the gate."""
         air, limits = state.air, state.limits
@@ -201,6 +198,11 @@ class VehicleNode:
             AssociatedTasks=list(look.tasks),
             Time=look.now_ms,
         )
+
+
+def commanded(state: State, sender: int, epoch: int, command: Command) -> State:
+    """The state after a command that the gate accepts, of UXAS or ICAROUS in an epoch."""
+    return replace(state, gate=gate_after(state.gate, sender, epoch), command=command)
 
 
 def _loiter_here(state: State) -> Circle:

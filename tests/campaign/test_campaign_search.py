@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -63,6 +64,15 @@ def test_what_fails_is_made_small_and_fails(tmp_path: Path) -> None:
     assert "zones" not in found.small
     assert found.small["vehicles"][0]["speed_m_s"] in range(18, 29), "a whole number"
     assert fly.count <= 20 + 100
+
+
+def test_another_first_seed_is_another_search(tmp_path: Path) -> None:
+    first = rare(tmp_path, 25)
+    other = replace(first, seeds=range(1001, 1002))
+    one, two = (Search(c, "G2", "v", False).run(Flights(), 45).points for c in (first, other))
+    assert len(one) == len(two) == 45, "in whole batches, and a part of one"
+    assert {str(p["values"]) for p in one}.isdisjoint(str(p["values"]) for p in two)
+    assert [p["run"] for p in two] == [f"plain-as-written-seed{n}" for n in range(1001, 1046)]
 
 
 def test_nothing_found_is_no_find(tmp_path: Path) -> None:

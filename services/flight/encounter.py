@@ -1,0 +1,263 @@
+"""An encounter: a short flight by the steps of avoidance and motion alone, without plan, bridge, bus and log.
+
+Each vehicle of ours flies through its points, one after the other; those with an ICAROUS instance are watched and
+steered by the very steps that a whole flight uses (`Instance.handle`, `VehicleNode.handle`, the kernels of gate and
+link end). What the bridge would bring is there at once: zones, the way, and how far the vehicle is. When control is offered, UxAS takes it at once, by the way back that a whole flight takes on its
+way to a task.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from dataclasses import replace
+from typing import NamedTuple
+
+from cratous.bridge.text_protocol import SetMode
+from cratous.core.authority.gate import ICAROUS, UXAS, gate_accepts
+from cratous.core.authority.link_end import (
+    LinkEnd,
+    link_mode,
+    suspended_after,
+    track_is_told,
+)
+from cratous.core.routing.polylines import Track
+from cratous.services.flight import vehicle as vehicles
+from cratous.services.flight.autopilot import Fly, Follow
+from cratous.services.flight.chain import Chain, Phase
+from cratous.services.flight.dynamics import AirState, traffic_state
+from cratous.services.flight.executive_outputs import AHEAD_S
+from cratous.services.flight.inflight_routes import Ways
+from cratous.services.flight.messages import Choose, Move, Sense, Wished
+from cratous.services.flight.remaining_path import points_ahead, points_left
+from cratous.services.flight.vehicle import VehicleNode
+from cratous.services.icarous import state as icarous
+from cratous.services.icarous.inbox import Told
+from cratous.services.icarous.instance import Instance
+from cratous.services.icarous.messages import Steer, Up, Wish
+from cratous.services.mission.frames import Projection
+from cratous.spec.authority.link_end import TAKE_BACK
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import FaultySimulation, Mission, Position, TaskKind, Vehicle
+from cratous.spec.mission.plan import PlanItem
+
+GROUND_MARGIN = 2.0
+"""No manoeuvre goes nearer to the ground than this many vertical thresholds, as in a whole flight."""
+COMPLETE, LIMIT = "complete", "limit"
+"""How it ended: one of ours has passed the end of its way, or the time was over."""
+
+Aircraft = tuple[tuple[int, AirState], ...]
+
+
+class Instant(NamedTuple):
+    """Where everybody is at an instant, and the velocity that each flies with until the next one."""
+
+    now_ms: int
+    aircraft: Aircraft
+
+
+class Encounter(NamedTuple):
+    """A flown encounter. takeovers: how often ICAROUS took a vehicle; reached: of each vehicle, how many points
+    of its way UxAS takes to be passed, those that it began at not counted."""
+
+    instants: tuple[Instant, ...]
+    outcome: str
+    takeovers: int
+    reached: dict[int, int]
+
+
+def fly_encounter(mission: Mission, *, daa: bool = True) -> Encounter:
+    """Fly a mission of must_fly points for simulation.limit_ms, or until one of ours has flown its way.
+
+    Raises BadInput for what an encounter does not fly: see `ways_of`.
+    """
+    ways = ways_of(mission)
+    routes = Ways(mission.zones, mission.simulation.step_ms / 1000)
+    with_daa = set(mission.instances) if daa else set()
+    ours = [_Ours(v, ways[v.id], mission, routes, v.id in with_daa) for v in mission.vehicles]
+    ours.sort(key=lambda one: one.id)
+    cooperating = tuple(one.id for one in ours if one.instance is not None)
+    instants = list[Instant]()
+    step_ms, limit_ms = mission.simulation.step_ms, mission.simulation.limit_ms
+    for now_ms in range(0, limit_ms + step_ms, step_ms):
+        over = [one.settle(now_ms) for one in ours]
+        outcome = COMPLETE if any(over) else LIMIT
+        if now_ms % mission.simulation.heartbeat_ms == 0:
+            seen = _everyone(mission, ours, now_ms)
+            lines = [(one, one.beat(Sense(now_ms, seen, cooperating))) for one in ours]
+            for one, modes in lines:
+                one.hear(modes, now_ms)
+        for one in ours:
+            one.state, _ = one.node.handle(one.state, Choose())
+        instants.append(Instant(now_ms, _everyone(mission, ours, now_ms)))
+        if outcome == COMPLETE:
+            break
+        for one in ours:
+            one.state, _ = one.node.handle(one.state, Move())
+    takeovers = sum(one.state.takeovers for one in ours)
+    return Encounter(tuple(instants), outcome, takeovers, {one.id: one.reached for one in ours})
+
+
+def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
+    """The way of each vehicle: from where it is through its must_fly points, in the order of the file.
+
+    BadInput for relations, changes in flight, faults of the bridge, other tasks, tasks that are not for exactly one
+    vehicle, and vehicles without a task: an encounter flies nothing of the kind.
+    """
+    for item, there in (
+        ("relations", mission.relations),
+        ("changes", mission.changes),
+        ("simulation.bridge_faults", isinstance(mission.simulation, FaultySimulation)),
+    ):
+        if there:
+            raise _not_flown(mission, item, "none", "some")
+    ways: dict[int, list[Position]] = {v.id: [v.position] for v in mission.vehicles}
+    for task in mission.tasks:
+        item = f"task {task.id}"
+        if task.kind is not TaskKind.MUST_FLY:
+            raise _not_flown(mission, item, "a must_fly task", str(task.kind))
+        if len(task.eligible) != 1:
+            raise _not_flown(mission, item, "one eligible vehicle", f"{len(task.eligible)}")
+        ways[task.eligible[0]] += task.points
+    for number, way in ways.items():
+        if way[1:] == []:
+            raise _not_flown(mission, f"vehicle {number}", "a must_fly task of its own", "none")
+    return {number: tuple(way) for number, way in ways.items()}
+
+
+def _not_flown(mission: Mission, item: str, expected: str, got: str) -> BadInput:
+    return BadInput(
+        "an encounter is flown along points alone",
+        where=mission.source, item=item, expected=expected, got=got,
+    )  # fmt: skip
+
+
+def _everyone(mission: Mission, ours: list[_Ours], now_ms: int) -> Aircraft:
+    seen = {t.id: s for t in mission.traffic if (s := traffic_state(t, now_ms)) is not None}
+    return tuple(sorted({**seen, **{one.id: one.state.air for one in ours}}.items()))
+
+
+class _Ours:
+    """One of our vehicles: airframe and gate, its ICAROUS instance, and UxAS's side of it."""
+
+    def __init__(
+        self, vehicle: Vehicle, way: tuple[Position, ...], mission: Mission, routes: Ways, daa: bool
+    ) -> None:
+        projection, simulation = Projection(mission.frame), mission.simulation
+        floor = mission.frame.terrain_m + GROUND_MARGIN * mission.daa.well_clear.zthr_m
+        self.id, self._routes = vehicle.id, routes
+        self.node = VehicleNode(vehicle, projection, simulation.step_ms / 1000, floor)
+        self.state, self.instance = self.node.first(), None
+        speed, self._lookahead_s = vehicle.speed_m_s, mission.daa.lookahead_s
+        here = Track(way[:1], vehicle.heading_rad)
+        self._chain = Chain(vehicle, _items(vehicle, way), 0, Phase.TRANSIT, here, speed)
+        self._go_on(0)
+        self._link, self._told = LinkEnd(False, 0, True), self._chain.track
+        self._told_from_m = 0.0
+        if daa:
+            config = icarous.Config(vehicle.id, mission.daa, projection, simulation.heartbeat_ms)
+            self.instance = Instance(config)
+        self._icarous = icarous.State(told=Told(mission.zones, started=True))
+        self._tell_way()
+
+    @property
+    def reached(self) -> int:
+        """How many points of the way are passed."""
+        return self._chain.k
+
+    def settle(self, now_ms: int) -> bool:
+        """Go on to the next point if one is passed; whether the last one has been."""
+        while not self._chain.suspended and self._chain.item is not None:
+            self._chain, at_ms = self._chain.measure(self.state.air, now_ms, self.node.dt_s)
+            if at_ms is None:
+                break
+            self._chain = replace(self._chain, k=self._chain.k + 1)
+            if self._chain.item is not None:
+                self._go_on(at_ms)
+        return self._chain.item is None
+
+    def _go_on(self, at_ms: int) -> None:
+        """Make for the next point, around the zones; straight where no way keeps them, which the judges see."""
+        track = self._routes.new_transit(self._chain, self.state.air)
+        straight = Track((self.state.air.position, *self._chain.items[self._chain.k].path))
+        self._chain = self._chain.enter(Phase.TRANSIT, track or straight, at_ms)
+        self._command(self.state.gate.epoch)
+
+    def beat(self, sense: Sense) -> list[SetMode]:
+        """A heartbeat of its instance: what it wishes and steers; the modes that it tells UxAS."""
+        if self.instance is None:
+            return []
+        told = replace(self._icarous.told, heard_ms=sense.now_ms)
+        self._icarous = replace(self._icarous, told=told)
+        if track_is_told(
+            self._chain.suspended, self._chain.route_version != self._chain.told_version
+        ):
+            self._tell_way()
+        if not self._chain.suspended:
+            passed = bisect_right(self._told.s_m, self._chain.s_m - self._told_from_m + 1e-6)
+            told = replace(self._icarous.told, next_index=passed)
+            self._icarous = replace(self._icarous, told=told)
+        on_board = self.node.sensed(self.state, sense)
+        self._icarous, answers = self.instance.handle(self._icarous, on_board.sensed)
+        modes = []
+        for answer in answers:
+            match answer:
+                case Wish():
+                    self.state, _ = self.node.handle(self.state, Wished(sense.now_ms, answer))
+                case Steer(_, epoch, velocity):
+                    if gate_accepts(self.state.gate, ICAROUS, epoch):
+                        self.state = vehicles.commanded(self.state, ICAROUS, epoch, Fly(velocity))
+                case Up(_, SetMode() as mode):
+                    modes.append(mode)
+        return modes
+
+    def hear(self, modes: list[SetMode], now_ms: int) -> None:
+        """What UxAS's end does about modes: it suspends what it flies, or takes the vehicle back."""
+        for mode in modes:
+            epoch = self.state.gate.epoch if mode.epoch is None else mode.epoch
+            end, act = link_mode(self._link, self.state.gate, mode.mode == "ACTIVE", epoch)
+            if act == TAKE_BACK and not self._take_back(epoch, now_ms):
+                continue  # asked again at the next heartbeat; ICAROUS flies on until then
+            self._link = end
+            suspended = suspended_after(self._chain.suspended, act)
+            self._chain = replace(self._chain, suspended=suspended)
+
+    def _take_back(self, epoch: int, now_ms: int) -> bool:
+        """Command the way back and the rest; False if there is none that keeps the zones."""
+        back = self._routes.back(self._chain, self.state.air)
+        if back is None:
+            return False
+        self._chain = self._chain.enter(Phase.TRANSIT, back.track, now_ms)
+        self._tell_way()
+        self._command(epoch)
+        return True
+
+    def _tell_way(self) -> None:
+        """The way ahead for as far as ICAROUS looks, as it is told over the bridge."""
+        chain, vehicle = self._chain, self._chain.vehicle
+        ahead_m = vehicle.max_speed_m_s * (self._lookahead_s + AHEAD_S)
+        self._told, self._told_from_m = Track(points_ahead(chain, 0, ahead_m)), chain.s_m
+        told = replace(
+            self._icarous.told,
+            waypoints=self._told.points, speed_m_s=chain.speed_m_s, next_index=0, resume=None,
+        )  # fmt: skip
+        self._icarous = replace(self._icarous, told=told, goal=0)
+        self._chain = replace(chain, told_version=chain.route_version)
+
+    def _command(self, epoch: int) -> None:
+        """UxAS commands the present track."""
+        follow = Follow(Track(points_left(self._chain)), self._chain.speed_m_s)
+        if gate_accepts(self.state.gate, UXAS, epoch):
+            self.state = vehicles.commanded(self.state, UXAS, epoch, follow)
+
+
+def _items(vehicle: Vehicle, way: tuple[Position, ...]) -> tuple[PlanItem, ...]:
+    """The points of a way, each as a task that is done as soon as it is passed, in the direction from the point
+    before to the one after."""
+    return tuple(
+        PlanItem(
+            0, 0, vehicle.id, (), (there,), None, vehicle.speed_m_s, 0, 0, 0, 0, 0,
+            math.atan2(beyond.east_m - here.east_m, beyond.north_m - here.north_m),
+        )
+        for here, there, beyond in zip(way, way[1:], (*way[2:], way[-1]), strict=False)
+    )  # fmt: skip
