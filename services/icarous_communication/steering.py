@@ -98,6 +98,11 @@ def at_gate(name: str, vehicle_id: int, gate: Gate, sender: int, command: Any) -
     return Say(gated(vehicle_id, gate.epoch, sender, command), name)
 
 
+def in_flight(name: str, vehicle_id: int, gate: Gate, plan: Plan | None) -> list[Say]:
+    """What a vehicle flies already comes to its gate, when that stands for the first time."""
+    return [] if plan is None else [at_gate(name, vehicle_id, gate, UXAS, plan.command)]
+
+
 def taken_back(
     name: str, vehicle_id: int, now_ms: int, gate: Gate, onward: Iterable[object]
 ) -> list[Say]:

@@ -66,6 +66,7 @@ from cratous.services.icarous_communication.steering import (
     at_gate,
     command_of,
     hold,
+    in_flight,
     taken_back,
     told,
 )
@@ -109,7 +110,8 @@ class Communication:
         state = replace(state, link=state.link.with_peer(anew), fresh=state.fresh | {vehicle_id})
         if not known:
             state, more = self._route(state, vehicle_id)
-            out += more
+            plan = state.craft(vehicle_id).plan
+            out += [*more, *in_flight(self.name, vehicle_id, peer.gate, plan)]
         body = state.craft(vehicle_id).body
         if body is None:
             return state, out

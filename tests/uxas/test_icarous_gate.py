@@ -48,3 +48,16 @@ def test_the_commands_at_its_gate_tell_the_story_of_authority(
     (verdict,) = watch.verdicts()
     assert verdict.outcome is (Outcome.VIOLATED if during else Outcome.HOLDS), verdict.note
     assert ("without authority" if during else "1 takeover, each handed back") in verdict.note
+
+
+def test_what_a_vehicle_flies_when_its_instance_comes_comes_to_its_gate(
+    tmp_path: Path, opened: list[Any]
+) -> None:
+    rig = Rig(tmp_path, 'NumberOfUAVs="1"', opened)
+    told = way((0.0, 0.0), (900.0, 0.0))
+    rig.tell(state(1), told)
+    assert not rig.got("GatedCommand")
+    rig.fake(hello=1)
+    rig.until(lambda: rig.got("GatedCommand"))
+    (come,) = rig.got("GatedCommand")
+    assert (come.Sender.name, come.Epoch, come.Command) == ("UxAS", 0, told)
