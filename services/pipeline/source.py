@@ -6,20 +6,12 @@ everything else goes by messages.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 from cratous.services.bus import Envelope
+from cratous.services.pipeline.outside import Outside
 from cratous.services.pipeline.places import RequestPlaces
 from cratous.services.planning.inputs import Inputs
-
-
-class Outside(NamedTuple):
-    """For vehicles that fly by messages alone: what is done so that an autopilot and its payloads can.
-
-    separation_m: least distance of waypoints, as the configuration says [m]; 0: all are sent.
-    """
-
-    separation_m: float = 50.0
 
 
 class Known(Protocol):

@@ -348,8 +348,9 @@ class TaskService:
                     for text in why or ["the planner does not say why"]
                 )
             )
-        context = self._context
-        return implemented(context, self._task_in(context), self._option(request), request, plan)
+        context, outside = self._context, self._contexts.source.outside
+        task, option = self._task_in(context), self._option(request)
+        return implemented(context, task, option, request, plan, outside)
 
     def _steering(self, request: Any) -> Steering | None:
         """How the payloads of a vehicle outside are steered for the option that it flies."""

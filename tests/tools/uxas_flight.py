@@ -19,6 +19,7 @@ from cratous.services.uxas.manager import startup
 
 COMMANDS = ("afrl.cmasi.MissionCommand", "afrl.cmasi.VehicleActionCommand")
 EARTH_M = 6_378_137.0
+CLOSE_M = 2_000.0
 
 
 class Flight(NamedTuple):
@@ -92,18 +93,24 @@ def across_m(places: Sequence[Vec2], path: Sequence[Vec2]) -> list[float]:
 
 
 def share_seen(line: Sequence[Any], states: Iterable[Any], step_m: float = 50.0) -> float:
-    """The share of a line's places, step_m apart, that lie in a footprint of one of the states."""
-    corners, places = local(line, line[0]), list[Vec2]()
-    for a, b in itertools.pairwise(corners):
+    """The share of a line's places, step_m apart, that lie in a footprint of one of the states.
+
+    A footprint of which a corner is farther than CLOSE_M from the aircraft does not count.
+    """
+    bends, places = local(line, line[0]), list[Vec2]()
+    for a, b in itertools.pairwise(bends):
         count = math.ceil(math.dist(a, b) / step_m)
         places += [
             Vec2(a.x + k / count * (b.x - a.x), a.y + k / count * (b.y - a.y)) for k in range(count)
         ]
-    places.append(corners[-1])
+    places.append(bends[-1])
     left = set(range(len(places)))
     for state in states:
         for load in state.PayloadStateList:
             if type(load).__name__ == "CameraState":
-                quad = tuple(tuple(p) for p in local(load.Footprint, line[0]))
+                here, *corners = local([state.Location, *load.Footprint], line[0])
+                if max((math.dist(here, at) for at in corners), default=math.inf) > CLOSE_M:
+                    continue
+                quad = tuple(tuple(p) for p in corners)
                 left -= {k for k in left if sees(quad, places[k])}
     return 1 - len(left) / len(places)
