@@ -110,8 +110,7 @@ class Communication:
         state = replace(state, link=state.link.with_peer(anew), fresh=state.fresh | {vehicle_id})
         if not known:
             state, more = self._route(state, vehicle_id)
-            plan = state.craft(vehicle_id).plan
-            out += [*more, *in_flight(self.name, vehicle_id, peer.gate, plan)]
+            out += [*more, *in_flight(self.name, peer, state.craft(vehicle_id).plan)]
         body = state.craft(vehicle_id).body
         if body is None:
             return state, out
@@ -263,9 +262,11 @@ class Communication:
         return state, [*notes, *out]
 
     def _deviation(self, state: State, vid: int, away: Away, craft: Craft, air: AirState) -> Step:
-        """Tasks pause when the vehicle is farther from its leg than is allowed, once a takeover."""
+        """Its tasks, if any, pause when the vehicle is farther from its leg than is allowed, once a takeover."""
         plan = craft.plan
-        if away.paused or plan is None or not deviates(plan, air.position, self.allowed_m):
+        if away.paused or not away.tasks or plan is None:
+            return state, []
+        if not deviates(plan, air.position, self.allowed_m):
             return state, []
         state = state.put(vid, replace(craft, away=away._replace(paused=True)))
         point, out = resume_point(plan, away.left), list[Out]()

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from bridge_flight import way
+from bridge_flight import PLANE, TASK, Aircraft, way
 from icarous_rig import Rig, state
 
 from cratous.bridge import lmcp
@@ -61,3 +62,30 @@ def test_what_a_vehicle_flies_when_its_instance_comes_comes_to_its_gate(
     rig.until(lambda: rig.got("GatedCommand"))
     (come,) = rig.got("GatedCommand")
     assert (come.Sender.name, come.Epoch, come.Command) == ("UxAS", 0, told)
+
+
+@pytest.mark.parametrize("tasks", [[TASK], []], ids=["searching", "on the way"])
+def test_only_who_was_doing_a_task_comes_back_to_where_its_way_was_left(
+    tmp_path: Path, opened: list[Any], tasks: list[int]
+) -> None:
+    rig = Rig(tmp_path, 'NumberOfUAVs="1" DeviationAllowed="40" DeviationOrigin="path"', opened)
+    one = rig.fake(hello=1)
+
+    def at(north: float, east: float, now_ms: int, waypoint: int = 2) -> Any:
+        craft = Aircraft(1, north, east, 0.0)
+        craft.waypoint = waypoint
+        return craft.state(now_ms).copy(AssociatedTasks=tasks)
+
+    rig.tell(at(-300.0, 0.0, 1000, 1), way((0.0, 0.0), (9000.0, 0.0)), at(-200.0, 0.0, 2000, 1))
+    rig.tell(at(500.0, 0.0, 4000))
+    one.say(tp.SetMode("ACTIVE", 1))
+    rig.until(lambda: rig.got("AuthorityChange"))
+    rig.tell(at(3000.0, 600.0, 120_000))
+    assert [p.TaskID for p in rig.got("TaskPause")] == tasks
+    one.say(tp.SetMode("PASSIVE", 2))
+    rig.until(lambda: rig.got("MissionCommand"))
+    (command,) = rig.got("MissionCommand")
+    added = [w for w in command.WaypointList if w.Number > 2]
+    places = [PLANE.to_local(w.Latitude, w.Longitude) for w in added]
+    assert any(math.dist(place, (500.0, 0.0)) < 50.0 for place in places) == bool(tasks), places
+    assert (added[-1].NextWaypoint if added else command.FirstWaypoint) == 2
