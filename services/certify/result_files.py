@@ -8,7 +8,13 @@ from typing import Any
 from cratous.core.files.whole_file import write_atomically
 from cratous.services.certify.differences import text_difference
 from cratous.services.certify.report import pages, report_text
-from cratous.services.results.names import CERTIFICATE_NAME, MANIFEST_NAME, NAMES, REPORT_NAME
+from cratous.services.results.names import (
+    CERTIFICATE_NAME,
+    MANIFEST_NAME,
+    NAMES,
+    OF_PROCESSES,
+    REPORT_NAME,
+)
 from cratous.services.results.ownership import digest_of, is_plain, manifest_text, read_manifest
 
 SINCE_MANIFESTS = "environment"
@@ -32,6 +38,10 @@ class Files:
         self._names = [name for name in NAMES if name != MANIFEST_NAME]
         if not report["plan"]["certificate"]:
             self._names.remove(CERTIFICATE_NAME)
+        if "processes" in meta:
+            # held against the manifest alone: the log does not give them
+            stated = read_manifest(folder) or {}
+            self._names += sorted(name for name in stated if OF_PROCESSES.fullmatch(name))
         self.unchecked = [
             f"{entry.name}: no file of the results"
             for entry in sorted(folder.iterdir())

@@ -48,6 +48,9 @@ NAMES = {
     TaskKind.AREA_SEARCH: "CmasiAreaSearchTaskService",
     TaskKind.PATTERN_SEARCH: "PatternSearchTaskService",
 }
+AUTHORITY = "cratous.AuthorityChange"
+WITH_UXAS, WITH_ICAROUS, HANDED_BACK = 0, 1, 2
+AWAY = {"ICAROUS": WITH_ICAROUS, "UxAS": HANDED_BACK}
 ROUTES_FROM = 2**60
 """Ids of a task's own route requests: beyond the blocks that the aggregator gives out."""
 
@@ -68,7 +71,8 @@ class State(NamedTuple):
     and how its payloads are steered (None: they are not).
 
     The kernel's requests are tickets that count up, as RequestIDs need not; tickets: the newest with
-    their RequestIDs. asked: what others have said of the options.
+    their RequestIDs. asked: what others have said of the options. away: whether ICAROUS has the vehicle, or
+    has just handed it back: what its states say of tasks is then not about the plan.
     """
 
     task: Kernel = Kernel(0, 0, 0)
@@ -77,6 +81,7 @@ class State(NamedTuple):
     steering: Steering | None = None
     tickets: tuple[tuple[int, int], ...] = ((0, 0),)
     asked: Asked = Asked()
+    away: int = WITH_UXAS
 
     def number(self, ticket: int) -> int:
         """The RequestID of a ticket."""
@@ -114,6 +119,7 @@ class TaskService:
         "afrl.cmasi.AutomationResponse",
         "afrl.cmasi.ServiceStatus",
         "afrl.cmasi.EntityState",
+        AUTHORITY,
     )
 
     def __init__(
@@ -162,9 +168,19 @@ class TaskService:
             if self._withdrawn(state, body):
                 return self._advance(state, WITHDRAWN, 0, body)
             return state, ()
+        if topic == AUTHORITY:
+            return self._taken(state, body), ()
         if not hasattr(body, "AssociatedTasks"):
             return state, ()
-        return self._flown(state, body)
+        if state.away == HANDED_BACK and state.vehicle == body.ID and _on_its_way(body):
+            state = state._replace(away=WITH_UXAS)
+        return (state, ()) if state.away else self._flown(state, body)
+
+    def _taken(self, state: State, change: Any) -> State:
+        """ICAROUS takes the vehicle or hands it back: until it flies waypoints again, no task ends."""
+        if change.VehicleID != state.vehicle:
+            return state
+        return state._replace(away=AWAY[change.Owner.name])
 
     def _requested(self, state: State, body: Any) -> tuple[State, Iterable[Any]]:
         """A request that means nothing is answered, once a process; it disturbs no task."""
@@ -247,7 +263,9 @@ class TaskService:
             out.append(lmcp.new("TaskInitialized", TaskID=self._task_id))
             return state, PROCEED
         if act == ASK_SENSORS:
-            clear = state._replace(chosen=None, vehicle=0, steering=None, asked=Asked())
+            clear = state._replace(
+                chosen=None, vehicle=0, steering=None, asked=Asked(), away=WITH_UXAS
+            )
             return self._ask_sensors(clear, out)
         if act == ASK_ROUTES:
             return self._ask_routes(state, body, out)
@@ -276,7 +294,7 @@ class TaskService:
             )
         elif act == COMPLETE:
             out.append(self._ended(state, body))
-            return state._replace(chosen=None, vehicle=0, steering=None), PROCEED
+            return state._replace(chosen=None, vehicle=0, steering=None, away=WITH_UXAS), PROCEED
         return state, 0
 
     def _ask_sensors(self, state: State, out: list[Any]) -> tuple[State, int]:
@@ -356,6 +374,11 @@ class TaskService:
     def stop(self, state: State) -> None:
         """The task has been removed."""
         self._when_ended()
+
+
+def _on_its_way(body: Any) -> bool:
+    """Whether a state is of a vehicle that flies waypoints; one that does not say its mode does."""
+    return not hasattr(body, "Mode") or bool(body.Mode.name == "Waypoint")
 
 
 def _route_id(implementation: Any) -> int:
