@@ -25,11 +25,12 @@ FORMATS = ("cratous-report/2", "cratous-report/1")
 EXCUSED = "excused"
 DISAGREE, CLAIMED, UNDECIDED = "disagree", "claimed excused", "undecided"
 NUMBER = r"(-?\d+)"
+RELATIONS = "relations"
 ITEMS = (
     ("G1", rf"zone: keep_(?:in|out) {NUMBER}, flight of vehicle {NUMBER}", "zone"),
     ("G1", rf"eligibility: task {NUMBER} in flight", "eligible"),
     ("G1", r"flight: choice", "choice"),
-    ("G1", r"flight: .*", "relations"),
+    ("G1", r"flight: .*", RELATIONS),
     ("G2", rf"well clear of {NUMBER} and {NUMBER}", "pair"),
     ("G2", rf"well clear of {NUMBER}", "pair"),
     ("G3", rf"task {NUMBER} served", "served"),
@@ -57,7 +58,7 @@ class Difference:
 
 
 class Answer(NamedTuple):
-    """A row of the monitor and the judge's verdict on it: empty where the judge has none.
+    """A verdict of the monitor and the judge's on the same: each empty where that one has no such row.
 
     Rows on the relations are judged together, so that one of them is confirmed only by a verdict on all.
     """
@@ -121,7 +122,10 @@ def differences(rows: list[Row], report: Node, digest: str) -> list[Difference]:
 
 
 def answers(rows: list[Row], report: Node) -> list[Answer]:
-    """The judge's verdict on every row of the report that is on the flight."""
+    """The judge's verdict on every row of the report that is on the flight, then those it has no row for.
+
+    A second row on the same is none that the judge has.
+    """
     theirs, strange = _theirs(report)
     mine = _mine(rows)
     found = [Answer(guarantee, item, verdict, "") for guarantee, item, verdict in strange]
@@ -129,7 +133,12 @@ def answers(rows: list[Row], report: Node) -> list[Answer]:
         here = worst([row.verdict for row in mine[key]]) if mine.get(key) else ""
         if not here and _met_nobody(key, mine):
             here = HOLDS
-        found += [Answer(key[0], item, verdict, here) for verdict, item in said]
+        for number, (verdict, item) in enumerate(said):
+            again = number > 0 and key[1] != RELATIONS
+            found.append(Answer(key[0], item, verdict, "" if again else here))
+    del mine[CHOICE]  # its rows are those on the relations and on service
+    for key in sorted(mine.keys() - theirs.keys()):
+        found += [Answer(row.guarantee, row.item, "", row.verdict) for row in mine[key]]
     return found
 
 
@@ -148,7 +157,7 @@ def _choice(rows: list[Row]) -> list[Row]:
 
 
 def _key(row: Row) -> Key:
-    return (row.guarantee, "relations") if row.subject[0] == "relations" else (
+    return (row.guarantee, RELATIONS) if row.subject[0] == RELATIONS else (
         row.guarantee, *row.subject
     )  # fmt: skip
 
@@ -215,8 +224,11 @@ def _worst_of(verdicts: list[str]) -> str:
 
 
 def _met_nobody(key: Key, mine: dict[Key, list[Row]]) -> bool:
-    """A row of the monitor that says that a vehicle met nobody, which the judge says pair by pair."""
-    if key[:2] != ("G2", "pair") or len(key) != 3:
+    """A row of the monitor that says that a vehicle met nobody, which the judge says pair by pair.
+
+    Of a vehicle that is not protected, or is none of the mission, the judge says nothing.
+    """
+    if key[:2] != ("G2", "pair") or len(key) != 3 or ("G4", "authority", key[2]) not in mine:
         return False
     pairs = [rows for other, rows in mine.items() if other[:2] == key[:2] and key[2] in other[2:]]
     return all(row.verdict == HOLDS for rows in pairs for row in rows)

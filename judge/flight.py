@@ -28,7 +28,7 @@ from cratous.judge.work import Flight
 class Judgement:
     """Rows, and where the flight's report says otherwise. report: whether there is one.
 
-    answers: to each row of the report on the flight.
+    answers: to each row of the report on the flight, and rows that the report lacks.
     """
 
     rows: tuple[Row, ...]

@@ -164,6 +164,36 @@ def test_every_row_of_a_report_on_the_flight_is_answered(tmp_path: Path) -> None
     assert judge(Path(log.rename(tmp_path / "alone.sqlite"))).answers == ()
 
 
+def test_a_row_that_is_lacking_is_answered_as_well(tmp_path: Path) -> None:
+    log, rows = full(tmp_path)
+    found = judge(tools.with_report(log, rows[1:])).answers
+    lacking = [(one.item, one.judge) for one in found if not one.monitor and "+" not in one.item]
+    assert (rows[0]["item"], "holds") in lacking
+    assert not any(one.confirmed for one in found if not one.monitor)
+    assert {one.item for one in found if one.monitor} == {r["item"] for r in rows[1:]}
+
+
+def test_a_second_row_on_the_same_is_not_confirmed(tmp_path: Path) -> None:
+    log, rows = full(tmp_path)
+    rows.append(row("G2", "well clear of 2 and 1", "holds"))
+    rows.append(dict(rows[0]))
+    found = judge(tools.with_report(log, rows)).answers
+    confirmed = [one.item for one in found if one.confirmed]
+    assert confirmed.count(rows[0]["item"]) == 1
+    assert "well clear of 1 and 2" in confirmed
+    assert "well clear of 2 and 1" not in confirmed
+
+
+def test_a_vehicle_that_met_nobody_is_one_of_the_mission(tmp_path: Path) -> None:
+    """A row of the monitor on a vehicle alone, which the judge has pair by pair or not at all."""
+    log, rows = full(tmp_path)
+    rows += [row("G2", f"well clear of {number}", "holds") for number in (1, 99)]
+    found = judge(tools.with_report(log, rows))
+    answers = {one.item: one.judge for one in found.answers}
+    assert (answers["well clear of 1"], answers["well clear of 99"]) == ("holds", "")
+    assert [one.item for one in found.disagreements] == ["well clear of 99"]
+
+
 def test_disagreement_is_the_first_line(tmp_path: Path, capsys) -> None:
     log, rows = full(tmp_path, lost=True)
     for there in rows:
