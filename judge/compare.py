@@ -13,7 +13,6 @@ import json
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 from cratous.judge.fields import Node
 from cratous.judge.verdict import GUARANTEES, HOLDS, UNKNOWN, VIOLATED, Row, worst
@@ -57,23 +56,6 @@ class Difference:
         return f"{self.guarantee} {self.item}: judge {self.judge}, monitor {self.monitor} ({self.note})"
 
 
-class Answer(NamedTuple):
-    """A verdict of the monitor and the judge's on the same: each empty where that one has no such row.
-
-    Rows on the relations are judged together, so that one of them is confirmed only by a verdict on all.
-    """
-
-    guarantee: str
-    item: str
-    monitor: str
-    judge: str
-
-    @property
-    def confirmed(self) -> bool:
-        """Whether the judge says the same."""
-        return self.monitor == self.judge
-
-
 Key = tuple[str, ...]
 CHOICE = ("G1", "choice")
 
@@ -100,8 +82,8 @@ def read(path: Path) -> Node:
 
 def differences(rows: list[Row], report: Node, digest: str) -> list[Difference]:
     """All of them, those that disagree first."""
-    theirs, strange = _theirs(report)
-    mine = _mine(rows)
+    theirs, strange = theirs_of(report)
+    mine = by_key(rows)
     found = []
     if report["log"]["digest"].text != digest:
         note = "the report is about another log"
@@ -121,28 +103,7 @@ def differences(rows: list[Row], report: Node, digest: str) -> list[Difference]:
     return sorted(found, key=lambda d: (DISAGREE, CLAIMED, UNDECIDED).index(d.kind))
 
 
-def answers(rows: list[Row], report: Node) -> list[Answer]:
-    """The judge's verdict on every row of the report that is on the flight, then those it has no row for.
-
-    A second row on the same is none that the judge has.
-    """
-    theirs, strange = _theirs(report)
-    mine = _mine(rows)
-    found = [Answer(guarantee, item, verdict, "") for guarantee, item, verdict in strange]
-    for key, said in theirs.items():
-        here = worst([row.verdict for row in mine[key]]) if mine.get(key) else ""
-        if not here and _met_nobody(key, mine):
-            here = HOLDS
-        for number, (verdict, item) in enumerate(said):
-            again = number > 0 and key[1] != RELATIONS
-            found.append(Answer(key[0], item, verdict, "" if again else here))
-    del mine[CHOICE]  # its rows are those on the relations and on service
-    for key in sorted(mine.keys() - theirs.keys()):
-        found += [Answer(row.guarantee, row.item, "", row.verdict) for row in mine[key]]
-    return found
-
-
-def _mine(rows: list[Row]) -> dict[Key, list[Row]]:
+def by_key(rows: list[Row]) -> dict[Key, list[Row]]:
     """The judge's rows by key, with those on the choice."""
     mine: dict[Key, list[Row]] = {}
     for row in rows:
@@ -162,7 +123,7 @@ def _key(row: Row) -> Key:
     )  # fmt: skip
 
 
-def _theirs(report: Node) -> tuple[dict[Key, list[tuple[str, str]]], list[tuple[str, str, str]]]:
+def theirs_of(report: Node) -> tuple[dict[Key, list[tuple[str, str]]], list[tuple[str, str, str]]]:
     """The monitor's verdicts by the judge's keys, and those that fit no key."""
     found: dict[Key, list[tuple[str, str]]] = {}
     strange = []
@@ -205,7 +166,7 @@ def _compare(
     note = row.note if row else "the judge expects no such row"
     kind = UNDECIDED
     if not here:
-        if _met_nobody(key, all_mine):
+        if met_nobody(key, all_mine):
             return None
         kind = UNDECIDED if there == UNKNOWN else DISAGREE
     elif not there:
@@ -223,7 +184,7 @@ def _worst_of(verdicts: list[str]) -> str:
     return next((v for v in (VIOLATED, UNKNOWN, EXCUSED, HOLDS) if v in verdicts), "")
 
 
-def _met_nobody(key: Key, mine: dict[Key, list[Row]]) -> bool:
+def met_nobody(key: Key, mine: dict[Key, list[Row]]) -> bool:
     """A row of the monitor that says that a vehicle met nobody, which the judge says pair by pair.
 
     Of a vehicle that is not protected, or is none of the mission, the judge says nothing.

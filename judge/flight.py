@@ -17,7 +17,8 @@ from cratous.judge import (
     service,
     zones,
 )
-from cratous.judge.compare import DISAGREE, Answer, Difference
+from cratous.judge.answers import Answer, answers_to
+from cratous.judge.compare import DISAGREE, Difference
 from cratous.judge.mission import Mission, from_log
 from cratous.judge.tracks import tracks
 from cratous.judge.verdict import GUARANTEES, HOLDS, UNKNOWN, VIOLATED, Row, doubted, worst
@@ -28,7 +29,7 @@ from cratous.judge.work import Flight
 class Judgement:
     """Rows, and where the flight's report says otherwise. report: whether there is one.
 
-    answers: to each row of the report on the flight, and rows that the report lacks.
+    answers: to each row of the report on the flight, and rows that it should have and lacks.
     """
 
     rows: tuple[Row, ...]
@@ -70,8 +71,14 @@ class Judgement:
             "log_digest": self.digest,
             "compared": self.report,
             "differences": [asdict(d) for d in self.differences],
-            "rows": [{**asdict(row), "subject": list(row.subject)} for row in self.rows],
+            "rows": [_row_data(row) for row in self.rows],
         }
+
+
+def _row_data(row: Row) -> dict[str, Any]:
+    data = {**asdict(row), "subject": list(row.subject)}
+    del data["parts"]  # the row says the same in its own words
+    return data
 
 
 def judge(path: Path, mission: Path | None = None) -> Judgement:
@@ -83,11 +90,12 @@ def judge(path: Path, mission: Path | None = None) -> Judgement:
     asked = mission_file.read(mission) if mission else from_log(log.mission_node(found))
     rows = tuple(judged(asked, found))
     report = compare.report_of(path)
-    said, answers = [], []
+    said: list[Difference] = []
+    answers: list[Answer] = []
     if report:
         read = compare.read(report)
         said = compare.differences(list(rows), read, found.digest)
-        answers = compare.answers(list(rows), read)
+        answers = answers_to(list(rows), read)
     uncovered = tuple(sorted(v.id for v in asked.vehicles.values() if not v.protected))
     return Judgement(rows, tuple(said), report is not None, uncovered, found.digest, tuple(answers))
 

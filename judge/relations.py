@@ -12,8 +12,9 @@ Of several ways the best counts.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import islice, product
+from typing import NamedTuple
 
 from cratous.judge.algebra import Term, Window, all_of, parse, without
 from cratous.judge.log import Log
@@ -41,13 +42,14 @@ class Deed:
 
 @dataclass(frozen=True)
 class Found:
-    """One constraint on a way: what it says, and whether it was kept."""
+    """One constraint on a way: what it says, and whether it was kept. parts: of `Row`."""
 
     kind: str
     text: str
     verdict: str
     note: str
     at_ms: int | None = None
+    parts: tuple[tuple[str, str], ...] = ()
 
 
 def deeds(mission: Mission, log: Log) -> dict[int, Deed]:
@@ -132,7 +134,57 @@ def ways(term: Term, started: set[int]) -> Iterator[tuple[Term, tuple[Found, ...
         for one, found in ways(operand, started):
             # the window of a + bounds all tasks of its choice, whatever stands in it
             outer = Window(False, term.window.first, term.window.last) if term.window else None
-            yield Term("|", 0, (one,), outer) if outer else one, (one_of, *found)
+            yield _bounded(one, outer), (one_of, *found)
+
+
+def _bounded(term: Term, outer: Window | None) -> Term:
+    """The term under an outer window. One that has none of its own takes it."""
+    if outer is None or (term.window and not _counts_from_before(term)):
+        return term  # its own window is the inner one, and bounds all of it
+    return Term("|", 0, (term,), outer) if term.window else replace(term, window=outer)
+
+
+def _counts_from_before(term: Term) -> bool:
+    """Whether its window leaves the first operand alone."""
+    return term.window is not None and term.window.relative and term.operator in (".", "~")
+
+
+def _quoted(term: Term) -> str:
+    """A term as reports quote it: shortened in the middle if it is long."""
+    text = str(term)
+    return f"`{text}`" if len(text) <= 64 else f"`{text[:40]}…{text[-20:]}`"
+
+
+def _event(operator: str, before: Term) -> str:
+    """What a later operand waits for, in the words of a report."""
+    verb, which = ("ends", "last") if operator == "." else ("starts", "first")
+    names = [f"p{task}" for task in before.tasks()]
+    if len(names) == 1:
+        return f"{names[0]} {verb}"
+    return f"the {which} of {' '.join(names[:8])}{' …' if len(names) > 8 else ''} {verb}"
+
+
+class _Bound(NamedTuple):
+    """What bounds a task. ref_ms: what the window counts from, None: it never came; since: the same in
+    the words of a report, empty for the mission's start."""
+
+    term: Term
+    ref_ms: int | None
+    window: Window
+    since: str = ""
+
+    def parts(self, task: int) -> tuple[str, str]:
+        """What it asks of the start and of the end of a task, in the words of a report."""
+        said, first, last = _quoted(self.term), self.window.first, self.window.last
+        if self.since:
+            return (
+                f"{said}: p{task} starts at least {first} ms after {self.since}",
+                f"{said}: p{task} ends at most {last} ms after {self.since}",
+            )
+        return (
+            f"{said}: p{task} starts at {first} ms or later",
+            f"{said}: p{task} ends at {last} ms or earlier",
+        )
 
 
 class _Way:
@@ -150,15 +202,15 @@ class _Way:
         deed = self.done.get(task)
         return deed.complete_ms if deed else None
 
-    def look(self, term: Term, bound: tuple[str, int | None, Window] | None) -> None:
-        """All constraints of a term. bound: text, reference [ms] (None: never came), window."""
+    def look(self, term: Term, bound: _Bound | None) -> None:
+        """All constraints of a term; bound: the innermost window around it."""
         window = term.window
-        relative = window is not None and window.relative and term.operator in (".", "~")
+        relative = _counts_from_before(term)
         if window is not None and not relative:
-            bound = (str(term), 0, window)
+            bound = _Bound(term, 0, window)
         if not term.operator:
             if bound is not None:
-                self._in_window(term.task, *bound)
+                self._in_window(term.task, bound)
             return
         before: Term | None = None
         for operand in term.operands:
@@ -168,7 +220,7 @@ class _Way:
                 for task in operand.tasks():
                     self._after(term, task, before, moment)
                 if relative and window is not None:
-                    inner = (str(term), moment, window)
+                    inner = _Bound(term, moment, window, _event(term.operator, before))
             self.look(operand, inner)
             before = operand
 
@@ -184,6 +236,7 @@ class _Way:
     def _after(self, term: Term, task: int, before: Term, moment: int | None) -> None:
         start = self.start(task)
         event = "ended" if term.operator == "." else "begun"
+        part = f"{_quoted(term)}: p{task} starts no earlier than {_event(term.operator, before)}"
         if start is None:
             said = Found("order", str(term), UNKNOWN, f"task {task} was not begun")
         elif moment is None:
@@ -195,23 +248,30 @@ class _Way:
                 f"task {task} began at {seconds(start)}, {before} had {event} at {seconds(moment)}"
             )
             said = Found("order", str(term), verdict, note, start)
-        self.found.append(said)
+        self.found.append(replace(said, parts=((part, said.verdict),)))
 
-    def _in_window(self, task: int, text: str, ref: int | None, window: Window) -> None:
+    def _in_window(self, task: int, bound: _Bound) -> None:
+        text, ref, window = str(bound.term), bound.ref_ms, bound.window
+        asks_start, asks_end = bound.parts(task)
         start, end = self.start(task), self.end(task)
         if ref is None or start is None or end is None:
             note = f"task {task} was not flown to its end" if ref is not None else (
                 f"what the times of task {task} count from never came"
             )  # fmt: skip
-            self.found.append(Found("timing", text, UNKNOWN, note))
+            parts = ((asks_start, UNKNOWN), (asks_end, UNKNOWN))
+            self.found.append(Found("timing", text, UNKNOWN, note, parts=parts))
             return
-        good = start >= ref + window.first and end <= ref + window.last
+        late_enough, early_enough = start >= ref + window.first, end <= ref + window.last
         note = (
             f"task {task} ran from {seconds(start)} to {seconds(end)}, allowed is "
             f"{seconds(ref + window.first)} to {seconds(ref + window.last)}"
         )
-        verdict = HOLDS if good and start <= end else VIOLATED
-        self.found.append(Found("timing", text, verdict, note, start))
+        verdict = HOLDS if late_enough and early_enough and start <= end else VIOLATED
+        parts = (
+            (asks_start, HOLDS if late_enough else VIOLATED),
+            (asks_end, HOLDS if early_enough else VIOLATED),
+        )
+        self.found.append(Found("timing", text, verdict, note, start, parts))
 
 
 def best_way(
@@ -246,7 +306,9 @@ def best_way(
 def rows(mission: Mission, log: Log, done: dict[int, Deed], served: set[int]) -> Iterator[Row]:
     """Order, timing and choice, then eligibility."""
     term = asked(mission, done, log.end_ms)
-    if term is not None:
+    if term is None:
+        yield Row("G1", ("relations", ""), "relations: none", HOLDS, "no task is asked for")
+    else:
         yield from _relation_rows(term, done, served, log.planned)
     for task, deed in sorted(done.items()):
         if deed.active:
@@ -256,7 +318,7 @@ def rows(mission: Mission, log: Log, done: dict[int, Deed], served: set[int]) ->
         if not deed.active and deed.complete_ms is None and log.end_ms is not None:
             subject, item = ("eligible", str(task)), f"eligibility: task {task} in flight"
             verdict, note = (UNKNOWN, log.lossy) if log.lossy else (HOLDS, "nobody began it")
-            yield Row("G1", subject, item, verdict, note, None, 1)
+            yield Row("G1", subject, item, verdict, note)
 
 
 def _relation_rows(
@@ -279,6 +341,7 @@ def _relation_rows(
         row = Row(
             "G1", ("relations", f"{kind} {text}"), f"{kind}: {text}", verdict, note,
             telling.at_ms if verdict == VIOLATED else None, len(parts),
+            tuple(part for one in parts for part in one.parts),
         )  # fmt: skip
         yield doubted(row, faults[0] if faults else "")
 

@@ -15,6 +15,11 @@ SINCE_MANIFESTS = "environment"
 """What logs have kept since there are manifests: beside such a log one that is missing was removed."""
 
 
+def no_result(name: str) -> str:
+    """What is said of an entry of the folder that no run wrote."""
+    return f"{name}: no file of the results"
+
+
 class Files:
     """What is in the folder beside the log.
 
@@ -33,7 +38,7 @@ class Files:
         if not report["plan"]["certificate"]:
             self._names.remove(CERTIFICATE_NAME)
         self.unchecked = [
-            f"{entry.name}: no file of the results"
+            no_result(entry.name)
             for entry in sorted(folder.iterdir())
             if entry.name not in self._names and entry.name != MANIFEST_NAME
         ]
