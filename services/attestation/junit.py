@@ -2,7 +2,7 @@
 
 A case passes only if its constraint was checked and holds. One that is violated is a failure; one that
 is unknown, excused or was never checked is skipped, with the reason. Each suite has the digest of the
-message log as a property. There is no time stamp: the same report gives the same bytes.
+message log as a property. There is no time stamp: the same subject gives the same bytes.
 """
 
 from __future__ import annotations
