@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +30,8 @@ from cratous.judge.work import Flight
 class Judgement:
     """Rows, and where the flight's report says otherwise. report: whether there is one.
 
-    answers: to each row of the report on the flight, and rows that it should have and lacks.
+    answers: to each row of the report on the flight, and rows that it should have and lacks; meta: what
+    the log says of the flight besides its messages, as it stands there.
     """
 
     rows: tuple[Row, ...]
@@ -38,6 +40,7 @@ class Judgement:
     not_covered: tuple[int, ...]
     digest: str
     answers: tuple[Answer, ...] = ()
+    meta: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def verdict(self) -> str:
@@ -97,7 +100,10 @@ def judge(path: Path, mission: Path | None = None) -> Judgement:
         said = compare.differences(list(rows), read, found.digest)
         answers = answers_to(list(rows), read)
     uncovered = tuple(sorted(v.id for v in asked.vehicles.values() if not v.protected))
-    return Judgement(rows, tuple(said), report is not None, uncovered, found.digest, tuple(answers))
+    compared = report is not None
+    return Judgement(
+        rows, tuple(said), compared, uncovered, found.digest, tuple(answers), found.meta
+    )
 
 
 def judged(mission: Mission, found: log.Log) -> list[Row]:

@@ -93,8 +93,7 @@ def not_judged(named: dict[str, str], report: Data) -> list[str]:
     plan = sum(row["source"] == "plan" for row in report["constraints"])
     found = [
         f"{', '.join(seen)}: that they are the files that were signed, not what stands in them",
-        f"all else in {REPORT_NAME} but its verdicts: margins, times, notes, kernels, tracks, mission and "
-        "plan (cratous certify); the judge takes the mission that the log has",
+        f"all else in {REPORT_NAME} but its verdicts: margins, times, notes, kernels, tracks (cratous certify)",
         f"{plan} verdicts on the plan (cratous certify makes them again)",
     ]
     if report["plan"]["certificate"]:

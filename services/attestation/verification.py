@@ -17,6 +17,7 @@ from cratous.services.attestation.dsse import ENVELOPE_BYTES, opened
 from cratous.services.attestation.findings import Data, Subject
 from cratous.services.attestation.judged import held
 from cratous.services.attestation.names import STATEMENT_NAME
+from cratous.services.attestation.recorded import not_recorded, recorded_faults
 from cratous.services.attestation.signed_files import Place, file_faults, not_judged, view_faults
 from cratous.services.attestation.statement import PREDICATE_TYPE, RESULTS, STATEMENT_TYPE
 from cratous.services.attestation.statement import VIEWS as MADE
@@ -75,12 +76,15 @@ def verify(place: Place, public: Any, judged: Any) -> Verification:
         return found
     subject = Subject(report, tuple(predicate["not_checked"]))
     found.refused = view_faults(place, named, subject)
-    answer = held(report, judged(place.results))
-    found.refused += answer.refused
+    judgement = judged(place.results)
+    answer = held(report, judgement)
+    found.refused += [*recorded_faults(report, judgement.meta), *answer.refused]
     found.undecided = answer.undecided
     found.expected, found.recomputed = answer.expected, answer.confirmed
     found.not_checked = list(subject.unchecked)
-    found.not_judged = not_judged(named, report)
+    silent = not_recorded(judgement.meta, report)
+    found.not_judged = [f"{name}: the log says nothing of it" for name in silent]
+    found.not_judged += not_judged(named, report)
     found.verdict = report["verdict"]
     if not found.refused:
         found.verified_verdict = answer.verdict

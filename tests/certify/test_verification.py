@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from certify_tools import Run, read
+from certify_tools import Run, meta, read
 
 pytest.importorskip("cryptography", reason="the extra `sign` is not installed")
 
@@ -23,7 +23,7 @@ from signing import (
     verify,
 )
 
-from cratous.services.attestation import summary
+from cratous.services.attestation import recorded, summary
 from cratous.services.monitor import plan_check, required_rows
 from cratous.spec.mission.guarantees import REQUIREMENTS
 
@@ -208,6 +208,56 @@ def test_a_summary_that_its_rows_do_not_give_is_refused(run: Run, home: Path, ca
     code, _, err = verify(run, home)
     assert code == 1
     assert f"refused: report.json: {said}" in err
+
+
+# ---- what the log recorded -----------------------------------------------------------------------
+
+
+def mission_of_another(report: Report) -> None:
+    report["mission"]["vehicles"][0]["speed_m_s"] += 1
+
+
+def plan_of_another(report: Report) -> None:
+    report["plan"]["bound"] += 1
+
+
+RECORDED: dict[str, Edit] = {
+    "mission": mission_of_another,
+    "plan": plan_of_another,
+    "command": lambda r: r.update(command="cratous run other.yaml"),
+    "avoidance": lambda r: r.update(avoidance=False),
+    "environment": lambda r: r["environment"].update(python="2.7"),
+    "mission_hash": lambda r: r.update(mission_hash="0" * 64),
+    "proofs.seal": lambda r: r["proofs"].update(seal="0" * 64),
+    "proofs.line": lambda r: r["proofs"].update(line="all is proved"),
+    "proofs.solver": lambda r: r["proofs"].update(solver="none"),
+}
+
+
+@pytest.mark.parametrize("name", RECORDED)
+def test_what_the_log_recorded_is_what_the_report_says(run: Run, home: Path, name: str) -> None:
+    report = read(home / "run")
+    RECORDED[name](report)
+    sign_whole(home, report)
+    code, _, err = verify(run, home)
+    assert (code, f"refused: report.json: {name} is not what the log recorded" in err) == (1, True)
+
+
+def test_problems_of_proofs_that_are_hidden_are_known_to_the_log(run: Run, home: Path) -> None:
+    proofs = read(home / "run")["proofs"]
+    hidden = {**proofs, "problems": [{"kernel": "a.b", "what": "its source is another"}]}
+    meta(home / "run", "proofs", {key: hidden[key] for key in recorded.PROOFS})
+    sign_again(home, lambda data: None)
+    code, _, err = verify(run, home)
+    assert (code, "proofs.problems is not what the log recorded" in err) == (1, True), err
+
+
+def test_what_the_log_does_not_say_is_named(run: Run, home: Path) -> None:
+    meta(home / "run", "proofs", None)
+    sign_again(home, lambda data: None)
+    code, out, err = verify(run, home)
+    assert (code, err) == (0, "")
+    assert "not judged: proofs.problems: the log says nothing of it" in out
 
 
 # ---- files and statement ------------------------------------------------------------------------
