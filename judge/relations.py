@@ -14,9 +14,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from itertools import islice, product
-from typing import NamedTuple
 
 from cratous.judge.algebra import Term, Window, all_of, parse, without
+from cratous.judge.bounds import Bound, bounded, counts_from_before, event, quoted
 from cratous.judge.log import Log
 from cratous.judge.mission import Mission, away_because
 from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, doubted, seconds, worst
@@ -134,57 +134,7 @@ def ways(term: Term, started: set[int]) -> Iterator[tuple[Term, tuple[Found, ...
         for one, found in ways(operand, started):
             # the window of a + bounds all tasks of its choice, whatever stands in it
             outer = Window(False, term.window.first, term.window.last) if term.window else None
-            yield _bounded(one, outer), (one_of, *found)
-
-
-def _bounded(term: Term, outer: Window | None) -> Term:
-    """The term under an outer window. One that has none of its own takes it."""
-    if outer is None or (term.window and not _counts_from_before(term)):
-        return term  # its own window is the inner one, and bounds all of it
-    return Term("|", 0, (term,), outer) if term.window else replace(term, window=outer)
-
-
-def _counts_from_before(term: Term) -> bool:
-    """Whether its window leaves the first operand alone."""
-    return term.window is not None and term.window.relative and term.operator in (".", "~")
-
-
-def _quoted(term: Term) -> str:
-    """A term as reports quote it: shortened in the middle if it is long."""
-    text = str(term)
-    return f"`{text}`" if len(text) <= 64 else f"`{text[:40]}…{text[-20:]}`"
-
-
-def _event(operator: str, before: Term) -> str:
-    """What a later operand waits for, in the words of a report."""
-    verb, which = ("ends", "last") if operator == "." else ("starts", "first")
-    names = [f"p{task}" for task in before.tasks()]
-    if len(names) == 1:
-        return f"{names[0]} {verb}"
-    return f"the {which} of {' '.join(names[:8])}{' …' if len(names) > 8 else ''} {verb}"
-
-
-class _Bound(NamedTuple):
-    """What bounds a task. ref_ms: what the window counts from, None: it never came; since: the same in
-    the words of a report, empty for the mission's start."""
-
-    term: Term
-    ref_ms: int | None
-    window: Window
-    since: str = ""
-
-    def parts(self, task: int) -> tuple[str, str]:
-        """What it asks of the start and of the end of a task, in the words of a report."""
-        said, first, last = _quoted(self.term), self.window.first, self.window.last
-        if self.since:
-            return (
-                f"{said}: p{task} starts at least {first} ms after {self.since}",
-                f"{said}: p{task} ends at most {last} ms after {self.since}",
-            )
-        return (
-            f"{said}: p{task} starts at {first} ms or later",
-            f"{said}: p{task} ends at {last} ms or earlier",
-        )
+            yield bounded(one, outer), (one_of, *found)
 
 
 class _Way:
@@ -202,12 +152,12 @@ class _Way:
         deed = self.done.get(task)
         return deed.complete_ms if deed else None
 
-    def look(self, term: Term, bound: _Bound | None) -> None:
+    def look(self, term: Term, bound: Bound | None) -> None:
         """All constraints of a term; bound: the innermost window around it."""
         window = term.window
-        relative = _counts_from_before(term)
+        relative = counts_from_before(term)
         if window is not None and not relative:
-            bound = _Bound(term, 0, window)
+            bound = Bound(term, 0, window)
         if not term.operator:
             if bound is not None:
                 self._in_window(term.task, bound)
@@ -220,7 +170,7 @@ class _Way:
                 for task in operand.tasks():
                     self._after(term, task, before, moment)
                 if relative and window is not None:
-                    inner = _Bound(term, moment, window, _event(term.operator, before))
+                    inner = Bound(term, moment, window, event(term.operator, before))
             self.look(operand, inner)
             before = operand
 
@@ -235,22 +185,22 @@ class _Way:
 
     def _after(self, term: Term, task: int, before: Term, moment: int | None) -> None:
         start = self.start(task)
-        event = "ended" if term.operator == "." else "begun"
-        part = f"{_quoted(term)}: p{task} starts no earlier than {_event(term.operator, before)}"
+        ended = "ended" if term.operator == "." else "begun"
+        part = f"{quoted(term)}: p{task} starts no earlier than {event(term.operator, before)}"
         if start is None:
             said = Found("order", str(term), UNKNOWN, f"task {task} was not begun")
         elif moment is None:
-            note = f"task {task} began at {seconds(start)}, though {before} had never {event}"
+            note = f"task {task} began at {seconds(start)}, though {before} had never {ended}"
             said = Found("order", str(term), VIOLATED, note, start)
         else:
             verdict = HOLDS if start >= moment else VIOLATED
             note = (
-                f"task {task} began at {seconds(start)}, {before} had {event} at {seconds(moment)}"
+                f"task {task} began at {seconds(start)}, {before} had {ended} at {seconds(moment)}"
             )
             said = Found("order", str(term), verdict, note, start)
         self.found.append(replace(said, parts=((part, said.verdict),)))
 
-    def _in_window(self, task: int, bound: _Bound) -> None:
+    def _in_window(self, task: int, bound: Bound) -> None:
         text, ref, window = str(bound.term), bound.ref_ms, bound.window
         asks_start, asks_end = bound.parts(task)
         start, end = self.start(task), self.end(task)
@@ -306,10 +256,11 @@ def best_way(
 def rows(mission: Mission, log: Log, done: dict[int, Deed], served: set[int]) -> Iterator[Row]:
     """Order, timing and choice, then eligibility."""
     term = asked(mission, done, log.end_ms)
-    if term is None:
-        yield Row("G1", ("relations", ""), "relations: none", HOLDS, "no task is asked for")
-    else:
+    if term is not None:
         yield from _relation_rows(term, done, served, log.planned)
+    elif mission.tasks:
+        note = "no task is asked for any more"
+        yield Row("G1", ("relations", ""), "relations: none", HOLDS, note)
     for task, deed in sorted(done.items()):
         if deed.active:
             yield _eligible(mission, task, deed)
