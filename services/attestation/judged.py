@@ -83,12 +83,13 @@ def _excuse_fault(one: Any, report: Data, judgement: Any) -> str:
     pair = sorted(row["vehicles"])
     subject = ("pair", *map(str, pair))
     lost_ms = next((r.at_ms for r in judgement.rows if r.subject == subject), None)
-    losses = row.get("evidence", {}).get("losses", [])
-    if lost_ms is None or min((loss["lost_ms"] for loss in losses), default=None) != lost_ms:
+    losses: dict[int, list[Data]] = {}
+    for loss in row.get("evidence", {}).get("losses", []):
+        losses.setdefault(loss["lost_ms"], []).append(loss)
+    if lost_ms not in losses:
         return f"the report has no evidence on the loss at {lost_ms} ms"
     guarded = {v["id"] for v in report["mission"]["vehicles"] if v["protected"]} & set(pair)
-    for at_ms in {loss["lost_ms"] for loss in losses}:
-        here = [loss for loss in losses if loss["lost_ms"] == at_ms]
+    for at_ms, here in losses.items():
         about = all(sorted((loss["own"], loss["other"])) == pair for loss in here)
         if not about or {loss["own"] for loss in here} != guarded:
             return f"the evidence on the loss at {at_ms} ms is not that of every protected one of the pair"

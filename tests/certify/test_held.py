@@ -54,6 +54,9 @@ def test_all_hold_only_if_both_say_so() -> None:
     assert (found.expected, found.confirmed) == (5, 5)
     found = held(report(), judgement({"G3": "unknown"}, same))
     assert (found.undecided, found.verdict) == (["G3: the judge says unknown"], "unknown")
+    # a requirement that the report does not list is one that the judge has all the same
+    short = {**report(), "requirements": report()["requirements"][:2]}
+    assert held(short, judgement({"G3": "unknown"}, same)).verdict == "unknown"
     # said once, by its row
     other = (*same[:2], answer("G3", "holds", "unknown"), *same[3:])
     found = held(report(), judgement({"G3": "unknown"}, other))
@@ -71,8 +74,9 @@ def test_a_report_that_does_not_hold_is_none_that_does() -> None:
 
 
 def test_a_row_that_the_judge_lacks_is_not_among_those_it_expects() -> None:
-    found = held(report(), judgement({}, (answer("G1", "unknown", ""), answer("G3", "", "holds"))))
-    assert (found.expected, found.confirmed, found.refused, len(found.undecided)) == (1, 0, [], 2)
+    lacking = answer("G3", "", "holds"), answer("G4", "", "holds")
+    found = held(report(), judgement({}, (answer("G1", "unknown", ""), *lacking)))
+    assert (found.expected, found.confirmed, found.refused, len(found.undecided)) == (2, 0, [], 3)
     assert found.verdict == "unknown"
 
 

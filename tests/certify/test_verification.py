@@ -195,6 +195,10 @@ SUMS: dict[str, tuple[Edit, str]] = {
     "verdict of one": (other_sum("G4", "verdict", "unknown"), "G4 is unknown, its rows holds"),
     "rows of one": (other_sum("G4", "constraints", 9), "G4 has 9 constraints, its rows are 2"),
     "title of one": (other_sum("G4", "title", "Safety"), "its requirements are G1, G2"),
+    "the former format": (
+        lambda r: r.update(format="cratous-report/1"),
+        "a report of cratous-report/1 has no schema",
+    ),
     "problems of proofs": (problems, "verdict is holds, by its rows unknown"),
 }
 

@@ -111,6 +111,14 @@ EXCUSES: dict[str, tuple[Edit, str]] = {
         with_loss(instants=[[0, 0, 0, 0, 0]]),
         "there was a way out, or it is not known",
     ),
+    "nothing was tried by the bands": (
+        with_loss(instants=[[0, 0, 0, 5, 5]]),
+        "there was a way out, or it is not known",
+    ),
+    "nothing was tried by the check": (
+        with_loss(instants=[[0, 5, 5, 0, 0]]),
+        "there was a way out, or it is not known",
+    ),
     "looked at from nowhere": (with_loss(instants=[]), "there was a way out, or it is not known"),
     "one was free": (a_way_out_at_one_instant, "there was a way out, or it is not known"),
     "one was free by the check": (a_way_out_by_the_check, "there was a way out, or it is not"),
