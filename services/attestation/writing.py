@@ -6,11 +6,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cratous.core.files.whole_file import write_atomically
-from cratous.services.attestation.findings import Subject
+from cratous.services.argument.views import views
+from cratous.services.attestation.findings import Subject, unshown
 from cratous.services.attestation.junit import junit
 from cratous.services.attestation.mission_lines import lines_of
 from cratous.services.attestation.names import (
+    ARGUMENT_NAME,
     CSV_NAME,
+    DRAWING_NAME,
     JUNIT_NAME,
     SARIF_NAME,
     STATEMENT_NAME,
@@ -54,6 +57,9 @@ def write_views(subject: Subject, results: Path, target: Path, wanted: Wanted) -
         elif name == SARIF_NAME:
             line_of, said = lines_of(subject.report, wanted.mission)
             texts[name] = sarif(subject, line_of)
+        elif name == ARGUMENT_NAME:
+            drawn = views(subject.report, unshown(subject))
+            texts |= zip((ARGUMENT_NAME, DRAWING_NAME), drawn, strict=True)
     try:
         target.mkdir(parents=True, exist_ok=True)
     except OSError as error:

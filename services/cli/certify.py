@@ -50,8 +50,8 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: An
     With --trace every row of the report is followed to the kernels that decided it and were called in
     this run, from each to the theorems that hold it against its definition, and to that definition.
 
-    With --junit, --sarif, --csv, --sign or -o views of the confirmed report are written for other
-    tools, all three if none is named. In none of them does anything pass that was not checked.
+    With --junit, --sarif, --csv, --argument, --sign or -o views of the confirmed report are written for
+    other tools, all of them if none is named. In none of them does anything pass that was not checked.
 
     --sign signs digests of results and views with the verdict; --verify checks signature and digests,
     makes JUnit and CSV again, and judges the log again by the judge, in a process without planner and

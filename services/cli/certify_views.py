@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from cratous.services.attestation.names import CSV_NAME, FOLDER, JUNIT_NAME, SARIF_NAME, VIEWS
+from cratous.services.attestation.names import (
+    ARGUMENT_NAME,
+    CSV_NAME,
+    DRAWING_NAME,
+    FOLDER,
+    JUNIT_NAME,
+    SARIF_NAME,
+    VIEWS,
+)
 from cratous.services.cli.show import say
 
 if TYPE_CHECKING:
@@ -23,6 +31,7 @@ OPTIONS = (
     click.option("--junit", is_flag=True, help="Write junit.xml: a test case a constraint."),
     click.option("--sarif", is_flag=True, help="Write report.sarif: what is not shown to hold."),
     click.option("--csv", is_flag=True, help="Write constraints.csv."),
+    click.option("--argument", is_flag=True, help="Write argument.yaml and .svg: the assurance argument (GSN)."),
     click.option("--mission", type=click.Path(path_type=Path), help="Mission file, for lines in SARIF."),
     click.option("--sign", is_flag=True, help="Sign a statement over results and views (Ed25519)."),
     click.option(
@@ -52,6 +61,7 @@ class Asked(NamedTuple):
     junit: bool
     sarif: bool
     csv: bool
+    argument: bool
     mission: Path | None
     sign: bool
     verify: bool
@@ -61,12 +71,16 @@ class Asked(NamedTuple):
     @property
     def anything(self) -> bool:
         """Whether anything is to be written."""
-        return self.junit or self.sarif or self.csv or self.sign or self.out is not None
+        named = self.junit or self.sarif or self.csv or self.argument
+        return named or self.sign or self.out is not None
 
     @property
     def names(self) -> tuple[str, ...]:
         """The views that are written: all if none is named."""
-        chosen = ((self.junit, JUNIT_NAME), (self.sarif, SARIF_NAME), (self.csv, CSV_NAME))
+        chosen = (
+            (self.junit, JUNIT_NAME), (self.sarif, SARIF_NAME), (self.csv, CSV_NAME),
+            (self.argument, ARGUMENT_NAME), (self.argument, DRAWING_NAME),
+        )  # fmt: skip
         return tuple(name for wanted, name in chosen if wanted) or VIEWS
 
     def folder(self, results: Path) -> Path:
@@ -98,7 +112,7 @@ def verified(results: Path, asked: Asked, as_json: bool) -> int:
     from cratous.services.attestation.verification import signed_folder, verify
     from cratous.services.cli.judge import judgement
 
-    if asked.sign or asked.junit or asked.sarif or asked.csv or asked.mission:
+    if asked.sign or asked.junit or asked.sarif or asked.csv or asked.argument or asked.mission:
         raise click.UsageError("--verify writes nothing")
     if asked.public_key is None:
         raise click.UsageError("--verify needs --public-key")

@@ -70,6 +70,7 @@ class Monitor:
             self.bridge.heartbeat(body)
         elif short == "BridgeStatus":
             self.bridge.status(body)
+            self.authority.status(body)
         elif short == "MissionEnd":
             for step in self._sampler.flush():
                 self._step(*step)

@@ -2,7 +2,8 @@
 
 UniqueAutomationRequest -> SensorFootprintRequests -> SensorFootprintResponse -> RoutePlanRequests ->
 RoutePlanResponses -> TaskPlanOptions; TaskImplementationRequest -> RoutePlanRequest ->
-RoutePlanResponse -> TaskImplementationResponse; vehicles' states -> TaskActive, TaskComplete.
+RoutePlanResponse -> TaskImplementationResponse; vehicles' states -> TaskActive, TaskComplete, and where the
+camera has to look meanwhile (VehicleActionCommand).
 What is asked before options are offered: `questions`. Options and ways are those of
 `services.planning`; what is said of them, `implementation`.
 """
@@ -22,6 +23,7 @@ from cratous.services.pipeline.endings import request_ended
 from cratous.services.pipeline.implementation import implemented, offer, way_asked
 from cratous.services.pipeline.questions import Asked
 from cratous.services.pipeline.status import status
+from cratous.services.pipeline.steering import Steering, last_look, look_command, steering_of
 from cratous.services.planning.options import Option
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 from cratous.spec.mission import Task, TaskKind
@@ -62,7 +64,8 @@ _EVENTS = {
 
 
 class State(NamedTuple):
-    """The kernel's state; the implementation request in progress; the vehicle that the task is assigned to.
+    """The kernel's state; the implementation request in progress; the vehicle that the task is assigned to,
+    and how its payloads are steered (None: they are not).
 
     The kernel's requests are tickets that count up, as RequestIDs need not; tickets: the newest with
     their RequestIDs. asked: what others have said of the options.
@@ -71,6 +74,7 @@ class State(NamedTuple):
     task: Kernel = Kernel(0, 0, 0)
     chosen: Any = None
     vehicle: int = 0
+    steering: Steering | None = None
     tickets: tuple[tuple[int, int], ...] = ((0, 0),)
     asked: Asked = Asked()
 
@@ -177,7 +181,13 @@ class TaskService:
         if state.vehicle != body.ID:
             return state, ()
         event = LISTED if self._task_id in body.AssociatedTasks else UNLISTED
-        return self._advance(state, event, 0, body)
+        steering = state.steering
+        state, out = self._advance(state, event, 0, body)
+        if steering is not None and state.steering is None:
+            return state, [*out, last_look(steering, body.ID)]
+        if steering is not None and state.task.state == ACTIVE:
+            return state, [*out, look_command(steering, body)]
+        return state, out
 
     def _withdrawn(self, state: State, response: Any) -> bool:
         """A new plan for the vehicle that does not have this task."""
@@ -237,7 +247,8 @@ class TaskService:
             out.append(lmcp.new("TaskInitialized", TaskID=self._task_id))
             return state, PROCEED
         if act == ASK_SENSORS:
-            return self._ask_sensors(state._replace(chosen=None, vehicle=0, asked=Asked()), out)
+            clear = state._replace(chosen=None, vehicle=0, steering=None, asked=Asked())
+            return self._ask_sensors(clear, out)
         if act == ASK_ROUTES:
             return self._ask_routes(state, body, out)
         if act == PUBLISH_OPTIONS:
@@ -253,6 +264,7 @@ class TaskService:
             return state._replace(chosen=body, vehicle=body.VehicleID), 0
         elif act == PUBLISH_PLAN:
             out.append(self._plan(state.chosen, body))
+            return state._replace(steering=self._steering(state.chosen)), 0
         elif act == STEER:
             out.append(
                 lmcp.new(
@@ -264,7 +276,7 @@ class TaskService:
             )
         elif act == COMPLETE:
             out.append(self._ended(state, body))
-            return state._replace(chosen=None, vehicle=0), PROCEED
+            return state._replace(chosen=None, vehicle=0, steering=None), PROCEED
         return state, 0
 
     def _ask_sensors(self, state: State, out: list[Any]) -> tuple[State, int]:
@@ -318,8 +330,16 @@ class TaskService:
                     for text in why or ["the planner does not say why"]
                 )
             )
+        context, outside = self._context, self._contexts.source.outside
+        task, option = self._task_in(context), self._option(request)
+        return implemented(context, task, option, request, plan, outside)
+
+    def _steering(self, request: Any) -> Steering | None:
+        """How the payloads of a vehicle outside are steered for the option that it flies."""
+        if self._contexts.source.outside is None:
+            return None
         context = self._context
-        return implemented(context, self._task_in(context), self._option(request), request, plan)
+        return steering_of(context, self._task_in(context), self._option(request))
 
     def _ended(self, state: State, body: Any) -> Any:
         """The task is over: complete if a vehicle flew it and went on, else it ends undone."""

@@ -31,7 +31,8 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
     "Task services": (
         tasks.TaskService,
         ("TaskInitialized", "SensorFootprintRequests", "TaskPlanOptions", "RoutePlanRequest",
-         "TaskImplementationResponse", "TaskActive", "TaskComplete", "ServiceStatus"),
+         "TaskImplementationResponse", "TaskActive", "TaskComplete", "VehicleActionCommand",
+         "ServiceStatus"),
     ),
     "RoutePlannerVisibilityService": (
         planner.RoutePlannerVisibilityService, ("RoutePlanResponse",)

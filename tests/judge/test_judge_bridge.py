@@ -7,7 +7,7 @@ from pathlib import Path
 
 import judge_tools as tools
 import pytest
-from judge_tools import TAKEN, Scene, full, row, task, verdicts, zone
+from judge_tools import TAKEN, Scene, full, row, task, vehicle, verdicts, zone
 
 from cratous.judge import judge
 from cratous.services.cli import main
@@ -74,6 +74,37 @@ def test_a_task_that_fails_ends_no_takeover(tmp_path: Path) -> None:
     scene.commands(1, *TAKEN[:4])
     scene.say(7000, "TaskProgress", TaskID=1, VehicleID=1, Time=7000, Phase="Failed")
     assert one(tmp_path, scene, "authority over vehicle 1") == "violated"
+
+
+@pytest.mark.parametrize(
+    ("status", "expected"),
+    [
+        ([], "violated"),
+        ([(500, False)], "unknown"),  # before the takeover
+        ([(3000, False)], "unknown"),
+        ([(3000, True)], "violated"),
+        ([(3000, False), (4000, True)], "violated"),  # alive again, and still not handed back
+        ([(3000, False), (4000, True), (5000, False)], "unknown"),
+        ([(3000, False, 2)], "violated"),  # another vehicle's
+    ],
+)
+def test_a_takeover_that_is_open_at_the_end_is_unknown_only_where_the_link_is_declared_down(
+    tmp_path: Path, status: list[tuple], expected: str
+) -> None:
+    def scene(rows: list) -> Scene:
+        made = Scene(vehicles=[vehicle(1), vehicle(2)]).straight(1, (0, 0, 300), NORTH)
+        made.straight(2, (0, 5000, 300), NORTH).commands(1, *rows)
+        for at, alive, *who in status:
+            made.say(at, "BridgeStatus", VehicleID=(*who, 1)[0], Time=at, Alive=alive)
+        return made
+
+    item = "authority over vehicle 1"
+    assert one(tmp_path, scene(TAKEN[:7]), item) == expected
+    assert one(tmp_path, scene(TAKEN), item) == "holds"
+    assert one(tmp_path, scene([*TAKEN[:4], (3000, "command", "UxAS", 0)]), item) == "violated"
+    (row,) = [r for r in scene(TAKEN[:7]).judged(tmp_path).rows if r.item == item]
+    assert "was never handed back" in row.note
+    assert ("declared down at" in row.note) == (expected == "unknown")
 
 
 # ---- G5 -----------------------------------------------------------------------------------------

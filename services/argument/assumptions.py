@@ -1,0 +1,105 @@
+"""What the theorems on the composed system assume, and how each assumption was watched in a run.
+
+A report that has a section `assumptions` says both. Of one that has none nothing was watched: then the
+list of `docs/proofs/assumptions.md` stands here with that word.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from cratous.services.argument.elements import Element, Kind
+
+Data = dict[str, Any]
+SECTION = "assumptions"
+HELD, BROKEN = "held", "broken"
+FOLDERS = ("", "system_", "permit_")
+"""The section names files of theorems, a record the folder as well."""
+AUTHORITY = (
+    "system_authority_starts_as_it_must_be",
+    "system_authority_is_kept_by_the_gate",
+    "system_authority_is_kept_by_icarous",
+    "system_authority_is_kept_by_the_uxas_end",
+)
+_, GATE, _, UXAS_END = AUTHORITY
+TAKEOVER_ENDS = "system_a_takeover_whose_way_back_stays_free_ends"
+TAKEOVER_LASTS = "system_a_takeover_that_lasts_is_declared"
+MISSION_ENDS = "system_a_mission_ends"
+SILENCE = "system_silence_is_noticed_within_one_heartbeat"
+BEARS_ON: dict[str, tuple[str, ...]] = {
+    "G3": (MISSION_ENDS, TAKEOVER_LASTS),
+    "G4": (*AUTHORITY, TAKEOVER_ENDS, TAKEOVER_LASTS),
+    "G5": (SILENCE,),
+}
+"""Which theorem on the composed system says something of which guarantee."""
+PLACED = frozenset(name for names in BEARS_ON.values() for name in names)
+LISTED: tuple[tuple[str, tuple[str, ...]], ...] = (
+    ("the three parts begin as they must (UxAS commands in epoch 0)", AUTHORITY),
+    ("a report of the gate is one that the vehicle has made", (UXAS_END,)),
+    ("a command names an epoch that its sender has been told", (GATE,)),
+    ("the gate keeps its epoch (no restart that forgets it)", AUTHORITY),
+    ("ICAROUS looks at the gate at each heartbeat before it does anything", (GATE,)),
+    ("UxAS commands nothing while it is suspended", (UXAS_END,)),
+    ("the clock of one end does not step back", (SILENCE,)),
+    ("heartbeats are at most a period apart", (SILENCE,)),
+    ("the way back is free from some heartbeat on, at each", (TAKEOVER_ENDS,)),
+    ("ICAROUS hears UxAS when the time is over", (TAKEOVER_ENDS,)),
+    (
+        "a SETMOD line of the offer reaches UxAS, and its command reaches the gate, before the way "
+        "is not free again",
+        (TAKEOVER_ENDS,),
+    ),
+    ("the UxAS end's answers are carried out (suspended, taken back)", (UXAS_END,)),
+    (
+        "the executive asks `flight_outcome` at the end of each step, and counts vehicles away by "
+        "their gates",
+        (MISSION_ENDS, TAKEOVER_LASTS),
+    ),
+    ("another plan brings no task back that has ended or failed", (MISSION_ENDS,)),
+)
+"""Assumption and theorems, as the page has them."""
+
+
+class Assumed(NamedTuple):
+    """An assumption in a run. theorems: that need it; guarantees: it concerns; watched: in words;
+    broken: in words, empty unless it broke."""
+
+    text: str
+    theorems: frozenset[str]
+    guarantees: frozenset[str]
+    watched: str
+    broken: str = ""
+
+
+def assumed(report: Data) -> list[Assumed]:
+    """The assumptions of a run, in the order of the report, or of the page."""
+    rows = report.get(SECTION)
+    if rows is None:
+        unwatched = "Not watched in this run"
+        return [Assumed(text, frozenset(t), frozenset(), unwatched) for text, t in LISTED]
+    return [_of_report(row) for row in rows]
+
+
+def _of_report(row: Data) -> Assumed:
+    state, note = row["state"], row["note"]
+    when = f" at {row['since_ms'] / 1000:.2f} s" if state == BROKEN else ""
+    said = f"{state}{when}{f': {note}' if note else ''}"
+    if row["observed"] is not None and row["bound"] is not None:
+        said += f" ({row['observed']:.4g} of {row['bound']:.4g} {row['unit']} at worst)"
+    # anything but a plain yes is no yes
+    word = "Watched" if state in (HELD, BROKEN) else "Not watched"
+    names = frozenset(f"{folder}{name}" for name in row["theorems"] for folder in FOLDERS)
+    return Assumed(
+        row["text"],
+        names,
+        frozenset(row["guarantees"]),
+        f"{word} in this run: {said}",
+        said if state == BROKEN else "",
+    )
+
+
+def elements(found: list[Assumed]) -> Iterator[Element]:
+    """An element for each assumption, in their order."""
+    for number, one in enumerate(found, 1):
+        yield Element(f"A-{number}", Kind.ASSUMPTION, f"{one.text}. {one.watched}")
