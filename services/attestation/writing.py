@@ -17,6 +17,7 @@ from cratous.services.attestation.names import (
     JUNIT_NAME,
     SARIF_NAME,
     STATEMENT_NAME,
+    VIEWS,
 )
 from cratous.services.attestation.sarif import sarif
 from cratous.services.attestation.table import table
@@ -32,8 +33,15 @@ class Wanted(NamedTuple):
     key: Any = None
 
 
-def write_views(subject: Subject, results: Path, target: Path, wanted: Wanted) -> list[str]:
-    """Write what is wanted into a folder that is made for it; returns the names, then what is said.
+class Written(NamedTuple):
+    """What was written, as paths, and what was left out of it, in words."""
+
+    files: list[str]
+    left_out: list[str]
+
+
+def write_views(subject: Subject, results: Path, target: Path, wanted: Wanted) -> Written:
+    """Write what is wanted into a folder that is made for it.
 
     results: the folder of the run, whose files a statement covers. BadInput if the folder is that of
     the results itself, or holds anything that is not written anew: a statement would not cover it.
@@ -63,7 +71,12 @@ def write_views(subject: Subject, results: Path, target: Path, wanted: Wanted) -
     if wanted.key is not None:
         _sign(subject, results, target, [target / name for name in texts], wanted.key)
     names = [*texts, *([STATEMENT_NAME] if wanted.key is not None else [])]
-    return [*(str(target / name) for name in names), *([said] if said else [])]
+    return Written([str(target / name) for name in names], [said] if said else [])
+
+
+def earlier(target: Path) -> list[str]:
+    """The views and the statement that stand in a folder, as paths."""
+    return [str(target / name) for name in (*VIEWS, STATEMENT_NAME) if (target / name).exists()]
 
 
 def _sign(subject: Subject, results: Path, target: Path, views: list[Path], key: Any) -> None:

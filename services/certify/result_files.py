@@ -21,6 +21,11 @@ SINCE_MANIFESTS = "environment"
 """What logs have kept since there are manifests: beside such a log one that is missing was removed."""
 
 
+def no_result(name: str) -> str:
+    """What is said of an entry of the folder that no run wrote."""
+    return f"{name}: no file of the results"
+
+
 class Files:
     """What is in the folder beside the log.
 
@@ -43,7 +48,7 @@ class Files:
             stated = read_manifest(folder) or {}
             self._names += sorted(name for name in stated if OF_PROCESSES.fullmatch(name))
         self.unchecked = [
-            f"{entry.name}: no file of the results"
+            no_result(entry.name)
             for entry in sorted(folder.iterdir())
             if entry.name not in self._names and entry.name != MANIFEST_NAME
         ]
