@@ -8,16 +8,18 @@ from typing import Any
 
 from cratous import __version__
 from cratous.core import ledger
+from cratous.services.assumptions import sentence as assumed
 from cratous.services.certify.evidence import counted
 from cratous.services.certify.proofs import inventory, summary
 from cratous.services.certify.report import (
     Flown,
+    Judged,
     build_report,
     environment,
     mission_hash,
     write_report,
 )
-from cratous.services.certify.verdicts import constraint_rows, plan_rows
+from cratous.services.certify.verdicts import broken_of, constraint_rows, plan_rows
 from cratous.services.cli.job import (
     Settings,
     Tell,
@@ -35,7 +37,7 @@ from cratous.services.monitor import Monitor
 from cratous.services.processes.coverage import told_of
 from cratous.services.processes.flight import Flying, fly
 from cratous.services.processes.recorder import Recorder
-from cratous.services.results.names import CERTIFICATE_NAME, LOG_NAME
+from cratous.services.results.names import ASSUMPTIONS, CERTIFICATE_NAME, LOG_NAME
 from cratous.spec.mission import Mission
 
 STATES_MS = 550
@@ -72,7 +74,12 @@ def run_in_processes(
             if plan.certificate:
                 write_certificate(planning, folder / CERTIFICATE_NAME)
             writer.note("plan", to_data(plan))
-            monitor = Monitor(mission, plan, lambda v: tell(f"VIOLATION {sentence(v)}"))
+            monitor = Monitor(
+                mission,
+                plan,
+                lambda v: tell(f"VIOLATION {sentence(v)}"),
+                lambda row: tell(f"ASSUMPTION {assumed(row)}"),
+            )
             bus.tap(writer.tap)
             bus.tap(monitor.tap)
             how = Flying(path, folder, rate, settings.allow_unproved, tell)
@@ -80,14 +87,15 @@ def run_in_processes(
             writer.note("processes", {"pids": ended.pids, "ports": ended.ports})
             if ended.why:
                 tell(f"NOT FLOWN TO ITS END: {ended.why}")
-            verdicts = monitor.verdicts()
+            verdicts, assumptions = monitor.verdicts(), monitor.assumptions()
         counts = calls.data()
         flown = replace(flown, proofs=inventory(standing, counts))
         writer.note("calls", counts)
+        writer.note(ASSUMPTIONS, broken_of(assumptions))
         writer.note("proofs", flown.meta()["proofs"])
     tell(f"evidence: {summary(flown.proofs)}")
     rows = plan_rows(checks) + constraint_rows(verdicts, "flight")
-    report = build_report(mission, plan, rows, log, flown)
+    report = build_report(mission, plan, Judged(rows, assumptions), log, flown)
     write_report(report, folder)
     return report
 
