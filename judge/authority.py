@@ -5,13 +5,16 @@ and the announced changes of authority. A vehicle begins with UxAS in epoch 0. I
 control, or withdraws its offer, each in the next epoch. UxAS has control again when its first command
 of the offer's epoch has come; that begins no epoch. A command acts if its epoch is the present one and
 its sender has control, or is UxAS under an offer; any other must be dropped.
+
+Who has lost the link cannot hand back. A takeover that is open at the end is violated; where the link had been
+declared down (BridgeStatus) and was not declared alive again, it is unknown whether it would have ended.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from cratous.judge.log import Gate, Log
+from cratous.judge.log import Bridge, Gate, Log
 from cratous.judge.mission import Mission
 from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, seconds
 
@@ -92,13 +95,33 @@ class _Story:
             self.fault(at_ms, f"that {self.owner} has control was not announced")
             self.said_owner = self.owner
 
-    def end(self, at_ms: int) -> None:
-        """The mission's end: control has been handed back. That a task failed meanwhile ends no takeover."""
+    def end(self, at_ms: int, down_ms: int | None) -> str:
+        """The mission's end: control has been handed back. That a task failed meanwhile ends no takeover.
+
+        down_ms: since when the link is declared down, None if it is not. What is not known for that is answered.
+        """
         self.settle(at_ms)
         self._announced(at_ms)
-        if self.open_ms is not None:
-            said = f"the takeover of {seconds(self.open_ms)} was never handed back"
+        if self.open_ms is None:
+            return ""
+        said = f"the takeover of {seconds(self.open_ms)} was never handed back"
+        if down_ms is None:
             self.fault(self.open_ms, said)
+            return ""
+        return f"{said}; the link was declared down at {seconds(down_ms)}, to the end"
+
+
+def _down_ms(statuses: list[Bridge], end_ms: int) -> int | None:
+    """Since when a link is declared down at the end; None if it is not."""
+    since = None
+    for status in statuses:
+        if status.time_ms > end_ms:
+            break
+        if status.alive:
+            since = None
+        elif since is None:
+            since = status.time_ms
+    return since
 
 
 def _words(owner: str, epoch: int, offered: bool) -> str:
@@ -113,8 +136,9 @@ def rows(mission: Mission, log: Log) -> Iterator[Row]:
             if said.vehicle == vehicle:
                 getattr(story, said.kind)(said)
         subject, item = ("authority", str(vehicle)), f"authority over vehicle {vehicle}"
+        doubt = ""
         if log.end_ms is not None:
-            story.end(log.end_ms)
+            doubt = story.end(log.end_ms, _down_ms(log.bridges.get(vehicle, []), log.end_ms))
         note = (
             f"{story.takeovers} takeovers, {story.handbacks} handbacks, {story.commands} commands, "
             f"{story.dropped} of them dropped"
@@ -129,5 +153,8 @@ def rows(mission: Mission, log: Log) -> Iterator[Row]:
             yield Row(
                 "G4", subject, item, UNKNOWN, f"the log stops before the mission ends; {note}"
             )
+        elif doubt:
+            note = f"{doubt}; {note}"
+            yield Row("G4", subject, item, UNKNOWN, note, story.open_ms, story.commands)
         else:
             yield Row("G4", subject, item, HOLDS, note, None, story.commands)

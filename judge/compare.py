@@ -13,7 +13,6 @@ import json
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 from cratous.judge.fields import Node
 from cratous.judge.verdict import GUARANTEES, HOLDS, UNKNOWN, VIOLATED, Row, worst
@@ -25,11 +24,12 @@ FORMATS = ("cratous-report/2", "cratous-report/1")
 EXCUSED = "excused"
 DISAGREE, CLAIMED, UNDECIDED = "disagree", "claimed excused", "undecided"
 NUMBER = r"(-?\d+)"
+RELATIONS = "relations"
 ITEMS = (
     ("G1", rf"zone: keep_(?:in|out) {NUMBER}, flight of vehicle {NUMBER}", "zone"),
     ("G1", rf"eligibility: task {NUMBER} in flight", "eligible"),
     ("G1", r"flight: choice", "choice"),
-    ("G1", r"flight: .*", "relations"),
+    ("G1", r"flight: .*", RELATIONS),
     ("G2", rf"well clear of {NUMBER} and {NUMBER}", "pair"),
     ("G2", rf"well clear of {NUMBER}", "pair"),
     ("G3", rf"task {NUMBER} served", "served"),
@@ -54,23 +54,6 @@ class Difference:
     def line(self) -> str:
         """In one line."""
         return f"{self.guarantee} {self.item}: judge {self.judge}, monitor {self.monitor} ({self.note})"
-
-
-class Answer(NamedTuple):
-    """A row of the monitor and the judge's verdict on it: empty where the judge has none.
-
-    Rows on the relations are judged together, so that one of them is confirmed only by a verdict on all.
-    """
-
-    guarantee: str
-    item: str
-    monitor: str
-    judge: str
-
-    @property
-    def confirmed(self) -> bool:
-        """Whether the judge says the same."""
-        return self.monitor == self.judge
 
 
 Key = tuple[str, ...]
@@ -99,8 +82,8 @@ def read(path: Path) -> Node:
 
 def differences(rows: list[Row], report: Node, digest: str) -> list[Difference]:
     """All of them, those that disagree first."""
-    theirs, strange = _theirs(report)
-    mine = _mine(rows)
+    theirs, strange = theirs_of(report)
+    mine = by_key(rows)
     found = []
     if report["log"]["digest"].text != digest:
         note = "the report is about another log"
@@ -120,20 +103,7 @@ def differences(rows: list[Row], report: Node, digest: str) -> list[Difference]:
     return sorted(found, key=lambda d: (DISAGREE, CLAIMED, UNDECIDED).index(d.kind))
 
 
-def answers(rows: list[Row], report: Node) -> list[Answer]:
-    """The judge's verdict on every row of the report that is on the flight."""
-    theirs, strange = _theirs(report)
-    mine = _mine(rows)
-    found = [Answer(guarantee, item, verdict, "") for guarantee, item, verdict in strange]
-    for key, said in theirs.items():
-        here = worst([row.verdict for row in mine[key]]) if mine.get(key) else ""
-        if not here and _met_nobody(key, mine):
-            here = HOLDS
-        found += [Answer(key[0], item, verdict, here) for verdict, item in said]
-    return found
-
-
-def _mine(rows: list[Row]) -> dict[Key, list[Row]]:
+def by_key(rows: list[Row]) -> dict[Key, list[Row]]:
     """The judge's rows by key, with those on the choice."""
     mine: dict[Key, list[Row]] = {}
     for row in rows:
@@ -148,12 +118,12 @@ def _choice(rows: list[Row]) -> list[Row]:
 
 
 def _key(row: Row) -> Key:
-    return (row.guarantee, "relations") if row.subject[0] == "relations" else (
+    return (row.guarantee, RELATIONS) if row.subject[0] == RELATIONS else (
         row.guarantee, *row.subject
     )  # fmt: skip
 
 
-def _theirs(report: Node) -> tuple[dict[Key, list[tuple[str, str]]], list[tuple[str, str, str]]]:
+def theirs_of(report: Node) -> tuple[dict[Key, list[tuple[str, str]]], list[tuple[str, str, str]]]:
     """The monitor's verdicts by the judge's keys, and those that fit no key."""
     found: dict[Key, list[tuple[str, str]]] = {}
     strange = []
@@ -196,7 +166,7 @@ def _compare(
     note = row.note if row else "the judge expects no such row"
     kind = UNDECIDED
     if not here:
-        if _met_nobody(key, all_mine):
+        if met_nobody(key, all_mine):
             return None
         kind = UNDECIDED if there == UNKNOWN else DISAGREE
     elif not there:
@@ -214,9 +184,12 @@ def _worst_of(verdicts: list[str]) -> str:
     return next((v for v in (VIOLATED, UNKNOWN, EXCUSED, HOLDS) if v in verdicts), "")
 
 
-def _met_nobody(key: Key, mine: dict[Key, list[Row]]) -> bool:
-    """A row of the monitor that says that a vehicle met nobody, which the judge says pair by pair."""
-    if key[:2] != ("G2", "pair") or len(key) != 3:
+def met_nobody(key: Key, mine: dict[Key, list[Row]]) -> bool:
+    """A row of the monitor that says that a vehicle met nobody, which the judge says pair by pair.
+
+    Of a vehicle that is not protected, or is none of the mission, the judge says nothing.
+    """
+    if key[:2] != ("G2", "pair") or len(key) != 3 or ("G4", "authority", key[2]) not in mine:
         return False
     pairs = [rows for other, rows in mine.items() if other[:2] == key[:2] and key[2] in other[2:]]
     return all(row.verdict == HOLDS for rows in pairs for row in rows)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,8 @@ from cratous.judge import (
     service,
     zones,
 )
-from cratous.judge.compare import DISAGREE, Answer, Difference
+from cratous.judge.answers import Answer, answers_to
+from cratous.judge.compare import DISAGREE, Difference
 from cratous.judge.mission import Mission, from_log
 from cratous.judge.tracks import tracks
 from cratous.judge.verdict import GUARANTEES, HOLDS, UNKNOWN, VIOLATED, Row, doubted, worst
@@ -28,7 +30,8 @@ from cratous.judge.work import Flight
 class Judgement:
     """Rows, and where the flight's report says otherwise. report: whether there is one.
 
-    answers: to each row of the report on the flight.
+    answers: to each row of the report on the flight, and rows that it should have and lacks; meta: what
+    the log says of the flight besides its messages, as it stands there.
     """
 
     rows: tuple[Row, ...]
@@ -37,6 +40,7 @@ class Judgement:
     not_covered: tuple[int, ...]
     digest: str
     answers: tuple[Answer, ...] = ()
+    meta: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def verdict(self) -> str:
@@ -70,8 +74,14 @@ class Judgement:
             "log_digest": self.digest,
             "compared": self.report,
             "differences": [asdict(d) for d in self.differences],
-            "rows": [{**asdict(row), "subject": list(row.subject)} for row in self.rows],
+            "rows": [_row_data(row) for row in self.rows],
         }
+
+
+def _row_data(row: Row) -> dict[str, Any]:
+    data = {**asdict(row), "subject": list(row.subject)}
+    del data["parts"]  # the row says the same in its own words
+    return data
 
 
 def judge(path: Path, mission: Path | None = None) -> Judgement:
@@ -83,13 +93,17 @@ def judge(path: Path, mission: Path | None = None) -> Judgement:
     asked = mission_file.read(mission) if mission else from_log(log.mission_node(found))
     rows = tuple(judged(asked, found))
     report = compare.report_of(path)
-    said, answers = [], []
+    said: list[Difference] = []
+    answers: list[Answer] = []
     if report:
         read = compare.read(report)
         said = compare.differences(list(rows), read, found.digest)
-        answers = compare.answers(list(rows), read)
+        answers = answers_to(list(rows), read)
     uncovered = tuple(sorted(v.id for v in asked.vehicles.values() if not v.protected))
-    return Judgement(rows, tuple(said), report is not None, uncovered, found.digest, tuple(answers))
+    compared = report is not None
+    return Judgement(
+        rows, tuple(said), compared, uncovered, found.digest, tuple(answers), found.meta
+    )
 
 
 def judged(mission: Mission, found: log.Log) -> list[Row]:

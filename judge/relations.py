@@ -12,10 +12,11 @@ Of several ways the best counts.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import islice, product
 
 from cratous.judge.algebra import Term, Window, all_of, parse, without
+from cratous.judge.bounds import Bound, bounded, counts_from_before, event, quoted
 from cratous.judge.log import Log
 from cratous.judge.mission import Mission, away_because
 from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, doubted, seconds, worst
@@ -41,13 +42,14 @@ class Deed:
 
 @dataclass(frozen=True)
 class Found:
-    """One constraint on a way: what it says, and whether it was kept."""
+    """One constraint on a way: what it says, and whether it was kept. parts: of `Row`."""
 
     kind: str
     text: str
     verdict: str
     note: str
     at_ms: int | None = None
+    parts: tuple[tuple[str, str], ...] = ()
 
 
 def deeds(mission: Mission, log: Log) -> dict[int, Deed]:
@@ -132,7 +134,7 @@ def ways(term: Term, started: set[int]) -> Iterator[tuple[Term, tuple[Found, ...
         for one, found in ways(operand, started):
             # the window of a + bounds all tasks of its choice, whatever stands in it
             outer = Window(False, term.window.first, term.window.last) if term.window else None
-            yield Term("|", 0, (one,), outer) if outer else one, (one_of, *found)
+            yield bounded(one, outer), (one_of, *found)
 
 
 class _Way:
@@ -150,15 +152,15 @@ class _Way:
         deed = self.done.get(task)
         return deed.complete_ms if deed else None
 
-    def look(self, term: Term, bound: tuple[str, int | None, Window] | None) -> None:
-        """All constraints of a term. bound: text, reference [ms] (None: never came), window."""
+    def look(self, term: Term, bound: Bound | None) -> None:
+        """All constraints of a term; bound: the innermost window around it."""
         window = term.window
-        relative = window is not None and window.relative and term.operator in (".", "~")
+        relative = counts_from_before(term)
         if window is not None and not relative:
-            bound = (str(term), 0, window)
+            bound = Bound(term, 0, window)
         if not term.operator:
             if bound is not None:
-                self._in_window(term.task, *bound)
+                self._in_window(term.task, bound)
             return
         before: Term | None = None
         for operand in term.operands:
@@ -168,7 +170,7 @@ class _Way:
                 for task in operand.tasks():
                     self._after(term, task, before, moment)
                 if relative and window is not None:
-                    inner = (str(term), moment, window)
+                    inner = Bound(term, moment, window, event(term.operator, before))
             self.look(operand, inner)
             before = operand
 
@@ -183,35 +185,43 @@ class _Way:
 
     def _after(self, term: Term, task: int, before: Term, moment: int | None) -> None:
         start = self.start(task)
-        event = "ended" if term.operator == "." else "begun"
+        ended = "ended" if term.operator == "." else "begun"
+        part = f"{quoted(term)}: p{task} starts no earlier than {event(term.operator, before)}"
         if start is None:
             said = Found("order", str(term), UNKNOWN, f"task {task} was not begun")
         elif moment is None:
-            note = f"task {task} began at {seconds(start)}, though {before} had never {event}"
+            note = f"task {task} began at {seconds(start)}, though {before} had never {ended}"
             said = Found("order", str(term), VIOLATED, note, start)
         else:
             verdict = HOLDS if start >= moment else VIOLATED
             note = (
-                f"task {task} began at {seconds(start)}, {before} had {event} at {seconds(moment)}"
+                f"task {task} began at {seconds(start)}, {before} had {ended} at {seconds(moment)}"
             )
             said = Found("order", str(term), verdict, note, start)
-        self.found.append(said)
+        self.found.append(replace(said, parts=((part, said.verdict),)))
 
-    def _in_window(self, task: int, text: str, ref: int | None, window: Window) -> None:
+    def _in_window(self, task: int, bound: Bound) -> None:
+        text, ref, window = str(bound.term), bound.ref_ms, bound.window
+        asks_start, asks_end = bound.parts(task)
         start, end = self.start(task), self.end(task)
         if ref is None or start is None or end is None:
             note = f"task {task} was not flown to its end" if ref is not None else (
                 f"what the times of task {task} count from never came"
             )  # fmt: skip
-            self.found.append(Found("timing", text, UNKNOWN, note))
+            parts = ((asks_start, UNKNOWN), (asks_end, UNKNOWN))
+            self.found.append(Found("timing", text, UNKNOWN, note, parts=parts))
             return
-        good = start >= ref + window.first and end <= ref + window.last
+        late_enough, early_enough = start >= ref + window.first, end <= ref + window.last
         note = (
             f"task {task} ran from {seconds(start)} to {seconds(end)}, allowed is "
             f"{seconds(ref + window.first)} to {seconds(ref + window.last)}"
         )
-        verdict = HOLDS if good and start <= end else VIOLATED
-        self.found.append(Found("timing", text, verdict, note, start))
+        verdict = HOLDS if late_enough and early_enough and start <= end else VIOLATED
+        parts = (
+            (asks_start, HOLDS if late_enough else VIOLATED),
+            (asks_end, HOLDS if early_enough else VIOLATED),
+        )
+        self.found.append(Found("timing", text, verdict, note, start, parts))
 
 
 def best_way(
@@ -248,6 +258,9 @@ def rows(mission: Mission, log: Log, done: dict[int, Deed], served: set[int]) ->
     term = asked(mission, done, log.end_ms)
     if term is not None:
         yield from _relation_rows(term, done, served, log.planned)
+    elif mission.tasks:
+        note = "no task is asked for any more"
+        yield Row("G1", ("relations", ""), "relations: none", HOLDS, note)
     for task, deed in sorted(done.items()):
         if deed.active:
             yield _eligible(mission, task, deed)
@@ -256,7 +269,7 @@ def rows(mission: Mission, log: Log, done: dict[int, Deed], served: set[int]) ->
         if not deed.active and deed.complete_ms is None and log.end_ms is not None:
             subject, item = ("eligible", str(task)), f"eligibility: task {task} in flight"
             verdict, note = (UNKNOWN, log.lossy) if log.lossy else (HOLDS, "nobody began it")
-            yield Row("G1", subject, item, verdict, note, None, 1)
+            yield Row("G1", subject, item, verdict, note)
 
 
 def _relation_rows(
@@ -279,6 +292,7 @@ def _relation_rows(
         row = Row(
             "G1", ("relations", f"{kind} {text}"), f"{kind}: {text}", verdict, note,
             telling.at_ms if verdict == VIOLATED else None, len(parts),
+            tuple(part for one in parts for part in one.parts),
         )  # fmt: skip
         yield doubted(row, faults[0] if faults else "")
 

@@ -18,7 +18,8 @@ GUARANTEES = {
 class Row:
     """One verdict. subject: what it is on, as a key that a monitor's row can be held against.
 
-    at_ms: when it was violated first; checks: how many single decisions stand behind it.
+    at_ms: when it was violated first; checks: how many single decisions stand behind it; parts: of a row
+    on order or timing, each (in the words of a report, verdict).
     """
 
     guarantee: str
@@ -28,6 +29,7 @@ class Row:
     note: str
     at_ms: int | None = None
     checks: int = 0
+    parts: tuple[tuple[str, str], ...] = ()
 
 
 def worst(verdicts: list[str]) -> str:

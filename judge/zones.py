@@ -129,9 +129,11 @@ def _row(vehicle: int, zone: Zone, track: Track) -> Row:
     # what becomes known between two states is known at the second
     first = track.from_index(zone.from_ms)
     # nobody flies after the last state: what becomes known with it binds no way
-    if first == len(track.states) - (zone.from_ms > 0):
+    if first >= len(track.states) - (zone.from_ms > 0):
         if track.states and not track.doubt:
-            return Row("G1", subject, item, HOLDS, "the zone did not become known in flight")
+            # what was decided: the whole flight was before it
+            note = "the zone did not become known in flight"
+            return Row("G1", subject, item, HOLDS, note, checks=1)
         return Row("G1", subject, item, UNKNOWN, track.doubt or "no position was logged")
     fence = Fence(zone)
     checks = 0
@@ -142,5 +144,8 @@ def _row(vehicle: int, zone: Zone, track: Track) -> Row:
         if fence.breaks(before, after):
             note = f"broken on the leg from {seconds(before.time_ms)}"
             return Row("G1", subject, item, VIOLATED, note, before.time_ms, checks)
+    if not checks:
+        note = track.doubt_before(zone.until_ms) or "no leg was flown while the zone was there"
+        return Row("G1", subject, item, UNKNOWN, note)
     row = Row("G1", subject, item, HOLDS, f"{checks} flown legs", checks=checks)
     return doubted(row, track.doubt_before(zone.until_ms))

@@ -77,7 +77,11 @@ def hold_permits(
 @driver(checked_by=("permitted",))
 def way_permits(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
     """True only if a way, from its first piece to its last, keeps the closed cylinder of a volume clear of an
-    intruder that flies straight on."""
+    intruder that flies straight on.
+
+    A way of no piece is permitted, wherever the intruder is: it lasts for no instant, and where the vehicle is then
+    is not the way's to say. Whoever asks has looked at what is flown after it (`hold_permits`).
+    """
     if not pieces:
         return True
     met = meeting(pieces[0].position, other, volume)

@@ -1,13 +1,14 @@
 """JUnit XML of a report: one suite a requirement, one test case a constraint.
 
 A case passes only if its constraint was checked and holds. One that is violated is a failure; one that
-is unknown, excused or was never checked is skipped, with the reason. There is no time stamp: the same
-report gives the same bytes.
+is unknown, excused or was never checked is skipped, with the reason. Each suite has the digest of the
+message log as a property. There is no time stamp: the same subject gives the same bytes.
 """
 
 from __future__ import annotations
 
 import re
+from typing import Any
 from xml.sax.saxutils import quoteattr
 
 from cratous.services.attestation.findings import Data, Subject, doubt, unshown
@@ -36,6 +37,7 @@ def junit(subject: Subject) -> str:
     ]
     for name, cases in suites:
         lines.append(f"  <testsuite name={_quoted(name)} {_counts(cases)}>")
+        lines += _block("    ", {"log_digest": report["log"]["digest"]})
         lines += [line for _, case in cases for line in case]
         lines.append("  </testsuite>")
     return "\n".join([*lines, "</testsuites>", ""])
@@ -63,12 +65,15 @@ def _opened(of: str, name: str) -> list[str]:
 
 
 def _properties(row: Data) -> list[str]:
+    return _block("      ", {name: row[name] for name in PROPERTIES if row[name] not in (None, "")})
+
+
+def _block(indent: str, named: dict[str, Any]) -> list[str]:
     found = [
-        f"        <property name={_quoted(name)} value={_quoted(str(row[name]))}/>"
-        for name in PROPERTIES
-        if row[name] not in (None, "")
+        f"{indent}  <property name={_quoted(name)} value={_quoted(str(value))}/>"
+        for name, value in named.items()
     ]
-    return ["      <properties>", *found, "      </properties>"]
+    return [f"{indent}<properties>", *found, f"{indent}</properties>"]
 
 
 def _counts(cases: list[Case]) -> str:

@@ -5,5 +5,6 @@ from __future__ import annotations
 FOLDER = "attestation"
 """Where they are written in a results folder unless the user says otherwise."""
 JUNIT_NAME, SARIF_NAME, CSV_NAME = "junit.xml", "report.sarif", "constraints.csv"
-VIEWS = (JUNIT_NAME, SARIF_NAME, CSV_NAME)
+ARGUMENT_NAME, DRAWING_NAME = "argument.yaml", "argument.svg"
+VIEWS = (JUNIT_NAME, SARIF_NAME, CSV_NAME, ARGUMENT_NAME, DRAWING_NAME)
 STATEMENT_NAME = "statement.dsse.json"

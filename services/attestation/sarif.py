@@ -2,7 +2,7 @@
 
 The rule of G1 to G5 is that its constraints are shown to hold: a violation is an error, an unknown one
 a warning, an excused one and one of which nothing was checked a note. What no row speaks of is a
-notification of the run. There is no time stamp: the same report and mission file give the same bytes.
+notification of the run. There is no time stamp: the same subject and lines give the same bytes.
 """
 
 from __future__ import annotations

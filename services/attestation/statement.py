@@ -6,29 +6,19 @@ Subjects are `results/NAME` for the files of the results folder, the message log
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Iterable
 from pathlib import Path
 
 from cratous.services.attestation.findings import Data, Subject
+from cratous.services.results.ownership import digest_of
 from cratous.spec.errors import BadInput
 
 STATEMENT_TYPE = "https://in-toto.io/Statement/v1"
 PREDICATE_TYPE = "urn:cratous:constraint-satisfaction:1"
 RESULTS, VIEWS = "results", "views"
-CHUNK = 1 << 20
 CLAIMED = ("verdict", "exit_code", "counts", "mission_hash", "not_covered", "limits")
 """What the statement says again of report.json."""
-
-
-def digest(path: Path) -> str:
-    """SHA-256 of a file in hexadecimal; OSError if it cannot be read."""
-    sha = hashlib.sha256()
-    with path.open("rb") as stream:
-        while part := stream.read(CHUNK):
-            sha.update(part)
-    return sha.hexdigest()
 
 
 def claim(report: Data) -> Data:
@@ -42,17 +32,15 @@ def claim(report: Data) -> Data:
 
 
 def statement(subject: Subject, results: Iterable[Path], views: Iterable[Path]) -> bytes:
-    """The statement as it is signed: canonical JSON. unchecked is part of what is claimed."""
+    """The statement as it is signed: canonical JSON. unchecked is part of what is claimed.
+
+    BadInput for a file that cannot be read or is no plain one.
+    """
     files = [(RESULTS, path) for path in results] + [(VIEWS, path) for path in views]
-    try:
-        subjects = [
-            {"name": f"{where}/{path.name}", "digest": {"sha256": digest(path)}}
-            for where, path in files
-        ]
-    except OSError as error:
-        raise BadInput(
-            "cannot be read", where=str(error.filename), got=error.strerror or ""
-        ) from None
+    subjects = [
+        {"name": f"{where}/{path.name}", "digest": {"sha256": _digest(path)}}
+        for where, path in files
+    ]
     data = {
         "_type": STATEMENT_TYPE,
         "subject": sorted(subjects, key=lambda one: str(one["name"])),
@@ -60,3 +48,15 @@ def statement(subject: Subject, results: Iterable[Path], views: Iterable[Path]) 
         "predicate": {**claim(subject.report), "not_checked": list(subject.unchecked)},
     }
     return json.dumps(data, sort_keys=True, separators=(",", ":"), ensure_ascii=False).encode()
+
+
+def _digest(path: Path) -> str:
+    try:
+        found = digest_of(path)
+    except OSError as error:
+        raise BadInput("cannot be read", where=str(path), got=error.strerror or "") from None
+    if not found:
+        raise BadInput(
+            "not a file", where=str(path), expected="a file to sign", got="something else"
+        )
+    return found

@@ -6,10 +6,19 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cratous.core.files.whole_file import write_atomically
-from cratous.services.attestation.findings import Subject
+from cratous.services.argument.views import views
+from cratous.services.attestation.findings import Subject, unshown
 from cratous.services.attestation.junit import junit
 from cratous.services.attestation.mission_lines import lines_of
-from cratous.services.attestation.names import CSV_NAME, JUNIT_NAME, SARIF_NAME, STATEMENT_NAME
+from cratous.services.attestation.names import (
+    ARGUMENT_NAME,
+    CSV_NAME,
+    DRAWING_NAME,
+    JUNIT_NAME,
+    SARIF_NAME,
+    STATEMENT_NAME,
+    VIEWS,
+)
 from cratous.services.attestation.sarif import sarif
 from cratous.services.attestation.table import table
 from cratous.services.results.names import NAMES
@@ -24,8 +33,15 @@ class Wanted(NamedTuple):
     key: Any = None
 
 
-def write_views(subject: Subject, results: Path, target: Path, wanted: Wanted) -> list[str]:
-    """Write what is wanted into a folder that is made for it; returns the names, then what is said.
+class Written(NamedTuple):
+    """What was written, as paths, and what was left out of it, in words."""
+
+    files: list[str]
+    left_out: list[str]
+
+
+def write_views(subject: Subject, results: Path, target: Path, wanted: Wanted) -> Written:
+    """Write what is wanted into a folder that is made for it.
 
     results: the folder of the run, whose files a statement covers. BadInput if the folder is that of
     the results itself, or holds anything that is not written anew: a statement would not cover it.
@@ -41,6 +57,9 @@ def write_views(subject: Subject, results: Path, target: Path, wanted: Wanted) -
         elif name == SARIF_NAME:
             line_of, said = lines_of(subject.report, wanted.mission)
             texts[name] = sarif(subject, line_of)
+        elif name == ARGUMENT_NAME:
+            drawn = views(subject.report, unshown(subject))
+            texts |= zip((ARGUMENT_NAME, DRAWING_NAME), drawn, strict=True)
     try:
         target.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -52,7 +71,12 @@ def write_views(subject: Subject, results: Path, target: Path, wanted: Wanted) -
     if wanted.key is not None:
         _sign(subject, results, target, [target / name for name in texts], wanted.key)
     names = [*texts, *([STATEMENT_NAME] if wanted.key is not None else [])]
-    return [*(str(target / name) for name in names), *([said] if said else [])]
+    return Written([str(target / name) for name in names], [said] if said else [])
+
+
+def earlier(target: Path) -> list[str]:
+    """The views and the statement that stand in a folder, as paths."""
+    return [str(target / name) for name in (*VIEWS, STATEMENT_NAME) if (target / name).exists()]
 
 
 def _sign(subject: Subject, results: Path, target: Path, views: list[Path], key: Any) -> None:

@@ -7,6 +7,7 @@ from importlib.resources import files
 from typing import Any
 
 from cratous.core.kernel.names import short
+from cratous.services.assumptions import measured
 from cratous.services.certify.charts import altitude_view, separation_view
 from cratous.services.certify.gantt import gantt, plan_bars, plan_rows, tree
 from cratous.services.certify.picture import map_view, time_view
@@ -39,6 +40,7 @@ def _environment() -> Any:
     environment.filters["seconds"] = seconds
     environment.filters["margin"] = margin
     environment.filters["percent"] = percent
+    environment.filters["measured"] = measured
     environment.filters["cost"] = lambda value, kind: cost_text(kind, value)
     return environment
 

@@ -6,20 +6,32 @@ import json
 from collections.abc import Container
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from cratous.services.certify.differences import differences
 from cratous.services.certify.flight_record import flown_of
-from cratous.services.certify.report import build_report, mission_hash, plan_hash, report_text
+from cratous.services.certify.report import (
+    Judged,
+    build_report,
+    mission_hash,
+    plan_hash,
+    report_text,
+)
 from cratous.services.certify.report_input import read_report
 from cratous.services.certify.report_schema import departures
 from cratous.services.certify.result_files import Files
-from cratous.services.certify.verdicts import constraint_rows, plan_rows
+from cratous.services.certify.verdicts import broken_of, constraint_rows, plan_rows
 from cratous.services.logs.log import read_envelopes, read_log, read_meta
 from cratous.services.logs.records import from_data
 from cratous.services.logs.sqlite_log import SqliteLog
 from cratous.services.mission.wind import known_at
-from cratous.services.results.names import CERTIFICATE_NAME, FORMER, LOG_NAME, REPORT_NAME
+from cratous.services.results.names import (
+    ASSUMPTIONS,
+    CERTIFICATE_NAME,
+    FORMER,
+    LOG_NAME,
+    REPORT_NAME,
+)
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Verdict
@@ -47,14 +59,21 @@ def subject(log: Path) -> tuple[Mission, Plan]:
         raise
 
 
-def watch(log: Path) -> list[Verdict]:
-    """The verdicts of a fresh monitor that sees the messages of a log."""
+class Watched(NamedTuple):
+    """What a monitor has seen: its verdicts, and a row for each assumption of the system theorems."""
+
+    verdicts: list[Verdict]
+    assumptions: list[dict[str, Any]]
+
+
+def watch(log: Path) -> Watched:
+    """What a fresh monitor says that sees the messages of a log."""
     from cratous.services.monitor import Monitor
 
     monitor = Monitor(*subject(log))
     for envelope in read_envelopes(log):
         monitor.tap(envelope)
-    return monitor.verdicts()
+    return Watched(monitor.verdicts(), monitor.assumptions())
 
 
 @dataclass(frozen=True)
@@ -87,7 +106,8 @@ def certify_again(folder: Path, *, rewrite: bool = False) -> Judgement:
     former = written["format"] == FORMER
     found += differences(_compared(written, left, former), _compared(report, left, former))
     if not former:  # the schema is of this format alone
-        found += [f"{REPORT_NAME}, by its schema: {line}" for line in departures(written)]
+        whole = {**written, **{key: report[key] for key in left if key not in written}}
+        found += [f"{REPORT_NAME}, by its schema: {line}" for line in departures(whole)]
     _, plan = subject(log)
     files = Files(folder, report, read_meta(log), same=not found)
     found += _certificate(plan, folder) + files.wrong
@@ -147,10 +167,18 @@ def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[st
     mission, plan = subject(log)
     flown, silent, wrong = flown_of(read_meta(log), written, str(log))
     rows = plan_rows(check_plan(known_at(mission, 0), plan))
-    rows += constraint_rows(watch(log), "flight")
-    report = json.loads(report_text(build_report(mission, plan, rows, log, flown)))
+    watched = watch(log)
+    rows += constraint_rows(watched.verdicts, "flight")
+    judged = Judged(rows, watched.assumptions)
+    report = json.loads(report_text(build_report(mission, plan, judged, log, flown)))
     if wrong:  # one sentence says it; what differs in detail says no more
         report["proofs"] = written.get("proofs")
+    told = read_meta(log).get(ASSUMPTIONS)
+    if told is not None:
+        broken = broken_of(report["assumptions"])
+        wrong += differences(told, broken, f"{LOG_NAME}: meta.{ASSUMPTIONS}")
+    elif "assumptions" not in written:
+        silent["assumptions"] = "the report was made before they were watched"
     return report, silent, wrong
 
 

@@ -64,6 +64,14 @@ class Flown:
         }
 
 
+@dataclass(frozen=True)
+class Judged:
+    """What was found. rows: of `verdicts.constraint_rows`; assumptions: of `Monitor.assumptions`."""
+
+    rows: Iterable[dict[str, Any]]
+    assumptions: list[dict[str, Any]]
+
+
 def mission_hash(mission: Mission) -> str:
     """Names what was flown: the mission without the path it was read from."""
     return fingerprint(to_data(replace(mission, source="")))
@@ -77,20 +85,20 @@ def plan_hash(plan: Plan) -> str:
 def build_report(
     mission: Mission,
     plan: Plan,
-    rows: Iterable[dict[str, Any]],
+    judged: Judged,
     log: Path,
     flown: Flown,
 ) -> dict[str, Any]:
     """The whole report as plain data.
 
-    rows: of `verdicts.constraint_rows`; log: the message log; flown: how it was flown.
-    A row that a requirement promises and `rows` lacks is unknown: not observed. A flight with
+    log: the message log; flown: how it was flown.
+    A row that a requirement promises and `judged` lacks is unknown: not observed. A flight with
     kernels that the ledger does not vouch for is at best unknown.
     """
     flight = read_flight(read_log(log), (vehicle.id for vehicle in mission.vehicles))
     done = {task for task, end in flight.served.items() if end["phase"] == "Complete"}
     seen = watched(mission, flight.end_ms, done, set(flight.accepted or plan.chosen))
-    found = with_promised(list(rows), seen)
+    found = with_promised(list(judged.rows), seen)
     found.sort(key=lambda row: (row["requirement"], row["source"], row["item"]))
     requirements = requirement_rows(found)
     outcomes = [Outcome(row["verdict"]) for row in requirements]
@@ -109,6 +117,7 @@ def build_report(
         "not_covered": [v.id for v in mission.vehicles if not v.protected],
         "requirements": requirements,
         "constraints": found,
+        "assumptions": judged.assumptions,
         "plan": {**to_data(plan), "hash": plan_hash(plan)},
         "flight": {
             "outcome": flight.outcome,

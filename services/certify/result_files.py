@@ -8,11 +8,22 @@ from typing import Any
 from cratous.core.files.whole_file import write_atomically
 from cratous.services.certify.differences import text_difference
 from cratous.services.certify.report import pages, report_text
-from cratous.services.results.names import CERTIFICATE_NAME, MANIFEST_NAME, NAMES, REPORT_NAME
+from cratous.services.results.names import (
+    CERTIFICATE_NAME,
+    MANIFEST_NAME,
+    NAMES,
+    OF_PROCESSES,
+    REPORT_NAME,
+)
 from cratous.services.results.ownership import digest_of, is_plain, manifest_text, read_manifest
 
 SINCE_MANIFESTS = "environment"
 """What logs have kept since there are manifests: beside such a log one that is missing was removed."""
+
+
+def no_result(name: str) -> str:
+    """What is said of an entry of the folder that no run wrote."""
+    return f"{name}: no file of the results"
 
 
 class Files:
@@ -32,8 +43,12 @@ class Files:
         self._names = [name for name in NAMES if name != MANIFEST_NAME]
         if not report["plan"]["certificate"]:
             self._names.remove(CERTIFICATE_NAME)
+        if "processes" in meta:
+            # held against the manifest alone: the log does not give them
+            stated = read_manifest(folder) or {}
+            self._names += sorted(name for name in stated if OF_PROCESSES.fullmatch(name))
         self.unchecked = [
-            f"{entry.name}: no file of the results"
+            no_result(entry.name)
             for entry in sorted(folder.iterdir())
             if entry.name not in self._names and entry.name != MANIFEST_NAME
         ]

@@ -19,6 +19,7 @@ FOOTPRINT_PERIOD_MS = 2000
 FEW = 80
 PHASES = ("Planned", "Transit", "Waiting", "Active", "Suspended", "Complete", "Failed")
 OWNERS = ("UxAS", "ICAROUS")
+AUTHORITY, TASK, PLAN, END, OTHER = "authority", "task", "plan", "end", "other"
 _WHOLE = "(0|[1-9][0-9]{0,17})"
 _DECIMAL = r"(-?(?:0|[1-9][0-9]*)\.[0-9]+(?:e[+-]?[0-9]+)?)"
 TRUTH = re.compile(
@@ -36,8 +37,12 @@ class Flight:
     tracks: dict[int, list[list[float]]] = field(default_factory=dict)
     authority: list[dict[str, Any]] = field(default_factory=list)
     phases: list[dict[str, Any]] = field(default_factory=list)
+    in_phase: list[dict[str, Any]] = field(default_factory=list)
+    """What was told of a task again, in the phase in which it was."""
     takeovers: list[dict[str, Any]] = field(default_factory=list)
     events: list[dict[str, Any]] = field(default_factory=list)
+    event_kinds: list[str] = field(default_factory=list)
+    """Of each event AUTHORITY, TASK, PLAN or END, which other lists tell too, or OTHER."""
     changes: list[dict[str, Any]] = field(default_factory=list)
     footprints: dict[int, list[dict[str, Any]]] = field(default_factory=dict)
     """By task: time, vehicle and corners (latitude, longitude) of some footprints, FEW at most."""
@@ -170,23 +175,32 @@ def _authority(
         }
         flight.takeovers.append(opened[number])
         against = f" because of {intruder}" if intruder > 0 else ""
-        _note(flight, time_ms, number, f"ICAROUS takes over{against}: {body['Reason']}")
+        _note(flight, time_ms, number, f"ICAROUS takes over{against}: {body['Reason']}", AUTHORITY)
     elif owner == "UxAS" and before == "ICAROUS":
         if number in opened:
             opened.pop(number)["to_ms"] = time_ms
-        _note(flight, time_ms, number, f"handed back to UxAS: {body['Reason']}")
+        _note(flight, time_ms, number, f"handed back to UxAS: {body['Reason']}", AUTHORITY)
 
 
 def _progress(flight: Flight, body: dict[str, Any]) -> None:
     number, task, time_ms = int(body["VehicleID"]), int(body["TaskID"]), int(body["Time"])
     phase = _name(body["Phase"], PHASES)
     served = float(body["Served"])
+    said = {
+        "vehicle": number,
+        "task": task,
+        "phase": phase,
+        "time_ms": time_ms,
+        "served": served,
+        "note": body["Note"],
+    }
     for earlier in reversed(flight.phases):
         if earlier["vehicle"] == number:
             if earlier["task"] == task and earlier["phase"] == phase:
+                flight.in_phase.append(said)
                 return
             break
-    flight.phases.append({"vehicle": number, "task": task, "phase": phase, "time_ms": time_ms})
+    flight.phases.append(said)
     if phase in ("Complete", "Failed"):
         flight.served[task] = {
             "task": task,
@@ -197,18 +211,18 @@ def _progress(flight: Flight, body: dict[str, Any]) -> None:
             "note": body["Note"],
         }
     note = f" ({body['Note']})" if body["Note"] else ""
-    _note(flight, time_ms, number or None, f"task {task}: {phase.lower()}{note}")
+    _note(flight, time_ms, number or None, f"task {task}: {phase.lower()}{note}", TASK)
 
 
 def _event(flight: Flight, short: str, body: dict[str, Any]) -> None:
     time_ms = int(body.get("Time", 0))
     if short == "MissionEnd":
         flight.outcome, flight.end_ms = str(body["Outcome"]), time_ms
-        _note(flight, time_ms, None, f"end of mission: {body['Outcome']}")
+        _note(flight, time_ms, None, f"end of mission: {body['Outcome']}", END)
     elif short == "PlanAccepted":
         flight.plan_hash = str(body["PlanHash"])
         flight.accepted = tuple(body.get("Tasks") or ()) or flight.accepted
-        _note(flight, time_ms, None, f"plan accepted, {body['Makespan'] / 1000:.1f} s long")
+        _note(flight, time_ms, None, f"plan accepted, {body['Makespan'] / 1000:.1f} s long", PLAN)
     elif short == "MissionChange":
         _note(flight, time_ms, None, f"{body['What']}: {body['Consequence']}")
         flight.changes.append(
@@ -225,7 +239,8 @@ def _event(flight: Flight, short: str, body: dict[str, Any]) -> None:
         _note(flight, time_ms, int(body["VehicleID"]), text)
 
 
-def _note(flight: Flight, time_ms: int, vehicle: int | None, text: str) -> None:
+def _note(flight: Flight, time_ms: int, vehicle: int | None, text: str, kind: str = OTHER) -> None:
+    flight.event_kinds.append(kind)
     flight.events.append({"time_ms": time_ms, "vehicle": vehicle, "text": text})
 
 

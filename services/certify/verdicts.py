@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from cratous.services.assumptions.observed import State
 from cratous.services.monitor.plan_check import PART, WHOLE
 from cratous.services.monitor.required_rows import PLAN_ROWS, Row, Watched, missing, promised
 from cratous.spec.mission.guarantees import REQUIREMENTS, Outcome, Verdict, worst
@@ -35,6 +36,11 @@ def constraint_rows(verdicts: Iterable[Verdict], source: str) -> list[dict[str, 
         for verdict in verdicts
         if verdict.item
     ]
+
+
+def broken_of(assumptions: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The rows of the assumptions that are broken; rows: of `Monitor.assumptions`."""
+    return [row for row in assumptions if row["state"] == State.BROKEN]
 
 
 def plan_rows(checks: Iterable[Verdict]) -> list[dict[str, Any]]:

@@ -50,11 +50,12 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: An
     With --trace every row of the report is followed to the kernels that decided it and were called in
     this run, from each to the theorems that hold it against its definition, and to that definition.
 
-    With --junit, --sarif, --csv, --sign or -o views of the confirmed report are written for other
-    tools, all three if none is named. In none of them does anything pass that was not checked.
+    With --junit, --sarif, --csv, --argument, --sign or -o views of the confirmed report are written for
+    other tools, all of them if none is named. In none of them does anything pass that was not checked.
 
     --sign signs digests of results and views with the verdict; --verify checks signature and digests,
-    and judges the log again by the judge, in a process without planner and pilot.
+    makes JUnit and CSV again, and judges the log again by the judge, in a process without planner and
+    pilot. It says what report and judge both say, and 3 where the report holds and the judge cannot tell.
 
     Example:  cratous certify out/crossing
 
@@ -70,6 +71,7 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: An
             )
         return verified(folder, asked, as_json)
 
+    from cratous.services.attestation.writing import earlier
     from cratous.services.certify.rejudge import certify_again
     from cratous.services.certify.trace import lines, traced
     from cratous.services.cli.progress import waiting
@@ -79,7 +81,13 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: An
         done = certify_again(folder, rewrite=rewrite)
     report, found = done.report, done.found
     code = 1 if found else int(report["exit_code"])
-    written = write(done, folder, asked, key) if asked.anything and not found else []
+    files: list[str] = []
+    left_out: list[str] = []
+    if asked.anything and not found:
+        files, left_out = write(done, folder, asked, key)
+    elif asked.anything:
+        left_out = [f"{name}: the report is not confirmed" for name in asked.names]
+    stale = earlier(asked.folder(folder)) if found else []
     chains = traced(report) if trace and not found else None
     if chains is not None and chains["missing"]:
         code = 1
@@ -89,7 +97,9 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: An
             "differences": found,
             "not_checked": done.unchecked,
             "rewritten": done.rewritten,
-            "written": written,
+            "written": files,
+            "not_written": left_out,
+            "of_an_earlier_run": stale,
             "verdict": report.get("verdict"),
             "digest": report["log"]["digest"] if report else None,
             "exit_code": code,
@@ -112,8 +122,12 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: An
         say(f"not checked: {text}", err=bool(found))
     for name in done.rewritten:
         say(f"rewritten: {name}")
-    for name in written:
+    for name in files:
         say(f"written: {name}")
+    for text in left_out:
+        say(f"not written: {text}", err=bool(found))
+    for name in stale:
+        say(f"of an earlier run, not confirmed now: {name}", err=True)
     if not found:
         say(f"report: {folder / 'report.html'}")
     return code

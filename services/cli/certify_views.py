@@ -5,11 +5,23 @@ from __future__ import annotations
 import json
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from cratous.services.attestation.names import (
+    ARGUMENT_NAME,
+    CSV_NAME,
+    DRAWING_NAME,
+    FOLDER,
+    JUNIT_NAME,
+    SARIF_NAME,
+    VIEWS,
+)
 from cratous.services.cli.show import say
+
+if TYPE_CHECKING:
+    from cratous.services.attestation.writing import Written
 
 OPTIONS = (
     click.option(
@@ -19,6 +31,7 @@ OPTIONS = (
     click.option("--junit", is_flag=True, help="Write junit.xml: a test case a constraint."),
     click.option("--sarif", is_flag=True, help="Write report.sarif: what is not shown to hold."),
     click.option("--csv", is_flag=True, help="Write constraints.csv."),
+    click.option("--argument", is_flag=True, help="Write argument.yaml and .svg: the assurance argument (GSN)."),
     click.option("--mission", type=click.Path(path_type=Path), help="Mission file, for lines in SARIF."),
     click.option("--sign", is_flag=True, help="Sign a statement over results and views (Ed25519)."),
     click.option(
@@ -48,6 +61,7 @@ class Asked(NamedTuple):
     junit: bool
     sarif: bool
     csv: bool
+    argument: bool
     mission: Path | None
     sign: bool
     verify: bool
@@ -57,12 +71,20 @@ class Asked(NamedTuple):
     @property
     def anything(self) -> bool:
         """Whether anything is to be written."""
-        return self.junit or self.sarif or self.csv or self.sign or self.out is not None
+        named = self.junit or self.sarif or self.csv or self.argument
+        return named or self.sign or self.out is not None
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The views that are written: all if none is named."""
+        chosen = (
+            (self.junit, JUNIT_NAME), (self.sarif, SARIF_NAME), (self.csv, CSV_NAME),
+            (self.argument, ARGUMENT_NAME), (self.argument, DRAWING_NAME),
+        )  # fmt: skip
+        return tuple(name for wanted, name in chosen if wanted) or VIEWS
 
     def folder(self, results: Path) -> Path:
         """Where views and statement stand."""
-        from cratous.services.attestation.names import FOLDER
-
         return self.out or results / FOLDER
 
 
@@ -70,8 +92,8 @@ def checked(asked: Asked) -> Any:
     """The key to sign with, None for none; refuses options that go against each other."""
     if asked.key is not None and not asked.sign:
         raise click.UsageError("--key is the key of --sign")
-    if asked.mission is not None and not asked.anything:
-        raise click.UsageError("--mission finds lines for --sarif")
+    if asked.mission is not None and not (asked.anything and SARIF_NAME in asked.names):
+        raise click.UsageError(f"--mission finds lines for {SARIF_NAME}, which is not asked for")
     if asked.public_key is not None and not asked.verify:
         raise click.UsageError("--public-key is the key of --verify")
     if not asked.sign:
@@ -87,11 +109,10 @@ def verified(results: Path, asked: Asked, as_json: bool) -> int:
     Nothing of planner, pilot, monitor or kernels is imported here, nor by the judge.
     """
     from cratous.services.attestation.dsse import public_key
-    from cratous.services.attestation.names import FOLDER
     from cratous.services.attestation.verification import signed_folder, verify
     from cratous.services.cli.judge import judgement
 
-    if asked.sign or asked.junit or asked.sarif or asked.csv or asked.mission:
+    if asked.sign or asked.junit or asked.sarif or asked.csv or asked.argument or asked.mission:
         raise click.UsageError("--verify writes nothing")
     if asked.public_key is None:
         raise click.UsageError("--verify needs --public-key")
@@ -103,30 +124,33 @@ def verified(results: Path, asked: Asked, as_json: bool) -> int:
     for line in found.refused:
         say(f"refused: {line}", err=True)
     if not found.refused:
-        of = found.recomputed + len(found.undecided)
         say(
-            f"verified: signature, {found.files} digests, {found.recomputed} of {of} verdicts on the flight by the judge"
+            f"verified: signature, {found.files} digests, {found.recomputed} of {found.expected} "
+            "verdicts on the flight by the judge"
         )
     for line in found.undecided:
-        say(f"not decided here: {line}")
+        say(f"not decided: {line}")
+    for line in found.not_checked:
+        say(f"not checked when it was signed: {line}")
     for line in found.not_judged:
-        say(f"not checked here: {line}")
+        say(f"not judged: {line}")
     if not found.refused:
-        say(f"{found.verdict.upper()}; exit code {found.exit_code}")
+        say(
+            f"the report says {found.verdict.upper()}; verified: {found.verified_verdict.upper()}; "
+            f"exit code {found.exit_code}"
+        )
     return found.exit_code
 
 
-def write(done: Any, results: Path, asked: Asked, key: Any) -> list[str]:
-    """Write what was asked for of a confirmed judgement; returns what to say of it."""
+def write(done: Any, results: Path, asked: Asked, key: Any) -> Written:
+    """Write what was asked for of a confirmed judgement."""
     from cratous.services.attestation.findings import Subject
-    from cratous.services.attestation.names import CSV_NAME, JUNIT_NAME, SARIF_NAME, VIEWS
     from cratous.services.attestation.writing import Wanted, write_views
+    from cratous.services.certify.result_files import no_result
 
-    chosen = ((asked.junit, JUNIT_NAME), (asked.sarif, SARIF_NAME), (asked.csv, CSV_NAME))
-    names = tuple(name for wanted, name in chosen if wanted) or VIEWS
     target = asked.folder(results)
-    inside = f"{target.name}: " if target.resolve().parent == results.resolve() else None
+    inside = target.resolve().parent == results.resolve()
     # the views themselves are no part of what they are about
-    unchecked = tuple(u for u in done.unchecked if inside is None or not u.startswith(inside))
+    unchecked = tuple(u for u in done.unchecked if not (inside and u == no_result(target.name)))
     subject = Subject(done.report, unchecked)
-    return write_views(subject, results, target, Wanted(names, asked.mission, key))
+    return write_views(subject, results, target, Wanted(asked.names, asked.mission, key))

@@ -25,7 +25,7 @@ def check(files: tuple[Path, ...], as_json: bool) -> int:
 
     Example:  cratous check examples/crossing/mission.yaml
 
-    Exit codes: 0 all can be used, 2 one cannot (all that is wrong is printed).
+    Exit codes: 0 all can be read, 2 one cannot (all that is wrong is printed).
     """
     found = [_read(file) for file in files]
     code = 2 if any(problems for _, problems in found) else 0
@@ -43,7 +43,7 @@ def check(files: tuple[Path, ...], as_json: bool) -> int:
         for one in problems:
             say(f"cratous: {one}", err=True)
         if not problems:
-            say(f"{file}: can be used")
+            say(f"{file}: can be read")
     return code
 
 

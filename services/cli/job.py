@@ -141,20 +141,22 @@ def fly_mission(
     standing: of `core.ledger.require`, asked before anything is flown in this process.
     """
     from cratous import __version__
+    from cratous.services.assumptions import sentence as assumed
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory, summary
     from cratous.services.certify.report import (
         Flown,
+        Judged,
         build_report,
         environment,
         mission_hash,
     )
-    from cratous.services.certify.verdicts import constraint_rows, plan_rows
+    from cratous.services.certify.verdicts import broken_of, constraint_rows, plan_rows
     from cratous.services.flight.loop import fly
     from cratous.services.logs.log import LogWriter
     from cratous.services.logs.records import to_data
     from cratous.services.monitor import Monitor
-    from cratous.services.results.names import CERTIFICATE_NAME, LOG_NAME
+    from cratous.services.results.names import ASSUMPTIONS, CERTIFICATE_NAME, LOG_NAME
 
     if not settings.daa:
         mission = replace(mission, instances=())
@@ -182,19 +184,25 @@ def fly_mission(
             if plan.certificate:
                 write_certificate(bus, folder / CERTIFICATE_NAME)
             writer.note("plan", to_data(plan))
-            monitor = Monitor(mission, plan, lambda v: tell(f"VIOLATION {sentence(v)}"))
+            monitor = Monitor(
+                mission,
+                plan,
+                lambda v: tell(f"VIOLATION {sentence(v)}"),
+                lambda row: tell(f"ASSUMPTION {assumed(row)}"),
+            )
             bus.tap(monitor.tap)
             if onlooker is not None:
                 onlooker.planned(checks, monitor)
             fly(mission, plan, bus, daa=settings.daa, progress=_progress(tell))
-            verdicts = monitor.verdicts()
+            verdicts, assumptions = monitor.verdicts(), monitor.assumptions()
         counts = calls.data()
         flown = replace(flown, proofs=inventory(standing, counts))
         writer.note("calls", counts)
+        writer.note(ASSUMPTIONS, broken_of(assumptions))
         writer.note("proofs", flown.meta()["proofs"])
     tell(f"evidence: {summary(flown.proofs)}")
     rows = plan_rows(checks) + constraint_rows(verdicts, "flight")
-    return build_report(mission, plan, rows, log, flown)
+    return build_report(mission, plan, Judged(rows, assumptions), log, flown)
 
 
 def refuse_bad_plan(checks: list[Verdict]) -> None:

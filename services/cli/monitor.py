@@ -60,7 +60,8 @@ def monitor(
     allow_unproved: bool,
     **attached: Any,
 ) -> int:
-    """Replay a message LOG (log.sqlite, or its folder) through the monitor of G1 to G5.
+    """Replay a message LOG (log.sqlite, or its folder) through the monitor of G1 to G5, and of the
+    assumptions of the theorems on the whole system: held, broken since when, or not observed and why.
 
     With --requirements, hold a trace (a CSV file of signals; with *.req also a message log of any
     format) against requirements of your own.
@@ -108,18 +109,19 @@ def monitor(
 
         return monitor_model.model(log, as_json, allow_unproved)
     from cratous.core import ledger
+    from cratous.services.assumptions import lines as assumption_lines
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory, summary
     from cratous.services.certify.rejudge import watch
     from cratous.services.certify.verdicts import constraint_rows, requirement_rows
     from cratous.services.cli.progress import waiting
-    from cratous.services.cli.show import requirement_table
+    from cratous.services.cli.show import requirement_table, say
 
     with waiting("holding the code against its proofs", as_json) as wait:
         standing = ledger.require(allow_unproved=allow_unproved)
         wait.at("judging the messages of the log")
         with counted() as calls:
-            judged = watch(log)
+            judged, assumptions = watch(log)
     evidence = inventory(standing, calls.data())
     rows = constraint_rows(judged, "flight")
     code = exit_code([v.outcome for v in judged])
@@ -129,6 +131,7 @@ def monitor(
         data = {
             "requirements": requirement_rows(rows),
             "constraints": rows,
+            "assumptions": assumptions,
             "proofs": standing.line,
             "evidence": evidence,
             "exit_code": code,
@@ -136,6 +139,8 @@ def monitor(
         click.echo(json.dumps(data, indent=1))
     else:
         requirement_table(requirement_rows(rows))
+        for line in assumption_lines(assumptions):
+            say(line)
         click.echo(f"proofs: {standing.line}")
         click.echo(f"evidence: {summary(evidence)}")
     return code

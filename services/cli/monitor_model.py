@@ -12,9 +12,11 @@ from cratous.spec.files.printable import json_text
 def model(log: Path, as_json: bool, allow_unproved: bool) -> int:
     """Print whether each event of authority is a step of the model, or the first that is not; the exit code.
 
-    0 all are, 1 one is not, 3 all are by kernels that have no proof.
+    0 all are, 1 one is not, 3 all are by kernels that have no proof, or no vehicle has an ICAROUS instance: then
+    nothing was asked of the model, and the log neither fits nor fails to.
     """
     from cratous.core import ledger
+    from cratous.services.certify.evidence import counted
     from cratous.services.certify.rejudge import subject
     from cratous.services.cli.show import say
     from cratous.services.logs.log import read_envelopes, read_meta
@@ -33,16 +35,18 @@ def model(log: Path, as_json: bool, allow_unproved: bool) -> int:
             expected="true or false",
             got=str(avoidance),
         )
-    found = replay(mission, avoidance, read_envelopes(log))
-    code = 1 if found.finding is not None else 3 if standing.problems else 0
-    unseen = coverage.rows(found.passed)
+    with counted() as calls:
+        found = replay(mission, avoidance, read_envelopes(log))
+    asked = bool(found.vehicles)
+    code = 1 if found.finding is not None else 3 if standing.problems or not asked else 0
+    steps, unseen = coverage.steps(calls.data()), coverage.rows(found.passed)
     if as_json:
         data = {
-            "fits": found.finding is None,
+            "fits": False if found.finding is not None else True if asked else None,
             "finding": found.finding._asdict() if found.finding is not None else None,
             "events": dict(sorted(found.events.items())),
             "vehicles_with_icarous": found.vehicles,
-            "steps": coverage.steps(),
+            "steps": steps,
             "not_covered": unseen,
             "proofs": standing.line,
             "exit_code": code,
@@ -53,11 +57,13 @@ def model(log: Path, as_json: bool, allow_unproved: bool) -> int:
     if found.finding is not None:
         say(f"DOES NOT FIT the model: {found.finding.text}")
         say("what follows it in the log was not looked at")
-    else:
+    elif asked:
         say(f"fits the model: each of {found.events.total()} events is a step of it")
+    else:
+        say("not known whether it fits the model: no vehicle was flown with an ICAROUS instance")
     say(f"events: {events or 'none'}; {found.vehicles} vehicles with ICAROUS")
-    for step, kernels in coverage.steps().items():
-        say(f"covered: {step} ({', '.join(k.rpartition('.')[2] for k in kernels)})")
+    for line in coverage.lines(steps):
+        say(line)
     for row in unseen:
         say(f"not covered: {row}")
     click.echo(f"proofs: {standing.line}")

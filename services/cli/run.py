@@ -29,6 +29,14 @@ Tell = Callable[[str], None]
 )
 @click.option("--no-daa", is_flag=True, help="Switch avoidance off; the requirements stay.")
 @click.option("--allow-unproved", is_flag=True, help="Fly kernels without proof (recorded).")
+@click.option(
+    "--processes", is_flag=True,
+    help="Fly with simulator, UxAS and each ICAROUS in processes of their own, in real time.",
+)  # fmt: skip
+@click.option(
+    "--rate", type=click.FloatRange(0.1, 100), metavar="X",
+    help="Times real time, with --processes. [1]",
+)  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="No progress, only the result.")
 def run(
@@ -39,13 +47,16 @@ def run(
     no_daa: bool,
     allow_unproved: bool,
     as_json: bool,
-    quiet: bool,
+    **how: Any,
 ) -> int:
     """Plan, prove, fly, monitor and certify a MISSION.
 
     MISSION is a mission file (YAML), or a UxAS folder or configuration as it is. The results,
     report.html first of all, are written to out/<mission>/ when everything is done; former results
     there are replaced, other files stay.
+
+    With --processes a mission file is flown by processes that `ps` shows, over sockets of loopback and
+    against the clock: `cratous sim`, `cratous uxas` and a `cratous icarous` for each protected vehicle.
 
     Example:  cratous run examples/crossing/mission.yaml
 
@@ -54,7 +65,17 @@ def run(
     """
     command = ["cratous", "run", shown_path(mission)]
     command += ["--no-daa"] * no_daa + ["--allow-unproved"] * allow_unproved
-    daa = not no_daa
+    daa, quiet, rate = not no_daa, bool(how["quiet"]), how["rate"]
+    if rate is not None and not how["processes"]:
+        raise click.UsageError("--rate is of --processes")
+    if how["processes"]:
+        if seed or seeds is not None:
+            raise click.UsageError(
+                "--processes flies a mission as it is written: no --seed, no --seeds"
+            )
+        command += ["--processes"] + (["--rate", f"{rate:g}"] if rate is not None else [])
+        settings = Settings(daa, allow_unproved, shlex.join(command))
+        return fly_and_show(mission, seed, out, settings, as_json, quiet, rate or 1.0)
     if seeds is not None:
         if seed:
             raise click.UsageError("--seed and --seeds exclude each other")
@@ -65,13 +86,20 @@ def run(
 
 
 def fly_and_show(
-    mission: Path, seed: int, out: Path | None, settings: Settings, as_json: bool, quiet: bool
+    mission: Path,
+    seed: int,
+    out: Path | None,
+    settings: Settings,
+    as_json: bool,
+    quiet: bool,
+    rate: float | None = None,
 ) -> int:
-    """Run one mission and print what came of it; returns the exit code."""
+    """Run one mission and print what came of it; returns the exit code. rate: in processes, so many times
+    real time; None: in this process, in virtual time."""
     silent = quiet or as_json
     with waiting("loading the mission", silent) as wait:
         tell = untold if silent else wait.tell
-        report, folder = run_one(mission, seed, out or Path("out"), settings, tell)
+        report, folder = run_one(mission, seed, out or Path("out"), settings, tell, rate)
     if as_json:
         click.echo(json.dumps(summary(report, folder), indent=1))
     else:
@@ -85,16 +113,21 @@ def shown_path(path: Path) -> str:
 
 
 def run_one(
-    path: Path, seed: int, out: Path, settings: Settings, tell: Tell
+    path: Path, seed: int, out: Path, settings: Settings, tell: Tell, rate: float | None = None
 ) -> tuple[dict[str, Any], Path]:
-    """Load, run and keep one mission; returns the report and its folder."""
+    """Load, run and keep one mission; returns the report and its folder. rate: as in `fly_and_show`."""
     from cratous.services.loading import load
     from cratous.services.results.folder import results_folder
 
     loaded = load(path, seed)
     target = out / folder_name(loaded)
     with results_folder(target, tell) as folder:
-        report = run_mission(loaded, folder, settings, tell)
+        if rate is None:
+            report = run_mission(loaded, folder, settings, tell)
+        else:
+            from cratous.services.cli.processes_job import run_in_processes
+
+            report = run_in_processes(loaded, path, folder, settings, rate, tell)
     return report, target
 
 
@@ -115,6 +148,8 @@ def summary(report: dict[str, Any], folder: Path | None) -> dict[str, Any]:
 
 
 def _show(report: dict[str, Any], folder: Path) -> None:
+    from cratous.services.assumptions import sentence
+
     flight = report["flight"]
     requirement_table(report["requirements"])
     for served in flight["served"]:
@@ -124,6 +159,9 @@ def _show(report: dict[str, Any], folder: Path) -> None:
             f"p{served['task']}: {served['phase'].lower()} by {who} "
             f"at {served['time_ms'] / 1000:.1f} s, {100 * served['served']:.1f} % served{note}"
         )
+    for row in report["assumptions"]:
+        if row["state"] == "broken":
+            say(f"assumption {row['name']}: {sentence(row)}")
     count = len(flight["takeovers"])
     say(
         f"{report['verdict'].upper()}: {flight['outcome']}, {flight['end_ms'] / 1000:.1f} s of "

@@ -13,7 +13,7 @@ from typing import Any
 import click
 
 MISSIONS = (".yaml", ".yml")
-FLIGHT = "cratous.services.cli.serve_flight"
+FLIGHT, PLANNER = "cratous.services.cli.serve_flight", "cratous.services.cli.serve_plan"
 
 
 @click.command()
@@ -23,6 +23,7 @@ FLIGHT = "cratous.services.cli.serve_flight"
     "--port", type=click.IntRange(0, 65535), default=8760, show_default=True,
     help="Port on 127.0.0.1; 0 takes a free one.",
 )  # fmt: skip
+@click.option("--edit", is_flag=True, help="MISSION: edit and plan it; nothing flies.")
 @click.option("--out", type=click.Path(path_type=Path), help="MISSION: folder for results. [out]")
 @click.option("--seed", type=click.IntRange(0), help="MISSION: variant; 0 is as written.")
 @click.option("--no-daa", is_flag=True, help="MISSION: avoidance off; the requirements stay.")
@@ -31,6 +32,7 @@ def serve(
     run: Path,
     other: Path | None,
     port: int,
+    edit: bool,
     out: Path | None,
     seed: int | None,
     no_daa: bool,
@@ -44,8 +46,11 @@ def serve(
     that is printed may command the flight, from one page at a time.
 
     RUN RUN_B are two runs of missions in the same frame: one clock, a map, altitudes and events of
-    each, and a table of what one alone has or has otherwise, such as takeovers and verdicts, with
-    instants to jump to.
+    each, and a table of what only one of them has or what is not the same in both, such as takeovers
+    and verdicts, with instants to jump to.
+
+    With --edit the mission is edited: on the map, as text, its relations with the place of an error
+    while they are typed; it is planned as it stands, and saved to its file.
 
     Map with tracks, routes, zones, tasks and takeovers, altitudes over time, verdicts, and events to
     jump to. The address of the page names the instant, so it can be kept. Only this machine reaches
@@ -54,6 +59,7 @@ def serve(
     \b
     Example:  cratous serve out/crossing
               cratous serve out/crossing bare/crossing
+              cratous serve examples/crossing/mission.yaml --edit
 
     Exit codes: 0 asked to end (Ctrl-C, SIGTERM), 2 bad input.
     """
@@ -61,9 +67,12 @@ def serve(
     from cratous.services.ground_station.live_session import LiveSession
     from cratous.services.ground_station.recording import recording
     from cratous.services.ground_station.server import (
+        PAGE_OF_EDITOR,
         PAGE_OF_TWO,
+        Commands,
         GroundStation,
         LiveRecorded,
+        ReadAnew,
         Recorded,
     )
     from cratous.services.logs.source import open_log
@@ -80,12 +89,24 @@ def serve(
     missions = [path for path in (run, other) if path and _is_mission(path)]
     if other is not None and missions:
         raise click.UsageError(f"two runs are shown side by side, and {missions[0]} is a mission")
+    if edit and (not missions or out is not None or seed is not None or no_daa):
+        raise click.UsageError("--edit needs a MISSION, and goes without --out, --seed, --no-daa")
     with ExitStack() as stack:
-        if missions:
+        if edit:
+            from cratous.services.mission_editor.editor import LONGEST, Editor
+
+            editor = stack.enter_context(closing(Editor(run, PLANNER, allow_unproved)))
+            commands = Commands(editor.orders, LONGEST, {"/planned.json": editor.planned})
+            shown = ReadAnew(editor.opened)
+            server = stack.enter_context(
+                GroundStation(shown, port, first=PAGE_OF_EDITOR, commands=commands)
+            )
+            url = f"{server.url}?token={editor.token}"
+        elif missions:
             asked = _asked(run, out or Path("out"), seed or 0, no_daa, allow_unproved)
             live = stack.enter_context(closing(LiveSession(FLIGHT, asked)))
-            shown = LiveRecorded(live, lambda folder: replayed(Path(folder)))
-            server = stack.enter_context(GroundStation(shown, port, live))
+            flown = LiveRecorded(live, lambda folder: replayed(Path(folder)))
+            server = stack.enter_context(GroundStation(flown, port, live))
             url = f"{server.url}?token={live.token}"
         else:
             if out is not None or seed is not None or no_daa or allow_unproved:

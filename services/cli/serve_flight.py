@@ -10,6 +10,7 @@ import os
 import signal
 import sys
 import threading
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -37,16 +38,17 @@ def main(asked: dict[str, Any]) -> int:
         send({"status": {"state": state, **more}})
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who started this
-    try:
-        with stoppable():
-            return _fly(asked, send, status)
-    except (Stopped, Ended):
-        status("stopped", text="The flight was stopped; no results were written.")
-        return 1
-    except CratousError as error:
-        told = error.data() if isinstance(error, BadInput) else {"error": str(error)}
-        status("failed", text=str(error), error=told)
-        return 2
+    with suppress(BrokenPipeError):  # who started this is gone: there is nobody to tell
+        try:
+            with stoppable():
+                return _fly(asked, send, status)
+        except (Stopped, Ended):
+            status("stopped", text="The flight was stopped; no results were written.")
+        except CratousError as error:
+            told = error.data() if isinstance(error, BadInput) else {"error": str(error)}
+            status("failed", text=str(error), error=told)
+            return 2
+    return 1
 
 
 def _fly(asked: dict[str, Any], send: Any, status: Any) -> int:
@@ -64,27 +66,37 @@ def _fly(asked: dict[str, Any], send: Any, status: Any) -> int:
         if not text.startswith("\r") or "of flight" not in text:
             send({"status": {"text": text.strip()}})
 
-    status("planning")
-    with results_folder(target, tell) as folder:
-        report = run_mission(mission, folder, settings, tell, live)
-    live.tell()
-    live.verdicts(report)
-    os.close(write)
-    judged.join()
+    try:
+        status("planning")
+        with results_folder(target, tell) as folder:
+            report = run_mission(mission, folder, settings, tell, live)
+        live.tell()
+    finally:
+        live.end_judge()
+        os.close(write)
+        judged.join()
+    live.verdicts(report)  # the last word: whatever the judge wrote has been sent before it
     status("ended", text=f"{report['verdict'].upper()}: results in {target}", folder=str(target))
     return 0
 
 
 def _commands(live: LiveFlight) -> None:
-    """Do what is asked for, line by line; stopping is a signal, so that it also ends a search."""
-    for line in sys.stdin:
-        asked = json.loads(line)
-        if asked.get("do") == "stop":
-            break
-        live.command(asked)
-    # the signal may meet the flight where Python drops what it raises, as within a fork
-    live.pace.end()
-    os.kill(os.getpid(), signal.SIGTERM)
+    """Do what is asked for, line by line; the flight ends with it, however it ends.
+
+    Stopping is a signal, so that it also ends a search.
+    """
+    try:
+        with suppress(BrokenPipeError):  # whoever gave the command is gone
+            for line in sys.stdin:
+                asked = json.loads(line)
+                if asked.get("do") == "stop":
+                    break
+                live.command(asked)
+    finally:
+        # to the main thread, which wakes up even where it waits; first, so that it interrupts no cleaning up
+        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGTERM)
+        # the signal may meet the flight where Python drops what it raises, as within a fork
+        live.pace.end()
 
 
 if __name__ == "__main__":

@@ -40,12 +40,14 @@ class Phase(IntEnum):
 
 class Leg(NamedTuple):
     """What ICAROUS did on the way to an item and on its path. takeovers: so many; under_ms: it flew so long
-    until taken_ms, when it took over last; because: why it did then."""
+    until taken_ms, when it took over last; because: why it did then; task_id: of the item, None behind the last.
+    """
 
     takeovers: int = 0
     under_ms: int = 0
     taken_ms: int = 0
     because: str = ""
+    task_id: int | None = None
 
     def taken(self, now_ms: int) -> Leg:
         """ICAROUS takes over."""
@@ -59,9 +61,16 @@ class Leg(NamedTuple):
         """How long ICAROUS has flown on this leg [ms]. suspended: it does now."""
         return self.under_ms + (now_ms - self.taken_ms if suspended else 0)
 
-    def next(self, now_ms: int) -> Leg:
-        """The leg after this one, in which ICAROUS goes on flying if it does."""
-        return Leg(0, 0, now_ms, self.because)
+    def begun_anew(self, now_ms: int) -> Leg:
+        """A leg to the same item on which nothing has happened yet; ICAROUS goes on flying if it does."""
+        return Leg(0, 0, now_ms, self.because, self.task_id)
+
+    def to(self, task_id: int | None, now_ms: int) -> Leg:
+        """The leg to the item of this task: the same leg, with all that was counted on it, where it is the same
+        task, for another plan moves nobody out of the way; otherwise the next one."""
+        if task_id == self.task_id:
+            return self
+        return self.begun_anew(now_ms)._replace(task_id=task_id)
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,9 @@
 """The legs of chains that ICAROUS does not leave: they are given up by name, so that nothing waits for ever.
 
-A leg is the way to an item and the item's path. How often ICAROUS may take over on it, and for how long it may
-fly in all, is bounded; the kernel `leg_given_up` decides. The task then fails as blocked, with what ICAROUS said
-last, and the vehicle makes for its next one. One that has none left circles where it is, so that it can be
-handed back wherever that is permitted.
+A leg is the way to an item and the item's path, also where another plan in flight begins it again. How often
+ICAROUS may take over on it, and for how long it may fly in all, is bounded; the kernel `leg_given_up` decides.
+The task then fails as blocked, with what ICAROUS said last, and the vehicle makes for its next one. One that
+has none left circles where it is, so that it can be handed back wherever that is permitted.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.task_transitions import circling, fail
 
 MOST_TAKEOVERS = 12
-"""On one leg ICAROUS takes over at most this often."""
+"""On one leg ICAROUS may take over this often: it is given up at the takeover after that."""
 LONGEST_LOOKAHEADS = 5
 """On one leg it flies for at most this many times its look-ahead."""
 ANEW_MS = 10_000
@@ -55,5 +55,5 @@ def _blocked(chain: Chain, under_ms: int) -> str:
 def _circle_here(config: Config, state: State, chain: Chain, out: Out) -> State:
     track = circling(config, state, chain, 0.0, out)
     chain = chain.enter(chain.phase, track, state.now_ms)
-    state = state.put(replace(chain, leg=chain.leg.next(state.now_ms)))
+    state = state.put(replace(chain, leg=chain.leg.begun_anew(state.now_ms)))
     return route(state, chain.vehicle.id, out)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
@@ -11,11 +10,9 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.commands import location
 from cratous.services.flight.dynamics import AirState, clamp, wrap
 from cratous.services.mission.frames import Projection
-from cratous.services.mission.sensor import aim, footprint, look_on_line, zoomed
-from cratous.services.planning.flyers import camera_for
-from cratous.services.planning.point_ways import tilted
-from cratous.spec.mission import AREAS, Frame, Mission, Position, Task, TaskKind, Vehicle, View
-from cratous.spec.mission.plan import PlanItem
+from cratous.services.mission.sensor import footprint, zoomed
+from cratous.services.planning.targets import Angles, target_from
+from cratous.spec.mission import Frame, Mission, Position, Task, Vehicle
 
 
 class Looks(NamedTuple):
@@ -39,51 +36,15 @@ def looks(
 def target_of(
     chain: Chain, task: Task | None, state: AirState, terrain_m: float
 ) -> Position | None:
-    """The ground point to look at: of a line the one nearest to where the flown option's view looks,
-    as planning has it; the point; or, over an area, below the aircraft or where the view looks."""
-    if task is None or chain.phase is not Phase.TASK or not task.points:
+    """The ground point to look at, as the flown option was planned; None while no task is flown."""
+    if task is None or chain.phase is not Phase.TASK:
         return None
-    if task.kind is TaskKind.LINE_SEARCH:
-        height, view = state.position.alt_m - terrain_m, flown_view(chain, task)
-        here = (state.position.north_m, state.position.east_m)
-        n, e = look_on_line(here, state.heading_rad, task.points, view, height)
-        return Position(n, e, terrain_m)
-    if task.kind is TaskKind.POINT_SEARCH:
-        return task.points[0]
-    if task.kind in AREAS:
-        p = state.position
-        view = chosen_view(chain, task)
-        n, e = aim(p.north_m, p.east_m, state.heading_rad, view, p.alt_m - terrain_m)
-        return Position(float(n), float(e), terrain_m)
-    return None
-
-
-def chosen_view(chain: Chain, task: Task) -> View | None:
-    """The view for which the flown option was made: of several, the one with its elevation."""
     item = chain.item
-    if item is None or item.view_elevation_rad is None or not task.views:
-        return task.view
-    return _nearest(item, (task.view, *task.views))
-
-
-def flown_view(chain: Chain, task: Task) -> View | None:
-    """As `chosen_view`; where the task asks for none, the one that the option has brought itself."""
-    asked, item = chosen_view(chain, task), chain.item
-    brought = tilted(task, camera_for(task, chain.vehicle.cameras))
-    if asked is not None or item is None or item.view_elevation_rad is None or not brought:
-        return asked
-    return _nearest(item, brought)
-
-
-def _nearest(item: PlanItem, views: Iterable[View | None]) -> View:
-    wanted = (item.view_elevation_rad or 0.0, item.view_azimuth_rad)
-    return min(
-        (view for view in views if view is not None),
-        key=lambda v: (
-            abs(v.elevation_rad - wanted[0])
-            + abs(math.remainder(v.azimuth_rad - wanted[1], 2 * math.pi))
-        ),
-    )
+    made_for = Angles(None, 0.0)
+    if item is not None:
+        made_for = Angles(item.view_elevation_rad, item.view_azimuth_rad)
+    cameras = chain.vehicle.cameras
+    return target_from(state.position, state.heading_rad, task, made_for, cameras, terrain_m)
 
 
 def camera_states(

@@ -149,9 +149,10 @@ def _start(state: State, chain: Chain, item: PlanItem, at_ms: int, out: Out) -> 
 def next_item(config: Config, state: State, chain: Chain, at_ms: int, out: Out) -> State:
     """On the way to the next item of a chain that has not failed; circling where there is none. An item
     to which no way keeps the zones fails."""
-    chain = replace(chain, k=chain.next_k(dict(state.failed)), leg=chain.leg.next(at_ms))
-    state = state.put(chain)
+    chain = replace(chain, k=chain.next_k(dict(state.failed)))
     item, air = chain.item, state.air(chain.vehicle.id)
+    chain = replace(chain, leg=chain.leg.to(item.task_id if item else None, at_ms))
+    state = state.put(chain)
     if item is None:
         return _loiter(config, state, chain, at_ms, out)
     chain = replace(chain, speed_m_s=item.speed_m_s)

@@ -1,18 +1,21 @@
 """Two runs side by side, as plain data: both recordings and the rows in which they differ.
 
-A row says what was told by one run alone, or otherwise by the other, with the instants [ms after
-mission start]. What comes several times, such as takeovers of a vehicle, is paired by its number:
-the third with the third. Nothing is judged; equal means equal data, without any tolerance.
+A row names what only one of the runs has, or what is not the same in both, with its instants [ms
+after mission start]. What comes several times, such as takeovers of a vehicle, is paired in its
+order: the third with the third. Nothing is judged. Times, texts, verdicts and margins are compared
+exactly. Positions are compared as the page has them, to 0.1 m: those of aircraft once a second and
+where another one commands, those of waypoints north and east. What differs by less, or only in
+between, makes no row.
 """
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from cratous.services.certify.timeline import OTHER, PLAN
 from cratous.services.ground_station.recording import recording
 from cratous.services.logs.records import from_data, to_data
 from cratous.services.logs.source import open_log
@@ -20,9 +23,6 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission
 
 FORMAT = "cratous-comparison/1"
-ELSEWHERE = re.compile(r"ICAROUS takes over|handed back to|task \d+: |end of mission: ")
-"""Events that the authority, the phases and the end of a flight tell, too."""
-PLAN = "plan accepted"
 SETTINGS = ("avoidance", "seed")
 """Beside the mission, what a run says of how it was made."""
 OTHERWISE = "otherwise than A"
@@ -53,15 +53,16 @@ def comparison(run: Path, other: Path) -> dict[str, Any]:
     """All that is shown of two runs. Raises BadInput as `recording` and `check_comparable` do."""
     check_comparable(run, other)
     a, b = ({**recording(path), "run": str(path)} for path in (run, other))
-    rows = _settings(*_meta(run), *_meta(other))
-    for kind, said in KINDS.items():
-        rows += _rows(kind, said(a), said(b))
-    rows += _parting(a["tracks"], b["tracks"])
     unknown = [
         f"{name}: {one['verdicts']['why_none']}"
         for name, one in (("A", a), ("B", b))
         if "why_none" in one["verdicts"]
     ]
+    rows = _settings(_meta(run), _meta(other))
+    for kind, said in KINDS.items():
+        if not (unknown and kind in JUDGED):  # a verdict that is not known differs from none
+            rows += _rows(kind, said(a), said(b))
+    rows += _parting(a["tracks"], b["tracks"])
     return {"format": FORMAT, "a": a, "b": b, "differences": rows, "verdicts_why_none": unknown}
 
 
@@ -83,18 +84,23 @@ def _meta(path: Path) -> tuple[Mission, dict[str, Any]]:
 
 
 def _settings(
-    mission: Mission, meta: dict[str, Any], other: Mission, other_meta: dict[str, Any]
+    a: tuple[Mission, dict[str, Any]], b: tuple[Mission, dict[str, Any]]
 ) -> list[dict[str, Any]]:
-    """What was set otherwise: the parts of the mission, avoidance, seed."""
+    """Settings and parts of the mission that are not the same, or that one of the logs alone names."""
     found = []
     for name in SETTINGS:
-        sides = [Said(name, str(m[name]).lower(), None, m[name]) for m in (meta, other_meta) if name in m]  # fmt: skip
-        if len(sides) == 2:
-            found += _rows("setting", sides[:1], sides[1:])
-    one, two = to_data(mission), to_data(other)
-    for name in one:
-        sides = [Said(f"mission: {name}", _short(data[name]), None, data[name]) for data in (one, two)]  # fmt: skip
-        found += _rows("setting", sides[:1], sides[1:])
+        sides = [
+            [Said(name, str(meta[name]).lower(), None, meta[name])] if name in meta else []
+            for _, meta in (a, b)
+        ]
+        found += _rows("setting", *sides)
+    plain = [(to_data(mission), meta["mission"]) for mission, meta in (a, b)]
+    for name in plain[0][0]:
+        sides = [
+            [Said(f"mission: {name}", _short(read[name]), None, read[name])] if name in told else []
+            for read, told in plain
+        ]
+        found += _rows("setting", *sides)
     return found
 
 
@@ -199,8 +205,7 @@ def _authority(run: dict[str, Any]) -> list[Said]:
 def _plans(run: dict[str, Any]) -> list[Said]:
     return [
         Said("plan", event["text"], event["time_ms"], (event["time_ms"], event["text"]))
-        for event in run["events"]
-        if event["text"].startswith(PLAN)
+        for event in _events(run, PLAN)
     ]
 
 
@@ -217,15 +222,21 @@ def _routes(run: dict[str, Any]) -> list[Said]:
 
 
 def _phases(run: dict[str, Any]) -> list[Said]:
+    """What was told of tasks: where their phase changed, and again while it did not."""
     return [
         Said(
-            f"task {one['task']} {one['phase'].lower()}",
-            f"vehicle {one['vehicle']}",
+            f"task {one['task']} {one['phase'].lower()}{again}",
+            f"{_who(one)}, {100 * one['served']:.4g} % served{': ' * bool(one['note'])}{one['note']}",
             one["time_ms"],
-            (one["time_ms"], one["vehicle"]),
+            (one["time_ms"], one["vehicle"], one["served"], one["note"]),
         )
-        for one in run["phases"]
+        for name, again in (("phases", ""), ("in_phase", ", told again"))
+        for one in run[name]
     ]
+
+
+def _who(phase: dict[str, Any]) -> str:
+    return f"vehicle {phase['vehicle']}" if phase["vehicle"] else "no vehicle"
 
 
 def _others(run: dict[str, Any]) -> list[Said]:
@@ -237,9 +248,13 @@ def _others(run: dict[str, Any]) -> list[Said]:
             event["time_ms"],
             (event["time_ms"], event["text"]),
         )
-        for event in run["events"]
-        if not event["text"].startswith(PLAN) and not ELSEWHERE.match(event["text"])
+        for event in _events(run, OTHER)
     ]
+
+
+def _events(run: dict[str, Any], kind: str) -> list[dict[str, Any]]:
+    kinds = run["event_kinds"]
+    return [event for event, its in zip(run["events"], kinds, strict=True) if its == kind]
 
 
 def _end(run: dict[str, Any]) -> list[Said]:
@@ -258,3 +273,5 @@ KINDS: dict[str, Callable[[dict[str, Any]], list[Said]]] = {
     "verdict in detail": _parts,
 }
 """What is compared, in the order of the page."""
+JUDGED = ("verdict", "verdict in detail")
+"""What only the report of a run says."""

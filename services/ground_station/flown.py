@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from cratous.services.certify.timeline import Flight, FlightReader
+from cratous.services.ground_station.bands import Bands
 from cratous.services.ground_station.shapes import Shapes
 from cratous.services.logs.entry import Entry, any_data, to_text
 from cratous.services.logs.log import Row
@@ -26,7 +27,7 @@ class FlownRecording:
         self._last: Entry | None = None
         self._mission, self._plain = mission, to_data(mission)
         self._to_local = Projection(mission.frame).to_local
-        self.shapes, self.links = Shapes(self._to_local), Links()
+        self.shapes, self.links, self.bands = Shapes(self._to_local), Links(), Bands()
         self.reader = FlightReader(vehicle.id for vehicle in mission.vehicles)
 
     def add(self, entry: Entry) -> None:
@@ -39,6 +40,7 @@ class FlownRecording:
             self.links.add(entry)
         if (topic == GATED or not topic.startswith(READ_BY_FLIGHT)) and topic != STATE:
             self.shapes.add(entry, entry.time_ms)
+            self.bands.add(entry, entry.time_ms)
             return
         body = entry.body if isinstance(entry.body, str) else to_text(entry)
         self.reader.add(Row(entry.seq, entry.time_ms, entry.source, topic, body))
@@ -81,9 +83,12 @@ class FlownRecording:
             "authority": flight.authority,
             "takeovers": flight.takeovers,
             "phases": flight.phases,
+            "in_phase": flight.in_phase,
             "links": self.links.found,
+            "bands": self.bands.found,
             "events": flight.events,
-            "unread": self.shapes.unread,
+            "event_kinds": flight.event_kinds,
+            "unread": self.shapes.unread + self.bands.unread,
         }
 
     def footprints(self) -> list[dict[str, Any]]:

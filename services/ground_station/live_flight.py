@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 from cratous.bridge import lmcp
@@ -56,7 +58,7 @@ class LiveFlight:
     def _begin(self) -> dict[str, Any]:
         empty: dict[str, Any] = {key: [] for key in (*GROWING, "takeovers", "footprints")}
         return {
-            **self._recording.first(), **empty, "tracks": {}, "end_ms": 0, "outcome": "in flight", "unread": 0,
+            **self._recording.first(), **empty, "tracks": {}, "bands": {}, "end_ms": 0, "outcome": "in flight", "unread": 0,
             "verdicts": {"why_none": "the flight has not begun"},
         }  # fmt: skip
 
@@ -141,7 +143,6 @@ class LiveFlight:
 
     def verdicts(self, report: dict[str, Any]) -> None:
         """Send the verdicts of the report of the whole flight."""
-        self._reap(wait=True)
         self._send({"set": {"verdicts": shown(report, "report")}})
 
     def _ask(self) -> None:
@@ -153,12 +154,19 @@ class LiveFlight:
         if child:
             self._judge = child
             return
+        code = 1
         try:
-            data = json_text(self._so_far()).encode() + b"\n"
-            while data:
-                data = data[os.write(self._judged, data) :]
+            _keep_open(self._judged)
+            self._write(self._so_far())
+            code = 0
         finally:
-            os._exit(0)  # nothing of the flight is cleaned up by its copy
+            os._exit(code)  # nothing of the flight is cleaned up by its copy
+
+    def _write(self, update: dict[str, Any]) -> None:
+        """Write a line to the pipe of the verdicts; it begins a line of its own, whatever was written before."""
+        data = b"\n" + json_text(update).encode() + b"\n"
+        while data:
+            data = data[os.write(self._judged, data) :]
 
     def _so_far(self) -> dict[str, Any]:
         rows = plan_rows(self._checks) + constraint_rows(self._monitor.verdicts(), "flight")
@@ -172,20 +180,44 @@ class LiveFlight:
     def _reap(self, *, wait: bool) -> bool:
         """True iff no copy is at work any more."""
         if self._judge:
-            done, _ = os.waitpid(self._judge, 0 if wait else os.WNOHANG)
+            done, how = os.waitpid(self._judge, 0 if wait else os.WNOHANG)
             if not done:
                 return False
             self._judge = 0
+            code = os.waitstatus_to_exitcode(how)
+            if code:
+                ended = f"signal {-code}" if code < 0 else f"exit code {code}"
+                why = f"at {self._asked_ms / 1000:.1f} s the monitor could not be asked: its process failed ({ended})"
+                # by the same pipe, so that no older verdicts come after it
+                self._write({"set": {"verdicts": {"why_none": why}}})
         return True
+
+    def end_judge(self) -> None:
+        """End the copy that judges, if one is at work; what it would have said is not needed any more."""
+        self._monitor = None  # nobody is asked again
+        if self._judge:
+            os.kill(self._judge, signal.SIGKILL)
+            os.waitpid(self._judge, 0)
+            self._judge = 0
+
+
+def _keep_open(kept: int) -> None:
+    """Close all other descriptors of a copy of this process: locks and ends of pipes are the flight's alone."""
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    for number in map(int, os.listdir("/dev/fd")):
+        if number > 2 and number != kept:
+            with suppress(OSError):  # the one that listed them
+                os.close(number)
 
 
 def forward(source: int, send: Send) -> threading.Thread:
-    """A thread that sends each line of a pipe on, until it is closed."""
+    """A thread that sends each line of a pipe on, until it is closed; a line that was cut off is left out."""
 
     def run() -> None:
-        with os.fdopen(source, encoding="utf-8") as lines:
+        with os.fdopen(source, "rb") as lines, suppress(BrokenPipeError):
             for line in lines:
-                send(json.loads(line))
+                with suppress(ValueError):
+                    send(json.loads(line))
 
     thread = threading.Thread(target=run, daemon=True)
     thread.start()

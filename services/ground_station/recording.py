@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from cratous.services.ground_station.bands import Bands
 from cratous.services.ground_station.flown import STATE, FlownRecording
 from cratous.services.ground_station.positions import Positions
 from cratous.services.ground_station.shapes import Shapes
@@ -85,13 +86,14 @@ def _flown(entries: Iterator[Entry], mission: Mission) -> dict[str, Any]:
 
 def _told(source: Source, entries: Iterator[Entry]) -> dict[str, Any]:
     """A log of others: states, routes and zones as its messages tell them."""
-    positions, end_ms = Positions(), 0
+    positions, bands, end_ms = Positions(), Bands(), 0
     shapes: Shapes | None = None
     waiting: list[tuple[Entry, int]] = []
     events: list[dict[str, Any]] = []
     for entry, time_ms in _timed(source, entries):
         end_ms = max(end_ms, time_ms)
         positions.add(entry, time_ms)
+        bands.add(entry, time_ms)
         waiting.append((entry, time_ms))
         if shapes is None and positions.frame is not None:
             shapes = Shapes(Projection(positions.frame).to_local)
@@ -122,8 +124,9 @@ def _told(source: Source, entries: Iterator[Entry]) -> dict[str, Any]:
         "takeovers": [],
         "phases": [],
         "links": None,
+        "bands": bands.found,
         "events": events,
-        "unread": positions.unread + (shapes.unread if shapes else 0),
+        "unread": positions.unread + bands.unread + (shapes.unread if shapes else 0),
     }
 
 

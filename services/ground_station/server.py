@@ -3,7 +3,7 @@
 It listens on 127.0.0.1 and answers only requests whose Host header names it so, since a page of
 somewhere else could reach it under a name of its own (DNS rebinding). It gives out the files of the
 page and the recording, and nothing of the disk by a name from outside. Of a replay it takes GET and
-HEAD alone; while a mission is flown, commands too, from its own page (Origin) with the token.
+HEAD alone; while a mission is flown or edited, commands too, from its own page (Origin) with the token.
 """
 
 from __future__ import annotations
@@ -11,10 +11,11 @@ from __future__ import annotations
 import gzip
 import json
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
+from types import MappingProxyType
 from typing import Any, NamedTuple, Protocol
 from urllib.parse import parse_qs
 
@@ -28,7 +29,9 @@ REQUEST_S = 10.0
 MOST_AT_ONCE = 32
 LONGEST = 1000
 """Of a command [bytes]."""
-PAGE, PAGE_OF_TWO = "index.html", "compare.html"
+PAGE, PAGE_OF_TWO, PAGE_OF_EDITOR = "index.html", "compare.html", "edit.html"
+Order = Callable[[str, str, Any], dict[str, Any] | None]
+"""Obeys what a page asks for, by its token and number; its answer, if there is one. Raises NotObeyed."""
 TYPES = {
     "html": "text/html; charset=utf-8",
     "css": "text/css; charset=utf-8",
@@ -57,13 +60,13 @@ class Answer(NamedTuple):
 
 
 def page_files(first: str = PAGE) -> dict[str, Answer]:
-    """The files of the page by their path; first: PAGE or PAGE_OF_TWO, which `/` is."""
+    """The files of the page by their path; first: of PAGES, which `/` is."""
     found = {}
     for file in files(__package__).joinpath("page").iterdir():
         kind = TYPES.get(file.name.rpartition(".")[2])
         if kind is not None:
             found[f"/{file.name}"] = Answer(HTTPStatus.OK, kind, file.read_bytes())
-    pages = {page: found.pop(f"/{page}") for page in (PAGE, PAGE_OF_TWO)}
+    pages = {page: found.pop(f"/{page}") for page in (PAGE, PAGE_OF_TWO, PAGE_OF_EDITOR)}
     return {**found, "/": pages[first]}
 
 
@@ -107,6 +110,21 @@ class Recording(Protocol):
         """As JSON, or why there is none; waits until that is known."""
 
 
+class ReadAnew:
+    """What is read each time that a page opens."""
+
+    def __init__(self, read: Callable[[], dict[str, Any]]) -> None:
+        """read: gives it or raises BadInput."""
+        self._read = read
+
+    def answer(self) -> Answer:
+        """See `Recording`."""
+        try:
+            return _json(HTTPStatus.OK, self._read())
+        except BadInput as error:
+            return _json(HTTPStatus.UNPROCESSABLE_ENTITY, error.data())
+
+
 class LiveRecorded:
     """A mission that is flown: what it says, and once the flight has ended, its results."""
 
@@ -128,17 +146,32 @@ class LiveRecorded:
             return _json(HTTPStatus.UNPROCESSABLE_ENTITY, error.data())
 
 
+class Commands(NamedTuple):
+    """What pages may ask for: orders by path, of so many bytes at most; polled: what they may look at."""
+
+    orders: Mapping[str, Order]
+    longest: int = LONGEST
+    polled: Mapping[str, Callable[[], dict[str, Any]]] = MappingProxyType({})
+
+
 class GroundStation(ThreadingHTTPServer):
     """The server; `serve_forever` answers until `shutdown`."""
 
     daemon_threads = True
 
     def __init__(
-        self, recorded: Recording, port: int, live: LiveSession | None = None, first: str = PAGE
+        self,
+        recorded: Recording,
+        port: int,
+        live: LiveSession | None = None,
+        first: str = PAGE,
+        commands: Commands | None = None,
     ) -> None:
         """port: 0 takes a free one; live: the flight that is shown, if it is one; first: which page
-        shows it. Raises BadInput if the port cannot be had."""
+        shows it; commands: what pages may ask for, by default those of the flight. Raises BadInput if the port
+        cannot be had."""
         self.recorded, self.live, self.pages = recorded, live, page_files(first)
+        self.commands = commands or (Commands({"/command": live.order}) if live else Commands({}))
         self._places = threading.Semaphore(MOST_AT_ONCE)
         try:
             super().__init__((HOST, port), _Handler)
@@ -179,11 +212,11 @@ class _Handler(BaseHTTPRequestHandler):
         self._send(self._found(), body=False)
 
     def do_POST(self) -> None:
-        if self.server.live is None:
+        if not self.server.commands.orders:
             self.send_error(HTTPStatus.NOT_IMPLEMENTED)
             return
         self.close_connection = True
-        self._send(self._elsewhere() or self._order(self.server.live), body=True)
+        self._send(self._elsewhere() or self._order(), body=True)
 
     def _elsewhere(self) -> Answer | None:
         """The refusal of a request that calls the server by another name; None for its own."""
@@ -193,27 +226,30 @@ class _Handler(BaseHTTPRequestHandler):
         told = f"this server is {self.server.url} and answers to no other name"
         return _json(HTTPStatus.MISDIRECTED_REQUEST, {"error": told})
 
-    def _order(self, live: LiveSession) -> Answer:
-        """A command for the flight."""
-        if self.path != "/command":
+    def _order(self) -> Answer:
+        """A command of a page."""
+        obey, longest = self.server.commands.orders.get(self.path), self.server.commands.longest
+        if obey is None:
             return _json(HTTPStatus.NOT_FOUND, {"error": "there is no such page"})
         if self.headers.get("Origin", "") != f"http://{self.headers['Host'].lower()}":
             return _json(HTTPStatus.FORBIDDEN, {"error": "commands come from this page alone"})
         if self.headers.get("Content-Type") != "application/json":
             return _json(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, {"error": "expected JSON"})
         length = self.headers.get("Content-Length", "")
-        if not (length.isascii() and length.isdigit() and 0 < int(length[:9]) <= LONGEST):
-            told = f"expected 1 to {LONGEST} bytes, with Content-Length"
+        if not (length.isascii() and length.isdigit() and 0 < int(length[:9]) <= longest):
+            told = f"expected 1 to {longest} bytes, with Content-Length"
             return _json(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, {"error": told})
         try:
             asked = json.loads(self.rfile.read(int(length)))
         except (ValueError, RecursionError):
             return _json(HTTPStatus.BAD_REQUEST, {"error": "this is no JSON"})
         try:
-            live.order(*self._sender(), asked)
+            answer = obey(*self._sender(), asked)
         except NotObeyed as refused:
             return _json(HTTPStatus(refused.status), {"error": refused.why})
-        return _json(HTTPStatus.OK, {"done": True})
+        except BadInput as error:
+            return _json(HTTPStatus.UNPROCESSABLE_ENTITY, error.data())
+        return _json(HTTPStatus.OK, {"done": True} if answer is None else answer)
 
     def _sender(self) -> tuple[str, str]:
         """Token and number of the page, as it gives them."""
@@ -236,6 +272,8 @@ class _Handler(BaseHTTPRequestHandler):
             return self.server.recorded.answer()
         if path == "/live.json" and self.server.live is not None:
             return self._told(self.server.live, query)
+        if path in self.server.commands.polled:
+            return _json(HTTPStatus.OK, self.server.commands.polled[path]())
         found = self.server.pages.get(path)
         return found or _json(HTTPStatus.NOT_FOUND, {"error": "there is no such page"})
 

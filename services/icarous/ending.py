@@ -1,9 +1,13 @@
 """The end of the way that an instance was told: the hold there is looked at, and nothing beyond it.
 
-UxAS tells the way for farther than is looked, or to its end; there the vehicle loiters, and nothing is ever
-predicted straight on past it. The circle touches the end, to the right or to the left, so both are looked at:
-each is a disc that stands beside the end, which proved kernels permit or not. Zones are not the hold's to
-watch: UxAS circles where they are kept, or says that it does not.
+UxAS tells the way for farther than is looked, or to its end, where the vehicle loiters. The circle that touches
+the end, to the right or to the left, is looked at on both sides: each is a disc that stands beside the end, which
+proved kernels permit or not. The hold that is flown may be elsewhere: higher, while other vehicles still have
+tasks, or at a place near by where a circle keeps the zones (`services.flight.inflight_routes`). That way is told
+once it is flown. Zones are not the hold's to watch: UxAS circles where they are kept, or says that it does not.
+
+Straight flight is predicted, and no hold is looked at, where the vehicle is more than 30 m off its path, more than
+2 s of flight past the end, or has been told no way (`foresight.predicted`).
 """
 
 from __future__ import annotations

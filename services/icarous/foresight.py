@@ -34,8 +34,8 @@ def scene_of(config: Config, state: State, sensed: Sensed) -> Scene:
 
 
 def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahead:
-    """The own way ahead: along the waypoints and into the hold at their end while on the path, else
-    straight on."""
+    """The own way ahead: along the waypoints and into the hold at their end while on the path (within ON_PATH_M),
+    and in the hold for PASSED_S past the last one; else straight on."""
     told, motion, lookahead_s = state.told, sensed.motion, scene.lookahead_s
     here, index = flat(motion.position), told.next_index
     if 0 < index < len(told.waypoints):

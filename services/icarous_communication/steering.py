@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.bridge.text_protocol import GoToWaypoint, Message, SetPosition, SetVelocity
-from cratous.core.authority.gate import Gate
+from cratous.core.authority.gate import UXAS, Gate
+from cratous.services.flight.commands import gated
 from cratous.services.flight.dynamics import GRAVITY_M_S2, AirState
+from cratous.services.flight.link_end import Peer
 from cratous.services.flight.messages import Say
 from cratous.services.flight.notices import authority_change, gate_state
 from cratous.services.icarous_communication.plans import START, Plan
@@ -17,6 +20,7 @@ from cratous.spec.errors import BadInput
 
 AHEAD_S = 10.0
 """A SETVEL names the altitude that its climb reaches after this [s]; the next SETVEL comes much sooner."""
+COMMANDS = ("MissionCommand", "VehicleActionCommand")
 HOLD_BANK_RAD = math.radians(20.0)
 """The turns of a hold are no tighter than with this bank."""
 
@@ -88,6 +92,29 @@ def _loiter(lat_deg: float, long_deg: float, alt_m: float, air: AirState) -> Any
         Airspeed=air.speed_m_s,
         Location=place,
     )
+
+
+def at_gate(name: str, vehicle_id: int, gate: Gate, sender: int, command: Any) -> Say:
+    """That a command has come to a vehicle's gate, and from whom, for whoever listens on the bus."""
+    return Say(gated(vehicle_id, gate.epoch, sender, command), name)
+
+
+def in_flight(name: str, peer: Peer, plan: Plan | None) -> list[Say]:
+    """What a vehicle flies already comes to its gate, when that stands for the first time."""
+    return [] if plan is None else [at_gate(name, peer.vehicle_id, peer.gate, UXAS, plan.command)]
+
+
+def taken_back(
+    name: str, vehicle_id: int, now_ms: int, gate: Gate, onward: Iterable[object]
+) -> list[Say]:
+    """How the gate stood until now, where ICAROUS offers control, and the first command that takes it: gate
+    is that of before, onward what the vehicle is sent on with."""
+    found = [Say(gate_state(vehicle_id, now_ms, gate), name)] if gate.offered else []
+    said = (one.body for one in onward if isinstance(one, Say))
+    command = next((body for body in said if type(body).__name__ in COMMANDS), None)
+    if command is not None:
+        found.append(at_gate(name, vehicle_id, gate, UXAS, command))
+    return found
 
 
 def told(name: str, vehicle_id: int, now_ms: int, gate: Gate) -> list[Say]:

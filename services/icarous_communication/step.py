@@ -13,23 +13,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.bridge.text_protocol import (
-    ORIGINAL_LIMITS,
-    GoToWaypoint,
-    Heartbeat,
-    Message,
-    SetMode,
-)
-from cratous.core.authority.gate import (
-    ICAROUS,
-    UXAS,
-    Gate,
-    gate_accepts,
-    gate_after,
-    gate_offer,
-    gate_takeover,
-)
-from cratous.core.authority.link_end import link_mode
+from cratous.bridge.text_protocol import ORIGINAL_LIMITS, GoToWaypoint, Heartbeat, Message, SetMode
+from cratous.core.authority.gate import ICAROUS, UXAS, gate_accepts, gate_after
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Motion
 from cratous.services.flight.dynamics import AirState
@@ -51,6 +36,7 @@ from cratous.services.flight.messages import (
     Watch,
     ZonesKnown,
 )
+from cratous.services.icarous_communication import modes
 from cratous.services.icarous_communication.plans import (
     Away,
     Plan,
@@ -75,10 +61,17 @@ from cratous.services.icarous_communication.state import (
     plane,
     turn_radius_of,
 )
-from cratous.services.icarous_communication.steering import action_of, command_of, hold, told
+from cratous.services.icarous_communication.steering import (
+    action_of,
+    at_gate,
+    command_of,
+    hold,
+    in_flight,
+    taken_back,
+    told,
+)
 from cratous.services.pipeline.status import status
 from cratous.services.uxas.daidalus.zones import frame_at, surroundings
-from cratous.spec.authority.link_end import OVERTAKEN, REFUSED
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame, Position
 
@@ -117,7 +110,7 @@ class Communication:
         state = replace(state, link=state.link.with_peer(anew), fresh=state.fresh | {vehicle_id})
         if not known:
             state, more = self._route(state, vehicle_id)
-            out += more
+            out += [*more, *in_flight(self.name, peer, state.craft(vehicle_id).plan)]
         body = state.craft(vehicle_id).body
         if body is None:
             return state, out
@@ -154,7 +147,8 @@ class Communication:
             detail = f"vehicle {vehicle_id}: {type(line).__name__} in epoch {peer.gate.epoch}"
             return state, [*out, Refuse("steering by one without authority", detail)]
         state, command = self._command(state, vehicle_id, action)
-        return state, [*out, command]
+        come = at_gate(self.name, vehicle_id, peer.gate, ICAROUS, command.body)
+        return state, [*out, come, command]
 
     def watch(self, state: State, now_ms: int) -> Step:
         """Time has passed: who has fallen silent."""
@@ -171,20 +165,11 @@ class Communication:
         peer = state.link.peer(vehicle_id)
         if peer is None:
             return state, []
-        active, gate = line.mode == "ACTIVE", peer.gate
-        if vehicle_id in state.fresh and line.epoch is not None:
-            gates = [Gate(ICAROUS if active else UXAS, line.epoch, False)]
-        else:
-            gates = [gate, gate_takeover(gate) if active else gate_offer(gate)]
-        said = SetMode(line.mode, gate.epoch if line.epoch is None else line.epoch)
-        for one in gates:
-            epoch = one.epoch if line.epoch is None else line.epoch
-            if link_mode(peer.end, one, active, epoch).act not in (OVERTAKEN, REFUSED):
-                said, gate = SetMode(line.mode, epoch), one
-                state = replace(state, fresh=state.fresh - {vehicle_id})
-                break
-        state, out = self._end(state, GateIs(vehicle_id, gate))
-        state, more = self._end(state, Heard(vehicle_id, now_ms, said))
+        said = modes.read(peer, line, vehicle_id in state.fresh)
+        if said.believed:
+            state = replace(state, fresh=state.fresh - {vehicle_id})
+        state, out = self._end(state, GateIs(vehicle_id, said.gate))
+        state, more = self._end(state, Heard(vehicle_id, now_ms, said.line))
         return self._free(state, vehicle_id), [*out, *more]
 
     # what comes over the bus ----------------------------------------------------------------------
@@ -201,9 +186,16 @@ class Communication:
             return state, [Refuse("mission without waypoints", f"vehicle {vid}")]
         if craft.away is not None:
             text = f"vehicle {vid}: a mission has come while ICAROUS has it, and waits for the handback"
-            return state.put(vid, replace(craft, waiting=command)), [Note("WARN", text)]
+            come = self._by_uxas(state, vid, command)
+            return state.put(vid, replace(craft, waiting=command)), [Note("WARN", text), *come]
+        state, out = self._in_force(state, vid, command, now_ms)
+        return state, [*self._by_uxas(state, vid, command), *out]
+
+    def _in_force(self, state: State, vid: int, command: Any, now_ms: int) -> Step:
+        """A MissionCommand that the vehicle flies from now on."""
         state, out = self._framed(state, command.WaypointList[0])
         assert state.frame is not None
+        craft = state.craft(vid)
         here = None if craft.air is None else craft.air.position
         craft = replace(craft, plan=plan_of(command, plane(state.frame), now_ms, here))
         state, more = self._route(state.put(vid, craft), vid)
@@ -270,9 +262,11 @@ class Communication:
         return state, [*notes, *out]
 
     def _deviation(self, state: State, vid: int, away: Away, craft: Craft, air: AirState) -> Step:
-        """Tasks pause when the vehicle is farther from its leg than is allowed, once a takeover."""
+        """Its tasks, if any, pause when the vehicle is farther from its leg than is allowed, once a takeover."""
         plan = craft.plan
-        if away.paused or plan is None or not deviates(plan, air.position, self.allowed_m):
+        if away.paused or not away.tasks or plan is None:
+            return state, []
+        if not deviates(plan, air.position, self.allowed_m):
             return state, []
         state = state.put(vid, replace(craft, away=away._replace(paused=True)))
         point, out = resume_point(plan, away.left), list[Out]()
@@ -317,35 +311,39 @@ class Communication:
 
     def _take_back(self, state: State, vid: int, epoch: int, now_ms: int) -> Step:
         """Tasks resume, the mission goes on, ICAROUS is told the way; without a mission it holds."""
-        craft, peer = state.craft(vid), state.link.peer(vid)
+        away, peer = state.craft(vid).away, state.link.peer(vid)
         assert peer is not None
         gate = gate_after(peer.gate, UXAS, epoch)
         state, out = self._end(state, GateIs(vid, gate))
+        state, onward = self._onward(state, vid, now_ms)
         out.append(Note("WARN", f"vehicle {vid}: ICAROUS hands back, in epoch {epoch}"))
+        out += taken_back(self.name, vid, now_ms, peer.gate, onward)
         out += told(self.name, vid, now_ms, gate)
-        away, plan = craft.away, craft.plan
-        state = state.put(vid, replace(craft, away=None, holds=False, handed=True))
         if away is not None and away.paused:
             out += [Say(lmcp.new("TaskResume", TaskID=task), self.name) for task in away.tasks]
+        return state, [*out, *onward]
+
+    def _onward(self, state: State, vid: int, now_ms: int) -> Step:
+        """What sends a vehicle on that has been handed back."""
+        craft = state.craft(vid)
+        away, plan, air = craft.away, craft.plan, craft.air
+        state = state.put(vid, replace(craft, away=None, holds=False, handed=True, waiting=None))
         if craft.waiting is not None:
-            state = state.put(vid, replace(state.craft(vid), waiting=None))
-            state, more = self.mission(state, craft.waiting, now_ms)
-            return state, [*out, Say(craft.waiting, self.name), *more]
-        air = craft.air
+            state, out = self._in_force(state, vid, craft.waiting, now_ms)
+            return state, [Say(craft.waiting, self.name), *out]
         if plan is None or away is None or air is None or state.frame is None:
-            return self._hold(state, vid, out, "handed back without a mission")
+            return self._hold(state, vid, [], "handed back without a mission")
         projection = plane(state.frame)
         number = COMMANDS_FROM + state.commands + 1
         now = Motion(air.position, air.heading_rad, air.speed_m_s, air.climb_m_s)
         sent = resumed(plan, away, now, turn_radius_of(craft, air), projection, number)
-        out.append(Say(sent.command, self.name))
         way = plan_of(sent.command, projection, now_ms, air.position)
         if way is not None:  # the mission's own command is what the next way back leads to
             way = way._replace(command=plan.command, back=sent.back, resume=sent.resume)
         after = replace(craft, away=None, holds=False, handed=True, plan=way)
         state = replace(state.put(vid, after), commands=state.commands + 1)
-        state, more = self._route(state, vid)
-        return state, [*out, *more]
+        state, out = self._route(state, vid)
+        return state, [Say(sent.command, self.name), *out]
 
     def _route(self, state: State, vid: int) -> Step:
         plan = state.craft(vid).plan
@@ -369,7 +367,13 @@ class Communication:
         if craft.air is None or state.frame is None:
             return state, [*out, said]
         state, command = self._command(state, vid, hold(craft.air, plane(state.frame)))
-        return state.put(vid, replace(craft, holds=True)), [*out, command, said]
+        come = self._by_uxas(state, vid, command.body)
+        return state.put(vid, replace(craft, holds=True)), [*out, *come, command, said]
+
+    def _by_uxas(self, state: State, vid: int, command: Any) -> list[Out]:
+        """What UxAS commands a vehicle that has a gate here."""
+        peer = state.link.peer(vid)
+        return [] if peer is None else [at_gate(self.name, vid, peer.gate, UXAS, command)]
 
     def _free(self, state: State, vid: int) -> State:
         """It is heard: what made the vehicle hold is over."""

@@ -64,7 +64,7 @@ def parse_document(text: str, where: str) -> Document:
 
     try:
         _refuse_costly(text, where)
-        root = yaml.compose(text, Loader=_loader())
+        root = yaml.compose(text, Loader=loader())
         if root is None:
             raise BadInput("the file is empty", where=where, expected="a mission")
         lines: dict[Key, int] = {}
@@ -78,7 +78,8 @@ def parse_document(text: str, where: str) -> Document:
     return Document(where, data, lines)
 
 
-def _loader() -> Any:
+def loader() -> Any:
+    """What reads YAML here."""
     import yaml
 
     return getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the first is libyaml: ten times faster
@@ -89,7 +90,7 @@ def _refuse_costly(text: str, where: str) -> None:
     import yaml
 
     depth = 0
-    for count, event in enumerate(yaml.parse(text, Loader=_loader())):
+    for count, event in enumerate(yaml.parse(text, Loader=loader())):
         place = f"{where}:{event.start_mark.line + 1 if event.start_mark else 1}"
         if isinstance(event, yaml.AliasEvent):
             raise BadInput(

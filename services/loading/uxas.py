@@ -18,9 +18,10 @@ from cratous.services.loading.checks import too_many_instances
 from cratous.services.loading.document import item_key
 from cratous.services.loading.places import Places
 from cratous.services.loading.polygons import one_region
+from cratous.services.loading.request_kinds import WRAPPED, is_request
 from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.uxas_cfg import Configuration, Sent, read_all, scenario_states
-from cratous.services.loading.uxas_requests import WRAPPED, is_request, requests_of
+from cratous.services.loading.uxas_requests import requests_of
 from cratous.services.loading.uxas_tasks import Interests, other
 from cratous.services.loading.uxas_tasks import task as read_task
 from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR, finish

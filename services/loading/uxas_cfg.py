@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from cratous.services.loading.request_kinds import is_request
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import integer_of
 from cratous.spec.files.text_file import bytes_of
@@ -91,10 +92,7 @@ def read_all(path: Path) -> Configuration:
         return first
     # what each asks for, once: the same request from two processes is one request
     requests = {
-        sent.where
-        for one in found
-        for sent in one.messages
-        if type(sent.body).__name__.endswith("AutomationRequest")
+        sent.where for one in found for sent in one.messages if is_request(type(sent.body).__name__)
     }
     planning = {
         (kind, tuple(sorted(attributes.items())))

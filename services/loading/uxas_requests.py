@@ -4,23 +4,18 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from cratous.services.loading.request_kinds import is_request
 from cratous.services.loading.uxas_cfg import Configuration
-
-WRAPPED = {
-    "CoordinatedAutomationRequest": "OriginalRequest",
-    "TaskAutomationRequest": "OriginalRequest",
-    "ImpactAutomationRequest": "TrialRequest",
-}
 
 
 def requests_of(cfg: Configuration) -> tuple[Configuration, ...]:
     """The configuration for each automation request, in the order in which they are sent.
 
     Of what is told several times a request means what was told last before it; where nothing was, what
-    is told first after it, as a request waits for what it names.
+    is told first after it, as a request waits for what it names. That holds for an only request, too.
     """
     places = [k for k, sent in enumerate(cfg.messages) if is_request(type(sent.body).__name__)]
-    if len(places) < 2:
+    if not places:  # whoever needs one says that there is none
         return (cfg,)
     found = []
     for place in places:
@@ -29,8 +24,3 @@ def requests_of(cfg: Configuration) -> tuple[Configuration, ...]:
         later = tuple(m for k, m in reversed(rest) if k > place)
         found.append(replace(cfg, messages=(*later, *before, cfg.messages[place])))
     return tuple(found)
-
-
-def is_request(kind: str) -> bool:
-    """True for a type of message that asks for a plan."""
-    return kind == "AutomationRequest" or kind in WRAPPED

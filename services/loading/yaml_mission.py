@@ -56,13 +56,16 @@ def load(path: Path, seed: int = 0) -> Mission:
 
     Raises BadMission (a BadInput) with everything found wrong.
     """
-    document = read_document(path)
-    refuse(schema_problems(document))
+    return loaded(read_document(path), seed)
+
+
+def loaded(document: Document, seed: int = 0) -> Mission:
+    """The same, of a file that was read. Raises BadMission (a BadInput) likewise."""
+    mission = drawn(document, seed)
 
     def where(item: str) -> str:
         return document.where(item_key(item))
 
-    mission = _mission(document, seed)
     if seed:
         from cratous.services.loading.variation import vary
 
@@ -70,6 +73,15 @@ def load(path: Path, seed: int = 0) -> Mission:
     mission = finish(mission, where)
     refuse(list(close_starts(mission, where)))
     return mission
+
+
+def drawn(document: Document, seed: int = 0) -> Mission:
+    """What a document that fits the schema says; whether it makes sense is not checked.
+
+    Raises BadMission (a BadInput) where it does not fit.
+    """
+    refuse(schema_problems(document))
+    return _mission(document, seed)
 
 
 def finish(mission: Mission, where: Any) -> Mission:

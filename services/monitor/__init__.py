@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from cratous.services.assumptions import AssumptionWatch
 from cratous.services.monitor.authority import AuthorityWatch
 from cratous.services.monitor.bridge import BridgeWatch
 from cratous.services.monitor.completion import CompletionWatch
@@ -27,13 +28,18 @@ __all__ = ["Monitor"]
 
 
 class Monitor:
-    """Watches one mission. Feed it envelopes with `tap`, ask for `verdicts` at the end.
+    """Watches one mission. Feed it envelopes with `tap`, ask for `verdicts` and `assumptions` at the end.
 
-    on_violation is called once for each new violation, at the moment it is seen.
+    on_violation is called once for each new violation, at the moment it is seen; on_broken likewise with the
+    row of each assumption of the theorems that breaks.
     """
 
     def __init__(
-        self, mission: Mission, plan: Plan, on_violation: Callable[[Verdict], None] | None = None
+        self,
+        mission: Mission,
+        plan: Plan,
+        on_violation: Callable[[Verdict], None] | None = None,
+        on_broken: Callable[[dict[str, Any]], None] | None = None,
     ) -> None:
         self.mission = mission
         self.not_covered = tuple(v.id for v in mission.vehicles if not v.protected)
@@ -44,8 +50,9 @@ class Monitor:
         self.completion = CompletionWatch(mission, plan, self.presence)
         self.authority = AuthorityWatch(mission)
         self.bridge = BridgeWatch(mission)
+        self._assumed = AssumptionWatch(mission)
         self._last_ms, self._over = 0, False
-        self._tell = on_violation
+        self._tell, self._tell_broken = on_violation, on_broken
         self._told = 0
 
     def tap(self, envelope: Any) -> None:
@@ -70,6 +77,7 @@ class Monitor:
             self.bridge.heartbeat(body)
         elif short == "BridgeStatus":
             self.bridge.status(body)
+            self.authority.status(body)
         elif short == "MissionEnd":
             for step in self._sampler.flush():
                 self._step(*step)
@@ -82,12 +90,22 @@ class Monitor:
             for verdict in events[self._told :]:
                 self._tell(verdict)
             self._told = len(events)
+        for row in self._assumed.tap(short, envelope):
+            if self._tell_broken is not None:
+                self._tell_broken(row)
 
     def _step(self, before: dict[int, Sample], after: dict[int, Sample]) -> None:
         self.presence.step(before, after)
         self.constraints.step(before, after)
         self.separation.step(before, after)
         self.completion.step(before, after)
+
+    def assumptions(self) -> list[dict[str, Any]]:
+        """One row for each assumption of the system theorems: held, broken, or not observed and why.
+
+        The verdicts do not depend on them.
+        """
+        return self._assumed.rows(self._last_ms, self._over)
 
     def details(self) -> list[Verdict]:
         """One verdict for each single constraint, pair, task, vehicle: every row that is promised."""

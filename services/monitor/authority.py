@@ -3,6 +3,10 @@
 The monitor replays each vehicle's actuator gate with the proved gate kernels. Every command in the
 messages must have been accepted or dropped as `gate_accepts` says, and every state that the gate
 reports must be what `gate_after`, `gate_takeover` or `gate_offer` makes of the state before.
+
+A takeover that is open when the mission ends is violated, unless the link to the vehicle was said to be down and
+still was (BridgeStatus): that is a declared failure, but whether it is why nobody handed back is not in the
+messages, so it is unknown.
 """
 
 from __future__ import annotations
@@ -35,7 +39,9 @@ ON_CHANGE = {qualified(gate_takeover), qualified(gate_offer)}
 @dataclass
 class Command:
     """What has been seen of the authority over one vehicle; `due`: what must be reported next; forged:
-    dropped commands of epochs that were never given; refused: modes that could not be true."""
+    dropped commands of epochs that were never given; refused: modes that could not be true; down: since when and
+    why its link is down, as was said last, empty while it is not; unended: the takeover that a link that is
+    down has left open at the end, empty if there is none."""
 
     gate: Gate = field(default_factory=lambda: Gate(UXAS, 0, False))
     due: str = ""
@@ -47,6 +53,8 @@ class Command:
     dropped: int = 0
     forged: int = 0
     refused: int = 0
+    down: str = ""
+    unended: str = ""
     faults: list[tuple[int, str]] = field(default_factory=list)
     kernels: set[str] = field(default_factory=set)
 
@@ -79,6 +87,16 @@ class AuthorityWatch:
             self._command(seen, body)
         else:
             self._state(seen, body, time_ms)
+
+    def status(self, body: Any) -> None:
+        """The link to a vehicle was said to be alive or not."""
+        seen = self.vehicles.get(body.VehicleID)
+        if seen is None or self._ended:
+            return
+        if body.Alive:
+            seen.down = ""
+        elif not seen.down:
+            seen.down = f"down since {body.Time / 1000:.2f} s ({body.Note})"
 
     def _command(self, seen: Command, body: Any) -> None:
         sender = ICAROUS if body.Sender.name == "ICAROUS" else UXAS
@@ -120,13 +138,16 @@ class AuthorityWatch:
             seen.open_ms = None
 
     def end(self, body: Any) -> None:
-        """The mission ended: no takeover may be left open."""
+        """The mission ended: no takeover may be left open, unless the link is said to be down."""
         self._ended = True
         for seen in self.vehicles.values():
             self._missing(seen, body.Time)
             if seen.open_ms is not None:
                 text = f"the takeover of {seen.open_ms / 1000:.2f} s was never handed back"
-                seen.faults.append((body.Time, text))
+                if seen.down:
+                    seen.unended = f"{text}; the link was declared {seen.down}, to the end"
+                else:
+                    seen.faults.append((body.Time, text))
 
     def verdicts(self) -> list[Verdict]:
         """One verdict a protected vehicle."""
@@ -148,6 +169,9 @@ class AuthorityWatch:
                 outcome, (time_ms, note) = Outcome.VIOLATED, seen.faults[0]
             elif not self._ended:
                 note = "the messages stop before the mission ends"
+            elif seen.unended:
+                outcome, note = Outcome.UNKNOWN, seen.unended
+                time_ms = seen.open_ms
             elif not seen.commands:
                 outcome, note = Outcome.UNKNOWN, "no command was seen"
             found.append(

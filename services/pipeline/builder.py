@@ -184,6 +184,8 @@ class PlanBuilderService:
     def _finished(self, points: tuple[Any, ...]) -> list[Any]:
         """A vehicle's waypoints: turned as asked, the last one leads to itself or is loitered at."""
         turn = self._options.turn_type
+        if points[-1].AssociatedTasks and self._contexts.source.outside is not None:
+            points = _released(points)
         turned = [w if w.TurnType.name == turn else w.copy(TurnType=turn) for w in points]
         last = turned[-1].copy(NextWaypoint=turned[-1].Number)
         if self._options.loiter_m:
@@ -204,6 +206,13 @@ class PlanBuilderService:
             )
             last = last.copy(VehicleActionList=[*last.VehicleActionList, loiter])
         return [*turned[:-1], last]
+
+
+def _released(points: tuple[Any, ...]) -> tuple[Any, ...]:
+    """With a waypoint more where the last one is: who makes for it does no task, so the last is complete."""
+    last, number = points[-1], 1 + max(w.Number for w in points)
+    more = last.copy(Number=number, AssociatedTasks=[], VehicleActionList=[])
+    return *points[:-1], last.copy(NextWaypoint=number), more
 
 
 def _part(work: Work, body: Any) -> int:

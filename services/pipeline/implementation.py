@@ -9,6 +9,7 @@ from typing import Any
 from cratous.bridge import lmcp
 from cratous.services.mission.sensor import zoomed
 from cratous.services.pipeline.contexts import Context
+from cratous.services.pipeline.outside import Outside
 from cratous.services.pipeline.places import RequestPlaces
 from cratous.services.planning.flyers import camera_for
 from cratous.services.planning.options import Option
@@ -68,7 +69,9 @@ def way_asked(context: Context, option: Option, request: Any, number: int) -> An
     )
 
 
-def implemented(context: Context, task: Task, option: Option, request: Any, plan: Any) -> Any:
+def implemented(
+    context: Context, task: Task, option: Option, request: Any, plan: Any, outside: Outside | None
+) -> Any:
     """The waypoints of the way there (a RoutePlan), the hold if there is a wait, and the task.
 
     NoPlan if there is no room to hold.
@@ -80,7 +83,8 @@ def implemented(context: Context, task: Task, option: Option, request: Any, plan
         w.copy(Number=first + k, NextWaypoint=first + k + 1)
         for k, w in enumerate(plan.Waypoints[:-1])
     ]
-    mine = places.waypoints(option.path, first + len(points), speed, [task.id])
+    path = places.spaced(option.path, option.flyer.radius_m, outside)
+    mine = places.waypoints(path, first + len(points), speed, [task.id])
     wait = max(0, request.TimeThreshold - request.StartTime - plan.RouteCost)
     hold = hold_of(option, wait, context.inputs.zones) if wait > 0 else None
     if wait > 0 and hold is None:

@@ -39,6 +39,7 @@ class MissionSource:
     """The facts of one request: what a mission has left to do, from given poses."""
 
     subscribes: tuple[str, ...] = ()
+    outside = None
 
     def __init__(self, inputs: Inputs) -> None:
         self.world = MissionWorld(inputs)

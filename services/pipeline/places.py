@@ -15,7 +15,9 @@ from cratous.services.loading.places import Places
 from cratous.services.loading.uxas_cfg import Sent
 from cratous.services.loading.uxas_parts import point
 from cratous.services.mission.frames import Projection, compass
+from cratous.services.pipeline.outside import Outside
 from cratous.services.planning.routes import Routes
+from cratous.services.planning.spacing import TOLERANCE, spaced
 from cratous.spec.mission import Mission, Position
 from cratous.spec.mission.plan import Pose
 
@@ -83,6 +85,15 @@ class RequestPlaces:
         if known is None:
             return read_pose(location, heading_deg, self._places, where, item)
         return Pose(*known, radians(heading_deg))
+
+    def spaced(
+        self, points: Sequence[Position], radius_m: float, outside: Outside | None
+    ) -> Sequence[Position]:
+        """The points of a path that go out as waypoints; radius_m: of the vehicle's turns."""
+        if outside is None or not outside.separation_m:
+            return points
+        least_m = max(outside.separation_m, radius_m)
+        return spaced(points, least_m, TOLERANCE * radius_m, self._finder.kept_clear(radius_m))
 
     def waypoints(
         self, points: Sequence[Position], first: int, speed_m_s: float, tasks: Sequence[int]

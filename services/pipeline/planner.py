@@ -16,6 +16,7 @@ from cratous.bridge import lmcp
 from cratous.services.bus import Envelope, Send, unicast
 from cratous.services.pipeline.contexts import Contexts, reasons_of
 from cratous.services.pipeline.places import RequestPlaces, Way
+from cratous.services.planning.flyers import flyer_of
 from cratous.spec.errors import CratousError
 
 NAME = "RoutePlannerVisibilityService"
@@ -71,7 +72,9 @@ class RoutePlannerVisibilityService:
             plan = lmcp.new("RoutePlan", RouteID=constraint.RouteID, RouteCost=cost)
             if not request.IsCostOnlyRequest:
                 speed = mission.vehicle(request.VehicleID).speed_m_s
-                points = routes.route(vehicle, k, k).points
+                radius_m = flyer_of(mission.vehicle(request.VehicleID)).radius_m
+                path = routes.route(vehicle, k, k).points
+                points = places.spaced(path, radius_m, self._contexts.source.outside)
                 plan.Waypoints = places.waypoints(points, 1, speed, ())
             plans.append(plan)
         return plans

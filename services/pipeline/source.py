@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any, Protocol
 
 from cratous.services.bus import Envelope
+from cratous.services.pipeline.outside import Outside
 from cratous.services.pipeline.places import RequestPlaces
 from cratous.services.planning.inputs import Inputs
 
@@ -35,6 +36,10 @@ class Source(Protocol):
     @property
     def world(self) -> Known:
         """What is known by id."""
+
+    @property
+    def outside(self) -> Outside | None:
+        """How plans go out; None: the flight is the mission's own, which flies paths and views as planned."""
 
     def hear(self, envelope: Envelope, now_ms: int) -> None:
         """A message of one of these types."""

@@ -2,7 +2,8 @@
 
 UniqueAutomationRequest -> SensorFootprintRequests -> SensorFootprintResponse -> RoutePlanRequests ->
 RoutePlanResponses -> TaskPlanOptions; TaskImplementationRequest -> RoutePlanRequest ->
-RoutePlanResponse -> TaskImplementationResponse; vehicles' states -> TaskActive, TaskComplete.
+RoutePlanResponse -> TaskImplementationResponse; vehicles' states -> TaskActive, TaskComplete, and where the
+camera has to look meanwhile (VehicleActionCommand).
 What is asked before options are offered: `questions`. Options and ways are those of
 `services.planning`; what is said of them, `implementation`.
 """
@@ -22,6 +23,7 @@ from cratous.services.pipeline.endings import request_ended
 from cratous.services.pipeline.implementation import implemented, offer, way_asked
 from cratous.services.pipeline.questions import Asked
 from cratous.services.pipeline.status import status
+from cratous.services.pipeline.steering import Steering, last_look, look_command, steering_of
 from cratous.services.planning.options import Option
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 from cratous.spec.mission import Task, TaskKind
@@ -46,6 +48,9 @@ NAMES = {
     TaskKind.AREA_SEARCH: "CmasiAreaSearchTaskService",
     TaskKind.PATTERN_SEARCH: "PatternSearchTaskService",
 }
+AUTHORITY = "cratous.AuthorityChange"
+WITH_UXAS, WITH_ICAROUS, HANDED_BACK = 0, 1, 2
+AWAY = {"ICAROUS": WITH_ICAROUS, "UxAS": HANDED_BACK}
 ROUTES_FROM = 2**60
 """Ids of a task's own route requests: beyond the blocks that the aggregator gives out."""
 
@@ -62,17 +67,21 @@ _EVENTS = {
 
 
 class State(NamedTuple):
-    """The kernel's state; the implementation request in progress; the vehicle that the task is assigned to.
+    """The kernel's state; the implementation request in progress; the vehicle that the task is assigned to,
+    and how its payloads are steered (None: they are not).
 
     The kernel's requests are tickets that count up, as RequestIDs need not; tickets: the newest with
-    their RequestIDs. asked: what others have said of the options.
+    their RequestIDs. asked: what others have said of the options. away: whether ICAROUS has the vehicle, or
+    has just handed it back: what its states say of tasks is then not about the plan.
     """
 
     task: Kernel = Kernel(0, 0, 0)
     chosen: Any = None
     vehicle: int = 0
+    steering: Steering | None = None
     tickets: tuple[tuple[int, int], ...] = ((0, 0),)
     asked: Asked = Asked()
+    away: int = WITH_UXAS
 
     def number(self, ticket: int) -> int:
         """The RequestID of a ticket."""
@@ -110,6 +119,7 @@ class TaskService:
         "afrl.cmasi.AutomationResponse",
         "afrl.cmasi.ServiceStatus",
         "afrl.cmasi.EntityState",
+        AUTHORITY,
     )
 
     def __init__(
@@ -158,9 +168,19 @@ class TaskService:
             if self._withdrawn(state, body):
                 return self._advance(state, WITHDRAWN, 0, body)
             return state, ()
+        if topic == AUTHORITY:
+            return self._taken(state, body), ()
         if not hasattr(body, "AssociatedTasks"):
             return state, ()
-        return self._flown(state, body)
+        if state.away == HANDED_BACK and state.vehicle == body.ID and _on_its_way(body):
+            state = state._replace(away=WITH_UXAS)
+        return (state, ()) if state.away else self._flown(state, body)
+
+    def _taken(self, state: State, change: Any) -> State:
+        """ICAROUS takes the vehicle or hands it back: until it flies waypoints again, no task ends."""
+        if change.VehicleID != state.vehicle:
+            return state
+        return state._replace(away=AWAY[change.Owner.name])
 
     def _requested(self, state: State, body: Any) -> tuple[State, Iterable[Any]]:
         """A request that means nothing is answered, once a process; it disturbs no task."""
@@ -177,7 +197,13 @@ class TaskService:
         if state.vehicle != body.ID:
             return state, ()
         event = LISTED if self._task_id in body.AssociatedTasks else UNLISTED
-        return self._advance(state, event, 0, body)
+        steering = state.steering
+        state, out = self._advance(state, event, 0, body)
+        if steering is not None and state.steering is None:
+            return state, [*out, last_look(steering, body.ID)]
+        if steering is not None and state.task.state == ACTIVE:
+            return state, [*out, look_command(steering, body)]
+        return state, out
 
     def _withdrawn(self, state: State, response: Any) -> bool:
         """A new plan for the vehicle that does not have this task."""
@@ -237,7 +263,10 @@ class TaskService:
             out.append(lmcp.new("TaskInitialized", TaskID=self._task_id))
             return state, PROCEED
         if act == ASK_SENSORS:
-            return self._ask_sensors(state._replace(chosen=None, vehicle=0, asked=Asked()), out)
+            clear = state._replace(
+                chosen=None, vehicle=0, steering=None, asked=Asked(), away=WITH_UXAS
+            )
+            return self._ask_sensors(clear, out)
         if act == ASK_ROUTES:
             return self._ask_routes(state, body, out)
         if act == PUBLISH_OPTIONS:
@@ -253,6 +282,7 @@ class TaskService:
             return state._replace(chosen=body, vehicle=body.VehicleID), 0
         elif act == PUBLISH_PLAN:
             out.append(self._plan(state.chosen, body))
+            return state._replace(steering=self._steering(state.chosen)), 0
         elif act == STEER:
             out.append(
                 lmcp.new(
@@ -264,7 +294,7 @@ class TaskService:
             )
         elif act == COMPLETE:
             out.append(self._ended(state, body))
-            return state._replace(chosen=None, vehicle=0), PROCEED
+            return state._replace(chosen=None, vehicle=0, steering=None, away=WITH_UXAS), PROCEED
         return state, 0
 
     def _ask_sensors(self, state: State, out: list[Any]) -> tuple[State, int]:
@@ -318,8 +348,16 @@ class TaskService:
                     for text in why or ["the planner does not say why"]
                 )
             )
+        context, outside = self._context, self._contexts.source.outside
+        task, option = self._task_in(context), self._option(request)
+        return implemented(context, task, option, request, plan, outside)
+
+    def _steering(self, request: Any) -> Steering | None:
+        """How the payloads of a vehicle outside are steered for the option that it flies."""
+        if self._contexts.source.outside is None:
+            return None
         context = self._context
-        return implemented(context, self._task_in(context), self._option(request), request, plan)
+        return steering_of(context, self._task_in(context), self._option(request))
 
     def _ended(self, state: State, body: Any) -> Any:
         """The task is over: complete if a vehicle flew it and went on, else it ends undone."""
@@ -336,6 +374,11 @@ class TaskService:
     def stop(self, state: State) -> None:
         """The task has been removed."""
         self._when_ended()
+
+
+def _on_its_way(body: Any) -> bool:
+    """Whether a state is of a vehicle that flies waypoints; one that does not say its mode does."""
+    return not hasattr(body, "Mode") or bool(body.Mode.name == "Waypoint")
 
 
 def _route_id(implementation: Any) -> int:

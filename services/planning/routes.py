@@ -77,6 +77,10 @@ class Routes:
             self._maps[radius_m] = roadmaps(self.zones, radius_m)
         return self._maps[radius_m]
 
+    def kept_clear(self, radius_m: float) -> tuple[Zone, ...]:
+        """The zones with the margin for tracking that routes of a turn radius keep where there is room."""
+        return self._roadmaps(radius_m)[0].zones
+
     def _search(self, start: Pose, flyer: Flyer, end: Pose) -> Route:
         if flyer.max_climb_m_s <= 0 and start.alt_m != end.alt_m:
             return Route((), 0.0, "it cannot change its altitude")

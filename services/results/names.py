@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 FORMAT = "cratous-report/2"
 FORMER = "cratous-report/1"
 """It listed the whole ledger as proofs, and no kernels of a verdict."""
@@ -11,3 +13,9 @@ MANIFEST_NAME = "manifest.json"
 NAMES = (REPORT_NAME, HTML_NAME, MAP_NAME, LOG_NAME, CERTIFICATE_NAME, MANIFEST_NAME)
 BESIDE_LOG = tuple(LOG_NAME + end for end in ("-journal", "-wal", "-shm"))
 """SQLite would take these for part of a new log."""
+ASSUMPTIONS = "assumptions"
+"""Where a log's meta has the assumptions of the system theorems that broke while it was flown."""
+OF_PROCESSES = re.compile(
+    r"(cfg|messages|scenario)\.xml|(simulator|uxas|icarous_[1-9][0-9]{0,18})\.txt"
+)
+"""What processes of a flight were given, and what they said (`cratous run --processes`)."""

@@ -1,8 +1,9 @@
-"""What a replay covers: the steps by their kernels, and what it does not look at."""
+"""What a replay covers: the steps by how often their kernels were asked, and what it does not look at."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from cratous.core.authority import cycle, gate, link_end
 from cratous.core.kernel import qualified
@@ -11,7 +12,10 @@ STEPS = {
     "the gate takes a command": (gate.gate_accepts, gate.gate_after),
     "the gate changes at ICAROUS's wish": (cycle.gate_wished, gate.gate_takeover, gate.gate_offer),
     "a heartbeat of ICAROUS": (cycle.cycle_begun, cycle.cycle_watched, cycle.cycle_flown),
-    "a SETMOD line at the UxAS end": (link_end.link_mode, link_end.suspended_after),
+    "a SETMOD line that may have come to the UxAS end": (
+        link_end.link_mode,
+        link_end.suspended_after,
+    ),
     "a sign of life, or silence": (link_end.link_sign,),
     "UxAS commands a track": (link_end.track_is_told,),
 }
@@ -22,6 +26,7 @@ NOT_COVERED = (
     "SETMOD lines (not in the log: any may have come, also a forged one that is true)",
     "silence that is not reported once ICAROUS has flown (its other lines count as signs of life)",
     "notes on the link of lines that cannot be read",
+    "whether UxAS commands at all (that a command of its own is missing is noticed only where it takes a vehicle back)",
     "what a command says: the path, the velocity or the circle",
     "reasons and intruders of changes of authority",
     "the executive: tasks, plans, order and timing (G1 and G3 judge them)",
@@ -30,9 +35,30 @@ NOT_COVERED = (
 """What the model does not decide, in words."""
 
 
-def steps() -> dict[str, list[str]]:
-    """The kernels of each step, by their full names."""
-    return {step: [qualified(kernel) for kernel in kernels] for step, kernels in STEPS.items()}
+def steps(calls: Mapping[str, Any]) -> dict[str, dict[str, int]]:
+    """How often each kernel of each step was asked in a replay, by its full name; 0: not once.
+
+    calls: what was counted while it ran, as of `certify.evidence.Calls.data`.
+    """
+    called = calls["called"]
+    return {
+        step: {
+            (name := qualified(kernel)): sum(called.get(name, {}).values()) for kernel in kernels
+        }
+        for step, kernels in STEPS.items()
+    }
+
+
+def lines(steps: Mapping[str, Mapping[str, int]]) -> list[str]:
+    """The steps for people: which kernels of each were asked, how often, and which were not. steps: as of `steps`."""
+    found = []
+    for step, kernels in steps.items():
+        short = {name.rpartition(".")[2]: count for name, count in kernels.items()}
+        if asked := [f"{name} {count} times" for name, count in short.items() if count]:
+            found.append(f"covered: {step} ({', '.join(asked)})")
+        if never := [name for name, count in short.items() if not count]:
+            found.append(f"not exercised: {step} ({', '.join(never)})")
+    return found
 
 
 def rows(passed: Mapping[str, int]) -> list[str]:

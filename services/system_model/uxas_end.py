@@ -36,12 +36,14 @@ class Believes(NamedTuple):
 
 
 class UxasEnd:
-    """possible: the states it can be in; taken: the epoch in which UxAS has last taken the vehicle; open: the
-    connection stands; downs: heartbeats sent; heard_ms: when a heartbeat last came [ms]."""
+    """possible: the states it can be in; taken: the epoch in which UxAS has last taken the vehicle; met: it has
+    been connected; open: the connection stands; downs: heartbeats sent; heard_ms: when a heartbeat last came [ms].
+    """
 
     def __init__(self) -> None:
         self.possible: frozenset[Believes] = frozenset({Believes(START, False)})
         self.taken = 0
+        self.met = False
         self.open = False
         self.downs = 0
         self.heard_ms = 0
@@ -82,7 +84,7 @@ class UxasEnd:
 
     def connects(self, now_ms: int) -> None:
         """The connection stands, for the first time or again."""
-        self.open, self.heard_ms = True, now_ms
+        self.met, self.open, self.heard_ms = True, True, now_ms
         alive = (b._replace(end=b.end._replace(alive=True)) for b in self.possible)
         self.possible = frozenset(alive)
 

@@ -65,6 +65,10 @@ class VehicleModel:
         icarous = self.icarous
         if icarous is None:
             return
+        # a flight begins with the connection: without it nothing of the link would ever be asked for
+        if not self.uxas.met:
+            expected = "that ICAROUS is connected before the end of the first heartbeat"
+            raise Misfit("the link", expected, "no note that it is")
         if icarous.due:
             raise Misfit(
                 "a heartbeat of ICAROUS", "its command after a change of authority", "none"

@@ -14,6 +14,7 @@ from cratous.services.bus import Envelope
 from cratous.services.loading.places import Places
 from cratous.services.loading.uxas import mission_of, surroundings_of
 from cratous.services.loading.uxas_cfg import Configuration, Sent
+from cratous.services.pipeline.outside import Outside
 from cratous.services.pipeline.places import RequestPlaces, read_pose
 from cratous.services.pipeline.world import MOST, World
 from cratous.services.planning import stages
@@ -38,6 +39,11 @@ class MessageSource:
         self._host = host
         self._spoken: dict[int, None] = {}  # tasks whose services have said that they are there
         self._overridden: dict[int, Any] = {}  # requests with conditions of their own, unanswered
+
+    @property
+    def outside(self) -> Outside:
+        """Vehicles of a process are outside of it."""
+        return Outside(self._host.shared.get("separation_m", Outside().separation_m))
 
     def hear(self, envelope: Envelope, now_ms: int) -> None:
         """A message about the world, or a request with conditions of its own."""

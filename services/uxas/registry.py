@@ -78,6 +78,7 @@ def _validator(host: Host, entry: Entry, v: dict[str, Any], name: str, number: i
 
 
 def _planner(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    host.shared["separation_m"] = v["MinimumWaypointSeparation_m"]
     return planner.RoutePlannerVisibilityService(contexts_of(host))
 
 
@@ -236,7 +237,6 @@ KINDS: dict[str, Kind] = {
         ignored=dict.fromkeys(
             (
                 "TurnRadiusOffset_m",
-                "MinimumWaypointSeparation_m",
                 "isRoutAggregator",
                 "OsmFileName",
             ),

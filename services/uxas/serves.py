@@ -31,7 +31,8 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
     "Task services": (
         tasks.TaskService,
         ("TaskInitialized", "SensorFootprintRequests", "TaskPlanOptions", "RoutePlanRequest",
-         "TaskImplementationResponse", "TaskActive", "TaskComplete", "ServiceStatus"),
+         "TaskImplementationResponse", "TaskActive", "TaskComplete", "VehicleActionCommand",
+         "ServiceStatus"),
     ),
     "RoutePlannerVisibilityService": (
         planner.RoutePlannerVisibilityService, ("RoutePlanResponse",)
@@ -68,7 +69,7 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
     "IcarousCommunicationService": (
         icarous_communication.IcarousCommunicationService,
         ("MissionCommand", "VehicleActionCommand", "TaskPause", "TaskResume", "ServiceStatus",
-         "BridgeStatus", "Heartbeat", "GateState", "AuthorityChange", "ModeRefused"),
+         "BridgeStatus", "Heartbeat", "GateState", "GatedCommand", "AuthorityChange", "ModeRefused"),
     ),
     "DAIDALUS_WCV_Detection": (
         detection.DaidalusDetection,

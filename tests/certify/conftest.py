@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from certify_tools import ROOT, Run
+from certify_tools import ROOT, Run, read
 
 from cratous.services.certify import flight_record, rejudge, report, result_files
 from cratous.services.cli import main
@@ -66,3 +66,22 @@ def judged(flown: Path) -> Iterator[None]:
     once(result_files, "pages", report.report_text)
     yield
     patch.undo()
+
+
+@pytest.fixture(scope="module")
+def signed_run(
+    flown: Path, judged: None, tmp_path_factory: pytest.TempPathFactory
+) -> Path:  # `run` is the results, `views` stands beside it
+    signing = pytest.importorskip("signing", reason="the extra `sign` is not installed")
+    home = tmp_path_factory.mktemp("signed")
+    signing.write_keys(home, "own", signing.KEY)
+    signing.write_keys(home, "other", signing.OTHER)
+    shutil.copytree(flown, home / "run")
+    words = ["certify", home / "run", "-o", home / "views", "--sign", "--key", home / "own.pem"]
+    assert main([str(word) for word in words]) == read(flown)["exit_code"]
+    return home
+
+
+@pytest.fixture
+def home(signed_run: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(signed_run, tmp_path / "home"))

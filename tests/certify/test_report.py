@@ -133,6 +133,16 @@ def report() -> dict[str, Any]:
         },
         "mission_hash": "0" * 64, "command": "cratous run 'a<b>'", "avoidance": False,
         "not_covered": [2], "requirements": requirement_rows(rows), "constraints": rows,
+        "assumptions": [
+            {"name": "clock", "text": "<u>clock</u>", "theorems": ["t"], "guarantees": ["G5"],
+             "state": "broken", "since_ms": 2500, "vehicle": None, "observed": 0.5, "bound": 0,
+             "unit": "s back", "note": "back & forth", "lost": "all of it", "stands": "the rest",
+             "checks": 3, "kernels": ["a.k"]},
+            {"name": "told", "text": "told", "theorems": ["t"], "guarantees": ["G4"],
+             "state": "not observed", "since_ms": None, "vehicle": None, "observed": None,
+             "bound": None, "unit": "", "note": "no takeover", "lost": "", "stands": "",
+             "checks": 0, "kernels": []},
+        ],
         "plan": {
             "items": [
                 {"task_id": 5, "vehicle_id": 1, "transit": [place], "path": [place, far],
@@ -172,7 +182,9 @@ def test_the_page_is_whole_and_escaped() -> None:
     assert "a&lt;b&gt;" in page
     for words in ("Flown with --allow-unproved", "Avoidance was switched off", "never ended",
                   "Not covered", "It holds.", "ICAROUS in command", "2" * 64,
-                  "Losses of well clear", "no way out", "&lt;9&gt;"):  # fmt: skip
+                  "Losses of well clear", "no way out", "&lt;9&gt;",
+                  "&lt;u&gt;clock&lt;/u&gt;", "since 2.5 s", "0.5 of 0 s back", "back &amp; forth",
+                  "Without ground since then: all of it. Still holds: the rest."):  # fmt: skip
         assert words in page
 
 
@@ -208,14 +220,14 @@ def test_a_row_leads_to_its_kernel_and_on_to_theorem_and_definition() -> None:
 
     page = html.document_fromstring(render(report()))
     targets = {node.get("id") for node in page.xpath("//*[@id]")}
-    links = {node.get("href") for node in page.xpath("//a")}
+    links = {node.get("href") for node in page.xpath("//a")} - {"#assumptions"}
     evidence = {"#kernel-a.k", "#theorem-t", "#definition-s.d"}
     # each requirement leads to the constraint that it is told by
     assert links == evidence | {f"#constraint-{k}" for k in range(1, 6)}
     assert {link[1:] for link in links} <= targets
     rows = page.xpath("//section[@id='answer']//table[1]//tr[td]")
     for row in rows:
-        (link,) = row.xpath(".//a/@href")
+        (link,) = row.xpath("./td[2]/a/@href")
         (told,) = page.xpath(f"//tr[@id='{link[1:]}']/td[1]")
         assert row.xpath("./td[1]/b")[0].text.startswith(told.text)
     decided = [
@@ -225,6 +237,8 @@ def test_a_row_leads_to_its_kernel_and_on_to_theorem_and_definition() -> None:
     assert decided[0].startswith("a.k")
     assert decided[1].startswith("b.k (not called)")
     assert decided[2].startswith("no kernel: the messages say it")
+    beside = [row.xpath("string(./td[1]/b)")[:2] for row in rows if row.xpath("./td[4]//a")]
+    assert beside == ["G5"], "a broken assumption stands beside what it is about"
     (kernel,) = page.xpath("//tr[@id='kernel-a.k']")
     assert "compiled into c.loop (4 calls)" in kernel.text_content()
     assert "3 CPython" in kernel.text_content()
@@ -311,6 +325,9 @@ def test_paper_has_the_answer_and_the_inventory_only_when_asked_for() -> None:
     assert set(needed) == {"constraints", "evidence", "events"}
     sheet = page.xpath("//style")[0].text.partition("@media print")[2]
     assert ".by-need { display: none; }" in sheet
+    assert ".screen { display: none; }" in sheet
+    assumed = page.xpath("//h2[@id='assumptions']/following::table[1]//tr[td]")
+    assert [row.get("class") for row in assumed] == [None, "screen"], "broken ones are printed"
     assert ".by-need:target, .by-need:has(:target) { display: block;" in sheet
     (answer,) = page.xpath("//section[@id='answer']")
     titles = [node.text for node in answer.xpath(".//h2")]

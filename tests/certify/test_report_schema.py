@@ -11,15 +11,10 @@ from typing import Any
 import pytest
 from certify_tools import Run, edited, read
 from jsonschema import Draft202012Validator
+from record_schema import record_definitions
 
 from cratous.services.certify.report import write_report
-from cratous.services.certify.report_schema import (
-    checked,
-    departures,
-    record_definitions,
-    schema_text,
-)
-from cratous.spec.errors import BadInput
+from cratous.services.certify.report_schema import departures, schema_text
 from cratous.spec.mission import Mission, changes
 from cratous.spec.mission.plan import PartialPlan, Plan
 
@@ -94,9 +89,6 @@ def test_a_report_fits_and_its_edits_do_not(flown: Path) -> None:
         place[path[-1]] = new
         found = departures(bad)
         assert any(line.startswith(said) for line in found), (path, found)
-        with pytest.raises(BadInput) as caught:
-            checked(bad, "there")
-        assert caught.value.where == "there"
     for key in whole:
         bad = {name: value for name, value in whole.items() if name != key}
         assert any(f"{key!r} is a required property" in line for line in departures(bad))

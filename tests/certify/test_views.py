@@ -65,6 +65,10 @@ def test_junit_passes_only_what_was_checked_and_holds(flown: Path) -> None:
     assert reasons["proof of a.b"] == "not proved: its source is another"
     assert reasons["environment.code"] == "not checked: other code"
     whole = etree.fromstring(junit(subject).encode())
+    digests = [suite.findall("properties/property[@name='log_digest']") for suite in whole]
+    assert [[one.get("value") for one in found] for found in digests] == [
+        [report["log"]["digest"]]
+    ] * len(whole)
     count = [int(whole.get(key)) for key in ("tests", "failures", "errors", "skipped")]
     assert count == [len(found), 1, 0, len(found) - 2]
     assert count[0] == sum(int(suite.get("tests")) for suite in whole)
@@ -208,8 +212,70 @@ def test_nothing_is_written_of_what_is_not_confirmed(
     whole = read(folder)
     whole["constraints"][0]["verdict"] = "violated"
     (folder / "report.json").write_text(json.dumps(whole), encoding="utf-8")
-    code, out, _ = run("certify", folder, "-o", tmp_path / "views")
+    code, out, err = run("certify", folder, "-o", tmp_path / "views")
     assert (code, out, (tmp_path / "views").exists()) == (1, "", False)
+    assert "not written: junit.xml: the report is not confirmed" in err
+    assert "written: " not in err.replace("not written: ", "")
+    assert "of an earlier run" not in err
+
+
+def test_views_of_an_earlier_run_are_named_beside_a_report_that_is_not_confirmed(
+    run: Run, flown: Path, judged: None, tmp_path: Path
+) -> None:
+    folder = edited(flown, tmp_path)
+    _, out, err = run("certify", folder, "--junit", "--csv")
+    stale = [folder / "attestation" / name for name in ("junit.xml", "constraints.csv")]
+    assert [line for line in out.splitlines() if line.startswith("written: ")] == [
+        f"written: {file}" for file in stale
+    ]
+    assert "of an earlier run" not in out + err
+    whole = read(folder)
+    whole["constraints"][0]["verdict"] = "violated"
+    (folder / "report.json").write_text(json.dumps(whole), encoding="utf-8")
+    code, _, err = run(
+        "certify", folder
+    )  # no views asked for: those that are there pass all the same
+    lines = err.splitlines()
+    assert code == 1
+    assert all(f"of an earlier run, not confirmed now: {file}" in lines for file in stale)
+    assert "not written" not in err
+    data = json.loads(run("certify", folder, "--json", "--sarif")[1])
+    assert data["of_an_earlier_run"] == [str(file) for file in stale]
+    assert (data["written"], data["not_written"]) == (
+        [],
+        ["report.sarif: the report is not confirmed"],
+    )
+
+
+def test_what_is_written_and_what_is_not(
+    run: Run, flown: Path, judged: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)  # no mission file is here
+    _, out, _ = run("certify", flown, "-o", "views", "--sarif")
+    said = [line for line in out.splitlines() if "written: " in line]
+    assert said[0] == "written: views/report.sarif"
+    assert said[1].startswith("not written: lines of ")
+    assert len(said) == 2
+    for words in (("--csv",), ("--junit", "--csv")):
+        code, _, err = run("certify", flown, "-o", "v", *words, "--mission", "x.yaml")
+        assert (code, "--mission finds lines for report.sarif, which is not asked for" in err) == (
+            2,
+            True,
+        )
+    assert not (tmp_path / "v").exists()
+
+
+def test_only_the_folder_of_the_views_itself_is_left_out_of_what_was_not_checked(
+    run: Run, flown: Path, judged: None, tmp_path: Path
+) -> None:
+    folder = edited(flown, tmp_path)
+    (folder / "attestation: x").write_text("")
+    for _ in range(2):
+        assert run("certify", folder, "--csv")[0] == read(folder)["exit_code"]
+    text = (folder / "attestation" / "constraints.csv").read_text()
+    rows = [row["item"] for row in csv.DictReader(io.StringIO(text)) if row["source"] == "report"]
+    assert rows == ["attestation"]  # the other one, with what follows its colon as the reason
+    assert "x: no file of the results" in text
 
 
 def test_folders_that_are_refused(run: Run, flown: Path, judged: None, tmp_path: Path) -> None:

@@ -152,7 +152,7 @@ def test_check_names_every_file_and_every_problem(
     files = [good, bad, tmp_path / "gone.yaml", tmp_path / "bytes.algebra"]
     assert main(["check", *map(str, files)]) == 2
     printed = capsys.readouterr()
-    assert printed.out == f"{good}: can be used\n"
+    assert printed.out == f"{good}: can be read\n"
     assert main(["check", "--json", *map(str, files)]) == 2
     data = json.loads(capsys.readouterr().out)
     assert [Path(one["file"]) for one in data["files"]] == files

@@ -199,6 +199,7 @@ KEPT = {
     "services/results/former.py": "opened for reading",
     "services/campaign/store.py": "results in SQLite, in transactions",
     "services/cli/campaign_flight.py": "a mission in a temporary folder",
+    "services/processes/children.py": "what processes say, inside the hidden folder of a run",
     "services/uxas/diagram.py": "inside a hidden folder of this process, renamed when whole",
 }
 WRITES = {"write_text", "write_bytes", "savefig"}

@@ -14,7 +14,9 @@ from loading_tools import small
 from cratous.bridge import lmcp
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.faults import MOST_WAITING, FaultyBridge
+from cratous.judge import judge
 from cratous.services.bus import Bus
+from cratous.services.cli.job import Settings, run_mission
 from cratous.services.flight.loop import fly
 from cratous.services.loading import load
 from cratous.services.pipeline.plan import make_plan
@@ -118,6 +120,33 @@ def test_each_fault_changes_the_flight_and_it_fits(kind: str, usual: list[str]) 
     assert found.events["MissionEnd"] == 1
     # while nothing comes up that ICAROUS did not hear the bus has what was sent
     assert (said(log) != usual) == (kind != "reads_again")
+
+
+@pytest.mark.parametrize(
+    "faults",
+    [
+        BridgeFaults(3, loss=1.0),
+        BridgeFaults(12, cut_ms=5000),
+        BridgeFaults(15, stops_reading_ms=5000),
+    ],
+)
+def test_a_flight_that_never_hears_uxas_again_is_safe_and_its_takeover_unknown(
+    faults: BridgeFaults, tmp_path: Path
+) -> None:
+    simulation = FaultySimulation(limit_ms=150_000, bridge_faults=faults)
+    report = run_mission(
+        replace(meeting(), simulation=simulation), tmp_path, Settings(allow_unproved=True)
+    )
+    verdicts = {row["requirement"]: row["verdict"] for row in report["requirements"]}
+    rows = [row for row in report["constraints"] if row["item"] == "authority over vehicle 1"]
+    assert [(row["verdict"], "was never handed back" in row["note"]) for row in rows] == [
+        ("unknown", True)
+    ]
+    assert "the link was declared down" in rows[0]["note"]
+    assert (verdicts["G1"], verdicts["G2"], verdicts["G3"]) == ("holds", "holds", "violated")
+    found = judge(tmp_path)
+    assert found.of("G4") == "unknown"
+    assert [one.line() for one in found.differences if one.guarantee == "G4"] == []
 
 
 def test_the_same_seed_gives_the_same_flight() -> None:

@@ -13,7 +13,7 @@ from icarous_tools import ABILITY, NORTH, VOLUME, WIDE
 
 from cratous.core.authority.gate import Gate
 from cratous.core.avoidance.manoeuvre import way_along
-from cratous.core.avoidance.prediction import Intruder
+from cratous.core.avoidance.prediction import Intruder, first_violation_s
 from cratous.core.avoidance.resolution import Scene
 from cratous.core.permit.remainder import STANDING, hold_at, hold_permits, zones_permit
 from cratous.core.routing.polylines import Track
@@ -94,6 +94,33 @@ def test_where_the_hold_ends(off_m: float, clear: bool) -> None:
     assert len(found.holds) == 2
     assert sum(piece.duration_s for piece in found.pieces) == pytest.approx(ARRIVAL_S)
     assert [hold.piece.start_s for hold in found.holds] == pytest.approx([ARRIVAL_S, ARRIVAL_S])
+
+
+COMES = Intruder(9, Position(2000.0, 0.0, 300.0), Velocity(-30.0, 0.0, 0.0))
+# over the hold it is above its layer, and in the layer only when it is far past it
+SINKS = Intruder(9, Position(2040.0, 0.0, 530.0), Velocity(-38.4, 0.0, 4.0))
+
+
+@pytest.mark.parametrize(
+    ("other", "first_s"),
+    [
+        (standing(NEAR_M + 0.1), None),
+        (standing(NEAR_M - 0.1), ARRIVAL_S),
+        (COMES, (2000.0 - NEAR_M) / 30.0),
+        (SINKS, ARRIVAL_S),  # not permitted, and no instant is found: from the beginning on
+    ],
+)
+def test_when_the_hold_is_too_near(other: Intruder, first_s: float | None) -> None:
+    """Asked of the holds alone: the way to them has a volume of its own."""
+    found = ahead(other)._replace(volumes=()).first_s(other)
+    if first_s is None or found is None:
+        assert found is first_s
+    else:  # early by at most a 64th of the hold, never late
+        assert first_s - (60.0 - ARRIVAL_S) / 64 <= found <= first_s + 1e-9
+    if other is SINKS:
+        wide = WellClear(WIDE.dthr_m + HOLD_M, WIDE.zthr_m + RISE_M, 0.0, 0.0)
+        holds = [hold.piece for hold in ahead(other).holds]
+        assert all(first_violation_s((hold,), other, wide) is None for hold in holds)
 
 
 def test_a_zone_near_the_hold_makes_it_wider() -> None:

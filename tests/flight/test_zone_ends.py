@@ -19,8 +19,10 @@ from cratous.bridge.loopback import Bridge
 from cratous.bridge.text_protocol import FenceDone, HardReset, Message, StartMission
 from cratous.judge import judge
 from cratous.services.cli.job import Settings, run_mission
+from cratous.services.flight.replan_triggers import undone_by
 from cratous.services.loading import load
 from cratous.services.monitor.required_rows import zones_of
+from cratous.services.pipeline.plan import make_plan
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Change, Mission, Position, Simulation, TaskKind, Zone, ZoneKind
 from cratous.spec.mission.changes import ZONE, ZONE_ENDS, ZoneEnd, known_at, words
@@ -150,6 +152,33 @@ def test_nothing_is_planned_anew_where_the_plan_is_whole(tmp_path: Path) -> None
     report, rows = flight(replace(load(FILE), zones=(aside,)), tmp_path)
     assert "the plan holds as it is" in str(report["flight"]["changes"])
     assert outcomes(rows) == {"task 7": "holds", "task 8": "holds"}
+
+
+def test_what_was_flown_in_part_to_its_end_is_not_flown_again(tmp_path: Path) -> None:
+    """The line that the zone cuts has ended, in part, when the zone ends: nothing asks for another plan."""
+    mission = load(FILE)
+    far = replace(mission.tasks[1], points=(Position(9000.0, 0.0, 400.0),))
+    change = ZoneEnd(360_000, ZONE_ENDS, zone_id=12)
+    report, rows = flight(
+        replace(mission, tasks=(mission.tasks[0], far), changes=(change,), relations=".(p7 p8)"),
+        tmp_path,
+    )  # fmt: skip
+    done = {one["task"]: one["time_ms"] for one in report["flight"]["served"]}
+    (told,) = report["flight"]["changes"]
+    assert done[7] < change.at_ms < done[8]
+    assert "the plan holds as it is" in str(told)
+    assert outcomes(rows) == {"task 7": "violated", "task 8": "holds"}
+
+
+@pytest.mark.parametrize(
+    ("settled", "expected"), [((), [7, 8]), ((7,), [8]), ((8,), [7]), ((7, 8), [])]
+)
+def test_the_end_of_a_zone_brings_back_no_task_that_has_had_its_end(
+    settled: tuple[int, ...], expected: list[int]
+) -> None:
+    mission = load(FILE)
+    (change,) = mission.changes
+    assert undone_by(change, make_plan(known_at(mission, 0)), settled) == expected
 
 
 @given(

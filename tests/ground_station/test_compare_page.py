@@ -105,11 +105,47 @@ def test_events_of_one_run_alone_are_marked_in_both_lists(page: Page) -> None:
     ]
 
 
+def test_both_panes_are_made_of_one(page: Page) -> None:
+    script = (
+        "['a', 'b'].map(side => [...document.getElementById(`map-${side}`).closest('.pane')"
+        ".querySelectorAll('[id], [aria-label]')].map(one => [one.tagName, one.id, one.ariaLabel]))"
+    )
+    one, two = page.value(script)
+    assert len(one) == 7
+    turned = [
+        [t, i[:-1] + "b", label and label.replace("run A", "run B").replace("Run A", "Run B")]
+        for t, i, label in one
+    ]
+    assert two == turned
+    assert page.value("document.querySelectorAll('.pane').length") == 2
+    assert sum("un A" in (label or "") for _, _, label in one) == 3
+    assert page.value("[...document.querySelectorAll('.side')].map(one => one.textContent)") == [
+        "A",
+        "B",
+    ]
+
+
+def test_where_verdicts_are_not_compared_the_page_says_so(
+    crossing: Path, crossing_alone: Path, tmp_path: Path
+) -> None:
+    with serving(crossing, crossing_alone / "log.sqlite") as (_, port), browsing(tmp_path) as page:
+        page.go(f"http://127.0.0.1:{port}/")
+        page.until(READY)
+        note = page.text("differences-note")
+        assert "Verdicts are not compared. B: there is no report.json" in note
+        assert "verdicts and margins" not in note
+        assert "The digests of the logs are not the same." in note
+        assert "G2" not in page.text("differences")
+        assert page.text("overall-b") == "not judged"
+
+
 def test_a_run_beside_itself_differs_in_nothing(crossing: Path, tmp_path: Path) -> None:
     with serving(crossing, crossing) as (_, port), browsing(tmp_path) as page:
         page.go(f"http://127.0.0.1:{port}/")
         page.until(READY)
         assert page.text("count") == "(0)"
-        assert page.text("differences-note").startswith("None in what is compared.")
+        note = page.text("differences-note")
+        assert note.startswith("None in what is compared. Both logs have the same digest.")
+        assert "once a second, to 0.1 m" in note
         assert page.value("document.querySelectorAll('.differs, #differences tr').length") == 0
         assert page.logged == []

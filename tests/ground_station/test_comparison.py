@@ -5,14 +5,19 @@ from __future__ import annotations
 import json
 import shutil
 import sqlite3
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
 from ground_station_tools import ask, serving
 
+from cratous.services.certify.timeline import FlightReader
 from cratous.services.cli import main
 from cratous.services.ground_station.comparison import (
+    KINDS,
     OTHERWISE,
     Said,
     _parting,
@@ -21,6 +26,7 @@ from cratous.services.ground_station.comparison import (
     comparison,
 )
 from cratous.services.ground_station.recording import recording
+from cratous.services.logs.log import Row
 from cratous.spec.errors import BadInput
 
 
@@ -82,6 +88,114 @@ def test_without_a_report_it_says_that_verdicts_are_not_compared(
     found = comparison(crossing, crossing_alone / "log.sqlite")
     assert len(found["verdicts_why_none"]) == 1
     assert found["verdicts_why_none"][0].startswith("B: there is no report.json")
+    # what is not known is no difference
+    assert {row["kind"] for row in found["differences"]}.isdisjoint(
+        ("verdict", "verdict in detail")
+    )
+    assert ("authority", "takeover of vehicle 2") in _by(found)
+
+
+@contextmanager
+def _changed(run: Path, to: Path) -> Iterator[sqlite3.Connection]:
+    """The log of a run in a folder of its own, to be changed."""
+    shutil.copy(run / "log.sqlite", to / "log.sqlite")
+    with sqlite3.connect(to / "log.sqlite") as base:
+        yield base
+    base.close()
+
+
+def _meta(base: sqlite3.Connection, key: str) -> Any:
+    ((text,),) = base.execute("SELECT value FROM meta WHERE key = ?", (key,))
+    return json.loads(text)
+
+
+def test_another_note_and_another_share_served_of_a_task_are_told(
+    crossing: Path, tmp_path: Path
+) -> None:
+    with _changed(crossing, tmp_path) as base:
+        asked = "SELECT seq, body FROM messages WHERE topic = 'cratous.TaskProgress'"
+        for seq, text in base.execute(asked).fetchall():
+            body = json.loads(text)
+            if body["Phase"] == "Complete":
+                body |= {"Served": 0.75} if body["TaskID"] == 1 else {"Note": "late"}
+                new = json.dumps(body, separators=(",", ":"))
+                base.execute("UPDATE messages SET body = ? WHERE seq = ?", (new, seq))
+    rows = _by(comparison(crossing / "log.sqlite", tmp_path / "log.sqlite"))
+    assert rows.keys() == {("task", "task 1 complete"), ("task", "task 2 complete")}
+    one, two = (rows["task", f"task {number} complete"] for number in (1, 2))
+    assert one["a"]["text"] == "vehicle 1, 100 % served"
+    assert one["b"]["text"] == "vehicle 1, 75 % served"
+    assert two["a"]["text"] == "vehicle 2, 100 % served"
+    assert two["b"]["text"] == "vehicle 2, 100 % served: late"
+
+
+def test_what_is_told_of_a_task_again_in_its_phase_is_compared() -> None:
+    body = {
+        "$type": "CRATOUS/TaskProgress",
+        "TaskID": 1,
+        "VehicleID": 1,
+        "Phase": "Active",
+        "Served": 0.5,
+    }
+    found = []
+    for note in ("back on the path", "back"):
+        reader = FlightReader([1])
+        for k, text in enumerate(("", note)):
+            told = json.dumps({**body, "Time": 1000 * k, "Note": text})
+            reader.add(Row(k, 1000 * k, "", "cratous.TaskProgress", told))
+        flight = reader.finish()
+        assert len(flight.events) == len(flight.event_kinds) == 1
+        found.append(KINDS["task"]({"phases": flight.phases, "in_phase": flight.in_phase}))
+    (row,) = _rows("task", *found)
+    assert row["item"] == "task 1 active, told again"
+    assert row["a"] == {"text": "vehicle 1, 50 % served: back on the path", "time_ms": 1000}
+    assert row["b"] == {"text": "vehicle 1, 50 % served: back", "time_ms": 1000}
+
+
+@pytest.mark.parametrize("what", ["task 3", "end of mission", "plan accepted, or so"])
+def test_a_change_of_the_mission_is_an_event_whatever_its_words(what: str) -> None:
+    reader = FlightReader([1])
+    body = {
+        "$type": "CRATOUS/MissionChange",
+        "Time": 5,
+        "What": what,
+        "Consequence": "planned anew",
+    }
+    reader.add(Row(1, 5, "", "cratous.MissionChange", json.dumps(body)))
+    flight = reader.finish()
+    run = {"events": flight.events, "event_kinds": flight.event_kinds}
+    assert [said.text for said in KINDS["event"](run)] == [f"{what}: planned anew"]
+    assert KINDS["plan"](run) == []
+
+
+def test_every_event_of_a_flight_is_told_by_its_kind_once(popup: Path) -> None:
+    run = recording(popup)
+    kinds = Counter(run["event_kinds"])
+    assert len(run["events"]) == sum(kinds.values())
+    assert kinds["task"] == len(run["phases"])
+    assert kinds["end"] == 1
+    assert kinds["plan"] == len(KINDS["plan"](run)) > 1
+    assert kinds["other"] == len(KINDS["event"](run)) > 1
+
+
+def test_a_setting_that_one_log_does_not_name_is_only_in_the_other(
+    crossing: Path, tmp_path: Path
+) -> None:
+    with _changed(crossing, tmp_path) as base:
+        base.execute("DELETE FROM meta WHERE key = 'avoidance'")
+        mission = _meta(base, "mission")
+        assert mission.pop("cost") == "MINMAX"
+        base.execute("UPDATE meta SET value = ? WHERE key = 'mission'", (json.dumps(mission),))
+    whole, less = crossing / "log.sqlite", tmp_path / "log.sqlite"
+    for side, rows in (
+        ("a", _by(comparison(whole, less))),
+        ("b", _by(comparison(less, whole))),
+    ):
+        assert rows.keys() == {("setting", "avoidance"), ("setting", "mission: cost")}
+        for row in rows.values():
+            assert row["side"] == f"only {side.upper()}"
+            assert row["b" if side == "a" else "a"] is None
+        assert rows["setting", "avoidance"][side]["text"] == "true"
 
 
 def _moved(run: Path, to: Path, **frame: float) -> Path:

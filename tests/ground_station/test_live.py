@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -176,11 +177,27 @@ def test_the_flight_ends_with_its_server(live: Served, tmp_path: Path, number: i
     (child,) = live.children()
     live.process.send_signal(number)
     live.process.wait(LIMIT_S)
-    until_s = time.monotonic() + LIMIT_S
-    while Path(f"/proc/{child}/cmdline").exists() and Path(f"/proc/{child}/cmdline").read_bytes():
-        assert time.monotonic() < until_s, "the flight's process is still there"
-        time.sleep(0.05)
+    _ended(child, LIMIT_S)
     assert not (tmp_path / "live").exists()
+
+
+def test_a_paused_flight_ends_with_a_server_that_was_killed_after_a_command(
+    live: Served, tmp_path: Path
+) -> None:
+    """The command is read when nobody is there any more to be told that it is done."""
+    (child,) = live.children()
+    live.until("paused")
+    os.kill(child, signal.SIGSTOP)
+    try:
+        assert live.order(do="pause").status == 200
+        live.process.kill()
+        live.process.wait(LIMIT_S)
+    finally:
+        os.kill(child, signal.SIGCONT)
+    _ended(child, limit_s=10)
+    assert not (tmp_path / "live").exists()
+    assert live.process.stderr is not None
+    assert live.process.stderr.read() == ""  # of the flight, too
 
 
 def test_a_flight_that_is_to_end_waits_no_more() -> None:
@@ -288,6 +305,16 @@ def _stands(live: Served) -> int:
         before = now
         time.sleep(0.4)
     return now
+
+
+def _ended(process: int, limit_s: float) -> None:
+    until_s, command = time.monotonic() + limit_s, Path(f"/proc/{process}/cmdline")
+    with suppress(FileNotFoundError, ProcessLookupError):
+        while command.read_bytes():  # of one that nobody has waited for there is none
+            if time.monotonic() > until_s:
+                os.kill(process, signal.SIGKILL)
+                pytest.fail("the flight's process is still there")
+            time.sleep(0.05)
 
 
 def _gone(live: Served) -> None:

@@ -43,7 +43,7 @@ def _speed(page: Page, rate: int) -> None:
 
 def test_a_mission_is_flown_paused_stepped_and_its_results_are_replayed(page: Page) -> None:
     assert page.text("live-who") == "This page commands the flight."
-    assert "authority UxAS" in page.text("aircraft")
+    page.until("document.getElementById('aircraft').textContent.includes('authority UxAS')")
     page.click("#fly-step")
     page.until(f"{NEWEST_MS} === 1000")
     _speed(page, 50)
@@ -54,6 +54,7 @@ def test_a_mission_is_flown_paused_stepped_and_its_results_are_replayed(page: Pa
     page.until(f"{STATE} === 'paused'")
     page.until("document.getElementById('verdicts-at').textContent.startsWith('so far, at ')")
     assert page.text("overall") == "so far unknown"
+    assert page.text("source") == "flown now"
     assert "ICAROUS since 21.5 s" in page.text("aircraft")
     page.key("p")  # looking back does not move the flight
     assert page.text("clock").startswith("00:00:21.5 of")
@@ -64,6 +65,7 @@ def test_a_mission_is_flown_paused_stepped_and_its_results_are_replayed(page: Pa
     page.until(f"{STATE} === 'ended'")
     page.until("document.getElementById('overall').textContent === 'holds'")
     assert page.text("live-text").startswith("HOLDS: results in ")
+    assert page.text("source") == "flown to its end"
     page.click("#results")
     page.until("document.getElementById('live')?.hidden && !document.getElementById('play').hidden")
     page.until("document.getElementById('overall').textContent === 'holds'")
@@ -82,8 +84,26 @@ def test_stopping_asks_first(page: Page, live: Served, tmp_path: Path) -> None:
     page.click("#stop-yes")
     page.until(f"{STATE} === 'stopped'")
     assert "no results were written" in page.text("live-text")
+    assert page.text("source") == "stopped before its end"
     assert page.value("document.getElementById('fly').disabled")
     assert not (tmp_path / "live").exists()
+    page.go("about:blank")
+    page.go(live.url)  # also to a page that is opened later
+    page.until("document.getElementById('source')?.textContent === 'stopped before its end'")
+
+
+def test_where_the_monitor_could_not_be_asked_no_older_verdicts_stand(page: Page) -> None:
+    page.until("document.getElementById('overall').textContent === 'so far unknown'")
+    page.click("#stop")  # nothing new comes any more
+    page.click("#stop-yes")
+    page.until(f"{STATE} === 'stopped'")
+    assert page.value("document.querySelectorAll('#verdicts tr').length") > 5
+    page.value(
+        "import('/panels.js').then(panels => "
+        "panels.verdicts({ verdicts: { why_none: 'its process failed' } }))"
+    )
+    page.until("document.getElementById('verdicts-note').textContent.startsWith('Not judged')")
+    assert page.text("overall") == page.text("verdicts-at") == page.text("verdicts") == ""
 
 
 def test_a_flight_that_is_lost_is_said(page: Page, live: Served) -> None:
@@ -93,6 +113,7 @@ def test_a_flight_that_is_lost_is_said(page: Page, live: Served) -> None:
     os.kill(child, signal.SIGKILL)
     page.until(f"{STATE} === 'lost'")
     assert "ended without a word (signal 9)" in page.text("live-text")
+    assert page.text("source") == "lost before its end"
     assert page.value("document.getElementById('fly').disabled")
 
 
@@ -100,6 +121,7 @@ def test_a_server_that_is_lost_is_said(page: Page, live: Served) -> None:
     live.process.kill()
     page.until(f"{STATE} === 'server lost'")
     assert "The server does not answer" in page.text("live-text")
+    assert page.text("source") == "whether it is still flown is unknown"
 
 
 def test_a_second_page_is_told_takes_over_and_the_first_is_told(

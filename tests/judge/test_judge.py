@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sqlite3
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -48,6 +49,30 @@ def test_a_zone_counts_from_when_it_is_known(tmp_path: Path) -> None:
         changes = [{"at_ms": at_ms, "kind": "zone", "vehicle": 0, "task": 0, "zone": there}]
         scene = Scene(changes=changes).straight(1, (0, 0, 300), NORTH)
         assert one(tmp_path, scene, "zone: keep_out 7, flight of vehicle 1") == expected
+
+
+@pytest.mark.parametrize(
+    ("from_ms", "until_ms", "expected"),
+    [
+        (0, 1, ("holds", 1)),  # the first leg
+        (2000, 2001, ("holds", 1)),
+        (2001, 2500, ("unknown", 0)),  # there and gone between two states
+        (2000, None, ("violated", 3)),
+        (99_000, None, ("holds", 1)),  # that the flight was over before
+    ],
+)
+def test_a_zone_that_nothing_was_held_against_is_unknown(
+    tmp_path: Path, from_ms: int, until_ms: int | None, expected: tuple[str, int]
+) -> None:
+    there = zone(7, "keep_out", (90, -5), (90, 5), (110, 5), (110, -5))
+    none: dict[str, Any] = {"vehicle": 0, "task": 0, "zone": None}
+    changes = [{**none, "at_ms": from_ms, "kind": "zone", "zone": there}] if from_ms else []
+    if until_ms is not None:
+        changes.append({**none, "at_ms": until_ms, "kind": "zone_ends", "zone_id": 7})
+    scene = Scene(zones=[] if from_ms else [there], changes=changes)
+    rows = scene.straight(1, (0, 0, 300), NORTH).judged(tmp_path).rows
+    (row,) = [row for row in rows if row.item == "zone: keep_out 7, flight of vehicle 1"]
+    assert (row.verdict, row.checks) == expected
 
 
 def test_padding_is_a_distance(tmp_path: Path) -> None:

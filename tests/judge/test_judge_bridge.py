@@ -7,7 +7,7 @@ from pathlib import Path
 
 import judge_tools as tools
 import pytest
-from judge_tools import TAKEN, Scene, task, vehicle, verdicts, zone
+from judge_tools import TAKEN, Scene, full, row, task, vehicle, verdicts, zone
 
 from cratous.judge import judge
 from cratous.services.cli import main
@@ -76,6 +76,37 @@ def test_a_task_that_fails_ends_no_takeover(tmp_path: Path) -> None:
     assert one(tmp_path, scene, "authority over vehicle 1") == "violated"
 
 
+@pytest.mark.parametrize(
+    ("status", "expected"),
+    [
+        ([], "violated"),
+        ([(500, False)], "unknown"),  # before the takeover
+        ([(3000, False)], "unknown"),
+        ([(3000, True)], "violated"),
+        ([(3000, False), (4000, True)], "violated"),  # alive again, and still not handed back
+        ([(3000, False), (4000, True), (5000, False)], "unknown"),
+        ([(3000, False, 2)], "violated"),  # another vehicle's
+    ],
+)
+def test_a_takeover_that_is_open_at_the_end_is_unknown_only_where_the_link_is_declared_down(
+    tmp_path: Path, status: list[tuple], expected: str
+) -> None:
+    def scene(rows: list) -> Scene:
+        made = Scene(vehicles=[vehicle(1), vehicle(2)]).straight(1, (0, 0, 300), NORTH)
+        made.straight(2, (0, 5000, 300), NORTH).commands(1, *rows)
+        for at, alive, *who in status:
+            made.say(at, "BridgeStatus", VehicleID=(*who, 1)[0], Time=at, Alive=alive)
+        return made
+
+    item = "authority over vehicle 1"
+    assert one(tmp_path, scene(TAKEN[:7]), item) == expected
+    assert one(tmp_path, scene(TAKEN), item) == "holds"
+    assert one(tmp_path, scene([*TAKEN[:4], (3000, "command", "UxAS", 0)]), item) == "violated"
+    (row,) = [r for r in scene(TAKEN[:7]).judged(tmp_path).rows if r.item == item]
+    assert "was never handed back" in row.note
+    assert ("declared down at" in row.note) == (expected == "unknown")
+
+
 # ---- G5 -----------------------------------------------------------------------------------------
 
 
@@ -127,41 +158,12 @@ def test_a_declared_silence_is_safe_or_not(tmp_path: Path) -> None:
 # ---- the report beside it -------------------------------------------------------------------------
 
 
-def row(requirement: str, item: str, verdict: str) -> dict[str, str]:
-    return {"requirement": requirement, "item": item, "verdict": verdict, "source": "flight"}
-
-
-def full(folder: Path, *, lost: bool = False) -> tuple[Path, list[dict[str, str]]]:
-    """A log, and a monitor's rows that say what the judge says."""
-    scene = Scene(vehicles=[vehicle(1), vehicle(2)], tasks=[task(1, "must_fly", (100, 0))])
-    scene.straight(1, (0, 0, 300), NORTH).straight(2, (0, 100.0 if lost else 900.0, 300), NORTH)
-    scene.does(1, 1, 4000, 6000).commands(1, TAKEN[0]).commands(2, TAKEN[0])
-    log = scene.write(folder / "log.sqlite")
-    return log, [
-        row(r.guarantee, r.item, r.verdict) for r in judge(log).rows if r.subject[0] != "relations"
-    ]
-
-
 def test_agreement_is_said_and_rows_of_the_plan_are_left_aside(tmp_path: Path) -> None:
     log, rows = full(tmp_path)
     rows.append(row("G1", "plan: something", "violated") | {"source": "plan"})
     found = judge(tools.with_report(log, rows))
     assert found.report
     assert not found.differences
-
-
-def test_every_row_of_a_report_on_the_flight_is_answered(tmp_path: Path) -> None:
-    log, rows = full(tmp_path)
-    rows[0]["verdict"] = "unknown"
-    rows.append(row("G1", "flight: `p1_[0-9]`: judged together", "violated"))
-    rows.append(row("G2", "a row that nobody knows", "holds"))
-    rows.append(row("G1", "plan: something", "violated") | {"source": "plan"})
-    found = judge(tools.with_report(log, rows)).answers
-    assert sorted(one.item for one in found) == sorted(r["item"] for r in rows[:-1])
-    open_ = {one.item: one.judge for one in found if not one.confirmed}
-    assert open_ == {rows[0]["item"]: "holds", rows[-3]["item"]: "holds", rows[-2]["item"]: ""}
-    assert judge(log.with_name("log.sqlite")).answers == found
-    assert judge(Path(log.rename(tmp_path / "alone.sqlite"))).answers == ()
 
 
 def test_disagreement_is_the_first_line(tmp_path: Path, capsys) -> None:

@@ -203,6 +203,25 @@ def test_a_configuration_of_another_name_and_one_of_two_processes(tmp_path: Path
         load(folder)
 
 
+def test_what_is_no_request_for_a_plan_makes_no_second_request_of_a_folder(tmp_path: Path) -> None:
+    folder = small_assign(tmp_path)
+    one, text = load(folder), (folder / "cfg_run.xml").read_text(encoding="utf-8")
+    request = (folder / "inputs" / "AutomationRequest_All.xml").read_text(encoding="utf-8")
+    inner = re.sub(r"<\?xml[^>]*\?>", "", request)
+    (folder / "inputs" / "Unique.xml").write_text(
+        '<UniqueAutomationRequest Series="UXTASK"><OriginalRequest>'
+        f"{inner}</OriginalRequest><RequestID>1</RequestID></UniqueAutomationRequest>",
+        encoding="utf-8",
+    )
+    line = '<Message MessageFileName="AirVehicleState_V2.xml" SendTime_ms="180"/>'
+    (folder / "cfg_second.xml").write_text(
+        text.replace(line, line + line.replace("AirVehicleState_V2", "Unique")), encoding="utf-8"
+    )
+    both = load(folder)
+    assert (both.tasks, both.vehicles) == (one.tasks, one.vehicles)
+    assert any("messages not used: UniqueAutomationRequest" in note for note in both.notes)
+
+
 def test_states_may_stand_in_the_scenario_of_the_simulator(tmp_path: Path) -> None:
     folder = small_assign(tmp_path)
     state = (folder / "inputs" / "AirVehicleState_V2.xml").read_text(encoding="utf-8")

@@ -164,8 +164,11 @@ def test_the_summary_of_a_run_shows_no_hidden_characters(
 ) -> None:
     served = {"task": 1, "vehicle": 2, "phase": "Failed", "time_ms": 0, "served": 0.0, "note": BAD}
     flight = {"served": [served], "takeovers": [], "outcome": "failed", "end_ms": 0}
+    broken = {"name": "clock", "text": "t", "state": "broken", "since_ms": 0, "note": BAD}
+    broken |= {"guarantees": ["G5"], "lost": "l", "stands": "s"}
     report = {"requirements": [], "flight": flight, "verdict": "violated", "exit_code": 1}
-    _show({**report, "log": {"digest": "0"}}, tmp_path / "a\x1b[2J")
+    report |= {"log": {"digest": "0"}, "assumptions": [broken]}
+    _show(report, tmp_path / "a\x1b[2J")
     shown = capsys.readouterr().out
     assert "forged" in shown
     assert not any(c in shown for c in HIDDEN if c != "\n")

@@ -286,6 +286,38 @@ def test_a_takeover_that_is_handed_back_holds():
     assert authority(*TAKEN, *stale, *BACK).outcome is Outcome.HOLDS
 
 
+def link(ms: int, alive: bool, vehicle: int = 1) -> tuple[int, Any]:
+    note = "heard again" if alive else "link lost: eof"
+    return ms, lmcp.new("BridgeStatus", VehicleID=vehicle, Time=ms, Alive=alive, Note=note)
+
+
+@pytest.mark.parametrize(
+    ("statuses", "expected"),
+    [
+        ([], "violated"),
+        ([link(100, False)], "unknown"),  # before the takeover
+        ([link(900, False)], "unknown"),
+        ([link(900, True)], "violated"),
+        (
+            [link(900, False), link(1000, True)],
+            "violated",
+        ),  # alive again, and still not handed back
+        ([link(900, False), link(1000, True), link(1100, False)], "unknown"),
+        ([link(900, False, 90)], "violated"),  # another vehicle's
+    ],
+)
+def test_a_takeover_that_is_open_at_the_end_is_unknown_only_where_the_link_is_declared_down(
+    statuses, expected
+):
+    verdict = authority(command(0, "UxAS", 0), *TAKEN, *statuses)
+    assert verdict.outcome.value == expected
+    assert "the takeover of 0.60 s was never handed back" in verdict.note
+    assert ("the link was declared down since" in verdict.note) == (expected == "unknown")
+    assert authority(command(0, "UxAS", 0), *TAKEN, *BACK, *statuses).outcome is Outcome.HOLDS
+    # what else is wrong stays so
+    assert authority(*TAKEN, command(700, "UxAS", 0), *statuses).outcome is Outcome.VIOLATED
+
+
 @pytest.mark.parametrize(
     ("messages", "wanted"),
     [

@@ -75,9 +75,10 @@ def test_tasks_are_implemented_in_assignment_order_and_answered_once(tmp_path: P
     (response,) = rig.got("UniqueAutomationResponse")
     assert response.ResponseID == 4
     one, two = response.OriginalResponse.MissionCommandList
-    assert [w.Number for w in one.WaypointList] == [1, 2, 3, 4]
-    assert one.WaypointList[-1].NextWaypoint == 4
-    assert [w.Number for w in two.WaypointList] == [1]
+    assert [(w.Number, w.NextWaypoint, w.AssociatedTasks) for w in one.WaypointList] == [
+        (1, 2, [5]), (2, 3, [5]), (3, 4, [7]), (4, 5, [7]), (5, 5, [])
+    ]  # fmt: skip
+    assert [w.Number for w in two.WaypointList] == [1, 2]
     assert [s.EntityID for s in response.FinalStates] == [1, 2]
     assert rig.bus.state(BUILDER).work == {}
 
@@ -98,6 +99,24 @@ def test_an_empty_assignment_or_implementation_is_answered_with_an_error(tmp_pat
     assert not rig.got("UniqueAutomationResponse")
 
 
+def test_the_end_is_a_waypoint_without_a_task_of_which_there_is_one(tmp_path: Path) -> None:
+    """Whoever's task it was: numbers stay apart, and an end that bears no task stays the end."""
+    rig = Rig(tmp_path, BUILDER)
+    rig.tell(*vehicle(1), unique(4, 5), summary(4, (5, 1)), unique(6, 5), summary(6, (5, 1)))
+    one, two = (implemented(asked, 9, 2) for asked in rig.got("TaskImplementationRequest"))
+    ends = [point.copy(NextWaypoint=0) for point in one.TaskWaypoints]
+    rig.tell(one.copy(TaskWaypoints=ends))
+    free = two.TaskWaypoints[-1].copy(AssociatedTasks=[])
+    rig.tell(two.copy(TaskWaypoints=[two.TaskWaypoints[0], free]))
+    added, kept = (
+        body.OriginalResponse.MissionCommandList[0].WaypointList
+        for body in rig.got("UniqueAutomationResponse")
+    )
+    assert [(w.Number, w.AssociatedTasks) for w in added] == [(9, [5]), (2, [5]), (10, [])]
+    assert [w.NextWaypoint for w in added[1:]] == [10, 10]
+    assert [(w.Number, w.NextWaypoint) for w in kept] == [(9, 10), (2, 2)]
+
+
 @pytest.mark.shows(BUILDER, "AddLoiterToEndOfMission", "DefaultLoiterRadius_m", "TurnType")
 def test_the_end_is_loitered_at_and_turns_are_flown_over_if_asked(tmp_path: Path) -> None:
     text = 'AddLoiterToEndOfMission="TRUE" DefaultLoiterRadius_m="250" TurnType="FlyOver"'
@@ -106,6 +125,6 @@ def test_the_end_is_loitered_at_and_turns_are_flown_over_if_asked(tmp_path: Path
     rig.tell(implemented(rig.got("TaskImplementationRequest")[0], 1, 2))
     (command,) = rig.got("UniqueAutomationResponse")[0].OriginalResponse.MissionCommandList
     assert {w.TurnType.name for w in command.WaypointList} == {"FlyOver"}
-    assert [len(w.VehicleActionList) for w in command.WaypointList] == [0, 1]
+    assert [len(w.VehicleActionList) for w in command.WaypointList] == [0, 0, 1]
     loiter_action = command.WaypointList[-1].VehicleActionList[0]
     assert (loiter_action.Radius, loiter_action.Duration) == (250.0, -1)

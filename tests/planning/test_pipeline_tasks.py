@@ -58,6 +58,23 @@ def test_a_task_is_active_while_a_vehicle_says_so_and_completes_after(tmp_path: 
     assert rig.got("AutomationResponse")[1].MissionCommandList
 
 
+@pytest.mark.shows(TASKS, "AuthorityChange")
+def test_a_takeover_completes_no_task(tmp_path: Path) -> None:
+    """While ICAROUS flies a vehicle, and until it flies waypoints again, its states list no task."""
+
+    def owner(name: str, number: int = 1) -> Any:
+        return lmcp.new("AuthorityChange", VehicleID=number, Owner=name)
+
+    rig = Rig(tmp_path)
+    rig.tell(*vehicle(1), *vehicle(2, 0.01), loiter(5), request(5))
+    rig.tell(flying(1, 5, time=10), owner("ICAROUS", 2), flying(1, 5, time=20))
+    rig.tell(owner("ICAROUS"), flying(1, time=30), owner("UxAS"))
+    rig.tell(flying(1, time=40).copy(Mode="FlightDirector"), flying(1, 5, time=50))
+    assert not rig.got("TaskComplete")
+    rig.tell(flying(1, time=60))
+    assert [b.TimeTaskCompleted for b in rig.got("TaskComplete")] == [60]
+
+
 @pytest.mark.shows(TASKS, "AutomationResponse", "ServiceStatus")
 def test_a_task_whose_plan_is_withdrawn_says_that_it_ends_undone(tmp_path: Path) -> None:
     rig = Rig(tmp_path)

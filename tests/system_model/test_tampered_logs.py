@@ -13,6 +13,7 @@ from tampering import (
     Log,
     after_the_end,
     alter,
+    at,
     copy_to,
     cut_short,
     days_later,
@@ -20,6 +21,7 @@ from tampering import (
     make,
     remove,
     send_as,
+    strike,
     swap,
     time_goes_back,
 )
@@ -68,6 +70,7 @@ BACK = {"VehicleID": 2, "Epoch": 2, "Owner": "UxAS"}
 BY_ICAROUS = {"VehicleID": 2, "Sender": "ICAROUS"}
 BY_UXAS = {"VehicleID": 2, "Sender": "UxAS"}
 UP, DOWN = {"VehicleID": 1, "Direction": "Up"}, {"VehicleID": 1, "Direction": "Down"}
+OF_THE_LINK = ("BridgeStatus", "Heartbeat", "ModeRefused", "TaskProgress")
 GATE, COMMAND = "a report of the gate", "a command of UxAS"
 TAMPERED: dict[str, tuple[Callable[[Log], None], str, int]] = {
     "takeover removed": (remove("GateState", **TAKEOVER), GATE, 21_500),
@@ -247,6 +250,15 @@ TAMPERED: dict[str, tuple[Callable[[Log], None], str, int]] = {
         "a heartbeat to ICAROUS",
         0,
     ),
+    "nothing of the link": (strike(*OF_THE_LINK), "the link", 0),
+    "nothing of the link of the one that nobody takes over": (
+        strike(*OF_THE_LINK, VehicleID=1), "the link", 0,
+    ),
+    "nothing of authority": (
+        strike(*OF_THE_LINK, "GatedCommand", "GateState", "AuthorityChange", "CommandDropped"),
+        "the link",
+        0,
+    ),
     "heartbeat to ICAROUS removed": (
         remove("Heartbeat", 40_000, **DOWN),
         "a heartbeat to ICAROUS",
@@ -313,9 +325,44 @@ def test_the_command_names_what_does_not_fit(
     assert not data["fits"]
     assert data["finding"]["vehicle_id"] == 2
     assert data["finding"]["got"] == "epoch 1"
-    assert data["steps"]["UxAS commands a track"] == [
-        "cratous.core.authority.link_end.track_is_told"
-    ]
+    (told,) = data["steps"]["UxAS commands a track"].items()
+    assert told[0] == "cratous.core.authority.link_end.track_is_told"
+    assert told[1] > 1
+
+
+def test_steps_are_covered_by_what_was_asked(
+    fly_once: FlyOnce, root: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A log that ends before the takeover asks nothing of the steps of who flies; one of no instance nothing at all."""
+    log = log_of(fly_once, root, "crossing")
+    whole = list(messages(log))
+    for name, meta, kept in (
+        ("short", {}, whole[: at(whole, "GateState")]),
+        ("bare", {"avoidance": False}, [m for m in whole if m.topic.endswith("MissionEnd")]),
+    ):
+        with LogWriter(tmp_path / f"{name}.sqlite", **{**read_meta(log), **meta}) as writer:
+            for seq, one in enumerate(kept):
+                writer.tap(replace(one, seq=seq))
+    words = ["monitor", "--model", "--allow-unproved"]
+    main([*words, str(log)])
+    assert "not exercised" not in capsys.readouterr().out
+    assert main([*words, str(tmp_path / "short.sqlite")]) == 1
+    said = capsys.readouterr().out
+    assert "not exercised: a heartbeat of ICAROUS (cycle_flown)" in said
+    assert (
+        "not exercised: the gate changes at ICAROUS's wish (gate_wished, gate_takeover, gate_offer)"
+        in said
+    )
+    assert "covered: the gate changes" not in said
+    assert main([*words, str(tmp_path / "bare.sqlite")]) == 3
+    said = capsys.readouterr().out
+    assert "fits the model: each" not in said
+    assert "no vehicle was flown with an ICAROUS instance" in said
+    assert "not exercised: UxAS commands a track (track_is_told)" in said
+    assert main([*words, "--json", str(tmp_path / "bare.sqlite")]) == 3
+    data = json.loads(capsys.readouterr().out)
+    assert (data["fits"], data["finding"], data["vehicles_with_icarous"]) == (None, None, 0)
+    assert {count for kernels in data["steps"].values() for count in kernels.values()} == {0}
 
 
 def test_what_cannot_be_asked_is_refused(

@@ -39,6 +39,7 @@ class Served(NamedTuple):
     process: subprocess.Popen[str]
     port: int
     token: str
+    path: str = "/command"
 
     @property
     def url(self) -> str:
@@ -62,7 +63,11 @@ class Served(NamedTuple):
             "X-Cratous-Token": self.token, "X-Cratous-Page": page, "Content-Length": str(len(body)),
             **{name.replace("_", "-"): value for name, value in changed.items()},
         }  # fmt: skip
-        return ask(self.port, "/command", "POST", body, **headers)
+        return ask(self.port, self.path, "POST", body, **headers)
+
+    def edit(self, path: str, **asked: Any) -> Got:
+        """What the page of the editor asks for at a path."""
+        return self._replace(path=path).sent("a", json.dumps(asked).encode())
 
     def told(self, first: int = 0, page: str = "a") -> Any:
         """What is new from an update on."""
@@ -107,6 +112,14 @@ def serving(*paths: Path) -> Iterator[tuple[subprocess.Popen[str], int]]:
 def flying(mission: Path, out: Path, cwd: Path | None = None) -> Iterator[Served]:
     """`cratous serve MISSION --out OUT` on a free port; it is ended at the end."""
     with _started(str(mission), "--out", str(out), cwd=cwd) as (running, line):
+        port, _, token = line.partition(" ")[0].partition("/?token=")
+        yield Served(running, int(port), token)
+
+
+@contextlib.contextmanager
+def editing(mission: Path) -> Iterator[Served]:
+    """`cratous serve MISSION --edit` on a free port; it is ended at the end."""
+    with _started(str(mission), "--edit", "--allow-unproved") as (running, line):
         port, _, token = line.partition(" ")[0].partition("/?token=")
         yield Served(running, int(port), token)
 

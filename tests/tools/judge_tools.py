@@ -90,7 +90,7 @@ def with_monitor(log: Path) -> Path:
     from cratous.services.certify.rejudge import watch
     from cratous.services.certify.verdicts import constraint_rows
 
-    return with_report(log, constraint_rows(watch(log), "flight"))
+    return with_report(log, constraint_rows(watch(log).verdicts, "flight"))
 
 
 def with_report(log: Path, rows: list[dict[str, Any]]) -> Path:
@@ -237,3 +237,20 @@ TAKEN = [
     (6000, "command", "UxAS", 2),
 ]  # fmt: skip
 """The messages of a takeover that is handed back."""
+
+
+def row(requirement: str, item: str, verdict: str) -> dict[str, str]:
+    return {"requirement": requirement, "item": item, "verdict": verdict, "source": "flight"}
+
+
+def full(folder: Path, *, lost: bool = False) -> tuple[Path, list[dict[str, str]]]:
+    """A log, and a monitor's rows that say what the judge says."""
+    scene = Scene(vehicles=[vehicle(1), vehicle(2)], tasks=[task(1, "must_fly", (100, 0))])
+    scene.straight(1, (0, 0, 300), (20.0, 0.0, 0.0)).straight(
+        2, (0, 100.0 if lost else 900.0, 300), (20.0, 0.0, 0.0)
+    )
+    scene.does(1, 1, 4000, 6000).commands(1, TAKEN[0]).commands(2, TAKEN[0])
+    log = scene.write(folder / "log.sqlite")
+    return log, [
+        row(r.guarantee, r.item, r.verdict) for r in judge(log).rows if r.subject[0] != "relations"
+    ]

@@ -36,6 +36,21 @@ def remove(short: str, since_ms: int = 0, **fields: Any) -> Callable[[Log], None
     return change
 
 
+def strike(*shorts: str, **fields: Any) -> Callable[[Log], None]:
+    """Remove all messages of these kinds, with these fields."""
+
+    def change(log: Log) -> None:
+        data = (json.loads(jsonform.to_json(one.body)) for one in log)
+        log[:] = [
+            one
+            for one, found in zip(log, data, strict=True)
+            if one.topic.rpartition(".")[2] not in shorts
+            or any(found.get(key) != value for key, value in fields.items())
+        ]
+
+    return change
+
+
 def alter(
     to: dict[str, Any], short: str, since_ms: int = 0, **fields: Any
 ) -> Callable[[Log], None]:

@@ -3,105 +3,24 @@ whose SETMOD is believed, and what cannot be honoured."""
 
 from __future__ import annotations
 
-import contextlib
 import math
 import re
-import socket
 import time
 from pathlib import Path
 from typing import Any
 
 import pytest
 from bridge_flight import PLANE, Aircraft, way
-from uxas_tools import process, until, write_cfg
+from icarous_rig import Fake, Rig, state
 
 from cratous.bridge import lmcp
 from cratous.bridge import text_protocol as tp
-from cratous.bridge.text_protocol.handshake import ClientHandshake
-from cratous.services.bus import Envelope
 from cratous.services.icarous_communication.service import NobodyCame
 from cratous.services.icarous_communication.settings import ATTRIBUTES, Settings, settings_of
 from cratous.services.loading.uxas_settings import Entry, values_of
 from cratous.spec.errors import BadInput
 
 SERVICE = "IcarousCommunicationService"
-
-
-class Fake:
-    """A client of the text protocol that does what the test says."""
-
-    def __init__(self, port: int, hello: int | None = None) -> None:
-        self.sock = socket.create_connection(("127.0.0.1", port), timeout=5)
-        self.sock.setblocking(False)
-        self.handshake, self.hello, self.ended = ClientHandshake(), hello, False
-        self.parser = tp.StreamParser(tp.Direction.DOWN, limits=tp.WIDE_LIMITS)
-        self.got: list[Any] = []
-        self.raw = b""
-
-    def read(self) -> list[Any]:
-        """All records so far."""
-        with contextlib.suppress(BlockingIOError, ConnectionError):
-            while data := self.sock.recv(65536):
-                if self.handshake.done:
-                    self.take(data)
-                    continue
-                self.sock.sendall(self.handshake.feed(data))
-                if self.handshake.done:
-                    if self.hello is not None:
-                        self.say(tp.Hello(self.hello))
-                    self.take(self.handshake.rest)
-            self.ended = True
-        return self.got
-
-    def take(self, data: bytes) -> None:
-        self.raw += data
-        self.got += self.parser.feed(data)
-
-    def say(self, *lines: tp.Message) -> None:
-        for line in lines:
-            self.sock.sendall(tp.encode(line, limits=tp.WIDE_LIMITS))
-
-    def all(self, kind: type[Any]) -> list[Any]:
-        return [record for record in self.read() if isinstance(record, kind)]
-
-    def close(self) -> None:
-        self.sock.close()
-
-
-class Rig:
-    """A process with the service alone, all that it publishes, and fakes."""
-
-    def __init__(self, folder: Path, attributes: str, opened: list[Any]) -> None:
-        text = f'<Service Type="{SERVICE}" Address="tcp://127.0.0.1:0" {attributes}/>'
-        self.process, self.said = process(write_cfg(folder, text))
-        opened.append(self.process)
-        self.opened, self.sent = opened, list[Envelope]()
-        self.process.bus.tap(self.sent.append)
-        (self.service,) = self.process.ports
-        self.port = self.service.port.bound[1]
-
-    def fake(self, hello: int | None = None) -> Fake:
-        one = Fake(self.port, hello)
-        self.opened.append(one)
-        self.until(lambda: one.read() is not None and (one.handshake.done or one.ended))
-        return one
-
-    def until(self, done: Any) -> None:
-        until(done, self.process, limit_s=60.0)
-
-    def tell(self, *bodies: Any) -> None:
-        for body in bodies:
-            self.process.bus.publish(body, "test")
-        self.process.turn(0.0)
-
-    def got(self, kind: str) -> list[Any]:
-        return [e.body for e in self.sent if type(e.body).__name__ == kind and e.source == SERVICE]
-
-
-def state(vehicle: int, north: float = 0.0, now_ms: int = 1000) -> Any:
-    craft = Aircraft(vehicle, north, 0.0, 0.0)
-    craft.waypoint = 1
-    return craft.state(now_ms)
 
 
 def zone(kind: str, number: int) -> Any:

@@ -247,4 +247,6 @@ def test_a_client_s_task_service_takes_part_over_a_bridge(
             )
         )
     (command,) = told("AutomationResponse").MissionCommandList
-    assert [w.Latitude for w in command.WaypointList] == [0.02, 0.04]
+    assert [w.Latitude for w in command.WaypointList] == [0.02, 0.04, 0.04], (
+        "and an end without a task"
+    )

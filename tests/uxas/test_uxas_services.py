@@ -204,11 +204,11 @@ def test_each_vehicle_is_tried_for_each_task_and_summed_up(tmp_path: Path) -> No
     one, two = five.PerformingVehicles
     assert (one.ROZIDs, one.ConflictsWithROZ) == ([8], True)  # it does not bind, but is met
     assert (two.ROZIDs, two.ConflictsWithROZ) == ([], False)
-    assert one.TimeOnTask == pytest.approx(60_000, abs=300)
+    assert one.TimeOnTask == pytest.approx(60_000, rel=0.01)  # along the legs between its waypoints
     assert one.TimeToArrive > 50_000
     unable, able = six.PerformingVehicles
     assert (unable.TimeToArrive, unable.TimeOnTask, unable.WaypointList) == (-1, -1, [])
-    assert able.TimeOnTask == pytest.approx(60_000, abs=300)
+    assert able.TimeOnTask == pytest.approx(60_000, rel=0.01)
     assert not rig.got("AutomationResponse")
     assert not rig.said.has("fails at")
     rig.tell(lmcp.new("BatchSummaryRequest", RequestID=9))

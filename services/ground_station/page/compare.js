@@ -18,9 +18,21 @@ function onClockTo(end_ms, recording) {
     takeovers: recording.takeovers.map(one => ({ ...one, to_ms: one.to_ms ?? recording.end_ms })) };
 }
 
+// a pane of the page for a side, before the differences
+function pane(side) {
+  const made = by("pane").content.cloneNode(true), letter = side.toUpperCase();
+  for (const one of made.querySelectorAll("*")) {
+    if (one.id) one.id = `${one.id}-${side}`;
+    if (one.ariaLabel) one.ariaLabel = one.ariaLabel.replace("{side}", letter);
+  }
+  made.querySelector(".side").textContent = letter;
+  by("station").querySelector("aside").before(made);
+}
+
 class Pane {
   constructor(side, recording, alone, station) {
     this.side = side;
+    pane(side);
     this.recording = recording;
     this.alone = alone; // places of the events that the other run does not have
     this.map = new FlightMap(this.by("map"), recording, view => { station.state.view = view; station.draw(true); });
@@ -109,9 +121,12 @@ class Pair extends Playback {
     });
     table("differences", [["what"], ["A"], ["B"]], shown);
     by("count").textContent = `(${this.rows.length})`;
+    const digests = [found.a.log.digest, found.b.log.digest];
+    const same = !digests.every(Boolean) ? "A log that was not closed has no digest." : digests[0] === digests[1] ? "Both logs have the same digest." : "The digests of the logs are not the same.";
     const missing = found.verdicts_why_none.map(why => `Verdicts are not compared. ${why}.`);
     const told = this.rows.length ? "A time goes there." : "None in what is compared.";
-    by("differences-note").textContent = [told, "Compared: settings and mission, verdicts and margins of report.json, takeovers, tasks, plans, routes, events, the end, positions of aircraft (from the first that is not the same). What comes several times is paired by its number.", ...missing].join(" ");
+    const verdicts = missing.length ? "" : "verdicts and margins of report.json, ";
+    by("differences-note").textContent = [told, same, ...missing, `Compared: settings and mission, ${verdicts}takeovers, tasks, plans, routes (waypoints north and east, to 0.1 m), events, the end, positions of aircraft once a second, to 0.1 m (from the first that is not the same). What comes several times is paired in its order.`].join(" ");
   }
 
   said(place, said) {

@@ -59,6 +59,15 @@ export function authorityAt(recording, vehicle, time) {
   return { name: change.owner, reason: change.reason, since: change.time_ms };
 }
 
+// whose heading bands are shown: {id, row, since}, of the picked aircraft, or of the only one that has some. row is null
+// before the first message, and once the last one is older than an aircraft that is not seen any more; null where none is shown
+export function bandsAt(recording, state) {
+  const ids = Object.keys(recording.bands), id = state.picked ?? (ids.length === 1 ? ids[0] : null), rows = recording.bands[id];
+  if (!rows) return null;
+  const row = rows[lastAt(rows, state.time, one => one.time_ms)];
+  return { id, row: row && state.time - row.time_ms <= UNSEEN_MS ? row : null, since: row?.time_ms };
+}
+
 // every two aircraft that are there: horizontal distance and difference of altitude [m], nearest first
 export function pairsAt(recording, time) {
   const ours = new Set(recording.vehicles.map(v => String(v.id)));

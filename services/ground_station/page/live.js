@@ -1,14 +1,18 @@
-// A flight that is flown now: asks the server what is new, and sends the operator's commands.
+// A mission that is flown while the page is open: asks the server what is new, and sends the operator's commands.
 
 import { RATES } from "./address.js";
 import { seconds } from "./units.js";
 
 const EVERY_MS = 150, PATIENCE = 5;
 const OVER = ["ended", "stopped", "failed", "lost"];
+const FLOWN = {
+  loading: "not flown yet", planning: "not flown yet", paused: "flown now", flying: "flown now", ended: "flown to its end",
+  stopped: "stopped before its end", failed: "failed before its end", lost: "lost before its end",
+};
 const by = id => document.getElementById(id);
 
 export class Live {
-  // changed: called when the recording has grown; moved: whether only its end moved
+  // recording: what is shown, and grows; changed: called with the updates by which it has grown
   constructor(recording, changed) {
     this.recording = recording;
     this.changed = changed;
@@ -95,6 +99,7 @@ export class Live {
     const may = this.who === "you" && !this.over && !lost, ready = may && ["paused", "flying"].includes(state);
     by("live-state").textContent = lost ? "server lost" : state;
     by("live-state").className = lost ? "lost" : state;
+    by("source").textContent = lost ? "whether it is still flown is unknown" : FLOWN[state];
     by("live-text").textContent = lost ? "The server does not answer: what is shown is what it told last. Is `cratous serve` still running?" : text || "";
     by("fly").textContent = state === "flying" ? "Pause" : "Fly";
     for (const id of ["fly", "fly-step", "live-rate"]) by(id).disabled = !ready;

@@ -2,6 +2,7 @@
 
 import * as address from "./address.js";
 import { AltitudeChart } from "./altitude.js";
+import { table } from "./bands.js";
 import { Live } from "./live.js";
 import { FlightMap } from "./map.js";
 import { open, source, theme } from "./opening.js";
@@ -20,7 +21,7 @@ class Station extends Playback {
     this.chart = new AltitudeChart(by("altitude"), recording, go);
     by("name").textContent = recording.name;
     document.title = `${recording.name} – CRATOUS ground station`;
-    by("source").textContent = recording.live ? "flown now" : source(recording);
+    if (!recording.live) by("source").textContent = source(recording);
     this.listen();
     panels.events(recording, go);
     panels.verdicts(recording, this.state, go);
@@ -70,6 +71,7 @@ class Station extends Playback {
     if (!this.bar(whole)) return;
     panels.aircraft(recording, state, said);
     panels.pairs(recording, state, said);
+    table(recording, state);
     panels.tasks(recording, state);
     panels.mark(recording, state);
     address.write(state);

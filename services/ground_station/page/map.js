@@ -1,7 +1,9 @@
 // The map: north up, one scale, metres of the mission frame. Everything is drawn anew for an instant.
 
-import { UNSEEN_MS, authorityAt, lastAt, positionAt } from "./instant.js";
+import { ring } from "./bands.js";
+import { UNSEEN_MS, authorityAt, bandsAt, lastAt, positionAt } from "./instant.js";
 import { color, colorOf, niceStep, sized } from "./canvas.js";
+import { words } from "./units.js";
 
 const EDGE = 50;
 
@@ -25,19 +27,26 @@ export class FlightMap {
     return { north: (b.north0 + b.north1) / 2, east: (b.east0 + b.east1) / 2, scale: Math.max(scale, 1e-5) };
   }
 
-  draw(state, words) {
-    const { pen, width, height } = sized(this.canvas);
+  // what is drawn on: the view, where a place is on the canvas, and the grid
+  begin(pen, width, height, state, said = words(state.aviation)) {
     this.view = state.view || this.whole();
     this.xy = (north, east) => [width / 2 + (east - this.view.east) * this.view.scale, height / 2 - (north - this.view.north) * this.view.scale];
     this.pen = pen;
+    this.grid(width, height, said);
+  }
+
+  draw(state, words) {
+    const { pen, width, height } = sized(this.canvas);
+    this.begin(pen, width, height, state, words);
     const { time } = state, recording = this.recording;
-    this.grid(width, height, words);
     for (const zone of recording.zones) if (zone.from_ms <= time && time < (zone.to_ms ?? Infinity)) this.zone(zone);
     for (const seen of recording.footprints) if (seen.time_ms <= time) this.footprint(seen);
     for (const task of recording.tasks) this.task(task);
     for (const [id, route] of routesAt(recording, time)) this.route(id, route);
     for (const id of Object.keys(recording.tracks)) this.trail(id, time);
     for (const takeover of recording.takeovers) if (takeover.from_ms <= time) this.takeover(takeover);
+    const said = bandsAt(recording, state), at = said?.row && positionAt(recording.tracks[said.id] ?? [], time);
+    if (at && at.seen) ring(this, ...this.xy(at.north, at.east), said.row);
     for (const id of Object.keys(recording.tracks)) this.aircraft(id, state, words);
   }
 

@@ -81,14 +81,16 @@ export function pairs(recording, state, words) {
 export function verdicts(recording, state, go) {
   const said = recording.verdicts;
   if (said.why_none) {
+    by("overall").textContent = by("overall").className = by("verdicts-at").textContent = "";
     by("verdicts-note").textContent = `Not judged here: ${said.why_none}.`;
+    table("verdicts", [], []);
     return;
   }
   const so_far = said.so_far_ms !== undefined;
   by("overall").textContent = so_far ? `so far ${said.overall}` : said.overall;
   by("overall").className = said.overall;
   by("verdicts-at").textContent = so_far ? `so far, at ${seconds(said.so_far_ms)}` : "on the whole flight";
-  by("verdicts-note").textContent = so_far ? "What is not broken is unknown until the flight has ended; margins are the least so far." : "As report.json says; `cratous certify` holds it against the log. A time is where the margin is least, or where it broke.";
+  by("verdicts-note").textContent = so_far ? "What is not broken is unknown unless the flight is flown to its end; margins are the least so far." : "As report.json says; `cratous certify` holds it against the log. A time is where the margin is least, or where it broke.";
   const rank = { violated: 0, unknown: 1, excused: 2, holds: 3 };
   const parts = said.details.filter(one => one.verdict !== "holds" || one.time_ms !== null)
     .sort((a, b) => rank[a.verdict] - rank[b.verdict]);

@@ -1,0 +1,79 @@
+"""What the theorems on the composed system assume, and how each assumption was watched in a run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from cratous.services.argument.elements import Element, Kind
+from cratous.spec.errors import BadInput
+
+Data = dict[str, Any]
+SECTION = "assumptions"
+HELD, BROKEN = "held", "broken"
+FOLDERS = ("", "system_", "permit_")
+"""The section names files of theorems, a record the folder as well."""
+AUTHORITY = (
+    "system_authority_starts_as_it_must_be",
+    "system_authority_is_kept_by_the_gate",
+    "system_authority_is_kept_by_icarous",
+    "system_authority_is_kept_by_the_uxas_end",
+)
+_, GATE, _, UXAS_END = AUTHORITY
+TAKEOVER_ENDS = "system_a_takeover_whose_way_back_stays_free_ends"
+TAKEOVER_LASTS = "system_a_takeover_that_lasts_is_declared"
+MISSION_ENDS = "system_a_mission_ends"
+SILENCE = "system_silence_is_noticed_within_one_heartbeat"
+BEARS_ON: dict[str, tuple[str, ...]] = {
+    "G3": (MISSION_ENDS, TAKEOVER_LASTS),
+    "G4": (*AUTHORITY, TAKEOVER_ENDS, TAKEOVER_LASTS),
+    "G5": (SILENCE,),
+}
+"""Which theorem on the composed system says something of which guarantee."""
+PLACED = frozenset(name for names in BEARS_ON.values() for name in names)
+
+
+class Assumed(NamedTuple):
+    """An assumption in a run. theorems: that need it; guarantees: it concerns; watched: in words;
+    broken: in words, empty unless it broke."""
+
+    text: str
+    theorems: frozenset[str]
+    guarantees: frozenset[str]
+    watched: str
+    broken: str = ""
+
+
+def assumed(report: Data) -> list[Assumed]:
+    """The assumptions of a run, in the order of the report. Raises BadInput for a report without them."""
+    if SECTION not in report:
+        raise BadInput(
+            "the report says nothing of assumptions",
+            item=SECTION,
+            expected="a report of a version that watches them",
+        )
+    return [_of_report(row) for row in report[SECTION]]
+
+
+def _of_report(row: Data) -> Assumed:
+    state, note = row["state"], row["note"]
+    when = f" at {row['since_ms'] / 1000:.2f} s" if state == BROKEN else ""
+    said = f"{state}{when}{f': {note}' if note else ''}"
+    if row["observed"] is not None and row["bound"] is not None:
+        said += f" ({row['observed']:.4g} of {row['bound']:.4g} {row['unit']} at worst)"
+    # anything but a plain yes is no yes
+    word = "Watched" if state in (HELD, BROKEN) else "Not watched"
+    names = frozenset(f"{folder}{name}" for name in row["theorems"] for folder in FOLDERS)
+    return Assumed(
+        row["text"],
+        names,
+        frozenset(row["guarantees"]),
+        f"{word} in this run: {said}",
+        said if state == BROKEN else "",
+    )
+
+
+def elements(found: list[Assumed]) -> Iterator[Element]:
+    """An element for each assumption, in their order."""
+    for number, one in enumerate(found, 1):
+        yield Element(f"A-{number}", Kind.ASSUMPTION, f"{one.text}. {one.watched}")

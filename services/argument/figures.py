@@ -1,0 +1,80 @@
+"""What each element looks like: its outline, its size, and its text in lines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from math import ceil, sqrt
+
+from cratous.services.argument.elements import Element, Kind
+from cratous.services.argument.plain_text import plain_text
+from cratous.services.argument.wrapping import LINE, Line, wrapped
+
+PAD, SKEW = 9.0, 16.0
+"""Around the text, and how far a parallelogram leans."""
+DIAMOND = 16.0
+"""Height of the diamond below a goal that is undeveloped."""
+WIDTHS = ((0, 190.0), (110, 230.0), (220, 290.0), (400, 380.0))
+"""How wide the text of an element is, by its number of letters."""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """An element as it is drawn. width, height: of the outline; tail: what hangs below that; lines: of the
+    text, the first of them is `top` below the upper edge."""
+
+    element: Element
+    width: float
+    height: float
+    tail: float
+    top: float
+    lines: tuple[Line, ...]
+
+
+def figure(element: Element, note: str = "") -> Figure:
+    """The figure of an element; note: a last line of its text, such as where it goes on."""
+    text = plain_text(element.shown)
+    paragraphs = [
+        Line(element.id, bold=True),
+        Line(text),
+        *([Line(note, bold=True)] if note else []),
+    ]
+    if element.kind is Kind.SOLUTION:
+        return _circle(element, paragraphs)
+    inner = next(wide for letters, wide in reversed(WIDTHS) if len(text) >= letters)
+    lines = wrapped(paragraphs, lambda _: inner)
+    if lines is None:  # a piece is shorter than the narrowest box
+        raise RuntimeError(f"the text of {element.id} cannot be broken into lines")
+    high = len(lines) * LINE
+    if element.kind is Kind.ASSUMPTION:
+        # the block of text lies within the ellipse through its corners
+        wide, tall = (inner + PAD) * sqrt(2), (high + PAD) * sqrt(2)
+        return Figure(element, ceil(wide), ceil(tall), 0.0, (ceil(tall) - high) / 2, tuple(lines))
+    beside = PAD + (SKEW if element.kind is Kind.STRATEGY else 0.0)
+    tail = DIAMOND if element.undeveloped else 0.0
+    return Figure(element, inner + 2 * beside, high + 2 * PAD, tail, PAD, tuple(lines))
+
+
+def _circle(element: Element, paragraphs: list[Line]) -> Figure:
+    """The smallest circle, in steps, that holds the text."""
+    across = 80.0
+    while (found := _in_circle(element, paragraphs, across)) is None:
+        across += 8.0
+    return found
+
+
+def _in_circle(element: Element, paragraphs: list[Line], across: float) -> Figure | None:
+    """The text in a circle, in as few lines as it takes; None if it holds less."""
+    for count in range(1, int(across / LINE)):
+        lines = wrapped(paragraphs, partial(_chord, across, count), count)
+        if lines is not None:
+            top = (across - count * LINE) / 2
+            return Figure(element, across, across, 0.0, top, tuple(lines))
+    return None
+
+
+def _chord(across: float, count: int, line: int) -> float:
+    """How wide a line of `count` may be in a circle, by its edge that lies farther out."""
+    edge = abs(line - (count - 1) / 2) * LINE + LINE / 2
+    left = (across / 2 - PAD / 2) ** 2 - edge**2
+    return 2 * sqrt(left) if left > 0 else 0.0

@@ -1,0 +1,18 @@
+"""Text that stands in YAML and in XML as it is: what either refuses is written out."""
+
+from __future__ import annotations
+
+import re
+
+from cratous.spec.files.printable import printable
+
+REFUSED = re.compile("[^\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def plain_text(text: object) -> str:
+    r"""The text, with every character written out that does not stand for itself.
+
+    >>> plain_text("ok\n\ufffe")
+    'ok\\n\\ufffe'
+    """
+    return REFUSED.sub(lambda c: c[0].encode("unicode_escape").decode("ascii"), printable(text))

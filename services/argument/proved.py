@@ -1,0 +1,151 @@
+"""Goals on what is proved: kernels against their definitions, theorems, and the records behind them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from cratous.services.argument.elements import Argument, Element, Kind, State, counted
+
+Data = dict[str, Any]
+SAME = ("sentence", "statement", "status", "obligations", "premises")
+"""What a record of now has to say as the report does."""
+
+
+def plain(name: str) -> str:
+    """A qualified name as a part of an id."""
+    return name.replace(".", "-")
+
+
+class Proofs:
+    """Adds what is proved to an argument.
+
+    argument: that it is added to; proofs: of the report; records: the theorems of the ledger as it is now.
+    """
+
+    def __init__(self, argument: Argument, proofs: Data, records: Data) -> None:
+        self._argument = argument
+        self._theorems = proofs["theorems"]
+        self._solver = proofs["solver"]
+        self._called = proofs["kernels"]
+        self._records = records
+        self.context: dict[str, tuple[str, ...]] = {}
+        self.without: dict[str, str] = {}
+
+    def kernel(self, chain: Data, name: str, drivers: Iterable[str]) -> str:
+        """The goal that a kernel is what its definition says; returns its id.
+
+        chain: of `trace`, from the kernel to theorems and definition; name: a shorter one; drivers: in
+        which it decides.
+        """
+        calls = (
+            counted(chain["calls"], "call") if chain["calls"] else "compiled into what was called"
+        )
+        inside = ", ".join(drivers)
+        text = f"Kernel {name} ({calls} in this run{f', in {inside}' if inside else ''}): "
+        text += chain["status"] or "not in the report"
+        if chain["step_of"]:
+            text += f", a step of {chain['step_of'].rpartition('.')[2]}"
+        if chain["restates"]:
+            text += f" ({chain['restates']})"
+        below = tuple(self.theorem(theorem) for theorem in chain["theorems"])
+        missing = chain["missing"] + [
+            f"{theorem}: {why}"
+            for theorem in chain["theorems"]
+            if (why := self._lacks(theorem)) and not chain["missing"]
+        ]
+        context: tuple[str, ...] = ()
+        if chain["definition"] and chain["file"]:
+            context = (
+                self._argument.add(
+                    Element(
+                        f"C-definition-{plain(chain['definition'])}",
+                        Kind.CONTEXT,
+                        f"Definition {chain['definition']} in {chain['file']}",
+                    )
+                ),
+            )
+        if missing:
+            text += f". Missing: {'; '.join(dict.fromkeys(missing))}"
+        # a theorem that is there supports nothing where another part of the chain is missing
+        return self._argument.add(
+            Element(
+                f"G-kernel-{plain(name)}",
+                Kind.GOAL,
+                text,
+                () if missing else below,
+                context,
+                State.NOT_PROVED if missing else State.SUPPORTED,
+            )
+        )
+
+    def theorem(self, name: str) -> str:
+        """The goal that a theorem holds, by its record and those of its lemmas; returns its id."""
+        key = f"G-theorem-{name}"
+        if key in self._argument.elements:
+            return key
+        found = self._theorems.get(name, {})
+        lacks = self._lacks(name)
+        text = found.get("sentence") or f"the theorem {name}."
+        context = self.context.get(name, ())
+        below: tuple[str, ...] = ()
+        if not found and self._rests(name):
+            state, context = State.NO_THEOREM, ()
+            text = f"The theorem {name} is about nothing that ran in this run: no kernel of it was called."
+        elif lacks:
+            state = State.NOT_PROVED
+            text += f" Missing: {lacks}"
+        elif name in self.without:
+            state = State.NO_GROUND
+            text += f" {self.without[name]}"
+        else:
+            state = State.SUPPORTED
+            context += self._assumptions(name)
+            below = (self._record(name), *(self.theorem(lemma) for lemma in found["lemmas"]))
+        return self._argument.add(Element(key, Kind.GOAL, text, below, context, state))
+
+    def _rests(self, name: str) -> bool:
+        """Whether a theorem that the report does not have is on record, and about no kernel that ran."""
+        record = self._records.get(name)
+        return record is not None and not set(record["kernels"]) & set(self._called)
+
+    def _lacks(self, name: str, above: tuple[str, ...] = ()) -> str:
+        """What a theorem, or a lemma that it rests on, lacks; empty if it is proved."""
+        said, record = self._theorems.get(name), self._records.get(name)
+        if said is None or said["status"] != "proved":
+            return "it is not among the proved theorems of this run"
+        if record is None:
+            return "the ledger has no record of it now"
+        if any(record[key] != said[key] for key in SAME):
+            return "the ledger's record of it is another now"
+        for lemma in said["lemmas"]:
+            if lemma in above:
+                return f"its lemma {lemma} rests on it"
+            if why := self._lacks(lemma, (*above, name)):
+                return f"lemma {lemma}: {why}"
+        return ""
+
+    def _record(self, name: str) -> str:
+        found = self._theorems[name]
+        known = sum(kernel in self._called for kernel in found["kernels"])
+        return self._argument.add(
+            Element(
+                f"Sn-{name}",
+                Kind.SOLUTION,
+                f"Record in the ledger: proved by {self._solver}, "
+                f"{counted(found['obligations'], 'obligation')}, premises {found['premises']}, "
+                f"{counted(len(found['assumptions']), 'assumption')} in the proof; {known} of its "
+                f"{counted(len(found['kernels']), 'kernel')} ran in this run",
+            )
+        )
+
+    def _assumptions(self, name: str) -> tuple[str, ...]:
+        """What the proof itself assumes, as its record says."""
+        return tuple(
+            self._argument.add(
+                Element(
+                    f"A-proof-{name}-{number}", Kind.ASSUMPTION, f"Assumed in the proof: {text}"
+                )
+            )
+            for number, text in enumerate(self._theorems[name]["assumptions"], 1)
+        )

@@ -1,0 +1,64 @@
+"""What remains to be trusted: the limits of the report, and the parts that a proof rests on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from cratous.services.argument.elements import Element, Kind
+
+TRUSTED = (
+    "the lifter",
+    "an answer `unsat`",
+    "the prover as a whole",
+    "plain numbers in a theorem",
+    "names of arguments",
+    "the keys of the ledger",
+    "services and bridge",
+    "the ledger's records",
+    "z3",
+    "CPython",
+    "what a package does while it is imported",
+    "what is not looked into",
+    "how far a theorem reaches",
+    "numba",
+    "the reading over the reals",
+    "the exact reading on arrays",
+    "that a driver's output is re-checked",
+    "the sentences made from statements",
+    "the relations' text as data",
+    "going through a term",
+    "the rows of a branch",
+    "the theorems themselves",
+    "the caches",
+    "the definitions in `spec/`",
+    "the monitor, and what it shares with the rest",
+    "the projection",
+    "straight flight between samples",
+    "operating system, network",
+)
+"""The parts of docs/proofs/trusted-base.md, which says why each is trusted and what checks it."""
+
+
+def limits(report: dict[str, Any]) -> Iterator[Element]:
+    """An assumption for each limit that the report states."""
+    for number, text in enumerate(report["limits"], 1):
+        yield Element(f"A-limit-{number}", Kind.ASSUMPTION, f"Limit of the report: {text}")
+
+
+def trusted() -> Element:
+    """The trusted base, and what is no evidence here."""
+    text = "; ".join(TRUSTED)
+    return Element(
+        "C-trusted-base",
+        Kind.CONTEXT,
+        f"Trusted, see docs/proofs/trusted-base.md: {text}. Tests are on record in no run: no "
+        "solution here is one.",
+    )
+
+
+def not_shown(found: Iterable[tuple[str, str]]) -> Iterator[Element]:
+    """What no row of the report speaks of, or nothing vouches for; none where there is none."""
+    said = [f"{what}: {why}" for what, why in found]
+    if said:
+        yield Element("C-not-shown", Kind.CONTEXT, f"Not shown here: {'; '.join(said)}")

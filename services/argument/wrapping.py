@@ -1,0 +1,80 @@
+"""Text broken into lines of a given width, without asking a font: the same lines on every machine.
+
+Widths are those of DejaVu Sans, rounded up, which is wider than Arial, Helvetica and Verdana's text: what
+fits here fits there. Any character that is not in the table counts as a square.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from typing import NamedTuple
+
+SIZE, LINE = 11.0, 14.0
+"""Height of the letters, and from line to line."""
+BOLD = 1.27
+"""So much wider than plain letters is no bold one."""
+FIRST = 32
+HUNDREDTHS = (
+    32, 41, 46, 84, 64, 96, 78, 28, 40, 40, 50, 84, 32, 37, 32, 34, 64, 64, 64, 64, 64, 64, 64, 64,
+    64, 64, 34, 34, 84, 84, 84, 54, 100, 69, 69, 70, 78, 64, 58, 78, 76, 30, 30, 66, 56, 87, 75, 79,
+    61, 79, 70, 64, 62, 74, 69, 99, 69, 62, 69, 40, 34, 40, 84, 50, 50, 62, 64, 55, 64, 62, 36, 64,
+    64, 28, 28, 58, 28, 98, 64, 62, 64, 64, 42, 53, 40, 64, 60, 82, 60, 60, 53, 64, 34, 64, 84,
+)  # fmt: skip
+"""Width of each character from FIRST on, in hundredths of the height."""
+WIDEST, LONGEST = 180.0, 12
+"""A word that may be wider than this is broken, at a mark or else after so many letters: no more than this
+is that many of the widest, bold."""
+
+
+class Line(NamedTuple):
+    """One line as it is drawn."""
+
+    text: str
+    bold: bool = False
+
+
+def width(text: str, *, bold: bool = False) -> float:
+    """No less than a text is wide, in drawing units."""
+    units = 0
+    for c in text:
+        place = ord(c) - FIRST
+        units += HUNDREDTHS[place] if 0 <= place < len(HUNDREDTHS) else 100
+    return units * SIZE / 100 * (BOLD if bold else 1.0)
+
+
+def _pieces(text: str) -> list[tuple[str, str]]:
+    """(what stands before it, piece): words, and of long ones what may stand on a line of its own."""
+    found = []
+    for word in text.split():
+        parts = [word]
+        if width(word, bold=True) > WIDEST:
+            marked = re.findall(r"[^-_./;:,]*[-_./;:,]|[^-_./;:,]+", word)
+            parts = [m[i : i + LONGEST] for m in marked for i in range(0, len(m), LONGEST)]
+        found += [(" " if not number else "", part) for number, part in enumerate(parts)]
+    return found
+
+
+def wrapped(
+    paragraphs: Iterable[Line], fits: Callable[[int], float], most: int | None = None
+) -> list[Line] | None:
+    """The lines of some paragraphs; None if more than `most` are needed, or one piece fits no line.
+
+    fits: how wide the line of a number may be.
+    """
+    found: list[Line] = []
+    for paragraph in paragraphs:
+        line = ""
+        for before, piece in _pieces(paragraph.text):
+            longer = line + before + piece if line else piece
+            if width(longer, bold=paragraph.bold) <= fits(len(found)):
+                line = longer
+                continue
+            if line:
+                found.append(Line(line, paragraph.bold))
+            line = piece
+            if width(line, bold=paragraph.bold) > fits(len(found)):
+                return None
+        if line:
+            found.append(Line(line, paragraph.bold))
+    return None if most is not None and len(found) > most else found

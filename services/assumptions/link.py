@@ -1,0 +1,205 @@
+"""Assumptions on the link and on clocks: periods, delivery, and times that do not go back. Decided by `in_time`."""
+
+from __future__ import annotations
+
+from cratous.core.authority.gate import ICAROUS, Gate, epoch_given
+from cratous.core.authority.timeliness import in_time
+from cratous.services.assumptions.authority import UNTOUCHED, reported, sender_of
+from cratous.services.assumptions.observed import ANY_LATER, Message, Record
+from cratous.spec.mission import Mission
+
+OWN_TIME = ("Heartbeat", "GateState", "TruthState", "CommandDropped", "BridgeStatus")
+"""Messages that say the instant at which they are sent; others name earlier ones too."""
+PERIODS = 2
+"""A line is late when it has not come after this many heartbeats: as G5 has it of heartbeats."""
+NO_INSTANCE = "no vehicle has an ICAROUS instance"
+
+
+def _s(time_ms: int) -> str:
+    return f"{time_ms / 1000:.2f} s"
+
+
+class ClockWatch:
+    """Times of messages do not go back, neither that of the log nor the sender's own."""
+
+    def __init__(self) -> None:
+        self._last_ms = 0
+        self._record = Record("s back", 0, (in_time,), waits="no message was seen")
+
+    def message(self, message: Message) -> None:
+        """Any message; those that say their own time are counted."""
+        own = message.kind in OWN_TIME
+        for time_ms in (message.time_ms, message.body.Time) if own else (message.time_ms,):
+            ok = in_time(self._last_ms, time_ms, ANY_LATER)
+            if own or not ok:
+                self._record.see(max(0, self._last_ms - time_ms) / 1000)
+            text = f"a {message.kind} of {_s(time_ms)} after a message of {_s(self._last_ms)}"
+            self._record.check(ok, self._last_ms, 0, text)
+        self._last_ms = message.time_ms
+
+    def end(self, at_ms: int) -> None:
+        """Nothing is open."""
+
+    def records(self) -> dict[str, Record]:
+        """See `Watch`."""
+        return {"clock": self._record}
+
+
+class PeriodWatch:
+    """Heartbeats that UxAS sends to each ICAROUS come at most a period apart."""
+
+    def __init__(self, mission: Mission) -> None:
+        self._period_ms = mission.simulation.heartbeat_ms
+        self._last = dict.fromkeys(mission.instances, 0)
+        none = "" if self._last else NO_INSTANCE
+        self._record = Record(
+            "s", self._period_ms / 1000, (in_time,), none, waits="no heartbeat was seen"
+        )
+
+    def message(self, message: Message) -> None:
+        """With each heartbeat, or sample of where somebody is, time goes on."""
+        kind, now_ms, _, body = message
+        if kind not in ("Heartbeat", "TruthState"):
+            return
+        self._look(now_ms)
+        down = kind == "Heartbeat" and body.Direction.name == "Down"
+        if down and body.VehicleID in self._last:
+            self._last[body.VehicleID] = now_ms
+
+    def _look(self, now_ms: int) -> None:
+        for number, last_ms in self._last.items():
+            gap_ms = max(0, now_ms - last_ms)
+            self._record.see(gap_ms / 1000)
+            ok = in_time(0, gap_ms, self._period_ms)
+            text = f"no heartbeat to the ICAROUS of {number} from {_s(last_ms)} to {_s(now_ms)}"
+            self._record.check(ok, last_ms + self._period_ms, number, text)
+
+    def end(self, at_ms: int) -> None:
+        """The time since the last one counts too."""
+        self._look(at_ms)
+
+    def records(self) -> dict[str, Record]:
+        """See `Watch`."""
+        return {"heartbeat period": self._record}
+
+
+class DeliveryWatch:
+    """Heartbeats of ICAROUS come within two periods: the k-th is sent k - 1 periods after the start."""
+
+    def __init__(self, mission: Mission) -> None:
+        self._period_ms = mission.simulation.heartbeat_ms
+        self._bound_ms = PERIODS * self._period_ms
+        self._next = dict.fromkeys(mission.instances, 1)
+        self._came: dict[int, set[int]] = {number: set() for number in mission.instances}
+        none = "" if self._next else NO_INSTANCE
+        self._record = Record("s", self._bound_ms / 1000, (in_time,), none)
+        self._record.waits = "no heartbeat was seen"
+
+    def _sent_ms(self, number: int) -> int:
+        return (number - 1) * self._period_ms
+
+    def message(self, message: Message) -> None:
+        """With each heartbeat, or sample of where somebody is, time goes on."""
+        kind, now_ms, _, body = message
+        if kind not in ("Heartbeat", "TruthState"):
+            return
+        if kind == "Heartbeat" and body.Direction.name == "Up" and body.VehicleID in self._next:
+            self._come(body.VehicleID, body.Sequence, now_ms)
+        self._look(now_ms)
+
+    def _come(self, vehicle: int, number: int, now_ms: int) -> None:
+        sent_ms, came = self._sent_ms(number), self._came[vehicle]
+        # one that comes again, or was never sent, says nothing of delivery
+        fresh = in_time(self._sent_ms(self._next[vehicle]), sent_ms, ANY_LATER)
+        if number in came or not fresh or not in_time(sent_ms, now_ms, ANY_LATER):
+            return
+        came.add(number)
+        self._record.see((now_ms - sent_ms) / 1000)
+        ok = in_time(sent_ms, now_ms, self._bound_ms)
+        text = f"heartbeat {number} of {_s(sent_ms)} came at {_s(now_ms)}"
+        self._record.check(ok, sent_ms + self._bound_ms, vehicle, text)
+        while self._next[vehicle] in came:
+            came.discard(self._next[vehicle])
+            self._next[vehicle] += 1
+
+    def _look(self, now_ms: int) -> None:
+        """The first heartbeat that has not come: is it late?"""
+        for vehicle, number in self._next.items():
+            sent_ms = self._sent_ms(number)
+            ok = in_time(sent_ms, max(sent_ms, now_ms), self._bound_ms)
+            if not ok:
+                self._record.see((now_ms - sent_ms) / 1000)
+            text = f"heartbeat {number} of {_s(sent_ms)} had not come by {_s(now_ms)}"
+            self._record.check(ok, sent_ms + self._bound_ms, vehicle, text)
+
+    def end(self, at_ms: int) -> None:
+        """What has not come by now, and is late, has not been delivered."""
+        self._look(at_ms)
+
+    def records(self) -> dict[str, Record]:
+        """See `Watch`."""
+        return {"delivery from ICAROUS": self._record}
+
+
+class ChangeWatch:
+    """Changes of authority are told: an offer does not stay open longer than line and command take, and UxAS
+    sends no command of an epoch that has been over for longer than a line takes."""
+
+    def __init__(self, mission: Mission) -> None:
+        self._line_ms = PERIODS * mission.simulation.heartbeat_ms
+        self._gates = dict.fromkeys(mission.instances, UNTOUCHED)
+        self._since = dict.fromkeys(mission.instances, 0)
+        none = "" if self._gates else NO_INSTANCE
+        taken_s, told_s = 2 * self._line_ms / 1000, self._line_ms / 1000
+        self._taken = Record("s", taken_s, (in_time,), none, waits="no offer was made")
+        waits = "UxAS sent no command in an epoch that was over"
+        self._told = Record("s", told_s, (in_time, epoch_given), none, waits=waits)
+
+    def message(self, message: Message) -> None:
+        """A state of the gate, or a command; with each heartbeat and sample time goes on."""
+        kind, now_ms, _, body = message
+        if kind in ("Heartbeat", "TruthState"):
+            self._look(now_ms)
+        elif kind == "GateState" and body.VehicleID in self._gates:
+            self._look(now_ms)
+            gate, before = reported(body), self._gates[body.VehicleID]
+            if not epoch_given(before, gate.epoch):
+                self._since[body.VehicleID] = now_ms
+            self._gates[body.VehicleID] = gate
+        elif kind == "GatedCommand" and body.VehicleID in self._gates:
+            self._command(message)
+
+    def _command(self, message: Message) -> None:
+        """Of UxAS, in an epoch before the present one: it has not been told of that."""
+        body, now_ms = message.body, message.time_ms
+        number, gate = body.VehicleID, self._gates[body.VehicleID]
+        past = epoch_given(Gate(gate.owner, gate.epoch - 1, False), body.Epoch)
+        if sender_of(body) == ICAROUS or not past:
+            return
+        since_ms = self._since[number]
+        over_ms = max(0, now_ms - since_ms)
+        self._told.see(over_ms / 1000)
+        ok = in_time(0, over_ms, self._line_ms)
+        text = (
+            f"a command of UxAS in epoch {body.Epoch}; epoch {gate.epoch} began at {_s(since_ms)}"
+        )
+        self._told.check(ok, since_ms + self._line_ms, number, text)
+
+    def _look(self, now_ms: int) -> None:
+        for number, gate in self._gates.items():
+            if not gate.offered:
+                continue
+            since_ms = self._since[number]
+            open_ms = max(0, now_ms - since_ms)
+            self._taken.see(open_ms / 1000)
+            ok = in_time(0, open_ms, 2 * self._line_ms)
+            text = f"the offer of {_s(since_ms)} had not been taken by {_s(now_ms)}"
+            self._taken.check(ok, since_ms + 2 * self._line_ms, number, text)
+
+    def end(self, at_ms: int) -> None:
+        """An offer that is open still counts up to here."""
+        self._look(at_ms)
+
+    def records(self) -> dict[str, Record]:
+        """See `Watch`."""
+        return {"offers taken": self._taken, "takeovers told": self._told}

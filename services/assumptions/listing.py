@@ -1,0 +1,212 @@
+"""The assumptions of the system theorems: which theorems rest on each, and what is lost when it breaks.
+
+`docs/proofs/assumptions.md` has the same rows; a test holds them together.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+AUTHORITY = (
+    "authority_starts_as_it_must_be",
+    "authority_is_kept_by_the_gate",
+    "authority_is_kept_by_icarous",
+    "authority_is_kept_by_the_uxas_end",
+)
+GATE, UXAS_END = AUTHORITY[1:2], AUTHORITY[3:4]
+TAKEOVER_ENDS = ("a_takeover_whose_way_back_stays_free_ends",)
+SILENCE = ("silence_is_noticed_within_one_heartbeat",)
+PERMIT = ("permitted_has_no_hit", "disc_within_holds_every_place")
+ONE_COMMANDER = "exactly one commander at any time"
+REPLAYED = "the replay of the gate (G4) judges each command and each report by itself"
+SAMPLED = (
+    "well clear (G2) and zones (G1) are judged from where the aircraft were, not from predictions"
+)
+BY_EPOCH = "one commander at any time: it needs no clock and no delivery"
+
+
+class Assumption(NamedTuple):
+    """text: what is assumed; theorems: files of `proofs/theorems` (system or permit); guarantees: G1 to G5;
+    lost: what of them has no ground any more when it is broken; stands: what still holds then; watch: what is
+    looked at in a flight, empty if nothing can be; why_not: then the reason."""
+
+    name: str
+    text: str
+    theorems: tuple[str, ...]
+    guarantees: tuple[str, ...]
+    lost: str = ""
+    stands: str = ""
+    watch: str = ""
+    why_not: str = ""
+
+
+LISTING = (
+    Assumption(
+        "first command",
+        "UxAS commands first, in epoch 0",
+        AUTHORITY,
+        ("G4",),
+        ONE_COMMANDER,
+        REPLAYED,
+        "the first command of each protected vehicle",
+    ),
+    Assumption(
+        "reports of the gate",
+        "a report of the gate is one that the vehicle has made",
+        UXAS_END,
+        ("G4",),
+        "that UxAS believes of the gate what is so",
+        REPLAYED,
+        "who sends each report",
+    ),
+    Assumption(
+        "epochs told",
+        "a command names an epoch that its sender has been told",
+        GATE,
+        ("G4",),
+        "that no command of a later epoch is waiting for the gate",
+        "such a command does not act while the gate is in an earlier epoch",
+        "commands of epochs that the gate has never given",
+    ),
+    Assumption(
+        "epochs kept",
+        "the gate keeps its epoch (no restart that forgets it)",
+        AUTHORITY,
+        ("G4",),
+        "that a late command of an earlier epoch does not act",
+        REPLAYED,
+        "epochs that go back",
+    ),
+    Assumption(
+        "commands by the gate alone",
+        "a vehicle gets no command but by its gate",
+        GATE,
+        ("G4",),
+        ONE_COMMANDER,
+        SAMPLED,
+        "commands to a vehicle outside of `GatedCommand`",
+    ),
+    Assumption(
+        "ICAROUS at each heartbeat",
+        "ICAROUS looks at the gate at each heartbeat before it does anything",
+        GATE,
+        ("G2", "G4"),
+        "that ICAROUS commands while it has the vehicle",
+        BY_EPOCH,
+        "the longest time between its commands while it has the vehicle",
+    ),
+    Assumption(
+        "suspended",
+        "UxAS commands nothing while it is suspended",
+        UXAS_END,
+        ("G4",),
+        "that UxAS does what its end of the link believes",
+        "its command does not act: the gate is in a later epoch",
+        "commands of the executive after a task was suspended and before the vehicle is taken back",
+    ),
+    Assumption(
+        "clock",
+        "the clock of one end does not step back",
+        SILENCE,
+        ("G4", "G5"),
+        "that silence is noticed within one heartbeat, and every bound in time",
+        BY_EPOCH,
+        "times of messages",
+    ),
+    Assumption(
+        "heartbeat period",
+        "heartbeats are at most a period apart",
+        (*SILENCE, *TAKEOVER_ENDS),
+        ("G4", "G5"),
+        "that silence is noticed within one heartbeat, and that a takeover ends within its bound",
+        BY_EPOCH,
+        "the longest time between heartbeats that UxAS sends to an ICAROUS",
+    ),
+    Assumption(
+        "delivery from ICAROUS",
+        "each line from ICAROUS to UxAS is delivered within two heartbeats",
+        TAKEOVER_ENDS,
+        ("G4", "G5"),
+        "that a takeover ends within its bound; bounded delay",
+        BY_EPOCH,
+        "heartbeats by their numbers: the k-th is sent k - 1 periods after the start",
+    ),
+    Assumption(
+        "delivery to ICAROUS",
+        "each line from UxAS to ICAROUS is delivered within two heartbeats",
+        TAKEOVER_ENDS,
+        ("G4", "G5"),
+        why_not="what goes to ICAROUS is in the log when it is sent; whether it came is not",
+    ),
+    Assumption(
+        "offers taken",
+        "an offer reaches UxAS, and its command the gate, within two heartbeats each",
+        TAKEOVER_ENDS,
+        ("G4",),
+        "that a takeover ends within its bound",
+        BY_EPOCH,
+        "how long an offer stays open",
+    ),
+    Assumption(
+        "takeovers told",
+        "a change of authority reaches UxAS within two heartbeats",
+        TAKEOVER_ENDS,
+        ("G4", "G5"),
+        "that a takeover ends within its bound; bounded delay",
+        "a command of an epoch that is over does not act",
+        "commands that UxAS sends in an epoch that is over: for how long it has been",
+    ),
+    Assumption(
+        "way back free",
+        "the way back is free from some heartbeat on, at each",
+        TAKEOVER_ENDS,
+        ("G4",),
+        why_not="what an instance foresees is not in the log",
+    ),
+    Assumption(
+        "end of the flight",
+        "the executive asks `flight_outcome` at the end of each step",
+        ("a_mission_ends", "a_takeover_that_lasts_is_declared"),
+        ("G3", "G4"),
+        "that the mission ends by its limit, served or declared",
+        "G3 counts what was served",
+        "the last message: none after the limit and one step",
+    ),
+    Assumption(
+        "vehicles away counted",
+        "the executive counts the vehicles that are away by their gates",
+        ("a_mission_ends", "a_takeover_that_lasts_is_declared"),
+        ("G3", "G4"),
+        why_not="what the executive counts is not in the log",
+    ),
+    Assumption(
+        "settled tasks",
+        "another plan brings no task back that has ended or failed",
+        ("a_mission_ends",),
+        ("G3",),
+        "that less is left after each step, so that the mission ends before its limit",
+        "the limit ends the mission; G3 counts what was served",
+        "tasks that begin, or are on their way, after they were complete or had failed",
+    ),
+    Assumption(
+        "intruder in its tube",
+        "an intruder that a takeover avoids flies straight on, within half of what the buffer leaves",
+        PERMIT,
+        ("G2",),
+        "that what ICAROUS flies is clear of this intruder, by the prediction of the takeover",
+        SAMPLED,
+        "the intruder named by the takeover: how far it is from its straight prediction, made at the takeover and "
+        "after each look-ahead anew",
+    ),
+    Assumption(
+        "tracking",
+        "a vehicle under ICAROUS flies the path that is predicted, within half of what the buffer leaves",
+        PERMIT,
+        ("G1", "G2"),
+        "that what ICAROUS flies is clear, by its predictions",
+        SAMPLED,
+        "how far it is, up to the next heartbeat, from the path that its last command gives (the path beyond is "
+        "not in the log)",
+    ),
+)
+"""All of them, in the order in which they are shown."""

@@ -1,0 +1,280 @@
+"""Assumptions on motion during a takeover: an intruder in its tube, a vehicle on its path. Decided by `disc_within`.
+
+ICAROUS keeps a volume that is `buffer` times the mission's. What that leaves of DTHR and ZTHR is shared: half of
+it for the intruder, half for the vehicle. While both are within theirs, a prediction that keeps the buffered
+cylinder means that the mission's own is kept.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from cratous.core.authority.gate import ICAROUS, UXAS, Gate, gate_accepts
+from cratous.core.authority.timeliness import in_time
+from cratous.core.avoidance.manoeuvre import Ability, Motion, fly_to
+from cratous.core.avoidance.prediction import Piece, after
+from cratous.core.kernel import Vec2
+from cratous.core.permit.tubes import disc_within
+from cratous.core.readings.exact import exact
+from cratous.services.assumptions.authority import (
+    NUMBERS,
+    UNTOUCHED,
+    has_it,
+    reported,
+    sender_of,
+)
+from cratous.services.assumptions.link import NO_INSTANCE
+from cratous.services.assumptions.observed import ANY_LATER, Message, Record
+from cratous.spec.mission import Daa, Mission, Position, Velocity
+
+GRAVITY_M_S2 = 9.80665
+ACCELERATION_M_S2 = 1.0
+"""What an airframe changes its speed by, at most: the simulator has the same."""
+SHARE = 0.5
+"""Of what the buffer leaves: as much for the intruder as for the vehicle."""
+ROUNDED_M = 1e-3
+"""Where nothing is left: positions are sums of rounded steps, so so much is no deviation [m]."""
+
+
+class Room(NamedTuple):
+    """How far off a prediction may be: horizontally and in altitude [m]."""
+
+    wide_m: float
+    high_m: float
+
+
+def room_of(daa: Daa) -> Room:
+    """The share of one aircraft."""
+    left, volume = SHARE * (daa.buffer - 1), daa.well_clear
+    return Room(max(ROUNDED_M, left * volume.dthr_m), max(ROUNDED_M, left * volume.zthr_m))
+
+
+def is_within(off: Position, room: Room) -> bool:
+    """Whether something is off its prediction by no more; exact on the given numbers."""
+    if not all(map(math.isfinite, off)):
+        return False
+    beside = exact(disc_within, Vec2(off.north_m, off.east_m), 0.0, room.wide_m)
+    return bool(beside) and bool(exact(disc_within, Vec2(off.alt_m, 0.0), 0.0, room.high_m))
+
+
+class Seen(NamedTuple):
+    """Where an aircraft is and the velocity with which it came there: what its observers know."""
+
+    time_ms: int
+    position: Position
+    velocity: Velocity
+
+
+def _off(here: Position, predicted: Position) -> Position:
+    return Position(
+        here.north_m - predicted.north_m,
+        here.east_m - predicted.east_m,
+        here.alt_m - predicted.alt_m,
+    )
+
+
+class _Positions:
+    """Puts the samples of an aircraft together; the velocity in a sample is that of the step to come."""
+
+    def __init__(self) -> None:
+        self._coming: dict[int, Velocity] = {}
+
+    def seen(self, message: Message) -> Seen:
+        body = message.body
+        coming = Velocity(body.VelocityNorth, body.VelocityEast, body.VelocityDown)
+        came = self._coming.get(body.VehicleID, coming)
+        self._coming[body.VehicleID] = coming
+        place = Position(body.North, body.East, body.Altitude)
+        return Seen(message.time_ms, place, came)
+
+
+class IntruderWatch:
+    """The intruder of each takeover, until the vehicle is handed back."""
+
+    def __init__(self, mission: Mission) -> None:
+        self._room = room_of(mission.daa)
+        self._ahead_ms = round(1000 * mission.daa.lookahead_s)
+        self._instances = frozenset(mission.instances)
+        self._positions = _Positions()
+        self._avoided: dict[int, set[int]] = {}
+        self._base: dict[tuple[int, int], Seen] = {}
+        self._last: dict[tuple[int, int], int] = {}
+        self._step_ms = mission.simulation.step_ms
+        none = "" if mission.instances else NO_INSTANCE
+        waits = "no takeover because of an intruder"
+        kernels = (disc_within, in_time)
+        self._record = Record("m", self._room.wide_m, kernels, none, waits=waits)
+
+    def message(self, message: Message) -> None:
+        """A change of who commands, or where an aircraft is."""
+        kind, now_ms, _, body = message
+        if kind == "AuthorityChange" and body.VehicleID in self._instances:
+            own = body.VehicleID
+            if not has_it(Gate(NUMBERS.get(body.Owner.name, UXAS), body.Epoch, False)):
+                self._forget(own, now_ms)
+            elif body.IntruderID:
+                self._record.waits = "the intruder was not seen during the takeover"
+                self._avoided.setdefault(own, set()).add(body.IntruderID)
+                self._last[own, body.IntruderID] = now_ms
+        elif kind == "TruthState":
+            self._sample(message)
+
+    def _forget(self, own: int, now_ms: int) -> None:
+        for other in self._avoided.pop(own, ()):
+            self._was_seen(own, other, now_ms)
+            self._base.pop((own, other), None)
+
+    def _was_seen(self, own: int, other: int, now_ms: int) -> None:
+        """From the last sample to now, no step of which it was not seen."""
+        last_ms = self._last[own, other]
+        if not self._record.gaps and not in_time(last_ms, now_ms, self._step_ms):
+            self._record.gaps.append(
+                f"aircraft {other} was not seen from {last_ms / 1000:.2f} s to {now_ms / 1000:.2f} s, "
+                f"during a takeover of {own}"
+            )
+
+    def _sample(self, message: Message) -> None:
+        here, other = self._positions.seen(message), message.body.VehicleID
+        for own, avoided in self._avoided.items():
+            if other not in avoided:
+                continue
+            base = self._base.get((own, other))
+            self._was_seen(own, other, here.time_ms)
+            self._last[own, other] = here.time_ms
+            if base is not None:
+                self._hold(own, other, base, here)
+            if base is None or not in_time(base.time_ms, here.time_ms, self._ahead_ms - 1):
+                self._base[own, other] = here
+
+    def _hold(self, own: int, other: int, base: Seen, here: Seen) -> None:
+        v, p, t_s = base.velocity, base.position, (here.time_ms - base.time_ms) / 1000
+        off = _off(here.position, after(Piece(0.0, t_s, p, v), t_s))
+        self._record.see(math.hypot(off.north_m, off.east_m))
+        text = (
+            f"aircraft {other}, which {own} avoids, is {math.hypot(off.north_m, off.east_m):.4g} m beside and "
+            f"{abs(off.alt_m):.4g} m above or below where it was predicted at {base.time_ms / 1000:.2f} s"
+        )
+        self._record.check(is_within(off, self._room), here.time_ms, own, text)
+
+    def end(self, at_ms: int) -> None:
+        """Takeovers that are open end here."""
+        for own in list(self._avoided):
+            self._forget(own, at_ms)
+
+    def records(self) -> dict[str, Record]:
+        """See `Watch`."""
+        return {"intruder in its tube": self._record}
+
+
+class Order(NamedTuple):
+    """What ICAROUS has commanded, and when: heading [rad], ground speed and climb [m/s]."""
+
+    at_ms: int
+    heading_rad: float
+    speed_m_s: float
+    climb_m_s: float
+
+
+class Path(NamedTuple):
+    """What a vehicle is predicted to fly from an instant on, until another [ms]."""
+
+    since_ms: int
+    until_ms: int
+    pieces: tuple[Piece, ...]
+
+    def at(self, t_s: float) -> Position:
+        """Where it is then, seconds after its begin."""
+        index = sum(
+            in_time(round(1000 * p.start_s), round(1000 * t_s), ANY_LATER) for p in self.pieces
+        )
+        piece = self.pieces[max(0, index - 1)]
+        return after(piece, t_s - piece.start_s)
+
+
+class TrackingWatch:
+    """Every vehicle under ICAROUS, from each of its commands to the next heartbeat."""
+
+    def __init__(self, mission: Mission) -> None:
+        self._room = room_of(mission.daa)
+        self._period_ms = mission.simulation.heartbeat_ms
+        self._bank = {v.id: v.max_bank_rad for v in mission.vehicles}
+        self._gates = dict.fromkeys(mission.instances, UNTOUCHED)
+        self._positions = _Positions()
+        self._ordered: dict[int, Order] = {}
+        self._paths: dict[int, Path] = {}
+        none = "" if mission.instances else NO_INSTANCE
+        kernels = (disc_within, gate_accepts, in_time)
+        self._record = Record("m", self._room.wide_m, kernels, none, waits="no takeover")
+
+    def message(self, message: Message) -> None:
+        """A state of the gate, a command, or where an aircraft is."""
+        kind, _, _, body = message
+        if kind not in ("GateState", "GatedCommand", "TruthState"):
+            return
+        if body.VehicleID not in self._gates:
+            return
+        if kind == "GateState":
+            self._gates[body.VehicleID] = reported(body)
+        elif kind == "GatedCommand":
+            self._command(message, self._gates[body.VehicleID])
+        else:
+            self._sample(message)
+
+    def _command(self, message: Message, gate: Gate) -> None:
+        body, number = message.body, message.body.VehicleID
+        sender = sender_of(body)
+        if not gate_accepts(gate, sender, body.Epoch):
+            return
+        unseen = self._ordered.pop(number, None)
+        # of two commands at one instant the second is flown
+        if unseen is not None and not in_time(message.time_ms, unseen.at_ms, 0):
+            self._record.gaps = [f"vehicle {number} was not seen after each command of ICAROUS"]
+        path = self._paths.get(number)
+        if path is not None and sender == UXAS:
+            self._paths[number] = path._replace(until_ms=min(path.until_ms, message.time_ms))
+        action: Any = next(iter(getattr(body.Command, "VehicleActionList", None) or ()), None)
+        if sender == ICAROUS and type(action).__name__ == "FlightDirectorAction":
+            self._record.waits = "the vehicle was not seen after a command of ICAROUS"
+            course = math.radians(action.Heading)
+            order = Order(message.time_ms, course, action.Speed, action.ClimbRate)
+            self._ordered[number] = order
+
+    def _sample(self, message: Message) -> None:
+        number, here = message.body.VehicleID, self._positions.seen(message)
+        path = self._paths.get(number)
+        if path is not None:
+            self._hold(number, path, here)
+        order = self._ordered.pop(number, None)
+        if order is not None:
+            self._paths[number] = self._predicted(number, here, order)
+
+    def _hold(self, number: int, path: Path, here: Seen) -> None:
+        if not in_time(here.time_ms, path.until_ms, self._period_ms):
+            del self._paths[number]
+            return
+        off = _off(here.position, path.at((here.time_ms - path.since_ms) / 1000))
+        beside_m = math.hypot(off.north_m, off.east_m)
+        self._record.see(beside_m)
+        text = (
+            f"vehicle {number} is {beside_m:.4g} m beside and {abs(off.alt_m):.4g} m above or below the path of its "
+            f"command of {path.since_ms / 1000:.2f} s"
+        )
+        self._record.check(is_within(off, self._room), here.time_ms, number, text)
+
+    def _predicted(self, number: int, here: Seen, order: Order) -> Path:
+        v = here.velocity
+        speed = math.hypot(v.north_m_s, v.east_m_s)
+        now = Motion(here.position, math.atan2(v.east_m_s, v.north_m_s), speed, -v.down_m_s)
+        rate = GRAVITY_M_S2 * math.tan(self._bank[number]) / speed if speed else 0.0
+        ability = Ability(rate, 0.0, math.inf, math.inf, ACCELERATION_M_S2, -math.inf)
+        period_s = self._period_ms / 1000
+        pieces = fly_to(now, ability, *order[1:], period_s, period_s)
+        return Path(here.time_ms, here.time_ms + self._period_ms, pieces)
+
+    def end(self, at_ms: int) -> None:
+        """Nothing is open."""
+
+    def records(self) -> dict[str, Record]:
+        """See `Watch`."""
+        return {"tracking": self._record}

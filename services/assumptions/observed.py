@@ -1,0 +1,111 @@
+"""What was observed of one assumption: held, broken since an instant, or not observed, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from enum import StrEnum
+from sys import float_info
+from typing import Any, NamedTuple, Protocol
+
+from cratous.core.kernel import qualified
+
+ANY_LATER = 2**60
+"""As a bound of `in_time`: not before, and however much later [ms]."""
+
+
+class State(StrEnum):
+    """The three answers. What was not watched to the end of the mission did not hold: it is not observed."""
+
+    HELD = "held"
+    BROKEN = "broken"
+    NOT_OBSERVED = "not observed"
+
+
+class Break(NamedTuple):
+    """When an assumption broke first [ms after mission start], on which vehicle (0: on none), and how."""
+
+    since_ms: int
+    vehicle_id: int
+    text: str
+
+
+class Observed(NamedTuple):
+    """extreme: the worst that was seen, and bound: the worst that is assumed, in `unit`; None where there is
+    no measure; checks: how often it was looked at; note: why it is not observed, or how it broke."""
+
+    state: State
+    broken: Break | None
+    extreme: float | None
+    bound: float | None
+    unit: str
+    note: str
+    checks: int
+    kernels: tuple[str, ...]
+
+
+@dataclass
+class Record:
+    """What a watch keeps. unseen: why nothing is watched at all, empty if something is; extreme: so far."""
+
+    unit: str = ""
+    bound: float | None = None
+    kernels: Iterable[Any] = ()
+    unseen: str = ""
+    extreme: float | None = None
+    checks: int = 0
+    broken: Break | None = None
+    waits: str = "nothing that rests on it has happened"
+    gaps: list[str] = field(default_factory=list)
+
+    def see(self, value: float | None) -> None:
+        """One look, and what was measured in it."""
+        self.checks += 1
+        if value is not None:
+            # what no number says is as far off as can be
+            value = float_info.max if value != value else value
+            most = value if self.extreme is None else max(self.extreme, value)
+            self.extreme = min(most, float_info.max)
+
+    def check(self, holds: bool, since_ms: int, vehicle_id: int, text: str) -> None:
+        """What a kernel has answered; the first time that it was no is kept."""
+        if not holds and self.broken is None:
+            self.broken = Break(since_ms, vehicle_id, text)
+
+    def observed(self, at_ms: int, over: bool) -> Observed:
+        """The answer. at_ms: when the messages end; over: the mission has ended by then."""
+        names = tuple(sorted(map(qualified, self.kernels))) if self.checks else ()
+        measures = (self.extreme, self.bound if self.checks else None, self.unit)
+        if self.broken is not None:
+            return Observed(
+                State.BROKEN, self.broken, *measures, self.broken.text, self.checks, names
+            )
+        why = self.unseen or ("" if self.checks else self.waits)
+        if not why and not over:
+            why = f"the messages stop at {at_ms / 1000:.2f} s, before the mission ends"
+        why = why or "; ".join(self.gaps)
+        state = State.NOT_OBSERVED if why else State.HELD
+        return Observed(state, None, *measures, why, self.checks, names)
+
+
+class Message(NamedTuple):
+    """A message as a watch sees it. kind: its type without the series; source: who sent it, empty if that is
+    not known; body: with the fields of its type."""
+
+    kind: str
+    time_ms: int
+    source: str
+    body: Any
+
+
+class Watch(Protocol):
+    """One assumption, or more that are seen in the same messages."""
+
+    def message(self, message: Message) -> None:
+        """The next message of the log."""
+
+    def end(self, at_ms: int) -> None:
+        """The mission has ended."""
+
+    def records(self) -> dict[str, Record]:
+        """What was seen so far, by the name of the assumption."""

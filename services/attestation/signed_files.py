@@ -1,0 +1,101 @@
+"""Are the files of results and views those that were signed, and are the views those of the report?"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from cratous.services.attestation.findings import Data, Subject
+from cratous.services.attestation.junit import junit
+from cratous.services.attestation.names import CSV_NAME, JUNIT_NAME, VIEWS
+from cratous.services.attestation.statement import RESULTS
+from cratous.services.attestation.statement import VIEWS as MADE
+from cratous.services.attestation.table import table
+from cratous.services.results.names import (
+    BESIDE_LOG,
+    CERTIFICATE_NAME,
+    HTML_NAME,
+    LOG_NAME,
+    MANIFEST_NAME,
+    MAP_NAME,
+    NAMES,
+    REPORT_NAME,
+)
+from cratous.services.results.ownership import digest_of
+
+NEEDED = (REPORT_NAME, HTML_NAME, MAP_NAME, LOG_NAME, MANIFEST_NAME)
+"""What every statement covers of the results."""
+MADE_AGAIN: dict[str, Callable[[Subject], str]] = {JUNIT_NAME: junit, CSV_NAME: table}
+"""The views that report and statement alone give."""
+
+
+class Place(NamedTuple):
+    """Where the files are. results: the folder of the run; views: that of views and statement."""
+
+    results: Path
+    views: Path
+
+    def of(self, where: str, name: str) -> Path:
+        """The file of a subject."""
+        return (self.results if where == RESULTS else self.views) / name
+
+
+def file_faults(place: Place, named: dict[str, str]) -> list[str]:
+    """What is not as it was signed: every file that is named is there with its SHA-256, and none that
+    should be named is not. named: by subject, the SHA-256 that was signed."""
+    found = []
+    for name, stated in named.items():
+        try:
+            got, why = digest_of(place.of(*name.split("/", 1))), "no such file"
+        except OSError as error:
+            got, why = "", error.strerror or "it cannot be read"
+        if not got or got != stated:
+            found.append(f"{name}: SHA-256 signed {stated}, found {got or why}")
+    there = [f"{MADE}/{name}" for name in VIEWS if (place.views / name).exists()]
+    there += [f"{RESULTS}/{name}" for name in NAMES if (place.results / name).exists()]
+    needed = [f"{RESULTS}/{name}" for name in NEEDED]
+    found += [
+        f"{name}: the statement does not cover it"
+        for name in sorted({*there, *needed} - set(named))
+    ]
+    found += [
+        f"{RESULTS}/{name}: SQLite would read it as part of the log"
+        for name in BESIDE_LOG
+        if (place.results / name).exists()
+    ]
+    return found
+
+
+def view_faults(place: Place, named: dict[str, str], subject: Subject) -> list[str]:
+    """The views that are not, byte for byte, what the report gives; and a certificate that is not there."""
+    found = []
+    for name, make in MADE_AGAIN.items():
+        if f"{MADE}/{name}" not in named:
+            continue
+        made = make(subject).encode()
+        with (place.views / name).open("rb") as stream:
+            same = stream.read(len(made) + 1) == made
+        if not same:
+            found.append(f"{MADE}/{name}: it is not what {REPORT_NAME} gives")
+    if subject.report["plan"]["certificate"] and f"{RESULTS}/{CERTIFICATE_NAME}" not in named:
+        found.append(f"{RESULTS}/{CERTIFICATE_NAME}: the plan names it, and it is not there")
+    return found
+
+
+def not_judged(named: dict[str, str], report: Data) -> list[str]:
+    """What nobody looked into here, in words."""
+    seen = [
+        HTML_NAME,
+        MAP_NAME,
+        *(n for n in VIEWS if n not in MADE_AGAIN and f"{MADE}/{n}" in named),
+    ]
+    plan = sum(row["source"] == "plan" for row in report["constraints"])
+    found = [
+        f"{', '.join(seen)}: that they are the files that were signed, not what stands in them",
+        f"all else in {REPORT_NAME} but its verdicts: margins, times, notes, kernels, tracks (cratous certify)",
+        f"{plan} verdicts on the plan (cratous certify makes them again)",
+    ]
+    if report["plan"]["certificate"]:
+        found.append(f"{CERTIFICATE_NAME} (cratous certify-plan checks it)")
+    return [*found, "proofs of the kernels (cratous prove makes them again, in a checkout)"]

@@ -1,0 +1,87 @@
+"""Does a report say what its statement claims, and do its summary and its rows belong together?"""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import Any
+
+from cratous.services.attestation.findings import Data
+from cratous.services.attestation.names import STATEMENT_NAME
+from cratous.services.attestation.statement import claim
+from cratous.services.certify.report_schema import departures
+from cratous.services.results.names import FORMER, REPORT_NAME
+from cratous.spec.mission.guarantees import REQUIREMENTS, Outcome, exit_code, worst
+
+PLAN_WHOLE = "plan: every task of one choice, once"
+PLAN_PART = "plan: a part that the relations permit"
+PLAN_ROWS = "plan: all order and timing rows at once"
+"""Rows of G1 that the check of the plan writes of every plan; of the first two one stands there."""
+
+
+def summary_faults(report: Data, predicate: Data) -> list[str]:
+    """What is wrong: the report is of its schema, says what the statement claims, and agrees with its
+    own rows. predicate: of the statement."""
+    if report["format"] == FORMER:
+        return [f"{REPORT_NAME}: a report of {FORMER} has no schema"]
+    wrong = [f"{REPORT_NAME}, by its schema: {line}" for line in departures(report)]
+    if wrong:
+        return wrong
+    found = [
+        f"{STATEMENT_NAME}: {key} is not that of {REPORT_NAME}"
+        for key, value in claim(report).items()
+        if predicate.get(key) != value
+    ]
+    return found + [f"{REPORT_NAME}: {text}" for text in (*_rows(report), *_sums(report))]
+
+
+def _rows(report: Data) -> list[str]:
+    """The requirements are those that there are, and no row is strange, twice, or left out of G1's on
+    the plan. Which rows on the flight there must be, the judge says."""
+    found = []
+    known = [(one.id, one.title, one.text) for one in REQUIREMENTS]
+    listed = [(one["requirement"], one["title"], one["text"]) for one in report["requirements"]]
+    if listed != known:
+        ids = ", ".join(one[0] for one in listed)
+        expected = ", ".join(one[0] for one in known)
+        found.append(
+            f"its requirements are {ids or 'none'}, expected {expected} with their titles and texts"
+        )
+    ids_known = {one.id for one in REQUIREMENTS}
+    rows = Counter((r["requirement"], r["source"], r["item"]) for r in report["constraints"])
+    for (name, source, item), number in rows.items():
+        if name not in ids_known:
+            found.append(f"a row of {name}, which is no requirement: {item}")
+        elif source == "plan" and name != "G1":
+            found.append(f"a row of {name} on the plan, of which only G1 speaks: {item}")
+        if number > 1:
+            found.append(f"{number} rows of {name} on the same: {item}")
+    plan = {item for name, source, item in rows if (name, source) == ("G1", "plan")}
+    if not plan & {PLAN_WHOLE, PLAN_PART}:
+        found.append(f"G1 lacks the row on the plan: {PLAN_WHOLE}")
+    if PLAN_ROWS not in plan:
+        found.append(f"G1 lacks the row on the plan: {PLAN_ROWS}")
+    return found
+
+
+def _sums(report: Data) -> list[str]:
+    """What is summed up otherwise than the rows say."""
+    rows, found = report["constraints"], []
+    outcomes = []
+    for wanted in report["requirements"]:
+        name = wanted["requirement"]
+        own = [Outcome(r["verdict"]) for r in rows if r["requirement"] == name]
+        outcomes.append(worst(own))
+        if outcomes[-1] != wanted["verdict"]:
+            found.append(f"{name} is {wanted['verdict']}, its rows {outcomes[-1]}")
+        if len(own) != wanted["constraints"]:
+            found.append(f"{name} has {wanted['constraints']} constraints, its rows are {len(own)}")
+    if report["proofs"]["problems"]:
+        outcomes.append(Outcome.UNKNOWN)
+    counts = {str(o): sum(row["verdict"] == o for row in rows) for o in Outcome}
+    found += _differs("verdict", report["verdict"], str(worst(outcomes)))
+    found += _differs("exit_code", report["exit_code"], exit_code(outcomes))
+    return found + _differs("counts", report["counts"], counts)
+
+
+def _differs(name: str, written: Any, counted: Any) -> list[str]:
+    return [f"{name} is {written}, by its rows {counted}"] if written != counted else []

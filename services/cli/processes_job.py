@@ -1,0 +1,103 @@
+"""The main job for one mission in processes: gate, plan, check, fly, monitor, certify."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from cratous import __version__
+from cratous.core import ledger
+from cratous.services.certify.evidence import counted
+from cratous.services.certify.proofs import inventory, summary
+from cratous.services.certify.report import (
+    Flown,
+    build_report,
+    environment,
+    mission_hash,
+    write_report,
+)
+from cratous.services.certify.verdicts import constraint_rows, plan_rows
+from cratous.services.cli.job import (
+    Settings,
+    Tell,
+    left_out_lines,
+    new_bus,
+    plan_and_check,
+    plan_line,
+    refuse_bad_plan,
+    sentence,
+    write_certificate,
+)
+from cratous.services.logs.log import LogWriter
+from cratous.services.logs.records import to_data
+from cratous.services.monitor import Monitor
+from cratous.services.processes.coverage import told_of
+from cratous.services.processes.flight import Flying, fly
+from cratous.services.processes.recorder import Recorder
+from cratous.services.results.names import CERTIFICATE_NAME, LOG_NAME
+from cratous.spec.mission import Mission
+
+STATES_MS = 550
+"""The simulator tells states twice a second; so far apart [ms] are two of them at most."""
+
+
+def run_in_processes(
+    mission: Mission, path: Path, folder: Path, settings: Settings, rate: float, tell: Tell
+) -> dict[str, Any]:
+    """Fly one mission in processes, write log and report into `folder`; returns the report as data.
+
+    path: of the mission, which the ICAROUS processes read; rate: times real time.
+    """
+    mission = as_flown(mission if settings.daa else replace(mission, instances=()))
+    told = told_of(mission)
+    standing = ledger.require(allow_unproved=settings.allow_unproved)
+    tell(f"proofs: {standing.line}")
+    flown = Flown(settings.command, settings.daa, inventory(standing, None), environment())
+    log = folder / LOG_NAME
+    meta = {
+        "mission": to_data(mission),
+        "version": __version__,
+        "seed": mission.seed,
+        "mission_hash": mission_hash(mission),
+        **flown.meta(),
+    }
+    with LogWriter(log, **meta) as writer:
+        with counted() as calls:
+            planning, bus = new_bus(), new_bus()
+            plan, checks = plan_and_check(mission, planning)
+            for line in (plan_line(mission, plan, checks), *left_out_lines(plan)):
+                tell(line)
+            refuse_bad_plan(checks)
+            if plan.certificate:
+                write_certificate(planning, folder / CERTIFICATE_NAME)
+            writer.note("plan", to_data(plan))
+            monitor = Monitor(mission, plan, lambda v: tell(f"VIOLATION {sentence(v)}"))
+            bus.tap(writer.tap)
+            bus.tap(monitor.tap)
+            how = Flying(path, folder, rate, settings.allow_unproved, tell)
+            ended = fly(mission, plan, told, Recorder(mission, bus), how)
+            writer.note("processes", {"pids": ended.pids, "ports": ended.ports})
+            if ended.why:
+                tell(f"NOT FLOWN TO ITS END: {ended.why}")
+            verdicts = monitor.verdicts()
+        counts = calls.data()
+        flown = replace(flown, proofs=inventory(standing, counts))
+        writer.note("calls", counts)
+        writer.note("proofs", flown.meta()["proofs"])
+    tell(f"evidence: {summary(flown.proofs)}")
+    rows = plan_rows(checks) + constraint_rows(verdicts, "flight")
+    report = build_report(mission, plan, rows, log, flown)
+    write_report(report, folder)
+    return report
+
+
+def as_flown(mission: Mission) -> Mission:
+    """The mission as it is flown in processes: how far apart its states are, and what has to be known of it."""
+    count = 2 + len(mission.instances)
+    note = (
+        f"flown in {count} processes: the simulator, UxAS and {len(mission.instances)} of ICAROUS; "
+        f"between two states, up to {STATES_MS} ms apart, aircraft are taken to fly straight"
+    )
+    simulation = replace(mission.simulation, step_ms=STATES_MS)
+    return replace(mission, simulation=simulation, notes=(*mission.notes, note))

@@ -1,0 +1,270 @@
+// The editor of a mission: one text, with all that is shown made from it.
+
+import { color, colorOf } from "./canvas.js";
+import { EditMap } from "./edit_map.js";
+import { gantt, routes } from "./edit_plan.js";
+import * as relations from "./edit_relations.js";
+import { open, theme } from "./opening.js";
+
+const by = id => document.getElementById(id);
+const token = new URLSearchParams(location.search).get("token") || "";
+const SETTLED_MS = 250, POLL_MS = 300, CORNERS = { keep_out: 3, keep_in: 3, must_fly: 1, line_search: 2 };
+
+class Refused extends Error {}
+
+async function ask(path, body) {
+  let response;
+  try {
+    response = await fetch(path, { method: "POST", headers: { "Content-Type": "application/json", "X-Cratous-Token": token }, body: JSON.stringify(body) });
+  } catch (error) {
+    throw new Refused(`The server does not answer (${error.message}). What is not saved is only on this page.`);
+  }
+  const told = await response.json();
+  if (!response.ok) throw new Refused([told.error, told.item, told.expected && `expected ${told.expected}`].filter(Boolean).join("; "));
+  return told;
+}
+
+class Editor {
+  constructor(opened) {
+    Object.assign(this, { text: opened.text, digest: opened.digest, saved: opened.text, past: [], future: [], found: opened, tool: null, planned: null, polling: false });
+    by("name").textContent = opened.file;
+    document.title = `${opened.file} – CRATOUS mission editor`;
+    this.map = new EditMap(by("map"), {
+      moved: (key, north_m, east_m) => this.change({ do: "move", key, north_m, east_m }),
+      clicked: (north, east) => this.point(north, east),
+      finished: () => this.finish(),
+      picked: key => { by("remove").disabled = key === null || !["zones", "tasks"].includes(key[0]); },
+    });
+    this.listen();
+    by("text").value = this.text;
+    this.show(opened);
+    this.relations();
+    this.mark();
+  }
+
+  say(text, bad = false) {
+    by("saved").textContent = text;
+    by("saved").className = bad ? "bad" : "";
+  }
+
+  mark() {
+    const open_ = this.text !== this.saved, typed = by("relations").value !== (this.found.relations || "");
+    by("saved").textContent = `${open_ ? "not saved" : "saved"}${typed && by("relations-error").textContent ? "; the relations typed are not in the file" : ""}`;
+    by("saved").className = open_ ? "open" : "";
+    by("undo").disabled = !this.past.length;
+    by("redo").disabled = !this.future.length;
+    if (this.planned && this.planned.of !== this.text) by("plan-state").textContent = `Of an earlier text: ${this.planned.text}`;
+  }
+
+  // the text is another one; what stood before can be had again
+  set(text, keep = true) {
+    if (text === this.text) return;
+    if (keep) { this.past.push(this.text); this.future = []; }
+    this.text = text;
+    if (by("text").value !== text) by("text").value = text;
+    this.mark();
+    this.look();
+  }
+
+  async look() {
+    const { text } = this;
+    try {
+      const found = await ask("/sketch", { text });
+      if (text !== this.text) return; // a newer one is on its way
+      this.show(found);
+      await this.relations();
+    } catch (error) { this.say(error.message, true); }
+  }
+
+  show(found) {
+    this.found = found.drawn ? found : { ...this.found, problems: found.problems };
+    this.map.show(found);
+    by("problems-none").hidden = found.problems.length > 0;
+    by("problems").replaceChildren(...found.problems.map(problem => {
+      const item = document.createElement("li"), button = document.createElement("button");
+      button.type = "button";
+      button.className = "violated";
+      button.textContent = [problem.line ? `line ${problem.line}` : "", problem.item, problem.error, problem.expected && `expected ${problem.expected}`, problem.got && `got ${problem.got}`].filter(Boolean).join("; ");
+      button.addEventListener("click", () => this.line(problem.line));
+      item.append(button);
+      return item;
+    }));
+    by("notes").replaceChildren(...found.notes.map(note => Object.assign(document.createElement("li"), { textContent: note })));
+    if (found.drawn && document.activeElement !== by("relations")) by("relations").value = found.relations;
+    by("plan").disabled = found.problems.length > 0;
+  }
+
+  line(number) {
+    if (!number) return;
+    const field = by("text"), lines = field.value.split("\n");
+    const from = lines.slice(0, number - 1).join("\n").length + (number > 1 ? 1 : 0);
+    field.focus();
+    field.setSelectionRange(from, from + lines[number - 1].length);
+    field.scrollTop = Math.max(0, (number - 6) * field.scrollHeight / lines.length);
+  }
+
+  async relations() {
+    const text = by("relations").value;
+    const told = await ask("/relations", { text, tasks: this.found.tasks });
+    if (text === by("relations").value) relations.show(text, told);
+    this.mark();
+    return told;
+  }
+
+  // typed relations go into the text once they are a term
+  async typed() {
+    try {
+      const told = await this.relations();
+      if (!told.error && by("relations").value !== this.found.relations) await this.change({ do: "put", key: ["relations"], value: by("relations").value });
+    } catch (error) { this.say(error.message, true); }
+  }
+
+  async change(change) {
+    try {
+      this.set((await ask("/change", { text: this.text, ...change })).text);
+    } catch (error) {
+      this.say(error.message, true);
+      this.look();
+    }
+  }
+
+  draw(tool) {
+    this.tool = tool;
+    this.map.drawing = tool ? [] : null;
+    for (const button of document.querySelectorAll("#tools [data-tool]")) button.classList.toggle("on", button.dataset.tool === tool);
+    by("finish").hidden = !tool || CORNERS[tool] === 1;
+    by("cancel").hidden = !tool;
+    by("hint").textContent = !tool ? "" : CORNERS[tool] === 1 ? "Click where it is to be." : `Click ${CORNERS[tool]} places or more, then Enter.`;
+    this.map.redraw();
+  }
+
+  point(north, east) {
+    this.map.drawing.push([Math.round(north * 10) / 10, Math.round(east * 10) / 10]);
+    this.map.redraw();
+    if (CORNERS[this.tool] === 1) this.finish();
+  }
+
+  finish() {
+    const { tool } = this, drawn = this.map.drawing;
+    // a double click is two places at one point
+    const places = drawn.filter((place, k) => !k || place[0] !== drawn[k - 1][0] || place[1] !== drawn[k - 1][1]);
+    if (places.length < CORNERS[tool]) { by("hint").textContent = `${CORNERS[tool]} places are needed.`; return; }
+    this.draw(null);
+    if (tool.startsWith("keep")) this.change({ do: "add", list: "zones", item: { kind: tool, vertices: places } });
+    else this.change({ do: "add", list: "tasks", item: { kind: tool, points: places.map(([north_m, east_m]) => ({ north_m, east_m })) } });
+  }
+
+  remove() {
+    const key = this.map.picked;
+    if (key && ["zones", "tasks"].includes(key[0])) this.change({ do: "remove", key: key.slice(0, 2) });
+  }
+
+  back(from, to) {
+    if (!from.length) return;
+    to.push(this.text);
+    this.set(from.pop(), false);
+  }
+
+  async save() {
+    const { text } = this;
+    try {
+      this.digest = (await ask("/save", { text, digest: this.digest })).digest;
+      this.saved = text;
+      this.mark();
+    } catch (error) { this.say(error.message, true); }
+  }
+
+  async plan() {
+    const { text } = this;
+    try { await ask("/plan", { text }); } catch (error) { this.say(error.message, true); return; }
+    this.asked = text;
+    this.planned = null;
+    this.map.routes([]);
+    for (const id of ["gantt", "why", "plan-notes", "constraints"]) by(id).replaceChildren();
+    this.poll();
+  }
+
+  async poll() {
+    if (this.polling) return;
+    this.polling = true;
+    try {
+      for (;;) {
+        const told = await (await fetch("/planned.json")).json();
+        const on = told.state === "planning";
+        by("plan-stop").hidden = !on;
+        by("plan-state").textContent = on ? `Planning: ${told.text}` : told.text;
+        by("plan-state").className = told.state === "failed" || told.exit_code === 1 ? "bad" : "";
+        if (told.state === "planned") this.result(told);
+        if (!on && !this.waiting?.size) break;
+        await new Promise(done => setTimeout(done, POLL_MS));
+      }
+    } catch (error) { this.say(`The server does not answer (${error.message}).`, true); }
+    this.polling = false;
+  }
+
+  result(told) {
+    for (const task of this.waiting || []) if (told.why[task]) {
+      this.waiting.delete(task);
+      by("why").replaceChildren(...told.why[task].map(line => Object.assign(document.createElement("li"), { textContent: line })));
+    }
+    if (this.planned) return;
+    this.planned = { of: this.asked, text: told.text };
+    const { drawn } = this.found;
+    this.map.routes(routes(told.plan, drawn.starts));
+    by("gantt").replaceChildren(gantt(told.plan, drawn.vehicles, id => colorOf(this.map.recording, id) || color("c0"), task => this.why(task)));
+    by("plan-notes").replaceChildren(...told.notes.map(note => Object.assign(document.createElement("li"), { textContent: note })));
+    const head = by("constraints").createTHead().insertRow();
+    for (const name of ["constraint", "verdict", "note"]) head.append(Object.assign(document.createElement("th"), { textContent: name }));
+    const body = by("constraints").createTBody();
+    for (const row of told.constraints) {
+      const line = body.insertRow();
+      for (const [text, name] of [[row.item, ""], [row.verdict, row.verdict], [row.note, ""]]) Object.assign(line.insertCell(), { textContent: text, className: name });
+    }
+    this.mark();
+  }
+
+  async why(task) {
+    try {
+      await ask("/why", { task });
+      (this.waiting ||= new Set()).add(String(task));
+      by("why").replaceChildren(Object.assign(document.createElement("li"), { textContent: `Planning with each vehicle for p${task} …` }));
+      this.poll();
+    } catch (error) { this.say(error.message, true); }
+  }
+
+  listen() {
+    let settled = 0;
+    const later = act => { clearTimeout(settled); settled = setTimeout(act, SETTLED_MS); };
+    by("text").addEventListener("input", () => later(() => this.set(by("text").value)));
+    by("relations").addEventListener("input", () => later(() => this.typed()));
+    by("undo").addEventListener("click", () => this.back(this.past, this.future));
+    by("redo").addEventListener("click", () => this.back(this.future, this.past));
+    by("save").addEventListener("click", () => this.save());
+    by("plan").addEventListener("click", () => this.plan());
+    by("plan-stop").addEventListener("click", () => ask("/stop", {}).catch(error => this.say(error.message, true)));
+    by("remove").addEventListener("click", () => this.remove());
+    by("finish").addEventListener("click", () => this.finish());
+    by("cancel").addEventListener("click", () => this.draw(null));
+    for (const button of document.querySelectorAll("#tools [data-tool]")) button.addEventListener("click", () => this.draw(this.tool === button.dataset.tool ? null : button.dataset.tool));
+    by("closer").addEventListener("click", () => this.map.zoom(1.4));
+    by("farther").addEventListener("click", () => this.map.zoom(1 / 1.4));
+    by("whole").addEventListener("click", () => { this.map.state.view = null; this.map.redraw(); });
+    by("theme").addEventListener("click", () => { theme(document.documentElement.className === "dark" ? "light" : "dark"); this.map.redraw(); });
+    by("map").addEventListener("pointermove", event => {
+      const [north, east] = this.map.under(event.offsetX, event.offsetY);
+      by("cursor").textContent = `north ${north.toFixed(0)} m, east ${east.toFixed(0)} m`;
+    });
+    addEventListener("beforeunload", event => { if (this.text !== this.saved) event.preventDefault(); });
+    addEventListener("keydown", event => {
+      const key = event.key.toLowerCase(), typing = event.target.tagName === "TEXTAREA";
+      if (event.ctrlKey || event.metaKey) {
+        const act = { s: () => this.save(), z: () => this.back(this.past, this.future), y: () => this.back(this.future, this.past) }[key];
+        if (act) { event.preventDefault(); act(); }
+      } else if (!typing && event.key === "Enter" && this.tool && event.target.tagName !== "BUTTON") this.finish();
+      else if (event.key === "Escape") this.draw(null);
+      else if (!typing && event.key === "Delete") this.remove();
+    });
+  }
+}
+
+await open(opened => { new Editor(opened); });

@@ -1,0 +1,119 @@
+// The map of the editor: zones, tasks, starts and a plan; places are dragged, shapes drawn by clicks.
+
+import { color, colorOf, sized } from "./canvas.js";
+import { FlightMap } from "./map.js";
+
+const NEAR = 9;
+
+export class EditMap extends FlightMap {
+  // asked: { moved(key, north, east), clicked(north, east), finished(), viewed() }
+  constructor(canvas, asked) {
+    super(canvas, { vehicles: [], tracks: {}, tasks: [], zones: [], footprints: [], routes: [], takeovers: [] }, view => { this.state.view = view; this.redraw(); });
+    Object.assign(this, { asked, state: { time: 0, view: null }, places: [], starts: [], picked: null, drawing: null, dragged: null });
+    this.edit();
+  }
+
+  show(found) {
+    const { drawn } = found;
+    if (drawn) {
+      const tracks = Object.fromEntries(drawn.starts.map(start => [start.id, [[0, start.north_m, start.east_m, 0, 0]]]));
+      Object.assign(this.recording, { ...drawn, tracks, routes: this.recording.routes });
+      this.starts = drawn.starts;
+      this.places = found.places;
+      if (!this.places.some(place => this.isPicked(place))) this.pick(null);
+      this.grown();
+    }
+    this.redraw();
+  }
+
+  routes(routes) { this.recording.routes = routes; this.redraw(); }
+
+  pick(place) { this.picked = place && place.key; this.asked.picked(this.picked); }
+
+  isPicked(place) { return this.picked !== null && place.key.join() === this.picked.join(); }
+
+  redraw() {
+    const { pen, width, height } = sized(this.canvas);
+    this.begin(pen, width, height, this.state);
+    for (const zone of this.recording.zones) this.zone(zone);
+    for (const task of this.recording.tasks) this.task(task);
+    for (const route of this.recording.routes) this.route(String(route.vehicle), route);
+    for (const start of this.starts) this.start(start);
+    for (const place of this.places) this.handle(place);
+    if (this.drawing) {
+      this.path(this.drawing, false);
+      this.stroke(color("icarous"), 2.5, [6, 4]);
+      for (const [north, east] of this.drawing) this.square(north, east, color("icarous"), true);
+    }
+  }
+
+  start(start) {
+    const [x, y] = this.xy(start.north_m, start.east_m), { pen } = this;
+    pen.save();
+    pen.translate(x, y);
+    pen.rotate(start.heading_deg * Math.PI / 180);
+    pen.beginPath();
+    pen.moveTo(0, -13); pen.lineTo(8, 10); pen.lineTo(0, 6); pen.lineTo(-8, 10);
+    pen.closePath();
+    this.fill(colorOf(this.recording, start.id), 1);
+    pen.restore();
+    const vehicle = this.recording.vehicles.find(one => one.id === start.id);
+    this.label(`${vehicle?.label || ""} ${start.id}`.trim(), x + 14, y - 8, colorOf(this.recording, start.id));
+  }
+
+  square(north, east, ink, full) {
+    const [x, y] = this.xy(north, east);
+    this.pen.beginPath();
+    this.pen.rect(x - 4, y - 4, 8, 8);
+    this.fill(full ? ink : color("paper"), 1);
+    this.stroke(ink, 1.5);
+  }
+
+  handle(place) { this.square(place.north_m, place.east_m, color("ink"), this.isPicked(place)); }
+
+  // the place that is nearest to a point of the canvas, if it is near
+  at(x, y) {
+    let found = null, least = NEAR;
+    for (const place of this.places) {
+      const [px, py] = this.xy(place.north_m, place.east_m), far = Math.hypot(px - x, py - y);
+      if (far <= least) { found = place; least = far; }
+    }
+    return found;
+  }
+
+  edit() {
+    const { canvas } = this;
+    // before the map's own: a place that is dragged does not move the map
+    canvas.addEventListener("pointerdown", event => {
+      if (this.drawing) {
+        event.stopImmediatePropagation();
+        this.asked.clicked(...this.under(event.offsetX, event.offsetY));
+        return;
+      }
+      const place = this.at(event.offsetX, event.offsetY);
+      this.pick(place);
+      if (place) {
+        event.stopImmediatePropagation();
+        canvas.setPointerCapture(event.pointerId);
+        this.dragged = { place, from: [place.north_m, place.east_m] };
+      }
+      this.redraw();
+    }, true);
+    canvas.addEventListener("pointermove", event => {
+      if (!this.dragged) return;
+      event.stopImmediatePropagation();
+      const [north, east] = this.under(event.offsetX, event.offsetY);
+      Object.assign(this.dragged.place, { north_m: north, east_m: east });
+      this.redraw();
+    }, true);
+    canvas.addEventListener("pointerup", () => {
+      const { dragged } = this;
+      this.dragged = null;
+      if (!dragged) return;
+      const { key, north_m, east_m } = dragged.place;
+      if (north_m !== dragged.from[0] || east_m !== dragged.from[1]) this.asked.moved(key, north_m, east_m);
+    }, true);
+    canvas.addEventListener("dblclick", () => { if (this.drawing) this.asked.finished(); });
+    new ResizeObserver(() => this.redraw()).observe(canvas);
+  }
+}

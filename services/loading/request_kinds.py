@@ -1,0 +1,15 @@
+"""Which messages ask for a plan."""
+
+from __future__ import annotations
+
+WRAPPED = {
+    "CoordinatedAutomationRequest": "OriginalRequest",
+    "TaskAutomationRequest": "OriginalRequest",
+    "ImpactAutomationRequest": "TrialRequest",
+}
+"""Messages around an automation request, and where they have it."""
+
+
+def is_request(kind: str) -> bool:
+    """True for a type of message that asks for a plan."""
+    return kind == "AutomationRequest" or kind in WRAPPED

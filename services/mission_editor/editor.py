@@ -1,0 +1,180 @@
+"""One mission file open in the browser: what the page asks for, and what it gets."""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import secrets
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from cratous.core.files.whole_file import write_atomically
+from cratous.services.ground_station.live_session import NotObeyed
+from cratous.services.mission_editor.plan_process import PlanProcess
+from cratous.services.mission_editor.relations import relations
+from cratous.services.mission_editor.sketch import sketch
+from cratous.services.mission_editor.text_edits import MissionText
+from cratous.spec.errors import BadInput
+from cratous.spec.files.limits import MISSION_BYTES
+from cratous.spec.files.text_file import text_of
+
+LONGEST = 2 * MISSION_BYTES
+"""Of what a page sends [bytes]: the text, as JSON."""
+FARTHEST_M = 1e7
+"""Farther from the origin of the frame nothing is put."""
+LISTS = ("zones", "tasks")
+"""To which items are added on the map."""
+Order = Callable[[str, str, Any], dict[str, Any]]
+
+
+class Editor:
+    """Keeps the file as it was read or written last, and the process that plans.
+
+    token: whoever has it may edit. Raises BadInput if the file cannot be read.
+    """
+
+    def __init__(self, path: Path, module: str, allow_unproved: bool) -> None:
+        """module: what plans, as `python -m` takes it; allow_unproved: also by kernels without proof."""
+        self._path, self._module, self._allow_unproved = path, module, allow_unproved
+        self.token = secrets.token_urlsafe(24)
+        self._plan: PlanProcess | None = None
+        self._lock = threading.Lock()
+        self._read()
+        named: dict[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
+            "/sketch": self._sketch, "/relations": self._relations, "/change": self._change,
+            "/plan": self._start, "/stop": self._stop, "/why": self._why, "/save": self._save,
+        }  # fmt: skip
+        self.orders = {name: self._guarded(order) for name, order in named.items()}
+
+    def _guarded(self, order: Callable[[dict[str, Any]], dict[str, Any]]) -> Order:
+        def obey(token: str, page: str, asked: Any) -> dict[str, Any]:
+            if not hmac.compare_digest(token.encode(), self.token.encode()):
+                raise NotObeyed(403, "editing needs the token of the address that was printed")
+            if not isinstance(asked, dict):
+                raise NotObeyed(400, "expected a JSON object")
+            return order(asked)
+
+        return obey
+
+    def _read(self) -> str:
+        return text_of(self._path, MISSION_BYTES, "a mission file")
+
+    def opened(self) -> dict[str, Any]:
+        """The file as it is now, for a page that opens."""
+        text = self._read()
+        return {
+            "file": str(self._path),
+            "text": text,
+            "digest": _digest(text),
+            **sketch(text, str(self._path)),
+        }
+
+    def planned(self) -> dict[str, Any]:
+        """How planning is, and what came of it."""
+        with self._lock:
+            return {"state": "none"} if self._plan is None else self._plan.told()
+
+    def _sketch(self, asked: dict[str, Any]) -> dict[str, Any]:
+        return sketch(_text(asked), str(self._path))
+
+    def _relations(self, asked: dict[str, Any]) -> dict[str, Any]:
+        tasks = asked.get("tasks")
+        if not isinstance(tasks, list) or not all(type(task) is int for task in tasks):
+            raise NotObeyed(400, "expected tasks: a list of ids")
+        return relations(_text(asked), tasks)
+
+    def _change(self, asked: dict[str, Any]) -> dict[str, Any]:
+        """The text with one change: move, add, remove or put."""
+        mission, do = MissionText(_text(asked), str(self._path)), asked.get("do")
+        if do == "add":
+            name, item = asked.get("list"), asked.get("item")
+            if name not in LISTS or not isinstance(item, dict):
+                raise NotObeyed(400, f"expected list: one of {', '.join(LISTS)}, and item")
+            return {"text": mission.added(name, {"id": _next_id(mission, name), **item})}
+        key = asked.get("key")
+        if not isinstance(key, list) or not all(type(part) in (str, int) for part in key):
+            raise NotObeyed(400, "expected key: a list of names and numbers")
+        if do == "remove":
+            return {"text": mission.removed(tuple(key))}
+        if do == "put":
+            return {"text": mission.put(tuple(key), _text(asked, "value"))}
+        if do == "move":
+            north_m, east_m = (_number(asked, name) for name in ("north_m", "east_m"))
+            return {"text": mission.moved(tuple(key), north_m, east_m)}
+        raise NotObeyed(400, "expected do: add, move, put or remove")
+
+    def _start(self, asked: dict[str, Any]) -> dict[str, Any]:
+        """Plan a text; a plan that is being made is given up."""
+        told = {
+            "text": _text(asked), "where": str(self._path), "allow_unproved": self._allow_unproved,
+        }  # fmt: skip
+        with self._lock:
+            before, self._plan = self._plan, PlanProcess(self._module, told)
+        if before is not None:
+            before.end()
+        return {"done": True}
+
+    def _stop(self, asked: dict[str, Any]) -> dict[str, Any]:
+        with self._lock:
+            plan = self._plan
+        if plan is None or plan.told()["state"] != "planning":
+            raise NotObeyed(409, "nothing is being planned")
+        plan.end()
+        return {"done": True}
+
+    def _why(self, asked: dict[str, Any]) -> dict[str, Any]:
+        with self._lock:
+            plan = self._plan
+        task = asked.get("task")
+        if type(task) is not int:
+            raise NotObeyed(400, "expected task: its id")
+        if plan is None or not plan.why(task):
+            raise NotObeyed(409, "there is no plan")
+        return {"done": True}
+
+    def _save(self, asked: dict[str, Any]) -> dict[str, Any]:
+        """Write the file, unless it is not what the page began with; digest: of that."""
+        text = _text(asked)
+        with self._lock:
+            if _digest(self._read()) != asked.get("digest"):
+                raise NotObeyed(409, f"{self._path} has been changed since by something else")
+            write_atomically(self._path, text, "the mission")
+        return {"digest": _digest(text)}
+
+    def close(self) -> None:
+        """End what plans."""
+        with self._lock:
+            if self._plan is not None:
+                self._plan.end()
+
+
+def _text(asked: dict[str, Any], name: str = "text") -> str:
+    text = asked.get(name)
+    if not isinstance(text, str):
+        raise NotObeyed(400, f"expected {name}: a text")
+    if len(text.encode("utf-8", "replace")) > MISSION_BYTES:
+        raise BadInput("a text that is too long", item=name, expected=f"{MISSION_BYTES} bytes")
+    return text
+
+
+def _number(asked: dict[str, Any], name: str) -> float:
+    value: Any = asked.get(name)
+    if type(value) not in (int, float) or not abs(value) < FARTHEST_M:
+        raise NotObeyed(400, f"expected {name}: a number of metres")
+    return float(value)
+
+
+def _next_id(mission: MissionText, name: str) -> int:
+    """One that no item of the list has, nor a zone that comes later."""
+    data = mission.data
+    items = list(data.get(name) or ())
+    if name == "zones":
+        items += [c["zone"] for c in data.get("changes") or () if isinstance(c.get("zone"), dict)]
+    ids = [one["id"] for one in items if isinstance(one, dict) and isinstance(one.get("id"), int)]
+    return max([0, *ids]) + 1
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()

@@ -1,0 +1,85 @@
+"""What the text of a mission says: what is drawn of it, what may be moved, and what is wrong with it."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from typing import Any
+
+from cratous.services.ground_station.flown import FlownRecording
+from cratous.services.loading.document import Document, Key, parse_document
+from cratous.services.loading.places import Places
+from cratous.services.loading.problems import BadMission
+from cratous.services.loading.yaml_mission import drawn, loaded
+from cratous.services.mission_editor.text_edits import DEGREES, PLACE
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Mission
+
+_LINE = re.compile(r":(\d+)(?::\d+)?$")
+NO_PLACES = ("frame", "variation", "expect")
+"""Parts whose places are not those of a thing on the map."""
+
+
+def sketch(text: str, where: str) -> dict[str, Any]:
+    """drawn: for the map, None if the text cannot be read; places: what may be moved, with its key;
+    problems: what is wrong, with the line; notes: what the mission says beside; tasks: their ids;
+    relations: the text of the process algebra.
+    """
+    found: dict[str, Any] = {"drawn": None, "places": [], "problems": [], "notes": [], "tasks": []}
+    try:
+        document = parse_document(text, where)
+        mission = drawn(document)
+        # what is wrong is drawn too, so that it can be mended on the map
+        found |= _shown(document, mission)
+        found["notes"] = list(loaded(document).notes)
+    except BadInput as error:
+        problems = error.problems if isinstance(error, BadMission) else (error,)
+        found["problems"] = [_problem(one) for one in problems]
+    return found
+
+
+def _problem(error: BadInput) -> dict[str, Any]:
+    line = _LINE.search(error.where)
+    return {**error.data(), "line": int(line.group(1)) if line else None}
+
+
+def _shown(document: Document, mission: Mission) -> dict[str, Any]:
+    first = FlownRecording(mission).first()
+    starts = [
+        {
+            "id": vehicle.id,
+            "north_m": vehicle.position.north_m,
+            "east_m": vehicle.position.east_m,
+            "heading_deg": math.degrees(vehicle.heading_rad),
+        }
+        for vehicle in mission.vehicles
+    ]
+    places = Places(mission.frame)
+    return {
+        "drawn": {**first, "starts": starts},
+        "places": [
+            {"key": list(key), "north_m": north_m, "east_m": east_m}
+            for key, (north_m, east_m) in _places(document.data, (), places)
+        ],
+        "tasks": [task.id for task in mission.tasks],
+        "relations": document.data.get("relations") or "",
+    }
+
+
+def _places(data: Any, key: Key, places: Places) -> Iterator[tuple[Key, tuple[float, float]]]:
+    """Every place that is written in a mission, and where it stands there."""
+    if isinstance(data, dict):
+        if set(PLACE) <= set(data) or set(DEGREES) <= set(data):
+            yield key, places.horizontal(data)
+            return
+        for name, value in data.items():
+            if key or name not in NO_PLACES:
+                yield from _places(value, (*key, name), places)
+    elif isinstance(data, list):
+        corners = bool(key) and key[-1] == "vertices"
+        for number, value in enumerate(data):
+            if corners and isinstance(value, list):
+                yield (*key, number), places.vertex(value)
+            else:
+                yield from _places(value, (*key, number), places)

@@ -1,0 +1,96 @@
+"""What a task's service tells the payloads of a vehicle that flies it: where to look, with each of its states.
+
+Lines and points are stared at; over an area the gimbal is held at the angles for which the option was
+planned. What is planned to be seen and what is looked at so come from one source (`planning.targets`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.services.loading.places import Places
+from cratous.services.mission.frames import Projection
+from cratous.services.pipeline.contexts import Context
+from cratous.services.pipeline.places import read_pose
+from cratous.services.planning.flyers import camera_for
+from cratous.services.planning.options import Option
+from cratous.services.planning.targets import Angles, chosen_view, target_from
+from cratous.spec.mission import AREAS, SEARCHES, Camera, Position, Task
+from cratous.spec.mission.plan import Pose
+
+
+class Steering(NamedTuple):
+    """A task as it is flown: by which option, with which camera, in which frame."""
+
+    task: Task
+    option: Option
+    camera: Camera
+    places: Places
+    projection: Projection
+
+
+def steering_of(context: Context, task: Task, option: Option) -> Steering | None:
+    """How the payloads are steered for an option; None where there is nothing to look at, or no camera."""
+    camera = camera_for(task, option.flyer.cameras)
+    if task.kind not in SEARCHES or camera is None:
+        return None
+    frame = context.inputs.mission.frame
+    return Steering(task, option, camera, Places(frame), context.places.projection)
+
+
+def look_command(steering: Steering, state: Any) -> Any:
+    """The VehicleActionCommand for a vehicle in a state (an EntityState); BadInput if that is at no place."""
+    where = f"state of vehicle {state.ID}"
+    here = read_pose(state.Location, state.Heading, steering.places, where, "Location")
+    return _looking_from(steering, here, state.ID)
+
+
+def last_look(steering: Steering, vehicle: int) -> Any:
+    """The VehicleActionCommand for a vehicle whose task is told complete: that for where the path ends.
+
+    An autopilot that turns short counts the end as reached when it is still up to two turn radii away.
+    """
+    return _looking_from(steering, steering.option.end, vehicle)
+
+
+def _looking_from(steering: Steering, here: Pose, vehicle: int) -> Any:
+    option = steering.option
+    made_for = Angles(option.view_elevation_rad, option.view_azimuth_rad)
+    if steering.task.kind in AREAS and made_for.elevation_rad is not None:
+        look = _held(steering, made_for, made_for.elevation_rad, here.heading_rad)
+    else:
+        look = _stare(steering, made_for, here)
+    return lmcp.new("VehicleActionCommand", VehicleID=vehicle, VehicleActionList=[look])
+
+
+def _held(steering: Steering, made_for: Angles, elevation_rad: float, heading_rad: float) -> Any:
+    """The angles of the option's view; from north they are turned against the heading."""
+    view = chosen_view(steering.task, made_for)
+    north_rad = heading_rad if view is not None and view.inertial else 0.0
+    azimuth_rad = math.remainder(made_for.azimuth_rad - north_rad, 2 * math.pi)
+    return lmcp.new(
+        "GimbalAngleAction",
+        AssociatedTaskList=[steering.task.id],
+        PayloadID=steering.camera.payload_id,
+        Azimuth=math.degrees(azimuth_rad),
+        Elevation=math.degrees(elevation_rad),
+    )
+
+
+def _stare(steering: Steering, made_for: Angles, here: Pose) -> Any:
+    """The place that planning has the camera look at from here."""
+    task, cameras = steering.task, steering.option.flyer.cameras
+    terrain_m, place = steering.places.terrain_m, Position(*here[:3])
+    target = target_from(place, here.heading_rad, task, made_for, cameras, terrain_m)
+    assert target is not None
+    latitude, longitude = steering.projection.to_geodetic(target.north_m, target.east_m)
+    return lmcp.new(
+        "GimbalStareAction",
+        AssociatedTaskList=[task.id],
+        PayloadID=steering.camera.payload_id,
+        Starepoint=lmcp.new(
+            "Location3D", Latitude=latitude, Longitude=longitude, Altitude=target.alt_m
+        ),
+    )

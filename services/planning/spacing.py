@@ -1,0 +1,70 @@
+"""Waypoints as far apart as an autopilot needs them that flies by waypoints alone.
+
+Who turns short counts a waypoint as reached from two turn radii away where the next one is nearer than one
+radius, so along dense waypoints it cuts every bend. What is left out moves the path by no more than is said,
+and each leg that comes of it is held against the zones by `leg_ok`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cratous.core.geofence.distance import AT, FARTHER, edge_against
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.kernel import Vec2
+from cratous.spec.mission import Position, Zone
+
+TOLERANCE = 0.2
+"""How far a path may be moved by leaving out waypoints, in turn radii."""
+
+
+def spaced(
+    points: Sequence[Position], least_m: float, off_m: float, zones: Sequence[Zone]
+) -> tuple[Position, ...]:
+    """A path with fewer points: its ends, and of the others those that are needed.
+
+    A point nearer than least_m to the one before it that stays, or to the end, is left out, unless that
+    would leave a point farther than off_m from its new leg or above or below it, or the leg would not obey
+    the zones (without padding).
+    """
+    last, kept = len(points) - 1, [0]
+
+    def leads(a: int, b: int) -> bool:
+        p, q = points[a], points[b]
+        return all(_along(points[k], p, q, off_m) for k in range(a + 1, b)) and (
+            first_bad_leg((p, q), zones) is None
+        )
+
+    while kept[-1] != last:
+        at = kept[-1]
+        following = at + 1
+        while following != last and near(points[at], points[following], least_m):
+            if not leads(at, following + 1):
+                break
+            following += 1
+        kept.append(following)
+    while len(kept) > 2 and near(points[kept[-2]], points[last], least_m):
+        if not leads(kept[-3], last):
+            break
+        del kept[-2]
+    return tuple(points[k] for k in kept)
+
+
+def near(p: Position, q: Position, least_m: float) -> bool:
+    """True iff two points are nearer than least_m to each other, on the ground."""
+    return edge_against(_flat(p), _flat(q), _flat(q), least_m) not in (AT, FARTHER)
+
+
+def _along(point: Position, p: Position, q: Position, off_m: float) -> bool:
+    """True iff a point is no farther than off_m beside a leg, and neither above nor below both of its ends."""
+    beside = edge_against(_flat(point), _flat(p), _flat(q), off_m)
+    level = edge_against(_height(point), _height(p), _height(q), 0.0)
+    return FARTHER not in (beside, level)
+
+
+def _flat(p: Position) -> Vec2:
+    return Vec2(p.north_m, p.east_m)
+
+
+def _height(p: Position) -> Vec2:
+    return Vec2(p.alt_m, 0.0)

@@ -1,0 +1,72 @@
+"""Where the camera has to look while a task is flown, as its option was planned."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from cratous.services.mission.sensor import aim, look_on_line
+from cratous.services.planning.flyers import camera_for
+from cratous.services.planning.point_ways import tilted
+from cratous.spec.mission import AREAS, Camera, Position, Task, TaskKind, View
+
+
+class Angles(NamedTuple):
+    """The view for which an option was made [rad]; elevation None: none was."""
+
+    elevation_rad: float | None
+    azimuth_rad: float
+
+
+def chosen_view(task: Task, made_for: Angles) -> View | None:
+    """The wanted view for which the option was made: of several, the one with its angles."""
+    if made_for.elevation_rad is None or not task.views:
+        return task.view
+    return _nearest(made_for.elevation_rad, made_for.azimuth_rad, (task.view, *task.views))
+
+
+def flown_view(task: Task, made_for: Angles, cameras: Sequence[Camera]) -> View | None:
+    """As `chosen_view`; where the task asks for none, the one that the option has brought itself."""
+    asked = chosen_view(task, made_for)
+    brought = tilted(task, camera_for(task, cameras))
+    if asked is not None or made_for.elevation_rad is None or not brought:
+        return asked
+    return _nearest(made_for.elevation_rad, made_for.azimuth_rad, brought)
+
+
+def _nearest(elevation_rad: float, azimuth_rad: float, views: Iterable[View | None]) -> View:
+    return min(
+        (view for view in views if view is not None),
+        key=lambda v: (
+            abs(v.elevation_rad - elevation_rad)
+            + abs(math.remainder(v.azimuth_rad - azimuth_rad, 2 * math.pi))
+        ),
+    )
+
+
+def target_from(
+    here: Position,
+    heading_rad: float,
+    task: Task,
+    made_for: Angles,
+    cameras: Sequence[Camera],
+    terrain_m: float,
+) -> Position | None:
+    """The ground point to look at from a place: of a line the one nearest to where the flown option's view
+    looks, as planning has it; the point; or, over an area, below the aircraft or where the view looks.
+    None for a task that looks at nothing."""
+    if not task.points:
+        return None
+    height_m = here.alt_m - terrain_m
+    if task.kind is TaskKind.LINE_SEARCH:
+        view = flown_view(task, made_for, cameras)
+        n, e = look_on_line(here[:2], heading_rad, task.points, view, height_m)
+        return Position(n, e, terrain_m)
+    if task.kind is TaskKind.POINT_SEARCH:
+        return task.points[0]
+    if task.kind in AREAS:
+        view = chosen_view(task, made_for)
+        n, e = aim(here.north_m, here.east_m, heading_rad, view, height_m)
+        return Position(float(n), float(e), terrain_m)
+    return None

@@ -1,0 +1,1 @@
+"""`cratous run --processes`: a mission flown by simulator, UxAS and ICAROUS in processes of their own."""

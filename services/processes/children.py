@@ -1,0 +1,108 @@
+"""Processes of the product that are started, watched and ended by their pids."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections import deque
+from pathlib import Path
+from types import TracebackType
+
+from cratous.bridge.port import is_due
+from cratous.spec.errors import CratousError
+
+GRACE_S = 5.0
+"""How long a process has to end after SIGTERM before it gets SIGKILL [s]."""
+LAST_LINES = 8
+
+
+class ProcessEnded(CratousError):
+    """A process of the flight has ended before its time. name: which; code: its exit code, below 0 the
+    signal that ended it; lines: the last that it said."""
+
+    exit_code = 3
+
+    def __init__(self, name: str, code: int, lines: tuple[str, ...]) -> None:
+        self.name, self.code, self.lines = name, code, lines
+        super().__init__(f"{self.told()}; its last lines: {' | '.join(lines) or 'none'}")
+
+    def told(self) -> str:
+        """Who has ended how."""
+        how = f"exit code {self.code}"
+        if self.code not in range(256):
+            how = f"signal {signal.Signals(-self.code).name}"
+        return f"the process {self.name} has ended before its time ({how})"
+
+
+def free_port() -> int:
+    """A port of loopback that nobody listens at now."""
+    with socket.create_server(("127.0.0.1", 0)) as probe:
+        return int(probe.getsockname()[1])
+
+
+class Children:
+    """The processes of one flight; leaving the context ends all that still run. logs: what each says, as
+    NAME.txt; work: their present folder."""
+
+    def __init__(self, logs: Path, work: Path) -> None:
+        self._logs, self._work = logs, work
+        self.running: dict[str, subprocess.Popen[bytes]] = {}
+
+    def __enter__(self) -> Children:
+        return self
+
+    def __exit__(
+        self,
+        _kind: type[BaseException] | None,
+        _error: BaseException | None,
+        _trace: TracebackType | None,
+    ) -> None:
+        self.end()
+
+    def start(self, name: str, *arguments: str) -> int:
+        """Start `cratous` with arguments; returns the pid."""
+        with (self._logs / f"{name}.txt").open("wb") as said:
+            child = subprocess.Popen(
+                [sys.executable, "-m", "cratous", *arguments],
+                cwd=self._work,
+                stdin=subprocess.DEVNULL,
+                stdout=said,
+                stderr=subprocess.STDOUT,
+                env={**os.environ, "PYTHONUNBUFFERED": "1"},
+                # Ctrl-C reaches this command alone, which then ends them in order
+                start_new_session=True,
+            )
+        self.running[name] = child
+        return child.pid
+
+    def said(self, name: str) -> str:
+        """All that a process has said so far."""
+        return (self._logs / f"{name}.txt").read_text(encoding="utf-8", errors="replace")
+
+    def watch(self) -> None:
+        """ProcessEnded if one of them runs no more."""
+        for name, child in self.running.items():
+            code = child.poll()
+            if code is not None:
+                lines = deque(self.said(name).splitlines(), LAST_LINES)
+                raise ProcessEnded(name, code, tuple(lines))
+
+    def end(self) -> dict[str, int]:
+        """SIGTERM to all, SIGKILL to those that have not ended in time; the exit codes."""
+        for child in reversed(self.running.values()):
+            if child.poll() is None:
+                child.terminate()
+        until_s = time.monotonic() + GRACE_S
+        while any(child.poll() is None for child in self.running.values()):
+            if is_due(until_s, time.monotonic()):
+                break
+            time.sleep(0.02)
+        for child in self.running.values():
+            if child.poll() is None:
+                child.kill()
+            child.wait()
+        return {name: int(child.returncode) for name, child in self.running.items()}

@@ -1,0 +1,112 @@
+"""What of a mission cannot be flown by processes: refused before anything starts, with the field's name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import fields, is_dataclass, replace
+from enum import Enum
+from typing import Any
+
+from cratous.services.loading import uxas_parts
+from cratous.services.loading.places import Places
+from cratous.services.loading.uxas_cfg import Sent
+from cratous.services.loading.uxas_tasks import Interests
+from cratous.services.loading.uxas_tasks import task as read_task
+from cratous.services.processes.messages import Told, messages_of
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import FaultySimulation, Loiter, Mission, Task, TaskKind
+
+WRITTEN_M = 1e-3
+"""Places that were written in degrees come back as near as this [m]."""
+COSTS = ("MINMAX", "CUMULATIVE")
+UNSAID = {"protected", "power_w", "camera_id", "cruise_m", "notes"}
+"""Fields that no message has, or that the reader fills in: they change nothing of the flight."""
+
+
+def told_of(mission: Mission) -> Told:
+    """The messages of a mission; BadInput, which names the field, for what they or the processes cannot do."""
+    for item, wrong, what, expected in _asked(mission):
+        if wrong:
+            raise BadInput(
+                f"{what}, which processes of their own cannot fly",
+                where=mission.source,
+                item=item,
+                expected=f"{expected}, or a run without --processes",
+            )
+    told = messages_of(mission)
+    for item, wanted, got in _differences(mission, told):
+        raise BadInput(
+            "the messages of UxAS cannot say this",
+            where=mission.source,
+            item=item,
+            expected="what can be told, or a run without --processes",
+            got=f"{wanted!r} (told, it would be {got!r})"[:200],
+        )
+    return told
+
+
+def _asked(mission: Mission) -> Iterator[tuple[str, bool, str, str]]:
+    """Field, whether it asks for too much, what it asks for, and what would do."""
+    alone = not mission.instances
+    yield "vehicles", alone, "no vehicle has an ICAROUS instance", "a protected vehicle"
+    changes = mission.changes
+    yield "changes", bool(changes), "something becomes known in flight", "no changes"
+    faulty = isinstance(mission.simulation, FaultySimulation)
+    yield "simulation.bridge_faults", faulty, "the bridge is made to fail", "no bridge_faults"
+    high = mission.frame.terrain_m != 0
+    yield "frame.terrain_m", high, "the ground is not at mean sea level", "0"
+    other = mission.cost not in COSTS
+    yield "cost", other, f"the cost {mission.cost} is asked for", " or ".join(COSTS)
+    yield "gap", mission.gap != 0, "the search may stop at a gap", "0"
+    for k, one in enumerate(mission.traffic):
+        item = f"traffic[{k}]"
+        tracked = type(one).__name__ != "Traffic"
+        yield f"{item}.waypoints", tracked, "traffic along waypoints", "straight flight"
+        climbs = one.velocity.down_m_s != 0
+        yield f"{item}.velocity", climbs, "traffic that climbs or descends", "level flight"
+        still = not (one.velocity.north_m_s or one.velocity.east_m_s)
+        yield f"{item}.velocity", still, "traffic that stands still", "a speed above 0"
+
+
+def _differences(mission: Mission, told: Told) -> Iterator[tuple[str, Any, Any]]:
+    """Fields of vehicles, zones and tasks that do not come back when the messages are read again."""
+    places, notes = Places(mission.frame), list[str]()
+
+    def sent(body: Any) -> Sent:
+        return Sent(body, "the messages", 0)
+
+    pairs = zip(told.configurations, told.states, strict=True)
+    vehicles = tuple(uxas_parts.vehicle(sent(c), sent(s), places, notes) for c, s in pairs)
+    zones = [uxas_parts.zone(sent(z), places, mission.frame.terrain_m, notes) for z in told.zones]
+    tasks = [read_task(sent(t), places, vehicles, notes, Interests()) for t in told.tasks]
+    for name, wanted, got in (
+        ("vehicles", mission.vehicles, vehicles),
+        ("zones", mission.zones, zones),
+        ("tasks", [_spelt_out(task) for task in mission.tasks], tasks),
+    ):
+        for k, (one, other) in enumerate(zip(wanted, got, strict=True)):
+            yield from _apart(f"{name}[{k}]", one, other)
+
+
+def _spelt_out(task: Task) -> Task:
+    """A loiter of which centre and radius alone are said is a circle around it."""
+    if task.kind is not TaskKind.LOITER or task.loiter is not None:
+        return task
+    return replace(task, loiter=Loiter(task.points[0], task.radius_m))
+
+
+def _apart(item: str, a: Any, b: Any) -> Iterator[tuple[str, Any, Any]]:
+    if is_dataclass(a) and is_dataclass(b):
+        for field in fields(a):
+            if field.name not in UNSAID:
+                yield from _apart(
+                    f"{item}.{field.name}", getattr(a, field.name), getattr(b, field.name)
+                )
+    elif isinstance(a, tuple) and isinstance(b, tuple) and len(a) == len(b):
+        for k, pair in enumerate(zip(a, b, strict=True)):
+            yield from _apart(f"{item}[{k}]", *pair)
+    elif isinstance(a, float) and isinstance(b, (int, float)) and not isinstance(b, bool):
+        if abs(a - b) > WRITTEN_M * max(1.0, abs(a) / 1000):
+            yield item, a, b
+    elif (a.value if isinstance(a, Enum) else a) != (b.value if isinstance(b, Enum) else b):
+        yield item, a, b

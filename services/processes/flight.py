@@ -1,0 +1,312 @@
+"""The flight in processes: starts them in order, lets the clock go, watches, and ends them all.
+
+Nothing flies before UxAS has made the plan that was checked and the simulator has its commands: the
+simulator's clock stands from its first states until then.
+"""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple
+
+from cratous.bridge import envelope as wire
+from cratous.bridge import lmcp
+from cratous.bridge.port import Incoming, Limits, address, is_due
+from cratous.bridge.tcp_port import TcpPort
+from cratous.services.processes.agreement import agrees
+from cratous.services.processes.children import GRACE_S, Children, ProcessEnded, free_port
+from cratous.services.processes.files import (
+    Ports,
+    write_configuration,
+    write_messages,
+    write_scenario,
+)
+from cratous.services.processes.messages import Told
+from cratous.services.processes.recorder import Recorder
+from cratous.spec.errors import CratousError, NoPlan
+from cratous.spec.mission import Mission
+from cratous.spec.mission.plan import Plan
+
+Tell = Callable[[str], None]
+SIMULATOR, UXAS = "simulator", "uxas"
+STARTS_S = 600.0
+"""How long the start of all processes may take [s]; all of them check the proofs first."""
+SILENCE_S = 60.0
+"""A simulator that says nothing for so long [s] while its clock runs is taken to be stuck."""
+PROGRESS_MS = 10_000
+LIMITS = Limits(waiting_bytes=64 << 20)
+
+
+class Stuck(CratousError):
+    """A process runs, but what has to come from it does not."""
+
+    exit_code = 3
+
+
+class Flying(NamedTuple):
+    """How a flight in processes is set up. path: of the mission, for ICAROUS; folder: for what they are
+    given and what they say; rate: times real time."""
+
+    path: Path
+    folder: Path
+    rate: float
+    allow_unproved: bool
+    tell: Tell
+
+
+class Ended(NamedTuple):
+    """outcome: of the mission, empty if that is not known; why: what went wrong; pids and ports, by name."""
+
+    outcome: str
+    why: str
+    pids: dict[str, int]
+    ports: dict[str, int]
+
+
+def fly(mission: Mission, plan: Plan, told: Told, recorder: Recorder, how: Flying) -> Ended:
+    """Fly a plan in processes of their own and record it; see the module.
+
+    ProcessEnded, Stuck or NoPlan if it does not come to a flight; what happens later is in the answer.
+    """
+    with (
+        TemporaryDirectory(prefix="cratous-") as work,
+        Children(how.folder, Path(work)) as children,
+    ):
+        flight = _Flight(mission, plan, told, recorder, how, children)
+        try:
+            flight.start()
+            return flight.run()
+        finally:
+            flight.close()
+
+
+class _Flight:
+    """The processes, the two connections of the recorder, and what has come over them."""
+
+    def __init__(
+        self,
+        mission: Mission,
+        plan: Plan,
+        told: Told,
+        recorder: Recorder,
+        how: Flying,
+        children: Children,
+    ) -> None:
+        self.mission, self.plan, self.told = mission, plan, told
+        self.recorder, self.how, self.children = recorder, how, children
+        self.ports = Ports(0, 0, 0)
+        self.simulator: TcpPort | None = None
+        self.uxas: TcpPort | None = None
+        self.there: set[int] = set()
+        self.commanded: set[int] = set()
+        self.heard: list[Any] = []
+        self.flown = False
+        self.complete: set[int] = set()
+        self.failed: dict[int, str] = {}
+        self.away: set[int] = set()
+        self.news_s = 0.0
+
+    # the start ------------------------------------------------------------------------------------
+
+    def start(self) -> None:
+        """All processes, in order; then the plan is made, checked, commanded, and the clock runs."""
+        how, mission = self.how, self.mission
+        scenario = write_scenario(mission, self.told, how.folder)
+        write_messages(self.told, how.folder)
+        port = self._start_simulator(scenario)
+        self._wait("the simulator's first states", self._all_there)
+        self._control("Paused", 1.0)
+        self.ports = ports = Ports(port, free_port(), free_port())
+        instances = sorted(mission.instances)
+        cfg = write_configuration(mission, instances, ports, how.folder)
+        unproved = ("--allow-unproved",) * how.allow_unproved
+        self._start(UXAS, "uxas", "-cfgPath", str(cfg.resolve()), *unproved)
+        how.tell(f"ports of 127.0.0.1: {_words(ports)}")
+        self.uxas = self._connect(ports.recorder)
+        # UxAS waits for its ICAROUS instances before it sends anything: nothing goes by unheard
+        self._wait("UxAS", lambda: self.uxas is not None and self.uxas.peers == 1)
+        for vehicle in instances:
+            where = f"127.0.0.1:{ports.icarous}"
+            self._start(
+                f"icarous_{vehicle}", "icarous", "--vehicle", str(vehicle), "--mission",
+                str(how.path.resolve()), "--connect", where, "--wait", f"{STARTS_S:g}", *unproved,
+            )  # fmt: skip
+        self._wait("UxAS's plan", self._planned)
+        self._wait("the commands of UxAS at the simulator", self._all_commanded)
+        self.recorder.accepted(self.plan)
+        for body in self.heard:
+            self.recorder.heard(body)
+        self.heard.clear()
+        self.flown = True
+        self._control("Running", how.rate)
+
+    def _start(self, name: str, *arguments: str) -> None:
+        pid = self.children.start(name, *arguments)
+        self.how.tell(f"process {name}: pid {pid}")
+
+    def _start_simulator(self, scenario: Path) -> int:
+        self._start(SIMULATOR, "sim", str(scenario.resolve()), "--listen", "127.0.0.1:0",
+                    "--clients", "1")  # fmt: skip
+        found: list[re.Match[str]] = []
+
+        def listens() -> bool:
+            match = re.search(r"listening on 127\.0\.0\.1:(\d+)", self.children.said(SIMULATOR))
+            found.extend([match] if match else [])
+            return bool(found)
+
+        self._wait("the simulator's port", listens)
+        port = int(found[0][1])
+        self.simulator = self._connect(port)
+        return port
+
+    def _connect(self, port: int) -> TcpPort:
+        where = address(f"tcp://127.0.0.1:{port}", ("tcp",))
+        return TcpPort(where, server=False, limits=LIMITS)
+
+    def _all_there(self) -> bool:
+        return self.there >= {v.id for v in self.mission.vehicles}
+
+    def _planned(self) -> bool:
+        """Whether UxAS has answered; NoPlan or Stuck if it does not fly the plan that was checked."""
+        response = [b for b in self.heard if type(b).__name__ == "AutomationResponse"]
+        if not response:
+            return False
+        if not response[-1].MissionCommandList:
+            raise NoPlan(tuple(pair.Value for pair in response[-1].Info) or ("UxAS has none",))
+        summary = [b for b in self.heard if type(b).__name__ == "TaskAssignmentSummary"]
+        wrong = agrees(self.plan, summary[-1]) if summary else "it has told no assignment"
+        if wrong:
+            raise Stuck(f"UxAS has planned otherwise than the plan that was checked: {wrong}")
+        return True
+
+    def _all_commanded(self) -> bool:
+        return {item.vehicle_id for item in self.plan.items} <= self.commanded
+
+    def _control(self, state: str, rate: float) -> None:
+        body = lmcp.new("SessionStatus", State=state, RealTimeMultiple=rate)
+        assert self.simulator is not None
+        payload = wire.enclose(body.all_names[0], lmcp.binary.pack(body)).pack()
+        self.simulator.send((payload,))
+        self._turn()
+
+    def _wait(self, what: str, done: Callable[[], bool]) -> None:
+        """Until something is so; Stuck if that takes too long, ProcessEnded if one of them ends."""
+        until_s = time.monotonic() + STARTS_S
+        self.how.tell(f"\rwaiting for {what}")
+        while not done():
+            if is_due(until_s, time.monotonic()):
+                raise Stuck(f"{what} has not come within {STARTS_S:g} s")
+            self._turn()
+
+    # what comes -----------------------------------------------------------------------------------
+
+    def _turn(self) -> None:
+        """Everything that has come, and a look at the processes."""
+        now_s, arrived = time.monotonic(), 0
+        for port, take in ((self.uxas, self._from_uxas), (self.simulator, self._from_simulator)):
+            if port is None:
+                continue
+            for incoming in port.step(now_s):
+                arrived += 1
+                take(_body(incoming))
+            if self.flown and not port.peers:
+                self._cut(port)
+        if not arrived:
+            self.children.watch()
+            time.sleep(0.002)
+
+    def _cut(self, port: TcpPort) -> None:
+        """A connection has ended, and what was said meanwhile is lost: ProcessEnded if that is why, or Stuck."""
+        until_s = time.monotonic() + GRACE_S
+        while not is_due(until_s, time.monotonic()):
+            self.children.watch()
+            time.sleep(0.02)
+        name = UXAS if port is self.uxas else SIMULATOR
+        raise Stuck(f"the connection of the recorder to {name} has ended")
+
+    def _from_simulator(self, body: Any) -> None:
+        kind = type(body).__name__
+        if kind == "MissionCommand":
+            self.commanded.add(body.VehicleID)
+        # the scenario's own states, which are told as well, bear no time
+        if kind != "AirVehicleState" or not body.Time:
+            return
+        self.there.add(body.ID)
+        self.recorder.state(body)
+        self.news_s = time.monotonic()
+
+    def _from_uxas(self, body: Any) -> None:
+        if not self.flown:
+            self.heard.append(body)
+            return
+        self.recorder.heard(body)
+        kind = type(body).__name__
+        if kind == "TaskComplete":
+            self.complete.add(body.TaskID)
+        elif kind == "AuthorityChange":
+            {"ICAROUS": self.away.add, "UxAS": self.away.discard}[body.Owner.name](body.VehicleID)
+        elif kind == "ServiceStatus":
+            said = {pair.Key: pair.Value for pair in body.Info}
+            if said.get("TaskID", "").isdigit():
+                self.failed[int(said["TaskID"])] = said.get("reason", "it ends undone")
+
+    # the flight -----------------------------------------------------------------------------------
+
+    def run(self) -> Ended:
+        """Until UxAS says that all tasks have ended, or the limit, or a process ends."""
+        asked = {item.task_id for item in self.plan.items}
+        limit_ms, say_ms = self.mission.simulation.limit_ms, 0
+        outcome, why = "", ""
+        self.news_s = time.monotonic()
+        while not outcome:
+            try:
+                self._turn()
+            except (ProcessEnded, Stuck) as error:
+                why = str(error)
+                break
+            now_ms = self.recorder.now_ms
+            if is_due(self.news_s + SILENCE_S, time.monotonic()):
+                why = f"the simulator has told no state for {SILENCE_S:g} s"
+                break
+            if is_due(say_ms, now_ms):
+                say_ms = now_ms + PROGRESS_MS
+                self.how.tell(f"\r{now_ms / 1000:7.1f} s of flight: flying")
+            outcome = self._outcome(asked, is_due(limit_ms, now_ms))
+        # of a flight that was cut off nothing is said that nobody has seen
+        for task in sorted(asked - self.complete) if outcome else ():
+            self._failed(task, outcome)
+        self.recorder.end(outcome)
+        pids = {name: child.pid for name, child in self.children.running.items()}
+        return Ended(outcome, why, pids, self.ports._asdict())
+
+    def _outcome(self, asked: set[int], late: bool) -> str:
+        """How the mission has ended, empty while it has not."""
+        left = asked - self.complete
+        if left <= self.failed.keys() and not self.away:
+            return "failed" if left else "complete"
+        return "limit" if late else ""
+
+    def _failed(self, task: int, why: str) -> None:
+        """A task that UxAS has not said to be complete."""
+        vehicle = next(item.vehicle_id for item in self.plan.items if item.task_id == task)
+        text = f"not served when the flight ended ({why})"
+        self.recorder.failed(task, vehicle, self.failed.get(task, text))
+
+    def close(self) -> None:
+        """Let go of the connections."""
+        for port in (self.uxas, self.simulator):
+            if port is not None:
+                port.close()
+
+
+def _words(ports: Ports) -> str:
+    return ", ".join(f"{name} {port}" for name, port in ports._asdict().items())
+
+
+def _body(incoming: Incoming) -> Any:
+    message = wire.parse(incoming.parts[0])
+    return lmcp.binary.received(message.payload, message.descriptor)[0]

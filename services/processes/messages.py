@@ -1,0 +1,295 @@
+"""A mission as the messages that UxAS and the simulator are told: the other way round than `loading.uxas`.
+
+Altitudes are MSL. What the messages cannot say of a mission is found by `coverage`, which reads them again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import degrees
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.services.mission.frames import Projection, compass
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Loiter, Mission, Position, Task, TaskKind, Vehicle, View, Zone
+
+REGION = 1
+"""Id of the one operating region, which has all zones."""
+SLEW_DEG_S = 60.0
+"""How fast a gimbal turns: a mission file does not say it."""
+SHAPES = {"circular": "Circular", "racetrack": "Racetrack", "figure_eight": "FigureEight"}
+DIRECTIONS = {
+    "clockwise": "Clockwise",
+    "counter_clockwise": "CounterClockwise",
+    "any": "VehicleDefault",
+}
+
+
+class Told(NamedTuple):
+    """All messages of a mission, in the order in which they are sent. request: the last one."""
+
+    configurations: tuple[Any, ...]
+    states: tuple[Any, ...]
+    zones: tuple[Any, ...]
+    region: Any
+    tasks: tuple[Any, ...]
+    request: Any
+
+    def all(self) -> tuple[Any, ...]:
+        """One after the other."""
+        return (
+            *self.configurations, *self.states, *self.zones, self.region, *self.tasks, self.request,
+        )  # fmt: skip
+
+
+def messages_of(mission: Mission) -> Told:
+    """The messages; BadInput for a task of a kind that is not written."""
+    plane = Projection(mission.frame)
+    return Told(
+        tuple(configuration_of(v) for v in mission.vehicles),
+        tuple(
+            state_of(v.id, v.position, v.heading_rad, v.speed_m_s, plane, _mounted(v))
+            for v in mission.vehicles
+        ),
+        tuple(_zone(zone, plane) for zone in mission.zones),
+        lmcp.new(
+            "OperatingRegion",
+            ID=REGION,
+            KeepInAreas=[z.id for z in mission.zones if z.kind.value == "keep_in"],
+            KeepOutAreas=[z.id for z in mission.zones if z.kind.value == "keep_out"],
+        ),
+        tuple(_task(k, task, plane) for k, task in enumerate(mission.tasks)),
+        lmcp.new(
+            "AutomationRequest",
+            EntityList=[v.id for v in mission.vehicles],
+            TaskList=[t.id for t in mission.tasks],
+            TaskRelationships=mission.relations,
+            OperatingRegion=REGION,
+        ),
+    )
+
+
+# vehicles --------------------------------------------------------------------------------------
+
+
+def configuration_of(vehicle: Vehicle) -> Any:
+    """An AirVehicleConfiguration: level flight, and the steepest climb and descent."""
+    bank = degrees(vehicle.max_bank_rad)
+
+    def profile(name: str, climb_m_s: float) -> Any:
+        return lmcp.new(
+            "FlightProfile",
+            Name=name,
+            Airspeed=vehicle.speed_m_s,
+            VerticalSpeed=climb_m_s,
+            MaxBankAngle=bank,
+        )
+
+    climb = vehicle.max_climb_m_s
+    return lmcp.new(
+        "AirVehicleConfiguration",
+        ID=vehicle.id,
+        Label=vehicle.label,
+        NominalSpeed=vehicle.speed_m_s,
+        NominalAltitude=vehicle.cruise_alt_m,
+        NominalAltitudeType="MSL",
+        MinimumSpeed=vehicle.min_speed_m_s,
+        MaximumSpeed=vehicle.max_speed_m_s,
+        NominalFlightProfile=profile("Cruise", 0.0),
+        AlternateFlightProfiles=[profile("Climb", climb), profile("Descent", -climb)],
+        PayloadConfigurationList=[part for pair in payloads_of(vehicle) for part in pair],
+    )
+
+
+def payloads_of(vehicle: Vehicle) -> list[tuple[Any, Any]]:
+    """Gimbal and camera for each camera, in order; a camera without an id gets a free one."""
+    taken = {camera.payload_id for camera in vehicle.cameras}
+    found = []
+    for camera in vehicle.cameras:
+        number = camera.camera_id or next(n for n in range(1, 2**31) if n not in taken)
+        taken.add(number)
+        gimbal = lmcp.new(
+            "GimbalConfiguration",
+            PayloadID=camera.payload_id,
+            MinAzimuth=degrees(camera.min_azimuth_rad),
+            MaxAzimuth=degrees(camera.max_azimuth_rad),
+            MinElevation=degrees(camera.min_elevation_rad),
+            MaxElevation=degrees(camera.max_elevation_rad),
+            MaxAzimuthSlewRate=SLEW_DEG_S,
+            MaxElevationSlewRate=SLEW_DEG_S,
+            ContainedPayloadList=[number],
+        )
+        wide = degrees(camera.hfov_rad)
+        narrow = [degrees(one) for one in camera.zoom_rad]
+        pixels = camera.pixels
+        seen = lmcp.new(
+            "CameraConfiguration",
+            PayloadID=number,
+            SupportedWavelengthBand=camera.wavelength,
+            FieldOfViewMode="Continuous" if camera.zooms else "Discrete",
+            MinHorizontalFieldOfView=min([wide, *narrow]),
+            MaxHorizontalFieldOfView=wide,
+            DiscreteHorizontalFieldOfViewList=[*narrow, wide],
+            VideoStreamHorizontalResolution=pixels,
+            VideoStreamVerticalResolution=round(pixels / camera.aspect),
+        )
+        found.append((gimbal, seen))
+    return found
+
+
+def _mounted(vehicle: Vehicle) -> list[Any]:
+    """The states of the payloads at the start: each gimbal looks ahead, as far down as it can."""
+    found = []
+    for gimbal, camera in payloads_of(vehicle):
+        turn = {"Azimuth": 0.0, "Elevation": gimbal.MinElevation}
+        wide = camera.MaxHorizontalFieldOfView
+        found += [
+            lmcp.new("GimbalState", PayloadID=gimbal.PayloadID, **turn),
+            lmcp.new("CameraState", PayloadID=camera.PayloadID, HorizontalFieldOfView=wide, **turn),
+        ]
+    return found
+
+
+def state_of(
+    number: int,
+    place: Position,
+    heading_rad: float,
+    speed_m_s: float,
+    plane: Projection,
+    payloads: list[Any] | None = None,
+) -> Any:
+    """The AirVehicleState of an aircraft in level flight."""
+    heading = compass(heading_rad)
+    return lmcp.new(
+        "AirVehicleState",
+        ID=number,
+        u=speed_m_s,
+        Airspeed=speed_m_s,
+        Groundspeed=speed_m_s,
+        Heading=heading,
+        Course=heading,
+        EnergyAvailable=100.0,
+        Location=_place(place, plane),
+        PayloadStateList=payloads or [],
+    )
+
+
+def _place(place: Position, plane: Projection) -> Any:
+    latitude, longitude = plane.to_geodetic(place.north_m, place.east_m)
+    return lmcp.new(
+        "Location3D",
+        Latitude=latitude,
+        Longitude=longitude,
+        Altitude=place.alt_m,
+        AltitudeType="MSL",
+    )
+
+
+# zones and tasks -------------------------------------------------------------------------------
+
+
+def _polygon(corners: list[Position], plane: Projection) -> Any:
+    return lmcp.new("Polygon", BoundaryPoints=[_place(corner, plane) for corner in corners])
+
+
+def _zone(zone: Zone, plane: Projection) -> Any:
+    return lmcp.new(
+        "KeepInZone" if zone.kind.value == "keep_in" else "KeepOutZone",
+        ZoneID=zone.id,
+        Label=zone.label,
+        MinAltitude=zone.floor_m,
+        MinAltitudeType="MSL",
+        MaxAltitude=zone.ceiling_m,
+        MaxAltitudeType="MSL",
+        Padding=zone.padding_m,
+        Boundary=_polygon([Position(*v, 0.0) for v in zone.vertices], plane),
+    )
+
+
+def _task(k: int, task: Task, plane: Projection) -> Any:
+    if task.kind not in WRITERS:
+        raise BadInput(
+            f"a task of kind {task.kind} cannot be told to UxAS in another process",
+            item=f"tasks[{k}].kind",
+            expected="one of " + ", ".join(WRITERS),
+            got=task.kind,
+        )
+    name, fields = WRITERS[task.kind](task, plane)
+    return lmcp.new(
+        name,
+        TaskID=task.id,
+        Label=task.label,
+        EligibleEntities=list(task.eligible),
+        Priority=task.priority,
+        **fields,
+    )
+
+
+Written = tuple[str, dict[str, Any]]
+
+
+def _search(task: Task) -> dict[str, Any]:
+    """What all searches say."""
+    return {
+        "DwellTime": task.duration_ms,
+        "GroundSampleDistance": task.gsd_m,
+        "DesiredWavelengthBands": [] if task.wavelength == "AllAny" else [task.wavelength],
+        "ViewAngleList": [_wedge(v) for v in (task.view, *task.views) if v is not None],
+    }
+
+
+def _wedge(view: View) -> Any:
+    return lmcp.new(
+        "Wedge",
+        AzimuthCenterline=degrees(view.azimuth_rad),
+        VerticalCenterline=degrees(view.elevation_rad),
+        AzimuthExtent=degrees(view.azimuth_extent_rad),
+    )
+
+
+def _line(task: Task, plane: Projection) -> Written:
+    inertial = task.view is not None and task.view.inertial
+    points = [_place(point, plane) for point in task.points]
+    fields = {"PointList": points, "UseInertialViewAngles": inertial}
+    return "LineSearchTask", {**_search(task), **fields}
+
+
+def _point(task: Task, plane: Projection) -> Written:
+    spot = {
+        "SearchLocation": _place(task.points[0], plane),
+        "StandoffDistance": task.standoff_m,
+    }
+    return "PointSearchTask", {**_search(task), **spot}
+
+
+def _must_fly(task: Task, plane: Projection) -> Written:
+    return "MustFlyTask", {"Position": _place(task.points[0], plane), "UseAltitude": True}
+
+
+def _area(task: Task, plane: Projection) -> Written:
+    return "AreaSearchTask", {**_search(task), "SearchArea": _polygon(list(task.points), plane)}
+
+
+def _loiter(task: Task, plane: Projection) -> Written:
+    loiter = task.loiter or Loiter(task.points[0], task.radius_m)
+    action = lmcp.new(
+        "LoiterAction",
+        LoiterType=SHAPES[loiter.shape],
+        Radius=loiter.radius_m,
+        Axis=degrees(loiter.axis_rad),
+        Length=loiter.length_m,
+        Direction=DIRECTIONS[loiter.direction],
+        Duration=task.duration_ms,
+        Location=_place(loiter.centre, plane),
+    )
+    return "LoiterTask", {"DesiredAction": action}
+
+
+WRITERS: dict[TaskKind, Callable[[Task, Projection], Written]] = {
+    TaskKind.LINE_SEARCH: _line,
+    TaskKind.POINT_SEARCH: _point,
+    TaskKind.MUST_FLY: _must_fly,
+    TaskKind.AREA_SEARCH: _area,
+    TaskKind.LOITER: _loiter,
+}

@@ -1,0 +1,159 @@
+"""`cratous serve MISSION --edit` over HTTP: changes, plans, saving, and who may."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from ground_station_tools import LIMIT_S, Served, ask, editing
+
+CROSSING = Path(__file__).resolve().parents[2] / "examples/crossing/mission.yaml"
+
+
+@pytest.fixture
+def mission(tmp_path: Path) -> Path:
+    path = tmp_path / "mission.yaml"
+    path.write_text(CROSSING.read_text(encoding="utf-8"), encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def editor(mission: Path) -> Iterator[Served]:
+    with editing(mission) as served:
+        yield served
+
+
+def opened(editor: Served) -> Any:
+    return ask(editor.port, "/recording.json").data()
+
+
+def planned(editor: Served, *states: str) -> Any:
+    until_s = time.monotonic() + LIMIT_S
+    while (told := ask(editor.port, "/planned.json").data())["state"] not in states:
+        assert time.monotonic() < until_s, told
+        time.sleep(0.05)
+    return told
+
+
+def test_a_mission_is_changed_and_saved(editor: Served, mission: Path) -> None:
+    first = opened(editor)
+    asked = {"text": first["text"], "do": "add", "list": "zones"}
+    item = {"kind": "keep_out", "vertices": [[900, 900], [900, 1200], [1200, 1200]]}
+    text = editor.edit("/change", **asked, item=item).data()["text"]
+    assert text.startswith(first["text"].rstrip())
+    (zone,) = editor.edit("/sketch", text=text).data()["drawn"]["zones"]
+    assert (zone["id"], zone["kind"]) == (1, "keep_out")
+    saved = editor.edit("/save", text=text, digest=first["digest"])
+    assert saved.status == 200
+    assert mission.read_text(encoding="utf-8") == text
+    # what began with the old text does not write over the new one
+    old = editor.edit("/save", text=first["text"], digest=first["digest"])
+    assert old.status == 409
+    assert "changed since by something else" in old.data()["error"]
+    assert mission.read_text(encoding="utf-8") == text
+
+
+def test_bad_changes_are_refused_with_what_and_where(editor: Served, mission: Path) -> None:
+    text = opened(editor)["text"]
+    got = editor.edit("/change", text=text, do="move", key=["tasks", 9], north_m=0, east_m=0)
+    assert got.status == 422
+    assert got.data()["item"] == "tasks[9]"
+    for asked in (
+        {"do": "fly"}, {"do": "add", "list": "vehicles", "item": {}}, {"do": "move", "key": "tasks"},
+        {"do": "move", "key": ["tasks"], "north_m": True, "east_m": 0},
+        {"do": "move", "key": ["tasks"], "north_m": 1e300, "east_m": 0}, {"do": "put", "key": ["a"]},
+    ):  # fmt: skip
+        assert editor.edit("/change", text=text, **asked).status == 400
+    assert editor.edit("/change", do="put").status == 400
+    assert editor.edit("/relations", text="p1", tasks="all").status == 400
+    assert editor.edit("/why", task=1).status == 409
+    assert editor.edit("/stop").status == 409
+    assert mission.read_text(encoding="utf-8") == text
+
+
+def test_only_the_page_with_the_token_may_edit(editor: Served, mission: Path) -> None:
+    first = opened(editor)
+    body = {"text": "name: x\n", "digest": first["digest"]}
+    assert editor._replace(token="x").edit("/save", **body).status == 403
+    named = editor._replace(path="/save")
+    assert named.sent("a", b"{}", Origin="http://elsewhere.example").status == 403
+    assert named.sent("a", b"{}", Host="elsewhere.example").status == 421
+    assert named.sent("a", b"[]").status == 400
+    assert named.sent("a", b"{}", Content_Length="99000000").status == 413
+    assert ask(editor.port, "/save").status == 404
+    assert mission.read_text(encoding="utf-8") == first["text"]
+
+
+@pytest.mark.slow
+def test_a_text_is_planned_as_cratous_plan_does_and_says_why(editor: Served) -> None:
+    text = opened(editor)["text"].replace("east_m: 2500, alt_m", "east_m: 2600, alt_m")
+    assert editor.edit("/plan", text=text).status == 200
+    told = planned(editor, "planned", "failed")
+    assert told["state"] == "planned", told
+    assert {(i["task_id"], i["vehicle_id"]) for i in told["plan"]["items"]} == {(1, 1), (2, 2)}
+    assert told["exit_code"] == 0
+    assert any(row["item"] == "eligibility: task 1" for row in told["constraints"])
+    assert editor.edit("/why", task=2).status == 200
+    until_s = time.monotonic() + LIMIT_S
+    while "2" not in (why := ask(editor.port, "/planned.json").data()["why"]):
+        assert time.monotonic() < until_s
+        time.sleep(0.05)
+    assert why["2"][0].startswith("task 2 is given to vehicle 2: the plan costs ")
+    assert "vehicle 1: " in why["2"][1]
+
+
+@pytest.mark.slow
+def test_a_text_that_is_wrong_or_impossible_says_so(editor: Served) -> None:
+    text = opened(editor)["text"]
+    editor.edit("/plan", text=text.replace("eligible: [2]", "eligible: [7]"))
+    told = planned(editor, "failed")
+    assert "7" in told["text"]
+    late = text.replace('relations: "|(p1 p2)"', 'relations: "|(p1 p2)_[0-1000]"')
+    editor.edit("/plan", text=late)
+    told = planned(editor, "planned", "failed")
+    assert told["state"] == "failed" or told["exit_code"] == 1
+    assert "1.000 s" in str(told)
+
+
+@pytest.mark.slow
+def test_planning_is_stopped_and_a_planner_that_dies_is_told(editor: Served) -> None:
+    text = opened(editor)["text"]
+    editor.edit("/plan", text=text)
+    assert editor.edit("/stop").status == 200
+    assert planned(editor, "stopped")["text"] == "Planning was stopped."
+    editor.edit("/plan", text=text)
+    (child,) = editor.children()
+    os.kill(child, signal.SIGKILL)
+    assert "ended without a word (signal 9)" in planned(editor, "failed")["text"]
+
+
+@pytest.mark.slow
+def test_what_plans_ends_with_the_server(editor: Served) -> None:
+    editor.edit("/plan", text=opened(editor)["text"])
+    planned(editor, "planned")
+    (child,) = editor.children()
+    editor.process.kill()
+    until_s = time.monotonic() + LIMIT_S
+    while Path(f"/proc/{child}/cmdline").exists() and Path(f"/proc/{child}/cmdline").read_bytes():
+        assert time.monotonic() < until_s
+        time.sleep(0.05)
+
+
+@pytest.mark.parametrize(
+    "words", [["out/none"], ["MISSION", "--seed", "1"], ["MISSION", "--out", "x"], ["MISSION", "MISSION"]]
+)  # fmt: skip
+def test_it_goes_with_a_mission_alone(words: list[str], mission: Path) -> None:
+    told = [str(mission) if word == "MISSION" else word for word in words]
+    done = subprocess.run(
+        [sys.executable, "-m", "cratous", "serve", *told, "--edit", "--port", "0"],
+        capture_output=True, text=True, timeout=LIMIT_S, check=False,
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr

@@ -1,0 +1,138 @@
+"""A mission that is edited and planned in a real browser."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from chromium_tools import Page, browsing
+from ground_station_tools import Served, editing
+
+CROSSING = Path(__file__).resolve().parents[2] / "examples/crossing/mission.yaml"
+TEXT = "document.getElementById('text').value"
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def mission(tmp_path: Path) -> Path:
+    path = tmp_path / "mission.yaml"
+    path.write_text(CROSSING.read_text(encoding="utf-8"), encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def editor(mission: Path) -> Iterator[Served]:
+    with editing(mission) as served:
+        yield served
+
+
+@pytest.fixture
+def page(editor: Served, tmp_path: Path) -> Iterator[Page]:
+    with browsing(tmp_path / "profile") as page:
+        page.go(editor.url)
+        page.until("document.getElementById('relations-tree')?.textContent.includes('p1')")
+        yield page
+        # no script failed; a refusal of the server is told as the page's own message
+        assert [one for one in page.logged if "status of 4" not in str(one)] == []
+
+
+def write(page: Page, name: str, text: str) -> None:
+    page.value(
+        f"(f => {{ f.focus(); f.value = {text!r}; f.dispatchEvent(new Event('input')); }})"
+        f"(document.getElementById({name!r}))"
+    )
+
+
+def click_map(page: Page, north: float, east: float) -> None:
+    """Click where the map shows a place."""
+    for kind in ("mousePressed", "mouseReleased"):
+        x, y = place(page, north, east)
+        page.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+
+
+def place(page: Page, north: float, east: float) -> tuple[float, float]:
+    """Pixels of a place: two points of the canvas say where they are."""
+    box = page.value(
+        "(b => [b.x, b.y, b.width, b.height])(document.getElementById('map').getBoundingClientRect())"
+    )
+    seen = []
+    # away from the buttons and words that lie over the map
+    for x, y in ((box[2] * 0.1, box[3] * 0.4), (box[2] * 0.9, box[3] * 0.8)):
+        page.call("Input.dispatchMouseEvent", type="mouseMoved", x=box[0] + x, y=box[1] + y)
+        words = page.text("cursor").replace(",", "").split()
+        seen.append((x, y, float(words[1]), float(words[4])))
+    (x0, y0, n0, e0), (x1, y1, n1, e1) = seen
+    return (
+        box[0] + x0 + (east - e0) / (e1 - e0) * (x1 - x0),
+        box[1] + y0 + (north - n0) / (n1 - n0) * (y1 - y0),
+    )
+
+
+def test_an_error_in_the_algebra_is_shown_at_its_place_while_typing(page: Page) -> None:
+    write(page, "relations", "|(p1 (p2))")
+    page.until("document.querySelector('#relations-shown .fault')?.textContent === '('")
+    error = page.text("relations-error")
+    assert error.startswith("|(p1 (p2))\n     ^\n")
+    assert "an operator must stand before the parenthesis" in error
+    assert 'relations: "|(p1 p2)"' in page.value(TEXT)  # the text keeps what was a term
+    assert page.text("saved") == "saved; the relations typed are not in the file"
+    write(page, "relations", ".(p1 p2)_[0-400000]")
+    page.until(f"{TEXT}.includes('relations: \".(p1 p2)_[0-400000]\"')")
+    assert page.text("relations-error") == ""
+    assert "p2 starts no earlier than p1 ends" in page.text("relations-rows")
+
+
+def test_a_keep_out_is_drawn_and_the_mission_planned_anew(page: Page, mission: Path) -> None:
+    before = page.value(TEXT)
+    page.click("[data-tool=keep_out]")
+    for north, east in ((-300, 1000), (-300, 1500), (300, 1500), (300, 1000)):
+        click_map(page, north, east)
+    page.click("#finish")
+    page.until(f"{TEXT}.includes('kind: keep_out')")
+    page.until("document.getElementById('saved').textContent === 'not saved'")
+    page.click("#plan")
+    page.until("document.querySelectorAll('#gantt .bar').length === 2")
+    state = page.text("plan-state")
+    assert state.startswith("plan: ")
+    assert "zone: keep_out 1, planned route of vehicle 2holds" in page.text("constraints")
+    page.value(
+        "document.querySelector('#gantt .bar[data-task=\"2\"]').dispatchEvent(new Event('click'))"
+    )
+    page.until(
+        "document.getElementById('why').textContent.includes('task 2 is given to vehicle 2')"
+    )
+    page.click("#save")
+    page.until("document.getElementById('saved').textContent === 'saved'")
+    assert mission.read_text(encoding="utf-8") == page.value(TEXT)
+    page.click("#undo")
+    page.until(f"!{TEXT}.includes('kind: keep_out')")
+    assert page.value(TEXT) == before
+    assert page.text("plan-state").startswith("Of an earlier text: ")
+    page.click("#redo")
+    page.until(f"{TEXT}.includes('kind: keep_out')")
+
+
+def test_a_place_is_dragged_and_removed_with_its_task(page: Page) -> None:
+    x, y = place(page, 0, 2500)
+    to = place(page, 600, 2000)
+    mouse = "Input.dispatchMouseEvent"
+    page.call(mouse, type="mousePressed", x=x, y=y, button="left", clickCount=1)
+    page.call(mouse, type="mouseMoved", x=to[0], y=to[1], button="left")
+    page.call(mouse, type="mouseReleased", x=to[0], y=to[1], button="left", clickCount=1)
+    page.until(f"!{TEXT}.includes('east_m: 2500, alt_m: 300')")
+    page.until("!document.getElementById('remove').disabled")
+    page.click("#remove")
+    page.until(f"!{TEXT}.includes('delivery point')")
+    page.until("document.getElementById('problems').textContent.includes('relations')")
+    assert page.value("document.getElementById('plan').disabled")
+
+
+def test_what_is_wrong_is_listed_and_leads_to_its_line(page: Page) -> None:
+    write(page, "text", page.value(TEXT).replace("eligible: [2]", "eligible: [5]"))
+    page.until("document.querySelectorAll('#problems li').length === 1")
+    page.click("#problems button")
+    picked = page.value(
+        "(f => f.value.slice(f.selectionStart, f.selectionEnd))(document.getElementById('text'))"
+    )
+    assert picked.strip() == "eligible: [5]"

@@ -1,0 +1,396 @@
+"""The assumptions of the system theorems: each watch sees its own broken, and says nothing of what it did not see."""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import pytest
+from flight_tools import meeting
+from hypothesis import given
+from hypothesis import strategies as st
+from tampering import (
+    Log,
+    alter,
+    at,
+    copy_to,
+    days_later,
+    other,
+    remove,
+    send_as,
+    time_goes_back,
+)
+
+from cratous.bridge import lmcp
+from cratous.services.assumptions import AssumptionWatch, sentence
+from cratous.services.assumptions.link import DeliveryWatch
+from cratous.services.assumptions.listing import LISTING
+from cratous.services.assumptions.observed import Message, State
+from cratous.services.bus import Bus, Envelope
+from cratous.services.flight.loop import fly
+from cratous.services.monitor import Monitor
+from cratous.services.pipeline.plan import make_plan
+from cratous.spec.mission import FaultySimulation, Mission, Simulation
+from cratous.spec.mission.bridge_faults import BridgeFaults
+
+WATCHED = {one.name for one in LISTING if one.watch}
+LIMIT_MS = 400_000
+Change = Callable[[Log], None]
+
+
+def with_faults(**faults: Any) -> Mission:
+    simulation = FaultySimulation(limit_ms=150_000, bridge_faults=BridgeFaults(1, **faults))
+    return replace(meeting(), simulation=simulation)
+
+
+@cache
+def flown(mission: Mission) -> tuple[Envelope, ...]:
+    bus, log = Bus(lmcp.full_names), list[Any]()
+    bus.tap(log.append)
+    fly(mission, make_plan(mission), bus)
+    return tuple(log)
+
+
+WHOLE = replace(meeting(), simulation=Simulation(limit_ms=LIMIT_MS))
+"""It ends long before its limit."""
+
+
+def judged(mission: Mission, messages: Log) -> dict[str, dict[str, Any]]:
+    monitor = Monitor(mission, make_plan(mission))
+    for one in messages:
+        monitor.tap(one)
+    return {row["name"]: row for row in monitor.assumptions()}
+
+
+def tampered(change: Change) -> dict[str, dict[str, Any]]:
+    log = [copy.copy(one) for one in flown(WHOLE)]
+    change(log)
+    return judged(WHOLE, log)
+
+
+def test_a_flight_in_which_all_hold() -> None:
+    rows = judged(WHOLE, list(flown(WHOLE)))
+    held = {name for name, row in rows.items() if row["state"] == "held"}
+    assert WATCHED - held == {"suspended", "takeovers told"}
+    assert rows["suspended"]["note"] == "no task was suspended"
+    assert rows["takeovers told"]["note"] == "UxAS sent no command in an epoch that was over"
+    for name in held:
+        row = rows[name]
+        assert row["checks"] > 0
+        assert (row["since_ms"], row["lost"], row["stands"], row["note"]) == (None, "", "", "")
+        assert row["observed"] is None or row["observed"] <= row["bound"]
+    assert rows["intruder in its tube"]["bound"] == 150 * 0.25 / 2
+    assert 0 < rows["tracking"]["observed"] < 1
+    for one in LISTING:
+        if not one.watch:
+            assert (rows[one.name]["state"], rows[one.name]["note"]) == (
+                "not observed",
+                one.why_not,
+            )
+
+
+TAKEN = {"VehicleID": 1, "Owner": "ICAROUS", "Epoch": 1}
+BY_ICAROUS = {"VehicleID": 1, "Sender": "ICAROUS"}
+
+
+def taken_ms() -> int:
+    log = list(flown(WHOLE))
+    return log[at(log, "GateState", **TAKEN)].time_ms
+
+
+def aside(number: int, since_ms: int, **off: float) -> Change:
+    """An aircraft is elsewhere at the first sample after an instant."""
+
+    def change(log: Log) -> None:
+        k = at(log, "TruthState", since_ms, VehicleID=number)
+        body = log[k].body
+        log[k] = other(log[k], **{key: getattr(body, key) + by for key, by in off.items()})
+
+    return change
+
+
+def no_beats(log: Log) -> None:
+    log[:] = [
+        one
+        for one in log
+        if not (
+            one.topic.endswith(".Heartbeat")
+            and one.time_ms == 10_000
+            and one.body.Direction.name == "Down"
+        )
+    ]
+
+
+def late_beat(log: Log) -> None:
+    """The heartbeat of 10 s comes from ICAROUS at 12 s."""
+    k = at(log, "Heartbeat", 10_000, Direction="Up")
+    one = log.pop(k)
+    m = at(log, "Heartbeat", 12_000, Direction="Up")
+    log.insert(m, replace(other(one, Time=12_000), time_ms=12_000))
+
+
+def bare(log: Log) -> None:
+    k = at(log, "GatedCommand", 5000)
+    command = copy.deepcopy(log[k].body.Command)
+    topic = lmcp.full_names(command)[0]
+    log.insert(k + 1, replace(log[k], topic=topic, body=command))
+
+
+def sent(log: Log, since_ms: int, source: str, **data: Any) -> None:
+    """A message of its own, before the first sample from an instant on."""
+    k = at(log, "TruthState", since_ms)
+    kind = data.pop("kind")
+    body = lmcp.new(kind, **data)
+    where = replace(log[k], source=source, topic=lmcp.full_names(body)[0], body=body)
+    log.insert(k, where)
+
+
+def while_suspended(log: Log) -> None:
+    sent(log, 20_000, "uxas/ics", kind="cratous.TaskProgress", TaskID=1, VehicleID=1, Time=20_000,
+         Phase="Suspended")  # fmt: skip
+    sent(log, 21_000, "uxas/executive", kind="GatedCommand", VehicleID=1, Epoch=0, Sender="UxAS")
+
+
+def not_taken(log: Log) -> None:
+    """UxAS takes the offer five seconds after it was made."""
+    k = at(log, "GateState", VehicleID=1, Offered=True)
+    now_ms = log[k].time_ms
+    later = [o for o in log[k + 1 :] if o.time_ms == now_ms and o.topic.endswith("GateState")]
+    assert len(later) == 1
+    log.remove(later[0])
+    m = at(log, "TruthState", now_ms + 5000)
+    log.insert(m, replace(other(later[0], Time=log[m].time_ms), time_ms=log[m].time_ms))
+
+
+def told_late(log: Log) -> None:
+    """UxAS sends a command in epoch 0 four seconds after ICAROUS has taken the vehicle."""
+    sent(log, taken_ms() + 4000, "uxas/executive", kind="GatedCommand", VehicleID=1, Epoch=0,
+         Sender="UxAS")  # fmt: skip
+
+
+def flown_again(log: Log) -> None:
+    k = at(log, "TaskProgress", Phase="Complete")
+    log.insert(k + 1, other(log[k], Phase="Active"))
+
+
+def beats_of_icarous(log: Log) -> None:
+    remove("GatedCommand", taken_ms() + 5000, **BY_ICAROUS)(log)
+
+
+OFFERED = {"VehicleID": 1, "Offered": True}
+BREAKS: dict[str, tuple[Change, str]] = {
+    "first command": (alter({"Sender": "ICAROUS"}, "GatedCommand"), "one of ICAROUS in epoch 0"),
+    "reports of the gate": (send_as("icarous/1", "GateState", **TAKEN), "by icarous/1"),
+    "epochs told": (copy_to(5000, {"Epoch": 9}, "GatedCommand"), "in epoch 9; the gate is in 0"),
+    "epochs kept": (alter({"Epoch": 0}, "GateState", **OFFERED), "from epoch 1 to 0"),
+    "commands by the gate alone": (bare, "Command to vehicle 1 outside of its gate"),
+    "ICAROUS at each heartbeat": (beats_of_icarous, "no command of ICAROUS between"),
+    "suspended": (while_suspended, "while its flying of the vehicle was suspended"),
+    "clock": (time_goes_back, "a GatedCommand of 20.00 s after a message of"),
+    "heartbeat period": (no_beats, "no heartbeat to the ICAROUS of 1 from 9.50 s to 10."),
+    "delivery from ICAROUS": (late_beat, "heartbeat 21 of 10.00 s had not come by 11."),
+    "offers taken": (not_taken, "had not been taken by"),
+    "takeovers told": (told_late, "a command of UxAS in epoch 0; epoch 1 began at"),
+    "end of the flight": (days_later, "a MissionEnd at"),
+    "settled tasks": (flown_again, "task 1 is active after it was complete"),
+    "intruder in its tube": (
+        lambda log: aside(90, taken_ms() + 3000, East=20.0)(log),
+        "aircraft 90, which 1 avoids, is 20 m beside",
+    ),
+    "tracking": (
+        lambda log: aside(1, taken_ms() + 3000, Altitude=5.0)(log),
+        "m beside and 5 m above or below the path",
+    ),
+}
+
+
+def test_each_watch_has_a_log_in_which_its_assumption_breaks() -> None:
+    assert set(BREAKS) == WATCHED
+
+
+@pytest.mark.parametrize("name", sorted(WATCHED))
+def test_what_is_broken_is_said_with_when_and_what_is_lost(name: str) -> None:
+    change, text = BREAKS[name]
+    row = tampered(change)[name]
+    assert (row["state"], text in row["note"]) == ("broken", True), row
+    (one,) = [one for one in LISTING if one.name == name]
+    assert (row["lost"], row["stands"]) == (one.lost, one.stands)
+    assert all(row[key] for key in ("lost", "stands", "guarantees"))
+    assert isinstance(row["since_ms"], int)
+    said = sentence(row)
+    assert f"{row['since_ms'] / 1000:.2f} s" in said
+    assert one.lost in said
+    assert row["guarantees"][0] in said
+
+
+@pytest.mark.parametrize(
+    ("name", "since_ms"),
+    [
+        ("heartbeat period", 10_000),
+        ("delivery from ICAROUS", 11_000),
+        ("end of the flight", LIMIT_MS + 250),
+        ("clock", 41_500),  # where the tampered command was
+    ],
+)
+def test_since_is_the_first_instant_at_which_it_does_not_hold(name: str, since_ms: int) -> None:
+    found = tampered(BREAKS[name][0])[name]["since_ms"]
+    assert 0 <= found - since_ms < 500
+
+
+def test_within_the_bound_nothing_is_broken() -> None:
+    def change(log: Log) -> None:
+        aside(90, taken_ms() + 3000, East=18.0, Altitude=3.5)(log)
+        sent(log, taken_ms() + 500, "uxas/executive", kind="GatedCommand", VehicleID=1, Epoch=0,
+             Sender="UxAS")  # fmt: skip
+
+    rows = tampered(change)
+    assert rows["intruder in its tube"]["state"] == rows["takeovers told"]["state"] == "held"
+    assert rows["intruder in its tube"]["observed"] == pytest.approx(18.0)
+    assert rows["takeovers told"]["observed"] == 0.5
+
+
+def test_the_tube_counts_altitude_by_its_own_bound() -> None:
+    row = tampered(aside(90, taken_ms() + 3000, Altitude=-4.0))["intruder in its tube"]
+    assert row["state"] == "broken"
+    assert row["since_ms"] == taken_ms() + 3000
+
+
+@pytest.mark.parametrize(
+    ("faults", "broken"),
+    [
+        ({"delay_ms": 5000}, {"delivery from ICAROUS"}),
+        ({"loss": 0.4}, {"delivery from ICAROUS"}),
+        ({"cut_ms": 20_000}, {"delivery from ICAROUS", "heartbeat period"}),
+    ],
+)
+def test_faults_of_the_bridge_break_what_is_assumed_of_the_link(
+    faults: dict[str, Any], broken: set[str]
+) -> None:
+    mission = with_faults(**faults)
+    rows = judged(mission, list(flown(mission)))
+    found = {name for name, row in rows.items() if row["state"] == "broken"}
+    assert broken <= found <= broken | {"offers taken", "takeovers told", "intruder in its tube"}
+    (row,) = [rows[name] for name in ("delivery from ICAROUS",)]
+    assert row["observed"] > row["bound"] == 1.0
+    if "cut_ms" in faults:
+        assert rows["heartbeat period"]["since_ms"] == 20_000 + 500
+    for name in ("epochs kept", "epochs told", "first command", "clock"):
+        assert rows[name]["state"] != "broken", "no loss or delay touches these"
+
+
+def test_what_was_not_watched_to_the_end_did_not_hold() -> None:
+    log = list(flown(WHOLE))
+    rows = judged(WHOLE, log[: at(log, "MissionEnd")])
+    assert {row["state"] for row in rows.values()} == {"not observed"}
+    assert "the messages stop at" in rows["clock"]["note"]
+    assert {row["state"] for row in judged(WHOLE, []).values()} == {"not observed"}
+    only_end = judged(WHOLE, log[at(log, "MissionEnd") :])
+    assert "held" not in {only_end[name]["state"] for name in WATCHED - {"clock"}}
+
+
+def test_without_icarous_nothing_is_said_to_hold_of_it() -> None:
+    mission = replace(WHOLE, instances=())
+    rows = judged(mission, list(flown(mission)))
+    for name in ("delivery from ICAROUS", "heartbeat period", "intruder in its tube", "tracking"):
+        assert rows[name]["state"] == "not observed"
+        assert rows[name]["note"] == "no vehicle has an ICAROUS instance"
+
+
+def test_an_intruder_or_a_vehicle_that_is_not_seen_is_not_said_to_be_in_its_place() -> None:
+    for number, name in ((90, "intruder in its tube"), (1, "tracking")):
+        now_ms = taken_ms() + 2000
+        gone = {now_ms + 250 * k for k in range(8)}
+
+        def change(log: Log, number: int = number, gone: set[int] = gone) -> None:
+            log[:] = [
+                one
+                for one in log
+                if not (
+                    one.topic.endswith("TruthState")
+                    and one.time_ms in gone
+                    and one.body.VehicleID == number
+                )
+            ]
+
+        row = tampered(change)[name]
+        assert (row["state"], "not seen" in row["note"]) == ("not observed", True)
+
+
+def test_a_vehicle_that_gets_no_command_is_named() -> None:
+    second = replace(WHOLE.vehicles[0], id=2)
+    mission = replace(WHOLE, vehicles=(*WHOLE.vehicles, second))
+    row = judged(mission, list(flown(WHOLE)))["first command"]
+    assert (row["state"], row["note"]) == ("not observed", "no command to vehicle 2 was seen")
+
+
+def test_messages_without_a_sender_leave_open_who_reports() -> None:
+    rows = tampered(lambda log: log.__setitem__(slice(None), [replace(o, source="") for o in log]))
+    assert rows["reports of the gate"]["note"] == "the messages do not name their senders"
+
+
+@pytest.mark.parametrize("far", [1e308, -1e308])
+def test_places_and_speeds_that_no_aircraft_has_are_told_in_numbers(far: float) -> None:
+    def change(log: Log) -> None:
+        now_ms = taken_ms()
+        fields = ("North", "East", "Altitude", "VelocityNorth", "VelocityEast", "VelocityDown")
+        for number in (1, 90):
+            for k in (0, 4, 5):
+                aside(number, now_ms + 250 * k, **dict.fromkeys(fields, far * (-1) ** k))(log)
+
+    log = [copy.copy(one) for one in flown(WHOLE)]
+    change(log)
+    watch = AssumptionWatch(WHOLE)
+    for one in log:
+        watch.tap(one.topic.rpartition(".")[2], one)
+    rows = {row["name"]: row for row in watch.rows(log[-1].time_ms, True)}
+    for name in ("intruder in its tube", "tracking"):
+        assert rows[name]["state"] == "broken"
+        json.dumps(rows[name], allow_nan=False)
+
+
+def test_a_break_is_told_once_at_the_moment_it_is_seen() -> None:
+    told: list[tuple[str, int]] = []
+    log = [copy.copy(one) for one in flown(WHOLE)]
+    late_beat(log)
+    now = [0]
+    monitor = Monitor(
+        WHOLE, make_plan(WHOLE), on_broken=lambda row: told.append((row["name"], now[0]))
+    )
+    for one in log:
+        now[0] = one.time_ms
+        monitor.tap(one)
+    ((name, at_ms),) = told
+    assert name == "delivery from ICAROUS"
+    assert 11_000 < at_ms <= 11_500
+
+
+@given(
+    st.lists(
+        st.one_of(st.none(), st.integers(0, 6).map(lambda k: 250 * k)), min_size=1, max_size=12
+    ),
+    st.integers(0, 30),
+)
+def test_delivery_is_what_its_sentence_says(delays: list[int | None], end: int) -> None:
+    """A heartbeat is late if there is one that had two periods until the end, and did not come in them."""
+    mission, end_ms = WHOLE, 250 * end
+    watch = DeliveryWatch(mission)
+    came = [
+        (500 * k + delay, k + 1)
+        for k, delay in enumerate(delays)
+        if delay is not None and 500 * k + delay <= end_ms
+    ]
+    for now_ms, number in sorted(came):
+        body = lmcp.new("Heartbeat", VehicleID=1, Time=now_ms, Direction="Up", Sequence=number)
+        watch.message(Message("Heartbeat", now_ms, "uxas/ics", body))
+    watch.end(end_ms)
+    (record,) = watch.records().values()
+    sent = [*delays, *[None] * 40]
+    late = any(
+        500 * k + 1000 < end_ms and (delay is None or delay > 1000) for k, delay in enumerate(sent)
+    )
+    broken = record.observed(end_ms, True).state is State.BROKEN
+    assert broken == late

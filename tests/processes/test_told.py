@@ -1,0 +1,183 @@
+"""Missions as messages: what is told comes back, and what cannot be told or flown is refused by its field."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from cratous.bridge import lmcp
+from cratous.services.cli import main
+from cratous.services.loading import load
+from cratous.services.loading.uxas import load_uxas
+from cratous.services.loading.uxas_settings import read as read_cfg
+from cratous.services.processes.agreement import agrees
+from cratous.services.processes.coverage import told_of
+from cratous.services.processes.files import (
+    Ports,
+    write_configuration,
+    write_messages,
+    write_scenario,
+)
+from cratous.services.simulator.scenario import read as read_scenario
+from cratous.services.simulator.world import World
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import (
+    FaultySimulation,
+    Mission,
+    Position,
+    Simulation,
+    Traffic,
+    Velocity,
+)
+
+
+def crossing(root: Path) -> Mission:
+    return load(root / "examples/crossing/mission.yaml", 0)
+
+
+@pytest.mark.parametrize("name", ["crossing", "relations"])
+def test_a_mission_comes_back_from_its_messages(root: Path, tmp_path: Path, name: str) -> None:
+    """The loader of UxAS folders reads the same mission, in a frame of its own."""
+    mission = load(root / f"examples/{name}/mission.yaml", 0)
+    told = told_of(mission)
+    write_messages(told, tmp_path)
+    ports = Ports(1001, 1002, 1003)
+    cfg = write_configuration(mission, mission.instances, ports, tmp_path)
+    again = load_uxas(cfg)
+    assert [v.id for v in again.vehicles] == [v.id for v in mission.vehicles]
+    assert [(t.id, t.kind, t.eligible, t.duration_ms) for t in again.tasks] == [
+        (t.id, t.kind, t.eligible, t.duration_ms) for t in mission.tasks
+    ]
+    assert [(z.id, z.kind, len(z.vertices)) for z in again.zones] == [
+        (z.id, z.kind, len(z.vertices)) for z in mission.zones
+    ]
+    assert (again.relations, again.cost, again.order) == (
+        mission.relations, mission.cost, mission.order,
+    )  # fmt: skip
+    bridges = [e for e in read_cfg(cfg).entries if "Bridge" in e.type]
+    assert len(bridges) == 2
+
+
+def aircraft(**more: Any) -> Traffic:
+    values = {"velocity": Velocity(0.0, -20.0, 0.0), "appears_ms": 2000, "vanishes_ms": 5000}
+    return Traffic(90, Position(500.0, 3000.0, 300.0), **{**values, **more})
+
+
+CHANGES: list[tuple[str, Callable[[Mission], Mission]]] = [
+    ("simulation.bridge_faults", lambda m: replace(m, simulation=FaultySimulation())),
+    ("frame.terrain_m", lambda m: replace(m, frame=replace(m.frame, terrain_m=20.0))),
+    ("cost", lambda m: replace(m, cost="DISTANCE")),
+    ("gap", lambda m: replace(m, gap=0.1)),
+    ("vehicles", lambda m: replace(m, instances=())),
+    (
+        "traffic[0].velocity",
+        lambda m: replace(m, traffic=(aircraft(velocity=Velocity(0.0, 20.0, 1.0)),)),
+    ),
+    (
+        "traffic[0].velocity",
+        lambda m: replace(m, traffic=(aircraft(velocity=Velocity(0.0, 0.0, 0.0)),)),
+    ),
+    (
+        "vehicles[0].cameras[0].aspect",
+        lambda m: replace(
+            m,
+            vehicles=(
+                replace(m.vehicles[0], cameras=(replace(m.vehicles[0].cameras[0], aspect=1.0),)),
+                m.vehicles[1],
+            ),
+        ),
+    ),
+    (
+        "tasks[0].sweep_rad",
+        lambda m: replace(m, tasks=(replace(m.tasks[0], sweep_rad=1.0), m.tasks[1])),
+    ),
+]
+
+
+@pytest.mark.parametrize(("item", "change"), CHANGES, ids=[item for item, _ in CHANGES])
+def test_what_cannot_be_flown_is_refused_by_its_field(
+    root: Path, item: str, change: Callable[[Mission], Mission]
+) -> None:
+    with pytest.raises(BadInput) as wrong:
+        told_of(change(crossing(root)))
+    assert wrong.value.item == item
+    assert "--processes" in wrong.value.expected
+
+
+@pytest.mark.parametrize(("example", "item"), [("popup", "changes"), ("search", "tasks[3].kind")])
+def test_the_command_refuses_it_before_anything_starts(
+    root: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], example: str, item: str
+) -> None:
+    mission = str(root / f"examples/{example}/mission.yaml")
+    assert main(["run", mission, "--processes", "--out", str(tmp_path / "out")]) == 2
+    assert item in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("more", [["--rate", "2"], ["--processes", "--seed", "3"]])
+def test_options_that_do_not_go_together(
+    root: Path, capsys: pytest.CaptureFixture[str], more: list[str]
+) -> None:
+    assert main(["run", str(root / "examples/crossing/mission.yaml"), *more]) == 2
+    assert "--processes" in capsys.readouterr().err
+
+
+def test_traffic_is_there_from_when_to_when_the_mission_says(root: Path, tmp_path: Path) -> None:
+    mission = replace(crossing(root), traffic=(aircraft(),), simulation=Simulation(limit_ms=10_000))
+    scenario = read_scenario(write_scenario(mission, told_of(mission), tmp_path))
+    world, seen = World(scenario.events, 8.0), list[tuple[int, Any]]()
+    while not world.over:
+        told = [body for body in world.tick() if type(body).__name__ == "AirVehicleState"]
+        seen += [(world.time_ms, body) for body in told if body.Time]
+    assert {body.ID for _, body in seen} == {1, 2, 90}
+    times = [at_ms for at_ms, body in seen if body.ID == 90]
+    # after half a second of the simulator the mission begins
+    assert min(times) in range(2450, 3100)
+    assert max(times) in range(4900, 5500)
+    first = min(at_ms for at_ms, _ in seen)
+    assert first in range(490, 560)
+    speeds = {round(body.Groundspeed, 6) for _, body in seen if body.ID == 90}
+    assert speeds == {20.0}
+
+
+def summary(*tasks: tuple[int, int, int, int]) -> Any:
+    return lmcp.new(
+        "TaskAssignmentSummary",
+        TaskList=[
+            lmcp.new(
+                "TaskAssignment",
+                TaskID=task, OptionID=option, AssignedVehicle=vehicle, TimeTaskCompleted=end,
+            )
+            for vehicle, task, option, end in tasks
+        ],
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("tasks", "wrong"),
+    [
+        ([(1, 1, 1, 1000), (1, 2, 1, 2000)], ""),
+        ([(1, 1, 1, 1400), (1, 2, 1, 2000)], ""),
+        ([(1, 2, 1, 1000), (1, 1, 1, 2000)], "vehicle 1 has p2 (option 1) p1 (option 1)"),
+        ([(1, 1, 1, 1000), (2, 2, 1, 2000)], "vehicle 1 has p1 (option 1), expected"),
+        ([(1, 1, 2, 1000), (1, 2, 1, 2000)], "vehicle 1 has p1 (option 2)"),
+        ([(1, 1, 1, 1000), (1, 2, 1, 2600)], "task 2 ends after 2.600 s, expected 2.000 s"),
+        ([], "vehicle 1 has no task"),
+    ],
+)
+def test_another_assignment_is_told_apart(tasks: list[Any], wrong: str) -> None:
+    items = [
+        SimpleNamespace(vehicle_id=1, task_id=task, option_id=1, end_ms=1000 * task)
+        for task in (1, 2)
+    ]
+    plan: Any = SimpleNamespace(
+        items=items, chain=lambda vehicle: [i for i in items if i.vehicle_id == vehicle]
+    )
+    said = agrees(plan, summary(*tasks))
+    assert said.startswith(wrong)
+    assert bool(said) == bool(wrong)
