@@ -18,7 +18,7 @@ from cratous.proofs.running.late_values import now
 from cratous.proofs.running.points import witnesses
 from cratous.proofs.running.statement import False_, NotRun, OnNumbers, Outside, Values
 
-DRAWN, FEW, DRAWN_AT_MOST = 40, 3, 400
+DRAWN, FEW, DRAWN_AT_MOST = 24, 3, 400
 """So many points are drawn beside the witnesses; more where no more than FEW of them count."""
 ENOUGH = 3
 """So many differences of a theorem are told."""

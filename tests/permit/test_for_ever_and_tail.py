@@ -85,7 +85,7 @@ def test_from_an_instant_on_is_what_is_left_then(
         assert answer  # nothing is left
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(PIECES, MEETINGS, GONE, st.data())
 def test_what_is_permitted_from_an_instant_on_is_not_hit_after_it(
     pieces: list[Piece], meeting: Meeting, gone: Fraction, data: st.DataObject

@@ -61,7 +61,7 @@ def off(
     return motion.Off(share * wide * x, share * wide * y, share * high)  # type: ignore[arg-type]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(PIECES, MEETINGS, st.data())
 def test_what_is_permitted_is_not_hit(
     pieces: list[Piece], meeting: Meeting, data: st.DataObject

@@ -115,6 +115,7 @@ def by_diff(report, end):
     return result
 
 
+@pytest.mark.long
 def test_faults_are_killed_by_the_theorem_that_they_break():
     report = mutate.run(
         ["vertical_violation"],
@@ -277,6 +278,7 @@ def test_no_mutant_is_judged_by_a_theorem_that_does_not_hold(monkeypatch):
         )
 
 
+@pytest.mark.long
 def test_what_is_skipped_is_not_judged():
     theorems = ["authority_exactly_one_gives_way", "authority_the_greater_id_gives_way"]
     whole = mutate.run(["gives_way"], keys=Keys(theorems=theorems), store=NOWHERE)
