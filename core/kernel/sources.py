@@ -101,7 +101,7 @@ def reached(item: Any) -> dict[str, Any]:
             continue
         held = _held(value)
         scope = {**value.__globals__, **held}
-        for used in (*_names(value.__code__), *held):
+        for used in (*names_of(value.__code__), *held):
             found = scope.get(used)
             callee = ours(found) and (inspect.isfunction(found) or inspect.isclass(found))
             if callee or isinstance(found, Fold):
@@ -130,11 +130,12 @@ def _held(function: types.FunctionType) -> dict[str, Any]:
     return held
 
 
-def _names(code: types.CodeType) -> Iterator[str]:
+def names_of(code: types.CodeType) -> Iterator[str]:
+    """The names that a code object looks up, and those that functions within it do."""
     yield from code.co_names
     for constant in code.co_consts:
         if isinstance(constant, types.CodeType):
-            yield from _names(constant)
+            yield from names_of(constant)
 
 
 def constants(item: Any) -> list[str]:

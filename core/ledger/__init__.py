@@ -5,8 +5,8 @@ kernels of its own has `<package>/ledger/`. For every registered kernel, fold an
 parts of its key (`keys`): its own definition with all that it calls, the definition in `spec`, its
 theorems with everything they take from elsewhere, the prover, the readings (how a
 kernel becomes machine code or an exact verdict) and the compiler. `check` computes them anew and
-names whatever differs; it also holds the code that runs against the file that was hashed. Which
-solver proved it is told beside the key and is no reason to refuse.
+names whatever differs; it also holds the code that runs against the file that was hashed, and the
+names in it against what that file says of them. Which solver proved it is told beside the key and is no reason to refuse.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from cratous.core.kernel.sources import altered, position, stands_for_itself
 from cratous.core.ledger.kept_keys import keys_of
 from cratous.core.ledger.key_parts import MISSING, PARTS, compiler, solver_version
 from cratous.core.ledger.keys import Keys
+from cratous.core.ledger.meant_names import Looked, replaced
 from cratous.core.ledger.package_home import (
     PRODUCT,
     Home,
@@ -104,6 +105,7 @@ def _not_proved(names: list[str], theorems: dict[str, Any], home: Home) -> str:
 
 def _problems(home: Home, entries: dict[str, Entry], data: dict[str, Any]) -> Iterator[Problem]:
     theorems, keys = data["theorems"], keys_of(home, entries, data)
+    looked: Looked = {}
     for name, entry in entries.items():
         record = data["kernels"].get(name)
         if record is None:
@@ -124,6 +126,10 @@ def _problems(home: Home, entries: dict[str, Entry], data: dict[str, Any]) -> It
             yield Problem(name, "changed since the proof: " + ", ".join(changed))
         elif wrong := altered(entry.function):
             yield Problem(name, "the code that runs is not its file's: " + ", ".join(wrong))
+        elif other := replaced(entry.function, looked):
+            yield Problem(
+                name, "names mean something else than their files say: " + ", ".join(other)
+            )
     for name in sorted(set(data["kernels"]) - set(entries)):
         yield Problem(name, "it was proved but is no longer registered")
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import functools
 
+import pytest
+
 from cratous.core import ledger as gate
+from cratous.core.avoidance import prediction
 from cratous.core.geofence import planar
 from cratous.core.kernel.sources import constants, reached, stands_for_itself
 
@@ -56,3 +59,31 @@ def test_a_kernel_behind_a_wrapper_does_not_fly(monkeypatch):
     problems = {problem.name: problem.what for problem in gate.check().problems}
     assert "would run in its place" in problems["cratous.core.geofence.planar.orient"]
     assert sum("would run in its place" in what for what in problems.values()) == 1
+
+
+def _as_it_says(function, name: str, module: str):
+    function.__name__ = function.__qualname__ = name
+    function.__module__ = module
+    return function
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "other"),
+    [
+        # a helper that is no kernel, by a function of this file, and by one that bears its name
+        (prediction, "_thresholds", lambda volume: prediction.StandardThresholds(1.0, 1.0, 1.0, 1.0)),
+        (prediction, "_thresholds", _as_it_says(lambda volume: None, "_thresholds", prediction.__name__)),
+        # what is imported, by another kernel, and a record by another
+        (prediction, "violation_within", prediction.violation),
+        (prediction, "StandardThresholds", tuple),
+    ],
+)  # fmt: skip
+def test_a_helper_that_its_module_was_given_does_not_fly(monkeypatch, module, name, other):
+    assert gate.check().problems == ()
+    monkeypatch.setattr(module, name, other)
+    told = [problem.what for problem in gate.check().problems]
+    assert any(
+        f"names mean something else than their files say: {module.__name__}.{name}" in what
+        or "the code that runs is not its file's" in what
+        for what in told
+    )
