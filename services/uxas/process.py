@@ -154,6 +154,8 @@ class Process:
         for port in self.ports:
             port.pump(now_s)
         self.bus.run_until(self.clock.now_ms())
+        if self.clock.discrete:  # a state has told the time: what comes next comes at that time
+            self.bus.run_until(self.clock.now_ms())
 
     def _awaits(self) -> bool:
         now_s = time.monotonic()
