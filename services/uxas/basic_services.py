@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os.path
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope, Send, Wake
 from cratous.services.loading.uxas_settings import Attr, Entry, values_of, whole
-from cratous.services.uxas.frame import Clock, Host
+from cratous.services.uxas.frame import STATE, Host
 from cratous.spec.errors import BadInput
 
 STARTUP = "uxas.messages.uxnative.StartupComplete"
@@ -125,27 +125,22 @@ def _bodies(host: Host, bases: tuple[Path, ...], name: str, where: str) -> list[
 class SimulationTime:
     """Test_SimulationTime: the bus' clock stands still until an entity's state tells the time."""
 
-    subscribes: tuple[str, ...] = ("afrl.cmasi.EntityState",)
+    subscribes: tuple[str, ...] = (STATE,)
 
-    def __init__(self, name: str, clock: Clock, log: Callable[[str, str], None]) -> None:
-        self.name, self._clock, self._log = name, clock, log
+    def __init__(self, name: str, host: Host) -> None:
+        self.name, self._host = name, host
 
     def start(self) -> int:
-        self._clock.discrete = True
+        self._host.clock.discrete = True
         return 0
 
     def handle(self, state: int, envelope: Envelope, now_ms: int) -> Step:
-        if not self._clock.tell(envelope.body.Time):
-            self._log(
-                "WARN",
-                f"{self.name}: time leaps to {envelope.body.Time} ms in the state of "
-                f"{envelope.body.ID}; the clock goes on from where it stands",
-            )
+        self._host.tell(envelope.body, self.name)
         return envelope.body.Time, ()
 
     def stop(self, state: int) -> None:
         """From now on the clock is that of the machine."""
-        self._clock.discrete = False
+        self._host.clock.discrete = False
 
 
 class HelloWorld:

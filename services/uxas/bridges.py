@@ -104,7 +104,7 @@ class Bridge:
         count = 0
         for incoming in self.port.step(now_s):
             try:
-                self._host.bus.put(self._import(incoming))
+                self._host.arrived(self._import(incoming))
                 count += 1
             except BadInput as error:
                 self._tally.refuse(error.what, f"{incoming.peer}: {error}")

@@ -8,8 +8,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from cratous.services.bus import Bus, Identity
+from cratous.bridge import lmcp
+from cratous.services.bus import Bus, Envelope, Identity
 from cratous.services.uxas.logs import Logs
+
+STATE = "afrl.cmasi.EntityState"
 
 
 class Clock:
@@ -67,6 +70,24 @@ class Host:
     root: dict[str, Any] = field(default_factory=dict)
     shared: dict[str, Any] = field(default_factory=dict)
     say: Callable[[str], None] = print
+
+    def arrived(self, envelope: Envelope) -> None:
+        """Queue a message from outside. With Test_SimulationTime a state comes at the time that it tells, and
+        what has come before it at the time before, however many come at once."""
+        if self.clock.discrete and STATE in lmcp.full_names(envelope.body):
+            self.bus.run_until(self.clock.now_ms())
+            self.tell(envelope.body, "Test_SimulationTime")
+            self.bus.run_until(self.clock.now_ms())
+        self.bus.put(envelope)
+
+    def tell(self, body: Any, name: str) -> None:
+        """A state tells the clock what time it is; a leap is logged. name: of the service that says so."""
+        if not self.clock.tell(body.Time):
+            self.log(
+                "WARN",
+                f"{name}: time leaps to {body.Time} ms in the state of {body.ID}; the clock goes on from "
+                "where it stands",
+            )
 
     def identity(self, service_id: int, group: str = "") -> Identity:
         """The wire identity of a service of this process."""

@@ -52,7 +52,7 @@ class Hub:
                 if message.content_type == PROBE:
                     self.port.send(incoming.parts)
                     continue
-                self._host.bus.put(_envelope(self._host.bus, message))
+                self._host.arrived(_envelope(self._host.bus, message))
                 count += 1
             except BadInput as error:
                 self._tally.refuse(error.what, f"hub: {error}")

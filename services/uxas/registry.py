@@ -110,7 +110,7 @@ def _messages(host: Host, entry: Entry, v: dict[str, Any], name: str, number: in
 
 
 def _time(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return basic_services.SimulationTime(name, host.clock, host.log)
+    return basic_services.SimulationTime(name, host)
 
 
 def _hello(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:

@@ -80,7 +80,7 @@ class ZyreBridge(Bridge):
             self._host.log("INFO", f"{self.name}: entity {entity} has left")
         elif event.kind == "WHISPER" and event.peer in self._entities:
             for part in event.content:
-                bus.put(self._import(Incoming((sentinel.unframe(part),), event.name)))
+                self._host.arrived(self._import(Incoming((sentinel.unframe(part),), event.name)))
             return len(event.content)
         return 0
 
