@@ -39,6 +39,8 @@ SAID_OF_VEHICLE = {
     "max_bank_rad", "max_climb_m_s", "protected", "cruise_m", "power_w",
 }  # fmt: skip
 
+SAID_OF_TRAFFIC = {"id", "position", "velocity", "appears_ms", "vanishes_ms"}
+
 
 class Shape(NamedTuple):
     """One thing on the map. places: of an area its corners, counter-clockwise, the first one once more at
@@ -70,6 +72,8 @@ def unsaid(mission: Mission) -> list[str]:
     found += ["daa"] * (mission.daa != Daa(DEFAULT_WELL_CLEAR))
     for k, vehicle in enumerate(mission.vehicles):
         found += _others(vehicle, f"vehicles[{k}].", SAID_OF_VEHICLE)
+    for k, one in enumerate(mission.traffic):
+        found += _others(one, f"traffic[{k}].", SAID_OF_TRAFFIC)
     for k, task in enumerate(mission.tasks):
         found += _others(task, f"tasks[{k}].", SAID_OF_TASK)
     return found
