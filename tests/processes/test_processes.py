@@ -23,6 +23,8 @@ from cratous.services.cli import main
 from cratous.services.processes.children import Children, ProcessEnded
 
 LIMIT_S = 600.0
+STARTED = "process icarous_2: pid"
+"""What is said of the process that starts last."""
 FLIGHT = commanded(waypoint(1, 2, 45.02), waypoint(2, 2, 45.1))
 
 
@@ -98,7 +100,7 @@ def test_a_process_that_dies_ends_the_flight_with_3_and_no_requirement_holds(
     root: Path, tmp_path: Path, name: str
 ) -> None:
     with flying(root, tmp_path, 4) as (running, said):
-        until(lambda: "waiting for UxAS's plan" in said.read_text() or running.poll() is not None)
+        until(lambda: STARTED in said.read_text() or running.poll() is not None)
         pids = pids_of(said)
         assert sorted(pids) == ["icarous_1", "icarous_2", "simulator", "uxas"], said.read_text()
         states = tmp_path / "out"
@@ -124,10 +126,10 @@ def test_asked_to_end_it_leaves_no_process_and_no_results(
     root: Path, tmp_path: Path, number: int
 ) -> None:
     with flying(root, tmp_path, 1) as (running, said):
-        until(lambda: "waiting for UxAS's plan" in said.read_text() or running.poll() is not None)
+        until(lambda: STARTED in said.read_text() or running.poll() is not None)
         pids = pids_of(said)
         running.send_signal(number)
-        assert running.wait(LIMIT_S) == 128 + number
+        assert running.wait(60) == 128 + number
     assert len(pids) == 4, said.read_text()
     assert not any(map(stands, pids.values()))
     assert not (tmp_path / "out/crossing").exists()
