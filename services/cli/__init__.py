@@ -48,6 +48,7 @@ COMMANDS = {
     "uxas": "Run a UxAS configuration: services and bridges.",
     "icarous": "Avoid for one vehicle, over the CRATOUS bridge to UxAS.",
     "sim": "Simulate the aircraft of an AMASE scenario, and be its AMASE on the network.",
+    "export": "Write a mission as AMASE scenario, UxAS messages, GeoJSON or KML.",
     "check": "Check mission files and algebra texts; nothing is planned.",
     "serve": "Fly a mission, or replay one or two runs or a message log, in the browser.",
     "algebra": "Check, draw or enumerate a process-algebra text.",

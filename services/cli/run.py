@@ -51,7 +51,7 @@ def run(
 ) -> int:
     """Plan, prove, fly, monitor and certify a MISSION.
 
-    MISSION is a mission file (YAML), or a UxAS folder or configuration as it is. The results,
+    MISSION is a mission file (YAML), a UxAS folder or configuration, or an AMASE scenario. The results,
     report.html first of all, are written to out/<mission>/ when everything is done; former results
     there are replaced, other files stay.
 

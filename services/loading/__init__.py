@@ -1,4 +1,4 @@
-"""Missions from files: our own YAML, or a UxAS folder or configuration as it is."""
+"""Missions from files: our own YAML, or a UxAS folder, configuration or AMASE scenario as it is."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from cratous.spec.mission import Mission
 
 
 def load(path: str | Path, seed: int = 0, request: int = 1) -> Mission:
-    """The mission at a path: a YAML file, a UxAS cfg XML, or a folder with either.
+    """The mission at a path: a YAML file, a UxAS cfg XML, a folder with either, or an AMASE scenario XML.
 
     seed: 0 is the mission as written, N > 0 its N-th variant (YAML missions only); request: which
-    of the AutomationRequests of a UxAS configuration, in the order in which they are sent.
+    of the AutomationRequests of a UxAS configuration or scenario, in the order in which they are sent.
     Raises BadInput with file, item, expected and got.
     """
     path = Path(path)
@@ -20,11 +20,12 @@ def load(path: str | Path, seed: int = 0, request: int = 1) -> Mission:
         raise BadInput(
             "there is no such file",
             where=str(path),
-            expected="a mission file (.yaml), a UxAS configuration (.xml) or a folder with one",
+            expected="a mission file (.yaml), a UxAS configuration or AMASE scenario (.xml) or a folder with one",
         )
     if path.is_dir() and (path / "mission.yaml").is_file():
         path = path / "mission.yaml"
     if path.is_dir() or path.suffix.lower() == ".xml":
+        from cratous.services.loading.amase import is_scenario, load_amase
         from cratous.services.loading.uxas import load_uxas
 
         if seed:
@@ -34,6 +35,8 @@ def load(path: str | Path, seed: int = 0, request: int = 1) -> Mission:
                 expected="--seed 0",
                 got=f"--seed {seed}",
             )
+        if path.is_file() and is_scenario(path):
+            return load_amase(path, request)
         return load_uxas(path, request)
     if path.suffix.lower() in (".yaml", ".yml"):
         if request != 1:
@@ -55,11 +58,14 @@ def load(path: str | Path, seed: int = 0, request: int = 1) -> Mission:
 
 
 def count_requests(path: str | Path) -> int:
-    """How many AutomationRequests a UxAS folder or configuration sends; 1 for a mission file."""
+    """How many AutomationRequests a UxAS folder, configuration or scenario sends; 1 for a mission file."""
     path = Path(path)
     if (path.is_dir() and not (path / "mission.yaml").is_file()) or path.suffix.lower() == ".xml":
+        from cratous.services.loading.amase import count_scenario_requests, is_scenario
         from cratous.services.loading.uxas import requests_of
         from cratous.services.loading.uxas_cfg import read_all
 
+        if path.is_file() and is_scenario(path):
+            return count_scenario_requests(path)
         return len(requests_of(read_all(path)))
     return 1

@@ -11,7 +11,10 @@ from pathlib import Path
 from typing import Any
 
 from cratous.core.files.whole_file import write_atomically
+from cratous.services.exporting.exported import FORMATS, beside_document, exported
 from cratous.services.ground_station.live_session import NotObeyed
+from cratous.services.loading.document import parse_document
+from cratous.services.loading.yaml_mission import loaded
 from cratous.services.mission_editor.plan_process import PlanProcess
 from cratous.services.mission_editor.relations import relations
 from cratous.services.mission_editor.sketch import sketch
@@ -45,6 +48,7 @@ class Editor:
         named: dict[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
             "/sketch": self._sketch, "/relations": self._relations, "/change": self._change,
             "/plan": self._start, "/stop": self._stop, "/why": self._why, "/save": self._save,
+            "/export": self._export,
         }  # fmt: skip
         self.orders = {name: self._guarded(order) for name, order in named.items()}
 
@@ -142,6 +146,15 @@ class Editor:
                 raise NotObeyed(409, f"{self._path} has been changed since by something else")
             write_atomically(self._path, text, "the mission")
         return {"digest": _digest(text)}
+
+    def _export(self, asked: dict[str, Any]) -> dict[str, Any]:
+        """A text in another format: files by name, and what they do not say of it."""
+        form = asked.get("format")
+        if form not in FORMATS:
+            raise NotObeyed(400, f"expected format: one of {', '.join(FORMATS)}")
+        document = parse_document(_text(asked), str(self._path))
+        made = exported(loaded(document), form)
+        return {"files": made.files, "unsaid": [*made.unsaid, *beside_document(document)]}
 
     def close(self) -> None:
         """End what plans."""

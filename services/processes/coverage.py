@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import fields, is_dataclass, replace
-from enum import Enum
 from typing import Any
 
+from cratous.services.exporting.differences import apart, spelt_out
+from cratous.services.exporting.messages import Told, messages_of
 from cratous.services.loading import uxas_parts
 from cratous.services.loading.places import Places
 from cratous.services.loading.uxas_cfg import Sent
 from cratous.services.loading.uxas_tasks import Interests
 from cratous.services.loading.uxas_tasks import task as read_task
-from cratous.services.processes.messages import Told, messages_of
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import FaultySimulation, Loiter, Mission, Task, TaskKind
+from cratous.spec.mission import FaultySimulation, Mission, TaskKind
 
-WRITTEN_M = 1e-3
-"""Places that were written in degrees come back as near as this [m]."""
 COSTS = ("MINMAX", "CUMULATIVE")
-UNSAID = {"protected", "power_w", "camera_id", "cruise_m", "notes"}
+UNSAID = frozenset({"protected", "power_w", "camera_id", "cruise_m", "notes"})
 """Fields that no message has, or that the reader fills in: they change nothing of the flight."""
 
 
@@ -58,6 +55,9 @@ def _asked(mission: Mission) -> Iterator[tuple[str, bool, str, str]]:
     other = mission.cost not in COSTS
     yield "cost", other, f"the cost {mission.cost} is asked for", " or ".join(COSTS)
     yield "gap", mission.gap != 0, "the search may stop at a gap", "0"
+    for k, task in enumerate(mission.tasks):
+        pattern = task.kind is TaskKind.PATTERN_SEARCH
+        yield f"tasks[{k}].kind", pattern, "a pattern search", "another kind of task"
     for k, one in enumerate(mission.traffic):
         item = f"traffic[{k}]"
         tracked = type(one).__name__ != "Traffic"
@@ -82,31 +82,7 @@ def _differences(mission: Mission, told: Told) -> Iterator[tuple[str, Any, Any]]
     for name, wanted, got in (
         ("vehicles", mission.vehicles, vehicles),
         ("zones", mission.zones, zones),
-        ("tasks", [_spelt_out(task) for task in mission.tasks], tasks),
+        ("tasks", [spelt_out(task) for task in mission.tasks], tasks),
     ):
         for k, (one, other) in enumerate(zip(wanted, got, strict=True)):
-            yield from _apart(f"{name}[{k}]", one, other)
-
-
-def _spelt_out(task: Task) -> Task:
-    """A loiter of which centre and radius alone are said is a circle around it."""
-    if task.kind is not TaskKind.LOITER or task.loiter is not None:
-        return task
-    return replace(task, loiter=Loiter(task.points[0], task.radius_m))
-
-
-def _apart(item: str, a: Any, b: Any) -> Iterator[tuple[str, Any, Any]]:
-    if is_dataclass(a) and is_dataclass(b):
-        for field in fields(a):
-            if field.name not in UNSAID:
-                yield from _apart(
-                    f"{item}.{field.name}", getattr(a, field.name), getattr(b, field.name)
-                )
-    elif isinstance(a, tuple) and isinstance(b, tuple) and len(a) == len(b):
-        for k, pair in enumerate(zip(a, b, strict=True)):
-            yield from _apart(f"{item}[{k}]", *pair)
-    elif isinstance(a, float) and isinstance(b, (int, float)) and not isinstance(b, bool):
-        if abs(a - b) > WRITTEN_M * max(1.0, abs(a) / 1000):
-            yield item, a, b
-    elif (a.value if isinstance(a, Enum) else a) != (b.value if isinstance(b, Enum) else b):
-        yield item, a, b
+            yield from apart(f"{name}[{k}]", one, other, UNSAID)

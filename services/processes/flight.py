@@ -17,6 +17,7 @@ from cratous.bridge import envelope as wire
 from cratous.bridge import lmcp
 from cratous.bridge.port import Incoming, Limits, address, is_due
 from cratous.bridge.tcp_port import TcpPort
+from cratous.services.exporting.messages import Told
 from cratous.services.processes.agreement import agrees
 from cratous.services.processes.children import GRACE_S, Children, ProcessEnded, free_port
 from cratous.services.processes.files import (
@@ -25,7 +26,6 @@ from cratous.services.processes.files import (
     write_messages,
     write_scenario,
 )
-from cratous.services.processes.messages import Told
 from cratous.services.processes.recorder import Recorder
 from cratous.spec.errors import CratousError, NoPlan
 from cratous.spec.mission import Mission

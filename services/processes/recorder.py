@@ -14,10 +14,10 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus
+from cratous.services.exporting.messages import payloads_of
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.notices import mission_end, plan_accepted, truth
 from cratous.services.mission.frames import Projection
-from cratous.services.processes.messages import payloads_of
 from cratous.spec.mission import Mission, Position
 from cratous.spec.mission.plan import Plan
 

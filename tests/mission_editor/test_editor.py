@@ -14,6 +14,10 @@ from typing import Any
 import pytest
 from ground_station_tools import LIMIT_S, Served, ask, editing
 
+from cratous.services.exporting.exported import FORMATS, exported
+from cratous.services.loading.document import parse_document
+from cratous.services.loading.yaml_mission import loaded
+
 CROSSING = Path(__file__).resolve().parents[2] / "examples/crossing/mission.yaml"
 
 
@@ -89,6 +93,28 @@ def test_only_the_page_with_the_token_may_edit(editor: Served, mission: Path) ->
     assert named.sent("a", b"{}", Content_Length="99000000").status == 413
     assert ask(editor.port, "/save").status == 404
     assert mission.read_text(encoding="utf-8") == first["text"]
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_a_text_is_exported_as_it_stands(editor: Served, mission: Path, form: str) -> None:
+    text = opened(editor)["text"].replace("east_m: 2500, alt_m", "east_m: 2600, alt_m")
+    told = editor.edit("/export", text=text, format=form).data()
+    made = exported(loaded(parse_document(text, "typed")), form)
+    assert told["files"] == made.files
+    assert told["unsaid"][: len(made.unsaid)] == list(made.unsaid)
+    assert "variation: a section of the mission file" in told["unsaid"]
+    assert "2600" not in mission.read_text(encoding="utf-8"), "nothing is saved"
+
+
+def test_what_cannot_be_exported_is_refused(editor: Served) -> None:
+    text = opened(editor)["text"]
+    assert editor.edit("/export", text=text, format="pdf").status == 400
+    assert editor.edit("/export", format="kml").status == 400
+    assert editor._replace(token="x").edit("/export", text=text, format="kml").status == 403
+    wrong = editor.edit(
+        "/export", text=text.replace("eligible: [2]", "eligible: [7]"), format="kml"
+    )
+    assert (wrong.status, "7" in wrong.data()["got"]) == (422, True)
 
 
 @pytest.mark.slow

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -136,3 +138,18 @@ def test_what_is_wrong_is_listed_and_leads_to_its_line(page: Page) -> None:
         "(f => f.value.slice(f.selectionStart, f.selectionEnd))(document.getElementById('text'))"
     )
     assert picked.strip() == "eligible: [5]"
+
+
+def test_a_mission_is_downloaded_in_another_format(page: Page, tmp_path: Path) -> None:
+    page.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path / "got"))
+    page.value("document.getElementById('export-format').value = 'geojson'")
+    page.click("#export")
+    page.until("!document.getElementById('exported').hidden")
+    assert page.text("exported-files") == "crossing.geojson; this format does not say:"
+    assert "relations" in page.text("unsaid")
+    file, until_s = tmp_path / "got" / "crossing.geojson", time.monotonic() + 60
+    while not file.exists():
+        assert time.monotonic() < until_s
+        time.sleep(0.05)
+    data = json.loads(file.read_text(encoding="utf-8"))
+    assert {f["properties"]["kind"] for f in data["features"]} >= {"vehicle", "must_fly"}

@@ -10,9 +10,9 @@ import pytest
 
 from cratous.bridge import lmcp
 from cratous.services.cli.job import new_bus
+from cratous.services.exporting.messages import payloads_of, state_of
 from cratous.services.loading import load
 from cratous.services.mission.frames import Projection
-from cratous.services.processes.messages import payloads_of, state_of
 from cratous.services.processes.recorder import HELD, Recorder
 from cratous.spec.mission import Mission, Position
 

@@ -31,6 +31,7 @@ from cratous.spec.mission import (
     Mission,
     Position,
     Simulation,
+    TaskKind,
     Traffic,
     Velocity,
 )
@@ -74,6 +75,12 @@ CHANGES: list[tuple[str, Callable[[Mission], Mission]]] = [
     ("cost", lambda m: replace(m, cost="DISTANCE")),
     ("gap", lambda m: replace(m, gap=0.1)),
     ("vehicles", lambda m: replace(m, instances=())),
+    (
+        "tasks[0].kind",
+        lambda m: replace(
+            m, tasks=(replace(m.tasks[0], kind=TaskKind.PATTERN_SEARCH), *m.tasks[1:])
+        ),
+    ),
     (
         "traffic[0].velocity",
         lambda m: replace(m, traffic=(aircraft(velocity=Velocity(0.0, 20.0, 1.0)),)),

@@ -24,6 +24,14 @@ async function ask(path, body) {
   return told;
 }
 
+function download(name, text) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(new Blob([text]));
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+}
+
 class Editor {
   constructor(opened) {
     Object.assign(this, { text: opened.text, digest: opened.digest, saved: opened.text, past: [], future: [], found: opened, tool: null, planned: null, polling: false });
@@ -91,7 +99,7 @@ class Editor {
     }));
     by("notes").replaceChildren(...found.notes.map(note => Object.assign(document.createElement("li"), { textContent: note })));
     if (found.drawn && document.activeElement !== by("relations")) by("relations").value = found.relations;
-    by("plan").disabled = found.problems.length > 0;
+    by("plan").disabled = by("export").disabled = found.problems.length > 0;
   }
 
   line(number) {
@@ -174,6 +182,19 @@ class Editor {
     } catch (error) { this.say(error.message, true); }
   }
 
+  async export() {
+    const { text } = this, format = by("export-format").value;
+    try {
+      const told = await ask("/export", { text, format });
+      const names = Object.keys(told.files);
+      for (const name of names) download(name, told.files[name]);
+      const notes = told.unsaid.length ? "; this format does not say:" : "; it says all of the mission";
+      by("exported-files").textContent = `${names.join(" and ")}${names.length > 1 ? ", for one folder" : ""}${notes}`;
+      by("unsaid").replaceChildren(...told.unsaid.map(one => Object.assign(document.createElement("li"), { textContent: one })));
+      by("exported").hidden = false;
+    } catch (error) { this.say(error.message, true); }
+  }
+
   async plan() {
     const { text } = this;
     try { await ask("/plan", { text }); } catch (error) { this.say(error.message, true); return; }
@@ -240,6 +261,7 @@ class Editor {
     by("undo").addEventListener("click", () => this.back(this.past, this.future));
     by("redo").addEventListener("click", () => this.back(this.future, this.past));
     by("save").addEventListener("click", () => this.save());
+    by("export").addEventListener("click", () => this.export());
     by("plan").addEventListener("click", () => this.plan());
     by("plan-stop").addEventListener("click", () => ask("/stop", {}).catch(error => this.say(error.message, true)));
     by("remove").addEventListener("click", () => this.remove());

@@ -1,6 +1,6 @@
 """A mission as the messages that UxAS and the simulator are told: the other way round than `loading.uxas`.
 
-Altitudes are MSL. What the messages cannot say of a mission is found by `coverage`, which reads them again.
+Altitudes are MSL. What the messages cannot say of a mission is found by reading them again (`differences`).
 """
 
 from __future__ import annotations
@@ -12,7 +12,17 @@ from typing import Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.services.mission.frames import Projection, compass
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Loiter, Mission, Position, Task, TaskKind, Vehicle, View, Zone
+from cratous.spec.mission import (
+    Loiter,
+    Mission,
+    Pattern,
+    Position,
+    Task,
+    TaskKind,
+    Vehicle,
+    View,
+    Zone,
+)
 
 REGION = 1
 """Id of the one operating region, which has all zones."""
@@ -24,6 +34,8 @@ DIRECTIONS = {
     "counter_clockwise": "CounterClockwise",
     "any": "VehicleDefault",
 }
+
+PATTERNS = {Pattern.SPIRAL: "Spiral", Pattern.SECTOR: "Sector", Pattern.SWEEP: "Sweep"}
 
 
 class Told(NamedTuple):
@@ -210,7 +222,7 @@ def _zone(zone: Zone, plane: Projection) -> Any:
 def _task(k: int, task: Task, plane: Projection) -> Any:
     if task.kind not in WRITERS:
         raise BadInput(
-            f"a task of kind {task.kind} cannot be told to UxAS in another process",
+            f"a task of kind {task.kind} cannot be told to UxAS",
             item=f"tasks[{k}].kind",
             expected="one of " + ", ".join(WRITERS),
             got=task.kind,
@@ -286,10 +298,24 @@ def _loiter(task: Task, plane: Projection) -> Written:
     return "LoiterTask", {"DesiredAction": action}
 
 
+def _pattern(task: Task, plane: Projection) -> Written:
+    if task.pattern not in PATTERNS:
+        raise BadInput(
+            f"the pattern {task.pattern} cannot be told to UxAS",
+            item=f"task {task.id}",
+            expected="one of " + ", ".join(PATTERNS),
+            got=str(task.pattern),
+        )
+    spot = {"SearchLocation": _place(task.points[0], plane), "Extent": task.extent_m}
+    said = {name: value for name, value in _search(task).items() if name != "ViewAngleList"}
+    return "PatternSearchTask", {**said, **spot, "Pattern": PATTERNS[task.pattern]}
+
+
 WRITERS: dict[TaskKind, Callable[[Task, Projection], Written]] = {
     TaskKind.LINE_SEARCH: _line,
     TaskKind.POINT_SEARCH: _point,
     TaskKind.MUST_FLY: _must_fly,
     TaskKind.AREA_SEARCH: _area,
     TaskKind.LOITER: _loiter,
+    TaskKind.PATTERN_SEARCH: _pattern,
 }

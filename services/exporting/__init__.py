@@ -1,0 +1,1 @@
+"""A mission in the formats of others: AMASE scenario, UxAS configuration and messages, GeoJSON, KML."""

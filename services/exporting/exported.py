@@ -1,0 +1,87 @@
+"""A mission in a format, and what the format cannot say of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+from cratous.core.files.whole_file import write_atomically
+from cratous.services.exporting.amase import scenario_text
+from cratous.services.exporting.differences import differences
+from cratous.services.exporting.geojson import geojson_text
+from cratous.services.exporting.kml import kml_text
+from cratous.services.exporting.messages import messages_of
+from cratous.services.exporting.shapes import unsaid
+from cratous.services.exporting.uxas import (
+    CONFIGURATION,
+    MESSAGES,
+    configuration_text,
+    messages_text,
+)
+from cratous.services.loading import count_requests, load
+from cratous.services.loading.document import Document, read_document
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Mission
+from cratous.spec.mission.plan import Plan
+
+AMASE, UXAS, GEOJSON, KML = FORMATS = ("amase", "uxas", "geojson", "kml")
+MAPS = {GEOJSON: geojson_text, KML: kml_text}
+ENDINGS = {AMASE: "xml", GEOJSON: "geojson", KML: "kml"}
+
+SECTIONS = ("variation", "expect")
+"""Of a mission file, which are no part of the mission as it is written."""
+
+
+class Exported(NamedTuple):
+    """files: texts by name, one, or those of a UxAS folder; unsaid: what they do not say, in words."""
+
+    files: dict[str, str]
+    unsaid: tuple[str, ...]
+
+
+def exported(
+    mission: Mission, form: str, plan: Plan | None = None, folder: str | None = None
+) -> Exported:
+    """The mission in one of FORMATS; plan: its routes, which only formats of maps have; folder: the name
+    that a UxAS folder gets, which is the name of its mission. Raises BadInput for what cannot be written
+    at all.
+
+    What AMASE and UxAS are told is read again, and what is then not the same was not said.
+    """
+    if form in MAPS:
+        text = MAPS[form](mission, plan)
+        return Exported({f"{mission.name}.{ENDINGS[form]}": text}, tuple(unsaid(mission)))
+    try:
+        told = messages_of(mission)
+    except BadInput as error:
+        error.where = error.where or mission.source
+        raise
+    if form == AMASE:
+        text = scenario_text(mission, told, mission.simulation.limit_ms / 1000, tasks=True)
+        files = {f"{mission.name}.xml": text}
+    else:
+        settings = configuration_text(mission, mission.instances)
+        files = {CONFIGURATION: settings, MESSAGES: messages_text(told)}
+    with TemporaryDirectory(prefix="cratous-export-") as scratch:
+        place = Path(scratch) / (folder or mission.name)
+        place.mkdir()
+        for name, text in files.items():
+            write_atomically(place / name, text)
+        again = load(place if form == UXAS else place / next(iter(files)))
+    return Exported(files, tuple(one.text for one in differences(mission, again)))
+
+
+def beside(path: Path, number: int) -> list[str]:
+    """What a file says beside the mission that is exported, in words; number: of the request."""
+    if path.is_dir() and (path / "mission.yaml").is_file():
+        path = path / "mission.yaml"
+    if path.suffix.lower() in (".yaml", ".yml"):
+        return beside_document(read_document(path))
+    count = count_requests(path)
+    return [f"requests: this is request {number} of {count}"] if count > 1 else []
+
+
+def beside_document(document: Document) -> list[str]:
+    """The same of a mission file that was read."""
+    return [f"{name}: a section of the mission file" for name in SECTIONS if name in document.data]

@@ -1,0 +1,73 @@
+"""A mission as a UxAS configuration and the messages that it sends."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from xml.sax.saxutils import quoteattr
+
+from cratous.bridge.lmcp.xml_writing import dumps
+from cratous.services.exporting.messages import Told
+from cratous.spec.mission import Mission
+
+CONFIGURATION, MESSAGES = "cfg.xml", "messages.xml"
+ENTITY = 100
+TURN = {"TurnType": "FlyOver"}
+"""Waypoints are flown over: a turn that is cut short ends a task before its end is reached."""
+
+
+def messages_text(told: Told) -> str:
+    """All messages that UxAS is sent, in order."""
+    bodies = "".join(dumps(body) for body in told.all())
+    return f"<Messages>\n{bodies}</Messages>\n"
+
+
+def configuration_text(
+    mission: Mission,
+    instances: Sequence[int],
+    communication: dict[str, str] | None = None,
+    bridges: str = "",
+    first: Sequence[str] = (),
+) -> str:
+    """The configuration: services of planning, a waypoint manager a vehicle, ICAROUS.
+
+    communication: further attributes of the service that talks to the ICAROUS instances; bridges: as XML;
+    first: services before the others.
+    """
+    search = {"CostFunction": mission.cost, "Semantics": mission.order}
+    if mission.node_limit is not None:
+        search["NumberNodesMaximum"] = str(mission.node_limit)
+    services = [
+        *(service_text(kind) for kind in first),
+        service_text("TaskManagerService"),
+        service_text("AutomationRequestValidatorService"),
+        service_text("RouteAggregatorService"),
+        service_text("RoutePlannerVisibilityService"),
+        service_text("AssignmentTreeBranchBoundService", search),
+        service_text("PlanBuilderService", TURN),
+        *(
+            service_text("WaypointPlanManagerService", {"VehicleID": str(vehicle.id), **TURN})
+            for vehicle in mission.vehicles
+        ),
+    ]
+    if instances:
+        asked = {
+            "NumberOfUAVs": str(len(instances)),
+            "VehicleIDs": " ".join(map(str, instances)),
+            **(communication or {}),
+        }
+        services.append(service_text("IcarousCommunicationService", asked))
+    sent = f'    <Message MessageFileName="{MESSAGES}" SendTime_ms="0"/>\n'
+    return (
+        f'<UxAS FormatVersion="1.0" EntityID="{ENTITY}" EntityType="Aircraft" '
+        'ConsoleLoggerSeverityLevel="INFO">\n'
+        + bridges
+        + "".join(services)
+        + f'  <Service Type="SendMessagesService" PathToMessageFiles=".">\n{sent}  </Service>\n'
+        "</UxAS>\n"
+    )
+
+
+def service_text(kind: str, attributes: dict[str, str] | None = None) -> str:
+    """An entry of a service."""
+    said = "".join(f" {name}={quoteattr(value)}" for name, value in (attributes or {}).items())
+    return f'  <Service Type="{kind}"{said}/>\n'
