@@ -81,6 +81,13 @@ class _Bad(Exception):
         self.column, self.what, self.expected, self.got = column, what, expected, got
 
 
+def _labels_of(layout: Layout, thesis: bool) -> list[tuple[str, str]]:
+    """The labels of a message, the longest first: as it is compared (in small letters where those of the
+    line are, as the thesis's may be capitals), and as the layout has it."""
+    labels = [*(field.label for field in layout.fields), *(["type"] if layout.form else [])]
+    return [(x.lower() if thesis else x, x) for x in sorted(labels, key=len, reverse=True)]
+
+
 class StreamParser:
     """Parses the bytes that come from one peer.
 
@@ -99,10 +106,12 @@ class StreamParser:
         dialect: Dialect = Dialect.CRATOUS,
     ) -> None:
         self._layouts: dict[str, list[Layout]] = {}
+        self._labels: dict[type[Message], list[tuple[str, str]]] = {}
         self._thesis = dialect is Dialect.THESIS
         for layout in LAYOUTS_OF[dialect]:
             if layout.direction is direction:
                 self._layouts.setdefault(layout.tag, []).append(layout)
+                self._labels[layout.message] = _labels_of(layout, self._thesis)
         self._limits, self._max_line, self._original_peer = limits, max_line, original_peer
         self._pending = bytearray()
         self._dropping = False
@@ -185,18 +194,14 @@ class StreamParser:
         places = [begin]
         for piece in pieces:
             places.append(places[-1] + len(piece) + 1)
-        if len(layouts) > 1 or layouts[0].form:
-            layout = self._form(layouts, pieces, places)
-            own = "type" + layout.form
-        else:
-            layout, own = layouts[0], ""
-        return self._fill(layout, own, pieces, places)
+        layout = self._form(layouts, pieces, places) if layouts[0].form else layouts[0]
+        return self._fill(layout, pieces, places)
 
     def _form(self, layouts: list[Layout], pieces: list[str], places: list[int]) -> Layout:
         """The form that the `type` field of a COMND or RPRSP names."""
         forms = {"type" + layout.form: layout for layout in layouts}
         for piece, place in zip(pieces, places, strict=False):
-            if self._small(piece[:4]) == "type":
+            if (piece[:4].lower() if self._thesis else piece[:4]) == "type":
                 if "type" + piece[4:] in forms:
                     return forms["type" + piece[4:]]
                 expected = " or ".join(layout.form for layout in layouts)
@@ -204,17 +209,15 @@ class StreamParser:
                 raise _Bad(place + 4, "unknown type", expected, repr(piece[4:44]), kind)
         raise _Bad(places[-1], "field missing", "type", "")
 
-    def _fill(self, layout: Layout, own: str, pieces: list[str], places: list[int]) -> list[Record]:
-        labels = {field.label: field for field in layout.fields}
-        known = sorted([*labels, *(["type"] if own else [])], key=len, reverse=True)
-        written = {name: self._small(name) for name in known}
+    def _fill(self, layout: Layout, pieces: list[str], places: list[int]) -> list[Record]:
+        known, thesis = self._labels[layout.message], self._thesis
         texts: dict[str, tuple[str, int]] = {}
         skipped: list[Record] = []
         for piece, place in zip(pieces, places, strict=False):
-            small = self._small(piece)
-            label = next((name for name in known if small.startswith(written[name])), None)
+            as_read = piece.lower() if thesis else piece
+            label = next((name for read, name in known if as_read.startswith(read)), None)
             if label is None:
-                inside = next((name for name in known if written[name] in small), None)
+                inside = next((name for read, name in known if read in as_read), None)
                 if inside:
                     raise _Bad(
                         place, "label inside another", f"a label without {inside!r}", repr(piece)
@@ -236,10 +239,6 @@ class StreamParser:
         if layout.form == "RESET_SFT" and 0 < len(given) < 3:
             raise _Bad(places[-1], "field missing", "lat, long and alt, or none of them", "")
         return [layout.message(**values), *skipped]
-
-    def _small(self, text: str) -> str:
-        """Labels of the thesis's dialect come in capitals or in small letters."""
-        return text.lower() if self._thesis else text
 
     def _bare_vertex(self, texts: dict[str, tuple[str, int]]) -> None:
         """The original reads a bare vertIndex after a two-digit totalvert as another number."""
