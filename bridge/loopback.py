@@ -87,8 +87,8 @@ class Bridge:
     """Connections for some vehicles, opened and shaken hands at once.
 
     secret: 64 hexadecimal characters, no security measure. limits: the largest counts that both
-    parsers accept (`ORIGINAL_LIMITS` for what the original can hold). original: write as the
-    original writes. segmenter: cuts what is sent and what is read, for tests.
+    parsers accept (`ORIGINAL_LIMITS` for what the original can hold). segmenter: cuts what is sent
+    and what is read, for tests.
     """
 
     def __init__(
@@ -99,7 +99,6 @@ class Bridge:
         port: int = 0,
         secret: str = DEFAULT_SECRET,
         limits: Limits = WIDE_LIMITS,
-        original: bool = False,
         segmenter: Segmenter | None = None,
         watchdog_s: float = 10.0,
     ) -> None:
@@ -110,7 +109,7 @@ class Bridge:
                 expected="different ids",
                 got=", ".join(map(str, vehicle_ids)),
             )
-        self._limits, self._original, self._watchdog_s = limits, original, watchdog_s
+        self._limits, self._watchdog_s = limits, watchdog_s
         self._secret, self._segmenter = secret, segmenter
         self.now_ms = 0  # virtual time, kept by whoever exchanges; only faults depend on it
         self.counters = {direction: Counters() for direction in Direction}
@@ -205,7 +204,7 @@ class Bridge:
                 expected=direction.value,
                 got=direction_of(message).value,
             )
-        data = encode(message, original=self._original, limits=self._limits)
+        data = encode(message, limits=self._limits)
         if not self._hand_over(vehicle_id, direction, data):
             return False
         count = self.counters[direction]

@@ -10,13 +10,14 @@ the reason.
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import zmq
 
 from cratous.bridge.link import Link, LinkEvent, Listener, connect_later
 from cratous.bridge.port import Address, Report, Tally, is_due
+from cratous.bridge.text_connection import PROGRAM_LIMITS, Bounds, Connection, Opened
+from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.format import encode
 from cratous.bridge.text_protocol.handshake import (
     DEFAULT_SECRET,
@@ -25,7 +26,7 @@ from cratous.bridge.text_protocol.handshake import (
     ServerHandshake,
 )
 from cratous.bridge.text_protocol.keys import Keys
-from cratous.bridge.text_protocol.layouts import ORIGINAL_LIMITS, Limits
+from cratous.bridge.text_protocol.layouts import ORIGINAL_LIMITS
 from cratous.bridge.text_protocol.messages import (
     Direction,
     FenceVertex,
@@ -35,54 +36,14 @@ from cratous.bridge.text_protocol.messages import (
     Message,
     NotKnown,
 )
-from cratous.bridge.text_protocol.parser import Record, StreamParser, WireError
-from cratous.bridge.text_protocol.sealed import (
-    MOST_UNACKNOWLEDGED,
-    Seal,
-    SealedClient,
-    SealedHandshake,
-    SealedServer,
-)
+from cratous.bridge.text_protocol.parser import Record, WireError
+from cratous.bridge.text_protocol.sealed import SealedClient, SealedServer
 from cratous.spec.errors import BadInput
 
 OURS = (Hello, Heartbeat, LinesMissing, NotKnown)
-"""What a peer of the original's is not sent."""
-PROGRAM_LIMITS = Limits(10_000, 1000, 1000, 9999, 9999)
-"""The largest counts that the two programs take; a vehicle's memory is bounded by them."""
-_READS = 16
+"""What a peer of another dialect than ours is not sent."""
 PATIENCE_S = 1.0
 """So long a connection that has not shaken hands keeps its place where others wait for one [s]."""
-NOISE, SILENT, LATE, FAST, NOBODY, DEAF = (
-    "nothing but what cannot be read",
-    "silent",
-    "handshake not finished in time",
-    "sends faster than it may",
-    "nobody listens there",
-    "does not acknowledge what it is sent",
-)
-
-
-@dataclass(frozen=True)
-class Bounds:
-    """What a peer may cost.
-
-    handshake_s: until it has shaken hands; silence_s: until it says something, None: for ever;
-    bytes_per_s, burst_bytes: how fast it may send in the long run, and at once; bad_lines: how many
-    lines in a row may be unreadable; connections: how many peers at once.
-    """
-
-    handshake_s: float = 10.0
-    silence_s: float | None = 300.0
-    bytes_per_s: float = 1 << 20
-    burst_bytes: float = 8 << 20
-    bad_lines: int = 1000
-    connections: int = 64
-
-
-class Opened(NamedTuple):
-    """Hands are shaken: messages may follow."""
-
-    peer: str
 
 
 class Came(NamedTuple):
@@ -90,113 +51,6 @@ class Came(NamedTuple):
 
     key: int
     what: Opened | Record | LinkEvent
-
-
-class Connection:
-    """One peer: its socket, handshake and parser, and what it has cost so far."""
-
-    def __init__(
-        self, link: Link, handshake: Handshake, direction: Direction, bounds: Bounds, now_s: float
-    ) -> None:
-        """direction: of what comes in. now_s: a clock that does not go back."""
-        self.link, self._handshake, self._bounds = link, handshake, bounds
-        self._parser = StreamParser(direction, limits=PROGRAM_LIMITS, original_peer=True)
-        self._direction, self.name = direction, link.remote_name
-        self._until_s: float | None = now_s + bounds.handshake_s
-        self.begun_s, self.opened = now_s, False
-        self._room, self._at_s, self._bad = bounds.burst_bytes, now_s, 0
-        self.link.send(handshake.start())
-
-    @property
-    def seal(self) -> Seal | None:
-        """Of the dialect v2, once hands are shaken."""
-        return self._handshake.seal if isinstance(self._handshake, SealedHandshake) else None
-
-    def send(self, line: bytes, now_s: float) -> bool:
-        """Queue a line; False if the peer is gone."""
-        if not isinstance(self._handshake, SealedHandshake):
-            return self.link.send(line)
-        seal = self.seal
-        if seal is None:
-            return False  # nothing goes before hands are shaken
-        if seal.unacknowledged not in range(MOST_UNACKNOWLEDGED):
-            self.drop(DEAF)
-            return False
-        return self.link.send(seal.wrap(line, round(1000 * now_s)))
-
-    @property
-    def due_s(self) -> float | None:
-        """When it is dropped unless something comes."""
-        return self._until_s
-
-    def step(self, now_s: float) -> list[Opened | Record | LinkEvent]:
-        """Move bytes; what has come, in order."""
-        self.link.flush()
-        self.link.drain(_READS)
-        data = self.link.take()
-        if not self.opened and self.link.itself:
-            self.drop(NOBODY)
-            data = b""
-        found = self._read(data) if data else []
-        self._spend(len(data), now_s)
-        if data and self._handshake.done:
-            silence_s = self._bounds.silence_s
-            self._until_s = None if silence_s is None else now_s + silence_s
-        if is_due(self._until_s, now_s):
-            self.drop(SILENT if self._handshake.done else LATE)
-        if not self.link.alive:
-            found += self._parser.finish()
-            found.append(self.link.ended or LinkEvent("closed"))
-        return found
-
-    def drop(self, why: str) -> None:
-        """End it; the next `step` says so."""
-        if self.link.ended is None:
-            self.link.flush()
-            self.link.ended = LinkEvent("dropped", why)
-
-    def _read(self, data: bytes) -> list[Opened | Record | LinkEvent]:
-        found: list[Opened | Record | LinkEvent] = []
-        if not self._handshake.done:
-            self.link.send(self._handshake.feed(data))
-            if self._handshake.failed:
-                self.link.flush()  # the reason goes before an end that came with it
-                self.link.ended = LinkEvent(
-                    "dropped", f"handshake failed: {self._handshake.failed}"
-                )
-            if not self._handshake.done:
-                return found
-            self.opened, self.name = True, self.link.remote_name
-            found.append(Opened(self.name))
-            data = self._handshake.rest
-            if self.seal is not None and self._direction is Direction.UP:
-                found.append(Hello(self.seal.vehicle_id))
-        wrong: list[Record] = []
-        if self.seal is not None:
-            data, refused = self.seal.feed(data)
-            wrong.extend(refused)
-        for record in [*self._parser.feed(data), *wrong]:
-            if self.seal is not None and isinstance(record, Hello):
-                if record.vehicle_id != self.seal.vehicle_id:
-                    self.drop(
-                        f"HELLO of vehicle {record.vehicle_id} by {self.seal.vehicle_id}'s key"
-                    )
-                    break
-                continue
-            found.append(record)
-            self._bad = self._bad + 1 if isinstance(record, WireError) else 0
-            if self._bad > self._bounds.bad_lines:
-                self.drop(NOISE)
-                break
-        return found
-
-    def _spend(self, count: int, now_s: float) -> None:
-        bounds = self._bounds
-        more = (now_s - self._at_s) * bounds.bytes_per_s
-        self._room = min(bounds.burst_bytes, self._room + more) - count
-        self._at_s = now_s
-        if self._room < 0:
-            self.drop(FAST)
 
 
 class TextPort:
@@ -209,17 +63,17 @@ class TextPort:
         server: bool,
         listens: bool | None = None,
         bounds: Bounds | None = None,
-        original: bool = False,
+        dialect: Dialect = Dialect.CRATOUS,
         secret: str | Keys = DEFAULT_SECRET,
         report: Report = lambda _severity, _text: None,
     ) -> None:
         """server: UxAS's end, which speaks first; else ICAROUS's. listens: it waits for peers (BadInput
         if it cannot listen), else it connects, see `dial`; as in the original, UxAS's end waits.
 
-        original: the peers are the original's: no HELLO and HBEAT, its number formats, no count above
-        what its arrays hold. secret: of the compatible handshake; keys make the dialect v2.
+        dialect: of the peers. That of the original: no HELLO and HBEAT, its number formats, no count above
+        what its arrays hold. That of the thesis: the same messages in its form. secret: of the compatible handshake; keys make the dialect v2.
         """
-        self.where, self._server, self._original = where, server, original
+        self.where, self._server, self._dialect = where, server, dialect
         self._bounds, self._secret, self._report = bounds or Bounds(), secret, report
         self._tally = Tally(where.text, report)
         self.counts = self._tally.counts
@@ -291,13 +145,15 @@ class TextPort:
         one = self._connections.get(key)
         if one is None:
             return False
-        if self._original and isinstance(message, OURS):
+        if not self._dialect.ours and isinstance(message, OURS):
             return True
-        # the original writes fences in a form of which its own client misreads those of ten vertices
-        original = self._original and not isinstance(message, FenceVertex)
-        limits = ORIGINAL_LIMITS if self._original else PROGRAM_LIMITS
+        original, dialect = self._dialect is Dialect.ORIGINAL, self._dialect
+        if original and isinstance(message, FenceVertex):
+            # the original writes fences so that its own client misreads those of ten vertices
+            dialect = Dialect.CRATOUS
+        limits = ORIGINAL_LIMITS if original else PROGRAM_LIMITS
         try:
-            data = encode(message, original=original, limits=limits)
+            data = encode(message, dialect=dialect, limits=limits)
         except BadInput as error:
             self._tally.lose("message has no form on the wire", str(error))
             return False
@@ -352,5 +208,7 @@ class TextPort:
         else:
             sealed = SealedServer if self._server else SealedClient
             handshake = sealed(keys=self._secret.by_vehicle)
-        self._connections[key] = Connection(link, handshake, direction, self._bounds, now_s)
+        self._connections[key] = Connection(
+            link, handshake, direction, self._dialect, self._bounds, now_s
+        )
         return key

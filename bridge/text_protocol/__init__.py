@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.format import direction_of, encode
 from cratous.bridge.text_protocol.layouts import (
     ORIGINAL_LIMITS,
@@ -40,6 +41,7 @@ __all__ = [
     "ORIGINAL_LIMITS",
     "WIDE_LIMITS",
     "Attitude",
+    "Dialect",
     "Direction",
     "FenceDone",
     "FenceVertex",

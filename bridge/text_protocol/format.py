@@ -1,13 +1,15 @@
 """Messages to lines: the exact order of fields and the number formats of the originals.
 
 `%f` has six decimals; latitudes and longitudes have nine in our dialect (0.1 mm instead of
-0.1 m), which the originals read as well, and six with `original=True`. Integers end in `.0`.
+0.1 m), which the originals read as well, and six in the others. Integers end in `.0`; in the thesis's
+dialect they do not, and zeros at the end of decimals are left out, as in its example.
 """
 
 from __future__ import annotations
 
 import math
 
+from cratous.bridge.text_protocol.dialects import LAYOUT_IN, Dialect
 from cratous.bridge.text_protocol.layouts import (
     LAYOUT_OF,
     ORIGINAL_LIMITS,
@@ -34,21 +36,23 @@ def direction_of(message: Message) -> Direction:
     return LAYOUT_OF[type(message)].direction
 
 
-def encode(message: Message, *, original: bool = False, limits: Limits = ORIGINAL_LIMITS) -> bytes:
+def encode(
+    message: Message, *, dialect: Dialect = Dialect.CRATOUS, limits: Limits = ORIGINAL_LIMITS
+) -> bytes:
     """The line of a message, newline included; BadInput if a value cannot stand on the wire.
 
-    original: as an original peer writes it: six decimals for positions, no fields of our dialect.
+    dialect: as a peer of that dialect writes it; in the others than ours there are no epochs.
     """
-    layout = LAYOUT_OF[type(message)]
-    parts = [layout.tag, f"type{layout.form}"] if layout.form else [layout.tag]
+    layout = LAYOUT_IN[dialect][type(message)]
+    parts = [f"type{layout.form}"] if layout.form else []
     for field in layout.fields:
         value = getattr(message, field.attribute)
         if value is None and field.optional:
             continue
-        if original and field.label == "epoch":
+        if not dialect.ours and field.label == "epoch":
             continue
         try:
-            parts.append(field.label + _text(field, value, message, original, limits))
+            parts.append(field.label + _text(field, value, message, dialect, limits))
         except BadInput as err:
             raise BadInput(
                 err.what,
@@ -56,11 +60,12 @@ def encode(message: Message, *, original: bool = False, limits: Limits = ORIGINA
                 expected=err.expected,
                 got=err.got,
             ) from None
-    return (",".join(parts) + ",\n").encode("ascii")
+    tag = layout.tag if dialect is Dialect.THESIS else layout.tag + ","
+    return (tag + ",".join(parts) + ",\n").encode("ascii")
 
 
 def _text(
-    field: FieldLayout, value: object, message: Message, original: bool, limits: Limits
+    field: FieldLayout, value: object, message: Message, dialect: Dialect, limits: Limits
 ) -> str:
     def wrong(expected: str) -> BadInput:
         return BadInput("value that cannot be sent", expected=expected, got=repr(value)[:60])
@@ -86,14 +91,17 @@ def _text(
             or (field.low is not None and value < field.low)
         ):
             raise wrong(f"an integer from {field.low} to {high}")
+        if dialect is Dialect.THESIS:
+            return f"{value + field.first}"
         # The original leaves out the .0 only here; fences of ten vertices break it there.
         bare = field.kind is Kind.BARE and not isinstance(message, FenceVertex)
         keepin = isinstance(message, FenceVertex) and message.fence == "KEEPIN"
-        if bare or (field.kind is Kind.BARE and original and keepin):
+        if bare or (field.kind is Kind.BARE and dialect is Dialect.ORIGINAL and keepin):
             return f"{value}"
         return f"{value}.0"
     if field.kind is Kind.DEGREES and abs(value) > (90 if "lat" in field.label else 180):
         raise wrong("degrees of latitude or longitude")
-    if field.kind is Kind.DEGREES and not original:
+    if field.kind is Kind.DEGREES and dialect.ours:
         return f"{value:.9f}"
-    return f"{value:.6f}"
+    text = f"{value:.6f}"
+    return text.rstrip("0").rstrip(".") if dialect is Dialect.THESIS else text

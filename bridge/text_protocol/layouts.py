@@ -60,6 +60,7 @@ class FieldLayout:
     low: int | None = None
     high: str = ""  # the name of the limit in Limits
     optional: bool = False
+    first: int = 0  # what stands on the wire for 0
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,15 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from cratous.bridge.text_protocol.dialects import (
+    LAYOUTS_OF,
+    TAG_LETTERS,
+    Dialect,
+    has_comma_after_tag,
+    has_label_after_tag,
+)
 from cratous.bridge.text_protocol.format import LARGEST_NUMBER
 from cratous.bridge.text_protocol.layouts import (
-    LAYOUTS,
     ORIGINAL_LIMITS,
     TEXT,
     FieldLayout,
@@ -29,6 +35,7 @@ from cratous.bridge.text_protocol.messages import (
 )
 
 MAX_LINE = 4096
+OTHER_DIALECT = "line of another dialect"
 _MAX_NUMBER = 64
 _NUMBER = re.compile(r" *([+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?)\Z")
 _PRINTABLE = re.compile(rb"[\x20-\x7e]*\Z")
@@ -74,11 +81,19 @@ class _Bad(Exception):
         self.column, self.what, self.expected, self.got = column, what, expected, got
 
 
+def _labels_of(layout: Layout, thesis: bool) -> list[tuple[str, str]]:
+    """The labels of a message, the longest first: as it is compared (in small letters where those of the
+    line are, as the thesis's may be capitals), and as the layout has it."""
+    labels = [*(field.label for field in layout.fields), *(["type"] if layout.form else [])]
+    return [(x.lower() if thesis else x, x) for x in sorted(labels, key=len, reverse=True)]
+
+
 class StreamParser:
     """Parses the bytes that come from one peer.
 
     direction: the way the messages go. original_peer: accept a `vertIndex` without `.0` also
-    where the original's own client misreads it. limits: largest counts.
+    where the original's own client misreads it. limits: largest counts. dialect: of the peer; what it
+    has that the others have not is read in each but the thesis's, whose lines begin otherwise.
     """
 
     def __init__(
@@ -88,11 +103,15 @@ class StreamParser:
         limits: Limits = ORIGINAL_LIMITS,
         max_line: int = MAX_LINE,
         original_peer: bool = False,
+        dialect: Dialect = Dialect.CRATOUS,
     ) -> None:
         self._layouts: dict[str, list[Layout]] = {}
-        for layout in LAYOUTS:
+        self._labels: dict[type[Message], list[tuple[str, str]]] = {}
+        self._thesis = dialect is Dialect.THESIS
+        for layout in LAYOUTS_OF[dialect]:
             if layout.direction is direction:
                 self._layouts.setdefault(layout.tag, []).append(layout)
+                self._labels[layout.message] = _labels_of(layout, self._thesis)
         self._limits, self._max_line, self._original_peer = limits, max_line, original_peer
         self._pending = bytearray()
         self._dropping = False
@@ -155,47 +174,50 @@ class StreamParser:
             records.append(WireError(self._line, bad.column, *wrong))
 
     def _message(self, line: str) -> list[Record]:
-        tag, _, rest = line.partition(",")
+        if self._thesis:
+            tag, rest, begin = line[:TAG_LETTERS], line[TAG_LETTERS:], TAG_LETTERS + 1
+            other, after = has_comma_after_tag, "a label"
+        else:
+            tag, _, rest = line.partition(",")
+            begin, other, after = len(tag) + 2, has_label_after_tag, "a comma"
         layouts = self._layouts.get(tag)
+        if (self._thesis or layouts is None) and other(line):
+            raise _Bad(1, OTHER_DIALECT, f"a tag and {after}", repr(line[:40]))
         if layouts is None:
             for known in self._layouts:
                 if tag.upper().startswith(known):
-                    raise _Bad(1, "unknown tag", f"{known} and a comma", repr(tag[:40]))
+                    raise _Bad(1, "unknown tag", f"{known} and {after}", repr(tag[:40]))
             return [Skipped(self._line, 1, line[:80])]
         if rest and not rest.endswith(","):
             raise _Bad(len(line) + 1, "field is not ended", "a comma", repr(line[-20:]))
         pieces = rest[:-1].split(",") if rest else []
-        places = [len(tag) + 2]
+        places = [begin]
         for piece in pieces:
             places.append(places[-1] + len(piece) + 1)
-        if len(layouts) > 1 or layouts[0].form:
-            layout = self._form(layouts, pieces, places)
-            own = "type" + layout.form
-        else:
-            layout, own = layouts[0], ""
-        return self._fill(layout, own, pieces, places)
+        layout = self._form(layouts, pieces, places) if layouts[0].form else layouts[0]
+        return self._fill(layout, pieces, places)
 
     def _form(self, layouts: list[Layout], pieces: list[str], places: list[int]) -> Layout:
         """The form that the `type` field of a COMND or RPRSP names."""
         forms = {"type" + layout.form: layout for layout in layouts}
         for piece, place in zip(pieces, places, strict=False):
-            if piece.startswith("type"):
-                if piece in forms:
-                    return forms[piece]
+            if (piece[:4].lower() if self._thesis else piece[:4]) == "type":
+                if "type" + piece[4:] in forms:
+                    return forms["type" + piece[4:]]
                 expected = " or ".join(layout.form for layout in layouts)
                 kind = re.sub(r"[^A-Za-z0-9_]", "_", piece[4:44])
                 raise _Bad(place + 4, "unknown type", expected, repr(piece[4:44]), kind)
         raise _Bad(places[-1], "field missing", "type", "")
 
-    def _fill(self, layout: Layout, own: str, pieces: list[str], places: list[int]) -> list[Record]:
-        labels = {field.label: field for field in layout.fields}
-        known = sorted([*labels, *(["type"] if own else [])], key=len, reverse=True)
+    def _fill(self, layout: Layout, pieces: list[str], places: list[int]) -> list[Record]:
+        known, thesis = self._labels[layout.message], self._thesis
         texts: dict[str, tuple[str, int]] = {}
         skipped: list[Record] = []
         for piece, place in zip(pieces, places, strict=False):
-            label = next((name for name in known if piece.startswith(name)), None)
+            as_read = piece.lower() if thesis else piece
+            label = next((name for read, name in known if as_read.startswith(read)), None)
             if label is None:
-                inside = next((name for name in known if name in piece), None)
+                inside = next((name for read, name in known if read in as_read), None)
                 if inside:
                     raise _Bad(
                         place, "label inside another", f"a label without {inside!r}", repr(piece)
@@ -222,7 +244,8 @@ class StreamParser:
         """The original reads a bare vertIndex after a two-digit totalvert as another number."""
         text, column = texts.get("vertIndex", ("", 0))
         total = texts.get("totalvert", ("", 0))[0]
-        if text.isdigit() and float(total or 0) >= 10 and not self._original_peer:
+        bare_is_right = self._original_peer or self._thesis
+        if text.isdigit() and float(total or 0) >= 10 and not bare_is_right:
             raise _Bad(column, "integer without .0", f"{text}.0", repr(text))
 
     def _value(self, field: FieldLayout, text: str, column: int) -> object:
@@ -239,7 +262,8 @@ class StreamParser:
             what = "number too long" if len(text) > _MAX_NUMBER else "not a number"
             raise _Bad(column, what, f"a decimal number after {field.label}", repr(text[:40]))
         digits = match.group(1)
-        if field.kind is not Kind.BARE and digits.lstrip("+-").isdigit():
+        bare_is_right = field.kind is Kind.BARE or self._thesis
+        if not bare_is_right and digits.lstrip("+-").isdigit():
             raise _Bad(column, "integer without .0", f"{digits}.0", repr(text))
         number = float(digits)
         if not abs(number) < LARGEST_NUMBER:
@@ -250,6 +274,7 @@ class StreamParser:
             return number
         high = getattr(self._limits, field.high) if field.high else LARGEST_NUMBER
         low = -LARGEST_NUMBER if field.low is None else field.low
+        low, high = low + field.first, high + field.first
         if not number.is_integer() or not low <= number <= high:
             raise _Bad(column, "number out of range", f"an integer from {low} to {high}", text)
-        return int(number)
+        return int(number) - field.first

@@ -11,6 +11,7 @@ import click
 from cratous.spec.errors import BadInput
 
 if TYPE_CHECKING:
+    from cratous.bridge.text_protocol.dialects import Dialect
     from cratous.services.icarous_program.step import Craft
 
 
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
 @click.option("--listen", metavar="HOST:PORT", help="Where to wait for UxAS, which connects.")
 @click.option(
     "--original", is_flag=True, help="UxAS's end is the original's: no HELLO, HBEAT and epochs."
+)
+@click.option(
+    "--thesis", is_flag=True, help="UxAS's end speaks the thesis's dialect: five letters, no comma."
 )
 @click.option("--v2", is_flag=True, help="Speak v2, which authenticates both ends, see --keys.")
 @click.option(
@@ -45,7 +49,6 @@ if TYPE_CHECKING:
 def icarous(
     vehicle: int,
     mission: Path,
-    original: bool,
     once: bool,
     wait: float,
     folder: Path | None,
@@ -65,6 +68,7 @@ def icarous(
     """
     from cratous.bridge.port import address
     from cratous.bridge.text_port import TextPort
+    from cratous.bridge.text_protocol.dialects import Dialect
     from cratous.bridge.text_protocol.handshake import secret_of_environment
     from cratous.bridge.text_protocol.keys import keys_of
     from cratous.core.ledger import require
@@ -77,11 +81,15 @@ def icarous(
         raise click.UsageError("one of --connect and --listen is needed")
     ((name, text),) = given
     listens = name == "listen"
-    if listens and original:
+    plain = [name for name in ("original", "thesis") if link[name]]
+    if len(plain) + link["v2"] > 1:
+        raise click.UsageError("one of --original, --thesis and --v2, or none: each is a dialect")
+    dialect = Dialect(plain[0]) if plain else Dialect.CRATOUS
+    if listens and dialect is Dialect.ORIGINAL:
         raise click.UsageError("the original's UxAS connects to nobody: --original needs --connect")
     where = address(f"tcp://{text}", ("tcp",), item=f"--{name}", free=listens)
-    if (link["keys"] and not link["v2"]) or (link["v2"] and original):
-        raise click.UsageError("--keys is of --v2, and --original speaks no v2")
+    if link["keys"] and not link["v2"]:
+        raise click.UsageError("--keys is of --v2")
     if not (link["v2"] or where.loopback or link["plain_beyond_loopback"]):
         raise BadInput(
             "no authentication",
@@ -89,7 +97,7 @@ def icarous(
             expected="--v2, an address of loopback, or --plain-beyond-loopback",
             got=text,
         )
-    craft = craft_of(mission, vehicle, original)
+    craft = craft_of(mission, vehicle, dialect)
     log = Logs(
         "WARN",
         "DEBUG",
@@ -101,7 +109,7 @@ def icarous(
         log("WARN" if standing.problems else "INFO", f"proofs: {standing.line}")
         secret = keys_of((vehicle,), link["keys"]) if link["v2"] else secret_of_environment()
         port = TextPort(
-            where, server=False, listens=listens, original=original, secret=secret, report=log
+            where, server=False, listens=listens, dialect=dialect, secret=secret, report=log
         )
         program = Program(IcarousEnd(craft), port, log, Patience(wait, once))
 
@@ -123,8 +131,9 @@ def icarous(
     return 0
 
 
-def craft_of(path: Path, vehicle_id: int, original: bool) -> Craft:
+def craft_of(path: Path, vehicle_id: int, dialect: Dialect) -> Craft:
     """A vehicle of a mission as its ICAROUS has to know it; BadInput if the mission has no such one."""
+    from cratous.bridge.text_protocol.dialects import Dialect
     from cratous.services.flight.dynamics import limits_of
     from cratous.services.flight.loop import GROUND_MARGIN
     from cratous.services.icarous.state import Config
@@ -144,5 +153,6 @@ def craft_of(path: Path, vehicle_id: int, original: bool) -> Craft:
         )
     floor_m = mission.frame.terrain_m + GROUND_MARGIN * mission.daa.well_clear.zthr_m
     projection, beat_ms = Projection(mission.frame), mission.simulation.heartbeat_ms
-    config = Config(vehicle_id, mission.daa, projection, beat_ms, original)
-    return Craft(config, limits_of(found[0]), floor_m, frozenset(mission.instances), original)
+    running = dialect is Dialect.ORIGINAL
+    config = Config(vehicle_id, mission.daa, projection, beat_ms, running)
+    return Craft(config, limits_of(found[0]), floor_m, frozenset(mission.instances), dialect)

@@ -11,6 +11,7 @@ from typing import Any
 
 from cratous.bridge.text_protocol import (
     ORIGINAL_LIMITS,
+    Dialect,
     Direction,
     Message,
     StreamParser,
@@ -63,7 +64,7 @@ def _line(case: dict[str, Any]) -> Result:
         return failed(name, "another verdict", f"expected {case['strict']}, got {got}")
     if case.get("kind") == "valid" and case["strict"] == "accept":
         written = b"".join(
-            encode(one, original=True, limits=ORIGINAL_LIMITS)
+            encode(one, dialect=Dialect.ORIGINAL, limits=ORIGINAL_LIMITS)
             for one in whole
             if isinstance(one, Message)
         )

@@ -12,7 +12,8 @@ from typing import Any
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.port import Report, Tally, is_due
 from cratous.bridge.redial import Redial
-from cratous.bridge.text_port import Bounds, Came, Opened, TextPort
+from cratous.bridge.text_connection import REFUSED, Bounds, Opened
+from cratous.bridge.text_port import Came, TextPort
 from cratous.bridge.text_protocol import Heartbeat, Hello, Message, Skipped
 from cratous.services.bus import Bus, Envelope, Wake
 from cratous.services.flight.messages import Down, Lost, Say
@@ -69,11 +70,11 @@ class IcarousCommunicationService:
             server=True,
             listens=not settings.to,
             bounds=bounds,
-            original=settings.original,
+            dialect=settings.dialect,
             secret=settings.keys or secret,
             report=report,
         )
-        self._step = Communication(name, settings.deviation_m, settings.original)
+        self._step = Communication(name, settings.deviation_m, settings.dialect)
         self._seats = Seats(settings.instances, settings.ids)
         self._early: dict[int, list[Message]] = {}
         self._known: set[int] = set()
@@ -199,7 +200,7 @@ class IcarousCommunicationService:
             lost = Lost(vid, now_ms, event)
             self._report("WARN", f"{self.name}: vehicle {vid}: {event.kind} {event.detail}")
             self._stepped(lambda state: self._step.lost(state, lost))
-        elif event.kind == "dropped":
+        elif event.kind in ("dropped", REFUSED):
             self._tally.refuse("peer that speaks for no vehicle", event.detail)
 
     def _seated(self, key: int, vid: int) -> None:

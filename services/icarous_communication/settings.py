@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cratous.bridge.port import Address, address
+from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.keys import Keys, keys_of
 from cratous.services.loading.uxas_settings import Attr, Entry, choice, flag, number, whole
 from cratous.spec.errors import BadInput
@@ -22,7 +23,7 @@ ATTRIBUTES: Mapping[str, Attr] = {
     "Connect": Attr(),
     "VehicleIDs": Attr(),
     "Timeout_s": number(60.0),
-    "Dialect": choice("cratous", "cratous", "original", "v2"),
+    "Dialect": choice("cratous", "cratous", "original", "thesis", "v2"),
     "Keys": Attr(),
     "PlainBeyondLoopback": flag(False),
 }
@@ -39,14 +40,14 @@ LISTENS_AT = "tcp://127.0.0.1:5557"
 class Settings(NamedTuple):
     """instances: how many to wait for; deviation_m: see DEVIATION_M; where: it listens; to: the addresses
     to connect to instead of that, one of each instance; keys: of the vehicles, then the dialect is v2; ids: of the
-    vehicles, none for the lowest known; wait_s: for the instances; original: the peers' dialect."""
+    vehicles, none for the lowest known; wait_s: for the instances; dialect: of the peers, that of the lines inside v2's packets too."""
 
     instances: int
     deviation_m: float = DEVIATION_M
     where: Address = Address("tcp", "127.0.0.1", 5557, LISTENS_AT)
     ids: tuple[int, ...] = ()
     wait_s: float = 60.0
-    original: bool = False
+    dialect: Dialect = Dialect.CRATOUS
     to: tuple[Address, ...] = ()
     keys: Keys | None = None
 
@@ -73,9 +74,9 @@ def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
     if allowed is not None and v["DeviationOrigin"] == "line":
         deviation_m = max(0.0, deviation_m - FROM_LINE_M)
     ids = _ids(entry, v["VehicleIDs"], count)
-    original = v["Dialect"] == "original"
+    dialect = Dialect.CRATOUS if v["Dialect"] == "v2" else Dialect(v["Dialect"])
     to = _to(entry, v["Connect"], count)
-    if to and (v["Address"] or original):
+    if to and (v["Address"] or dialect is Dialect.ORIGINAL):
         raise BadInput(
             "Connect with what it excludes",
             where=entry.where,
@@ -85,7 +86,7 @@ def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
             got=f'Address="{v["Address"]}" Dialect="{v["Dialect"]}"',
         )
     keys = _keys(entry, v, ids, to or (where,))
-    return Settings(count, deviation_m, where, ids, v["Timeout_s"], original, to, keys)
+    return Settings(count, deviation_m, where, ids, v["Timeout_s"], dialect, to, keys)
 
 
 def _keys(

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-from cratous.bridge.text_protocol import Message, SoftReset, Waypoint
+from cratous.bridge.text_protocol import Dialect, Message, SoftReset, Waypoint
 from cratous.core.authority.timeliness import in_time
 from cratous.services.flight import link_end
 from cratous.services.flight.dynamics import AirState, turn_radius_m
@@ -136,9 +136,10 @@ def moved(air: AirState, late_s: float) -> AirState:
     return air._replace(position=place)
 
 
-def placed(state: State, vid: int, line: Message) -> Message:
-    """As the original's client reads it: WAYPT with a running count, RESET_SFT with where the vehicle is."""
-    if isinstance(line, Waypoint):
+def placed(state: State, vid: int, line: Message, dialect: Dialect) -> Message:
+    """As a peer of another dialect than ours reads it: RESET_SFT with where the vehicle is, and WAYPT with a
+    running count for the original's client."""
+    if dialect is Dialect.ORIGINAL and isinstance(line, Waypoint):
         return replace(line, total=line.index + 1)
     if not isinstance(line, SoftReset) or line.lat_deg is not None:
         return line

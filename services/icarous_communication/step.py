@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.bridge.text_protocol import ORIGINAL_LIMITS, GoToWaypoint, Heartbeat, Message, SetMode
+from cratous.bridge.text_protocol import Dialect, GoToWaypoint, Heartbeat, Message, SetMode
 from cratous.core.authority.gate import ICAROUS, UXAS, gate_accepts, gate_after
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Motion
@@ -91,11 +91,11 @@ Step = tuple[State, list[Out]]
 @dataclass(frozen=True)
 class Communication:
     """The step; what does not change. allowed_m: how far from its leg a vehicle may be before its tasks
-    are paused; original: the peers are the original's, of whom no heartbeat is to be expected."""
+    are paused; dialect: of the peers; of those of another one than ours no heartbeat is to be expected."""
 
     name: str
     allowed_m: float
-    original: bool = False
+    dialect: Dialect = Dialect.CRATOUS
 
     # what comes over the wire ---------------------------------------------------------------------
 
@@ -130,7 +130,7 @@ class Communication:
         state = self._free(state, vehicle_id)
         if isinstance(line, Heartbeat):
             state = state.put(vehicle_id, replace(state.craft(vehicle_id), handed=False))
-        if self.original and isinstance(line, GoToWaypoint):
+        if self.dialect is Dialect.ORIGINAL and isinstance(line, GoToWaypoint):
             return state, [*out, Refuse("GOTOWP of the original: its number is noise", str(line))]
         craft, peer = state.craft(vehicle_id), state.link.peer(vehicle_id)
         if craft.air is None or peer is None or state.frame is None:
@@ -152,7 +152,7 @@ class Communication:
 
     def watch(self, state: State, now_ms: int) -> Step:
         """Time has passed: who has fallen silent."""
-        if self.original:
+        if not self.dialect.ours:
             return state, []
         state, out = self._end(state, Watch(now_ms))
         for peer in state.link.peers:
@@ -235,8 +235,8 @@ class Communication:
     def _reached(self, state: State, vid: int, plan: Plan) -> Step:
         """The waypoints that are behind, and, to a peer that holds a part alone, the next part."""
         out: list[Out] = []
-        if self.original:
-            onward = next_part(plan, ORIGINAL_LIMITS.waypoints, SPARE_WAYPOINTS)
+        if (most := self.dialect.part_waypoints) is not None:
+            onward = next_part(plan, most, SPARE_WAYPOINTS)
             if onward is not plan:
                 state = state.put(vid, replace(state.craft(vid), plan=onward))
                 state, out = self._route(state, vid)
@@ -291,8 +291,8 @@ class Communication:
                 case TakeBack(vid, now_ms, _, epoch):
                     state, more = self._take_back(state, vid, epoch, now_ms)
                     out += more
-                case Down(vid, lines) if self.original:
-                    out.append(Down(vid, tuple(placed(state, vid, line) for line in lines)))
+                case Down(vid, lines) if not self.dialect.ours:
+                    out.append(Down(vid, tuple(placed(state, vid, x, self.dialect) for x in lines)))
                 case _:
                     out.append(answer)
         return state, out
@@ -349,7 +349,7 @@ class Communication:
         plan = state.craft(vid).plan
         if plan is None or state.link.peer(vid) is None:
             return state, []
-        points = part(plan, ORIGINAL_LIMITS.waypoints if self.original else None)
+        points = part(plan, self.dialect.part_waypoints)
         from_m = plan.track.s_m[plan.told]
         return self._end(state, Route(vid, points, plan.speed_m_s, from_m))
 

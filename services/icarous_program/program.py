@@ -16,7 +16,8 @@ import zmq
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.port import Report, Tally, is_due
 from cratous.bridge.redial import Redial
-from cratous.bridge.text_port import Came, Opened, TextPort
+from cratous.bridge.text_connection import REFUSED, Opened
+from cratous.bridge.text_port import Came, TextPort
 from cratous.bridge.text_protocol import Hello, Message, NotKnown, Skipped, WireError
 from cratous.services.icarous_program.step import Answer, IcarousEnd, Note, Refuse, State, Tell
 from cratous.spec.errors import CratousError
@@ -110,8 +111,8 @@ class Program:
                 self._say(Hello(self._end.craft.config.vehicle_id))
                 self.state, answers = self._end.connected(self.state)
                 self._answer(answers)
-            case LinkEvent(kind, detail):
-                self._ended(came.key, detail or kind, now_s)
+            case LinkEvent() as event:
+                self._ended(came.key, event, now_s)
             case Message() as line:
                 self._line(line)
             case WireError(kind=kind) if kind:
@@ -119,7 +120,8 @@ class Program:
             case Skipped() as skipped:
                 self._tally.refuse("not known", skipped.text)
 
-    def _ended(self, key: int, why: str, now_s: float) -> None:
+    def _ended(self, key: int, event: LinkEvent, now_s: float) -> None:
+        why = event.detail or event.kind
         said = self._redial.ended(key, why, now_s) or self._port.listens
         was_open, self._open, self._key, self._why = self._open, False, None, why
         if said or was_open:
@@ -128,7 +130,8 @@ class Program:
         if was_open:
             if self._patience.once:
                 raise UxasGone(f"{self._port.where.text}: {why}")
-            self._until_s = now_s + self._patience.wait_s
+            if event.kind != REFUSED:  # an end of another dialect is none to go on waiting for
+                self._until_s = now_s + self._patience.wait_s
 
     def _line(self, line: Message) -> None:
         try:

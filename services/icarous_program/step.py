@@ -4,7 +4,8 @@ Here the instance that `cratous run` flies knows nothing but what comes over the
 POSTN, traffic from OBJCT, the mission from WAYPT, GEOFN, WPRCH and COMND. What they say is believed, so
 their contents decide. Each POSTN that is a heartbeat later than the last is one heartbeat of the instance.
 The gate of the vehicle stands here: an offer is taken when UxAS tells the way on (START_MISSION after
-a whole plan, or a RESET_SFT with a position). A peer of the original's takes it without a word.
+a whole plan, or a RESET_SFT with a position). A peer of another dialect than ours takes it without a
+word.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from typing import NamedTuple
 
 from cratous.bridge.text_protocol import (
     Attitude,
+    Dialect,
     FenceDone,
     FenceVertex,
     Message,
@@ -92,13 +94,13 @@ Answer = Tell | Note | Refuse
 @dataclass(frozen=True)
 class Craft:
     """What does not change. limits: of the airframe; floor_m: no manoeuvre goes below it [m MSL];
-    cooperating: who else is flown by such an instance; original: the peer is the original's."""
+    cooperating: who else is flown by such an instance; dialect: of UxAS's end."""
 
     config: icarous.Config
     limits: Limits
     floor_m: float
     cooperating: frozenset[int] = frozenset()
-    original: bool = False
+    dialect: Dialect = Dialect.CRATOUS
 
 
 @dataclass(frozen=True)
@@ -143,7 +145,7 @@ class IcarousEnd:
                 return self._traffic(state, line)
             case Attitude():
                 return state, ()
-        if self.craft.original:
+        if not self.craft.dialect.ours:
             return self._told(state, line)
         taken = take(state.lost, line)
         state, answers = replace(state, lost=taken.lost), list[Answer]()
@@ -167,9 +169,9 @@ class IcarousEnd:
         return state, (Note("WARN", f"{part}; asked again, {part.asked}"), Tell(line))
 
     def _lacking(self, state: State, *parts: Part) -> Step:
-        """Plan or zones have come with gaps: the rest is asked for, unless the peer is the original's."""
+        """Plan or zones have come with gaps: the rest is asked for, if the peer knows AGAIN."""
         answers: list[Answer] = []
-        for part in () if self.craft.original else parts:
+        for part in parts if self.craft.dialect.ours else ():
             state, more = self._ask(state, part)
             answers += more
         return state, tuple(answers)
@@ -293,7 +295,7 @@ class IcarousEnd:
                     answers.append(Tell(one.line))
         state, more = self._overdue(state, now_ms)
         answers += more
-        if self.craft.original and state.gate.offered:
+        if not self.craft.dialect.ours and state.gate.offered:
             state, more = self._taken(state)
             answers += more
         return state, tuple(answers)
@@ -305,7 +307,7 @@ class IcarousEnd:
         for part in late:
             state, more = self._ask(state, part)
             answers += more
-        if self.craft.original:
+        if not self.craft.dialect.ours:
             return state, tuple(answers)
         open_parts = [of_zone(n, told.vertices) for n in sorted({v.zone for v in told.vertices})]
         if told.gathering:

@@ -17,12 +17,14 @@ from hypothesis import strategies as st
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.port import Address
-from cratous.bridge.text_port import DEAF, MOST_UNACKNOWLEDGED, Came, Opened, TextPort
+from cratous.bridge.text_connection import DEAF, Opened
+from cratous.bridge.text_port import Came, TextPort
 from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET
 from cratous.bridge.text_protocol.keys import Keys, key_of, keys_of
 from cratous.bridge.text_protocol.sealed import (
     DAMAGED,
     FORGED,
+    MOST_UNACKNOWLEDGED,
     NAME,
     REPLAYED,
     WINDOW,

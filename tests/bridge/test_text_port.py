@@ -14,7 +14,8 @@ from cratous.bridge import text_protocol as tp
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.port import address
 from cratous.bridge.redial import Redial
-from cratous.bridge.text_port import PATIENCE_S, Bounds, Came, Opened, TextPort
+from cratous.bridge.text_connection import PARTING_S, REFUSED, Bounds, Opened
+from cratous.bridge.text_port import PATIENCE_S, Came, TextPort
 from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET
 from cratous.spec.errors import BadInput
 
@@ -247,3 +248,73 @@ def test_more_peers_than_it_takes_are_closed_and_a_taken_port_is_refused(opened:
     opened.append(other)
     other.dial(nobody.now_s)
     until(other, nobody, ended("Connection refused"))
+
+
+LINE = {True: tp.WaypointReached(0), False: tp.SetMode("PASSIVE")}
+"""What an end says first, UxAS's or ICAROUS's."""
+
+
+@pytest.mark.parametrize("speaks", [True, False])
+@pytest.mark.parametrize(
+    ("uxas", "icarous"),
+    [("thesis", "cratous"), ("thesis", "original"), ("cratous", "thesis"), ("original", "thesis")],
+)
+def test_a_peer_of_another_dialect_is_refused_with_the_reason_on_both_ends(
+    opened: list[Any], uxas: str, icarous: str, speaks: bool
+) -> None:
+    """The end that hears the other one first refuses it, and both say why. speaks: UxAS's end does."""
+    clock, said = Clock(), list[str]()
+    one = TextPort(
+        at(),
+        server=True,
+        dialect=tp.Dialect(uxas),
+        report=lambda _severity, text: said.append(text),
+    )
+    other = TextPort(
+        at(one.bound[1]),
+        server=False,
+        dialect=tp.Dialect(icarous),
+        report=lambda _severity, text: said.append(text),
+    )
+    opened += [one, other]
+    other.dial(clock.now_s)
+    came: dict[bool, list[Came]] = {True: [], False: []}
+    end, asked = time.monotonic() + 30.0, False
+    while not all(found and isinstance(found[-1].what, LinkEvent) for found in came.values()):
+        assert time.monotonic() < end, came
+        came[True] += one.step(clock.now_s)
+        came[False] += other.step(clock.now_s)
+        if not asked and came[True] and came[False]:
+            asked = True
+            sender = one if speaks else other
+            for _ in range(3):
+                assert sender.send(came[speaks][0].key, LINE[speaks])
+    refusing = icarous if speaks else uxas
+    reason = f"line of another dialect: {refusing} is spoken here"
+    assert came[not speaks][-1].what == LinkEvent(REFUSED, reason)
+    assert came[speaks][-1].what == LinkEvent(REFUSED, f"the other end refuses: {reason}")
+    assert not any(isinstance(x.what, tp.Message) for found in came.values() for x in found)
+    assert any("refused: line of another dialect" in text for text in said)
+
+
+def test_a_refused_peer_that_goes_on_costs_no_more_than_its_time(opened: list[Any]) -> None:
+    one, clock = server(opened), Clock()
+    peer = raw(one, opened, DEFAULT_SECRET.encode(), b"SETMOtype_PASSIVE_,\n")
+    until(one, clock, lambda what: isinstance(what, tp.WireError))
+    for _ in range(20):
+        peer.sendall(b"HBEATseq1,time1,\n" * 100)
+        assert one.step(clock.now_s) == []
+    clock.now_s += PARTING_S
+    (last,) = one.step(clock.now_s)
+    assert isinstance(last.what, LinkEvent)
+    assert last.what.kind == REFUSED
+    assert one.handles() == [(one.handles()[0][0], 1)]  # the listener alone
+
+
+def test_a_line_that_lost_its_comma_on_the_way_ends_no_connection(opened: list[Any]) -> None:
+    one, clock = server(opened), Clock()
+    peer = raw(one, opened, DEFAULT_SECRET.encode(), b"SETMOD,type_PASSIVE_,\n")
+    until(one, clock, lambda what: isinstance(what, tp.SetMode))
+    peer.sendall(b"HBEATseq1.0,time1.0,\n" + HEARTBEAT)
+    found = until(one, clock, lambda what: isinstance(what, tp.Heartbeat))
+    assert [type(came.what).__name__ for came in found] == ["WireError", "Heartbeat"]

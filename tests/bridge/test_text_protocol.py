@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from wire_messages import messages
 
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.text_protocol.handshake import (
@@ -16,12 +17,7 @@ from cratous.bridge.text_protocol.handshake import (
     ClientHandshake,
     ServerHandshake,
 )
-from cratous.bridge.text_protocol.layouts import (
-    LAYOUTS,
-    FieldLayout,
-    Kind,
-    Layout,
-)
+from cratous.bridge.text_protocol.layouts import LAYOUTS
 from cratous.spec.errors import BadInput
 
 DOWN, UP = tp.Direction.DOWN, tp.Direction.UP
@@ -89,7 +85,7 @@ ORIGINAL_LINES = [
 
 @pytest.mark.parametrize(("message", "line"), ORIGINAL_LINES)
 def test_original_line_both_ways(message: tp.Message, line: str) -> None:
-    assert tp.encode(message, original=True).decode("ascii") == line
+    assert tp.encode(message, dialect=tp.Dialect.ORIGINAL).decode("ascii") == line
     assert parse(line, tp.direction_of(message)) == [message]
 
 
@@ -99,7 +95,9 @@ def test_every_message_is_in_the_table_above() -> None:
 
 def test_our_dialect() -> None:
     assert tp.encode(tp.SetMode("ACTIVE", 3)) == b"SETMOD,type_ACTIVE_,epoch3.0,\n"
-    assert tp.encode(tp.SetMode("ACTIVE", 3), original=True) == b"SETMOD,type_ACTIVE_,\n"
+    assert (
+        tp.encode(tp.SetMode("ACTIVE", 3), dialect=tp.Dialect.ORIGINAL) == b"SETMOD,type_ACTIVE_,\n"
+    )
     assert parse("SETMOD,epoch3.0,type_ACTIVE_,\n", UP) == [tp.SetMode("ACTIVE", 3)]
     assert b"lat45.123456789,long-0.000000001" in tp.encode(
         tp.SetPosition(45.123456789, -0.000000001, 0.0)
@@ -161,7 +159,9 @@ ATTUD = "ATTUD,roll1.0,pitch2.0,yaw3.0,\n"
         ("ATTUD,barroll1.0,roll1.0,pitch2.0,yaw3.0,\n", "label inside another", 7),
         ("ATTUDE,roll1.0,pitch2.0,yaw3.0,\n", "unknown tag", 1),
         ("attud,roll1.0,pitch2.0,yaw3.0,\n", "unknown tag", 1),
-        ("WAYPTtotal1,index1,lat51.4,\n", "unknown tag", 1),
+        ("WAYPTtotal1,index1,lat51.4,\n", "line of another dialect", 1),
+        ("COMNDTYPESTART_MISSION,\n", "line of another dialect", 1),
+        ("ATTUDx,roll1.0,pitch2.0,yaw3.0,\n", "unknown tag", 1),
         ("ATTUD,roll1.0,pit\0ch2.0,yaw3.0,\n", "byte that is not printable", 18),
         ("ATTUD,roll1.0,\rpitch2.0,yaw3.0,\n", "byte that is not printable", 15),
         ("ATTUD,roll\xb2.0,pitch2.0,yaw3.0,\n", "byte that is not printable", 11),
@@ -228,38 +228,6 @@ def test_memory_is_bounded() -> None:
 
 
 # -- properties --------------------------------------------------------------------------------
-
-
-def _value(field: FieldLayout) -> st.SearchStrategy[Any]:
-    if field.kind is Kind.WORD:
-        return st.sampled_from([word.strip("_") for word in field.words])
-    if field.kind is Kind.TEXT:
-        return st.from_regex(r"[A-Za-z0-9_]{1,40}", fullmatch=True)
-    if field.kind in (Kind.COUNT, Kind.BARE):
-        high = getattr(tp.ORIGINAL_LIMITS, field.high) if field.high else 10**9
-        low = -(10**9) if field.low is None else field.low
-        return st.integers(low, high)
-    if field.kind is Kind.DEGREES:
-        most = 90 if "lat" in field.label else 180
-        return st.integers(-most * 10**9, most * 10**9).map(lambda n: n / 10**9)
-    return st.integers(-(10**12), 10**12).map(lambda n: n / 10**6)
-
-
-def _message(layout: Layout) -> st.SearchStrategy[tp.Message]:
-    values = {f.attribute: _value(f) for f in layout.fields}
-    if layout.message is tp.SetMode:
-        values["epoch"] = st.none() | st.integers(0, 10**9)
-    return st.builds(layout.message, **values)
-
-
-def messages(direction: tp.Direction) -> st.SearchStrategy[tp.Message]:
-    return st.one_of([_message(la) for la in LAYOUTS if la.direction is direction])
-
-
-@given(st.sampled_from(list(tp.Direction)).flatmap(lambda d: st.lists(messages(d), min_size=1)))
-def test_format_and_parse_round_trip(sent: list[tp.Message]) -> None:
-    data = b"".join(tp.encode(message) for message in sent)
-    assert parse(data, tp.direction_of(sent[0])) == sent
 
 
 PIECES = st.lists(

@@ -51,7 +51,9 @@ def test_valid_lines_are_written_as_the_original_writes_them() -> None:
             continue
         records = tp.StreamParser(tp.Direction(case["direction"])).feed(case["line"].encode())
         written = b"".join(
-            tp.encode(record, original=True) for record in records if isinstance(record, tp.Message)
+            tp.encode(record, dialect=tp.Dialect.ORIGINAL)
+            for record in records
+            if isinstance(record, tp.Message)
         )
         assert written.decode() == case["line"], case["n"]
         count += 1

@@ -38,7 +38,8 @@ class Wire:
     def __init__(self, lost: Any, original: bool = False) -> None:
         limits = Limits(15.0, 33.0, 0.52, 5.0)
         config = Config(1, Daa(VOLUME), PROJECTION, 500, original)
-        self.icarous = IcarousEnd(Craft(config, limits, 60.0, original=original))
+        dialect = tp.Dialect.ORIGINAL if original else tp.Dialect.CRATOUS
+        self.icarous = IcarousEnd(Craft(config, limits, 60.0, dialect=dialect))
         self.uxas = link_end.UxasEnd(PROJECTION)
         self.up, self.down = link_end.State(), State()
         self.lost, self.count, self.now_ms = lost, 0, 0

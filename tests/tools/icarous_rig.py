@@ -20,11 +20,14 @@ SERVICE = "IcarousCommunicationService"
 class Fake:
     """A client of the text protocol that does what the test says."""
 
-    def __init__(self, port: int, hello: int | None = None) -> None:
+    def __init__(
+        self, port: int, hello: int | None = None, dialect: tp.Dialect = tp.Dialect.CRATOUS
+    ) -> None:
         self.sock = socket.create_connection(("127.0.0.1", port), timeout=5)
         self.sock.setblocking(False)
         self.handshake, self.hello, self.ended = ClientHandshake(), hello, False
-        self.parser = tp.StreamParser(tp.Direction.DOWN, limits=tp.WIDE_LIMITS)
+        self.dialect = dialect
+        self.parser = tp.StreamParser(tp.Direction.DOWN, limits=tp.WIDE_LIMITS, dialect=dialect)
         self.got: list[Any] = []
         self.raw = b""
 
@@ -49,7 +52,7 @@ class Fake:
 
     def say(self, *lines: tp.Message) -> None:
         for line in lines:
-            self.sock.sendall(tp.encode(line, limits=tp.WIDE_LIMITS))
+            self.sock.sendall(tp.encode(line, dialect=self.dialect, limits=tp.WIDE_LIMITS))
 
     def all(self, kind: type[Any]) -> list[Any]:
         return [record for record in self.read() if isinstance(record, kind)]
@@ -70,8 +73,8 @@ class Rig:
         (self.service,) = self.process.ports
         self.port = self.service.port.bound[1]
 
-    def fake(self, hello: int | None = None) -> Fake:
-        one = Fake(self.port, hello)
+    def fake(self, hello: int | None = None, dialect: tp.Dialect = tp.Dialect.CRATOUS) -> Fake:
+        one = Fake(self.port, hello, dialect)
         self.opened.append(one)
         self.until(lambda: one.read() is not None and (one.handshake.done or one.ended))
         return one

@@ -1,0 +1,209 @@
+"""One connection of the text protocol: its socket, handshake and parser, and what it may cost.
+
+A peer of another dialect is told so by a line `error,REASON` before it is dropped, so that both ends know why.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from cratous.bridge.link import Link, LinkEvent
+from cratous.bridge.port import is_due
+from cratous.bridge.text_protocol.dialects import Dialect
+from cratous.bridge.text_protocol.handshake import Handshake
+from cratous.bridge.text_protocol.layouts import Limits
+from cratous.bridge.text_protocol.messages import Direction, Hello, Message
+from cratous.bridge.text_protocol.parser import (
+    OTHER_DIALECT,
+    Record,
+    Skipped,
+    StreamParser,
+    WireError,
+)
+from cratous.bridge.text_protocol.sealed import MOST_UNACKNOWLEDGED, Seal, SealedHandshake
+
+PROGRAM_LIMITS = Limits(10_000, 1000, 1000, 9999, 9999)
+"""The largest counts that the two programs take; a vehicle's memory is bounded by them."""
+_READS = 16
+REFUSED = "refused"
+"""The kind of the end of a connection whose ends speak different dialects."""
+REFUSAL = "error,"
+"""So begins the line that tells a peer why it is refused, as in the opening of v2."""
+PARTING_S = 2.0
+"""So long a peer that was told why it is refused may take to read that before it is dropped [s]."""
+NOISE, SILENT, LATE, FAST, NOBODY, DEAF = (
+    "nothing but what cannot be read",
+    "silent",
+    "handshake not finished in time",
+    "sends faster than it may",
+    "nobody listens there",
+    "does not acknowledge what it is sent",
+)
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """What a peer may cost.
+
+    handshake_s: until it has shaken hands; silence_s: until it says something, None: for ever;
+    bytes_per_s, burst_bytes: how fast it may send in the long run, and at once; bad_lines: how many
+    lines in a row may be unreadable; connections: how many peers at once.
+    """
+
+    handshake_s: float = 10.0
+    silence_s: float | None = 300.0
+    bytes_per_s: float = 1 << 20
+    burst_bytes: float = 8 << 20
+    bad_lines: int = 1000
+    connections: int = 64
+
+
+class Opened(NamedTuple):
+    """Hands are shaken: messages may follow."""
+
+    peer: str
+
+
+class Connection:
+    """One peer: its socket, handshake and parser, and what it has cost so far."""
+
+    def __init__(
+        self,
+        link: Link,
+        handshake: Handshake,
+        direction: Direction,
+        dialect: Dialect,
+        bounds: Bounds,
+        now_s: float,
+    ) -> None:
+        """direction: of what comes in. now_s: a clock that does not go back."""
+        self.link, self._handshake, self._bounds = link, handshake, bounds
+        self._parser = StreamParser(
+            direction, limits=PROGRAM_LIMITS, original_peer=True, dialect=dialect
+        )
+        self._dialect, self._understood, self._refused = dialect, False, ""
+        self._direction, self.name = direction, link.remote_name
+        self._until_s: float | None = now_s + bounds.handshake_s
+        self.begun_s, self.opened = now_s, False
+        self._room, self._at_s, self._bad = bounds.burst_bytes, now_s, 0
+        self.link.send(handshake.start())
+
+    @property
+    def seal(self) -> Seal | None:
+        """Of the dialect v2, once hands are shaken."""
+        return self._handshake.seal if isinstance(self._handshake, SealedHandshake) else None
+
+    def send(self, line: bytes, now_s: float) -> bool:
+        """Queue a line; False if the peer is gone, or is refused."""
+        if self._refused:
+            return False
+        if not isinstance(self._handshake, SealedHandshake):
+            return self.link.send(line)
+        seal = self.seal
+        if seal is None:
+            return False  # nothing goes before hands are shaken
+        if seal.unacknowledged not in range(MOST_UNACKNOWLEDGED):
+            self.drop(DEAF)
+            return False
+        return self.link.send(seal.wrap(line, round(1000 * now_s)))
+
+    @property
+    def due_s(self) -> float | None:
+        """When it is dropped unless something comes."""
+        return self._until_s
+
+    def step(self, now_s: float) -> list[Opened | Record | LinkEvent]:
+        """Move bytes; what has come, in order."""
+        self.link.flush()
+        self.link.drain(_READS)
+        data = self.link.take()
+        if not self.opened and self.link.itself:
+            self.drop(NOBODY)
+            data = b""
+        if self._refused:  # what it still sends is not for us
+            return self._part(now_s)
+        found = self._read(data, now_s) if data else []
+        self._spend(len(data), now_s)
+        if data and self._handshake.done and not self._refused:
+            silence_s = self._bounds.silence_s
+            self._until_s = None if silence_s is None else now_s + silence_s
+        if is_due(self._until_s, now_s) and not self._refused:
+            self.drop(SILENT if self._handshake.done else LATE)
+        if self._refused:
+            return found + self._part(now_s)
+        if not self.link.alive:
+            found += self._parser.finish()
+            found.append(self.link.ended or LinkEvent("closed"))
+        return found
+
+    def drop(self, why: str, kind: str = "dropped") -> None:
+        """End it; the next `step` says so."""
+        if self.link.ended is None:
+            self.link.flush()
+            self.link.ended = LinkEvent(kind, why)
+
+    def _refuse(self, now_s: float) -> None:
+        """Tell the peer why it is refused, and leave it time to read that: an end with bytes unread would
+        destroy it on its way."""
+        self._refused = f"{OTHER_DIALECT}: {self._dialect.value} is spoken here"
+        self.link.send(f"{REFUSAL}{self._refused}\n".encode("ascii"))
+        self._until_s = now_s + PARTING_S
+
+    def _part(self, now_s: float) -> list[Opened | Record | LinkEvent]:
+        """The end of a peer that is refused, once it is gone or has had its time."""
+        if self.link.alive and not is_due(self._until_s, now_s):
+            return []
+        self.link.ended = LinkEvent(REFUSED, self._refused)
+        return [self.link.ended]
+
+    def _read(self, data: bytes, now_s: float) -> list[Opened | Record | LinkEvent]:
+        found: list[Opened | Record | LinkEvent] = []
+        if not self._handshake.done:
+            self.link.send(self._handshake.feed(data))
+            if self._handshake.failed:
+                self.link.flush()  # the reason goes before an end that came with it
+                self.link.ended = LinkEvent(
+                    "dropped", f"handshake failed: {self._handshake.failed}"
+                )
+            if not self._handshake.done:
+                return found
+            self.opened, self.name = True, self.link.remote_name
+            found.append(Opened(self.name))
+            data = self._handshake.rest
+            if self.seal is not None and self._direction is Direction.UP:
+                found.append(Hello(self.seal.vehicle_id))
+        wrong: list[Record] = []
+        if self.seal is not None:
+            data, refused = self.seal.feed(data)
+            wrong.extend(refused)
+        for record in [*self._parser.feed(data), *wrong]:
+            if self.seal is not None and isinstance(record, Hello):
+                if record.vehicle_id != self.seal.vehicle_id:
+                    self.drop(
+                        f"HELLO of vehicle {record.vehicle_id} by {self.seal.vehicle_id}'s key"
+                    )
+                    break
+                continue
+            if isinstance(record, Skipped) and record.text.startswith(REFUSAL):
+                self.drop(f"the other end refuses: {record.text[len(REFUSAL) :]}", REFUSED)
+                break
+            found.append(record)
+            wrong_dialect = isinstance(record, WireError) and record.what == OTHER_DIALECT
+            if wrong_dialect and not self._understood:
+                self._refuse(now_s)
+                break
+            self._understood = self._understood or isinstance(record, Message)
+            self._bad = self._bad + 1 if isinstance(record, WireError) else 0
+            if self._bad > self._bounds.bad_lines:
+                self.drop(NOISE)
+                break
+        return found
+
+    def _spend(self, count: int, now_s: float) -> None:
+        bounds = self._bounds
+        more = (now_s - self._at_s) * bounds.bytes_per_s
+        self._room = min(bounds.burst_bytes, self._room + more) - count
+        self._at_s = now_s
+        if self._room < 0:
+            self.drop(FAST)
