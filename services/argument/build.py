@@ -24,13 +24,17 @@ ROOT = "G-run"
 Data = dict[str, Any]
 
 
-def argument(report: Data, unshown: Iterable[tuple[str, str]]) -> dict[str, Element]:
+def argument(
+    report: Data, unshown: Iterable[tuple[str, str]], kept: Data | None = None
+) -> dict[str, Element]:
     """The elements by id, from the top goal down.
 
-    report: confirmed from its log; unshown: what no row of it speaks of, or nothing vouches for (what, why).
+    report: confirmed from its log; unshown: what no row of it speaks of, or nothing vouches for (what, why);
+    kept: the ledger as it is now, of `ledger.read`; read here if it is not given.
     """
     found = Argument()
-    proofs = Proofs(found, report["proofs"], ledger.read()["theorems"])
+    records = (ledger.read() if kept is None else kept)["theorems"]
+    proofs = Proofs(found, report["proofs"], records)
     known = assumptions.assumed(report)
     by_id = {
         found.add(element): one

@@ -31,6 +31,7 @@ class Proofs:
         self._records = records
         self.context: dict[str, tuple[str, ...]] = {}
         self.without: dict[str, str] = {}
+        self._whole: set[str] = set()
 
     def kernel(self, chain: Data, name: str, drivers: Iterable[str]) -> str:
         """The goal that a kernel is what its definition says; returns its id.
@@ -111,6 +112,8 @@ class Proofs:
 
     def _lacks(self, name: str, above: tuple[str, ...] = ()) -> str:
         """What a theorem, or a lemma that it rests on, lacks; empty if it is proved."""
+        if name in self._whole:  # many theorems rest on the same lemmas
+            return ""
         said, record = self._theorems.get(name), self._records.get(name)
         if said is None or said["status"] != "proved":
             return "it is not among the proved theorems of this run"
@@ -123,6 +126,7 @@ class Proofs:
                 return f"its lemma {lemma} rests on it"
             if why := self._lacks(lemma, (*above, name)):
                 return f"lemma {lemma}: {why}"
+        self._whole.add(name)
         return ""
 
     def _record(self, name: str) -> str:

@@ -8,7 +8,13 @@ from typing import NamedTuple
 
 from cratous.services.attestation.findings import Data, Subject
 from cratous.services.attestation.junit import junit
-from cratous.services.attestation.names import CSV_NAME, JUNIT_NAME, VIEWS
+from cratous.services.attestation.names import (
+    ARGUMENT_NAME,
+    CSV_NAME,
+    DRAWING_NAME,
+    JUNIT_NAME,
+    VIEWS,
+)
 from cratous.services.attestation.statement import RESULTS
 from cratous.services.attestation.statement import VIEWS as MADE
 from cratous.services.attestation.table import table
@@ -27,7 +33,7 @@ from cratous.services.results.ownership import digest_of
 NEEDED = (REPORT_NAME, HTML_NAME, MAP_NAME, LOG_NAME, MANIFEST_NAME)
 """What every statement covers of the results."""
 MADE_AGAIN: dict[str, Callable[[Subject], str]] = {JUNIT_NAME: junit, CSV_NAME: table}
-"""The views that report and statement alone give."""
+"""The views that report and statement alone give; the argument needs the ledger (`argued`)."""
 
 
 class Place(NamedTuple):
@@ -85,10 +91,11 @@ def view_faults(place: Place, named: dict[str, str], subject: Subject) -> list[s
 
 def not_judged(named: dict[str, str], report: Data) -> list[str]:
     """What nobody looked into here, in words."""
+    again = {*MADE_AGAIN, ARGUMENT_NAME, DRAWING_NAME}
     seen = [
         HTML_NAME,
         MAP_NAME,
-        *(n for n in VIEWS if n not in MADE_AGAIN and f"{MADE}/{n}" in named),
+        *(name for name in VIEWS if name not in again and f"{MADE}/{name}" in named),
     ]
     plan = sum(row["source"] == "plan" for row in report["constraints"])
     found = [

@@ -1,8 +1,9 @@
 """Verifies what was signed: signature, digests of evidence and views, and the verdicts, judged again.
 
 The process that does this imports neither planner nor pilot nor monitor nor a kernel: the verdicts on
-the flight are those of the independent judge (`cratous.judge`), which is handed in. What it cannot
-decide, or what it has no counterpart of, is listed and never taken as shown.
+the flight are those of the independent judge (`cratous.judge`), which is handed in. Of the core it reads
+the ledger's records alone, for the argument. What it cannot decide, or what it has no counterpart of,
+is listed and never taken as shown.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from cratous.services.attestation.argued import argued
 from cratous.services.attestation.dsse import ENVELOPE_BYTES, opened
 from cratous.services.attestation.findings import Data, Subject
 from cratous.services.attestation.judged import held
@@ -36,9 +38,10 @@ class Verification:
     """What verifying found. refused: what is not as it was signed, or not as the evidence says.
 
     expected: rows on the flight that the judge expects; recomputed: those that it confirms; undecided:
-    those that it cannot, in words; not_checked: what certifying could not check, by the statement;
-    not_judged: what nobody looked into here. verdict: of the report; verified_verdict: that of
-    the flight as far as the judge confirms it (of `judged.Held`), empty if refused.
+    those that it cannot, and an argument that this ledger does not give, in words; not_checked: what
+    certifying could not check, by the statement; not_judged: what nobody looked into here. verdict: of
+    the report; verified_verdict: that of the flight as far as the judge confirms it (of `judged.Held`), no
+    better than unknown where anything is undecided, empty if refused.
     """
 
     refused: list[str] = field(default_factory=list)
@@ -75,20 +78,22 @@ def verify(place: Place, public: Any, judged: Any) -> Verification:
     if found.refused:
         return found
     subject = Subject(report, tuple(predicate["not_checked"]))
-    found.refused = view_faults(place, named, subject)
+    argument = argued(place.views, named, subject)
+    found.refused = view_faults(place, named, subject) + argument.refused
     judgement = judged(place.results)
     answer = held(report, judgement)
     found.refused += [*recorded_faults(report, judgement.meta), *answer.refused]
-    found.undecided = answer.undecided
+    found.undecided = answer.undecided + argument.undecided
     found.expected, found.recomputed = answer.expected, answer.confirmed
     found.not_checked = list(subject.unchecked)
     silent = not_recorded(judgement.meta, report)
     found.not_judged = [f"{name}: the log says nothing of it" for name in silent]
-    found.not_judged += not_judged(named, report)
+    found.not_judged += [*argument.not_judged, *not_judged(named, report)]
     found.verdict = report["verdict"]
     if not found.refused:
-        found.verified_verdict = answer.verdict
-        sure = report["exit_code"] != 0 or answer.verdict == Outcome.HOLDS
+        open_ = bool(argument.undecided) and answer.verdict == Outcome.HOLDS
+        found.verified_verdict = str(Outcome.UNKNOWN) if open_ else answer.verdict
+        sure = report["exit_code"] != 0 or found.verified_verdict == Outcome.HOLDS
         found.exit_code = report["exit_code"] if sure else 3
     return found
 

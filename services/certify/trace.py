@@ -1,19 +1,22 @@
 """Why a row of a report says what it says: row, kernels that decided it, theorems, definitions.
 
-The chains are read from the report alone; whether their definitions exist is asked of the product as it
-is now. What a chain lacks is said in words, and a row without a kernel has none.
+The chains are read from the report alone; whether their definitions exist is read in the product as it
+is now, of which nothing is imported for that. What a chain lacks is said in words, and a row without a
+kernel has none.
 """
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Iterator
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
-from cratous.core import ledger
 from cratous.core.kernel.names import short
+from cratous.core.ledger import PRODUCT
+from cratous.core.ledger.module_trees import Tree
 from cratous.services.certify.proofs import NOT_RECORDED
-from cratous.spec.errors import BadInput
 from cratous.spec.mission.guarantees import Outcome
 
 Data = dict[str, Any]
@@ -95,11 +98,12 @@ def traced(report: Data) -> Data:
     A row that is unknown and names no kernel decides nothing, so nothing is missing in it.
     """
     rows = chains(report)
+    definition = cache(_definition)  # the same kernel stands in many rows
     unproved = {problem["kernel"] for problem in report["proofs"]["problems"]}
     names = short([*report["proofs"]["kernels"], *(c["kernel"] for r in rows for c in r["chains"])])
     for row in rows:
         for chain in row["chains"]:
-            chain["file"], absent = _definition(chain["kernel"], chain["definition"])
+            chain["file"], absent = definition(chain["kernel"].split(".")[0], chain["definition"])
             chain["missing"] += [absent] if absent else []
             if {chain["kernel"], names[chain["kernel"]]} & unproved:
                 chain["missing"].append("the ledger did not vouch for it in this run")
@@ -119,20 +123,46 @@ def traced(report: Data) -> Data:
     }
 
 
-def _definition(kernel: str, definition: str) -> tuple[str, str]:
+def _definition(package: str, definition: str) -> tuple[str, str]:
     """(file of a definition, what is wrong with it)."""
     if not definition:
         return "", ""
-    package = kernel.split(".")[0]
-    module, _, name = definition.rpartition(".")
+    file = _file(package, definition)
+    return (file, "") if file else ("", f"its definition {definition} does not exist")
+
+
+def _file(package: str, definition: str) -> str:
+    """The file of the module that has a definition, from its package's folder on; empty if it has none.
+
+    The names are those of a report, which may be anybody's: no module is imported because of them.
+    """
+    *module, name = definition.split(".")
+    root = _root(package)
+    if root is None or not module or not all(part.isidentifier() for part in (*module, name)):
+        return ""
+    tree = Tree({PRODUCT.name: PRODUCT.root, package: root}, {})
+    whole = ".".join((package, "spec", *module))
     try:
-        found = getattr(importlib.import_module(f"{package}.spec.{module}"), name, None)
-        file = ledger.package(package).definition(definition)
-    except (ImportError, BadInput):
-        found = None
-    if not callable(found):
-        return "", f"its definition {definition} does not exist"
-    return f"spec/{file.relative_to(ledger.package(package).root / 'spec').as_posix()}", ""
+        found = [one for one in tree.meant(whole, (name,)) if isinstance(one, tuple)]
+        defined = any(tree.unit(one).kind in ("function", "class") for one in found)
+    except (OSError, SyntaxError, ValueError):
+        return ""
+    file = tree.file(whole)
+    return file.relative_to(root).as_posix() if file is not None and defined else ""
+
+
+def _root(package: str) -> Path | None:
+    """The folder of a package, which is not imported for that; None if there is none."""
+    if package == PRODUCT.name:
+        return PRODUCT.root
+    if not package.isidentifier():
+        return None
+    try:
+        found = find_spec(package)
+    except (ImportError, ValueError):
+        return None
+    places = [] if found is None else list(found.submodule_search_locations or ())
+    return Path(places[0]).resolve() if places else None
 
 
 def lines(found: Data) -> Iterator[str]:

@@ -54,8 +54,8 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: An
     other tools, all of them if none is named. In none of them does anything pass that was not checked.
 
     --sign signs digests of results and views with the verdict; --verify checks signature and digests,
-    makes JUnit and CSV again, and judges the log again by the judge, in a process without planner and
-    pilot. It says what report and judge both say, and 3 where the report holds and the judge cannot tell.
+    makes JUnit, CSV and argument again, and judges the log again by the judge, in a process without planner
+    and pilot. It says what report and judge both say, and 3 where the report holds and the judge cannot tell.
 
     Example:  cratous certify out/crossing
 

@@ -106,7 +106,7 @@ def checked(asked: Asked) -> Any:
 def verified(results: Path, asked: Asked, as_json: bool) -> int:
     """Verify what was signed, and print what came of it; returns the exit code.
 
-    Nothing of planner, pilot, monitor or kernels is imported here, nor by the judge.
+    Nothing of planner, pilot, monitor or kernels is imported here, nor by the judge or for the argument.
     """
     from cratous.services.attestation.dsse import public_key
     from cratous.services.attestation.verification import signed_folder, verify

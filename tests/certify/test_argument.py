@@ -15,8 +15,9 @@ from lxml import etree
 from cratous.core import ledger
 from cratous.services.argument.assumptions import BEARS_ON
 from cratous.services.argument.build import argument
-from cratous.services.argument.elements import Element, Kind, State
+from cratous.services.argument.elements import Argument, Element, Kind, State
 from cratous.services.argument.form import document, faults, yaml_text
+from cratous.services.argument.proved import Proofs
 from cratous.services.argument.trust import TRUSTED
 from cratous.services.argument.views import views
 from cratous.spec.errors import BadInput
@@ -57,6 +58,17 @@ def well_formed(elements: dict[str, Element]) -> None:
         if one.kind in (Kind.GOAL, Kind.STRATEGY):
             assert one.undeveloped == (not one.supported_by)
             assert one.undeveloped == data[one.id].get("undeveloped", False)
+
+
+def test_a_state_that_is_not_said_is_noticed(
+    report: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The check of this module is one: it fails where texts do not begin with their state."""
+    elements = argument(report, ())
+    well_formed(elements)
+    monkeypatch.setattr(Element, "shown", property(lambda one: one.text))
+    with pytest.raises(AssertionError):
+        well_formed(elements)
 
 
 @pytest.fixture
@@ -189,6 +201,27 @@ def test_a_theorem_that_is_no_longer_on_record_supports_nothing(
             assert one.state is State.NOT_PROVED, one.id
             if "-row-" not in one.id:
                 assert one.undeveloped, one.id
+
+
+@pytest.mark.parametrize("last", ["proved", "not proved", "in a circle"])
+def test_lemmas_that_many_rest_on_are_looked_at_once(report: dict[str, Any], last: str) -> None:
+    """A ladder of two theorems a step, each resting on both below: there are 2 ** 200 ways down."""
+    one = report["proofs"]["theorems"][LEMMA]
+    names = [[f"a{step}", f"b{step}"] for step in range(200)]
+    theorems = {
+        name: {**one, "lemmas": below}
+        for here, below in zip(names, [*names[1:], []], strict=True)
+        for name in here
+    }
+    records = copy.deepcopy(theorems)
+    if last == "in a circle":
+        theorems["b199"]["lemmas"] = ["a0"]
+    elif last == "not proved":
+        theorems["b199"]["status"] = last
+    proofs = Proofs(Argument(), {**report["proofs"], "theorems": theorems}, records)
+    assert (proofs._lacks("a0") == "") == (last == "proved")
+    assert (proofs._lacks("b0") == "") == (last == "proved")
+    assert proofs._lacks("a199") == ""
 
 
 @pytest.mark.parametrize("edit", ["gone", "not proved"])

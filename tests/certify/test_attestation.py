@@ -160,7 +160,7 @@ def test_what_was_signed_is_verified(run: Run, home: Path, flown: Path) -> None:
     assert f"{flight} of {flight} verdicts on the flight by the judge" in out
     assert "the report says HOLDS; verified: HOLDS; exit code 0" in out
     for what in (
-        "report.html, map.svg, report.sarif, argument.yaml, argument.svg: that they are", "margins, times, notes",
+        "report.html, map.svg, report.sarif: that they are", "margins, times, notes",
         "verdicts on the plan (cratous certify", "certificate.json (cratous certify-plan",
         "proofs of the kernels",
     ):  # fmt: skip
@@ -225,6 +225,8 @@ def test_neither_planner_nor_pilot_is_imported(home: Path) -> None:
         "code = main(sys.argv[1:])\n"
         "print(*sorted(m for m in sys.modules if m.startswith('cratous.')))\n"
         "print(*[m for m in ('numba', 'z3', 'shapely', 'pyproj') if m in sys.modules])\n"
+        "from cratous.core.kernel import REGISTRY\n"
+        "print(len(REGISTRY), 'kernels')\n"
         "sys.exit(code)\n"
     )
     words = ["certify", "--verify", home / "run", "-o", home / "views", "--public-key", home / "own.pub"]  # fmt: skip
@@ -233,11 +235,14 @@ def test_neither_planner_nor_pilot_is_imported(home: Path) -> None:
         capture_output=True, text=True, timeout=900, check=False,
     )  # fmt: skip
     assert "verified: signature" in done.stdout, done.stderr
-    ours, engines = done.stdout.splitlines()[-2:]
+    ours, engines, kernels = done.stdout.splitlines()[-3:]
+    assert kernels == "0 kernels"
     parts = {".".join(name.split(".")[1:3]) for name in ours.split()}
     assert parts - {"judge." + p.split(".", 1)[-1] for p in parts if p.startswith("judge.")} <= {
         "judge", "spec", "spec.errors", "spec.files", "spec.mission", "services", "services.cli",
-        "services.attestation", "services.certify", "services.results",
+        "services.attestation", "services.certify", "services.results", "services.argument",
+        # the ledger's records, for the argument, and what names the sources that they are of
+        "core", "core.files", "core.kernel", "core.ledger", "core.readings",
     }, parts  # fmt: skip
     assert engines == ""
 

@@ -197,7 +197,8 @@ def test_the_page_tells_the_code_and_the_ledger() -> None:
     }
     data["environment"]["code"], data["proofs"]["seal"] = code, "5" * 64
     page = render(data)
-    for words in ("4" * 16, "as its files say", "no release to compare with", "5" * 16):
+    for words in ("4" * 16, "as its files say", "no release to compare with", "5" * 16,
+                  "<code>cratous certify --argument</code> writes <code>argument.yaml</code>"):  # fmt: skip
         assert words in page
 
 

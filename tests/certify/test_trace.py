@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 from certify_tools import Run
 
+from cratous.services.certify import trace
 from cratous.services.certify.trace import lines, traced
 
 ROWS = "cratous.core.schedule.rows."
@@ -87,6 +89,45 @@ def test_a_row_without_a_kernel_is_missing_unless_it_decides_nothing() -> None:
     assert (found["missing"], found["undecided"]) == (0, 1)
 
 
+def test_a_definition_of_another_package_is_found_without_importing_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    top = tmp_path / "own_kernels_of_a_report"
+    (top / "spec" / "deep").mkdir(parents=True)
+    for file in (top / "__init__.py", top / "spec" / "__init__.py"):
+        file.write_text("raise RuntimeError('imported')\n")
+    (top / "spec" / "deep" / "__init__.py").write_text(
+        "from cratous.spec.schedule import row_holds\n"
+    )
+    (top / "spec" / "plain.py").write_text(
+        "def here(x: float) -> bool:\n    return x > 0\nunbound\nvalue = 3\n"
+    )
+    (top / "spec" / "broken.py").write_text("def here(:\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    assert trace._definition(top.name, "plain.here") == ("spec/plain.py", "")
+    assert trace._definition(top.name, "deep.row_holds") == ("spec/deep/__init__.py", "")
+    for name in (
+        "plain.unbound",
+        "plain.value",
+        "deep.nothing",
+        "broken.here",
+        "here",
+        "..here",
+        "../x.here",
+        ".",
+    ):
+        assert trace._definition(top.name, name) == ("", f"its definition {name} does not exist")
+    assert top.name not in sys.modules
+
+
+@pytest.mark.parametrize("package", ["", "..", "json", "sys", "no_such_package", "a/b", "__main__"])
+def test_a_package_that_has_no_definitions(package: str) -> None:
+    assert trace._definition(package, "tool.main") == (
+        "",
+        "its definition tool.main does not exist",
+    )
+
+
 @pytest.mark.usefixtures("judged")
 def test_every_row_of_the_crossing_traces_to_a_definition(flown: Path, run: Run) -> None:
     code, out, err = run("certify", flown, "--trace")
@@ -104,9 +145,9 @@ def test_every_row_of_the_crossing_traces_to_a_definition(flown: Path, run: Run)
 def test_a_trace_with_something_missing_exits_1(
     flown: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from cratous.spec import executive
-
-    monkeypatch.delattr(executive, "completes_at")
+    real = trace._file
+    gone = "executive.completes_at"
+    monkeypatch.setattr(trace, "_file", lambda top, name: "" if name == gone else real(top, name))
     code, out, _ = run("certify", flown, "--trace")
     assert code == 1
     assert "MISSING completes: its definition executive.completes_at does not exist" in out
