@@ -24,8 +24,10 @@ def test_states_of_one_read_are_handled_each_at_its_time(
     opened.append(one)
     handled: list[tuple[int, int, int]] = []
     one.bus.tap(
-        lambda e: e.topic.endswith("AirVehicleState")
-        and handled.append((e.body.ID, e.body.Time, e.time_ms))
+        lambda e: (
+            e.topic.endswith("AirVehicleState")
+            and handled.append((e.body.ID, e.body.Time, e.time_ms))
+        )
     )
     client = Client(port)
     opened.append(client)
