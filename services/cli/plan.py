@@ -121,12 +121,13 @@ def _planned(loaded: Mission, job: _Job) -> tuple[dict[str, Any], int]:
     from cratous.services.certify.verdicts import constraint_rows
     from cratous.services.cli.job import new_bus, plan_and_check, planning_told, write_certificate
     from cratous.services.cli.progress import waiting
+    from cratous.services.cli.relation_places import RelationPlaces
     from cratous.services.logs.records import to_data
 
     bus, standing, task = new_bus(), job.standing, job.task
     with waiting("planning", job.as_json) as wait:
         bus.tap(planning_told(wait.at, len(loaded.tasks)))
-        with counted() as calls:
+        with counted() as calls, RelationPlaces(loaded).in_reasons():
             made, checks = plan_and_check(loaded, bus)
             instead = None if task is None else reasons_of(loaded, made, task)
         wait.at("gathering the evidence")
@@ -159,6 +160,7 @@ def _planned(loaded: Mission, job: _Job) -> tuple[dict[str, Any], int]:
 def _print(loaded: Mission, made: Any, checks: list[Any], data: dict[str, Any]) -> None:
     """The plan, its constraints and notes as tables."""
     from cratous.services.cli.job import absent_lines, left_out_lines, plan_line
+    from cratous.services.cli.relation_places import RelationPlaces
     from cratous.services.cli.show import margin_text, say, table
 
     table(
@@ -190,8 +192,9 @@ def _print(loaded: Mission, made: Any, checks: list[Any], data: dict[str, Any]) 
     click.echo()
     for note in loaded.notes:
         say(f"note: {note}")
+    places = RelationPlaces(loaded)
     for line in (plan_line(loaded, made, checks), *left_out_lines(made), *absent_lines(loaded)):
-        click.echo(line)
+        click.echo(places.told(line))
 
 
 def _print_evidence(data: dict[str, Any]) -> None:

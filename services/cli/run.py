@@ -116,18 +116,23 @@ def run_one(
     path: Path, seed: int, out: Path, settings: Settings, tell: Tell, rate: float | None = None
 ) -> tuple[dict[str, Any], Path]:
     """Load, run and keep one mission; returns the report and its folder. rate: as in `fly_and_show`."""
+    from cratous.services.cli.relation_places import RelationPlaces
     from cratous.services.loading import load
     from cratous.services.results.folder import results_folder
 
     loaded = load(path, seed)
-    target = out / folder_name(loaded)
-    with results_folder(target, tell) as folder:
+    target, places = out / folder_name(loaded), RelationPlaces(loaded)
+
+    def placed(text: str) -> None:
+        tell(places.told(text))
+
+    with places.in_reasons(), results_folder(target, tell) as folder:
         if rate is None:
-            report = run_mission(loaded, folder, settings, tell)
+            report = run_mission(loaded, folder, settings, placed)
         else:
             from cratous.services.cli.processes_job import run_in_processes
 
-            report = run_in_processes(loaded, path, folder, settings, rate, tell)
+            report = run_in_processes(loaded, path, folder, settings, rate, placed)
     return report, target
 
 

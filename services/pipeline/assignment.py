@@ -19,6 +19,7 @@ from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
 from cratous.services.pipeline.offers import OPTIONS, Read, Told, read, travel_of
 from cratous.services.pipeline.status import status
 from cratous.services.planning import mission_assign, without_vehicles
+from cratous.services.planning.inputs import Inputs
 from cratous.services.planning.left_out import assign_part
 from cratous.services.planning.options import Option
 from cratous.services.planning.partial import Parts
@@ -126,9 +127,9 @@ def _found(offered: Read) -> mission_assign.Found:
     """
     inputs, rows, tasks = offered.inputs, offered.rows, offered.tasks
     mission, problem = inputs.mission, inputs.problem(travel_of(inputs, rows))
-    limits, places = mission_assign.limits_of(mission), mission_assign.places_in(mission)
+    limits = mission_assign.limits_of(mission)
     try:
-        found = mission_assign.assign(problem, limits, places)
+        found = mission_assign.assign(problem, limits)
     except BadInput as error:
         # only what is said of tasks better elsewhere is no mistake of ours
         why = without_vehicles.why_none(inputs) or tuple(inputs.undone.values())
@@ -145,15 +146,26 @@ def _found(offered: Read) -> mission_assign.Found:
     if found.assignment is None:
         priority = {task.id: task.priority for task in mission.tasks}
         part = assign_part(
-            problem, limits, places, Parts(problem, priority, inputs.begun),
+            problem, limits, Parts(problem, priority, inputs.begun),
             without_vehicles.unable(inputs), lambda task: remedies_of(inputs, task),
         )  # fmt: skip
         if part.assignment is not None:
             return part
-        reached = {row.DestinationTaskID for row in rows}
-        missing = [f"the costs have no way to task {task}" for task in tasks if task not in reached]
-        raise NoPlan(without_vehicles.why_none(inputs) or (*found.reasons, *missing))
+        unreached = [t for t in tasks if t not in {row.DestinationTaskID for row in rows}]
+        raise NoPlan(_nothing(inputs, part, unreached) or found.reasons)
     return found
+
+
+def _nothing(
+    inputs: Inputs, part: mission_assign.Found, unreached: Sequence[int]
+) -> tuple[str, ...]:
+    """Why each task that is asked for cannot be done, where none can. unreached: the costs have no way to these."""
+    no_options, no_routes = without_vehicles.without_options, without_vehicles.without_routes
+    named = no_options(inputs).keys() | no_routes(inputs).keys()
+    others = [one.text for one in part.left_out if one.task_id not in named]
+    others += [f"the costs have no way to task {task}" for task in unreached if task not in named]
+    doubt = () if part.sure else ("whether some of it could be done is not certain",)
+    return (*without_vehicles.why_none(inputs), *others, *doubt)
 
 
 def _left_out(key: int, found: mission_assign.Found) -> list[Any]:

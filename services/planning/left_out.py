@@ -24,12 +24,12 @@ TOLD_MAX = 3
 def assign_part(
     problem: AssignmentProblem,
     limits: Limits,
-    where: reasons.Places,
     all_of: Parts,
     unable: Mapping[int, str],
     remedies: Callable[[int], tuple[Remedy, ...]],
 ) -> Found:
-    """The best assignment of the part that leaves out least; none if nothing can be done.
+    """The best assignment of the part that leaves out least; none, with why each task is left out, if nothing
+    can be done.
 
     unable: why no vehicle can do a task at all; remedies: what would have to change so that one could.
     """
@@ -37,16 +37,27 @@ def assign_part(
     terms = [only(all_of.branches[k], kept) for k, kept in chosen.parts]
     made = restricted(problem, list(dict.fromkeys(term for term in terms if term is not None)))
     if not chosen.parts:
-        return Found(None, None)
+        return Found(None, None, left_out=_nothing(all_of, unable), sure=chosen.sure)
     nodes = None if limits.nodes is None else max(limits.nodes, PROBES)
-    found = mission_assign.assign(made, replace(limits, nodes=nodes), where)
+    found = mission_assign.assign(made, replace(limits, nodes=nodes))
     if found.assignment is None:
         return found
     done = set(found.assignment.branch.tasks)
     part = next(part for part in chosen.parts if part[1] == done)
-    left = _Reasons(all_of, part, unable, where, remedies).all()
+    left = _Reasons(all_of, part, unable, remedies).all()
     assignment = _numbered(found.assignment, made, problem)
     return replace(found, assignment=assignment, left_out=left, sure=chosen.sure)
+
+
+def _nothing(all_of: Parts, unable: Mapping[int, str]) -> tuple[LeftOut, ...]:
+    """Why each task of any branch cannot be done, where none can; remedies are not sought."""
+    found: dict[int, LeftOut] = {}
+    for k, branch in enumerate(all_of.branches):
+        if not found.keys() >= set(tasks(branch)) - all_of.flown:
+            part = k, all_of.flown
+            for one in _Reasons(all_of, part, unable, lambda _task: ()).all():
+                found.setdefault(one.task_id, one)
+    return tuple(found[task] for task in sorted(found))
 
 
 def _numbered(found: Assignment, made: AssignmentProblem, whole: AssignmentProblem) -> Assignment:
@@ -65,11 +76,10 @@ class _Reasons:
         all_of: Parts,
         part: Part,
         unable: Mapping[int, str],
-        where: reasons.Places,
         remedies: Callable[[int], tuple[Remedy, ...]],
     ) -> None:
         self.remedies = remedies
-        self.all_of, self.part, self.unable, self.where = all_of, part, unable, where
+        self.all_of, self.part, self.unable = all_of, part, unable
         self.branch = all_of.branches[part[0]]
         self.limit = all_of.asked + MORE
 
@@ -117,7 +127,7 @@ class _Reasons:
         need = all_of.needed(k, task)
         instead = tuple(t for t in tasks(self.branch) if t in clash - need)
         asked = all_of.question((k, clash))
-        said = reasons.timing_reasons(asked, all_of.solve((k, clash)), self.where)
+        said = reasons.timing_reasons(asked, all_of.solve((k, clash)))
         why = "; ".join(said[:TOLD_MAX])
         wayless = reasons.is_wayless(asked)
         remedies = () if wayless else (Remedy((TIME,), f"other times: {why}"),)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from cratous.core.assignment.problem import START, Assignment, Branch, Fixed, Placed
@@ -144,14 +143,11 @@ def limits_of(mission: Mission) -> Limits:
     return Limits(nodes=nodes, gap=mission.gap, width=WIDTH)
 
 
-def assign(problem: AssignmentProblem, limits: Limits, where: reasons.Places) -> Found:
-    """The best assignment within the limits. BadInput for a problem that means nothing.
-
-    where: says of a text of the relations in which file and line it stands.
-    """
+def assign(problem: AssignmentProblem, limits: Limits) -> Found:
+    """The best assignment within the limits. BadInput for a problem that means nothing."""
     found = solve(problem, limits)
     if found.cost is None:
-        return Found(None, None, reasons.timing_reasons(problem, found, where))
+        return Found(None, None, reasons.timing_reasons(problem, found))
     solution, certificate = certified(problem, found, solvers=False)
     verdict = verify(certificate)
     if verdict.wrong:
@@ -184,17 +180,3 @@ def parts_in(options: Sequence[Option], assignment: Assignment | None) -> Iterat
     for option in sorted((options[one.candidate] for one in placed), key=lambda o: o.task_id):
         if option.part is not None:
             yield option.part
-
-
-def places_in(mission: Mission) -> reasons.Places:
-    """Where a text of the relations stands in the mission's file, if it is still there."""
-
-    def where(text: str) -> str:
-        try:
-            lines = Path(mission.source).read_text(encoding="utf-8").splitlines()
-        except (OSError, UnicodeDecodeError):
-            return ""
-        found = [k for k, line in enumerate(lines, 1) if text in line]
-        return f"{mission.source}:{found[0]}" if found else ""
-
-    return where

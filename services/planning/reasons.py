@@ -6,7 +6,7 @@ of them there is a plan). A latest end is reported with the earliest end that th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from cratous.core.assignment.anytime import NONE
@@ -20,15 +20,6 @@ PROBES = 20_000
 ROWS_MAX = 60
 """So many rows are tried one by one; of more only the upper bounds are."""
 UPPER = (WITHIN_END, WITHIN_START, NOT_AFTER)
-Places = Callable[[str], str]
-"""Where a text of the relations stands, as `file:line`, or nothing."""
-
-
-def nowhere(_text: str) -> str:
-    """Nothing is known of files."""
-    return ""
-
-
 Question = tuple[bool | None, int | None]
 """(whether there is a schedule, None if that is not decided; the latest end of what was found)."""
 
@@ -100,9 +91,7 @@ def is_wayless(problem: AssignmentProblem) -> bool:
     return not questions.rows or questions.ask([])[0] is False
 
 
-def timing_reasons(
-    problem: AssignmentProblem, found: Solution, where: Places = nowhere
-) -> tuple[str, ...]:
+def timing_reasons(problem: AssignmentProblem, found: Solution) -> tuple[str, ...]:
     """Which rows clash, and what is left open if that is not certain."""
     questions = _Rows(problem)
     certain = found.status == "infeasible"
@@ -125,14 +114,14 @@ def timing_reasons(
         yes, _ = questions.ask([*trial, *keep])
         certain = certain and yes is not None
         lower = trial if yes is False else lower
-    said = [_sentence(questions, row, [*lower, *keep], where) for row in keep if row.kind in UPPER]
+    said = [_sentence(questions, row, [*lower, *keep]) for row in keep if row.kind in UPPER]
     if few:
-        said += [f"{_placed(row, where)}and {row.text}" for row in lower]
+        said += [f"and {row.text}" for row in lower]
     said += [] if certain or open_end else ["that these are the fewest is not certain"]
     return tuple(said) + open_end
 
 
-def _sentence(questions: _Rows, row: Row, keep: Sequence[Row], where: Places) -> str:
+def _sentence(questions: _Rows, row: Row, keep: Sequence[Row]) -> str:
     """What a latest end demands, and the earliest that its task can reach without it."""
     best, sure = questions.earliest_end(row.i, [other for other in keep if other is not row])
     got = "no schedule was found"
@@ -145,10 +134,4 @@ def _sentence(questions: _Rows, row: Row, keep: Sequence[Row], where: Places) ->
         what = "end" if row.kind == WITHIN_END else "start"
         names = ", ".join(f"task {task}" for task in row.group)
         bound = f"task {row.i} must end within {row.hi / 1000:.3f} s of the {what} of {names}"
-    return f"{_placed(row, where)}{bound} ({row.text}), but {got}"
-
-
-def _placed(row: Row, where: Places) -> str:
-    quoted = row.text.split("`")
-    place = where(quoted[1]) if len(quoted) > 2 else ""
-    return f"{place}: " if place else ""
+    return f"{bound} ({row.text}), but {got}"

@@ -9,7 +9,7 @@ from cratous.services.planning.inputs import Inputs
 
 
 def why_none(inputs: Inputs) -> tuple[str, ...]:
-    """What no vehicle can do or reach."""
+    """A sentence for each task that no vehicle can do or reach."""
     none = {
         task: f"no vehicle can do {_named(inputs, task)}: {why}"
         for task, why in without_options(inputs).items()
@@ -18,7 +18,7 @@ def why_none(inputs: Inputs) -> tuple[str, ...]:
         task: f"no vehicle can reach task {task}: {why}"
         for task, why in without_routes(inputs).items()
     }
-    return tuple((none or unreached).values())
+    return tuple(why for _, why in sorted({**unreached, **none}.items()))
 
 
 def unable(inputs: Inputs) -> dict[int, str]:

@@ -81,14 +81,61 @@ def test_limits_of_the_search_are_read(crossing) -> None:
     assert main(["plan", str(crossing("|(p1 p2)", "\nsearch: {gap: 2}\n"))]) == 2
 
 
-def test_what_clashes_is_named_with_file_and_line(crossing) -> None:
-    file = crossing("|(.(p1 p2))_[0-90000]")
-    line = 1 + file.read_text().splitlines().index('relations: "|(.(p1 p2))_[0-90000]"')
+@pytest.mark.parametrize(
+    ("relations", "why"),
+    [
+        (
+            "|(.(p1 p2))_[0-90000]",
+            ("must end by 90.000 s", "it must wait for what is not done: `.(p1 p2)`"),
+        ),
+        ("|(p1_[0-9000] p2_[0-8000])", ("must end by 9.000 s", "must end by 8.000 s")),
+        ("+(p1_[0-9000] p2_[0-8000])", ("must end by 9.000 s", "must end by 8.000 s")),
+    ],
+)
+def test_where_nothing_can_be_done_each_task_has_its_reason(
+    crossing, relations: str, why: tuple[str, ...]
+) -> None:
     with pytest.raises(NoPlan) as error:
-        make_plan(load(file))
+        make_plan(load(crossing(relations)))
     said = error.value.reasons
-    assert any(reason.startswith(f"{file}:{line}: task ") for reason in said), said
-    assert all("must end by 90.000 s" in r or r.split(": ")[1].startswith("and ") for r in said)
+    assert len(said) == len(why)
+    for number, (reason, part) in enumerate(zip(said, why, strict=True), 1):
+        assert reason.startswith(f"task {number} (")
+        assert part in reason
+
+
+@pytest.mark.parametrize(
+    "relations",
+    [
+        "|(p1_[0-9000] p2_[0-8000])",  # nothing can be done
+        "|(p1_[0-9000] p2)",  # one of the two
+    ],
+)
+def test_the_command_names_file_and_line(
+    crossing, relations: str, capsys: pytest.CaptureFixture
+) -> None:
+    file = crossing(relations)
+    line = 1 + file.read_text().splitlines().index(f'relations: "{relations}"')
+    assert main(["plan", str(file), "--allow-unproved"]) == 1
+    said = "".join(capsys.readouterr())
+    assert f"(`p1_[0-9000]` at {file}:{line}: p1 ends at " in said
+
+
+def test_planning_says_the_same_wherever_the_file_lies(crossing, tmp_path: Path) -> None:
+    """What the services say enters the log, and so its digest."""
+    text = crossing("|(p1_[0-9000] p2)").read_text(encoding="utf-8")
+    heard = []
+    for place in ("here", "there"):
+        (tmp_path / place).mkdir()
+        file = tmp_path / place / f"{place}.yaml"
+        file.write_text(text, encoding="utf-8")
+        mission, bus, said = load(file), Bus(lmcp.full_names), list[str]()
+        bus.tap(lambda envelope, said=said: said.append(lmcp.to_json(envelope.body)))
+        plan = make_plan(mission, bus)
+        file.unlink()  # nor does it matter whether it is still there
+        heard.append((plan, said))
+    assert heard[0] == heard[1]
+    assert any("must end by 9.000 s (`p1_[0-9000]`: " in one for one in heard[0][1])
 
 
 def test_the_command_writes_what_the_other_checks(

@@ -115,6 +115,17 @@ def test_an_impossible_mission_says_why() -> None:
     assert "cratous-" not in found["why"][0], "no path of a machine"
 
 
+def test_a_result_is_the_same_in_any_folder() -> None:
+    """Reasons quote the relations; the folder that a run is flown in is no part of what comes of it."""
+    (run,) = made({"kind": "head_on"}, range(3, 4))
+    mission = run.decides["mission"] + "\nrelations: p1_[0-1000]\n"
+    one, two = (fly_run({**run.decides, "mission": mission}) for _ in range(2))
+    assert one == two
+    assert one["kind"] == "no plan"
+    assert "`p1_[0-1000]`" in one["why"][0]
+    assert "mission.yaml" not in one["why"][0]
+
+
 def test_one_flies_alone_to_the_same_digest(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

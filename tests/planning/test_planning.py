@@ -202,6 +202,12 @@ def test_a_task_that_nobody_can_do_is_named_with_each_reason():
     assert "task 9 (t9)" in error.value.reasons[0]
     assert "vehicle 1: it has no camera for wavelength SWIR" in error.value.reasons[0]
     assert "vehicle 2" in error.value.reasons[0]
+    # what waits for it is named as well, where nothing else is asked for
+    with pytest.raises(NoPlan) as error:
+        make_plan(mission((FOUR[0], infrared), blind, relations=".(p9 p1)"))
+    one, two = error.value.reasons
+    assert one.startswith("no vehicle can do task 9")
+    assert two.startswith("task 1 (it must wait for what is not done: `.(p9 p1)`")
 
 
 def test_a_task_behind_a_wall_is_named_with_the_zone():
