@@ -15,7 +15,8 @@ PIECE_S = 0.5
 
 class Ability(NamedTuple):
     """What an airframe can do: turn rate [rad/s] at its present speed, speeds [m/s], climb [m/s],
-    acceleration [m/s2], and the lowest altitude that a manoeuvre may use [m MSL]."""
+    acceleration [m/s2], the lowest altitude that a manoeuvre may use [m MSL], and for how long at most the
+    autopilot holds one heading in a turn [s]."""
 
     turn_rate_rad_s: float
     min_speed_m_s: float
@@ -23,6 +24,7 @@ class Ability(NamedTuple):
     max_climb_m_s: float
     acceleration_m_s2: float
     floor_m: float
+    step_s: float = PIECE_S
 
 
 class Motion(NamedTuple):

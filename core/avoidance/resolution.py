@@ -3,7 +3,7 @@
 Candidates: headings to the left and right of the course in steps of 5 degrees, flown with the
 real turn rate; if none is free of conflict, level changes (climb or descend past the intruder's
 layer) and changes of speed, also together with turns. Each piece of each candidate is checked
-against every intruder by `violation_within` and against every zone by `leg_ok`. The one that
+against every intruder by `violation_within` and against every zone by `leg_keeps`. The one that
 deviates least from the course wins (ties to the right); a manoeuvre already begun is kept as long
 as it holds, unless one that is nearer to the course by more than 10 degrees has become free.
 When none holds, the one whose first violation is latest is flown, and the choice says so.
@@ -15,9 +15,10 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from cratous.core.avoidance.drift import NONE, Drift, drift_of
 from cratous.core.avoidance.manoeuvre import Ability, Motion, fly_to, smallest_turn
 from cratous.core.avoidance.prediction import Intruder, Piece, after, first_violation_s, violated_s
-from cratous.core.geofence.mission_legs import leg_ok
+from cratous.core.geofence.clearance import leg_keeps
 from cratous.core.kernel import driver
 from cratous.spec.mission import WellClear, Zone
 
@@ -50,16 +51,20 @@ class Scene(NamedTuple):
     lookahead_s: float
 
 
-@driver(checked_by=("keep_out_leg_ok", "keep_in_leg_ok"))
-def first_zone_s(pieces: Sequence[Piece], zones: Sequence[Zone], chunk_s: float) -> float | None:
-    """When the first zone is broken [s], or None; early by at most chunk_s on a long piece."""
+@driver(checked_by=("keep_out_leg_ok", "keep_in_leg_ok", "locate", "comes_within"))
+def first_zone_s(
+    pieces: Sequence[Piece], zones: Sequence[Zone], chunk_s: float, drift: Drift = NONE
+) -> float | None:
+    """When the first zone is broken [s], or may be where the flown way is off by the drift, or None; early by at
+    most chunk_s on a long piece."""
     for piece in pieces:
         t = 0.0
         while t < piece.duration_s:
             step = min(chunk_s, piece.duration_s - t)
             p, q = after(piece, t), after(piece, t + step)
+            aside_m = drift.aside_m(piece.start_s + t + step)
             for zone in zones:
-                if not leg_ok(p, q, zone):
+                if not leg_keeps(p, q, zone, aside_m, aside_m * drift.rise_m_per_m):
                     return piece.start_s + t
             t += step
     return None
@@ -77,7 +82,11 @@ def turn_back_s(now: Motion, ability: Ability) -> float:
     return (math.pi + 1) / ability.turn_rate_rad_s
 
 
-@driver(checked_by=("violation_within", "violation", "keep_out_leg_ok", "keep_in_leg_ok"))
+@driver(
+    checked_by=(
+        "violation_within", "violation", "keep_out_leg_ok", "keep_in_leg_ok", "locate", "comes_within",
+    )
+)  # fmt: skip
 def resolve(
     now: Motion,
     ability: Ability,
@@ -88,21 +97,29 @@ def resolve(
 ) -> Choice:
     """The manoeuvre to fly now, at speed_m_s if it can be; `held` is the one flown until now.
 
-    A heading that is free of traffic over the whole look-ahead but meets a zone in it is used
-    when no heading is free of both and the zone is farther than a half circle takes to fly:
-    the choice is renewed long before.
+    Free of zones is a heading that keeps the drift of its turn from them. One that is free of traffic over the whole
+    look-ahead but meets a zone in it is used when no heading is free of both and the zone is farther
+    than a half circle takes to fly: the choice is renewed long before. Where there is no such heading
+    either, the vehicle is near a zone already: the zone itself counts then, without drift.
     """
     near_s = turn_back_s(now, ability)
     fallback: tuple[tuple[float, float], Choice] | None = None
     later: Choice | None = None
+    close: Choice | None = None
     for candidate in _candidates(now, ability, scene, course_rad, speed_m_s, held):
         pieces = _pieces(now, ability, candidate, scene.lookahead_s)
         traffic_s = first_conflict_s(pieces, scene)
-        zone_s = first_zone_s(pieces, scene.zones, near_s) if scene.zones else None
+        drift = drift_of(now, ability, *candidate[1:4])
+        zone_s = first_zone_s(pieces, scene.zones, near_s, drift) if scene.zones else None
         if traffic_s is None and zone_s is None:
             return candidate._replace(clear=True)
         if traffic_s is None and zone_s is not None and zone_s >= near_s:
             later = later or candidate._replace(clear=True, first_violation_s=None)
+            continue
+        if zone_s is not None:
+            zone_s = first_zone_s(pieces, scene.zones, near_s)
+        if traffic_s is None and (zone_s is None or zone_s >= near_s):
+            close = close or candidate._replace(clear=True, first_violation_s=None)
             continue
         first = min(t for t in (traffic_s, zone_s) if t is not None)
         lost = 0.0
@@ -112,20 +129,11 @@ def resolve(
         rank = (-1.0 if zone_s is not None and zone_s < near_s else first, -lost)
         if fallback is None or rank > fallback[0]:
             fallback = (rank, candidate._replace(first_violation_s=first))
-    if later is not None:
-        return later
+    found = later or close
+    if found is not None:
+        return found
     assert fallback is not None, "there is always a candidate"
     return fallback[1]
-
-
-@driver(checked_by=("violation_within", "keep_out_leg_ok", "keep_in_leg_ok"))
-def is_clear(now: Motion, ability: Ability, scene: Scene, choice: Choice) -> bool:
-    """True iff a manoeuvre, flown from now on, is free of conflict over the look-ahead."""
-    pieces = _pieces(now, ability, choice, scene.lookahead_s)
-    if first_conflict_s(pieces, scene) is not None:
-        return False
-    zone_s = first_zone_s(pieces, scene.zones, turn_back_s(now, ability))
-    return zone_s is None or zone_s >= turn_back_s(now, ability)
 
 
 def _pieces(now: Motion, ability: Ability, choice: Choice, horizon_s: float) -> tuple[Piece, ...]:

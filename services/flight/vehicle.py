@@ -167,6 +167,7 @@ class VehicleNode:
             limits.max_climb_m_s,
             MAX_ACCELERATION_M_S2,
             self.floor_m,
+            self.dt_s,
         )
         motion = Motion(air.position, air.heading_rad, air.speed_m_s, air.climb_m_s)
         seen = traffic_picture(self.vehicle.id, message)

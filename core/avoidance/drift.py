@@ -1,0 +1,54 @@
+"""How far the flown way may be off the predicted one, from speed, turn and turn rate.
+
+A predicted turn is made of pieces with one heading each, the mean. The vehicle's heading is, at any instant of
+a piece, between those at its two ends, but where between is the autopilot's: one that turns at the
+beginning of each of its steps is ahead by up to a step. So a piece of T s in which the heading turns by r adds at most
+v T r / 2 to the distance, and a turn by theta at most v T theta / 2: it grows with the heading turned,
+and stays as it is on the straight way after the turn. Where the speed changes in the turn the radius v^2 / (g tan
+bank) does too, which adds the difference of the radii for each radian. A prediction that is made anew in the turn
+owes only what is still to be turned, so one that was kept clear by this margin remains so.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from cratous.core.avoidance.manoeuvre import PIECE_S, Ability, Motion, smallest_turn
+
+
+class Drift(NamedTuple):
+    """turn_rad: of the whole turn; turn_rate_rad_s: how fast it is flown; m_per_rad: by how much the flown way may be
+    off for each radian that is turned; rise_m_per_m: how far off in height for each metre."""
+
+    turn_rad: float
+    turn_rate_rad_s: float
+    m_per_rad: float
+    rise_m_per_m: float
+
+    def aside_m(self, at_s: float) -> float:
+        """How far aside of the predicted way the vehicle may be until at_s [s from the start of the turn]."""
+        return self.m_per_rad * min(self.turn_rad, self.turn_rate_rad_s * at_s)
+
+
+NONE = Drift(0.0, 0.0, 0.0, 0.0)
+"""Flown as it is predicted."""
+
+
+def drift_of(
+    now: Motion,
+    ability: Ability,
+    heading_rad: float,
+    speed_m_s: float,
+    climb_m_s: float,
+) -> Drift:
+    """The drift of a turn to a heading [rad] with a change of speed [m/s] and a climb [m/s], as `fly_to`
+    predicts it."""
+    slow, fast = sorted((now.speed_m_s, speed_m_s))
+    radius_m = now.speed_m_s / ability.turn_rate_rad_s
+    wider_m = radius_m * abs((speed_m_s / now.speed_m_s) ** 2 - 1)
+    return Drift(
+        abs(smallest_turn(now.heading_rad, heading_rad)),
+        ability.turn_rate_rad_s,
+        fast * max(PIECE_S, ability.step_s) / 2 + wider_m,
+        abs(climb_m_s) / slow if climb_m_s else 0.0,
+    )
