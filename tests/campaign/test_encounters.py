@@ -167,7 +167,7 @@ def test_a_kind_and_a_duration_are_another_run(tmp_path: Path) -> None:
     assert len(names) == 3
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_number_of_workers_changes_nothing_and_what_is_stored_is_not_flown_again(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

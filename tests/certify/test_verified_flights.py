@@ -125,6 +125,7 @@ EXCUSES: dict[str, tuple[Edit, str]] = {
 }
 
 
+@pytest.mark.long
 def test_an_excuse_is_verified_by_its_evidence_and_never_a_pass(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -367,7 +367,7 @@ def test_waterway(run: Run, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("last", [6, pytest.param(50, marks=pytest.mark.long)])
+@pytest.mark.parametrize("last", [3, pytest.param(50, marks=pytest.mark.long)])
 def test_every_variant_of_the_crossing_is_avoided(run: Run, last: int) -> None:
     code, out, _ = run("run", CROSSING, "--seeds", f"1-{last}", "--allow-unproved", "--json")
     found = json.loads(out)

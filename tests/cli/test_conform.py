@@ -258,7 +258,7 @@ def test_published_polygon_vectors(shared: Path, number: int):
     assert report.skipped == {"moving2d": 100, "moving3d": 50, "recovery2d": 20}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["adversarial-202", "random-101"])
 def test_polygons_that_others_get_wrong(shared: Path, name: str):
     file = shared / "vectors" / "polycarp" / f"open-wrong-{name}.jsonl.gz"

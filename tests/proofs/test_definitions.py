@@ -289,7 +289,10 @@ def test_what_is_no_formula_is_not_compared() -> None:
         # of a fold without a finish the accumulator is the result
         ("geofence_boundary_verdict_is_its_definition", "boundary_against", "geofence.against", "together"),
         # a table of numbers, evaluated while it is stated
-        ("contracts_tasks_move_as_the_table_says", "task_step", "contracts.tasks.row", "together"),
+        pytest.param(
+            "contracts_tasks_move_as_the_table_says", "task_step", "contracts.tasks.row", "together",
+            marks=pytest.mark.long,
+        ),
     ],
 )  # fmt: skip
 def test_what_is_related(theorem: str, kernel: str, meant: str, how: str) -> None:

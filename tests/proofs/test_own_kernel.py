@@ -218,7 +218,7 @@ def test_a_package_that_is_none_is_bad_input(tmp_path: Path, root: Path) -> None
     assert "no theorems" in done.stderr
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_faults_of_the_package_s_kernel_are_looked_for(package: Path, root: Path) -> None:
     """Mutation judges the package's functions by its theorems, and leaves the product's record."""
     record = root / "proofs" / "mutation.json"

@@ -123,6 +123,7 @@ def test_a_contradiction_of_the_second_solver_fails(
     assert "1 contradicted" in out
 
 
+@pytest.mark.long
 def test_mutation_is_reported(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
     result = mutate.Result("f", "kernel", "op", "core/x.py:1", "a -> b", "survived")
     asked, kept = [], []

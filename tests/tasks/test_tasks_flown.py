@@ -108,7 +108,7 @@ def test_an_area_whose_footprints_miss_a_part_is_not_served() -> None:
     assert verdict.margin < -1
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_example_is_flown_and_every_search_covered(tmp_path: Path) -> None:
     of = load(EXAMPLE)
     plan = make_plan(of)
