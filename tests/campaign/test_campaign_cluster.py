@@ -94,6 +94,7 @@ def test_a_killed_worker_costs_an_attempt_and_no_byte(tmp_path: Path) -> None:
     assert course.lost >= 1, "the attempt of the killed worker is told"
 
 
+@pytest.mark.long
 def test_the_scheduler_gone_leaves_what_is_stored(tmp_path: Path) -> None:
     file = written(tmp_path, {"plain": "sleep"}, VARIED)
     killed: list[int] = []

@@ -63,7 +63,7 @@ def gone(pid: int) -> bool:
         return True
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="no /proc")
 def test_it_goes_on_after_kill_9(
     tmp_path: Path, root: Path, monkeypatch: pytest.MonkeyPatch

@@ -66,6 +66,7 @@ def test_one_that_ends_is_named_with_its_exit_code_and_last_lines(tmp_path: Path
             children.watch()
 
 
+@pytest.mark.long
 def test_none_stays_not_even_one_that_does_not_listen(tmp_path: Path) -> None:
     with Children(tmp_path, tmp_path) as children:
         pids = [simulator(children, tmp_path, name) for name in ("one", "two")]
