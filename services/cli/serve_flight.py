@@ -1,13 +1,9 @@
-"""The process in which `cratous serve MISSION` flies: commands on its stdin, what is new on its stdout.
-
-Both are JSON, one object a line. When stdin ends, whoever started it is gone, and it ends too.
-"""
+"""The process in which `cratous serve MISSION` flies: commands on its stdin, what is new on its stdout."""
 
 from __future__ import annotations
 
 import json
 import os
-import signal
 import sys
 import threading
 from contextlib import suppress
@@ -15,29 +11,21 @@ from pathlib import Path
 from typing import Any
 
 from cratous.services.cli.job import Settings, folder_name, run_mission
+from cratous.services.cli.json_lines import end_main_thread, told_on_stdout
 from cratous.services.cli.stopping import Stopped, stoppable
 from cratous.services.ground_station.live_flight import LiveFlight, forward
 from cratous.services.ground_station.pace import Ended
 from cratous.services.results.folder import results_folder
 from cratous.spec.errors import BadInput, CratousError
-from cratous.spec.files.printable import json_text
 
 
 def main(asked: dict[str, Any]) -> int:
     """Fly a mission. asked: path, seed, out, and what `Settings` takes; returns the exit code."""
-    out, writing = os.dup(1), threading.Lock()
-    os.dup2(2, 1)  # whatever else prints does not come between the lines
-
-    def send(update: dict[str, Any]) -> None:
-        data = json_text(update).encode() + b"\n"
-        with writing:
-            while data:
-                data = data[os.write(out, data) :]
+    send = told_on_stdout()
 
     def status(state: str, **more: Any) -> None:
         send({"status": {"state": state, **more}})
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who started this
     with suppress(BrokenPipeError):  # who started this is gone: there is nobody to tell
         try:
             with stoppable():
@@ -93,8 +81,7 @@ def _commands(live: LiveFlight) -> None:
                     break
                 live.command(asked)
     finally:
-        # to the main thread, which wakes up even where it waits; first, so that it interrupts no cleaning up
-        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGTERM)
+        end_main_thread()  # first, so that it interrupts no cleaning up
         # the signal may meet the flight where Python drops what it raises, as within a fork
         live.pace.end()
 

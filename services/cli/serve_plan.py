@@ -1,56 +1,54 @@
-"""The process in which a mission is planned for the page: what to plan on its stdin, what comes of it on its
-stdout.
-
-Both are JSON, one object a line. When stdin ends, whoever started it is gone, and it ends too.
-"""
+"""The process in which a mission is planned for the page: what to plan, then whose reasons, on its stdin;
+what comes of it on its stdout."""
 
 from __future__ import annotations
 
 import json
-import os
-import signal
 import sys
 import threading
-from collections.abc import Callable
+from contextlib import suppress
+from queue import SimpleQueue
 from typing import Any
 
+from cratous.services.cli.json_lines import Tell, end_main_thread, told_on_stdout
 from cratous.services.cli.stopping import Stopped, stoppable
-from cratous.spec.errors import BadInput, CratousError
-from cratous.spec.files.printable import json_text
+from cratous.spec.errors import CratousError
 
-Tell = Callable[[dict[str, Any]], None]
+Asked = SimpleQueue[dict[str, Any]]
 
 
 def main() -> int:
     """Plan, then say why, until stdin ends; returns the exit code."""
-    out, writing = os.dup(1), threading.Lock()
-    os.dup2(2, 1)  # whatever else prints does not come between the lines
+    tell, asked = told_on_stdout(), Asked()
+    with suppress(BrokenPipeError):  # who started this is gone: there is nobody to tell
+        try:
+            with stoppable():
+                threading.Thread(target=_listen, args=(asked,), daemon=True).start()
+                _plan(asked, tell)
+        except Stopped:
+            pass
+        except CratousError as error:
+            tell({"state": "failed", "text": str(error)})
+            return 2
+    return 1
 
-    def tell(what: dict[str, Any]) -> None:
-        data = json_text(what).encode() + b"\n"
-        with writing:
-            while data:
-                data = data[os.write(out, data) :]
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who started this
+def _listen(asked: Asked) -> None:
+    """Take what is asked; a search ends with whoever asked for it."""
     try:
-        with stoppable():
-            _plan(json.loads(sys.stdin.readline()), tell)
-    except (Stopped, BrokenPipeError):
-        return 1
-    except CratousError as error:
-        told = error.data() if isinstance(error, BadInput) else {"error": str(error)}
-        tell({"state": "failed", "text": str(error), "error": told})
-        return 2
-    return 0
+        for line in sys.stdin:
+            asked.put(json.loads(line))
+    finally:
+        end_main_thread()
 
 
-def _plan(asked: dict[str, Any], tell: Tell) -> None:
+def _plan(asked: Asked, tell: Tell) -> None:
     from cratous.services.certify.verdicts import constraint_rows
     from cratous.services.loading.document import parse_document
     from cratous.services.loading.yaml_mission import loaded
 
-    mission = loaded(parse_document(asked["text"], asked["where"]))
+    first = asked.get()
+    mission = loaded(parse_document(first["text"], first["where"]))
     tell({"text": "holding the code against its proofs"})
 
     from cratous.core import ledger
@@ -65,7 +63,7 @@ def _plan(asked: dict[str, Any], tell: Tell) -> None:
     from cratous.services.logs.records import to_data
     from cratous.spec.mission.guarantees import exit_code
 
-    standing = ledger.require(allow_unproved=asked["allow_unproved"])
+    standing = ledger.require(allow_unproved=first["allow_unproved"])
     bus = new_bus()
 
     def at(text: str, done: int, of: int) -> None:
@@ -86,15 +84,15 @@ def _plan(asked: dict[str, Any], tell: Tell) -> None:
             "exit_code": 3 if standing.problems and code == 0 else code,
         }
     )
-    _answer(mission, made, tell)
+    _answer(mission, made, asked, tell)
 
 
-def _answer(mission: Any, made: Any, tell: Tell) -> None:
+def _answer(mission: Any, made: Any, asked: Asked, tell: Tell) -> None:
     """Say why a task is given to its vehicle, whenever that is asked."""
     from cratous.services.cli.plan import reasons_of, why_lines
 
-    for line in sys.stdin:
-        task = json.loads(line)["why"]
+    while True:
+        task = asked.get()["why"]
         if all(item.task_id != task for item in made.items):
             tell({"why": {str(task): [f"task {task} is not in the plan"]}})
             continue

@@ -5,13 +5,11 @@ from __future__ import annotations
 import hmac
 import json
 import secrets
-import subprocess
-import sys
 import threading
 import time
-from contextlib import suppress
 from typing import Any
 
+from cratous.services.ground_station.json_process import JsonProcess
 from cratous.services.ground_station.pace import RATES
 from cratous.spec.errors import BadInput
 
@@ -46,36 +44,21 @@ class LiveSession:
         self._begin: dict[str, Any] | None = None
         self._changed = threading.Condition()
         self._operator, self._seen_s = "", 0.0
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", module, json.dumps(asked)],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, encoding="utf-8",
-        )  # fmt: skip
-        threading.Thread(target=self._listen, daemon=True).start()
+        self._process = JsonProcess(module, self._heard, self._ended, json.dumps(asked))
 
-    @property
-    def pid(self) -> int:
-        """Of the process that flies."""
-        return self._process.pid
+    def _heard(self, told: dict[str, Any], line: str) -> None:
+        with self._changed:
+            if "begin" in told:
+                self._begin = told["begin"]
+            elif "status" in told:
+                self.status = {**self.status, **told["status"]}
+            else:
+                self._updates.append(line)
+            self._changed.notify_all()
 
-    def _listen(self) -> None:
-        assert self._process.stdout is not None
-        for line in self._process.stdout:
-            try:
-                told = json.loads(line)
-            except ValueError:
-                break  # it was cut off in the middle of a line
-            with self._changed:
-                if "begin" in told:
-                    self._begin = told["begin"]
-                elif "status" in told:
-                    self.status = {**self.status, **told["status"]}
-                else:
-                    self._updates.append(line)
-                self._changed.notify_all()
-        code = self._process.wait()
+    def _ended(self, how: str) -> None:
         with self._changed:
             if self.status["state"] not in OVER:
-                how = f"signal {-code}" if code < 0 else f"exit code {code}"
                 self.status = {
                     **self.status, "state": "lost",
                     "text": f"The process that flies ended without a word ({how}). What is shown is "
@@ -140,21 +123,8 @@ class LiveSession:
             raise NotObeyed(409, "another page commands this flight")
         if self.status["state"] in OVER:
             raise NotObeyed(409, "the flight is over")
-        self._say({key: asked[key] for key in ("do", "rate") if key in asked})
-
-    def _say(self, asked: dict[str, Any]) -> None:
-        assert self._process.stdin is not None
-        with self._changed, suppress(OSError, ValueError):  # gone: `_listen` says so
-            self._process.stdin.write(json.dumps(asked) + "\n")
-            self._process.stdin.flush()
+        self._process.say({key: asked[key] for key in ("do", "rate") if key in asked})
 
     def close(self) -> None:
         """End the process if it flies; a flight that is not over leaves no results."""
-        assert self._process.stdin is not None
-        with self._changed, suppress(OSError):
-            self._process.stdin.close()
-        try:
-            self._process.wait(ENDING_S)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
+        self._process.end(ENDING_S)

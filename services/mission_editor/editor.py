@@ -43,6 +43,7 @@ class Editor:
         self._path, self._module, self._allow_unproved = path, module, allow_unproved
         self.token = secrets.token_urlsafe(24)
         self._plan: PlanProcess | None = None
+        self._plans = 0
         self._lock = threading.Lock()
         self._read()
         named: dict[str, Callable[[dict[str, Any]], dict[str, Any]]] = {
@@ -76,7 +77,7 @@ class Editor:
         }
 
     def planned(self) -> dict[str, Any]:
-        """How planning is, and what came of it."""
+        """How planning is, and what came of it; plan_number: which plan this is."""
         with self._lock:
             return {"state": "none"} if self._plan is None else self._plan.told()
 
@@ -110,31 +111,40 @@ class Editor:
         raise NotObeyed(400, "expected do: add, move, put or remove")
 
     def _start(self, asked: dict[str, Any]) -> dict[str, Any]:
-        """Plan a text; a plan that is being made is given up."""
+        """Plan a text; a plan that is being made, of whatever page, is given up. plan_number: of this plan."""
         told = {
             "text": _text(asked), "where": str(self._path), "allow_unproved": self._allow_unproved,
         }  # fmt: skip
         with self._lock:
-            before, self._plan = self._plan, PlanProcess(self._module, told)
+            self._plans += 1
+            number, before = self._plans, self._plan
+            self._plan = PlanProcess(self._module, number, told)
         if before is not None:
             before.end()
-        return {"done": True}
+        return {"plan_number": number}
+
+    def _of(self, asked: dict[str, Any]) -> PlanProcess:
+        """The plan with the number that is asked for, if it is the newest one."""
+        number = asked.get("plan_number")
+        if type(number) is not int:
+            raise NotObeyed(400, "expected plan_number: that of a plan")
+        with self._lock:
+            if self._plan is None or number != self._plans:
+                raise NotObeyed(409, "there is no such plan any more: plan again")
+            return self._plan
 
     def _stop(self, asked: dict[str, Any]) -> dict[str, Any]:
-        with self._lock:
-            plan = self._plan
-        if plan is None or plan.told()["state"] != "planning":
+        plan = self._of(asked)
+        if plan.told()["state"] != "planning":
             raise NotObeyed(409, "nothing is being planned")
         plan.end()
         return {"done": True}
 
     def _why(self, asked: dict[str, Any]) -> dict[str, Any]:
-        with self._lock:
-            plan = self._plan
         task = asked.get("task")
         if type(task) is not int:
             raise NotObeyed(400, "expected task: its id")
-        if plan is None or not plan.why(task):
+        if not self._of(asked).why(task):
             raise NotObeyed(409, "there is no plan")
         return {"done": True}
 

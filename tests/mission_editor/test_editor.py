@@ -2,40 +2,32 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from ground_station_tools import LIMIT_S, Served, ask, editing
+from ground_station_tools import LIMIT_S, Served, ask
 
 from cratous.services.exporting.exported import FORMATS, exported
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded
 
-CROSSING = Path(__file__).resolve().parents[2] / "examples/crossing/mission.yaml"
-
-
-@pytest.fixture
-def mission(tmp_path: Path) -> Path:
-    path = tmp_path / "mission.yaml"
-    path.write_text(CROSSING.read_text(encoding="utf-8"), encoding="utf-8")
-    return path
-
-
-@pytest.fixture
-def editor(mission: Path) -> Iterator[Served]:
-    with editing(mission) as served:
-        yield served
-
 
 def opened(editor: Served) -> Any:
     return ask(editor.port, "/recording.json").data()
+
+
+def plan(editor: Served, text: str) -> int:
+    """The number of the plan that is begun."""
+    begun = editor.edit("/plan", text=text)
+    assert begun.status == 200
+    return int(begun.data()["plan_number"])
 
 
 def planned(editor: Served, *states: str) -> Any:
@@ -77,8 +69,10 @@ def test_bad_changes_are_refused_with_what_and_where(editor: Served, mission: Pa
         assert editor.edit("/change", text=text, **asked).status == 400
     assert editor.edit("/change", do="put").status == 400
     assert editor.edit("/relations", text="p1", tasks="all").status == 400
-    assert editor.edit("/why", task=1).status == 409
-    assert editor.edit("/stop").status == 409
+    assert editor.edit("/why", task=1, plan_number=1).status == 409
+    assert editor.edit("/stop", plan_number=0).status == 409
+    assert editor.edit("/stop").status == 400
+    assert editor.edit("/why", task=1).status == 400
     assert mission.read_text(encoding="utf-8") == text
 
 
@@ -120,13 +114,13 @@ def test_what_cannot_be_exported_is_refused(editor: Served) -> None:
 @pytest.mark.slow
 def test_a_text_is_planned_as_cratous_plan_does_and_says_why(editor: Served) -> None:
     text = opened(editor)["text"].replace("east_m: 2500, alt_m", "east_m: 2600, alt_m")
-    assert editor.edit("/plan", text=text).status == 200
+    number = plan(editor, text)
     told = planned(editor, "planned", "failed")
     assert told["state"] == "planned", told
     assert {(i["task_id"], i["vehicle_id"]) for i in told["plan"]["items"]} == {(1, 1), (2, 2)}
     assert told["exit_code"] == 0
     assert any(row["item"] == "eligibility: task 1" for row in told["constraints"])
-    assert editor.edit("/why", task=2).status == 200
+    assert editor.edit("/why", task=2, plan_number=number).status == 200
     until_s = time.monotonic() + LIMIT_S
     while "2" not in (why := ask(editor.port, "/planned.json").data()["why"]):
         assert time.monotonic() < until_s
@@ -138,11 +132,11 @@ def test_a_text_is_planned_as_cratous_plan_does_and_says_why(editor: Served) -> 
 @pytest.mark.slow
 def test_a_text_that_is_wrong_or_impossible_says_so(editor: Served) -> None:
     text = opened(editor)["text"]
-    editor.edit("/plan", text=text.replace("eligible: [2]", "eligible: [7]"))
+    plan(editor, text.replace("eligible: [2]", "eligible: [7]"))
     told = planned(editor, "failed")
     assert "7" in told["text"]
     late = text.replace('relations: "|(p1 p2)"', 'relations: "|(p1 p2)_[0-1000]"')
-    editor.edit("/plan", text=late)
+    plan(editor, late)
     told = planned(editor, "planned", "failed")
     assert told["state"] == "failed" or told["exit_code"] == 1
     assert "1.000 s" in str(told)
@@ -151,18 +145,65 @@ def test_a_text_that_is_wrong_or_impossible_says_so(editor: Served) -> None:
 @pytest.mark.slow
 def test_planning_is_stopped_and_a_planner_that_dies_is_told(editor: Served) -> None:
     text = opened(editor)["text"]
-    editor.edit("/plan", text=text)
-    assert editor.edit("/stop").status == 200
+    assert editor.edit("/stop", plan_number=plan(editor, text)).status == 200
     assert planned(editor, "stopped")["text"] == "Planning was stopped."
-    editor.edit("/plan", text=text)
+    plan(editor, text)
     (child,) = editor.children()
     os.kill(child, signal.SIGKILL)
     assert "ended without a word (signal 9)" in planned(editor, "failed")["text"]
 
 
 @pytest.mark.slow
+def test_the_plan_of_another_page_is_told_apart(editor: Served) -> None:
+    text = opened(editor)["text"]
+    first, second = plan(editor, text), plan(editor, text.replace("east_m: 2500", "east_m: 2600"))
+    assert planned(editor, "planned")["plan_number"] == second != first
+    for path in ("/stop", "/why"):
+        old = editor.edit(path, task=2, plan_number=first)
+        assert (old.status, "no such plan any more" in old.data()["error"]) == (409, True)
+
+
+@pytest.mark.slow
+def test_who_asks_a_planner_that_dies_is_told(editor: Served) -> None:
+    number = plan(editor, opened(editor)["text"])
+    planned(editor, "planned")
+    (child,) = editor.children()
+    os.kill(child, signal.SIGSTOP)
+    assert editor.edit("/why", task=2, plan_number=number).status == 200
+    os.kill(child, signal.SIGKILL)
+    until_s = time.monotonic() + LIMIT_S
+    while "2" not in (told := ask(editor.port, "/planned.json").data())["why"]:
+        assert time.monotonic() < until_s
+        time.sleep(0.05)
+    assert "ended without a word (signal 9)" in told["why"]["2"][0]
+    assert editor.edit("/why", task=2, plan_number=number).status == 409
+
+
+def test_a_search_ends_with_who_asked_for_it(mission: Path) -> None:
+    asked = {"text": mission.read_text(encoding="utf-8"), "where": "typed", "allow_unproved": True}
+    searching = """import sys, time
+from cratous.services.cli import job, serve_plan
+job.plan_and_check = lambda *_: (print("searching", file=sys.stderr, flush=True), time.sleep(600))
+sys.exit(serve_plan.main())"""
+    with subprocess.Popen(
+        [sys.executable, "-c", searching], stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE, text=True,
+    ) as running:  # fmt: skip
+        try:
+            assert running.stdin is not None
+            assert running.stderr is not None
+            running.stdin.write(json.dumps(asked) + "\n")
+            running.stdin.flush()
+            assert any("searching" in line for line in running.stderr)
+            running.stdin.close()
+            assert running.wait(LIMIT_S) == 1
+        finally:
+            running.kill()
+
+
+@pytest.mark.slow
 def test_what_plans_ends_with_the_server(editor: Served) -> None:
-    editor.edit("/plan", text=opened(editor)["text"])
+    plan(editor, opened(editor)["text"])
     planned(editor, "planned")
     (child,) = editor.children()
     editor.process.kill()

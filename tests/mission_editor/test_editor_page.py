@@ -9,24 +9,10 @@ from pathlib import Path
 
 import pytest
 from chromium_tools import Page, browsing
-from ground_station_tools import Served, editing
+from ground_station_tools import Served
 
-CROSSING = Path(__file__).resolve().parents[2] / "examples/crossing/mission.yaml"
 TEXT = "document.getElementById('text').value"
 pytestmark = pytest.mark.slow
-
-
-@pytest.fixture
-def mission(tmp_path: Path) -> Path:
-    path = tmp_path / "mission.yaml"
-    path.write_text(CROSSING.read_text(encoding="utf-8"), encoding="utf-8")
-    return path
-
-
-@pytest.fixture
-def editor(mission: Path) -> Iterator[Served]:
-    with editing(mission) as served:
-        yield served
 
 
 @pytest.fixture
@@ -113,6 +99,63 @@ def test_a_keep_out_is_drawn_and_the_mission_planned_anew(page: Page, mission: P
     assert page.text("plan-state").startswith("Of an earlier text: ")
     page.click("#redo")
     page.until(f"{TEXT}.includes('kind: keep_out')")
+    assert page.text("plan-state") == state
+
+
+def test_a_plan_of_another_page_is_not_shown_as_its_own(page: Page, editor: Served) -> None:
+    page.click("#plan")
+    page.until("document.getElementById('plan-state').textContent !== 'Planning: starting'")
+    other = page.value(TEXT).replace("east_m: 2500", "east_m: 2600")
+    editor.edit("/plan", text=other)
+    said = "Another page planned its text before this plan was made: plan again."
+    page.until(f"document.getElementById('plan-state').textContent === {said!r}")
+    page.click("#plan")
+    page.until("document.querySelectorAll('#gantt .bar').length === 2")
+    state = page.text("plan-state")
+    editor.edit("/plan", text=other)
+    # what it has stays, and its reasons are not those of the other plan
+    page.value(
+        "document.querySelector('#gantt .bar[data-task=\"2\"]').dispatchEvent(new Event('click'))"
+    )
+    page.until("document.getElementById('saved').textContent.includes('no such plan any more')")
+    assert page.text("plan-state") == state
+    assert page.text("why") == ""
+
+
+def test_a_plan_of_kernels_without_proof_says_so(page: Page) -> None:
+    page.value(
+        "(ask => { window.fetch = async (path, ...more) => { const got = await ask(path, ...more);"
+        " if (path !== '/planned.json') return got; const told = await got.json();"
+        " const unproved = { exit_code: 3, proofs: '2 kernels; 1 NOT VOUCHED FOR' };"
+        " return { json: async () => told.state === 'planned' ? { ...told, ...unproved } : told };"
+        "}; })(window.fetch)"
+    )
+    page.click("#plan")
+    page.until("document.querySelectorAll('#gantt .bar').length === 2")
+    assert page.text("plan-state").endswith("; proofs: 2 kernels; 1 NOT VOUCHED FOR")
+    assert page.value("document.getElementById('plan-state').className") == "bad"
+
+
+def test_what_was_typed_last_is_kept_by_the_next_change(page: Page) -> None:
+    typed = page.value(TEXT).replace("east_m: 2500", "east_m: 2600")
+    write(page, "text", typed)  # the pause after typing is not waited for
+    write(page, "relations", ".(p1 p2)")
+    page.until(f"{TEXT}.includes('relations: \".(p1 p2)\"')")
+    assert "east_m: 2600" in page.value(TEXT)
+    # undone with the cursor in their field
+    page.value(
+        "document.getElementById('relations').dispatchEvent(new KeyboardEvent('keydown',"
+        " { key: 'z', ctrlKey: true, bubbles: true }))"
+    )
+    page.until("document.getElementById('relations').value === '|(p1 p2)'")
+    # what is no term outlives changes elsewhere
+    write(page, "relations", "|(p1 (p2))")
+    page.until("document.getElementById('relations-error').textContent !== ''")
+    write(page, "text", page.value(TEXT).replace("east_m: 2600", "east_m: 2700"))
+    page.until(
+        "document.getElementById('saved').textContent.startsWith('not saved; the relations')"
+    )
+    assert page.value("document.getElementById('relations').value") == "|(p1 (p2))"
 
 
 def test_a_place_is_dragged_and_removed_with_its_task(page: Page) -> None:

@@ -34,7 +34,7 @@ function download(name, text) {
 
 class Editor {
   constructor(opened) {
-    Object.assign(this, { text: opened.text, digest: opened.digest, saved: opened.text, past: [], future: [], found: opened, tool: null, planned: null, polling: false });
+    Object.assign(this, { text: opened.text, digest: opened.digest, saved: opened.text, past: [], future: [], found: opened, tool: null, planned: null, number: null, waiting: new Set(), settled: 0, polling: false });
     by("name").textContent = opened.file;
     document.title = `${opened.file} – CRATOUS mission editor`;
     this.map = new EditMap(by("map"), {
@@ -45,6 +45,7 @@ class Editor {
     });
     this.listen();
     by("text").value = this.text;
+    by("relations").value = opened.relations || "";
     this.show(opened);
     this.relations();
     this.mark();
@@ -56,12 +57,22 @@ class Editor {
   }
 
   mark() {
-    const open_ = this.text !== this.saved, typed = by("relations").value !== (this.found.relations || "");
-    by("saved").textContent = `${open_ ? "not saved" : "saved"}${typed && by("relations-error").textContent ? "; the relations typed are not in the file" : ""}`;
+    const open_ = this.text !== this.saved;
+    by("saved").textContent = `${open_ ? "not saved" : "saved"}${this.typing() ? "; the relations typed are not in the file" : ""}`;
     by("saved").className = open_ ? "open" : "";
     by("undo").disabled = !this.past.length;
     by("redo").disabled = !this.future.length;
-    if (this.planned && this.planned.of !== this.text) by("plan-state").textContent = `Of an earlier text: ${this.planned.text}`;
+    if (this.planned) by("plan-state").textContent = `${this.planned.of === this.text ? "" : "Of an earlier text: "}${this.planned.text}`;
+  }
+
+  // whether the relations in their field are not those of the text
+  typing() { return by("relations").value !== (this.found.relations || ""); }
+
+  // what is typed in the text is the text, without waiting for a pause
+  settle() {
+    clearTimeout(this.settled);
+    if (this.settled) this.set(by("text").value);
+    this.settled = 0;
   }
 
   // the text is another one; what stood before can be had again
@@ -85,6 +96,7 @@ class Editor {
   }
 
   show(found) {
+    const typing = this.typing();
     this.found = found.drawn ? found : { ...this.found, problems: found.problems };
     this.map.show(found);
     by("problems-none").hidden = found.problems.length > 0;
@@ -98,7 +110,7 @@ class Editor {
       return item;
     }));
     by("notes").replaceChildren(...found.notes.map(note => Object.assign(document.createElement("li"), { textContent: note })));
-    if (found.drawn && document.activeElement !== by("relations")) by("relations").value = found.relations;
+    if (found.drawn && !typing) by("relations").value = found.relations;
     by("plan").disabled = by("export").disabled = found.problems.length > 0;
   }
 
@@ -128,8 +140,13 @@ class Editor {
   }
 
   async change(change) {
+    this.settle();
+    const { text } = this;
     try {
-      this.set((await ask("/change", { text: this.text, ...change })).text);
+      const told = await ask("/change", { text, ...change });
+      this.settle();
+      if (text !== this.text) throw new Refused("The text was changed meanwhile, so this change was not made.");
+      this.set(told.text);
     } catch (error) {
       this.say(error.message, true);
       this.look();
@@ -168,12 +185,14 @@ class Editor {
   }
 
   back(from, to) {
+    this.settle();
     if (!from.length) return;
     to.push(this.text);
     this.set(from.pop(), false);
   }
 
   async save() {
+    this.settle();
     const { text } = this;
     try {
       this.digest = (await ask("/save", { text, digest: this.digest })).digest;
@@ -183,6 +202,7 @@ class Editor {
   }
 
   async export() {
+    this.settle();
     const { text } = this, format = by("export-format").value;
     try {
       const told = await ask("/export", { text, format });
@@ -196,13 +216,22 @@ class Editor {
   }
 
   async plan() {
+    this.settle();
     const { text } = this;
-    try { await ask("/plan", { text }); } catch (error) { this.say(error.message, true); return; }
-    this.asked = text;
+    this.number = null; // what is told of another plan is not of this one
     this.planned = null;
+    this.waiting = new Set();
     this.map.routes([]);
     for (const id of ["gantt", "why", "plan-notes", "constraints"]) by(id).replaceChildren();
+    this.state("Planning: starting");
+    try { this.number = (await ask("/plan", { text })).plan_number; } catch (error) { this.state(error.message, true); return; }
+    this.asked = text;
     this.poll();
+  }
+
+  state(text, bad = false) {
+    by("plan-state").textContent = text;
+    by("plan-state").className = bad ? "bad" : "";
   }
 
   async poll() {
@@ -210,26 +239,37 @@ class Editor {
     this.polling = true;
     try {
       for (;;) {
-        const told = await (await fetch("/planned.json")).json();
+        const { number } = this, told = number !== null && await (await fetch("/planned.json")).json();
+        if (number !== this.number) continue; // this page plans anew
+        if (number === null) break;
+        if (told.plan_number !== number) { this.superseded(); break; }
         const on = told.state === "planning";
         by("plan-stop").hidden = !on;
-        by("plan-state").textContent = on ? `Planning: ${told.text}` : told.text;
-        by("plan-state").className = told.state === "failed" || told.exit_code === 1 ? "bad" : "";
         if (told.state === "planned") this.result(told);
-        if (!on && !this.waiting?.size) break;
+        else this.state(on ? `Planning: ${told.text}` : told.text, told.state === "failed");
+        if (!on && !this.waiting.size) break;
         await new Promise(done => setTimeout(done, POLL_MS));
       }
     } catch (error) { this.say(`The server does not answer (${error.message}).`, true); }
     this.polling = false;
   }
 
+  // the server has one plan, and another page has planned since
+  superseded() {
+    by("plan-stop").hidden = true;
+    by("why").replaceChildren();
+    this.waiting = new Set();
+    if (!this.planned) this.state("Another page planned its text before this plan was made: plan again.", true);
+  }
+
   result(told) {
-    for (const task of this.waiting || []) if (told.why[task]) {
+    for (const task of this.waiting) if (told.why[task]) {
       this.waiting.delete(task);
       by("why").replaceChildren(...told.why[task].map(line => Object.assign(document.createElement("li"), { textContent: line })));
     }
     if (this.planned) return;
-    this.planned = { of: this.asked, text: told.text };
+    this.planned = { of: this.asked, text: `${told.text}; proofs: ${told.proofs}` };
+    this.state(this.planned.text, told.exit_code !== 0);
     const { drawn } = this.found;
     this.map.routes(routes(told.plan, drawn.starts));
     by("gantt").replaceChildren(gantt(told.plan, drawn.vehicles, id => colorOf(this.map.recording, id) || color("c0"), task => this.why(task)));
@@ -246,24 +286,23 @@ class Editor {
 
   async why(task) {
     try {
-      await ask("/why", { task });
-      (this.waiting ||= new Set()).add(String(task));
+      await ask("/why", { task, plan_number: this.number });
+      this.waiting.add(String(task));
       by("why").replaceChildren(Object.assign(document.createElement("li"), { textContent: `Planning with each vehicle for p${task} …` }));
       this.poll();
     } catch (error) { this.say(error.message, true); }
   }
 
   listen() {
-    let settled = 0;
-    const later = act => { clearTimeout(settled); settled = setTimeout(act, SETTLED_MS); };
-    by("text").addEventListener("input", () => later(() => this.set(by("text").value)));
-    by("relations").addEventListener("input", () => later(() => this.typed()));
+    let typed = 0;
+    by("text").addEventListener("input", () => { clearTimeout(this.settled); this.settled = setTimeout(() => this.settle(), SETTLED_MS); });
+    by("relations").addEventListener("input", () => { clearTimeout(typed); typed = setTimeout(() => this.typed(), SETTLED_MS); });
     by("undo").addEventListener("click", () => this.back(this.past, this.future));
     by("redo").addEventListener("click", () => this.back(this.future, this.past));
     by("save").addEventListener("click", () => this.save());
     by("export").addEventListener("click", () => this.export());
     by("plan").addEventListener("click", () => this.plan());
-    by("plan-stop").addEventListener("click", () => ask("/stop", {}).catch(error => this.say(error.message, true)));
+    by("plan-stop").addEventListener("click", () => ask("/stop", { plan_number: this.number }).catch(error => this.say(error.message, true)));
     by("remove").addEventListener("click", () => this.remove());
     by("finish").addEventListener("click", () => this.finish());
     by("cancel").addEventListener("click", () => this.draw(null));
@@ -276,7 +315,7 @@ class Editor {
       const [north, east] = this.map.under(event.offsetX, event.offsetY);
       by("cursor").textContent = `north ${north.toFixed(0)} m, east ${east.toFixed(0)} m`;
     });
-    addEventListener("beforeunload", event => { if (this.text !== this.saved) event.preventDefault(); });
+    addEventListener("beforeunload", event => { if (this.settled || this.text !== this.saved || this.typing()) event.preventDefault(); });
     addEventListener("keydown", event => {
       const key = event.key.toLowerCase(), typing = event.target.tagName === "TEXTAREA";
       if (event.ctrlKey || event.metaKey) {
