@@ -62,8 +62,8 @@ def count_requests(path: str | Path) -> int:
     path = Path(path)
     if (path.is_dir() and not (path / "mission.yaml").is_file()) or path.suffix.lower() == ".xml":
         from cratous.services.loading.amase import count_scenario_requests, is_scenario
-        from cratous.services.loading.uxas import requests_of
         from cratous.services.loading.uxas_cfg import read_all
+        from cratous.services.loading.uxas_requests import requests_of
 
         if path.is_file() and is_scenario(path):
             return count_scenario_requests(path)

@@ -17,7 +17,7 @@ from cratous.services.loading.places import Places
 from cratous.services.loading.request_kinds import is_request
 from cratous.services.loading.uxas import mission_of
 from cratous.services.loading.uxas_cfg import Configuration, Sent
-from cratous.services.loading.uxas_requests import requests_of
+from cratous.services.loading.uxas_requests import request_of, requests_of
 from cratous.services.loading.yaml_mission import finish
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import integer_of
@@ -48,16 +48,7 @@ def load_amase(path: Path, number: int = 1) -> Mission:
     Raises BadInput for what is wrong, missing, or not covered (named).
     """
     scenario, cfg, apart = _read(path)
-    asked = requests_of(cfg)
-    if number not in range(1, len(asked) + 1):
-        raise BadInput(
-            "there is no such request",
-            where=str(path),
-            item="request",
-            expected=f"1 to {len(asked)}",
-            got=str(number),
-        )
-    mission = mission_of(asked[number - 1], str(path))
+    mission = mission_of(request_of(cfg, number, str(path))[0], str(path))
     limit_ms = integer_of(str(round(scenario.duration_s * 1000)), 1, TIME_LIMIT_MS - 1)
     if limit_ms is None:
         raise BadInput(
@@ -139,11 +130,14 @@ def _request(messages: list[Sent], path: Path) -> list[Sent]:
 
 
 def _traffic(apart: list[Sent], places: Places) -> tuple[Traffic, ...]:
-    """Each aircraft that nobody commands, from its first state until it is removed."""
+    """Each aircraft that nobody commands, from its only state until it is removed; BadInput if it has no
+    state, or a second one."""
     found: dict[int, Traffic] = {}
-    for sent in apart:
+    for sent in sorted(apart, key=lambda one: one.time_ms):
         body, kind = sent.body, type(sent.body).__name__
-        if kind == "AirVehicleState" and body.ID not in found:
+        if kind == "AirVehicleState":
+            if body.ID in found:
+                raise _not_one_state(sent, "another one")
             heading, speed = radians(body.Heading), float(body.Groundspeed)
             velocity = Velocity(speed * cos(heading), speed * sin(heading), 0.0)
             place = parts.point(body.Location, places, sent, "Location")
@@ -152,4 +146,18 @@ def _traffic(apart: list[Sent], places: Places) -> tuple[Traffic, ...]:
             for number in body.EntityList:
                 if number in found and found[number].vanishes_ms is None:
                     found[number] = replace(found[number], vanishes_ms=sent.time_ms)
-    return tuple(found.values())
+    marked = {sent.body.ID: sent for sent in apart if _is_traffic(sent.body)}
+    for number, sent in marked.items():
+        if number not in found:
+            raise _not_one_state(sent, "none")
+    return tuple(found[number] for number in marked)
+
+
+def _not_one_state(sent: Sent, got: str) -> BadInput:
+    return BadInput(
+        "traffic flies straight on from one state",
+        where=sent.where,
+        item=f"AirVehicleState of {sent.body.ID}",
+        expected="one",
+        got=got,
+    )

@@ -21,7 +21,7 @@ from cratous.services.loading.polygons import one_region
 from cratous.services.loading.request_kinds import WRAPPED, is_request
 from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.uxas_cfg import Configuration, Sent, read_all, scenario_states
-from cratous.services.loading.uxas_requests import requests_of
+from cratous.services.loading.uxas_requests import request_of
 from cratous.services.loading.uxas_tasks import Interests, other
 from cratous.services.loading.uxas_tasks import task as read_task
 from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR, finish
@@ -39,18 +39,12 @@ def load_uxas(path: Path, number: int = 1) -> Mission:
 
     Raises BadInput for what is wrong, missing, or not covered yet (named).
     """
-    asked = requests_of(read_all(Path(path)))
-    if not 1 <= number <= len(asked):
-        raise BadInput(
-            "there is no such request",
-            where=str(path),
-            item="request",
-            expected=f"1 to {len(asked)}",
-            got=str(number),
+    asked, count = request_of(read_all(Path(path)), number, str(path))
+    mission = mission_of(asked, str(path))
+    if count > 1:
+        note = (
+            f"this is request {number} of {count}, which begins where the messages put the vehicles"
         )
-    mission = mission_of(asked[number - 1], str(path))
-    if len(asked) > 1:
-        note = f"this is request {number} of {len(asked)}, which begins where the messages put the vehicles"
         mission = replace(mission, notes=(note, *mission.notes))
     return mission
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from cratous.services.loading.request_kinds import is_request
 from cratous.services.loading.uxas_cfg import Configuration
+from cratous.spec.errors import BadInput
 
 
 def requests_of(cfg: Configuration) -> tuple[Configuration, ...]:
@@ -24,3 +25,18 @@ def requests_of(cfg: Configuration) -> tuple[Configuration, ...]:
         later = tuple(m for k, m in reversed(rest) if k > place)
         found.append(replace(cfg, messages=(*later, *before, cfg.messages[place])))
     return tuple(found)
+
+
+def request_of(cfg: Configuration, number: int, where: str) -> tuple[Configuration, int]:
+    """The configuration for the request with a number, counted from 1, and how many there are; BadInput if
+    there is no such one; where: what was read."""
+    asked = requests_of(cfg)
+    if number not in range(1, len(asked) + 1):
+        raise BadInput(
+            "there is no such request",
+            where=where,
+            item="request",
+            expected=f"1 to {len(asked)}",
+            got=str(number),
+        )
+    return asked[number - 1], len(asked)

@@ -29,6 +29,8 @@ from cratous.spec.mission import (
 NEVER = {AMASE: {"relations"}, UXAS: {"simulation.limit_ms"}}
 """What these formats cannot say of any of the examples."""
 
+HIGH = Traffic(91, Position(9000.0, 0.0, 400.0), Velocity(-30.0, 40.0, 0.0))
+
 
 def example(root: Path, name: str) -> Mission:
     return load(root / f"examples/{name}/mission.yaml")
@@ -104,6 +106,30 @@ def test_traffic_of_a_scenario_is_traffic_again(root: Path, tmp_path: Path) -> N
     assert read.traffic[0].velocity == pytest.approx(gone.velocity, abs=1e-3)
     assert [v.id for v in read.vehicles] == [1, 2]
     assert read.simulation.limit_ms == mission.simulation.limit_ms
+
+
+@pytest.mark.parametrize("got", ["none", "another one"])
+def test_traffic_of_a_scenario_has_one_state(root: Path, tmp_path: Path, got: str) -> None:
+    mission = replace(example(root, "crossing"), traffic=(HIGH,))
+    text = exported(mission, AMASE).files["crossing.xml"]
+    begin, end = text.rindex("<AirVehicleState "), text.rindex("</AirVehicleState>\n") + 19
+    state = text[begin:end]
+    assert "<ID>91</ID>" in state
+    path = tmp_path / "s.xml"
+    path.write_text(text.replace(state, "" if got == "none" else 2 * state), encoding="utf-8")
+    with pytest.raises(BadInput) as found:
+        load(path)
+    assert (found.value.item, found.value.got) == ("AirVehicleState of 91", got)
+
+
+def test_traffic_of_a_scenario_vanishes_in_the_order_of_time(root: Path, tmp_path: Path) -> None:
+    mission = replace(example(root, "crossing"), traffic=(replace(HIGH, vanishes_ms=9000),))
+    text = exported(mission, AMASE).files["crossing.xml"]
+    begin, end = text.index("<RemoveEntities "), text.index("</RemoveEntities>\n") + 18
+    gone, first = text[begin:end], "<ScenarioEventList>\n"
+    path = tmp_path / "s.xml"
+    path.write_text(text.replace(gone, "").replace(first, first + gone), encoding="utf-8")
+    assert load(path).traffic[0].vanishes_ms == 9000
 
 
 def test_the_simulator_plays_the_scenario(root: Path, tmp_path: Path) -> None:
