@@ -236,7 +236,12 @@ class _Handler(BaseHTTPRequestHandler):
         if self.headers.get("Content-Type") != "application/json":
             return _json(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, {"error": "expected JSON"})
         length = self.headers.get("Content-Length", "")
-        if not (length.isascii() and length.isdigit() and 0 < int(length[:9]) <= longest):
+        if not (
+            length.isascii()
+            and length.isdigit()
+            and len(length) < 10
+            and 0 < int(length) <= longest
+        ):
             told = f"expected 1 to {longest} bytes, with Content-Length"
             return _json(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, {"error": told})
         try:
@@ -249,6 +254,9 @@ class _Handler(BaseHTTPRequestHandler):
             return _json(HTTPStatus(refused.status), {"error": refused.why})
         except BadInput as error:
             return _json(HTTPStatus.UNPROCESSABLE_ENTITY, error.data())
+        except Exception as error:
+            told = f"internal error of CRATOUS: {type(error).__name__}: {error}"
+            return _json(HTTPStatus.INTERNAL_SERVER_ERROR, {"error": told})
         return _json(HTTPStatus.OK, {"done": True} if answer is None else answer)
 
     def _sender(self) -> tuple[str, str]:

@@ -177,7 +177,13 @@ def _text(asked: dict[str, Any], name: str = "text") -> str:
     text = asked.get(name)
     if not isinstance(text, str):
         raise NotObeyed(400, f"expected {name}: a text")
-    if len(text.encode("utf-8", "replace")) > MISSION_BYTES:
+    try:
+        length = len(text.encode("utf-8"))
+    except UnicodeEncodeError as error:
+        raise BadInput(
+            "half a character", item=name, expected="text", got=f"at character {error.start}"
+        ) from None
+    if length > MISSION_BYTES:
         raise BadInput("a text that is too long", item=name, expected=f"{MISSION_BYTES} bytes")
     return text
 
@@ -200,4 +206,4 @@ def _next_id(mission: MissionText, name: str) -> int:
 
 
 def _digest(text: str) -> str:
-    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
+    return hashlib.sha256(text.encode()).hexdigest()

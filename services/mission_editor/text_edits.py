@@ -31,6 +31,8 @@ class MissionText:
         self.text, self.where = text, where
         self.data: Any = parse_document(text, where).data
         self._root: Any = yaml.compose(text, Loader=loader())
+        if not isinstance(self.data, dict):
+            self._refuse("this is no mission", (), "a mapping, such as name: crossing")
 
     def moved(self, key: Key, north_m: float, east_m: float) -> str:
         """The text with a place (a mapping or a corner) elsewhere, to a decimetre.
@@ -53,7 +55,10 @@ class MissionText:
 
     def put(self, key: Key, value: str) -> str:
         """The text with another text in place of the one that stands there, or at the end if none does."""
-        if self._node(key) is not None:
+        node = self._node(key)
+        if node is not None:
+            if node.id != "scalar":
+                self._refuse("this is no text", key, "a text")
             return self._with({key: json.dumps(value, ensure_ascii=False)}, value)
         if len(key) != 1:
             self._refuse("there is no such value", key, "a value of the file")

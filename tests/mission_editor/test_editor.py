@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ import pytest
 from ground_station_tools import LIMIT_S, Served, ask
 
 from cratous.services.exporting.exported import FORMATS, exported
+from cratous.services.ground_station.server import Commands, GroundStation, ReadAnew
 from cratous.services.loading.document import parse_document
 from cratous.services.loading.yaml_mission import loaded
 
@@ -68,6 +70,15 @@ def test_bad_changes_are_refused_with_what_and_where(editor: Served, mission: Pa
     ):  # fmt: skip
         assert editor.edit("/change", text=text, **asked).status == 400
     assert editor.edit("/change", do="put").status == 400
+    for key in ([], ["tasks"]):
+        got = editor.edit("/change", text=text, do="put", key=key, value="x")
+        assert (got.status, got.data()["error"]) == (422, "this is no text")
+    for no_mission in ("- 1\n", "x\n"):
+        got = editor.edit("/change", text=no_mission, do="add", list="zones", item={})
+        assert (got.status, got.data()["error"]) == (422, "this is no mission")
+    for path in ("/sketch", "/change", "/relations", "/plan", "/save", "/export"):
+        half = editor.edit(path, text="name: \ud800", tasks=[], format="kml", do="remove", key=[])
+        assert (half.status, half.data()["error"]) == (422, "half a character")
     assert editor.edit("/relations", text="p1", tasks="all").status == 400
     assert editor.edit("/why", task=1, plan_number=1).status == 409
     assert editor.edit("/stop", plan_number=0).status == 409
@@ -84,7 +95,8 @@ def test_only_the_page_with_the_token_may_edit(editor: Served, mission: Path) ->
     assert named.sent("a", b"{}", Origin="http://elsewhere.example").status == 403
     assert named.sent("a", b"{}", Host="elsewhere.example").status == 421
     assert named.sent("a", b"[]").status == 400
-    assert named.sent("a", b"{}", Content_Length="99000000").status == 413
+    for length in ("99000000", "0000000019900000000"):
+        assert named.sent("a", b"{}", Content_Length=length).status == 413
     assert ask(editor.port, "/save").status == 404
     assert mission.read_text(encoding="utf-8") == first["text"]
 
@@ -224,3 +236,23 @@ def test_it_goes_with_a_mission_alone(words: list[str], mission: Path) -> None:
     )  # fmt: skip
     assert done.returncode == 2
     assert "Traceback" not in done.stderr
+
+
+def test_an_error_of_ours_is_answered_as_one() -> None:
+    def fails(token: str, page: str, asked: Any) -> dict[str, Any]:
+        raise ZeroDivisionError("of no consequence")
+
+    shown = ReadAnew(dict)
+    with GroundStation(shown, 0, commands=Commands({"/change": fails})) as server:
+        serving = threading.Thread(target=server.serve_forever, args=(0.05,))
+        serving.start()
+        try:
+            own = server.url[:-1]
+            headers = {"Origin": own, "Content_Type": "application/json", "Content_Length": "2"}
+            port = server.server_address[1]
+            got = ask(port, "/change", "POST", b"{}", **headers)
+        finally:
+            server.shutdown()
+            serving.join(LIMIT_S)
+    assert got.status == 500
+    assert got.data()["error"] == "internal error of CRATOUS: ZeroDivisionError: of no consequence"
