@@ -106,7 +106,7 @@ def _planned(mission: Mission, allow_unproved: bool) -> tuple[Plan, int]:
     for line in left_out_lines(plan):
         say(f"plan: {line}", err=True)
     code = exit_code([check.outcome for check in checks])
-    if standing.problems and code == 0:
+    if standing.problems:
         say(f"plan: {standing.line}", err=True)
-        code = 3  # no verdict of an unproved kernel is better than unknown
-    return plan, code
+    # no verdict of an unproved kernel is better than unknown
+    return plan, 3 if standing.problems and code == 0 else code

@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 import pytest
 from shapely import LineString, Point
 
+from cratous.core import ledger
 from cratous.services.cli import main
 from cratous.services.exporting.exported import GEOJSON, KML, exported
 from cratous.services.loading import load
@@ -191,6 +192,21 @@ def test_what_maps_do_not_say_is_told(root: Path, form: str) -> None:
     )  # fmt: skip
     more = replace(mission, gap=0.1, instances=(), daa=Daa(WellClear(1.0, 2.0, 3.0, 4.0)))
     assert {"gap", "instances", "daa"} <= set(exported(more, form).unsaid)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "code"), [("crossing", 3), ("partial", 1)])
+def test_routes_of_kernels_without_proof_say_so(
+    root: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch, name: str, code: int,
+) -> None:  # fmt: skip
+    standing = ledger.Standing(2, 1, 0, (ledger.Problem("kernel", "it has no proof"),))
+    monkeypatch.setattr(ledger, "require", lambda **_: standing)
+    source = str(root / f"examples/{name}/mission.yaml")
+    words = ["export", source, "--plan", "--allow-unproved", "--format", "kml"]
+    assert main([*words, "-o", str(tmp_path / "routes.kml")]) == code
+    assert f"plan: {standing.line}" in capsys.readouterr().err
+    assert standing.line.endswith("1 NOT VOUCHED FOR")
 
 
 @pytest.mark.slow
