@@ -102,7 +102,8 @@ def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
     """The way of each vehicle: from where it is through its must_fly points, in the order of the file.
 
     BadInput for relations, changes in flight, faults of the bridge, other tasks, tasks that are not for exactly one
-    vehicle, and vehicles without a task: an encounter flies nothing of the kind.
+    vehicle, and vehicles without a task: an encounter flies nothing of the kind; and where no vehicle is protected,
+    since nothing would be judged.
     """
     for item, there in (
         ("relations", mission.relations),
@@ -111,6 +112,8 @@ def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
     ):
         if there:
             raise _not_flown(mission, item, "none", "some")
+    if not any(v.protected for v in mission.vehicles):
+        raise _not_flown(mission, "vehicles", "a protected one", "none")
     ways: dict[int, list[Position]] = {v.id: [v.position] for v in mission.vehicles}
     for task in mission.tasks:
         item = f"task {task.id}"
@@ -127,7 +130,7 @@ def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
 
 def _not_flown(mission: Mission, item: str, expected: str, got: str) -> BadInput:
     return BadInput(
-        "an encounter is flown along points alone",
+        "an encounter is flown by protected vehicles, along points alone",
         where=mission.source, item=item, expected=expected, got=got,
     )  # fmt: skip
 

@@ -104,6 +104,40 @@ def test_points_are_judged_by_where_the_vehicle_was(tmp_path: Path) -> None:
     assert judge_encounter(file, states_of(flown), {})[-1].verdict == "unknown"
 
 
+def test_of_points_that_were_not_reached_nothing_is_said_to_hold(tmp_path: Path) -> None:
+    campaign = _campaign(tmp_path, "generator: {kind: converging}\nseeds: [1, 1]\nduration_s: 2\n")
+    (run,) = runs_of(campaign, "v", True)
+    result = fly_run(run.decides)
+    assert result["requirements"]["G3"]["verdict"] == "unknown"
+    assert "no point was reached" in result["requirements"]["G3"]["note"]
+    assert outcome_of(result, ("G2", "G3")) == "unknown"
+
+
+def test_without_a_protected_vehicle_nothing_is_flown(tmp_path: Path) -> None:
+    campaign = _campaign(
+        tmp_path,
+        "generator: {kind: converging}\nseeds: [1, 1]\n"
+        "options: [{name: bare, set: {'vehicles[0].protected': false}}]\n",
+    )
+    (run,) = runs_of(campaign, "v", True)
+    result = fly_run(run.decides)
+    assert result["kind"] == "impossible"
+    assert "a protected one" in result["why"][0]
+
+
+@pytest.mark.parametrize("others", ["traffic: []", "'traffic[0].appears_s': 1000"])
+def test_who_meets_nobody_is_no_disagreement(tmp_path: Path, others: str) -> None:
+    campaign = _campaign(
+        tmp_path,
+        "generator: {kind: converging}\nseeds: [1, 1]\nduration_s: 2\n"
+        f"options: [{{name: alone, set: {{{others}}}}}]\n",
+    )
+    (run,) = runs_of(campaign, "v", True)
+    result = fly_run(run.decides)
+    assert result["requirements"]["G2"]["verdict"] == "holds"
+    assert result["judge"]["disagreements"] == []
+
+
 def test_points_out_of_turn_are_violated(tmp_path: Path) -> None:
     file, flown = _bent(tmp_path)
     data = yaml.safe_load(file.read_text())
