@@ -44,7 +44,7 @@ def _campaign(folder: Path, text: str) -> Campaign:
 
 @pytest.mark.parametrize(("kind", "zones"), [("converging", 0), ("aimed", 2)])
 def test_it_is_flown_as_a_whole_flight_is(tmp_path: Path, kind: str, zones: int) -> None:
-    """Until the handback to the millimetre, since the way back from the bridge takes a heartbeat more."""
+    """Until 20 s before the handback to the millimetre, and within 5 m to the end."""
     from cratous.services.cli.job import new_bus, plan_and_check
     from cratous.services.flight.loop import fly
 
