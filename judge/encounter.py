@@ -1,7 +1,8 @@
 """Short flights without a log: from the mission's file and where everybody was, by the geometry of whole flights.
 
 Judged are zones (G1), well clear (G2), and points (G3): of each protected vehicle the first `reached` points of its
-must_fly tasks, in the order of the file, were passed within 50 m, one after the other.
+must_fly tasks, in the order of the file, were passed within 50 m, one after the other. Of a vehicle that reached none
+that is unknown.
 """
 
 from __future__ import annotations
@@ -67,6 +68,8 @@ def _row(vehicle: int, points: list[Point], reached: Mapping[int, int], track: T
     if vehicle not in reached or reached[vehicle] != len(points):
         note = f"{len(points)} points are known, passed are said to be {reached.get(vehicle)}"
         return Row("G3", subject, item, UNKNOWN, note)
+    if not points:
+        return Row("G3", subject, item, UNKNOWN, "no point was reached, so there is none to judge")
     legs = list(track.legs())
     at = 0
     for number, point in enumerate(points, 1):

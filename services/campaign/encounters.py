@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from cratous.services.flight.encounter import Encounter
 from cratous.services.monitor.constraints import ConstraintWatch
 from cratous.services.monitor.observation import Ending, Presence
-from cratous.services.monitor.required_rows import fence_item, watched
+from cratous.services.monitor.required_rows import alone_item, fence_item, watched
 from cratous.services.monitor.samples import Sample
 from cratous.services.monitor.separation import SeparationWatch
 from cratous.spec.mission import Mission
@@ -144,13 +144,15 @@ def _beside(judged: list[Judged], verdicts: list[Verdict]) -> dict[str, Any]:
     """What the judge says, and where that is not what monitor or flight say."""
     theirs = {(v.requirement, v.item): str(v.outcome) for v in verdicts}
     mine = {(row.guarantee, row.item): row for row in judged if row.guarantee != "G3"}
+    for key in _met_nobody(mine, verdicts):
+        del theirs[key]
     apart = [
         {
             "guarantee": key[0], "item": key[1], "note": row.note if row else "no such row",
             "judge": row.verdict if row else "nothing", "monitor": theirs.get(key, "nothing"),
         }
         for key in sorted({*mine, *theirs})
-        if (row := mine.get(key)) is None or row.verdict != theirs.get(key)
+        if (row := mine.get(key)) is None or row.verdict != theirs.get(key, str(Outcome.HOLDS))
     ]  # fmt: skip
     guarantees = {
         name: _worst(r.verdict for r in judged if r.guarantee == name) for name in REQUIREMENTS
@@ -162,6 +164,21 @@ def _beside(judged: list[Judged], verdicts: list[Verdict]) -> dict[str, Any]:
         "differences": len(apart),
         "rows": len(judged),
     }
+
+
+def _met_nobody(
+    mine: dict[tuple[str, str], Judged], verdicts: list[Verdict]
+) -> list[tuple[str, str]]:
+    """The monitor's rows that a vehicle met nobody, which holds; the judge says that of each pair."""
+    if any(row.guarantee == "G2" and row.verdict != Outcome.HOLDS for row in mine.values()):
+        return []
+    return [
+        (v.requirement, v.item)
+        for v in verdicts
+        if v.outcome is Outcome.HOLDS
+        and [v.item] == [alone_item(own) for own in v.vehicles]
+        and (v.requirement, v.item) not in mine
+    ]
 
 
 EXCUSED = (str(Outcome.VIOLATED), str(Outcome.EXCUSED))

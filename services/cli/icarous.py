@@ -134,8 +134,7 @@ def icarous(
 def craft_of(path: Path, vehicle_id: int, dialect: Dialect) -> Craft:
     """A vehicle of a mission as its ICAROUS has to know it; BadInput if the mission has no such one."""
     from cratous.bridge.text_protocol.dialects import Dialect
-    from cratous.services.flight.dynamics import limits_of
-    from cratous.services.flight.loop import GROUND_MARGIN
+    from cratous.services.flight.dynamics import floor_of, limits_of
     from cratous.services.icarous.state import Config
     from cratous.services.icarous_program.step import Craft
     from cratous.services.loading import load
@@ -151,8 +150,9 @@ def craft_of(path: Path, vehicle_id: int, dialect: Dialect) -> Craft:
             expected=" or ".join(str(v.id) for v in mission.vehicles),
             got=str(vehicle_id),
         )
-    floor_m = mission.frame.terrain_m + GROUND_MARGIN * mission.daa.well_clear.zthr_m
     projection, beat_ms = Projection(mission.frame), mission.simulation.heartbeat_ms
     running = dialect is Dialect.ORIGINAL
     config = Config(vehicle_id, mission.daa, projection, beat_ms, running)
-    return Craft(config, limits_of(found[0]), floor_m, frozenset(mission.instances), dialect)
+    return Craft(
+        config, limits_of(found[0]), floor_of(mission), frozenset(mission.instances), dialect
+    )

@@ -8,12 +8,15 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import dropwhile
 from pathlib import Path
 
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Mission
 
 QUOTED = re.compile("`([^`]+)`")
+BEGIN = re.compile(r"[^#]*\brelations[\"']?\s*:|.*<TaskRelationships>")
+"""The line on which relations begin; what stands before it, say in a comment, is no place of them."""
 
 
 class RelationPlaces:
@@ -23,16 +26,18 @@ class RelationPlaces:
         """Reads the file once."""
         self._file = mission.source
         try:
-            self._lines = Path(self._file).read_text(encoding="utf-8").splitlines()
+            lines = Path(self._file).read_text(encoding="utf-8").splitlines()
         except (OSError, UnicodeDecodeError):
-            self._lines = []
+            lines = []
+        numbered = enumerate(lines, 1)
+        self._lines = list(dropwhile(lambda line: not BEGIN.match(line[1]), numbered))
 
     def told(self, text: str) -> str:
         """A text with `file:line` behind each quotation from the file."""
         return QUOTED.sub(self._placed, text)
 
     def _placed(self, quoted: re.Match[str]) -> str:
-        found = (k for k, line in enumerate(self._lines, 1) if quoted[1] in line)
+        found = (k for k, line in self._lines if quoted[1] in line)
         line = next(found, None)
         return quoted[0] if line is None else f"{quoted[0]} at {self._file}:{line}"
 

@@ -25,7 +25,7 @@ from cratous.core.routing.polylines import Track
 from cratous.services.flight import vehicle as vehicles
 from cratous.services.flight.autopilot import Fly, Follow
 from cratous.services.flight.chain import Chain, Phase
-from cratous.services.flight.dynamics import AirState, traffic_state
+from cratous.services.flight.dynamics import AirState, floor_of, traffic_state
 from cratous.services.flight.executive_outputs import AHEAD_S
 from cratous.services.flight.inflight_routes import Ways
 from cratous.services.flight.messages import Choose, Move, Sense, Wished
@@ -41,8 +41,6 @@ from cratous.spec.errors import BadInput
 from cratous.spec.mission import FaultySimulation, Mission, Position, TaskKind, Vehicle
 from cratous.spec.mission.plan import PlanItem
 
-GROUND_MARGIN = 2.0
-"""No manoeuvre goes nearer to the ground than this many vertical thresholds, as in a whole flight."""
 COMPLETE, LIMIT = "complete", "limit"
 """How it ended: one of ours has passed the end of its way, or the time was over."""
 
@@ -102,7 +100,8 @@ def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
     """The way of each vehicle: from where it is through its must_fly points, in the order of the file.
 
     BadInput for relations, changes in flight, faults of the bridge, other tasks, tasks that are not for exactly one
-    vehicle, and vehicles without a task: an encounter flies nothing of the kind.
+    vehicle, and vehicles without a task: an encounter flies nothing of the kind; and where no vehicle is protected,
+    since nothing would be judged.
     """
     for item, there in (
         ("relations", mission.relations),
@@ -111,6 +110,8 @@ def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
     ):
         if there:
             raise _not_flown(mission, item, "none", "some")
+    if not any(v.protected for v in mission.vehicles):
+        raise _not_flown(mission, "vehicles", "a protected one", "none")
     ways: dict[int, list[Position]] = {v.id: [v.position] for v in mission.vehicles}
     for task in mission.tasks:
         item = f"task {task.id}"
@@ -127,7 +128,7 @@ def ways_of(mission: Mission) -> dict[int, tuple[Position, ...]]:
 
 def _not_flown(mission: Mission, item: str, expected: str, got: str) -> BadInput:
     return BadInput(
-        "an encounter is flown along points alone",
+        "an encounter is flown by protected vehicles, along points alone",
         where=mission.source, item=item, expected=expected, got=got,
     )  # fmt: skip
 
@@ -144,9 +145,8 @@ class _Ours:
         self, vehicle: Vehicle, way: tuple[Position, ...], mission: Mission, routes: Ways, daa: bool
     ) -> None:
         projection, simulation = Projection(mission.frame), mission.simulation
-        floor = mission.frame.terrain_m + GROUND_MARGIN * mission.daa.well_clear.zthr_m
         self.id, self._routes = vehicle.id, routes
-        self.node = VehicleNode(vehicle, projection, simulation.step_ms / 1000, floor)
+        self.node = VehicleNode(vehicle, projection, simulation.step_ms / 1000, floor_of(mission))
         self.state, self.instance = self.node.first(), None
         speed, self._lookahead_s = vehicle.speed_m_s, mission.daa.lookahead_s
         here = Track(way[:1], vehicle.heading_rad)

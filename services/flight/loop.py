@@ -22,7 +22,7 @@ from cratous.services.bus import Bus
 from cratous.services.flight import executive_state, link_end
 from cratous.services.flight.arrivals import arrivals
 from cratous.services.flight.commands import gated, velocity_command
-from cratous.services.flight.dynamics import AirState, traffic_state
+from cratous.services.flight.dynamics import AirState, floor_of, traffic_state
 from cratous.services.flight.executive import Executive
 from cratous.services.flight.executive_state import Config
 from cratous.services.flight.link_end import UxasEnd
@@ -78,8 +78,6 @@ from cratous.spec.mission import FaultySimulation, Mission
 from cratous.spec.mission.plan import Plan
 
 Segmenter = Callable[[bytes], Iterable[bytes]]
-GROUND_MARGIN = 2.0
-"""No manoeuvre goes nearer to the ground than this many vertical thresholds."""
 SIMULATION = "simulation"
 """The sender of what is true of the aircraft."""
 
@@ -124,7 +122,7 @@ class _Flight:
     ) -> None:
         self.mission, self.bus, self.bridge, self.instances = mission, bus, bridge, instances
         projection, simulation = Projection(mission.frame), mission.simulation
-        floor = mission.frame.terrain_m + GROUND_MARGIN * mission.daa.well_clear.zthr_m
+        floor = floor_of(mission)
         self.executive = Executive(Config(mission, projection, instances))
         self.executive_state = executive_state.first_state(mission, plan)
         self.link, self.link_state = UxasEnd(projection), link_end.State()

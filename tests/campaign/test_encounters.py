@@ -44,7 +44,7 @@ def _campaign(folder: Path, text: str) -> Campaign:
 
 @pytest.mark.parametrize(("kind", "zones"), [("converging", 0), ("aimed", 2)])
 def test_it_is_flown_as_a_whole_flight_is(tmp_path: Path, kind: str, zones: int) -> None:
-    """Until the handback to the millimetre, since the way back from the bridge takes a heartbeat more."""
+    """Until 20 s before the handback to the millimetre, and within 5 m to the end."""
     from cratous.services.cli.job import new_bus, plan_and_check
     from cratous.services.flight.loop import fly
 
@@ -102,6 +102,40 @@ def test_points_are_judged_by_where_the_vehicle_was(tmp_path: Path) -> None:
     assert judge_encounter(file, states_of(flown), flown.reached)[-1].verdict == "violated"
     assert judge_encounter(file, states_of(flown), {1: 50})[-1].verdict == "unknown"
     assert judge_encounter(file, states_of(flown), {})[-1].verdict == "unknown"
+
+
+def test_of_points_that_were_not_reached_nothing_is_said_to_hold(tmp_path: Path) -> None:
+    campaign = _campaign(tmp_path, "generator: {kind: converging}\nseeds: [1, 1]\nduration_s: 2\n")
+    (run,) = runs_of(campaign, "v", True)
+    result = fly_run(run.decides)
+    assert result["requirements"]["G3"]["verdict"] == "unknown"
+    assert "no point was reached" in result["requirements"]["G3"]["note"]
+    assert outcome_of(result, ("G2", "G3")) == "unknown"
+
+
+def test_without_a_protected_vehicle_nothing_is_flown(tmp_path: Path) -> None:
+    campaign = _campaign(
+        tmp_path,
+        "generator: {kind: converging}\nseeds: [1, 1]\n"
+        "options: [{name: bare, set: {'vehicles[0].protected': false}}]\n",
+    )
+    (run,) = runs_of(campaign, "v", True)
+    result = fly_run(run.decides)
+    assert result["kind"] == "impossible"
+    assert "a protected one" in result["why"][0]
+
+
+@pytest.mark.parametrize("others", ["traffic: []", "'traffic[0].appears_s': 1000"])
+def test_who_meets_nobody_is_no_disagreement(tmp_path: Path, others: str) -> None:
+    campaign = _campaign(
+        tmp_path,
+        "generator: {kind: converging}\nseeds: [1, 1]\nduration_s: 2\n"
+        f"options: [{{name: alone, set: {{{others}}}}}]\n",
+    )
+    (run,) = runs_of(campaign, "v", True)
+    result = fly_run(run.decides)
+    assert result["requirements"]["G2"]["verdict"] == "holds"
+    assert result["judge"]["disagreements"] == []
 
 
 def test_points_out_of_turn_are_violated(tmp_path: Path) -> None:

@@ -12,13 +12,17 @@ from icarous_tools import ABILITY, NORTH, WIDE, head_on
 from shapely import LineString, Point, Polygon
 
 from cratous.core.avoidance.drift import NONE, drift_of
-from cratous.core.avoidance.manoeuvre import fly_to, velocity_of
+from cratous.core.avoidance.manoeuvre import fly_to, smallest_turn, velocity_of
 from cratous.core.avoidance.prediction import after
 from cratous.core.avoidance.resolution import Choice, Scene, first_zone_s, resolve
 from cratous.core.geofence.clearance import leg_keeps
 from cratous.core.geofence.mission_legs import leg_ok
 from cratous.services.flight.autopilot import Fly, decide
 from cratous.services.flight.dynamics import GRAVITY_M_S2, AirState, Limits, advance, steer
+from cratous.services.simulator.motion import Command, move
+from cratous.services.simulator.motion import Motion as RolledMotion
+from cratous.services.simulator.performance import Airframe, Profile
+from cratous.services.simulator.world import STEP_S
 from cratous.spec.mission import Position, Zone, ZoneKind
 
 BANK_RAD = math.atan(ABILITY.turn_rate_rad_s * NORTH.speed_m_s / GRAVITY_M_S2)
@@ -72,6 +76,37 @@ def test_the_flown_way_is_off_by_metres_in_a_turn() -> None:
         way.distance(Point(s.position[:2])) for s in flown(choice, ABILITY.step_s, 15.0, START)
     )
     assert off > drift.aside_m(20.0) / 3 > 5.0
+
+
+@pytest.mark.parametrize(("turn_deg", "beyond_m"), [(5, 0.3), (30, 1.5), (60, 0.5)])
+def test_an_autopilot_that_rolls_first_is_farther_off(turn_deg: float, beyond_m: float) -> None:
+    """The simulator's: what the drift does not cover, and that it is less than two metres, stands in its text."""
+    heading = math.radians(turn_deg)
+    pieces = fly_to(NORTH, ABILITY, heading, 22.0, 0.0, 0.0, 20.0)
+    aside_m = drift_of(NORTH, ABILITY, heading, 22.0, 0.0).aside_m(20.0)
+    way = LineString(
+        [*(p.position[:2] for p in pieces), after(pieces[-1], pieces[-1].duration_s)[:2]]
+    )
+    level = Profile(22.0, 0.0, 0.0, math.degrees(BANK_RAD), 0.0)
+    airframe = Airframe(15.0, 33.0, (level,), (), (), level, level, False)
+    state = RolledMotion(0.0, 0.0, 300.0, 0.0, 0.0, 0.0, 22.0, 22.0, 0.0, 0.0, 100.0, 0.0)
+    north_m = east_m = off_m = 0.0
+    for _ in range(round(10 / STEP_S)):
+        state, _ = move(
+            state, Command(heading, 300.0, 22.0, 0.0), airframe, (0.0, 0.0), 0.0, STEP_S
+        )
+        north_m, east_m = north_m + state.north_m_s * STEP_S, east_m + state.east_m_s * STEP_S
+        off_m = max(off_m, way.distance(Point(north_m, east_m)))
+    assert beyond_m < off_m - aside_m < 2.0
+
+
+def test_a_half_turn_may_be_flown_to_the_other_side() -> None:
+    """Which side is shorter is a matter of rounding, and the velocity that is told rounds too."""
+    course = 2.530727415391778
+    start = START._replace(heading_rad=course)
+    choice = Choice("heading", course + math.pi, 22.0, 0.0, 0.0, True, None)
+    turned = flown(choice, 0.25, 0.25, start)[-1].heading_rad - course
+    assert smallest_turn(course, course + math.pi) * turned < 0
 
 
 def test_straight_flight_has_no_drift() -> None:
