@@ -158,6 +158,23 @@ def test_what_was_typed_last_is_kept_by_the_next_change(page: Page) -> None:
     assert page.value("document.getElementById('relations').value") == "|(p1 (p2))"
 
 
+def test_relations_that_are_undone_before_the_text_was_looked_at_are_undone_in_their_field(
+    page: Page,
+) -> None:
+    page.value(
+        "(ask => { window.held = []; window.fetch = async (path, ...more) => {"
+        " if (path === '/sketch') await new Promise(go => window.held.push(go));"
+        " return ask(path, ...more); }; })(window.fetch)"
+    )
+    write(page, "relations", ".(p1 p2)")
+    page.until(f"{TEXT}.includes('relations: \".(p1 p2)\"')")
+    page.click("#undo")
+    page.until(f"!{TEXT}.includes('relations: \".(p1 p2)\"')")
+    page.value("window.held.forEach(go => go())")
+    page.until("document.getElementById('relations').value === '|(p1 p2)'")
+    page.until("!document.getElementById('saved').textContent.includes('relations typed')")
+
+
 def test_a_place_is_dragged_and_removed_with_its_task(page: Page) -> None:
     x, y = place(page, 0, 2500)
     to = place(page, 600, 2000)

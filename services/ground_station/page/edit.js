@@ -34,7 +34,7 @@ function download(name, text) {
 
 class Editor {
   constructor(opened) {
-    Object.assign(this, { text: opened.text, digest: opened.digest, saved: opened.text, past: [], future: [], found: opened, tool: null, planned: null, number: null, waiting: new Set(), settled: 0, polling: false });
+    Object.assign(this, { text: opened.text, digest: opened.digest, saved: opened.text, past: [], future: [], found: opened, tool: null, planned: null, given: opened.relations || "", number: null, waiting: new Set(), settled: 0, polling: false });
     by("name").textContent = opened.file;
     document.title = `${opened.file} – CRATOUS mission editor`;
     this.map = new EditMap(by("map"), {
@@ -45,7 +45,7 @@ class Editor {
     });
     this.listen();
     by("text").value = this.text;
-    by("relations").value = opened.relations || "";
+    by("relations").value = this.given;
     this.show(opened);
     this.relations();
     this.mark();
@@ -65,8 +65,8 @@ class Editor {
     if (this.planned) by("plan-state").textContent = `${this.planned.of === this.text ? "" : "Of an earlier text: "}${this.planned.text}`;
   }
 
-  // whether the relations in their field are not those of the text
-  typing() { return by("relations").value !== (this.found.relations || ""); }
+  // whether the relations in their field are not those that the text last had
+  typing() { return by("relations").value !== this.given; }
 
   // what is typed in the text is the text, without waiting for a pause
   settle() {
@@ -110,7 +110,8 @@ class Editor {
       return item;
     }));
     by("notes").replaceChildren(...found.notes.map(note => Object.assign(document.createElement("li"), { textContent: note })));
-    if (found.drawn && !typing) by("relations").value = found.relations;
+    if (found.drawn) this.given = found.relations;
+    if (!typing) by("relations").value = this.given;
     by("plan").disabled = by("export").disabled = found.problems.length > 0;
   }
 
@@ -135,7 +136,7 @@ class Editor {
   async typed() {
     try {
       const told = await this.relations();
-      if (!told.error && by("relations").value !== this.found.relations) await this.change({ do: "put", key: ["relations"], value: by("relations").value });
+      if (!told.error && this.typing()) await this.change({ do: "put", key: ["relations"], value: by("relations").value });
     } catch (error) { this.say(error.message, true); }
   }
 
@@ -146,6 +147,8 @@ class Editor {
       const told = await ask("/change", { text, ...change });
       this.settle();
       if (text !== this.text) throw new Refused("The text was changed meanwhile, so this change was not made.");
+      // known before the text is looked at: an undo may come first
+      if (change.key?.[0] === "relations") this.given = change.value;
       this.set(told.text);
     } catch (error) {
       this.say(error.message, true);
