@@ -14,7 +14,7 @@ first in `model.SERIES`. Models load on first use, one series at a time.
 from __future__ import annotations
 
 from cratous.bridge.lmcp import binary, mdm, xml
-from cratous.bridge.lmcp.jsonform import from_dict, from_json, to_dict, to_json
+from cratous.bridge.lmcp.jsonform import from_dict, from_json, to_data, to_dict, to_json
 from cratous.bridge.lmcp.objects import LmcpObject, enums, full_names, new, types
 
 __all__ = [
@@ -26,6 +26,7 @@ __all__ = [
     "full_names",
     "mdm",
     "new",
+    "to_data",
     "to_dict",
     "to_json",
     "types",

@@ -76,6 +76,27 @@ def _spell_non_finite(value: Any) -> Any:
     return value
 
 
+def to_data(obj: LmcpObject) -> dict[str, Any]:
+    """The JSON form as plain data, as reading `to_json` again gives it; for objects as they are read."""
+    cls: Any = type(obj)
+    reals, others, keys = _plan(cls)
+    values = [cls.type_name, *cls.values_of(obj)]
+    for i in reals:
+        value = real(values[i])
+        values[i] = value if value - value == 0 else _spell_non_finite(value)
+    for i in others:
+        values[i] = _data(values[i])
+    return dict(zip(keys, values, strict=True))
+
+
+def _data(value: Any) -> Any:
+    if type(value) is list:
+        return [_data(one) for one in value]
+    if isinstance(value, LmcpObject):
+        return to_data(value)
+    return _spell_non_finite(_plain(value))
+
+
 def to_json(obj: LmcpObject) -> str:
     """One line of canonical JSON; BadInput if a field holds a value that is not of its type."""
     try:

@@ -64,6 +64,10 @@ class Positions:
         place = place_of(body.get("Location")) if isinstance(body, dict) else None
         if place is None or not isinstance(body.get("ID"), int):
             return
+        # the first of each second stays
+        rows, second = self._tracks.get(str(body["ID"]), {}), time_ms // PERIOD_MS
+        if second in rows:
+            return
         frame = Frame(place[0], place[1])
         projection = self._projection or Projection(frame)
         local = local_place(projection.to_local, place[0], place[1])
@@ -71,9 +75,8 @@ class Positions:
             return
         if self._projection is None:
             self.frame, self._projection = frame, projection
-        row = [time_ms, *local, round(place[2], 1), NOBODY]
-        # the first of each second stays
-        self._tracks.setdefault(str(body["ID"]), {}).setdefault(time_ms // PERIOD_MS, row)
+        rows[second] = [time_ms, *local, round(place[2], 1), NOBODY]
+        self._tracks[str(body["ID"])] = rows
 
     def tracks(self) -> dict[str, list[list[float]]]:
         """By number, rows of time [ms], north, east, altitude [m] and `NOBODY`, in the order of time."""

@@ -74,7 +74,11 @@ def to_text(entry: Entry) -> str:
 
 def to_data(entry: Entry) -> Any:
     """The JSON form as plain data; BadInput for what cannot be decoded or is no JSON."""
-    return json_of(to_text(entry), entry.place)
+    if isinstance(entry.body, bytes):
+        from cratous.bridge import lmcp
+
+        return lmcp.to_data(lmcp.binary.unpack(entry.body, entry.place))
+    return json_of(entry.body, entry.place)
 
 
 def to_raw_data(body: bytes) -> dict[str, str]:

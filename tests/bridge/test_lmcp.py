@@ -148,6 +148,7 @@ def test_json_round_trip_is_exact(number: float, text: str, count: int) -> None:
     obj = lmcp.new("SafetyVerdict", Margin=number, Note=text, Vehicles=[count], Verdict="Unknown")
     written = lmcp.to_json(obj)
     assert lmcp.to_json(lmcp.from_json(written)) == written
+    assert repr(lmcp.to_data(obj)) == repr(json.loads(written))
     read = lmcp.from_json(written)
     assert math.isnan(number) if math.isnan(read.Margin) else read.Margin == number
     assert math.copysign(1, read.Margin) == math.copysign(1, number) or math.isnan(number)

@@ -44,6 +44,27 @@ def test_keys_jump_from_event_to_event_and_the_address_follows(page: Page) -> No
     assert page.text("clock").startswith("00:00:00.0 of")
 
 
+PIXELS = """(() => { const map = document.getElementById('map');
+  return Array.from(map.getContext('2d').getImageData(0, 0, map.width, map.height).data); })()"""
+
+
+def test_the_map_shows_an_instant_alike_whatever_was_shown_before(page: Page) -> None:
+    page.key("n")
+    early = page.value(PIXELS)
+    page.key("n")
+    page.key("n")
+    late = page.value(PIXELS)
+    page.key("p")
+    page.key("p")
+    again = page.value(PIXELS)
+    # pieces that are drawn one by one meet a little otherwise than those drawn at once
+    parted = [
+        sum(abs(a - b) > 40 for a, b in zip(early, one, strict=True)) for one in (again, late)
+    ]
+    assert parted[0] < 40
+    assert parted[1] > 1000
+
+
 def test_it_plays_at_its_rate_stops_at_the_end_and_pauses(page: Page) -> None:
     for _ in range(6):
         page.key("]")

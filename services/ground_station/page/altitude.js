@@ -1,6 +1,6 @@
 // Altitudes over time, with the spans under ICAROUS and the instant that is shown.
 
-import { color, colorOf, niceStep, sized } from "./canvas.js";
+import { Layer, color, colorOf, niceStep, sized } from "./canvas.js";
 import { UNSEEN_MS } from "./instant.js";
 
 const LEFT = 66, RIGHT = 10, TOP = 8, BOTTOM = 18;
@@ -13,6 +13,7 @@ export class AltitudeChart {
       const box = canvas.getBoundingClientRect();
       go((event.offsetX - LEFT) / (box.width - LEFT - RIGHT) * recording.end_ms);
     });
+    this.layer = new Layer();
     this.grown();
   }
 
@@ -21,11 +22,22 @@ export class AltitudeChart {
     let low = Infinity, high = -Infinity;
     for (const track of Object.values(this.recording.tracks)) for (const row of track) { low = Math.min(low, row[3]); high = Math.max(high, row[3]); }
     this.low = low; this.high = high;
+    this.layer.forget();
   }
 
   draw(state, words) {
     const { pen, width, height } = sized(this.canvas), end = Math.max(this.recording.end_ms, 1000);
     if (this.low > this.high) return;
+    const kept = this.layer.for(this.canvas, words.altitude(0));
+    if (kept.empty) this.tracks(kept.pen, width, height, end, words);
+    this.layer.onto(pen, width, height);
+    const x = LEFT + (width - LEFT - RIGHT) * state.time / end;
+    pen.strokeStyle = color("ink"); pen.lineWidth = 1.5;
+    pen.beginPath(); pen.moveTo(x, 0); pen.lineTo(x, height - BOTTOM + 4); pen.stroke();
+  }
+
+  // all but the instant
+  tracks(pen, width, height, end, words) {
     const step = niceStep(Math.max(this.high - this.low, 40) / 2);
     const low = (Math.ceil(this.low / step) - 1) * step, high = (Math.floor(this.high / step) + 1) * step;
     const x = t => LEFT + (width - LEFT - RIGHT) * t / end, y = alt => height - BOTTOM - (height - TOP - BOTTOM) * (alt - low) / (high - low);
@@ -51,7 +63,5 @@ export class AltitudeChart {
       });
       pen.stroke();
     }
-    pen.strokeStyle = color("ink"); pen.lineWidth = 1.5;
-    pen.beginPath(); pen.moveTo(x(state.time), 0); pen.lineTo(x(state.time), height - BOTTOM + 4); pen.stroke();
   }
 }

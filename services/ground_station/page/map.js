@@ -2,7 +2,7 @@
 
 import { ring } from "./bands.js";
 import { UNSEEN_MS, authorityAt, bandsAt, lastAt, positionAt } from "./instant.js";
-import { color, colorOf, niceStep, sized } from "./canvas.js";
+import { Layer, color, colorOf, niceStep, sized } from "./canvas.js";
 import { words } from "./units.js";
 
 const EDGE = 50;
@@ -13,6 +13,8 @@ export class FlightMap {
     this.recording = recording;
     this.changed = changed; // called when the user moved the map
     this.view = null;
+    this.trails = new Layer();
+    this.drawn = { time: 0, to: {} }; // until when, and of each track to which row, the trails stand on their layer
     this.bounds = extent(recording);
     this.listen();
   }
@@ -43,7 +45,7 @@ export class FlightMap {
     for (const seen of recording.footprints) if (seen.time_ms <= time) this.footprint(seen);
     for (const task of recording.tasks) this.task(task);
     for (const [id, route] of routesAt(recording, time)) this.route(id, route);
-    for (const id of Object.keys(recording.tracks)) this.trail(id, time);
+    this.past(pen, width, height, time);
     for (const takeover of recording.takeovers) if (takeover.from_ms <= time) this.takeover(takeover);
     const said = bandsAt(recording, state), at = said?.row && positionAt(recording.tracks[said.id] ?? [], time);
     if (at && at.seen) ring(this, ...this.xy(at.north, at.east), said.row);
@@ -133,21 +135,47 @@ export class FlightMap {
     this.stroke(colorOf(this.recording, id), 1.5, [3, 5], 0.8);
   }
 
-  trail(id, time) {
-    const track = this.recording.tracks[id], last = lastAt(track, time, row => row[0]), ours = colorOf(this.recording, id);
-    const now = positionAt(track, time);
-    const broken = k => track[k + 1][0] - track[k][0] > UNSEEN_MS;
-    for (let from = 0; from <= last;) {
-      let to = from;
-      while (to < last && track[to + 1][4] === track[from][4] && !broken(to)) to++;
-      // a piece ends where the next one begins, unless nobody saw what was between
-      const end = to < last && !broken(to) ? to + 1 : to;
-      const places = track.slice(from, end + 1).map(row => [row[1], row[2]]);
-      if (to === last && now && now.seen) places.push([now.north, now.east]);
-      this.path(places, false);
-      if (track[from][4] === 1) this.stroke(color("icarous"), 5); else this.stroke(ours, 2.5);
-      from = to + 1;
+  // all trails; on their layer only what is new is drawn, and all anew where the view is another or time went back
+  past(pen, width, height, time) {
+    const { view } = this, layer = this.trails.for(this.canvas, [view.north, view.east, view.scale].join());
+    if (!layer.empty && time < this.drawn.time) {
+      layer.pen.clearRect(0, 0, width, height);
+      layer.empty = true;
     }
+    if (layer.empty) this.drawn.to = {};
+    this.drawn.time = time;
+    const ids = Object.keys(this.recording.tracks);
+    this.pen = layer.pen;
+    for (const id of ids) this.trail(id, time);
+    this.pen = pen;
+    this.trails.onto(pen, width, height);
+    for (const id of ids) this.newest(id, time);
+  }
+
+  // a piece of a track, in the colour of who commands
+  piece(id, owner, places) {
+    this.path(places, false);
+    if (owner === 1) this.stroke(color("icarous"), 5); else this.stroke(colorOf(this.recording, id), 2.5);
+  }
+
+  // up to the last row that is past
+  trail(id, time) {
+    const track = this.recording.tracks[id], last = lastAt(track, time, row => row[0]);
+    for (let from = this.drawn.to[id] ?? 0; from < last;) {
+      let to = from + 1;
+      if (!broken(track, from)) {
+        while (to < last && track[to][4] === track[from][4] && !broken(track, to)) to++;
+        this.piece(id, track[from][4], track.slice(from, to + 1).map(row => [row[1], row[2]]));
+      }
+      from = to;
+    }
+    this.drawn.to[id] = Math.max(last - 1, 0); // while it is flown, its last row may be replaced
+  }
+
+  // from the last row to where it is now
+  newest(id, time) {
+    const track = this.recording.tracks[id], last = lastAt(track, time, row => row[0]), now = positionAt(track, time);
+    if (now && now.seen) this.piece(id, track[last][4], [[track[last][1], track[last][2]], [now.north, now.east]]);
   }
 
   takeover(takeover) {
@@ -223,6 +251,9 @@ export class FlightMap {
     }, { passive: false });
   }
 }
+
+// whether nobody saw an aircraft between a row of its track and the next one
+function broken(track, k) { return k + 1 < track.length && track[k + 1][0] - track[k][0] > UNSEEN_MS; }
 
 // the route of each vehicle that was commanded last
 function routesAt(recording, time) {
