@@ -124,9 +124,7 @@ def monitor(
             judged, assumptions = watch(log)
     evidence = inventory(standing, calls.data())
     rows = constraint_rows(judged, "flight")
-    code = exit_code([v.outcome for v in judged])
-    if standing.problems and code == 0:
-        code = 3  # no verdict of an unproved kernel is better than unknown
+    code = exit_code([v.outcome for v in judged], unproved=bool(standing.problems))
     if as_json:
         data = {
             "requirements": requirement_rows(rows),
