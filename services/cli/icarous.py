@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from cratous.services.cli.numbers import Number
 from cratous.spec.errors import BadInput
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
 )
 @click.option("--once", is_flag=True, help="End when the connection ends; else connect again.")
 @click.option(
-    "--wait", type=click.FloatRange(0), default=60.0, show_default=True,
+    "--wait", type=Number(0), default=60.0, show_default=True,
     help="Seconds to wait for UxAS, at the start and when it is gone.",
 )  # fmt: skip
 @click.option(

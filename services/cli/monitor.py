@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from cratous.services.cli.numbers import Number
 from cratous.spec.errors import BadInput
 from cratous.spec.mission.guarantees import exit_code
 
@@ -28,9 +29,7 @@ from cratous.spec.mission.guarantees import exit_code
     metavar="HOST:PORT",
     help="Watch a running system instead of a LOG: a TCP bridge of UxAS, or AMASE.",
 )
-@click.option(
-    "--seconds", type=click.FloatRange(0, min_open=True), help="With --attach: end after so many."
-)
+@click.option("--seconds", type=Number(0, min_open=True), help="With --attach: end after so many.")
 @click.option(
     "--keep",
     type=click.Path(path_type=Path),

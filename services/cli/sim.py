@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from cratous.services.cli.numbers import Number
+
 if TYPE_CHECKING:
     from cratous.services.simulator.scenario import Scenario
     from cratous.services.simulator.world import World
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
 @click.argument("scenario", type=click.Path(path_type=Path))
 @click.option("--listen", metavar="HOST:PORT", help="Be AMASE for clients at this address.")
 @click.option(
-    "--rate", type=click.FloatRange(0, 1e6, min_open=True), default=1.0, show_default=True,
+    "--rate", type=Number(0, 1e6, min_open=True), default=1.0, show_default=True,
     help="Times faster than real time, with --listen.",
 )  # fmt: skip
 @click.option(
@@ -29,9 +31,7 @@ if TYPE_CHECKING:
     "--only", type=click.IntRange(1, 100), metavar="N",
     help="Let so many clients in and then nobody; end when one of them goes.",
 )  # fmt: skip
-@click.option(
-    "--until", type=click.FloatRange(0, min_open=True), help="End after so many seconds of it."
-)
+@click.option("--until", type=Number(0, min_open=True), help="End after so many seconds of it.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Write all that is told: sentinel frames.")  # fmt: skip
 @click.option(
     "--compatibility", type=click.Choice(["none", "amase"]), default="none", show_default=True,
