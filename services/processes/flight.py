@@ -36,7 +36,8 @@ SIMULATOR, UXAS = "simulator", "uxas"
 STARTS_S = 600.0
 """How long the start of all processes may take [s]; all of them check the proofs first."""
 SILENCE_S = 60.0
-"""A simulator that says nothing for so long [s] while its clock runs is taken to be stuck."""
+"""A simulator that tells no state for so long [s] while its clock runs is taken to be stuck; and UxAS, which tells
+each heartbeat of an ICAROUS instance, if it says nothing."""
 PROGRESS_MS = 10_000
 LIMITS = Limits(waiting_bytes=64 << 20)
 LOOK_S = 0.2
@@ -111,7 +112,8 @@ class _Flight:
         self.complete: set[int] = set()
         self.failed: dict[int, str] = {}
         self.away: set[int] = set()
-        self.news_s = self.look_s = 0.0
+        self.news_s: dict[str, float] = {}
+        self.look_s = 0.0
         self.stood: set[str] = set()
 
     # the start ------------------------------------------------------------------------------------
@@ -248,13 +250,14 @@ class _Flight:
             return
         self.there.add(body.ID)
         self.recorder.state(body)
-        self.news_s = time.monotonic()
+        self.news_s[SIMULATOR] = time.monotonic()
 
     def _from_uxas(self, body: Any) -> None:
         if not self.flown:
             self.heard.append(body)
             return
         self.recorder.heard(body)
+        self.news_s[UXAS] = time.monotonic()
         kind = type(body).__name__
         if kind == "TaskComplete":
             self.complete.add(body.TaskID)
@@ -271,13 +274,14 @@ class _Flight:
         """Until UxAS says that all tasks have ended, or the limit, or a process ends."""
         asked = {item.task_id for item in self.plan.items}
         outcome, why, say_ms = "", "", 0
-        self.news_s = time.monotonic()
+        self.news_s = dict.fromkeys((SIMULATOR, UXAS), time.monotonic())
         try:
             while not outcome:
                 self._turn()
                 now_ms = self.recorder.now_ms
-                if is_due(self.news_s + SILENCE_S, time.monotonic()):
-                    raise Stuck(f"the simulator has told no state for {SILENCE_S:g} s")
+                for name, news_s in self.news_s.items():
+                    if is_due(news_s + SILENCE_S, time.monotonic()):
+                        raise Stuck(f"{name} has told nothing of the flight for {SILENCE_S:g} s")
                 if is_due(say_ms, now_ms):
                     say_ms = now_ms + PROGRESS_MS
                     self.how.tell(f"\r{now_ms / 1000:7.1f} s of flight: flying")

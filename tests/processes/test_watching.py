@@ -79,6 +79,20 @@ def test_a_flight_of_which_a_process_ends_with_the_last_task_is_not_whole(
     assert one.recorder.ends == (outcome or "cut off")
 
 
+@pytest.mark.parametrize("silent", [flights.SIMULATOR, flights.UXAS])
+def test_one_that_runs_and_says_nothing_ends_the_flight(
+    root: Path, monkeypatch: pytest.MonkeyPatch, silent: str
+) -> None:
+    now_s = iter(range(10_000))
+    clock = SimpleNamespace(monotonic=lambda: float(next(now_s)))
+    monkeypatch.setattr(flights, "time", clock)
+    one = flight(root, ended=False)
+    (talks,) = {flights.SIMULATOR, flights.UXAS} - {silent}
+    one._turn = lambda: one.news_s.update({talks: float(next(now_s))})
+    done = one.run()
+    assert (done.outcome, done.why) == ("", f"{silent} has told nothing of the flight for 60 s")
+
+
 def test_what_cannot_be_read_names_who_says_it(root: Path) -> None:
     one = flight(root, ended=False)
     one.uxas = Port(Incoming((b"rubbish",), "UxAS"))
