@@ -150,6 +150,13 @@ class TcpPort:
         for peer in peers:
             self._queue(peer, frame)
 
+    def shut(self) -> None:
+        """Listen no more: those that are connected stay, nobody else comes. Safe to call twice."""
+        if self._listener is not None:
+            self._poll.unregister(self._listener.fileno())
+            self._listener.close()
+            self._listener, self._paused_s = None, None
+
     def close(self) -> None:
         """Try to hand over what waits, then close all sockets."""
         if self._closed:

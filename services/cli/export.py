@@ -105,8 +105,7 @@ def _planned(mission: Mission, allow_unproved: bool) -> tuple[Plan, int]:
             )
     for line in left_out_lines(plan):
         say(f"plan: {line}", err=True)
-    code = exit_code([check.outcome for check in checks])
     if standing.problems:
         say(f"plan: {standing.line}", err=True)
-    # no verdict of an unproved kernel is better than unknown
-    return plan, 3 if standing.problems and code == 0 else code
+    outcomes = [check.outcome for check in checks]
+    return plan, exit_code(outcomes, unproved=bool(standing.problems))

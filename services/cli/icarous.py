@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from cratous.services.cli.numbers import Number
 from cratous.spec.errors import BadInput
 
 if TYPE_CHECKING:
@@ -20,6 +21,10 @@ if TYPE_CHECKING:
 @click.option(
     "--mission", type=click.Path(path_type=Path), required=True,
     help="Where airframe, well clear volume and frame stand: a mission file or UxAS folder.",
+)  # fmt: skip
+@click.option(
+    "--mission-hash", "digest", metavar="HEX",
+    help="Refuse a mission whose hash is another one (`mission_hash` of a report).",
 )  # fmt: skip
 @click.option("--connect", metavar="HOST:PORT", help="Where UxAS listens.")
 @click.option("--listen", metavar="HOST:PORT", help="Where to wait for UxAS, which connects.")
@@ -39,7 +44,7 @@ if TYPE_CHECKING:
 )
 @click.option("--once", is_flag=True, help="End when the connection ends; else connect again.")
 @click.option(
-    "--wait", type=click.FloatRange(0), default=60.0, show_default=True,
+    "--wait", type=Number(0), default=60.0, show_default=True,
     help="Seconds to wait for UxAS, at the start and when it is gone.",
 )  # fmt: skip
 @click.option(
@@ -49,6 +54,7 @@ if TYPE_CHECKING:
 def icarous(
     vehicle: int,
     mission: Path,
+    digest: str | None,
     once: bool,
     wait: float,
     folder: Path | None,
@@ -97,7 +103,7 @@ def icarous(
             expected="--v2, an address of loopback, or --plain-beyond-loopback",
             got=text,
         )
-    craft = craft_of(mission, vehicle, dialect)
+    craft = craft_of(mission, vehicle, dialect, digest)
     log = Logs(
         "WARN",
         "DEBUG",
@@ -131,9 +137,11 @@ def icarous(
     return 0
 
 
-def craft_of(path: Path, vehicle_id: int, dialect: Dialect) -> Craft:
-    """A vehicle of a mission as its ICAROUS has to know it; BadInput if the mission has no such one."""
+def craft_of(path: Path, vehicle_id: int, dialect: Dialect, digest: str | None = None) -> Craft:
+    """A vehicle of a mission as its ICAROUS has to know it; BadInput if the mission has no such one, or is
+    another one than that of `digest`."""
     from cratous.bridge.text_protocol.dialects import Dialect
+    from cratous.services.certify.report import mission_hash
     from cratous.services.flight.dynamics import floor_of, limits_of
     from cratous.services.icarous.state import Config
     from cratous.services.icarous_program.step import Craft
@@ -141,6 +149,14 @@ def craft_of(path: Path, vehicle_id: int, dialect: Dialect) -> Craft:
     from cratous.services.mission.frames import Projection
 
     mission = load(path)
+    if digest is not None and mission_hash(mission) != digest:
+        raise BadInput(
+            "another mission",
+            where=str(path),
+            item="--mission-hash",
+            expected=digest[:80],
+            got=mission_hash(mission),
+        )
     found = [v for v in mission.vehicles if v.id == vehicle_id]
     if not found:
         raise BadInput(
@@ -154,5 +170,10 @@ def craft_of(path: Path, vehicle_id: int, dialect: Dialect) -> Craft:
     running = dialect is Dialect.ORIGINAL
     config = Config(vehicle_id, mission.daa, projection, beat_ms, running)
     return Craft(
-        config, limits_of(found[0]), floor_of(mission), frozenset(mission.instances), dialect
+        config,
+        limits_of(found[0]),
+        floor_of(mission),
+        frozenset(mission.instances),
+        dialect,
+        mission.simulation.step_ms / 1000,
     )

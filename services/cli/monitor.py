@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from cratous.services.cli.numbers import Number
 from cratous.spec.errors import BadInput
 from cratous.spec.mission.guarantees import exit_code
 
@@ -28,9 +29,7 @@ from cratous.spec.mission.guarantees import exit_code
     metavar="HOST:PORT",
     help="Watch a running system instead of a LOG: a TCP bridge of UxAS, or AMASE.",
 )
-@click.option(
-    "--seconds", type=click.FloatRange(0, min_open=True), help="With --attach: end after so many."
-)
+@click.option("--seconds", type=Number(0, min_open=True), help="With --attach: end after so many.")
 @click.option(
     "--keep",
     type=click.Path(path_type=Path),
@@ -124,9 +123,7 @@ def monitor(
             judged, assumptions = watch(log)
     evidence = inventory(standing, calls.data())
     rows = constraint_rows(judged, "flight")
-    code = exit_code([v.outcome for v in judged])
-    if standing.problems and code == 0:
-        code = 3  # no verdict of an unproved kernel is better than unknown
+    code = exit_code([v.outcome for v in judged], unproved=bool(standing.problems))
     if as_json:
         data = {
             "requirements": requirement_rows(rows),

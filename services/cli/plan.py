@@ -134,9 +134,7 @@ def _planned(loaded: Mission, job: _Job) -> tuple[dict[str, Any], int]:
         evidence = inventory(standing, calls.data())
     if job.certificate is not None:
         write_certificate(bus, job.certificate)
-    code = exit_code([check.outcome for check in checks])
-    if standing.problems and code == 0:
-        code = 3  # no verdict of an unproved kernel is better than unknown
+    code = exit_code([check.outcome for check in checks], unproved=bool(standing.problems))
     data = {
         "plan": to_data(made),
         "constraints": constraint_rows(checks, "plan"),

@@ -51,6 +51,7 @@ def run_in_processes(
 
     path: of the mission, which the ICAROUS processes read; rate: times real time.
     """
+    digest = mission_hash(mission)
     mission = as_flown(mission if settings.daa else replace(mission, instances=()))
     told = told_of(mission)
     standing = ledger.require(allow_unproved=settings.allow_unproved)
@@ -82,7 +83,7 @@ def run_in_processes(
             )
             bus.tap(writer.tap)
             bus.tap(monitor.tap)
-            how = Flying(path, folder, rate, settings.allow_unproved, tell)
+            how = Flying(path, digest, folder, rate, settings.allow_unproved, tell)
             ended = fly(mission, plan, told, Recorder(mission, bus), how)
             writer.note("processes", {"pids": ended.pids, "ports": ended.ports})
             if ended.why:

@@ -14,6 +14,7 @@ import click
 from cratous.services.cli.campaign import seed_range
 from cratous.services.cli.job import Settings, folder_name, run_mission
 from cratous.services.cli.job import silent as untold
+from cratous.services.cli.numbers import Number
 from cratous.services.cli.progress import waiting
 from cratous.services.cli.show import requirement_table, say
 
@@ -34,7 +35,7 @@ Tell = Callable[[str], None]
     help="Fly with simulator, UxAS and each ICAROUS in processes of their own, in real time.",
 )  # fmt: skip
 @click.option(
-    "--rate", type=click.FloatRange(0.1, 100), metavar="X",
+    "--rate", type=Number(0.1, 100), metavar="X",
     help="Times real time, with --processes. [1]",
 )  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")

@@ -71,7 +71,7 @@ def _plan(asked: Asked, tell: Tell) -> None:
 
     bus.tap(planning_told(at, len(mission.tasks)))
     made, checks = plan_and_check(mission, bus)
-    code = exit_code([check.outcome for check in checks])
+    outcomes = [check.outcome for check in checks]
     tell(
         {
             "state": "planned",
@@ -80,8 +80,7 @@ def _plan(asked: Asked, tell: Tell) -> None:
             "constraints": constraint_rows(checks, "plan"),
             "notes": [*left_out_lines(made), *absent_lines(mission), *mission.notes],
             "proofs": standing.line,
-            # no verdict of an unproved kernel is better than unknown
-            "exit_code": 3 if standing.problems and code == 0 else code,
+            "exit_code": exit_code(outcomes, unproved=bool(standing.problems)),
         }
     )
     _answer(mission, made, asked, tell)

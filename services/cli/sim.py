@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
+
+from cratous.services.cli.numbers import Number
 
 if TYPE_CHECKING:
     from cratous.services.simulator.scenario import Scenario
@@ -19,15 +21,17 @@ if TYPE_CHECKING:
 @click.argument("scenario", type=click.Path(path_type=Path))
 @click.option("--listen", metavar="HOST:PORT", help="Be AMASE for clients at this address.")
 @click.option(
-    "--rate", type=click.FloatRange(0, 1e6, min_open=True), default=1.0, show_default=True,
+    "--rate", type=Number(0, 1e6, min_open=True), default=1.0, show_default=True,
     help="Times faster than real time, with --listen.",
 )  # fmt: skip
 @click.option(
     "--clients", type=click.IntRange(0, 100), default=0, help="Begin when so many are connected."
 )
 @click.option(
-    "--until", type=click.FloatRange(0, min_open=True), help="End after so many seconds of it."
-)
+    "--only", type=click.IntRange(1, 100), metavar="N",
+    help="Let so many clients in and then nobody; end when one of them goes.",
+)  # fmt: skip
+@click.option("--until", type=Number(0, min_open=True), help="End after so many seconds of it.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Write all that is told: sentinel frames.")  # fmt: skip
 @click.option(
     "--compatibility", type=click.Choice(["none", "amase"]), default="none", show_default=True,
@@ -38,6 +42,7 @@ def sim(
     listen: str | None,
     rate: float,
     clients: int,
+    only: int | None,
     until: float | None,
     output: Path | None,
     compatibility: str,
@@ -50,7 +55,8 @@ def sim(
 
     Example:  cratous sim 02_waterway.xml --listen 127.0.0.1:5555
 
-    Exit codes: 0 the scenario is over, or it was asked to end (SIGTERM, Ctrl-C, Stopped), 2 bad input.
+    Exit codes: 0 the scenario is over, or it was asked to end (SIGTERM, Ctrl-C, Stopped), 2 bad input,
+    3 a client has gone that --only counts on.
     """
     from cratous.services.simulator.scenario import read
     from cratous.services.simulator.world import World
@@ -58,6 +64,15 @@ def sim(
 
     if listen is not None and output is not None:
         raise BadInput("not both", item="--listen, -o", expected="one of them")
+    if listen is None and (clients or only):
+        raise BadInput("clients of nothing", item="--clients, --only", expected="--listen as well")
+    if only is not None and clients > only:
+        raise BadInput(
+            "more clients than are let in",
+            item="--clients",
+            expected=f"at most {only}, as --only says",
+            got=str(clients),
+        )
     plan = read(scenario)
     for note in plan.notes:
         click.echo(f"note: {note}", err=True)
@@ -67,7 +82,7 @@ def sim(
         return World(plan.events, end_s, compatible=compatibility == "amase")
 
     if listen is not None:
-        return _serve(make, plan, listen, rate, clients)
+        return _serve(make, plan, listen, {"rate": rate, "clients": clients, "only": only or 0})
     began_s = time.monotonic()
     world = make()
     _write(world, output)
@@ -105,9 +120,7 @@ def _write(world: World, output: Path | None) -> None:
             raise cannot_write(output, error) from error
 
 
-def _serve(
-    make: Callable[[], World], plan: Scenario, listen: str, rate: float, clients: int
-) -> int:
+def _serve(make: Callable[[], World], plan: Scenario, listen: str, how: Mapping[str, Any]) -> int:
     from cratous.bridge.port import address
     from cratous.services.simulator.server import Server
 
@@ -116,7 +129,7 @@ def _serve(
             click.echo(f"{severity}: {text}", err=True)
 
     where = address(f"tcp://{listen}", ("tcp",), item="--listen", free=True)
-    server = Server(make, where, report, rate=rate, clients=clients)
+    server = Server(make, where, report, **how)
 
     def stop(*_: object) -> None:
         server.stopping = True

@@ -7,6 +7,7 @@ import time
 
 import click
 
+from cratous.services.cli.numbers import Number
 from cratous.services.cli.progress import waiting
 
 
@@ -14,7 +15,7 @@ from cratous.services.cli.progress import waiting
 @click.option("--planning", is_flag=True, help="Only what planning uses.")
 @click.option("--prune", is_flag=True, help="Then remove old machine code from the cache.")
 @click.option(
-    "--days", type=click.FloatRange(0, 3650), default=7.0, show_default=True,
+    "--days", type=Number(0, 3650), default=7.0, show_default=True,
     help="Old is what nothing has used for so many days (with --prune).",
 )  # fmt: skip
 @click.option("--quiet", is_flag=True, help="No progress.")

@@ -12,7 +12,7 @@ from typing import Any
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.port import Report, Tally, is_due
 from cratous.bridge.redial import Redial
-from cratous.bridge.text_connection import REFUSED, Bounds, Opened
+from cratous.bridge.text_connection import PROGRAM_LIMITS, REFUSED, Bounds, Opened
 from cratous.bridge.text_port import Came, TextPort
 from cratous.bridge.text_protocol import Heartbeat, Hello, Message, Skipped
 from cratous.services.bus import Bus, Envelope, Wake
@@ -35,6 +35,8 @@ KEEP_IN, KEEP_OUT = "afrl.cmasi.KeepInZone", "afrl.cmasi.KeepOutZone"
 REMOVE_ZONES = "afrl.cmasi.RemoveZones"
 WATCH_MS = 500
 """How often it looks for instances that have fallen silent [ms]."""
+MOST_VEHICLES, MOST_ZONES = 1000, PROGRAM_LIMITS.zones
+"""So many are known at once; of others that come it is said that they are not avoided."""
 MOST_EARLY = 1000
 """Lines of a connection that are kept until it is known for which vehicle it speaks."""
 PROGRESS_S = 10.0
@@ -113,6 +115,9 @@ class IcarousCommunicationService:
         return state, self._deliver(out)
 
     def _heard(self, state: State, topic: str, body: Any, now_ms: int) -> Step:
+        many = _too_many(state, topic, body)
+        if many is not None:
+            return state, [many]
         if topic == MISSION:
             return self._step.mission(state, body, now_ms)
         if topic == REMOVE_ZONES:
@@ -241,3 +246,15 @@ class IcarousCommunicationService:
                 case Note(severity, text):
                     self._report(severity, f"{self.name}: {text}")
         return bodies
+
+
+def _too_many(state: State, topic: str, body: Any) -> Refuse | None:
+    """Why there is no room for a vehicle or zone that has not been told of before."""
+    if topic in (KEEP_IN, KEEP_OUT):
+        if len(state.zones) >= MOST_ZONES and body.ZoneID not in state.zones:
+            return Refuse("more zones than are kept", f"zone {body.ZoneID} is not avoided")
+    elif topic != REMOVE_ZONES and len(state.crafts) >= MOST_VEHICLES:
+        number = body.VehicleID if topic == MISSION else body.ID
+        if number not in state.crafts:
+            return Refuse("more vehicles than are kept", f"vehicle {number} is not avoided")
+    return None

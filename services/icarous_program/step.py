@@ -30,7 +30,7 @@ from cratous.bridge.text_protocol import (
 from cratous.core.authority.cycle import gate_wished
 from cratous.core.authority.gate import UXAS, Gate, gate_accepts, gate_after
 from cratous.core.authority.timeliness import lasted
-from cratous.core.avoidance.manoeuvre import Ability, Motion
+from cratous.core.avoidance.manoeuvre import PIECE_S, Ability, Motion
 from cratous.core.avoidance.prediction import Intruder
 from cratous.services.flight.dynamics import MAX_ACCELERATION_M_S2, Limits, turn_rate_rad_s
 from cratous.services.icarous import state as icarous
@@ -94,13 +94,15 @@ Answer = Tell | Note | Refuse
 @dataclass(frozen=True)
 class Craft:
     """What does not change. limits: of the airframe; floor_m: no manoeuvre goes below it [m MSL];
-    cooperating: who else is flown by such an instance; dialect: of UxAS's end."""
+    cooperating: who else is flown by such an instance; dialect: of UxAS's end; step_s: for how long at most
+    the autopilot holds one heading in a turn [s]."""
 
     config: icarous.Config
     limits: Limits
     floor_m: float
     cooperating: frozenset[int] = frozenset()
     dialect: Dialect = Dialect.CRATOUS
+    step_s: float = PIECE_S
 
 
 @dataclass(frozen=True)
@@ -330,6 +332,7 @@ class IcarousEnd:
             limits.max_climb_m_s,
             MAX_ACCELERATION_M_S2,
             self.craft.floor_m,
+            self.craft.step_s,
         )
         return Motion(Position(north, east, line.alt_abs_m), course, speed, -line.down_mps), ability
 

@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import os
+import secrets
 import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 from collections import deque
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 
+import cratous
 from cratous.bridge.port import is_due
+from cratous.bridge.text_protocol.handshake import SECRET_VARIABLE
+from cratous.services.processes.leash import ENDS_WITH
 from cratous.spec.errors import CratousError
 
 GRACE_S = 5.0
@@ -50,6 +57,17 @@ class Children:
 
     def __init__(self, logs: Path, work: Path) -> None:
         self._logs, self._work = logs, work
+        place = str(Path(cratous.__file__).absolute().parents[1])
+        paths = [place, *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
+        self._environment = {
+            **os.environ,
+            "PYTHONUNBUFFERED": "1",
+            # the same program, whatever the present folder
+            "PYTHONPATH": os.pathsep.join(path for path in paths if path),
+            # of this flight alone: a stranger cannot be one of its ICAROUS instances
+            SECRET_VARIABLE: secrets.token_hex(32),
+            ENDS_WITH: str(os.getpid()),
+        }
         self.running: dict[str, subprocess.Popen[bytes]] = {}
 
     def __enter__(self) -> Children:
@@ -61,7 +79,8 @@ class Children:
         _error: BaseException | None,
         _trace: TracebackType | None,
     ) -> None:
-        self.end()
+        with _undisturbed():
+            self.end()
 
     def start(self, name: str, *arguments: str) -> int:
         """Start `cratous` with arguments; returns the pid."""
@@ -72,7 +91,7 @@ class Children:
                 stdin=subprocess.DEVNULL,
                 stdout=said,
                 stderr=subprocess.STDOUT,
-                env={**os.environ, "PYTHONUNBUFFERED": "1"},
+                env=self._environment,
                 # Ctrl-C reaches this command alone, which then ends them in order
                 start_new_session=True,
             )
@@ -106,3 +125,21 @@ class Children:
                 child.kill()
             child.wait()
         return {name: int(child.returncode) for name, child in self.running.items()}
+
+
+@contextmanager
+def _undisturbed() -> Iterator[None]:
+    """In here signals that ask to end wait: one that is given twice leaves no process behind."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came: list[int] = []
+    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    before = {n: signal.signal(n, lambda number, _frame: came.append(number)) for n in numbers}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        for again in came[:1]:
+            signal.raise_signal(again)

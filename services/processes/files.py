@@ -67,8 +67,8 @@ def write_configuration(
     }
     bridges = (
         _bridge(ports.simulator, "FALSE", TO_SIMULATOR)
-        # a recorder that does not read loses nothing in silence: its connection ends
-        + _bridge(ports.recorder, "TRUE", TO_RECORDER, ' WhenFull="Close"')
+        # a recorder that does not read loses nothing in silence: its connection ends; nobody else says anything
+        + _bridge(ports.recorder, "TRUE", TO_RECORDER, ' WhenFull="Close" MaxConnections="1"')
     )
     clock = ("Test_SimulationTime",)
     text = configuration_text(mission, instances, communication, bridges, clock)

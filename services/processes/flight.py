@@ -27,7 +27,7 @@ from cratous.services.processes.files import (
     write_scenario,
 )
 from cratous.services.processes.recorder import Recorder
-from cratous.spec.errors import CratousError, NoPlan
+from cratous.spec.errors import BadInput, CratousError, NoPlan
 from cratous.spec.mission import Mission
 from cratous.spec.mission.plan import Plan
 
@@ -36,9 +36,12 @@ SIMULATOR, UXAS = "simulator", "uxas"
 STARTS_S = 600.0
 """How long the start of all processes may take [s]; all of them check the proofs first."""
 SILENCE_S = 60.0
-"""A simulator that says nothing for so long [s] while its clock runs is taken to be stuck."""
+"""A simulator that tells no state for so long [s] while its clock runs is taken to be stuck; and UxAS, which tells
+each heartbeat of an ICAROUS instance, if it says nothing."""
 PROGRESS_MS = 10_000
 LIMITS = Limits(waiting_bytes=64 << 20)
+LOOK_S = 0.2
+"""However much comes, the processes are looked at so often [s]."""
 
 
 class Stuck(CratousError):
@@ -48,10 +51,11 @@ class Stuck(CratousError):
 
 
 class Flying(NamedTuple):
-    """How a flight in processes is set up. path: of the mission, for ICAROUS; folder: for what they are
-    given and what they say; rate: times real time."""
+    """How a flight in processes is set up. path: of the mission, for ICAROUS; digest: of that mission, the
+    hash of its report; folder: for what they are given and what they say; rate: times real time."""
 
     path: Path
+    digest: str
     folder: Path
     rate: float
     allow_unproved: bool
@@ -108,7 +112,9 @@ class _Flight:
         self.complete: set[int] = set()
         self.failed: dict[int, str] = {}
         self.away: set[int] = set()
-        self.news_s = 0.0
+        self.news_s: dict[str, float] = {}
+        self.look_s = 0.0
+        self.stood: set[str] = set()
 
     # the start ------------------------------------------------------------------------------------
 
@@ -133,7 +139,8 @@ class _Flight:
             where = f"127.0.0.1:{ports.icarous}"
             self._start(
                 f"icarous_{vehicle}", "icarous", "--vehicle", str(vehicle), "--mission",
-                str(how.path.resolve()), "--connect", where, "--wait", f"{STARTS_S:g}", *unproved,
+                str(how.path.resolve()), "--mission-hash", how.digest, "--connect", where,
+                "--wait", f"{STARTS_S:g}", *unproved,
             )  # fmt: skip
         self._wait("UxAS's plan", self._planned)
         self._wait("the commands of UxAS at the simulator", self._all_commanded)
@@ -150,7 +157,7 @@ class _Flight:
 
     def _start_simulator(self, scenario: Path) -> int:
         self._start(SIMULATOR, "sim", str(scenario.resolve()), "--listen", "127.0.0.1:0",
-                    "--clients", "1")  # fmt: skip
+                    "--clients", "1", "--only", "2")  # fmt: skip
         found: list[re.Match[str]] = []
 
         def listens() -> bool:
@@ -207,25 +214,31 @@ class _Flight:
     def _turn(self) -> None:
         """Everything that has come, and a look at the processes."""
         now_s, arrived = time.monotonic(), 0
-        for port, take in ((self.uxas, self._from_uxas), (self.simulator, self._from_simulator)):
+        for name, port, take in (
+            (UXAS, self.uxas, self._from_uxas),
+            (SIMULATOR, self.simulator, self._from_simulator),
+        ):
             if port is None:
                 continue
             for incoming in port.step(now_s):
                 arrived += 1
-                take(_body(incoming))
-            if self.flown and not port.peers:
-                self._cut(port)
-        if not arrived:
+                take(_body(incoming, name))
+            if port.peers:
+                self.stood.add(name)
+            elif name in self.stood:
+                self._cut(name)
+        if not arrived or is_due(self.look_s, now_s):
+            self.look_s = now_s + LOOK_S
             self.children.watch()
+        if not arrived:
             time.sleep(0.002)
 
-    def _cut(self, port: TcpPort) -> None:
+    def _cut(self, name: str) -> None:
         """A connection has ended, and what was said meanwhile is lost: ProcessEnded if that is why, or Stuck."""
         until_s = time.monotonic() + GRACE_S
         while not is_due(until_s, time.monotonic()):
             self.children.watch()
             time.sleep(0.02)
-        name = UXAS if port is self.uxas else SIMULATOR
         raise Stuck(f"the connection of the recorder to {name} has ended")
 
     def _from_simulator(self, body: Any) -> None:
@@ -237,13 +250,14 @@ class _Flight:
             return
         self.there.add(body.ID)
         self.recorder.state(body)
-        self.news_s = time.monotonic()
+        self.news_s[SIMULATOR] = time.monotonic()
 
     def _from_uxas(self, body: Any) -> None:
         if not self.flown:
             self.heard.append(body)
             return
         self.recorder.heard(body)
+        self.news_s[UXAS] = time.monotonic()
         kind = type(body).__name__
         if kind == "TaskComplete":
             self.complete.add(body.TaskID)
@@ -259,23 +273,22 @@ class _Flight:
     def run(self) -> Ended:
         """Until UxAS says that all tasks have ended, or the limit, or a process ends."""
         asked = {item.task_id for item in self.plan.items}
-        limit_ms, say_ms = self.mission.simulation.limit_ms, 0
-        outcome, why = "", ""
-        self.news_s = time.monotonic()
-        while not outcome:
-            try:
+        outcome, why, say_ms = "", "", 0
+        self.news_s = dict.fromkeys((SIMULATOR, UXAS), time.monotonic())
+        try:
+            while not outcome:
                 self._turn()
-            except (ProcessEnded, Stuck) as error:
-                why = str(error)
-                break
-            now_ms = self.recorder.now_ms
-            if is_due(self.news_s + SILENCE_S, time.monotonic()):
-                why = f"the simulator has told no state for {SILENCE_S:g} s"
-                break
-            if is_due(say_ms, now_ms):
-                say_ms = now_ms + PROGRESS_MS
-                self.how.tell(f"\r{now_ms / 1000:7.1f} s of flight: flying")
-            outcome = self._outcome(asked, is_due(limit_ms, now_ms))
+                now_ms = self.recorder.now_ms
+                for name, news_s in self.news_s.items():
+                    if is_due(news_s + SILENCE_S, time.monotonic()):
+                        raise Stuck(f"{name} has told nothing of the flight for {SILENCE_S:g} s")
+                if is_due(say_ms, now_ms):
+                    say_ms = now_ms + PROGRESS_MS
+                    self.how.tell(f"\r{now_ms / 1000:7.1f} s of flight: flying")
+                outcome = self._outcome(asked, is_due(self.mission.simulation.limit_ms, now_ms))
+            self.children.watch()  # a flight of which a process has ended meanwhile is not whole
+        except (ProcessEnded, Stuck) as error:
+            outcome, why = "", str(error)
         # of a flight that was cut off nothing is said that nobody has seen
         for task in sorted(asked - self.complete) if outcome else ():
             self._failed(task, outcome)
@@ -307,6 +320,9 @@ def _words(ports: Ports) -> str:
     return ", ".join(f"{name} {port}" for name, port in ports._asdict().items())
 
 
-def _body(incoming: Incoming) -> Any:
-    message = wire.parse(incoming.parts[0])
-    return lmcp.binary.received(message.payload, message.descriptor)[0]
+def _body(incoming: Incoming, name: str) -> Any:
+    try:
+        message = wire.parse(incoming.parts[0])
+        return lmcp.binary.received(message.payload, message.descriptor)[0]
+    except BadInput as error:
+        raise Stuck(f"what {name} says cannot be read: {error}") from error

@@ -95,20 +95,16 @@ class Recorder:
         self._say(body)
         if kind == "TaskActive":
             self._doing[body.EntityID] = body.TaskID
-            self._progress(body.EntityID, "Active", "")
+            self._progress(body.EntityID, body.TaskID, "Active", "")
         elif kind == "TaskComplete":
             for vehicle in body.EntitiesInvolved:
-                self._doing[vehicle] = body.TaskID
-                self._progress(vehicle, "Complete", "")
-                del self._doing[vehicle]
+                self._ended(vehicle, body.TaskID, "Complete", "")
         elif kind == "AuthorityChange":
             self._authority(body)
 
     def failed(self, task: int, vehicle: int, why: str) -> None:
         """UxAS has said that a task ends undone, or it has not been ended."""
-        self._doing[vehicle] = task
-        self._progress(vehicle, "Failed", why)
-        del self._doing[vehicle]
+        self._ended(vehicle, task, "Failed", why)
 
     def end(self, outcome: str) -> None:
         """The end of the mission at the newest instant; without an outcome the log just stops."""
@@ -124,13 +120,20 @@ class Recorder:
     def _authority(self, body: Any) -> None:
         """A takeover suspends the task of its vehicle, a handback ends that."""
         if body.VehicleID in self._doing:
-            self._progress(body.VehicleID, *AT_CHANGE[body.Owner.name])
+            vehicle = body.VehicleID
+            self._progress(vehicle, self._doing[vehicle], *AT_CHANGE[body.Owner.name])
 
-    def _progress(self, vehicle: int, phase: str, note: str) -> None:
+    def _ended(self, vehicle: int, task: int, phase: str, note: str) -> None:
+        """A task has ended; the vehicle may be doing the next one already."""
+        self._progress(vehicle, task, phase, note)
+        if self._doing.get(vehicle) == task:
+            del self._doing[vehicle]
+
+    def _progress(self, vehicle: int, task: int, phase: str, note: str) -> None:
         self._say(
             lmcp.new(
                 "TaskProgress",
-                TaskID=self._doing[vehicle],
+                TaskID=task,
                 VehicleID=vehicle,
                 Time=self._told_ms,
                 Phase=phase,

@@ -3,7 +3,8 @@
 Everything told goes to every client; what a client sends is taken, and relayed to the others. A client that does
 not read loses its oldest messages and holds up nobody. SessionStatus controls the clock: Paused, Running
 (with its RealTimeMultiple, if that is above 0), Reset, Stopped. Clients that come late are told the
-configurations of all vehicles, which AMASE leaves out.
+configurations of all vehicles, which AMASE leaves out. With `only` nobody is let in after so many, also not in
+the place of one that goes: with that one the flight has lost what it was for.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 import select
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from cratous.bridge import envelope as wire
@@ -18,7 +20,7 @@ from cratous.bridge import lmcp
 from cratous.bridge.port import Address, Incoming, Limits, Tally
 from cratous.bridge.tcp_port import TcpPort
 from cratous.services.simulator.world import TICK_S, World
-from cratous.spec.errors import BadInput
+from cratous.spec.errors import BadInput, CratousError
 
 LIMITS = Limits(payload_bytes=4 << 20, waiting_bytes=1 << 20, connections=100)
 BURST = 500
@@ -28,11 +30,17 @@ LINGER_S = 2.0
 """How long clients have, at the end, to read what waits for them [s]."""
 
 
+class ClientGone(CratousError):
+    """One of the only clients of a simulator has gone before the end."""
+
+    exit_code = 3
+
+
 class Server:
     """A world that clients see and command; see the module.
 
     make: the world anew, for Reset. rate: how many times faster than real time it goes. clients: so
-    many must be there before it begins. stopping: set to end.
+    many must be there before it begins. only: so many are let in, 0: any. stopping: set to end.
     """
 
     def __init__(
@@ -43,12 +51,15 @@ class Server:
         *,
         rate: float = 1.0,
         clients: int = 0,
+        only: int = 0,
     ) -> None:
         self._make = make
         self.world = make()
         self.rate = rate
         self._clients = clients
-        self.port = TcpPort(where, server=True, limits=LIMITS, report=report)
+        self._only, self._shut = only, False
+        limits = replace(LIMITS, connections=only or LIMITS.connections)
+        self.port = TcpPort(where, server=True, limits=limits, report=report)
         self._tally = Tally("clients", report)
         self._report = report
         self.state = "Running"
@@ -63,7 +74,7 @@ class Server:
         return dict(self._tally.counts.refused)
 
     def run(self) -> None:
-        """Until the scenario is over, or `stopping`; the port is closed then."""
+        """Until the scenario is over, or `stopping`; the port is closed then. ClientGone: see `only`."""
         last_s = time.monotonic()
         try:
             while not (self.stopping or self.world.over or self.state == "Stopped"):
@@ -83,6 +94,7 @@ class Server:
             for body in self._known.values():
                 self.tell(body)
         self._peers = self.port.peers
+        self._count()
         self._clients = max(0, self._clients if self._peers < self._clients else 0)
         if self.state != "Running" or self._clients:
             self._behind_s = 0.0
@@ -100,6 +112,16 @@ class Server:
             self._behind_s = min(self._behind_s, BURST * TICK_S)
             return
         self._wait(max(0.0, (TICK_S - self._behind_s) / self.rate))
+
+    def _count(self) -> None:
+        """Shut the door behind the last of the only clients; ClientGone if one of them is no longer there."""
+        if not self._only:
+            return
+        if self._peers == self._only:
+            self.port.shut()
+            self._shut = True
+        elif self._shut:
+            raise ClientGone(f"{self._peers} of the {self._only} clients are left")
 
     def _wait(self, most_s: float) -> None:
         handles = [handle for handle, _ in self.port.handles()]

@@ -104,9 +104,10 @@ def worst(outcomes: list[Outcome]) -> Outcome:
     return Outcome.HOLDS if outcomes else Outcome.UNKNOWN
 
 
-def exit_code(outcomes: list[Outcome]) -> int:
-    """0 all hold, 1 something is violated, 3 something is unknown or excused."""
-    whole = worst(outcomes)
+def exit_code(outcomes: list[Outcome], *, unproved: bool = False) -> int:
+    """0 all hold, 1 something is violated, 3 something is unknown or excused; unproved: kernels without proof
+    have judged, whose verdict is at best unknown."""
+    whole = worst([*outcomes, Outcome.UNKNOWN] if unproved else outcomes)
     if whole is Outcome.HOLDS:
         return 0
     return 1 if whole is Outcome.VIOLATED else 3

@@ -55,3 +55,21 @@ def test_the_judge_prints_no_control_characters(
     assert "\x1b" not in out
     assert not [line for line in out.splitlines() if line.startswith("G2 holds")]
     assert json.dumps("\x1b")[1:-1] in out or "\\x1b" in out
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["run", "mission.yaml", "--processes", "--rate", "nan"],
+        ["sim", "scenario.xml", "--until", "NaN"],
+        ["sim", "scenario.xml", "--listen", "127.0.0.1:0", "--rate", "nan"],
+        ["icarous", "--vehicle", "1", "--mission", "mission.yaml", "--wait", "nan"],
+        ["monitor", "log.sqlite", "--seconds", "nan"],
+        ["warm", "--prune", "--days", "nan"],
+    ],
+)
+def test_what_is_no_number_is_in_no_range(
+    words: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words) == 2
+    assert "is not a number" in capsys.readouterr().err

@@ -76,6 +76,55 @@ def test_none_stays_not_even_one_that_does_not_listen(tmp_path: Path) -> None:
     assert not any(map(stands, pids))
 
 
+OWNER = """
+import os, signal, sys
+from pathlib import Path
+from cratous.services.processes.children import Children
+folder = Path(sys.argv[1])
+children = Children(folder, folder)
+print(children.start("simulator", "sim", str(folder / "scenario.xml"), "--listen", "127.0.0.1:0"), flush=True)
+while "listening" not in children.said("simulator"):
+    children.watch()
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_one_whose_owner_is_killed_ends_as_well(tmp_path: Path) -> None:
+    (tmp_path / "scenario.xml").write_text(scenario(FLIGHT))
+    owner = subprocess.run(
+        [sys.executable, "-c", OWNER, str(tmp_path)], stdout=subprocess.PIPE, check=False
+    )
+    assert owner.returncode == -signal.SIGKILL
+    pid = int(owner.stdout)
+    until(lambda: not stands(pid))
+    assert "ended at" in (tmp_path / "simulator.txt").read_text(), "in order, as by SIGTERM"
+
+
+def test_a_second_request_to_end_waits_until_all_have_ended(tmp_path: Path) -> None:
+    class Slow(Children):
+        def end(self) -> dict[str, int]:
+            signal.raise_signal(signal.SIGINT)
+            return super().end()
+
+    children = Slow(tmp_path, tmp_path)
+    pid = simulator(children, tmp_path, "simulator")
+    with pytest.raises(KeyboardInterrupt):
+        children.__exit__(None, None, None)
+    assert not stands(pid)
+
+
+def test_they_are_the_same_program_in_any_folder(
+    root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(root)
+    monkeypatch.setenv("PYTHONPATH", "src")
+    with Children(tmp_path, tmp_path) as children:
+        pid = simulator(children, tmp_path, "simulator")
+        environment = Path(f"/proc/{pid}/environ").read_text().split("\0")
+    (paths,) = [x.partition("=")[2] for x in environment if x.startswith("PYTHONPATH=")]
+    assert (Path(paths.split(os.pathsep)[0]) / "cratous").samefile(root / "src/cratous")
+
+
 @contextlib.contextmanager
 def flying(root: Path, folder: Path, rate: float) -> Iterator[tuple[Any, Path]]:
     """`cratous run --processes` on the crossing, and the file of what it says."""

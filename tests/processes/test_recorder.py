@@ -119,6 +119,20 @@ def test_tasks_are_suspended_by_takeovers_and_end_as_uxas_says(mission: Mission)
     ] + [(8, "Failed", STEP_MS * 4, STEP_MS * 4)]
 
 
+def test_a_task_that_begins_before_the_last_one_is_told_complete_is_the_one_that_is_suspended(
+    mission: Mission,
+) -> None:
+    rig = Rig(mission)
+    rig.state(0)
+    for task in (7, 8):
+        rig.recorder.heard(lmcp.new("TaskActive", TaskID=task, EntityID=1))
+    rig.recorder.heard(lmcp.new("TaskComplete", TaskID=7, EntitiesInvolved=[1]))
+    rig.recorder.heard(lmcp.new("AuthorityChange", VehicleID=1, Owner="ICAROUS", Epoch=1))
+    rig.recorder.end("limit")
+    told = [(e.body.TaskID, e.body.Phase.name) for e in rig.of("TaskProgress")]
+    assert told == [(7, "Active"), (8, "Active"), (7, "Complete"), (8, "Suspended")]
+
+
 def test_a_log_that_just_stops_has_no_end_of_mission(mission: Mission) -> None:
     rig = Rig(mission)
     for k in range(3):

@@ -22,7 +22,7 @@ from cratous.bridge import lmcp
 from cratous.bridge.port import address
 from cratous.services.cli import main
 from cratous.services.simulator.scenario import of_text
-from cratous.services.simulator.server import Server
+from cratous.services.simulator.server import ClientGone, Server
 from cratous.services.simulator.world import World
 
 FLIGHT = mission(waypoint(1, 2, 45.02), waypoint(2, 2, 45.1))
@@ -124,6 +124,43 @@ def test_what_cannot_be_taken_is_said_and_changes_nothing(here: Any) -> None:
     assert two.kinds().count("MissionCommand") == 1, "that of the scenario"
     assert last(two, "AirVehicleState").CurrentWaypoint == 1
     assert server.refused["message"] == 2
+
+
+def test_of_only_two_clients_nobody_takes_the_place() -> None:
+    plan = of_text(scenario(FLIGHT), "test")
+    where = address("tcp://127.0.0.1:0", ("tcp",), free=True)
+    server = Server(lambda: World(plan.events, 600), where, lambda *_: None, only=2)
+    port = server.port.bound[1]
+    with contextlib.closing(server.port), contextlib.ExitStack() as open_ones:
+        clients = [Client(port) for _ in range(2)]
+        for client in clients:
+            open_ones.callback(client.close)
+        turn(server, 1)
+        assert {"AirVehicleState"} <= set(clients[0].kinds()) & set(clients[1].kinds())
+        with pytest.raises(ConnectionRefusedError):
+            socket.create_connection(("127.0.0.1", port), 5)
+        clients[1].close()
+        with pytest.raises(ClientGone, match="1 of the 2 clients"):
+            turn(server, 1)
+        with pytest.raises(ConnectionRefusedError):
+            socket.create_connection(("127.0.0.1", port), 5)
+
+
+@pytest.mark.parametrize(
+    ("options", "item"),
+    [
+        (["--only", "2"], "--clients, --only"),
+        (["--clients", "2"], "--clients, --only"),
+        (["--listen", "127.0.0.1:0", "--only", "1", "--clients", "2"], "--clients"),
+    ],
+)
+def test_clients_that_cannot_be_are_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], options: list[str], item: str
+) -> None:
+    path = tmp_path / "s.xml"
+    path.write_text(scenario(FLIGHT))
+    assert main(["sim", str(path), *options]) == 2
+    assert item in capsys.readouterr().err
 
 
 def test_a_client_that_does_not_read_holds_up_nobody(tmp_path: Path) -> None:

@@ -24,8 +24,12 @@ from uxas_tools import free_port
 from cratous.bridge.link import LinkEvent
 from cratous.bridge.port import Address
 from cratous.bridge.text_port import TextPort
+from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET, secret_of_environment
+from cratous.services.certify.report import mission_hash
 from cratous.services.cli import main
+from cratous.services.cli.icarous import craft_of
+from cratous.services.loading import load
 from cratous.spec.errors import BadInput
 
 SERVICE = "IcarousCommunicationService"
@@ -198,6 +202,11 @@ CONNECT = ("--connect", "{where}")
             "no UxAS for 0.3 s (Connection refused)",
         ),
         (("--vehicle", "1"), 2, "one of --connect and --listen is needed"),
+        (
+            (*CONNECT, "--vehicle", "1", "--wait", "0.3", "--mission-hash", "0" * 64),
+            2,
+            "another mission; expected " + "0" * 64,
+        ),
         (("--vehicle", "1", "--listen", "192.0.2.1:9"), 2, "no authentication"),
         (("--vehicle", "1", "--listen", "127.0.0.1:0", "--keys", "."), 2, "--keys is of --v2"),
         (("--vehicle", "1", "--listen", "127.0.0.1:0", "--v2"), 2, "no key of the bridge"),
@@ -226,6 +235,19 @@ def test_the_command_says_what_is_wrong(
     words = [word.format(where=where) for word in arguments]
     assert main(["icarous", "--mission", str(mission_file(tmp_path)), *words]) == code
     assert text in capsys.readouterr().err
+
+
+def test_the_mission_is_the_one_that_is_expected_and_says_how_it_is_flown(tmp_path: Path) -> None:
+    path = mission_file(tmp_path)
+    digest = mission_hash(load(path))
+    assert (
+        craft_of(path, 1, Dialect.CRATOUS, digest).step_s == 0.25
+    )  # that of a mission that says none
+    path.write_text(path.read_text() + "simulation: {step_ms: 1000, heartbeat_ms: 1000}\n")
+    with pytest.raises(BadInput, match="another mission"):
+        craft_of(path, 1, Dialect.CRATOUS, digest)
+    craft = craft_of(path, 1, Dialect.CRATOUS)
+    assert (craft.step_s, craft.config.heartbeat_ms) == (1.0, 1000)
 
 
 def test_the_secret_of_the_environment_is_checked_and_not_shown(

@@ -15,6 +15,7 @@ from icarous_rig import Fake, Rig, state
 
 from cratous.bridge import lmcp
 from cratous.bridge import text_protocol as tp
+from cratous.services.icarous_communication import service
 from cratous.services.icarous_communication.service import NobodyCame
 from cratous.services.icarous_communication.settings import ATTRIBUTES, Settings, settings_of
 from cratous.services.loading.uxas_settings import Entry, values_of
@@ -70,6 +71,22 @@ def test_instances_without_a_hello_get_the_lowest_ids_in_the_order_of_arrival(
     third = rig.fake()
     rig.until(lambda: third.read() is not None and third.ended)
     assert rig.said.has("more instances than NumberOfUAVs = 2")
+
+
+def test_no_more_vehicles_and_zones_are_kept_than_said(
+    tmp_path: Path, opened: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(service, "MOST_VEHICLES", 2)
+    monkeypatch.setattr(service, "MOST_ZONES", 1)
+    rig = Rig(tmp_path, 'NumberOfUAVs="1" VehicleIDs="4"', opened)
+    one = rig.fake(hello=4)
+    rig.tell(state(4), state(5), lmcp.new("AirVehicleConfiguration", ID=6), state(6))
+    rig.tell(zone("KeepOutZone", 1), zone("KeepOutZone", 2), zone("KeepInZone", 1))
+    rig.tell(state(5, now_ms=1000), state(4, now_ms=1000))
+    rig.until(lambda: one.all(tp.Traffic))
+    assert {t.index for t in one.all(tp.Traffic)} == {5}
+    assert rig.said.has("more vehicles than are kept: vehicle 6 is not avoided")
+    assert rig.said.has("more zones than are kept: zone 2 is not avoided")
 
 
 def test_an_aircraft_of_another_time_is_no_traffic_and_that_is_said(
