@@ -185,6 +185,11 @@ def _written(file: Path) -> dict[str, str]:
     return found
 
 
+def written_names(file: str) -> list[str]:
+    """The qualified names of all functions and classes that a file writes."""
+    return [name.rpartition(":")[0] for name in _written(Path(file).resolve())]
+
+
 def _name(code: types.CodeType) -> str:
     return f"{code.co_qualname}:{code.co_firstlineno}"
 
@@ -207,9 +212,14 @@ def stands_for_itself(function: Callable[..., Any]) -> bool:
 
 def altered(item: Callable[..., Any] | Fold[Any]) -> list[str]:
     """Functions that do not run what their source file says, of `item` and all it rests on."""
+    return altered_of(reached(item))
+
+
+def altered_of(rests: dict[str, Any]) -> list[str]:
+    """The same of what was `reached` already."""
     return sorted(
         name
-        for name, value in reached(item).items()
+        for name, value in rests.items()
         if inspect.isfunction(value) and not _as_written(value, value.__code__)
     )
 

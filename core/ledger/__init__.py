@@ -19,7 +19,7 @@ from typing import Any
 
 from cratous.core.kernel import REGISTRY, Entry, Fold, named
 from cratous.core.kernel.names import short
-from cratous.core.kernel.sources import altered, position, stands_for_itself
+from cratous.core.kernel.sources import altered_of, position, reached, stands_for_itself
 from cratous.core.ledger.kept_keys import keys_of
 from cratous.core.ledger.key_parts import MISSING, PARTS, compiler, solver_version
 from cratous.core.ledger.keys import Keys
@@ -124,9 +124,11 @@ def _problems(home: Home, entries: dict[str, Entry], data: dict[str, Any]) -> It
         changed = [PARTS[p] for p in PARTS if now[p] != then.get(p) or now[p] == MISSING]
         if changed:
             yield Problem(name, "changed since the proof: " + ", ".join(changed))
-        elif wrong := altered(entry.function):
+            continue
+        rests = reached(entry.function)
+        if wrong := altered_of(rests):
             yield Problem(name, "the code that runs is not its file's: " + ", ".join(wrong))
-        elif other := replaced(entry.function, looked):
+        elif other := replaced(rests.values(), looked):
             yield Problem(
                 name, "names mean something else than their files say: " + ", ".join(other)
             )

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from cratous.services.argument.elements import Element, Kind
+from cratous.services.assumptions.said import measured
 from cratous.spec.errors import BadInput
 
 Data = dict[str, Any]
@@ -59,8 +60,7 @@ def _of_report(row: Data) -> Assumed:
     state, note = row["state"], row["note"]
     when = f" at {row['since_ms'] / 1000:.2f} s" if state == BROKEN else ""
     said = f"{state}{when}{f': {note}' if note else ''}"
-    if row["observed"] is not None and row["bound"] is not None:
-        said += f" ({row['observed']:.4g} of {row['bound']:.4g} {row['unit']} at worst)"
+    said += f" ({worst})" if (worst := measured(row)) else ""
     # anything but a plain yes is no yes
     word = "Watched" if state in (HELD, BROKEN) else "Not watched"
     names = frozenset(f"{folder}{name}" for name in row["theorems"] for folder in FOLDERS)

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import NamedTuple
 
 AUTHORITY = (
@@ -23,6 +24,14 @@ SAMPLED = (
     "well clear (G2) and zones (G1) are judged from where the aircraft were, not from predictions"
 )
 BY_EPOCH = "one commander at any time: it needs no clock and no delivery"
+
+
+class State(StrEnum):
+    """The three answers. What was not watched to the end of the mission did not hold: it is not observed."""
+
+    HELD = "held"
+    BROKEN = "broken"
+    NOT_OBSERVED = "not observed"
 
 
 class Assumption(NamedTuple):

@@ -4,22 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from enum import StrEnum
 from sys import float_info
 from typing import Any, NamedTuple, Protocol
 
 from cratous.core.kernel import qualified
+from cratous.services.assumptions.listing import State
 
 ANY_LATER = 2**60
 """As a bound of `in_time`: not before, and however much later [ms]."""
-
-
-class State(StrEnum):
-    """The three answers. What was not watched to the end of the mission did not hold: it is not observed."""
-
-    HELD = "held"
-    BROKEN = "broken"
-    NOT_OBSERVED = "not observed"
 
 
 class Break(NamedTuple):

@@ -97,11 +97,10 @@ def not_judged(named: dict[str, str], report: Data) -> list[str]:
         MAP_NAME,
         *(name for name in VIEWS if name not in again and f"{MADE}/{name}" in named),
     ]
-    plan = sum(row["source"] == "plan" for row in report["constraints"])
     found = [
         f"{', '.join(seen)}: that they are the files that were signed, not what stands in them",
-        f"all else in {REPORT_NAME} but its verdicts: margins, times, notes, kernels, tracks (cratous certify)",
-        f"{plan} verdicts on the plan (cratous certify makes them again)",
+        f"all else in {REPORT_NAME} but its verdicts: margins, times, notes, checks, kernels, tracks, counts of "
+        "messages, error of the frame (cratous certify)",
     ]
     if report["plan"]["certificate"]:
         found.append(f"{CERTIFICATE_NAME} (cratous certify-plan checks it)")

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from typing import Any
 
 from cratous.services.attestation.findings import Data
 from cratous.services.attestation.names import STATEMENT_NAME
 from cratous.services.attestation.statement import claim
+from cratous.services.certify.limits import LIMITS
 from cratous.services.certify.report_schema import departures
 from cratous.services.results.names import FORMER, REPORT_NAME
 from cratous.spec.mission.guarantees import REQUIREMENTS, Outcome, exit_code, worst
 
-PLAN_WHOLE = "plan: every task of one choice, once"
-PLAN_PART = "plan: a part that the relations permit"
-PLAN_ROWS = "plan: all order and timing rows at once"
-"""Rows of G1 that the check of the plan writes of every plan; of the first two one stands there."""
+OF_FRAME = re.compile(
+    r"Within [0-9.]+ km of the frame's origin, where everything of this mission lies, local distances "
+    r"are off by at most [0-9.e+-]+ of themselves\."
+)
+"""The last of a report's limits."""
 
 
 def summary_faults(report: Data, predicate: Data) -> list[str]:
@@ -35,8 +38,8 @@ def summary_faults(report: Data, predicate: Data) -> list[str]:
 
 
 def _rows(report: Data) -> list[str]:
-    """The requirements are those that there are, and no row is strange, twice, or left out of G1's on
-    the plan. Which rows on the flight there must be, the judge says."""
+    """Requirements and limits are those that there are, and no row is strange, or twice. Which rows there
+    must be, `planned` and the judge say."""
     found = []
     known = [(one.id, one.title, one.text) for one in REQUIREMENTS]
     listed = [(one["requirement"], one["title"], one["text"]) for one in report["requirements"]]
@@ -55,11 +58,9 @@ def _rows(report: Data) -> list[str]:
             found.append(f"a row of {name} on the plan, of which only G1 speaks: {item}")
         if number > 1:
             found.append(f"{number} rows of {name} on the same: {item}")
-    plan = {item for name, source, item in rows if (name, source) == ("G1", "plan")}
-    if not plan & {PLAN_WHOLE, PLAN_PART}:
-        found.append(f"G1 lacks the row on the plan: {PLAN_WHOLE}")
-    if PLAN_ROWS not in plan:
-        found.append(f"G1 lacks the row on the plan: {PLAN_ROWS}")
+    *limits, of_frame = report["limits"] or [""]
+    if tuple(limits) != LIMITS or not OF_FRAME.fullmatch(of_frame):
+        found.append("its limits are not those that every report has")
     return found
 
 

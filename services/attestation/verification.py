@@ -15,10 +15,12 @@ from pathlib import Path
 from typing import Any
 
 from cratous.services.attestation.argued import argued
+from cratous.services.attestation.assumed import assumption_faults, assumptions_not_judged
 from cratous.services.attestation.dsse import ENVELOPE_BYTES, opened
 from cratous.services.attestation.findings import Data, Subject
 from cratous.services.attestation.judged import held
 from cratous.services.attestation.names import STATEMENT_NAME
+from cratous.services.attestation.planned import plan_faults, plan_not_judged
 from cratous.services.attestation.recorded import not_recorded, recorded_faults
 from cratous.services.attestation.signed_files import Place, file_faults, not_judged, view_faults
 from cratous.services.attestation.statement import PREDICATE_TYPE, RESULTS, STATEMENT_TYPE
@@ -82,13 +84,18 @@ def verify(place: Place, public: Any, judged: Any) -> Verification:
     found.refused = view_faults(place, named, subject) + argument.refused
     judgement = judged(place.results)
     answer = held(report, judgement)
-    found.refused += [*recorded_faults(report, judgement.meta), *answer.refused]
+    found.refused += [*recorded_faults(report, judgement.meta), *plan_faults(report)]
+    found.refused += [*assumption_faults(report, judgement.meta), *answer.refused]
     found.undecided = answer.undecided + argument.undecided
     found.expected, found.recomputed = answer.expected, answer.confirmed
     found.not_checked = list(subject.unchecked)
     silent = not_recorded(judgement.meta, report)
     found.not_judged = [f"{name}: the log says nothing of it" for name in silent]
-    found.not_judged += [*argument.not_judged, *not_judged(named, report)]
+    found.not_judged += [*argument.not_judged, *plan_not_judged(report)]
+    found.not_judged += [
+        *assumptions_not_judged(report, judgement.meta),
+        *not_judged(named, report),
+    ]
     found.verdict = report["verdict"]
     if not found.refused:
         open_ = bool(argument.undecided) and answer.verdict == Outcome.HOLDS

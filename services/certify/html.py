@@ -7,7 +7,7 @@ from importlib.resources import files
 from typing import Any
 
 from cratous.core.kernel.names import short
-from cratous.services.assumptions import measured
+from cratous.services.assumptions.said import measured
 from cratous.services.certify.charts import altitude_view, separation_view
 from cratous.services.certify.gantt import gantt, plan_bars, plan_rows, tree
 from cratous.services.certify.picture import map_view, time_view

@@ -16,6 +16,7 @@ from typing import Any
 
 from cratous import __version__
 from cratous.core.files.whole_file import write_atomically
+from cratous.services.certify.limits import LIMITS
 from cratous.services.certify.running_code import running_code
 from cratous.services.certify.timeline import bars, read_flight
 from cratous.services.certify.verdicts import requirement_rows, with_promised
@@ -28,17 +29,6 @@ from cratous.spec.mission.guarantees import Outcome, exit_code, worst
 from cratous.spec.mission.plan import Plan
 
 PROOFS_KEPT = ("line", "problems", "seal", "solver")
-LIMITS = (
-    "Python and z3 are not qualified tools, so this is evidence, not certification credit.",
-    "Proofs hold for the kernels in real arithmetic; the compiled kernels compute in doubles.",
-    "The flight is a simulation with point-mass aircraft that hold their speed over the ground as the "
-    "known wind allows, without gusts and sensor error.",
-    "Distances are taken in one local tangent frame; its scale error is stated below.",
-    "Terrain is flat at the stated height.",
-    "A loss is excused only if every manoeuvre of its set fails from every instant of the look-ahead "
-    "before it, others flying as recorded. The set is one change at a time: direction, speed, climb "
-    "rate or altitude, on a grid; zones and the ground below flight are no reason to refuse one.",
-)
 
 
 @dataclass(frozen=True)

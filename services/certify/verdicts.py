@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from cratous.services.assumptions.observed import State
+from cratous.services.assumptions.listing import State
 from cratous.services.monitor.plan_check import PART, WHOLE
 from cratous.services.monitor.required_rows import PLAN_ROWS, Row, Watched, missing, promised
 from cratous.spec.mission.guarantees import REQUIREMENTS, Outcome, Verdict, worst

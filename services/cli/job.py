@@ -141,7 +141,7 @@ def fly_mission(
     standing: of `core.ledger.require`, asked before anything is flown in this process.
     """
     from cratous import __version__
-    from cratous.services.assumptions import sentence as assumed
+    from cratous.services.assumptions.said import sentence as assumed
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory, summary
     from cratous.services.certify.report import (

@@ -108,7 +108,7 @@ def monitor(
 
         return monitor_model.model(log, as_json, allow_unproved)
     from cratous.core import ledger
-    from cratous.services.assumptions import lines as assumption_lines
+    from cratous.services.assumptions.said import lines as assumption_lines
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory, summary
     from cratous.services.certify.rejudge import watch

@@ -8,7 +8,7 @@ from typing import Any
 
 from cratous import __version__
 from cratous.core import ledger
-from cratous.services.assumptions import sentence as assumed
+from cratous.services.assumptions.said import sentence as assumed
 from cratous.services.certify.evidence import counted
 from cratous.services.certify.proofs import inventory, summary
 from cratous.services.certify.report import (

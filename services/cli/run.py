@@ -154,7 +154,7 @@ def summary(report: dict[str, Any], folder: Path | None) -> dict[str, Any]:
 
 
 def _show(report: dict[str, Any], folder: Path) -> None:
-    from cratous.services.assumptions import sentence
+    from cratous.services.assumptions.said import sentence
 
     flight = report["flight"]
     requirement_table(report["requirements"])

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cratous.services.assumptions import AssumptionWatch
+from cratous.services.assumptions.watch import AssumptionWatch
 from cratous.services.monitor.authority import AuthorityWatch
 from cratous.services.monitor.bridge import BridgeWatch
 from cratous.services.monitor.completion import CompletionWatch

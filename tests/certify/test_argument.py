@@ -280,7 +280,7 @@ def test_assumptions_stand_with_what_was_seen_of_them(report: dict[str, Any]) ->
     theorem = elements[f"G-theorem-{SYSTEM}"]
     texts = [elements[name].text for name in theorem.in_context_of]
     assert texts == [
-        "assumed, and held. Watched in this run: held: as seen (0.5 of 1 s at worst)",
+        "assumed, and held. Watched in this run: held: as seen (worst 0.5, bound 1 s)",
         "assumed, and not observed. Not watched in this run: not observed: as seen",
     ]
     assert (theorem.state, elements["G5"].state) == (State.SUPPORTED, State.SUPPORTED)

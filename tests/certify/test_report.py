@@ -183,7 +183,7 @@ def test_the_page_is_whole_and_escaped() -> None:
     for words in ("Flown with --allow-unproved", "Avoidance was switched off", "never ended",
                   "Not covered", "It holds.", "ICAROUS in command", "2" * 64,
                   "Losses of well clear", "no way out", "&lt;9&gt;",
-                  "&lt;u&gt;clock&lt;/u&gt;", "since 2.5 s", "0.5 of 0 s back", "back &amp; forth",
+                  "&lt;u&gt;clock&lt;/u&gt;", "since 2.5 s", "worst 0.5, bound 0 s back", "back &amp; forth",
                   "Without ground since then: all of it. Still holds: the rest."):  # fmt: skip
         assert words in page
 

@@ -23,7 +23,7 @@ from signing import (
     verify,
 )
 
-from cratous.services.attestation import recorded, summary
+from cratous.services.attestation import planned, recorded
 from cratous.services.monitor import plan_check, required_rows
 from cratous.spec.mission.guarantees import REQUIREMENTS
 
@@ -141,7 +141,7 @@ STRANGE: dict[str, tuple[Edit, str]] = {
     "two equal rows": (twice, "report.json: 2 rows of G5 on the same: heartbeat to"),
     "the same in other words": (said_again, "G2 well clear of 2 and 1: holds, a row that"),
     "no row on the plan": (
-        without(plan_check.WHOLE), f"G1 lacks the row on the plan: {plan_check.WHOLE}",
+        without(plan_check.WHOLE), f"one row on the plan of these: {plan_check.WHOLE}",
     ),
     "no row on the order of the plan": (
         without(required_rows.PLAN_ROWS[1].item), "G1 lacks the row on the plan: plan: all order",
@@ -169,8 +169,8 @@ def test_rows_that_are_strange_are_refused(run: Run, home: Path, case: str) -> N
 
 
 def test_the_rows_on_a_plan_are_those_of_its_check() -> None:
-    assert (summary.PLAN_WHOLE, summary.PLAN_PART) == (plan_check.WHOLE, plan_check.PART)
-    assert [row.item for row in required_rows.PLAN_ROWS] == [summary.PLAN_WHOLE, summary.PLAN_ROWS]
+    assert (planned.WHOLE, planned.PART) == (plan_check.WHOLE, plan_check.PART)
+    assert [row.item for row in required_rows.PLAN_ROWS] == [planned.WHOLE, planned.AT_ONCE]
 
 
 # ---- a summary that its rows do not give --------------------------------------------------------

@@ -26,10 +26,11 @@ from tampering import (
 )
 
 from cratous.bridge import lmcp
-from cratous.services.assumptions import AssumptionWatch, sentence
 from cratous.services.assumptions.link import DeliveryWatch
-from cratous.services.assumptions.listing import LISTING
-from cratous.services.assumptions.observed import Message, State
+from cratous.services.assumptions.listing import LISTING, State
+from cratous.services.assumptions.observed import Message
+from cratous.services.assumptions.said import sentence
+from cratous.services.assumptions.watch import AssumptionWatch
 from cratous.services.bus import Bus, Envelope
 from cratous.services.flight.loop import fly
 from cratous.services.monitor import Monitor

@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
+import builtins
+import cmath
 import functools
+import importlib
+import inspect
+import math
+from types import FunctionType
 
 import pytest
 
 from cratous.core import ledger as gate
-from cratous.core.avoidance import prediction
+from cratous.core.assignment.instance import Instance
+from cratous.core.avoidance import manoeuvre, prediction
+from cratous.core.avoidance.drift import Drift
+from cratous.core.avoidance.manoeuvre import Ability
 from cratous.core.geofence import planar
-from cratous.core.kernel.sources import constants, reached, stands_for_itself
+from cratous.core.geofence.shapes import Polygon
+from cratous.core.kernel import Fold
+from cratous.core.kernel.sources import constants, names_of, reached, stands_for_itself
+from cratous.core.ledger.meant_names import replaced
+from cratous.core.readings import exact
+from cratous.core.readings.exact import integers
 
 gate.load_all()
 
@@ -87,3 +101,114 @@ def test_a_helper_that_its_module_was_given_does_not_fly(monkeypatch, module, na
         or "the code that runs is not its file's" in what
         for what in told
     )
+
+
+def _other(function) -> list[str]:
+    """Names that are not what their files say, of one function, without what was kept before."""
+    return replaced(reached(function).values(), {})
+
+
+def _no_longer(value: float) -> float:
+    return value
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "other"),
+    [
+        # a module by one that has the same names, and by what is no module
+        (manoeuvre, "math", cmath),
+        (manoeuvre, "math", Ability),
+        # builtins that a module's own name hides: by a function, by another builtin
+        (manoeuvre, "abs", _no_longer),
+        (manoeuvre, "max", min),
+    ],
+)
+def test_modules_and_builtins_are_what_a_file_says(monkeypatch, module, name, other):
+    assert _other(manoeuvre.fly_to) == []
+    monkeypatch.setattr(module, name, other, raising=False)
+    assert _other(manoeuvre.fly_to) == [f"{module.__name__}.{name}"]
+
+
+def test_the_gate_refuses_a_builtin_that_was_hidden(monkeypatch):
+    monkeypatch.setattr(prediction, "max", min, raising=False)
+    told = [problem.what for problem in gate.check().problems]
+    assert f"names mean something else than their files say: {prediction.__name__}.max" in told
+
+
+def test_builtins_of_a_function_alone_are_named():
+    own = {**vars(manoeuvre), "__builtins__": {**vars(builtins), "abs": _no_longer}}
+    real = manoeuvre.fly_to
+    other = FunctionType(real.__code__, own, real.__name__, real.__defaults__, real.__closure__)
+    other.__qualname__, other.__module__ = real.__qualname__, real.__module__
+    assert f"{manoeuvre.__name__}.__builtins__" in replaced([other], {})
+
+
+def test_what_is_imported_is_followed_to_its_own_module(monkeypatch):
+    """Both modules were given the other one: what they say of each other agrees."""
+    source = importlib.import_module(prediction.violation_within.__module__)
+    assert vars(source)["violation_within"] is prediction.violation_within
+    user = next(
+        function
+        for function in vars(prediction).values()
+        if inspect.isfunction(function)
+        and function.__module__ == prediction.__name__
+        and "violation_within" in function.__code__.co_names
+    )
+    assert replaced([user], {}) == []
+    monkeypatch.setattr(source, "violation_within", prediction.violation)
+    monkeypatch.setattr(prediction, "violation_within", prediction.violation)
+    assert replaced([user], {}) == [f"{prediction.__name__}.violation_within"]
+
+
+def test_what_is_asked_of_a_module_of_ours_is_what_its_file_says(monkeypatch):
+    """`integers.decider`, by a function of another module."""
+    user = next(
+        function
+        for function in vars(exact).values()
+        if inspect.isfunction(function)
+        and function.__module__ == exact.__name__
+        and {"integers", "decider"} <= set(names_of(function.__code__))
+    )
+    assert replaced([user], {}) == []
+    monkeypatch.setattr(integers, "decider", integers.__loader__.get_data)
+    assert replaced([user], {}) == [f"{integers.__name__}.decider"]
+
+
+@pytest.mark.parametrize(
+    ("owner", "name", "other"),
+    [
+        # by a function of elsewhere, by a method of another name, by what is no method
+        (Drift, "aside_m", lambda self, t_s: 0.0),
+        (Drift, "aside_m", manoeuvre.velocity_of),
+        (Drift, "aside_m", math.hypot),
+        (Drift, "aside_m", Ability),
+        (Fold, "__call__", Fold.kernels.fget),
+        (Fold, "__call__", print),
+        # properties: by another, by a value, by one of elsewhere
+        (Instance, "tasks", Instance.vehicles),
+        (Instance, "tasks", 3),
+        (Polygon, "edges", property(lambda self: ())),
+        # a field of a record, by another field, by a property
+        (Ability, Ability._fields[0], vars(Ability)[Ability._fields[1]]),
+        (Ability, Ability._fields[0], property(lambda self: 0.0)),
+        # what no file writes of the class
+        (Polygon, "__getattribute__", lambda self, name: 0.0),
+        (Ability, "__eq__", staticmethod(lambda self, other: True)),
+    ],
+)
+def test_methods_and_fields_are_those_of_the_file(monkeypatch, owner, name, other):
+    assert replaced([owner], {}) == []
+    monkeypatch.setattr(owner, name, other, raising=False)
+    assert replaced([owner], {}) == [f"{owner.__module__}.{owner.__qualname__}.{name}"]
+
+
+def test_a_method_that_is_gone_is_named(monkeypatch):
+    """Its base may have another under the same name."""
+    monkeypatch.delattr(Drift, "aside_m")
+    assert replaced([Drift], {}) == [f"{Drift.__module__}.Drift.aside_m"]
+
+
+def test_the_gate_refuses_kernels_on_a_method_that_was_replaced(monkeypatch):
+    monkeypatch.setattr(Instance, "tasks", Instance.vehicles)
+    told = [problem.what for problem in gate.check().problems]
+    assert any(f"{Instance.__module__}.Instance.tasks" in what for what in told)

@@ -1,0 +1,99 @@
+"""Methods and fields of classes that are not what the files of their classes say.
+
+A method is found through its class while the code runs, so another one that the class was given runs in
+its place. What dataclass, NamedTuple and Enum make of a class is the library's, under its name.
+"""
+
+from __future__ import annotations
+
+import abc
+import collections
+import dataclasses
+import enum
+import functools
+import inspect
+import sys
+import typing
+from collections.abc import Iterator
+from types import FunctionType, MemberDescriptorType, ModuleType
+from typing import Any
+
+from cratous.core.kernel.sources import ours, runs_as_written, written_names
+
+MAKERS: tuple[ModuleType, ...] = (abc, collections, dataclasses, enum, functools, typing)
+LIBRARY = frozenset({"<string>", *(str(module.__file__) for module in MAKERS)})
+"""Where the code of methods lies that Python's library makes."""
+GETTER: Any = type(vars(collections.namedtuple("_Pair", "first"))["first"])
+"""What reads a field of a NamedTuple."""
+
+
+def other_methods(item: type) -> Iterator[str]:
+    """Methods and fields of a class, and of the classes that it is made from, that are others."""
+    for one in item.__mro__:
+        if ours(one):
+            yield from _of(one)
+
+
+def _of(one: type) -> Iterator[str]:
+    has, head = vars(one), f"{one.__qualname__}."
+    for name in _written(one.__module__).get(one.__qualname__, ()):
+        value = has.get(name)
+        inner = inspect.isclass(value) and value.__qualname__ == head + name
+        if not inner and not _functions(value):
+            yield f"{one.__module__}.{head}{name}"
+    for name, value in has.items():
+        if not all(_is_own(function, one, name) for function in _functions(value)):
+            yield f"{one.__module__}.{head}{name}"
+    for name in sorted(_other_fields(one)):
+        yield f"{one.__module__}.{head}{name}"
+
+
+@functools.cache
+def _written(module: str) -> dict[str, tuple[str, ...]]:
+    """The methods that a file writes, by class."""
+    found: dict[str, dict[str, None]] = {}
+    for name in written_names(str(sys.modules[module].__file__)):
+        owner, _, last = name.rpartition(".")
+        if owner and last.isidentifier() and not owner.endswith(">"):
+            found.setdefault(owner, {})[last] = None
+    return {owner: tuple(names) for owner, names in found.items()}
+
+
+def _functions(value: Any) -> list[Any]:
+    """The functions that run where a class holds this; none in a plain value."""
+    if isinstance(value, FunctionType):
+        return [value]
+    if isinstance(value, staticmethod | classmethod):
+        return [value.__func__]
+    if isinstance(value, property):
+        return [part for part in (value.fget, value.fset, value.fdel) if part is not None]
+    if isinstance(value, functools.cached_property):
+        return [value.func]
+    wrapped = None if isinstance(value, type) else getattr(value, "__wrapped__", None)
+    return [] if wrapped is None else [wrapped]
+
+
+def _is_own(function: Any, one: type, name: str) -> bool:
+    if not isinstance(function, FunctionType):
+        return False
+    if function.__code__.co_filename in LIBRARY:
+        return True
+    named = (function.__module__, function.__qualname__)
+    return named == (one.__module__, f"{one.__qualname__}.{name}") and runs_as_written(function)
+
+
+def _other_fields(one: type) -> set[str]:
+    """Fields of a NamedTuple that read another place of it, and slots that are another's."""
+    has = vars(one)
+    slots = {
+        name
+        for name, value in has.items()
+        if isinstance(value, MemberDescriptorType) and value.__name__ != name
+    }
+    if "_field_defaults" not in has:
+        return slots
+    return slots | {
+        name
+        for number, name in enumerate(has["_fields"])
+        if type(has.get(name)) is not GETTER or has[name].__reduce__()[1][0] != number
+    }

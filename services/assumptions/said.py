@@ -1,0 +1,34 @@
+"""What was seen of the assumptions, for people."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from cratous.services.assumptions.listing import State
+
+
+def sentence(row: dict[str, Any]) -> str:
+    """A broken assumption in one line, for people."""
+    guarantees = " and ".join(row["guarantees"])
+    return (
+        f"broken at {row['since_ms'] / 1000:.2f} s: {row['text']}: {row['note']}; {guarantees} without ground since: "
+        f"{row['lost']}; still holds: {row['stands']}"
+    )
+
+
+def measured(row: dict[str, Any]) -> str:
+    """The worst that was seen and the worst that is assumed, with the unit; empty where there is no measure."""
+    if row["observed"] is None or row["bound"] is None:
+        return ""
+    return f"worst {row['observed']:.4g}, bound {row['bound']:.4g} {row['unit']}"
+
+
+def lines(rows: Iterable[dict[str, Any]]) -> Iterator[str]:
+    """All assumptions for people: one line each."""
+    for row in rows:
+        if row["state"] == State.BROKEN:
+            yield f"assumption {row['name']}: {sentence(row)}"
+            continue
+        said = "; ".join(part for part in (measured(row), row["note"]) if part)
+        yield f"assumption {row['name']}: {row['state']}{f' ({said})' if said else ''}"

@@ -1,0 +1,101 @@
+"""The watch of all assumptions in the messages of one flight."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cratous.services.assumptions.authority import CommandWatch, SteeringWatch
+from cratous.services.assumptions.link import (
+    ChangeWatch,
+    ClockWatch,
+    DeliveryWatch,
+    PeriodWatch,
+)
+from cratous.services.assumptions.listing import LISTING, Assumption, State
+from cratous.services.assumptions.mission_end import EndWatch, SettledWatch
+from cratous.services.assumptions.motion import IntruderWatch, TrackingWatch
+from cratous.services.assumptions.observed import (
+    Message,
+    Observed,
+    Record,
+    Watch,
+)
+from cratous.spec.mission import Mission
+
+
+class AssumptionWatch:
+    """All assumptions of one flight. Feed it messages with `tap`, ask for `rows` at the end."""
+
+    def __init__(self, mission: Mission) -> None:
+        self._watches: tuple[Watch, ...] = (
+            CommandWatch(mission),
+            SteeringWatch(mission),
+            ClockWatch(),
+            PeriodWatch(mission),
+            DeliveryWatch(mission),
+            ChangeWatch(mission),
+            EndWatch(mission),
+            SettledWatch(),
+            IntruderWatch(mission),
+            TrackingWatch(mission),
+        )
+        self._records: dict[str, Record] = {}
+        for watch in self._watches:
+            self._records |= watch.records()
+        self._told: set[str] = set()
+        self._ended = False
+
+    def tap(self, kind: str, envelope: Any) -> list[dict[str, Any]]:
+        """The next message, of this type; returns the rows of the assumptions that it breaks."""
+        if self._ended:
+            return []
+        source = getattr(envelope, "source", "")
+        message = Message(kind, envelope.time_ms, source, envelope.body)
+        for watch in self._watches:
+            watch.message(message)
+        if kind == "MissionEnd":
+            self._ended = True
+            for watch in self._watches:
+                watch.end(envelope.time_ms)
+        return self._newly_broken(envelope.time_ms)
+
+    def _newly_broken(self, at_ms: int) -> list[dict[str, Any]]:
+        broken = {name for name, one in self._records.items() if one.broken is not None}
+        fresh = broken - self._told
+        self._told |= fresh
+        return (
+            [row for row in self.rows(at_ms, self._ended) if row["name"] in fresh] if fresh else []
+        )
+
+    def rows(self, at_ms: int, over: bool) -> list[dict[str, Any]]:
+        """One row for each assumption, as plain data, in the order of the listing.
+
+        at_ms: when the messages end; over: the mission has ended by then.
+        """
+        return [
+            _row(one, self._records[one.name].observed(at_ms, over) if one.watch else None)
+            for one in LISTING
+        ]
+
+
+def _row(one: Assumption, seen: Observed | None) -> dict[str, Any]:
+    if seen is None:
+        seen = Observed(State.NOT_OBSERVED, None, None, None, "", one.why_not, 0, ())
+    broken = seen.broken
+    return {
+        "name": one.name,
+        "text": one.text,
+        "theorems": list(one.theorems),
+        "guarantees": list(one.guarantees),
+        "state": str(seen.state),
+        "since_ms": broken.since_ms if broken else None,
+        "vehicle": (broken.vehicle_id or None) if broken else None,
+        "observed": seen.extreme,
+        "bound": seen.bound,
+        "unit": seen.unit,
+        "note": seen.note,
+        "lost": one.lost if broken else "",
+        "stands": one.stands if broken else "",
+        "checks": seen.checks,
+        "kernels": list(seen.kernels),
+    }

@@ -1,0 +1,109 @@
+"""Are the rows of a report on its plan those that the check of a plan writes of this mission and plan?
+
+Mission and plan are what the log recorded, so which rows there must be follows from them; whether a row
+holds is the kernels' matter (`cratous certify`). The rows on order and timing are those of the flight, which
+the judge knows, unless the mission changes or leaves a choice.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+
+from cratous.services.attestation.findings import Data
+from cratous.services.results.names import REPORT_NAME
+from cratous.spec.mission.guarantees import Outcome
+
+WHOLE = "plan: every task of one choice, once"
+PART = "plan: a part that the relations permit"
+AT_ONCE = "plan: all order and timing rows at once"
+PLAN, FLIGHT = "plan: ", "flight: "
+SENTENCE = re.compile(r"plan: `[^`]+`: p[0-9]+ (starts|ends) ")
+"""How a row on order or timing begins."""
+
+
+def plan_faults(report: Data) -> list[str]:
+    """Rows on the plan that are missing, or that no check writes."""
+    there = {row["item"] for row in report["constraints"] if row["source"] == "plan"}
+    must, may = _expected(report)
+    said = {item for item in there if SENTENCE.match(item)}
+    found = [f"G1 lacks the row on the plan: {item}" for item in sorted(must - there)]
+    if len(there & {WHOLE, PART}) != 1:
+        found.append(f"G1 has to have one row on the plan of these: {WHOLE}; {PART}")
+    strange = sorted(there - must - may - said - {WHOLE, PART})
+    found += [f"G1 has a row on the plan that no check writes: {item}" for item in strange]
+    found += _tasks(report, there)
+    if is_settled(report) and WHOLE in there:
+        found += _sentences(report, said)
+    return [f"{REPORT_NAME}: {text}" for text in found]
+
+
+def is_settled(report: Data) -> bool:
+    """Whether plan and flight have the same rows on order and timing: nothing changes, nothing is chosen."""
+    mission = report["mission"]
+    return not mission["changes"] and "+" not in mission["relations"]
+
+
+def _expected(report: Data) -> tuple[set[str], set[str]]:
+    """(rows that there must be, rows that there may be): the latter of zones that are known later."""
+    mission, items = report["mission"], report["plan"]["items"]
+    vehicles = {item["vehicle_id"] for item in items}
+    must = {AT_ONCE} | {f"chain: vehicle {number}" for number in vehicles}
+    must |= {f"eligibility: task {item['task_id']}" for item in items}
+    late = [change["zone"] for change in mission["changes"] if change.get("zone")]
+    # one that has ended before the flight begins is none of the plan's
+    over = {c["zone_id"] for c in mission["changes"] if c.get("zone_id") and not c["at_ms"]}
+    late += [zone for zone in mission["zones"] if zone["id"] in over]
+    known = [zone for zone in mission["zones"] if zone["id"] not in over]
+    zones, later = (
+        {
+            f"zone: {zone['kind']} {zone['id']}, planned route of vehicle {number}"
+            for zone in some
+            for number in vehicles
+        }
+        for some in (known, late)
+    )
+    return must | zones, later
+
+
+def _tasks(report: Data, there: set[str]) -> list[str]:
+    """Said to be whole is a plan whose tasks are not all that there are, or a part one whose tasks are;
+    where nothing is chosen."""
+    if not is_settled(report):
+        return []
+    plan = report["plan"]
+    planned = Counter(item["task_id"] for item in plan["items"])
+    tasks = Counter(task["id"] for task in report["mission"]["tasks"])
+    whole = planned == tasks and not plan.get("in_part")
+    if PART in there:
+        return [f"the plan is whole, and G1 has the row on it: {PART}"] if whole else []
+    holds = any(
+        row["item"] == WHOLE and row["source"] == "plan" and row["verdict"] == Outcome.HOLDS
+        for row in report["constraints"]
+    )
+    return [f"by the tasks of the plan this does not hold: {WHOLE}"] if holds and not whole else []
+
+
+def _sentences(report: Data, said: set[str]) -> list[str]:
+    """The rows on order and timing are those of the flight."""
+    flown = {
+        PLAN + row["item"].removeprefix(FLIGHT)
+        for row in report["constraints"]
+        if row["source"] == "flight" and SENTENCE.match(PLAN + row["item"].removeprefix(FLIGHT))
+        and row["item"].startswith(FLIGHT)
+    }  # fmt: skip
+    found = [f"G1 lacks the row on the plan, which the flight has: {i}" for i in flown - said]
+    found += [f"G1 has a row on the plan, which the flight has not: {i}" for i in said - flown]
+    return sorted(found)
+
+
+def plan_not_judged(report: Data) -> list[str]:
+    """What of the plan nobody looked into here, in words."""
+    number = sum(row["source"] == "plan" for row in report["constraints"])
+    found = [f"{number} verdicts on the plan (cratous certify makes them again)"]
+    if not is_settled(report):
+        found.append(
+            "which rows on order and timing the plan has: the mission changes, or leaves a choice "
+            "(cratous certify)"
+        )
+    return found

@@ -1,0 +1,238 @@
+"""`certify --verify` on rows that the judge does not know: of the plan, of assumptions, and the limits."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from certify_tools import Run, meta, read
+
+pytest.importorskip("cryptography", reason="the extra `sign` is not installed")
+
+from signing import retell, sign_whole, verify
+
+from cratous.services.assumptions.listing import LISTING
+from cratous.services.attestation.assumed import assumption_faults
+from cratous.services.attestation.planned import PART, WHOLE, is_settled, plan_faults
+from cratous.services.certify.rejudge import subject
+from cratous.services.certify.verdicts import plan_rows
+from cratous.services.monitor.plan_check import check_plan
+
+Report = dict[str, Any]
+Edit = Callable[[Report], None]
+FREE = next(one.name for one in LISTING if not one.watch)
+SENTENCE = "`.(p1 p2)`: p2 starts no earlier than p1 ends"
+
+
+def renamed(item: str, other: str) -> Edit:
+    def edit(report: Report) -> None:
+        next(row for row in report["constraints"] if row["item"] == item)["item"] = other
+
+    return edit
+
+
+def dropped(item: str) -> Edit:
+    def edit(report: Report) -> None:
+        rows = report["constraints"]
+        rows.remove(next(row for row in rows if row["item"] == item))
+
+    return edit
+
+
+def invented(item: str) -> Edit:
+    def edit(report: Report) -> None:
+        row = next(row for row in report["constraints"] if row["item"] == WHOLE)
+        report["constraints"].append({**row, "item": item})
+
+    return edit
+
+
+PLANNED: dict[str, tuple[Edit, str]] = {
+    "a chain is left out": (
+        dropped("chain: vehicle 1"), "G1 lacks the row on the plan: chain: vehicle 1",
+    ),
+    "a task is left out": (
+        dropped("eligibility: task 2"), "G1 lacks the row on the plan: eligibility: task 2",
+    ),
+    "another vehicle": (
+        renamed("chain: vehicle 1", "chain: vehicle 7"),
+        "G1 has a row on the plan that no check writes: chain: vehicle 7",
+    ),
+    "words of its own": (
+        invented("plan: it is the best"),
+        "G1 has a row on the plan that no check writes: plan: it is the best",
+    ),
+    "a zone that is none": (
+        invented("zone: keep_out 5, planned route of vehicle 1"),
+        "G1 has a row on the plan that no check writes: zone: keep_out 5",
+    ),
+    "a whole plan is said to be a part": (
+        renamed(WHOLE, PART), f"the plan is whole, and G1 has the row on it: {PART}",
+    ),
+    "both": (invented(PART), "G1 has to have one row on the plan of these"),
+    "an order that nobody asked for": (
+        invented(f"plan: {SENTENCE}"), f"which the flight has not: plan: {SENTENCE}",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", PLANNED)
+def test_rows_on_a_plan_are_those_of_its_check(flown: Path, case: str) -> None:
+    report = read(flown)
+    assert plan_faults(report) == []
+    edit, said = PLANNED[case]
+    edit(report)
+    assert any(said in line for line in plan_faults(report)), plan_faults(report)
+
+
+def test_verification_refuses_a_plan_without_one_of_its_rows(run: Run, home: Path) -> None:
+    retell(home, dropped("chain: vehicle 1"))
+    code, out, err = verify(run, home)
+    assert (code, "verified" in out) == (1, False)
+    assert "refused: report.json: G1 lacks the row on the plan: chain: vehicle 1" in err
+
+
+def ordered(report: Report) -> Report:
+    """As of a mission with one order, which plan and flight kept."""
+    found = copy.deepcopy(report)
+    found["mission"]["relations"] = ".(p1 p2)"
+    row = next(row for row in found["constraints"] if row["item"] == WHOLE)
+    for source in ("plan", "flight"):
+        new = {**row, "source": source, "item": f"{source}: {SENTENCE}"}
+        found["constraints"].append(new)
+    return found
+
+
+def test_an_order_that_the_plan_leaves_out_is_missed(flown: Path) -> None:
+    report = ordered(read(flown))
+    assert plan_faults(report) == []
+    dropped(f"plan: {SENTENCE}")(report)
+    said = f"G1 lacks the row on the plan, which the flight has: plan: {SENTENCE}"
+    assert plan_faults(report) == [f"report.json: {said}"]
+    report["mission"]["relations"] = ".(p1 +(p2 p3))"
+    assert not is_settled(report)
+    assert plan_faults(report) == []  # another branch may have been flown: it is said to be open
+
+
+def test_a_plan_without_a_task_is_not_whole(flown: Path) -> None:
+    report = read(flown)
+    report["mission"]["tasks"].append({**report["mission"]["tasks"][0], "id": 99})
+    assert plan_faults(report) == [
+        f"report.json: by the tasks of the plan this does not hold: {WHOLE}"
+    ]
+
+
+def test_the_check_of_a_plan_writes_the_rows_that_are_expected(flown: Path) -> None:
+    """Against the check itself, so that neither changes alone."""
+    report = read(flown)
+    rows = [
+        {**row, "source": "plan"} for row in plan_rows(check_plan(*subject(flown / "log.sqlite")))
+    ]
+    report["constraints"] = [*rows, *(r for r in report["constraints"] if r["source"] != "plan")]
+    assert plan_faults(report) == []
+
+
+# ---- assumptions ---------------------------------------------------------------------------------
+
+
+def entry(name: str, /, **entries: Any) -> Edit:
+    def edit(report: Report) -> None:
+        next(row for row in report["assumptions"] if row["name"] == name).update(entries)
+
+    return edit
+
+
+ASSUMED: dict[str, tuple[Edit, str]] = {
+    "one is left out": (
+        lambda r: r["assumptions"].pop(1), "the assumption epochs told stands where reports of the gate",
+    ),
+    "the last is left out": (
+        lambda r: r["assumptions"].pop(), "the assumption none stands where tracking belongs",
+    ),
+    "one is invented": (
+        lambda r: r["assumptions"].append({**r["assumptions"][0], "name": "all is well"}),
+        "the assumption all is well stands where none belongs",
+    ),
+    "another name": (entry("clock", name="time"), "time stands where clock belongs"),
+    "another text": (entry("clock", text="clocks are good"), "clock has another text"),
+    "more guarantees": (entry("clock", guarantees=["G1"]), "clock has another text, other theorems"),
+    "fewer theorems": (entry("clock", theorems=[]), "clock has another text, other theorems"),
+    "held, and not to be watched": (
+        entry(FREE, state="held", note=""), f"{FREE} cannot be watched, and is held",
+    ),
+    "held without a check": (
+        entry("clock", state="held", note="", checks=0), "clock is held without a check",
+    ),
+    "held with a reason why not": (
+        entry("clock", state="held", note="no end", checks=1), "clock is held, with the note 'no end'",
+    ),
+    "not observed, and nobody says why": (
+        entry("clock", state="not observed", note=""), "clock is not observed, with the note 'none'",
+    ),
+    "held since an instant": (entry("clock", since_ms=3), "clock is held, since 3 ms"),
+    "what is lost": (entry("clock", lost="nothing"), "clock says otherwise what is lost"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", ASSUMED)
+def test_assumptions_are_those_that_there_are(flown: Path, case: str) -> None:
+    report = read(flown)
+    assert assumption_faults(report, {}) == []
+    edit, said = ASSUMED[case]
+    edit(report)
+    assert any(said in line for line in assumption_faults(report, {}))
+
+
+def test_what_broke_is_what_the_log_recorded(run: Run, home: Path) -> None:
+    """A signer who says of a broken assumption that it held."""
+    report = read(home / "run")
+    row = next(row for row in report["assumptions"] if row["name"] == "clock")
+    one = next(one for one in LISTING if one.name == "clock")
+    more = {"since_ms": 9, "note": "it went back", "lost": one.lost, "stands": one.stands}
+    meta(home / "run", "assumptions", [{**row, **more, "state": "broken"}])
+    sign_whole(home, report)
+    code, out, err = verify(run, home)
+    assert (code, "verified" in out) == (1, False)
+    said = "report.json: the broken assumptions are not those that the log recorded"
+    assert f"refused: {said}" in err
+    del report["assumptions"]
+    told = {"assumptions": [row]}
+    assert assumption_faults(report, told) == [
+        "report.json: it lacks the assumptions that the log recorded"
+    ]
+
+
+# ---- limits, and what is open --------------------------------------------------------------------
+
+LIMITED: dict[str, Edit] = {
+    "one is left out": lambda r: r["limits"].pop(0),
+    "one is weaker": lambda r: r["limits"].__setitem__(0, "Python and z3 are qualified tools."),
+    "none on the frame": lambda r: r["limits"].pop(),
+    "none at all": lambda r: r["limits"].clear(),
+    "one more": lambda r: r["limits"].append("It is safe."),
+}
+
+
+@pytest.mark.parametrize("case", LIMITED)
+def test_the_limits_are_those_of_every_report(run: Run, home: Path, case: str) -> None:
+    report = read(home / "run")
+    LIMITED[case](report)
+    sign_whole(home, report)
+    code, _, err = verify(run, home)
+    assert code == 1
+    assert "refused: report.json: its limits are not those that every report has" in err
+
+
+def test_what_nobody_looked_into_is_named(run: Run, home: Path) -> None:
+    """Of the rows: verdicts on the plan, checks, notes, kernels, and what held of the assumptions."""
+    code, out, err = verify(run, home)
+    assert err == ""
+    told = "\n".join(line for line in out.splitlines() if line.startswith("not judged: "))
+    number = len(read(home / "run")["assumptions"])
+    assert f"{number} assumptions that held or were not observed: whether it is so" in told
+    for word in ("margins", "notes", "checks", "kernels", "tracks", "verdicts on the plan"):
+        assert word in told, word
+    assert code in (0, 3)
