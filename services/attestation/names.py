@@ -7,4 +7,8 @@ FOLDER = "attestation"
 JUNIT_NAME, SARIF_NAME, CSV_NAME = "junit.xml", "report.sarif", "constraints.csv"
 ARGUMENT_NAME, DRAWING_NAME = "argument.yaml", "argument.svg"
 VIEWS = (JUNIT_NAME, SARIF_NAME, CSV_NAME, ARGUMENT_NAME, DRAWING_NAME)
+"""What is written if none is named."""
+PDF_NAME, FULL_NAME, FULL_PDF_NAME = "report.pdf", "full.html", "full.pdf"
+ALL_VIEWS = (*VIEWS, PDF_NAME, FULL_NAME, FULL_PDF_NAME)
+"""Those too that are written only where they are named."""
 STATEMENT_NAME = "statement.dsse.json"

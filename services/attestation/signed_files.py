@@ -9,11 +9,11 @@ from typing import NamedTuple
 from cratous.services.attestation.findings import Data, Subject
 from cratous.services.attestation.junit import junit
 from cratous.services.attestation.names import (
+    ALL_VIEWS,
     ARGUMENT_NAME,
     CSV_NAME,
     DRAWING_NAME,
     JUNIT_NAME,
-    VIEWS,
 )
 from cratous.services.attestation.statement import RESULTS
 from cratous.services.attestation.statement import VIEWS as MADE
@@ -58,7 +58,7 @@ def file_faults(place: Place, named: dict[str, str]) -> list[str]:
             got, why = "", error.strerror or "it cannot be read"
         if not got or got != stated:
             found.append(f"{name}: SHA-256 signed {stated}, found {got or why}")
-    there = [f"{MADE}/{name}" for name in VIEWS if (place.views / name).exists()]
+    there = [f"{MADE}/{name}" for name in ALL_VIEWS if (place.views / name).exists()]
     there += [f"{RESULTS}/{name}" for name in NAMES if (place.results / name).exists()]
     needed = [f"{RESULTS}/{name}" for name in NEEDED]
     found += [
@@ -95,7 +95,7 @@ def not_judged(named: dict[str, str], report: Data) -> list[str]:
     seen = [
         HTML_NAME,
         MAP_NAME,
-        *(name for name in VIEWS if name not in again and f"{MADE}/{name}" in named),
+        *(name for name in ALL_VIEWS if name not in again and f"{MADE}/{name}" in named),
     ]
     found = [
         f"{', '.join(seen)}: that they are the files that were signed, not what stands in them",

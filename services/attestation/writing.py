@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,13 +12,13 @@ from cratous.services.attestation.findings import Subject, unshown
 from cratous.services.attestation.junit import junit
 from cratous.services.attestation.mission_lines import lines_of
 from cratous.services.attestation.names import (
+    ALL_VIEWS,
     ARGUMENT_NAME,
     CSV_NAME,
     DRAWING_NAME,
     JUNIT_NAME,
     SARIF_NAME,
     STATEMENT_NAME,
-    VIEWS,
 )
 from cratous.services.attestation.sarif import sarif
 from cratous.services.attestation.table import table
@@ -26,11 +27,13 @@ from cratous.spec.errors import BadInput
 
 
 class Wanted(NamedTuple):
-    """What is written. names: of the views; mission: the mission file; key: signs, None: unsigned."""
+    """What is written. names: of the views; mission: the mission file; key: signs, None: unsigned; more:
+    makes a view that is none of the tools' (`full_report.views`), by its name."""
 
     names: tuple[str, ...]
     mission: Path | None = None
     key: Any = None
+    more: Callable[[Subject, str], bytes] | None = None
 
 
 class Written(NamedTuple):
@@ -47,7 +50,7 @@ def write_views(subject: Subject, results: Path, target: Path, wanted: Wanted) -
     the results itself, or holds anything that is not written anew: a statement would not cover it.
     """
     _refuse_others(results, target, wanted)
-    texts = {}
+    texts: dict[str, str | bytes] = {}
     said = ""
     for name in wanted.names:
         if name == JUNIT_NAME:
@@ -60,6 +63,8 @@ def write_views(subject: Subject, results: Path, target: Path, wanted: Wanted) -
         elif name == ARGUMENT_NAME:
             drawn = views(subject.report, unshown(subject))
             texts |= zip((ARGUMENT_NAME, DRAWING_NAME), drawn, strict=True)
+        elif wanted.more is not None and name not in texts:
+            texts[name] = wanted.more(subject, name)
     try:
         target.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -76,7 +81,7 @@ def write_views(subject: Subject, results: Path, target: Path, wanted: Wanted) -
 
 def earlier(target: Path) -> list[str]:
     """The views and the statement that stand in a folder, as paths."""
-    return [str(target / name) for name in (*VIEWS, STATEMENT_NAME) if (target / name).exists()]
+    return [str(target / name) for name in (*ALL_VIEWS, STATEMENT_NAME) if (target / name).exists()]
 
 
 def _sign(subject: Subject, results: Path, target: Path, views: list[Path], key: Any) -> None:

@@ -51,7 +51,11 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: An
     this run, from each to the theorems that hold it against its definition, and to that definition.
 
     With --junit, --sarif, --csv, --argument, --sign or -o views of the confirmed report are written for
-    other tools, all of them if none is named. In none of them does anything pass that was not checked.
+    other tools, all of these if none is named. In none of them does anything pass that was not checked.
+
+    --pdf writes the report as PDF (the extra `pdf`), --full as full.html with all sections: requirements,
+    margins, certificate, proofs, assumptions, coverage, argument; --pdf --full as full.pdf. The same report
+    and ledger give the same bytes.
 
     --sign signs digests of results and views with the verdict; --verify checks signature and digests,
     makes JUnit, CSV and argument again, and judges the log again by the judge, in a process without planner

@@ -14,7 +14,10 @@ from cratous.services.attestation.names import (
     CSV_NAME,
     DRAWING_NAME,
     FOLDER,
+    FULL_NAME,
+    FULL_PDF_NAME,
     JUNIT_NAME,
+    PDF_NAME,
     SARIF_NAME,
     VIEWS,
 )
@@ -32,6 +35,8 @@ OPTIONS = (
     click.option("--sarif", is_flag=True, help="Write report.sarif: what is not shown to hold."),
     click.option("--csv", is_flag=True, help="Write constraints.csv."),
     click.option("--argument", is_flag=True, help="Write argument.yaml and .svg: the assurance argument (GSN)."),
+    click.option("--pdf", is_flag=True, help="Write report.pdf, two pages; with --full full.pdf."),
+    click.option("--full", is_flag=True, help="Write full.html: the report with all its sections."),
     click.option("--mission", type=click.Path(path_type=Path), help="Mission file, for lines in SARIF."),
     click.option("--sign", is_flag=True, help="Sign a statement over results and views (Ed25519)."),
     click.option(
@@ -62,6 +67,8 @@ class Asked(NamedTuple):
     sarif: bool
     csv: bool
     argument: bool
+    pdf: bool
+    full: bool
     mission: Path | None
     sign: bool
     verify: bool
@@ -71,8 +78,13 @@ class Asked(NamedTuple):
     @property
     def anything(self) -> bool:
         """Whether anything is to be written."""
-        named = self.junit or self.sarif or self.csv or self.argument
-        return named or self.sign or self.out is not None
+        return self.named or self.sign or self.out is not None
+
+    @property
+    def named(self) -> bool:
+        """Whether a view is named."""
+        tools = self.junit or self.sarif or self.csv or self.argument
+        return tools or self.pdf or self.full
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -80,6 +92,7 @@ class Asked(NamedTuple):
         chosen = (
             (self.junit, JUNIT_NAME), (self.sarif, SARIF_NAME), (self.csv, CSV_NAME),
             (self.argument, ARGUMENT_NAME), (self.argument, DRAWING_NAME),
+            (self.full, FULL_NAME), (self.pdf, FULL_PDF_NAME if self.full else PDF_NAME),
         )  # fmt: skip
         return tuple(name for wanted, name in chosen if wanted) or VIEWS
 
@@ -96,6 +109,10 @@ def checked(asked: Asked) -> Any:
         raise click.UsageError(f"--mission finds lines for {SARIF_NAME}, which is not asked for")
     if asked.public_key is not None and not asked.verify:
         raise click.UsageError("--public-key is the key of --verify")
+    if asked.pdf and not asked.verify:
+        from cratous.services.full_report.pdf_drawing import needed
+
+        needed()
     if not asked.sign:
         return None
     from cratous.services.attestation.dsse import private_key
@@ -112,7 +129,7 @@ def verified(results: Path, asked: Asked, as_json: bool) -> int:
     from cratous.services.attestation.verification import signed_folder, verify
     from cratous.services.cli.judge import judgement
 
-    if asked.sign or asked.junit or asked.sarif or asked.csv or asked.argument or asked.mission:
+    if asked.sign or asked.named or asked.mission:
         raise click.UsageError("--verify writes nothing")
     if asked.public_key is None:
         raise click.UsageError("--verify needs --public-key")
@@ -147,10 +164,11 @@ def write(done: Any, results: Path, asked: Asked, key: Any) -> Written:
     from cratous.services.attestation.findings import Subject
     from cratous.services.attestation.writing import Wanted, write_views
     from cratous.services.certify.result_files import no_result
+    from cratous.services.full_report.views import view
 
     target = asked.folder(results)
     inside = target.resolve().parent == results.resolve()
     # the views themselves are no part of what they are about
     unchecked = tuple(u for u in done.unchecked if not (inside and u == no_result(target.name)))
     subject = Subject(done.report, unchecked)
-    return write_views(subject, results, target, Wanted(asked.names, asked.mission, key))
+    return write_views(subject, results, target, Wanted(asked.names, asked.mission, key, view))

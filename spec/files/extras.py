@@ -16,6 +16,7 @@ EXTRAS = {
     "zstandard": ("zstandard", "wires"),
     "cvc5": ("cvc5", "prove"),
     "cryptography": ("cryptography", "sign"),
+    "reportlab": ("reportlab", "pdf"),
     "dask": ("dask", "campaign"),
     "distributed": ("distributed", "campaign"),
 }

@@ -75,9 +75,9 @@ def test_extras_bring_what_is_told(project: dict[str, Any]) -> None:
 def test_pins_are_those_of_the_lock(root: Path, project: dict[str, Any]) -> None:
     lock = locked(root)
     extras = project["optional-dependencies"]
-    declared = project["dependencies"] + extras["prove"] + extras["sign"]
+    declared = project["dependencies"] + extras["prove"] + extras["sign"] + extras["pdf"]
     pins = dict(one.split("==") for one in declared if "==" in one)
-    assert set(pins) == {*COMPILER, "z3-solver", "cvc5", "cryptography"}
+    assert set(pins) == {*COMPILER, "z3-solver", "cvc5", "cryptography", "reportlab"}
     assert pins == {name: lock[name] for name in pins}
     for record in ledger.read()["kernels"].values():
         for name in COMPILER:

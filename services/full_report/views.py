@@ -1,0 +1,20 @@
+"""The views of this folder by their names, as bytes."""
+
+from __future__ import annotations
+
+from cratous.services.attestation.findings import Subject
+from cratous.services.attestation.names import FULL_NAME, FULL_PDF_NAME
+from cratous.services.full_report.page import html
+from cratous.services.full_report.pdf import pdf
+from cratous.services.full_report.sections import document
+
+
+def view(subject: Subject, name: str) -> bytes:
+    """The bytes of a view; the same report, list of what was not checked, and ledger give the same.
+
+    subject: confirmed from its log; name: of `attestation.names`. Raises ModuleNotFoundError for a PDF
+    without reportlab, which the command line tells as NotInstalled.
+    """
+    if name == FULL_NAME:
+        return html(document(subject, full=True)).encode("utf-8", "backslashreplace")
+    return pdf(document(subject, full=name == FULL_PDF_NAME))
