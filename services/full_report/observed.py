@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from cratous.services.assumptions import measured
+from cratous.services.assumptions.said import measured
 from cratous.services.certify.html import margin, seconds
 from cratous.services.full_report.document import (
     DASH,
