@@ -4,7 +4,7 @@ Here the instance that `cratous run` flies knows nothing but what comes over the
 POSTN, traffic from OBJCT, the mission from WAYPT, GEOFN, WPRCH and COMND. What they say is believed, so
 their contents decide. Each POSTN that is a heartbeat later than the last is one heartbeat of the instance.
 The gate of the vehicle stands here: an offer is taken when UxAS tells the way on (START_MISSION after
-a whole plan, or a RESET_SFT with a position). A peer of another dialect than ours takes it without a
+a whole plan, or a RESET_SFT with a position). A WPREQ is answered at once (`routes`). A peer of another dialect than ours takes it without a
 word.
 """
 
@@ -22,6 +22,7 @@ from cratous.bridge.text_protocol import (
     FenceVertex,
     Message,
     OwnPosition,
+    RouteRequest,
     SetMode,
     SoftReset,
     StartMission,
@@ -45,6 +46,7 @@ from cratous.services.icarous_program.recovery import (
     of_zone,
     take,
 )
+from cratous.services.icarous_program.routes import Planner
 from cratous.spec.authority.cycle import OFFER, TAKE_OVER, WITHDRAW
 from cratous.spec.mission import Position, Velocity
 
@@ -125,6 +127,7 @@ class IcarousEnd:
 
     def __init__(self, craft: Craft) -> None:
         self.craft, self._instance = craft, Instance(craft.config)
+        self._planner = Planner(craft.config.projection, craft.limits)
 
     def connected(self, state: State) -> Step:
         """A connection is open: what was seen on another one is forgotten, UxAS hears who commands.
@@ -145,6 +148,8 @@ class IcarousEnd:
                 return self._traffic(state, line)
             case Attitude():
                 return state, ()
+            case RouteRequest():
+                return state, self._route(state, line)
         if not self.craft.dialect.ours:
             return self._told(state, line)
         taken = take(state.lost, line)
@@ -156,6 +161,13 @@ class IcarousEnd:
             state, more = self._ask(state, taken.lost[taken.ask])
             answers += more
         return state, tuple(answers)
+
+    def _route(self, state: State, line: RouteRequest) -> tuple[Answer, ...]:
+        """The answer to a WPREQ: a way among the zones in force, or one without points."""
+        lines, why = self._planner.answer(line, state.instance.told.zones)
+        text = why or f"a way of {len(lines) - 2} points"
+        note = Note("WARN" if why else "INFO", f"UxAS asks for a route ({line.planner}): {text}")
+        return note, *map(Tell, lines)
 
     def _ask(self, state: State, part: Part) -> Step:
         """Ask for the missing lines of a plan or zone, or say that it was done often enough."""

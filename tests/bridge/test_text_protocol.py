@@ -102,6 +102,15 @@ def test_our_dialect() -> None:
     assert b"lat45.123456789,long-0.000000001" in tp.encode(
         tp.SetPosition(45.123456789, -0.000000001, 0.0)
     )
+    asked = tp.RouteRequest("RRT", *(1.0,) * 9, request=7)
+    for message in (asked, tp.RouteStart(7), tp.RoutePoint(1.0, 1.0, 1.0, 1.0, 7), tp.RouteEnd(7)):
+        line = tp.encode(message).decode("ascii")
+        assert line.endswith("request7.0,\n")
+        for k in range(len(line)):
+            parser = tp.StreamParser(tp.direction_of(message))
+            assert [*parser.feed(line[:k].encode()), *parser.feed(line[k:].encode())] == [message]
+        plain = tp.encode(message, dialect=tp.Dialect.ORIGINAL).decode("ascii")
+        assert plain == line.replace(",request7.0", "").replace(".000000000", ".000000")
     # A fence of ten vertices, which the original's own way of writing breaks.
     assert b"vertIndex1.0," in tp.encode(tp.FenceVertex("KEEPIN", 12, 1, 1.0, 1.0, 0.0, 1.0, 1))
 
