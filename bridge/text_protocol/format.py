@@ -50,7 +50,7 @@ def encode(
         value = getattr(message, field.attribute)
         if value is None and field.optional:
             continue
-        if not dialect.ours and field.label in OURS_ALONE:
+        if not dialect.ours and field.optional and field.label in OURS_ALONE:
             continue
         try:
             parts.append(field.label + _text(field, value, message, dialect, limits))

@@ -13,6 +13,7 @@ from enum import Enum
 from cratous.bridge.text_protocol.messages import (
     Attitude,
     Direction,
+    EpochTold,
     FenceDone,
     FenceVertex,
     GoToWaypoint,
@@ -118,7 +119,7 @@ _PLACE = (_deg("lat", "lat_deg"), _deg("long", "long_deg"))
 _VELOCITY = (_real("north", "north_mps"), _real("east", "east_mps"), _real("down", "down_mps"))
 _REQUEST = _count("request", "request", 0, optional=True)
 OURS_ALONE = ("epoch", "request")
-"""Labels of fields that peers of other dialects than ours are not told."""
+"""Labels of optional fields that peers of other dialects than ours are not told."""
 _DOWN, _UP = Direction.DOWN, Direction.UP
 
 LAYOUTS: tuple[Layout, ...] = (
@@ -220,6 +221,12 @@ LAYOUTS: tuple[Layout, ...] = (
             _real("vv", "vertical_mps"),
             _REQUEST,
         ),
+    ),
+    Layout(
+        "EPOCH",
+        _DOWN,
+        EpochTold,
+        (_word("owner", "_UXAS_", "_ICAROUS_"), _count("epoch", "epoch", 0)),
     ),
     Layout(
         "SETMOD",

@@ -162,6 +162,16 @@ class RouteRequest(Message):
 
 
 @dataclass(frozen=True)
+class EpochTold(Message):
+    """EPOCH (our dialect): to an instance that says a mode of an epoch that is over: who commands its vehicle, UXAS
+    or ICAROUS, and the greatest epoch that was given."""
+
+    tag: ClassVar[str] = "EPOCH"
+    owner: str
+    epoch: int
+
+
+@dataclass(frozen=True)
 class SetMode(Message):
     """SETMOD: ICAROUS takes over (ACTIVE) or hands back (PASSIVE)."""
 

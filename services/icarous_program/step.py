@@ -18,6 +18,7 @@ from typing import NamedTuple
 from cratous.bridge.text_protocol import (
     Attitude,
     Dialect,
+    EpochTold,
     FenceDone,
     FenceVertex,
     Message,
@@ -29,7 +30,15 @@ from cratous.bridge.text_protocol import (
     Traffic,
 )
 from cratous.core.authority.cycle import gate_wished
-from cratous.core.authority.gate import UXAS, Gate, gate_accepts, gate_after
+from cratous.core.authority.gate import (
+    ICAROUS,
+    UXAS,
+    Gate,
+    epoch_given,
+    gate_accepts,
+    gate_after,
+    gate_offer,
+)
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Ability, Motion
 from cratous.core.avoidance.prediction import Intruder
@@ -59,6 +68,7 @@ SPEEDS = (0.5, 2.0)
 of this airframe."""
 UNTOUCHED = Gate(UXAS, 0, False)
 """UxAS commands, and has always done so."""
+OWNERS = {"UXAS": UXAS, "ICAROUS": ICAROUS}
 ACTS = {OFFER: "offers control back", WITHDRAW: "withdraws its offer", TAKE_OVER: "takes over"}
 
 
@@ -122,6 +132,18 @@ class State:
 Step = tuple[State, tuple[Answer, ...]]
 
 
+def resumed(gate: Gate) -> Gate:
+    """The gate with which an instance that was started anew goes on, of the last one of the former: nobody steers for
+    ICAROUS now, so what it had is offered back in a new epoch."""
+    return gate_offer(gate)
+
+
+def mode_of(gate: Gate) -> SetMode:
+    """What UxAS hears of a gate on a new connection."""
+    active = not gate_accepts(gate, UXAS, gate.epoch)
+    return SetMode("ACTIVE" if active else "PASSIVE", gate.epoch)
+
+
 class IcarousEnd:
     """The step of one vehicle."""
 
@@ -136,8 +158,7 @@ class IcarousEnd:
         connection; epochs go on where they stand.
         """
         state = replace(state, seen={}, now_ms=None, lost={})
-        active = not gate_accepts(state.gate, UXAS, state.gate.epoch)
-        return state, (Tell(SetMode("ACTIVE" if active else "PASSIVE", state.gate.epoch)),)
+        return state, (Tell(mode_of(state.gate)),)
 
     def handle(self, state: State, line: Message) -> Step:
         """One line from UxAS."""
@@ -150,6 +171,8 @@ class IcarousEnd:
                 return state, ()
             case RouteRequest():
                 return state, self._route(state, line)
+            case EpochTold():
+                return self._synchronised(state, line)
         if not self.craft.dialect.ours:
             return self._told(state, line)
         taken = take(state.lost, line)
@@ -161,6 +184,17 @@ class IcarousEnd:
             state, more = self._ask(state, taken.lost[taken.ask])
             answers += more
         return state, tuple(answers)
+
+    def _synchronised(self, state: State, line: EpochTold) -> Step:
+        """UxAS knows a greater epoch: this instance was started anew. It goes on from there, and what ICAROUS
+        had is offered back."""
+        if epoch_given(state.gate, line.epoch):
+            return state, ()
+        state = replace(state, gate=resumed(Gate(OWNERS[line.owner], line.epoch, False)))
+        text = (
+            f"epoch {line.epoch} was given before this start: going on in epoch {state.gate.epoch}"
+        )
+        return state, (Note("WARN", text), Tell(mode_of(state.gate)))
 
     def _route(self, state: State, line: RouteRequest) -> tuple[Answer, ...]:
         """The answer to a WPREQ: a way among the zones in force, or one without points."""
