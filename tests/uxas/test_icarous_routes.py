@@ -11,18 +11,25 @@ from typing import Any
 
 import pytest
 from icarous_rig import Fake
+from icarous_tools import VOLUME
 from pipeline_tools import PIPELINE
 from uxas_tools import process, until, write_cfg
 
 from cratous.bridge import lmcp
 from cratous.bridge import text_protocol as tp
+from cratous.bridge.port import Address
+from cratous.bridge.text_port import TextPort
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.services.flight.dynamics import Limits
+from cratous.services.icarous.state import Config
 from cratous.services.icarous_communication import routes as routes_module
 from cratous.services.icarous_communication.routes import MOST_POINTS
+from cratous.services.icarous_program import program as program_module
+from cratous.services.icarous_program.program import Program
 from cratous.services.icarous_program.routes import Planner
+from cratous.services.icarous_program.step import Craft, IcarousEnd
 from cratous.services.mission.frames import Projection
-from cratous.spec.mission import Frame, Position, Zone, ZoneKind
+from cratous.spec.mission import Daa, Frame, Position, Zone, ZoneKind
 
 SERVICE, PLANNER = "IcarousCommunicationService", "RoutePlannerVisibilityService"
 AGGREGATOR = "RouteAggregatorService"
@@ -348,6 +355,24 @@ def test_the_way_of_a_mission_is_that_of_icarous(tmp_path: Path, opened: list[An
     path = [PLANE.to_local(w.Latitude, w.Longitude) for w in command.WaypointList]
     assert all(min(math.dist(p, q) for q in path) < 120.0 for p in ROUND)
     assert obeys(lmcp.new("RoutePlan", RouteCost=1, Waypoints=command.WaypointList))
+
+
+def test_our_icarous_plans_among_the_zones_that_it_was_told(
+    tmp_path: Path, opened: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(program_module, "_LONGEST_POLL_MS", 1)
+    rig = Rig(tmp_path, opened, 'NumberOfUAVs="1" RoutePlannerUsed="1" RouteTimeout_s="60"')
+    port = TextPort(Address("tcp", "127.0.0.1", rig.port, "UxAS"), server=False)
+    opened.append(port)
+    craft = Craft(Config(1, Daa(VOLUME), PLANE, 500), LIMITS, 60.0)
+    program, said = Program(IcarousEnd(craft), port, lambda _, text: said.append(text)), list[str]()
+    rig.until(lambda: (program.turn(), program.state.instance.told.zones)[1])
+    rig.tell(request((3000.0, 0.0)))
+    rig.until(lambda: (program.turn(), rig.got("RoutePlanResponse"))[1])
+    (plan,) = rig.answer().RouteResponses
+    assert obeys(plan)
+    assert not plan.RouteError
+    assert any("UxAS asks for a route (ASTAR): a way of 4 points" in text for text in said)
 
 
 def test_where_our_icarous_finds_no_way_it_says_so() -> None:
