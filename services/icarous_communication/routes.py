@@ -77,7 +77,7 @@ class Routes:
         self._requests: dict[int, Request] = {}
         self._waiting: deque[Wanted] = deque()
         self._out: dict[int, Outstanding] = {}
-        self._late: dict[int, int] = {}  # answers that an instance still owes
+        self._mute: set[int] = set()  # instances that owe an answer
         self._tickets = self._numbers = 0
 
     def begun(self) -> Say:
@@ -110,7 +110,7 @@ class Routes:
             wanted = self._waiting.popleft()
             vid = self._chosen(wanted, seated)
             if vid is None:
-                out += self._own(wanted, "no ICAROUS is connected")
+                out += self._own(wanted, "no ICAROUS is connected that answers")
             elif vid in self._out:
                 kept.append(wanted)
             else:
@@ -121,6 +121,8 @@ class Routes:
     def heard(self, vid: int, line: RouteLine) -> list[Out]:
         """A line of an answer has come from the instance of a vehicle."""
         one = self._out.get(vid)
+        if isinstance(line, RouteEnd):
+            self._mute.discard(vid)
         if one is None:
             return [Refuse("route that nobody waits for", f"vehicle {vid}: {line}")]
         if self._dialect.ours and line.request != one.number:
@@ -140,13 +142,14 @@ class Routes:
 
     def gone(self, vid: int) -> list[Out]:
         """The connection of an instance has ended."""
-        self._late.pop(vid, None)
+        self._mute.discard(vid)
         one = self._out.pop(vid, None)
         return [] if one is None else self._own(one.wanted, _of(vid, "the connection has ended"))
 
     def _chosen(self, wanted: Wanted, seated: Sequence[int]) -> int | None:
         own = int(self._requests[wanted.ticket].asked.body.VehicleID)
-        return own if own in seated else min(seated, default=None)
+        able = [vid for vid in seated if vid not in self._mute]
+        return own if own in able else min(able, default=None)
 
     def _sent(self, vid: int, wanted: Wanted, now_s: float) -> list[Out]:
         """The WPREQ of a way; what it is cannot be known here, UxAS's own planner says why."""
@@ -175,19 +178,10 @@ class Routes:
         return [Down(vid, (line,))]
 
     def _overdue(self, vid: int) -> list[Out]:
-        """No answer in time: nor are those waited for that would be asked for next of this instance."""
-        one = self._out.pop(vid)
-        self._late[vid] = self._late.get(vid, 0) + 1
+        """No answer in time: it is not asked again before it has ended one, or is connected anew."""
+        self._mute.add(vid)
         why = _of(vid, f"no answer within {self._wait_s:g} s")
-        out, left = self._own(one.wanted, why), list(self._waiting)
-        self._waiting.clear()
-        for wanted in left:
-            own = self._requests[wanted.ticket].asked.body.VehicleID
-            if own == vid:
-                out += self._own(wanted, why)
-            else:
-                self._waiting.append(wanted)
-        return out
+        return self._own(self._out.pop(vid).wanted, why)
 
     def _ended(
         self, vid: int, one: Outstanding, places: tuple[tuple[float, float, float], ...]
@@ -200,11 +194,6 @@ class Routes:
         elif places:
             constraint = body.RouteRequests[one.wanted.position]
             plan, why = planner.led_over(self._contexts, body, constraint, places)
-        if plan is None and self._late.get(vid) and not self._dialect.ours:
-            # without a number it may be the answer that came too late for another request
-            self._late[vid] -= 1
-            self._out[vid] = one._replace(places=None, told=0)
-            return [Refuse("route that came too late", _of(vid, why))]
         del self._out[vid]
         if plan is None:
             return self._own(one.wanted, _of(vid, why))
