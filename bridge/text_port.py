@@ -29,6 +29,7 @@ from cratous.bridge.text_protocol.keys import Keys
 from cratous.bridge.text_protocol.layouts import ORIGINAL_LIMITS
 from cratous.bridge.text_protocol.messages import (
     Direction,
+    EpochTold,
     FenceVertex,
     Heartbeat,
     Hello,
@@ -40,7 +41,7 @@ from cratous.bridge.text_protocol.parser import Record, WireError
 from cratous.bridge.text_protocol.sealed import SealedClient, SealedServer
 from cratous.spec.errors import BadInput
 
-OURS = (Hello, Heartbeat, LinesMissing, NotKnown)
+OURS = (Hello, Heartbeat, LinesMissing, NotKnown, EpochTold)
 """What a peer of another dialect than ours is not sent."""
 PATIENCE_S = 1.0
 """So long a connection that has not shaken hands keeps its place where others wait for one [s]."""

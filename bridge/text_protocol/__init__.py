@@ -12,6 +12,7 @@ from cratous.bridge.text_protocol.layouts import (
 from cratous.bridge.text_protocol.messages import (
     Attitude,
     Direction,
+    EpochTold,
     FenceDone,
     FenceVertex,
     GoToWaypoint,
@@ -43,6 +44,7 @@ __all__ = [
     "Attitude",
     "Dialect",
     "Direction",
+    "EpochTold",
     "FenceDone",
     "FenceVertex",
     "GoToWaypoint",

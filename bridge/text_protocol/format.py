@@ -13,6 +13,7 @@ from cratous.bridge.text_protocol.dialects import LAYOUT_IN, Dialect
 from cratous.bridge.text_protocol.layouts import (
     LAYOUT_OF,
     ORIGINAL_LIMITS,
+    OURS_ALONE,
     TEXT,
     FieldLayout,
     Kind,
@@ -41,7 +42,7 @@ def encode(
 ) -> bytes:
     """The line of a message, newline included; BadInput if a value cannot stand on the wire.
 
-    dialect: as a peer of that dialect writes it; in the others than ours there are no epochs.
+    dialect: as a peer of that dialect writes it; in the others than ours there are no epochs and no numbers of requests.
     """
     layout = LAYOUT_IN[dialect][type(message)]
     parts = [f"type{layout.form}"] if layout.form else []
@@ -49,7 +50,7 @@ def encode(
         value = getattr(message, field.attribute)
         if value is None and field.optional:
             continue
-        if not dialect.ours and field.label == "epoch":
+        if not dialect.ours and field.optional and field.label in OURS_ALONE:
             continue
         try:
             parts.append(field.label + _text(field, value, message, dialect, limits))

@@ -13,6 +13,7 @@ from enum import Enum
 from cratous.bridge.text_protocol.messages import (
     Attitude,
     Direction,
+    EpochTold,
     FenceDone,
     FenceVertex,
     GoToWaypoint,
@@ -116,6 +117,9 @@ def _word(attribute: str, *words: str) -> FieldLayout:
 
 _PLACE = (_deg("lat", "lat_deg"), _deg("long", "long_deg"))
 _VELOCITY = (_real("north", "north_mps"), _real("east", "east_mps"), _real("down", "down_mps"))
+_REQUEST = _count("request", "request", 0, optional=True)
+OURS_ALONE = ("epoch", "request")
+"""Labels of optional fields that peers of other dialects than ours are not told."""
 _DOWN, _UP = Direction.DOWN, Direction.UP
 
 LAYOUTS: tuple[Layout, ...] = (
@@ -215,7 +219,14 @@ LAYOUTS: tuple[Layout, ...] = (
             _real("track", "track_deg"),
             _real("vh", "horizontal_mps"),
             _real("vv", "vertical_mps"),
+            _REQUEST,
         ),
+    ),
+    Layout(
+        "EPOCH",
+        _DOWN,
+        EpochTold,
+        (_word("owner", "_UXAS_", "_ICAROUS_"), _count("epoch", "epoch", 0)),
     ),
     Layout(
         "SETMOD",
@@ -226,15 +237,15 @@ LAYOUTS: tuple[Layout, ...] = (
     Layout("SETVEL", _UP, SetVelocity, _VELOCITY),
     Layout("SETPOS", _UP, SetPosition, (*_PLACE, _real("alt", "alt_m"))),
     Layout("GOTOWP", _UP, GoToWaypoint, (_count("id", "index", kind=Kind.BARE),)),
-    Layout("RPRSP", _UP, RouteStart, (), "ST"),
+    Layout("RPRSP", _UP, RouteStart, (_REQUEST,), "ST"),
     Layout(
         "RPRSP",
         _UP,
         RoutePoint,
-        (*_PLACE, _real("alt", "alt_m"), _real("spd", "speed_mps")),
+        (*_PLACE, _real("alt", "alt_m"), _real("spd", "speed_mps"), _REQUEST),
         "WP",
     ),
-    Layout("RPRSP", _UP, RouteEnd, (), "ED"),
+    Layout("RPRSP", _UP, RouteEnd, (_REQUEST,), "ED"),
     Layout("HBEAT", _UP, Heartbeat, (_count("seq", "sequence", 0), _real("time", "time_s"))),
     Layout(
         "AGAIN",

@@ -144,7 +144,8 @@ class WaypointReached(Message):
 
 @dataclass(frozen=True)
 class RouteRequest(Message):
-    """WPREQ: plan a route with the planner GRID, ASTAR, RRT or SPLINE."""
+    """WPREQ: plan a route with the planner GRID, ASTAR, RRT or SPLINE. request (our dialect): a number that the
+    lines of the answer bear too."""
 
     tag: ClassVar[str] = "WPREQ"
     planner: str
@@ -157,6 +158,17 @@ class RouteRequest(Message):
     track_deg: float
     horizontal_mps: float
     vertical_mps: float
+    request: int | None = None
+
+
+@dataclass(frozen=True)
+class EpochTold(Message):
+    """EPOCH (our dialect): to an instance that says a mode of an epoch that is over: who commands its vehicle, UXAS
+    or ICAROUS, and the greatest epoch that was given."""
+
+    tag: ClassVar[str] = "EPOCH"
+    owner: str
+    epoch: int
 
 
 @dataclass(frozen=True)
@@ -198,9 +210,10 @@ class GoToWaypoint(Message):
 
 @dataclass(frozen=True)
 class RouteStart(Message):
-    """RPRSP ST: a route follows."""
+    """RPRSP ST: a route follows. request: as in `RouteRequest`."""
 
     tag: ClassVar[str] = "RPRSP"
+    request: int | None = None
 
 
 @dataclass(frozen=True)
@@ -212,13 +225,15 @@ class RoutePoint(Message):
     long_deg: float
     alt_m: float
     speed_mps: float
+    request: int | None = None
 
 
 @dataclass(frozen=True)
 class RouteEnd(Message):
-    """RPRSP ED: the route is complete."""
+    """RPRSP ED: the route is complete; one without points says that there is none."""
 
     tag: ClassVar[str] = "RPRSP"
+    request: int | None = None
 
 
 @dataclass(frozen=True)

@@ -50,6 +50,10 @@ if TYPE_CHECKING:
 @click.option(
     "--log", "folder", type=click.Path(path_type=Path), help="Folder of the log. [log/icarous_ID]"
 )
+@click.option(
+    "--epochs", type=click.Path(path_type=Path), metavar="FILE",
+    help="Keeps the epoch of this flight over a restart; without it, it is heard from UxAS.",
+)  # fmt: skip
 @click.option("--allow-unproved", is_flag=True, help="Fly with kernels that have no proof.")
 def icarous(
     vehicle: int,
@@ -58,6 +62,7 @@ def icarous(
     once: bool,
     wait: float,
     folder: Path | None,
+    epochs: Path | None,
     allow_unproved: bool,
     **link: Any,
 ) -> int:
@@ -78,6 +83,7 @@ def icarous(
     from cratous.bridge.text_protocol.handshake import secret_of_environment
     from cratous.bridge.text_protocol.keys import keys_of
     from cratous.core.ledger import require
+    from cratous.services.icarous_program.epochs import EpochFile
     from cratous.services.icarous_program.program import Patience, Program
     from cratous.services.icarous_program.step import IcarousEnd
     from cratous.services.uxas.logs import Logs
@@ -117,7 +123,8 @@ def icarous(
         port = TextPort(
             where, server=False, listens=listens, dialect=dialect, secret=secret, report=log
         )
-        program = Program(IcarousEnd(craft), port, log, Patience(wait, once))
+        kept = None if epochs is None else EpochFile(epochs, vehicle)
+        program = Program(IcarousEnd(craft), port, log, Patience(wait, once), epochs=kept)
 
         def stop(*_: object) -> None:
             program.stopping = True

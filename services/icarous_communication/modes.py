@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
-from cratous.bridge.text_protocol import SetMode
-from cratous.core.authority.gate import ICAROUS, UXAS, Gate, gate_offer, gate_takeover
+from cratous.bridge.text_protocol import EpochTold, SetMode
+from cratous.core.authority.gate import (
+    ICAROUS,
+    UXAS,
+    Gate,
+    epoch_given,
+    gate_accepts,
+    gate_offer,
+    gate_takeover,
+)
 from cratous.core.authority.link_end import link_mode
-from cratous.services.flight.link_end import Peer
+from cratous.services.flight.link_end import UNTOUCHED, Peer
+from cratous.services.flight.messages import Down
+from cratous.services.icarous_communication.state import Note, Out
 from cratous.spec.authority.link_end import OVERTAKEN, REFUSED
+
+NO_EPOCH = -1
+"""No epoch has been heard on a connection."""
 
 
 class Said(NamedTuple):
@@ -21,9 +35,9 @@ class Said(NamedTuple):
 
 def read(peer: Peer, line: SetMode, fresh: bool) -> Said:
     """What a SETMOD says, as the kernel `link_mode` has it. fresh: the first of a connection, which may
-    say any epoch."""
+    say any epoch after those that are known here."""
     active, gate = line.mode == "ACTIVE", peer.gate
-    if fresh and line.epoch is not None:
+    if fresh and line.epoch is not None and not epoch_given(gate, line.epoch):
         gates = [Gate(ICAROUS if active else UXAS, line.epoch, False)]
     else:
         gates = [gate, gate_takeover(gate) if active else gate_offer(gate)]
@@ -32,3 +46,39 @@ def read(peer: Peer, line: SetMode, fresh: bool) -> Said:
         if link_mode(peer.end, one, active, epoch).act not in (OVERTAKEN, REFUSED):
             return Said(SetMode(line.mode, epoch), one, True)
     return Said(SetMode(line.mode, gate.epoch if line.epoch is None else line.epoch), gate, False)
+
+
+def anew(peer: Peer) -> Peer:
+    """On a new connection no epoch has been heard."""
+    return replace(peer, end=peer.end._replace(epoch=NO_EPOCH))
+
+
+def forgotten(peer: Peer, line: SetMode, fresh: bool) -> EpochTold | None:
+    """What to tell an instance whose first mode on a connection is of an epoch that is over: it was started anew and
+    does not know which epochs it has given. None for any other line."""
+    if (
+        not fresh
+        or line.epoch is None
+        or epoch_given(Gate(UXAS, line.epoch, False), peer.gate.epoch)
+    ):
+        return None
+    has = gate_accepts(peer.gate, ICAROUS, peer.gate.epoch)
+    return EpochTold("ICAROUS" if has else "UXAS", peer.gate.epoch)
+
+
+def told(vehicle_id: int, line: SetMode, over: EpochTold) -> list[Out]:
+    """That line, and a sentence for the log."""
+    text = f"vehicle {vehicle_id}: ICAROUS is in epoch {line.epoch}, which is over"
+    note = Note("WARN", f"{text}: it is told that epoch {over.epoch} was given")
+    return [note, Down(vehicle_id, (over,))]
+
+
+def unknown(peer: Peer, fresh: bool) -> bool:
+    """True as long as an end that was started anew has not heard in which epoch the vehicle is."""
+    return fresh and peer.gate == UNTOUCHED and not epoch_given(peer.gate, peer.end.epoch)
+
+
+def begins(peer: Peer, said: Said, fresh: bool) -> bool:
+    """True if an end that was started anew hears by this line that UxAS commands."""
+    may = gate_accepts(said.gate, UXAS, said.gate.epoch)
+    return said.believed and unknown(peer, fresh) and may

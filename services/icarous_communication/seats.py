@@ -34,6 +34,11 @@ class Seats:
         return next((k for k, vid in self._vehicle.items() if vid == vehicle_id), None)
 
     @property
+    def vehicles(self) -> list[int]:
+        """Whose instances are there."""
+        return sorted(self._vehicle.values())
+
+    @property
     def due_s(self) -> float | None:
         """When `settle` has something to do."""
         return min(self._new.values(), default=None)

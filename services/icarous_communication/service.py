@@ -17,6 +17,7 @@ from cratous.bridge.text_port import Came, TextPort
 from cratous.bridge.text_protocol import Heartbeat, Hello, Message, Skipped
 from cratous.services.bus import Bus, Envelope, Wake
 from cratous.services.flight.messages import Down, Lost, Say
+from cratous.services.icarous_communication.routes import GROUP, REQUEST, RouteLine, Routes
 from cratous.services.icarous_communication.seats import Seats
 from cratous.services.icarous_communication.settings import Settings
 from cratous.services.icarous_communication.step import (
@@ -59,12 +60,20 @@ class IcarousCommunicationService:
         KEEP_IN,
         KEEP_OUT,
         REMOVE_ZONES,
+        REQUEST,
+        GROUP,
     )
 
     def __init__(
-        self, name: str, bus: Bus, report: Report, settings: Settings, secret: str
+        self,
+        name: str,
+        bus: Bus,
+        report: Report,
+        settings: Settings,
+        secret: str,
+        routes: Routes | None = None,
     ) -> None:
-        """BadInput if it cannot listen. report(severity, sentence): to the log."""
+        """BadInput if it cannot listen. report(severity, sentence): to the log; routes: ICAROUS plans them."""
         self.name, self._bus, self._report, self._settings = name, bus, report, settings
         bounds = Bounds(silence_s=None, connections=4 * settings.instances)
         self.port = TextPort(
@@ -78,6 +87,7 @@ class IcarousCommunicationService:
         )
         self._step = Communication(name, settings.deviation_m, settings.dialect)
         self._seats = Seats(settings.instances, settings.ids)
+        self._routes, self._now_s = routes, 0.0
         self._early: dict[int, list[Message]] = {}
         self._known: set[int] = set()
         self._tally = Tally(name, report)
@@ -100,8 +110,9 @@ class IcarousCommunicationService:
         return State()
 
     def begin(self, state: State) -> tuple[State, Iterable[Any]]:
-        """Look again and again who is still heard."""
-        return state, [Wake(WATCH_MS)]
+        """Look again and again who is still heard; say who plans routes."""
+        said = [] if self._routes is None else [self._routes.begun()]
+        return state, [*self._deliver(said), Wake(WATCH_MS)]
 
     def wake(self, state: State, key: Any, now_ms: int) -> tuple[State, Iterable[Any]]:
         state, out = self._step.watch(state, now_ms)
@@ -111,6 +122,9 @@ class IcarousCommunicationService:
         body, topic = envelope.body, envelope.topic
         if topic == MISSION and envelope.source == self.name:
             return state, ()
+        if topic == REQUEST:
+            asked = [] if self._routes is None else self._routes.asked(envelope)
+            return state, [*self._deliver(asked), *self._deliver(self._planned())]
         state, out = self._heard(state, topic, body, now_ms)
         return state, self._deliver(out)
 
@@ -141,13 +155,23 @@ class IcarousCommunicationService:
 
     def pump(self, now_s: float) -> int:
         """What has arrived, to the step; how much that was."""
+        self._now_s = now_s
         self._redial.step(now_s)
         arrived = self.port.step(now_s)
         for came in arrived:
             self._came(came, now_s)
         for key, vid in self._seats.settle(self._known, now_s):
             self._seated(key, vid)
+        self._publish(self._planned())
         return len(arrived)
+
+    def _planned(self) -> list[Out]:
+        """What is due of the routes that ICAROUS plans."""
+        return [] if self._routes is None else self._routes.step(self._now_s, self._seats.vehicles)
+
+    def _publish(self, answers: list[Out]) -> None:
+        if answers:
+            self._stepped(lambda state: (state, answers))
 
     def awaits(self, now_s: float) -> bool:
         """True while instances are missing before the start; NobodyCame when its time is over."""
@@ -190,6 +214,8 @@ class IcarousCommunicationService:
         vid, now_ms = self._seats.vehicle(key), self._bus.now_ms
         if vid is not None:
             self._stepped(lambda state: self._step.heard(state, vid, line, now_ms))
+            if self._routes is not None and isinstance(line, RouteLine):
+                self._publish(self._routes.heard(vid, line))
             return
         self._seats.speaks(key)
         early = self._early.setdefault(key, [])
@@ -205,6 +231,7 @@ class IcarousCommunicationService:
             lost = Lost(vid, now_ms, event)
             self._report("WARN", f"{self.name}: vehicle {vid}: {event.kind} {event.detail}")
             self._stepped(lambda state: self._step.lost(state, lost))
+            self._publish([] if self._routes is None else self._routes.gone(vid))
         elif event.kind in ("dropped", REFUSED):
             self._tally.refuse("peer that speaks for no vehicle", event.detail)
 

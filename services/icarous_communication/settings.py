@@ -26,6 +26,7 @@ ATTRIBUTES: Mapping[str, Attr] = {
     "Dialect": choice("cratous", "cratous", "original", "thesis", "v2"),
     "Keys": Attr(),
     "PlainBeyondLoopback": flag(False),
+    "RouteTimeout_s": number(2.0, 0.1, 600.0),
 }
 DEVIATION_M = 500.0
 """How far from its leg a vehicle that avoids may be before its tasks are paused [m]."""
@@ -40,7 +41,8 @@ LISTENS_AT = "tcp://127.0.0.1:5557"
 class Settings(NamedTuple):
     """instances: how many to wait for; deviation_m: see DEVIATION_M; where: it listens; to: the addresses
     to connect to instead of that, one of each instance; keys: of the vehicles, then the dialect is v2; ids: of the
-    vehicles, none for the lowest known; wait_s: for the instances; dialect: of the peers, that of the lines inside v2's packets too."""
+    vehicles, none for the lowest known; wait_s: for the instances; dialect: of the peers, that of the lines inside v2's packets too;
+    planner: RoutePlannerUsed, -1 for UxAS's own; answer_s: how long to wait for a route."""
 
     instances: int
     deviation_m: float = DEVIATION_M
@@ -50,18 +52,12 @@ class Settings(NamedTuple):
     dialect: Dialect = Dialect.CRATOUS
     to: tuple[Address, ...] = ()
     keys: Keys | None = None
+    planner: int = -1
+    answer_s: float = 2.0
 
 
 def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
     """The settings of an entry; BadInput for what cannot be honoured."""
-    if v["RoutePlannerUsed"] != -1:
-        raise BadInput(
-            "ICAROUS plans no routes for UxAS here",
-            where=entry.where,
-            item=f"{entry.type}.RoutePlannerUsed",
-            expected="-1, or no RoutePlannerUsed: UxAS's own planner plans",
-            got=str(v["RoutePlannerUsed"]),
-        )
     where = address(
         v["Address"] or LISTENS_AT,
         ("tcp",),
@@ -86,7 +82,8 @@ def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
             got=f'Address="{v["Address"]}" Dialect="{v["Dialect"]}"',
         )
     keys = _keys(entry, v, ids, to or (where,))
-    return Settings(count, deviation_m, where, ids, v["Timeout_s"], dialect, to, keys)
+    routes = v["RoutePlannerUsed"], v["RouteTimeout_s"]
+    return Settings(count, deviation_m, where, ids, v["Timeout_s"], dialect, to, keys, *routes)
 
 
 def _keys(

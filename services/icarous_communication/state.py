@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -20,6 +20,12 @@ from cratous.spec.mission import Frame, Position
 
 TRAFFIC_KEPT_MS = 5000
 """An aircraft whose state is of a time farther than this [ms] from another's is not told to that one."""
+SPARE_WAYPOINTS = 10
+"""The original's client is told the next part of a plan when it has no more than these ahead."""
+SETTLES_MS = 2000
+"""After this a vehicle that does not show the first waypoint of a new plan is on a later one [ms]."""
+COMMANDS_FROM = 2**40
+"""Ids of the commands of this service, apart from those of others."""
 MOST_BANK_RAD = math.radians(80.0)
 DEFAULT_BANK_RAD = math.radians(30.0)
 """How far a vehicle banks of which no configuration is known, or one that says nothing of it."""
@@ -123,6 +129,12 @@ def at_the_time_of(
         else:
             stale.add(other)
     return tuple(aircraft), frozenset(stale)
+
+
+def left_out(ids: Iterable[int]) -> list[Out]:
+    """That aircraft are not told as traffic."""
+    text = f"no state within {TRAFFIC_KEPT_MS} ms; not told as traffic"
+    return [Note("WARN", f"vehicle {vid}: {text}") for vid in sorted(ids)]
 
 
 def moved(air: AirState, late_s: float) -> AirState:

@@ -11,7 +11,6 @@ from cratous.bridge.text_protocol import GoToWaypoint, Message, SetPosition, Set
 from cratous.core.authority.gate import UXAS, Gate
 from cratous.services.flight.commands import gated
 from cratous.services.flight.dynamics import GRAVITY_M_S2, AirState
-from cratous.services.flight.link_end import Peer
 from cratous.services.flight.messages import Say
 from cratous.services.flight.notices import authority_change, gate_state
 from cratous.services.icarous_communication.plans import START, Plan
@@ -99,9 +98,9 @@ def at_gate(name: str, vehicle_id: int, gate: Gate, sender: int, command: Any) -
     return Say(gated(vehicle_id, gate.epoch, sender, command), name)
 
 
-def in_flight(name: str, peer: Peer, plan: Plan | None) -> list[Say]:
+def in_flight(name: str, vehicle_id: int, gate: Gate, plan: Plan | None) -> list[Say]:
     """What a vehicle flies already comes to its gate, when that stands for the first time."""
-    return [] if plan is None else [at_gate(name, peer.vehicle_id, peer.gate, UXAS, plan.command)]
+    return [] if plan is None else [at_gate(name, vehicle_id, gate, UXAS, plan.command)]
 
 
 def taken_back(

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cratous.bridge import lmcp
-from cratous.bridge.text_protocol import Dialect, GoToWaypoint, Heartbeat, Message, SetMode
+from cratous.bridge.text_protocol import Dialect, GoToWaypoint, Heartbeat, Hello, Message, SetMode
 from cratous.core.authority.gate import ICAROUS, UXAS, gate_accepts, gate_after
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import Motion
@@ -49,7 +49,9 @@ from cratous.services.icarous_communication.plans import (
     shown,
 )
 from cratous.services.icarous_communication.state import (
-    TRAFFIC_KEPT_MS,
+    COMMANDS_FROM,
+    SETTLES_MS,
+    SPARE_WAYPOINTS,
     Craft,
     Note,
     Out,
@@ -57,6 +59,7 @@ from cratous.services.icarous_communication.state import (
     State,
     air_state,
     at_the_time_of,
+    left_out,
     placed,
     plane,
     turn_radius_of,
@@ -74,16 +77,6 @@ from cratous.services.pipeline.status import status
 from cratous.services.uxas.daidalus.zones import frame_at, surroundings
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame, Position
-
-SPARE_WAYPOINTS = 10
-"""The original's client is told the next part of a plan when it has no more than these ahead."""
-SETTLES_MS = 2000
-"""After this a vehicle that does not show the first waypoint of a new plan is on a later one [ms]."""
-NO_EPOCH = -1
-"""No epoch has been heard on a connection."""
-COMMANDS_FROM = 2**40
-"""Ids of the commands of this service, apart from those of others."""
-
 
 Step = tuple[State, list[Out]]
 
@@ -106,11 +99,13 @@ class Communication:
         state, out = self._end(state, Connected(now_ms, (vehicle_id,)))
         peer = state.link.peer(vehicle_id)
         assert peer is not None
-        anew = replace(peer, end=peer.end._replace(epoch=NO_EPOCH))
-        state = replace(state, link=state.link.with_peer(anew), fresh=state.fresh | {vehicle_id})
+        anew = state.link.with_peer(modes.anew(peer))
+        state = replace(state, link=anew, fresh=state.fresh | {vehicle_id})
         if not known:
             state, more = self._route(state, vehicle_id)
-            out += [*more, *in_flight(self.name, peer, state.craft(vehicle_id).plan)]
+            out += more
+            if not self.dialect.ours:  # which says no epoch
+                out += in_flight(self.name, vehicle_id, peer.gate, state.craft(vehicle_id).plan)
         body = state.craft(vehicle_id).body
         if body is None:
             return state, out
@@ -165,10 +160,16 @@ class Communication:
         peer = state.link.peer(vehicle_id)
         if peer is None:
             return state, []
-        said = modes.read(peer, line, vehicle_id in state.fresh)
-        if said.believed:
-            state = replace(state, fresh=state.fresh - {vehicle_id})
+        fresh = vehicle_id in state.fresh
+        over = modes.forgotten(peer, line, fresh)
+        if over is not None:
+            state, out = self._end(state, Heard(vehicle_id, now_ms, Hello(vehicle_id)))
+            return state, [*out, *modes.told(vehicle_id, line, over)]
+        said = modes.read(peer, line, fresh)
+        state = replace(state, fresh=state.fresh - {vehicle_id} if said.believed else state.fresh)
         state, out = self._end(state, GateIs(vehicle_id, said.gate))
+        if modes.begins(peer, said, fresh and self.dialect.ours):
+            out += in_flight(self.name, vehicle_id, said.gate, state.craft(vehicle_id).plan)
         state, more = self._end(state, Heard(vehicle_id, now_ms, said.line))
         return self._free(state, vehicle_id), [*out, *more]
 
@@ -251,13 +252,7 @@ class Communication:
         aircraft, stale = at_the_time_of(body, state.crafts)
         roll, pitch = math.radians(body.Roll), math.radians(body.Pitch)
         seen = Seen(vid, now_ms, int(body.Time), aircraft, roll, pitch)
-        notes: list[Out] = [
-            Note(
-                "WARN",
-                f"vehicle {other}: no state within {TRAFFIC_KEPT_MS} ms; not told as traffic",
-            )
-            for other in sorted(stale - state.stale)
-        ]
+        notes = left_out(stale - state.stale)
         state, out = self._end(replace(state, stale=stale), seen)
         return state, [*notes, *out]
 
@@ -373,7 +368,12 @@ class Communication:
     def _by_uxas(self, state: State, vid: int, command: Any) -> list[Out]:
         """What UxAS commands a vehicle that has a gate here."""
         peer = state.link.peer(vid)
-        return [] if peer is None else [at_gate(self.name, vid, peer.gate, UXAS, command)]
+        fresh = self.dialect.ours and vid in state.fresh
+        return (
+            []
+            if peer is None or modes.unknown(peer, fresh)
+            else [at_gate(self.name, vid, peer.gate, UXAS, command)]
+        )
 
     def _free(self, state: State, vid: int) -> State:
         """It is heard: what made the vehicle hold is over."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import NamedTuple
 
 import zmq
@@ -19,8 +20,9 @@ from cratous.bridge.redial import Redial
 from cratous.bridge.text_connection import REFUSED, Opened
 from cratous.bridge.text_port import Came, TextPort
 from cratous.bridge.text_protocol import Hello, Message, NotKnown, Skipped, WireError
+from cratous.services.icarous_program.epochs import EpochFile
 from cratous.services.icarous_program.step import Answer, IcarousEnd, Note, Refuse, State, Tell
-from cratous.spec.errors import CratousError
+from cratous.spec.errors import BadInput, CratousError
 
 _LONGEST_POLL_MS = 200  # so that a signal is seen
 
@@ -49,10 +51,15 @@ class Program:
         report: Report,
         patience: Patience = Patience(),
         clock: Callable[[], float] = time.monotonic,
+        epochs: EpochFile | None = None,
     ) -> None:
+        """epochs: keeps the gate over a restart; BadInput if it is none."""
         self._end, self._port, self._report = end, port, report
         self._patience, self._clock = patience, clock
-        self.state, self.stopping = State(), False
+        self.state, self.stopping, self._epochs = State(), False, epochs
+        if epochs is not None:
+            self.state = replace(self.state, gate=epochs.resumed())
+            epochs.keep(self.state.gate)
         self._tally = Tally(f"vehicle {end.craft.config.vehicle_id}", report)
         self._key: int | None = None
         self._open = False
@@ -109,7 +116,8 @@ class Program:
                 self._redial.opened(came.key, now_s)
                 self._report("INFO", f"connected to UxAS at {peer}")
                 self._say(Hello(self._end.craft.config.vehicle_id))
-                self.state, answers = self._end.connected(self.state)
+                state, answers = self._end.connected(self.state)
+                self._keep(state, self.state)
                 self._answer(answers)
             case LinkEvent() as event:
                 self._ended(came.key, event, now_s)
@@ -135,11 +143,21 @@ class Program:
 
     def _line(self, line: Message) -> None:
         try:
-            self.state, answers = self._end.handle(self.state, line)
+            state, answers = self._end.handle(self.state, line)
         except Exception as error:  # one line must not end the avoidance of the next ones
             self._tally.refuse("line that the step fails at", f"{line}: {error!r}")
             return
+        self._keep(state, self.state)
         self._answer(answers)
+
+    def _keep(self, state: State, before: State) -> None:
+        """The state from now on; a gate that is another one is kept before anybody hears of it."""
+        if self._epochs is not None and state.gate != before.gate:
+            try:
+                self._epochs.keep(state.gate)
+            except BadInput as error:  # a full disk does not end the avoidance
+                self._report("ERROR", f"the epoch is not kept over a restart: {error}")
+        self.state = state
 
     def _answer(self, answers: Iterable[Answer]) -> None:
         for answer in answers:

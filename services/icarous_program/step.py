@@ -4,7 +4,7 @@ Here the instance that `cratous run` flies knows nothing but what comes over the
 POSTN, traffic from OBJCT, the mission from WAYPT, GEOFN, WPRCH and COMND. What they say is believed, so
 their contents decide. Each POSTN that is a heartbeat later than the last is one heartbeat of the instance.
 The gate of the vehicle stands here: an offer is taken when UxAS tells the way on (START_MISSION after
-a whole plan, or a RESET_SFT with a position). A peer of another dialect than ours takes it without a
+a whole plan, or a RESET_SFT with a position). A WPREQ is answered at once (`routes`). A peer of another dialect than ours takes it without a
 word.
 """
 
@@ -18,17 +18,27 @@ from typing import NamedTuple
 from cratous.bridge.text_protocol import (
     Attitude,
     Dialect,
+    EpochTold,
     FenceDone,
     FenceVertex,
     Message,
     OwnPosition,
+    RouteRequest,
     SetMode,
     SoftReset,
     StartMission,
     Traffic,
 )
 from cratous.core.authority.cycle import gate_wished
-from cratous.core.authority.gate import UXAS, Gate, gate_accepts, gate_after
+from cratous.core.authority.gate import (
+    ICAROUS,
+    UXAS,
+    Gate,
+    epoch_given,
+    gate_accepts,
+    gate_after,
+    gate_offer,
+)
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import PIECE_S, Ability, Motion
 from cratous.core.avoidance.prediction import Intruder
@@ -45,6 +55,7 @@ from cratous.services.icarous_program.recovery import (
     of_zone,
     take,
 )
+from cratous.services.icarous_program.routes import Planner
 from cratous.spec.authority.cycle import OFFER, TAKE_OVER, WITHDRAW
 from cratous.spec.mission import Position, Velocity
 
@@ -57,6 +68,7 @@ SPEEDS = (0.5, 2.0)
 of this airframe."""
 UNTOUCHED = Gate(UXAS, 0, False)
 """UxAS commands, and has always done so."""
+OWNERS = {"UXAS": UXAS, "ICAROUS": ICAROUS}
 ACTS = {OFFER: "offers control back", WITHDRAW: "withdraws its offer", TAKE_OVER: "takes over"}
 
 
@@ -122,11 +134,24 @@ class State:
 Step = tuple[State, tuple[Answer, ...]]
 
 
+def resumed(gate: Gate) -> Gate:
+    """The gate with which an instance that was started anew goes on, of the last one of the former: nobody steers for
+    ICAROUS now, so what it had is offered back in a new epoch."""
+    return gate_offer(gate)
+
+
+def mode_of(gate: Gate) -> SetMode:
+    """What UxAS hears of a gate on a new connection."""
+    active = not gate_accepts(gate, UXAS, gate.epoch)
+    return SetMode("ACTIVE" if active else "PASSIVE", gate.epoch)
+
+
 class IcarousEnd:
     """The step of one vehicle."""
 
     def __init__(self, craft: Craft) -> None:
         self.craft, self._instance = craft, Instance(craft.config)
+        self._planner = Planner(craft.config.projection, craft.limits)
 
     def connected(self, state: State) -> Step:
         """A connection is open: what was seen on another one is forgotten, UxAS hears who commands.
@@ -135,8 +160,7 @@ class IcarousEnd:
         connection; epochs go on where they stand.
         """
         state = replace(state, seen={}, now_ms=None, lost={})
-        active = not gate_accepts(state.gate, UXAS, state.gate.epoch)
-        return state, (Tell(SetMode("ACTIVE" if active else "PASSIVE", state.gate.epoch)),)
+        return state, (Tell(mode_of(state.gate)),)
 
     def handle(self, state: State, line: Message) -> Step:
         """One line from UxAS."""
@@ -147,6 +171,10 @@ class IcarousEnd:
                 return self._traffic(state, line)
             case Attitude():
                 return state, ()
+            case RouteRequest():
+                return state, self._route(state, line)
+            case EpochTold():
+                return self._synchronised(state, line)
         if not self.craft.dialect.ours:
             return self._told(state, line)
         taken = take(state.lost, line)
@@ -158,6 +186,24 @@ class IcarousEnd:
             state, more = self._ask(state, taken.lost[taken.ask])
             answers += more
         return state, tuple(answers)
+
+    def _synchronised(self, state: State, line: EpochTold) -> Step:
+        """UxAS knows a greater epoch: this instance was started anew. It goes on from there, and what ICAROUS
+        had is offered back."""
+        if epoch_given(state.gate, line.epoch):
+            return state, ()
+        state = replace(state, gate=resumed(Gate(OWNERS[line.owner], line.epoch, False)))
+        text = (
+            f"epoch {line.epoch} was given before this start: going on in epoch {state.gate.epoch}"
+        )
+        return state, (Note("WARN", text), Tell(mode_of(state.gate)))
+
+    def _route(self, state: State, line: RouteRequest) -> tuple[Answer, ...]:
+        """The answer to a WPREQ: a way among the zones in force, or one without points."""
+        lines, why = self._planner.answer(line, state.instance.told.zones)
+        text = why or f"a way of {len(lines) - 2} points"
+        note = Note("WARN" if why else "INFO", f"UxAS asks for a route ({line.planner}): {text}")
+        return note, *map(Tell, lines)
 
     def _ask(self, state: State, part: Part) -> Step:
         """Ask for the missing lines of a plan or zone, or say that it was done often enough."""

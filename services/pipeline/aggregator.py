@@ -21,7 +21,7 @@ from cratous.core.contracts.checklists import (
     list_complete,
     owns,
 )
-from cratous.services.bus import Envelope
+from cratous.services.bus import Envelope, Send
 from cratous.services.pipeline.compositions import composition, is_choice
 from cratous.services.pipeline.contexts import UNIQUE, Contexts
 from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
@@ -92,8 +92,9 @@ class RouteAggregatorService:
     subscribes: tuple[str, ...] = (UNIQUE, OPTIONS, PLANS, ROUTES, *ENDINGS)
     knows = ("EntityConfiguration", "EntityState")
 
-    def __init__(self, contexts: Contexts) -> None:
-        self._contexts = contexts
+    def __init__(self, contexts: Contexts, group: str = "") -> None:
+        """group: of the planners that are asked for waypoints, none for all planners."""
+        self._contexts, self._group = contexts, group
 
     def start(self) -> Open:
         return Open(1, {}, ())
@@ -234,7 +235,10 @@ class RouteAggregatorService:
             for k, vehicle in enumerate(vehicles)
         ]
         routes = (*state.routes, (request, block))[-AT_ONCE:]
-        return state._replace(free=free_after(state.free, len(vehicles)), routes=routes), asked
+        state = state._replace(free=free_after(state.free, len(vehicles)), routes=routes)
+        if self._group and not request.IsCostOnlyRequest:
+            return state, [Send(one, self._group) for one in asked]
+        return state, asked
 
 
 def _from(state: Any) -> tuple[Any, float]:

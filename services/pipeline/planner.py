@@ -2,13 +2,14 @@
 
 Any vehicle that is known, any places, any operating region that is known. A route that was not
 found has the cost -1 and its reason in RouteError; every request is answered, to the service that
-has asked. Routes are those of
+has asked. An OwnRoutePlanner message says that another planner answers requests for waypoints; then this one
+answers those for costs alone. Routes are those of
 `services.planning`: each leg is held against the zones by proved kernels.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from math import atan2
 from typing import Any
 
@@ -17,67 +18,128 @@ from cratous.services.bus import Envelope, Send, unicast
 from cratous.services.pipeline.contexts import Contexts, reasons_of
 from cratous.services.pipeline.places import RequestPlaces, Way
 from cratous.services.planning.flyers import flyer_of
+from cratous.services.planning.options import flight_ms
 from cratous.spec.errors import CratousError
+from cratous.spec.mission import Position
 
 NAME = "RoutePlannerVisibilityService"
+OWN_PLANNER = "cratous.OwnRoutePlanner"
 
 
 class RoutePlannerVisibilityService:
-    """Routes for one vehicle at a time."""
+    """Routes for one vehicle at a time. Its state: whether it answers requests for waypoints too."""
 
     name = NAME
-    subscribes: tuple[str, ...] = ("uxas.messages.route.RoutePlanRequest", "AircraftPathPlanner")
+    subscribes: tuple[str, ...] = (
+        "uxas.messages.route.RoutePlanRequest",
+        "AircraftPathPlanner",
+        OWN_PLANNER,
+    )
     knows = ("EntityConfiguration", "EntityState", "KeepInZone", "KeepOutZone", "OperatingRegion")
 
-    def __init__(self, contexts: Contexts) -> None:
-        self._contexts = contexts
+    def __init__(self, contexts: Contexts, used: bool = True) -> None:
+        """used: until an OwnRoutePlanner says otherwise it answers more than requests for costs."""
+        self._contexts, self._used = contexts, used
 
-    def start(self) -> None:
-        return None
+    def start(self) -> bool:
+        return self._used
 
-    def handle(self, state: None, envelope: Envelope, now_ms: int) -> tuple[None, Iterable[Any]]:
+    def handle(self, used: bool, envelope: Envelope, now_ms: int) -> tuple[bool, Iterable[Any]]:
         body = envelope.body
-        try:
-            plans = self._plans(body)
-        except CratousError as error:
-            plans = [_refused(c.RouteID, reasons_of(error)) for c in body.RouteRequests]
-        answer = lmcp.new(
-            "RoutePlanResponse",
-            ResponseID=body.RequestID,
-            AssociatedTaskID=body.AssociatedTaskID,
-            VehicleID=body.VehicleID,
-            OperatingRegion=body.OperatingRegion,
-            RouteResponses=plans,
-        )
-        if not envelope.service_id:
-            return None, [answer]
-        # as the original has it: to the service that has asked
-        return None, [Send(answer, unicast(envelope.entity_id, envelope.service_id))]
+        if envelope.topic == OWN_PLANNER:
+            return body.Plans, ()
+        if not (used or body.IsCostOnlyRequest):
+            return used, ()
+        plans = plans_of(self._contexts, body, body.RouteRequests)
+        return used, [answered(envelope, plans)]
 
-    def _plans(self, request: Any) -> list[Any]:
-        places = self._contexts.for_routes(request.OperatingRegion, request.VehicleID)
-        mission, plans = places.mission, list[Any]()
-        cruise_m = mission.vehicle(request.VehicleID).position.alt_m
-        ways = [_way(places, constraint, cruise_m) for constraint in request.RouteRequests]
-        routes = places.routes_of(ways)
+
+def answered(asked: Envelope, plans: list[Any]) -> Any:
+    """The RoutePlanResponse to a request, for the service that has asked, as the original has it."""
+    body = asked.body
+    answer = lmcp.new(
+        "RoutePlanResponse",
+        ResponseID=body.RequestID,
+        AssociatedTaskID=body.AssociatedTaskID,
+        VehicleID=body.VehicleID,
+        OperatingRegion=body.OperatingRegion,
+        RouteResponses=plans,
+    )
+    if not asked.service_id:
+        return answer
+    return Send(answer, unicast(asked.entity_id, asked.service_id))
+
+
+def plans_of(contexts: Contexts, request: Any, constraints: Sequence[Any]) -> list[Any]:
+    """A RoutePlan for each of some RouteConstraints of a request; one without a route says why."""
+    try:
+        return _plans(contexts, request, constraints)
+    except CratousError as error:
+        return [_refused(c.RouteID, reasons_of(error)) for c in constraints]
+
+
+def _plans(contexts: Contexts, request: Any, constraints: Sequence[Any]) -> list[Any]:
+    places, ways = _ways(contexts, request, constraints)
+    routes, plans = places.routes_of(ways), list[Any]()
+    vehicle = [v.id for v in places.mission.vehicles].index(request.VehicleID)
+    if request.IsCostOnlyRequest:  # all at once, which is faster
+        routes.prepare(vehicle, [(k, k) for k in range(len(ways))])
+    for k, constraint in enumerate(constraints):
+        cost = routes.travel_ms(vehicle, k, k)
+        if cost is None:
+            reason = routes.route(vehicle, k, k).reason
+            plans.append(_refused(constraint.RouteID, (reason,)))
+            continue
+        plan = lmcp.new("RoutePlan", RouteID=constraint.RouteID, RouteCost=cost)
+        if not request.IsCostOnlyRequest:
+            path = routes.route(vehicle, k, k).points
+            plan.Waypoints = _waypoints(contexts, places, request.VehicleID, path)
+        plans.append(plan)
+    return plans
+
+
+def asked_way(contexts: Contexts, request: Any, constraint: Any) -> tuple[RequestPlaces, Way]:
+    """From where to where a constraint asks for a route, and the plane in which that is; BadInput if unknown."""
+    places, (way,) = _ways(contexts, request, (constraint,))
+    return places, way
+
+
+def led_over(
+    contexts: Contexts, request: Any, constraint: Any, given: Sequence[tuple[float, float, float]]
+) -> tuple[Any, str]:
+    """The RoutePlan that leads over places of somebody else's route (latitude, longitude [deg], altitude [m]),
+    its legs checked as those of any route; or None and why there is none."""
+    try:
+        places, way = asked_way(contexts, request, constraint)
+        mission = places.mission
         vehicle = [v.id for v in mission.vehicles].index(request.VehicleID)
-        if request.IsCostOnlyRequest:  # all at once, which is faster
-            routes.prepare(vehicle, [(k, k) for k in range(len(ways))])
-        for k, constraint in enumerate(request.RouteRequests):
-            cost = routes.travel_ms(vehicle, k, k)
-            if cost is None:
-                reason = routes.route(vehicle, k, k).reason
-                plans.append(_refused(constraint.RouteID, (reason,)))
-                continue
-            plan = lmcp.new("RoutePlan", RouteID=constraint.RouteID, RouteCost=cost)
-            if not request.IsCostOnlyRequest:
-                speed = mission.vehicle(request.VehicleID).speed_m_s
-                radius_m = flyer_of(mission.vehicle(request.VehicleID)).radius_m
-                path = routes.route(vehicle, k, k).points
-                points = places.spaced(path, radius_m, self._contexts.source.outside)
-                plan.Waypoints = places.waypoints(points, 1, speed, ())
-            plans.append(plan)
-        return plans
+        points = [Position(*places.projection.to_local(lat, lon), alt) for lat, lon, alt in given]
+        found = places.routes_of((way,)).over(vehicle, 0, 0, points)
+    except CratousError as error:
+        return None, "; ".join(reasons_of(error))
+    if not found.points:
+        return None, found.reason
+    speed = flyer_of(mission.vehicle(request.VehicleID)).speed_m_s
+    cost = flight_ms(found.length_m, speed)
+    waypoints = _waypoints(contexts, places, request.VehicleID, found.points)
+    plan = lmcp.new("RoutePlan", RouteID=constraint.RouteID, RouteCost=cost, Waypoints=waypoints)
+    return plan, ""
+
+
+def _ways(
+    contexts: Contexts, request: Any, constraints: Sequence[Any]
+) -> tuple[RequestPlaces, list[Way]]:
+    places = contexts.for_routes(request.OperatingRegion, request.VehicleID)
+    cruise_m = places.mission.vehicle(request.VehicleID).position.alt_m
+    return places, [_way(places, constraint, cruise_m) for constraint in constraints]
+
+
+def _waypoints(
+    contexts: Contexts, places: RequestPlaces, vehicle_id: int, path: Sequence[Position]
+) -> list[Any]:
+    vehicle = places.mission.vehicle(vehicle_id)
+    points = places.spaced(path, flyer_of(vehicle).radius_m, contexts.source.outside)
+    return places.waypoints(points, 1, vehicle.speed_m_s, ())
 
 
 def _way(places: RequestPlaces, constraint: Any, cruise_m: float) -> Way:

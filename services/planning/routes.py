@@ -13,8 +13,9 @@ from cratous.core.assignment.problem import START
 from cratous.core.routing.bulk import FOUND
 from cratous.core.routing.visibility import Roadmap, Route, route, routes
 from cratous.services.planning.options import Flyer, flight_ms, flyer_of
+from cratous.services.planning.vias import Flown, inner, joined
 from cratous.services.planning.zones import roadmaps
-from cratous.spec.mission import Mission, Zone
+from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.plan import Pose
 
 Ends = tuple[Pose, Flyer, Pose]
@@ -71,6 +72,23 @@ class Routes:
         if key not in self._found:
             self._found[key] = self._search(*key)
         return self._found[key]
+
+    def over(self, vehicle: int, before: int, to: int, points: Sequence[Position]) -> Route:
+        """The route over the places that somebody else has found, or none and why it is no route here.
+
+        They have to end where the route does and to keep between its altitudes; the climb is spread evenly.
+        Legs between them are put to the proved kernels as those of any route.
+        """
+        start, flyer, end = self._ends(vehicle, before, to)
+        vias, why = inner(start, end, points)
+        if why:
+            return Route((), 0.0, why)
+        found = Route((), 0.0, "no way over its places")
+        for roadmap in self._roadmaps(flyer.radius_m):
+            found = joined(start, end, vias, Flown(flyer.radius_m, _slope(flyer)), roadmap.zones)
+            if found.points:
+                break
+        return found
 
     def _roadmaps(self, radius_m: float) -> tuple[Roadmap, ...]:
         if radius_m not in self._maps:

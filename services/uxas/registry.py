@@ -13,6 +13,7 @@ from typing import Any
 from cratous.bridge.text_protocol.handshake import secret_of_environment
 from cratous.services.icarous_communication import service as icarous_communication
 from cratous.services.icarous_communication import settings as icarous_settings
+from cratous.services.icarous_communication.routes import GROUP, PLANNERS, Routes
 from cratous.services.loading.uxas_settings import Attr, Entry, choice, flag, number, whole
 from cratous.services.logs.message_logger import MessageLogger
 from cratous.services.pipeline import (
@@ -52,6 +53,7 @@ class Kind:
 
 
 VALIDATOR = "AutomationRequestValidatorService"
+ICAROUS = "IcarousCommunicationService"
 
 
 def contexts_of(host: Host) -> Contexts:
@@ -79,11 +81,24 @@ def _validator(host: Host, entry: Entry, v: dict[str, Any], name: str, number: i
 
 def _planner(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
     host.shared["separation_m"] = v["MinimumWaypointSeparation_m"]
-    return planner.RoutePlannerVisibilityService(contexts_of(host))
+    _by_icarous(host, entry, "UseThisPlanner", not v["UseThisPlanner"])
+    return planner.RoutePlannerVisibilityService(contexts_of(host), v["UseThisPlanner"])
+
+
+def _by_icarous(host: Host, entry: Entry, name: str, wanted: bool) -> None:
+    """Routes are left to ICAROUS: said where nobody in this process has them planned there."""
+    services = [attributes for kind, attributes, _ in host.shared["services"] if kind == ICAROUS]
+    if wanted and all(one.get("RoutePlannerUsed", "-1") == "-1" for one in services):
+        text = f"{ICAROUS} with a RoutePlannerUsed of 0 to 3 is not in this configuration"
+        host.log(
+            "WARN", f"{entry.where}: {entry.type}.{name}: routes are planned elsewhere: {text}"
+        )
 
 
 def _aggregator(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return aggregator.RouteAggregatorService(contexts_of(host))
+    _by_icarous(host, entry, "UseICAROUSRoutePlanner", v["UseICAROUSRoutePlanner"])
+    group = GROUP if v["UseICAROUSRoutePlanner"] else ""
+    return aggregator.RouteAggregatorService(contexts_of(host), group)
 
 
 def _assignment(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
@@ -201,9 +216,12 @@ def _response(host: Host, entry: Entry, v: dict[str, Any], name: str, number: in
 
 
 def _icarous(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    settings = icarous_settings.settings_of(entry, v)
+    given, routes = icarous_settings.settings_of(entry, v), None
+    if given.planner in range(len(PLANNERS)):
+        contexts = contexts_of(host)
+        routes = Routes(name, contexts, given.planner, given.answer_s, given.dialect)
     return icarous_communication.IcarousCommunicationService(
-        name, host.bus, host.log, settings, secret_of_environment()
+        name, host.bus, host.log, given, secret_of_environment(), routes
     )
 
 
@@ -229,6 +247,7 @@ KINDS: dict[str, Kind] = {
     "RoutePlannerVisibilityService": _pipeline_kind(
         _planner,
         {
+            "UseThisPlanner": flag(True),
             "TurnRadiusOffset_m": number(0.0),
             "MinimumWaypointSeparation_m": number(50.0),
             "isRoutAggregator": flag(False),
@@ -244,7 +263,9 @@ KINDS: dict[str, Kind] = {
         ),
     ),
     "RouteAggregatorService": _pipeline_kind(
-        _aggregator, {"FastPlan": flag(False)}, ignored={"FastPlan": _NOT_USED}
+        _aggregator,
+        {"FastPlan": flag(False), "UseICAROUSRoutePlanner": flag(False)},
+        ignored={"FastPlan": _NOT_USED},
     ),
     "AssignmentTreeBranchBoundService": _pipeline_kind(
         _assignment,

@@ -69,7 +69,8 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
     "IcarousCommunicationService": (
         icarous_communication.IcarousCommunicationService,
         ("MissionCommand", "VehicleActionCommand", "TaskPause", "TaskResume", "ServiceStatus",
-         "BridgeStatus", "Heartbeat", "GateState", "GatedCommand", "AuthorityChange", "ModeRefused"),
+         "OwnRoutePlanner", "RoutePlanResponse", "BridgeStatus", "Heartbeat", "GateState",
+         "GatedCommand", "AuthorityChange", "ModeRefused"),
     ),
     "DAIDALUS_WCV_Detection": (
         detection.DaidalusDetection,

@@ -12,7 +12,7 @@ from wire_messages import messages
 
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.text_protocol.dialects import LAYOUT_IN
-from cratous.bridge.text_protocol.layouts import LAYOUTS, Kind
+from cratous.bridge.text_protocol.layouts import LAYOUTS, OURS_ALONE, Kind
 from cratous.bridge.text_protocol.parser import OTHER_DIALECT
 from cratous.spec.errors import BadInput
 
@@ -41,6 +41,7 @@ THESIS_LINES = [
     (tp.SoftReset(45.306, -120.988001, 705.0),
      "COMNDtypeRESET_SFT,lat45.306,long-120.988001,alt705,\n"),
     (tp.HardReset(), "COMNDtypeRESET_HRD,\n"),
+    (tp.EpochTold("UXAS", 5), "EPOCHtype_UXAS_,epoch5,\n"),
     (tp.SetMode("ACTIVE"), "SETMOtype_ACTIVE_,\n"),
     (tp.SetVelocity(10.0, 20.0, 1.5), "SETVEnorth10,east20,down1.5,\n"),
     (tp.SetPosition(45.312, -120.955, 710.0), "SETPOlat45.312,long-120.955,alt710,\n"),
@@ -143,8 +144,8 @@ def as_written(message: tp.Message, dialect: tp.Dialect) -> tp.Message:
     changes: dict[str, Any] = {}
     for field in LAYOUT_IN[dialect][type(message)].fields:
         value = getattr(message, field.attribute)
-        if field.label == "epoch":
-            changes["epoch"] = None
+        if field.optional and field.label in OURS_ALONE:
+            changes[field.attribute] = None
         elif field.kind is Kind.DEGREES and value is not None:
             changes[field.attribute] = round(value, 6)
     return replace(message, **changes)

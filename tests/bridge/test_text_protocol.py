@@ -65,6 +65,7 @@ ORIGINAL_LINES = [
     (tp.RouteRequest("ASTAR", 45.3, -121.0, 700.0, 45.33, -120.95, 700.0, 90.0, 22.0, 0.0),
      "WPREQ,typeASTAR,slat45.300000,slong-121.000000,salt700.000000,elat45.330000,"
      "elong-120.950000,ealt700.000000,track90.000000,vh22.000000,vv0.000000,\n"),
+    (tp.EpochTold("ICAROUS", 5), "EPOCH,type_ICAROUS_,epoch5.0,\n"),
     (tp.SetMode("ACTIVE"), "SETMOD,type_ACTIVE_,\n"),
     (tp.SetMode("PASSIVE"), "SETMOD,type_PASSIVE_,\n"),
     (tp.SetVelocity(10.0, 20.0, 1.5), "SETVEL,north10.000000,east20.000000,down1.500000,\n"),
@@ -102,6 +103,15 @@ def test_our_dialect() -> None:
     assert b"lat45.123456789,long-0.000000001" in tp.encode(
         tp.SetPosition(45.123456789, -0.000000001, 0.0)
     )
+    asked = tp.RouteRequest("RRT", *(1.0,) * 9, request=7)
+    for message in (asked, tp.RouteStart(7), tp.RoutePoint(1.0, 1.0, 1.0, 1.0, 7), tp.RouteEnd(7)):
+        line = tp.encode(message).decode("ascii")
+        assert line.endswith("request7.0,\n")
+        for k in range(len(line)):
+            parser = tp.StreamParser(tp.direction_of(message))
+            assert [*parser.feed(line[:k].encode()), *parser.feed(line[k:].encode())] == [message]
+        plain = tp.encode(message, dialect=tp.Dialect.ORIGINAL).decode("ascii")
+        assert plain == line.replace(",request7.0", "").replace(".000000000", ".000000")
     # A fence of ten vertices, which the original's own way of writing breaks.
     assert b"vertIndex1.0," in tp.encode(tp.FenceVertex("KEEPIN", 12, 1, 1.0, 1.0, 0.0, 1.0, 1))
 

@@ -27,6 +27,8 @@ def test_the_commands_at_its_gate_tell_the_story_of_authority(
     """A takeover with its handback is judged as one; a mission that comes meanwhile is a second commander."""
     rig = Rig(tmp_path, 'NumberOfUAVs="1"', opened)
     one = rig.fake(hello=1)
+    one.say(tp.SetMode("PASSIVE", 0))
+    rig.until(lambda: rig.process.bus.state(SERVICE).fresh == frozenset())
     rig.tell(state(1), way((0.0, 0.0), (900.0, 0.0)), state(1, 1.0, 1500))
     one.say(tp.SetMode("ACTIVE", 1), tp.SetVelocity(0.0, 20.0, 0.0))
     rig.until(lambda: rig.got("VehicleActionCommand"))
@@ -58,7 +60,10 @@ def test_what_a_vehicle_flies_when_its_instance_comes_comes_to_its_gate(
     told = way((0.0, 0.0), (900.0, 0.0))
     rig.tell(state(1), told)
     assert not rig.got("GatedCommand")
-    rig.fake(hello=1)
+    one = rig.fake(hello=1)
+    rig.tell(told)
+    assert not rig.got("GatedCommand"), "told in an epoch that is not known yet"
+    one.say(tp.SetMode("PASSIVE", 0))
     rig.until(lambda: rig.got("GatedCommand"))
     (come,) = rig.got("GatedCommand")
     assert (come.Sender.name, come.Epoch, come.Command) == ("UxAS", 0, told)

@@ -304,7 +304,7 @@ def test_what_is_not_authenticated_stays_on_this_machine_unless_asked_for(
 @pytest.mark.shows(SERVICE, "RoutePlannerUsed", "Connect")
 def test_what_cannot_be_honoured_is_refused(tmp_path: Path, opened: list[Any]) -> None:
     for attributes, what in (
-        ('NumberOfUAVs="1" RoutePlannerUsed="1"', "ICAROUS plans no routes for UxAS here"),
+        ('NumberOfUAVs="1" RoutePlannerUsed="4"', "from -1 to 3"),
         ('NumberOfUAVs="1" Connect="tcp://127.0.0.1:5600"', "Connect with what it excludes"),
         ("", "NumberOfUAVs"),
         ('NumberOfUAVs="2" VehicleIDs="3"', "2 different ids above 0"),

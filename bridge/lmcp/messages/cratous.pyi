@@ -355,3 +355,17 @@ class ModeRefused(LmcpObject):
         GateEpoch: int = ...,
         Reason: str = ...,
     ) -> None: ...
+
+class OwnRoutePlanner(LmcpObject):
+    """cratous.OwnRoutePlanner: CRATOUS type 15."""
+
+    Plans: bool
+    """bool, default false."""
+    Reason: str
+    """string, default ''."""
+    def __init__(
+        self,
+        *,
+        Plans: bool = ...,
+        Reason: str = ...,
+    ) -> None: ...

@@ -1,0 +1,120 @@
+"""Routes that UxAS asks an instance for: WPREQ, answered by RPRSP with the corners of a way around the zones.
+
+All planners search the shortest flyable chain of via points whose every leg the proved kernels let pass
+(`core.routing`); they differ in the via points. ASTAR has the corners of rings around the zones, GRID the points of
+a grid over the places and zones, RRT samples of that area drawn at random (the same ones each time), and SPLINE is ASTAR
+answered by points of the curve instead of its corners. UxAS trusts none of them: it holds the answer
+against its own zones.
+"""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from cratous.bridge.text_protocol import Message, RouteEnd, RoutePoint, RouteRequest, RouteStart
+from cratous.core.routing.bulk import FOUND
+from cratous.core.routing.visibility import Roadmap, route, routes, why_not
+from cratous.core.routing.wind import holds_in_wind
+from cratous.services.flight.dynamics import Limits, turn_radius_m
+from cratous.services.icarous.foresight import TURN_MARGIN
+from cratous.services.mission.frames import Projection
+from cratous.services.planning.spacing import TOLERANCE, spaced
+from cratous.services.planning.zones import roadmaps
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Position, Zone
+from cratous.spec.mission.plan import Pose
+
+SIDE = 8
+"""Points on each side of the grid."""
+SAMPLES = SIDE * SIDE
+AROUND = 4.0
+"""Grid and samples reach beyond places and zones by this many turn radii."""
+MOST_POINTS = 256
+"""UxAS takes no longer answer."""
+
+
+class Planner(NamedTuple):
+    """Of one vehicle: the plane, and what its airframe can do."""
+
+    projection: Projection
+    limits: Limits
+
+    def answer(self, asked: RouteRequest, zones: tuple[Zone, ...]) -> tuple[list[Message], str]:
+        """The lines of the answer, and why it has no points, if it has none."""
+        try:
+            points, why = self._plan(asked, zones)
+        except BadInput as error:
+            points, why = (), str(error)
+        number, between = asked.request, list[Message]()
+        for p in points:
+            lat, lon = self.projection.to_geodetic(p.north_m, p.east_m)
+            between.append(RoutePoint(lat, lon, p.alt_m, asked.horizontal_mps, number))
+        return [RouteStart(number), *between, RouteEnd(number)], why
+
+    def _plan(self, asked: RouteRequest, zones: tuple[Zone, ...]) -> tuple[Sequence[Position], str]:
+        speed = asked.horizontal_mps
+        low, high = self.limits.min_speed_m_s, self.limits.max_speed_m_s
+        if not holds_in_wind(max(speed, 0.0), 0.0, 0.0, low, high):
+            return (), f"speed that this airframe cannot fly: expected {low:g} to {high:g} m/s"
+        north, east = self.projection.to_local(asked.start_lat_deg, asked.start_long_deg)
+        start = Pose(north, east, asked.start_alt_m, math.radians(asked.track_deg))
+        north, east = self.projection.to_local(asked.end_lat_deg, asked.end_long_deg)
+        straight = math.atan2(east - start.east_m, north - start.north_m)
+        end = Pose(north, east, asked.end_alt_m, straight)
+        radius = TURN_MARGIN * turn_radius_m(speed, self.limits.max_bank_rad)
+        slope, why = self.limits.max_climb_m_s / speed, ""
+        for roadmap in roadmaps(zones, radius):
+            vias = _vias(asked.planner, roadmap, (start, end), AROUND * radius)
+            points, why = _searched(asked.planner, start, end, radius, slope, vias)
+            if points:
+                return points, ""
+        return (), why
+
+
+def _searched(
+    kind: str, start: Pose, end: Pose, radius_m: float, slope: float, roadmap: Roadmap
+) -> tuple[Sequence[Position], str]:
+    """Corners of the way (SPLINE: points of it) with both ends, or none and why."""
+    if kind == "SPLINE":
+        found = route(start, end, radius_m, roadmap, slope)
+        off_m = TOLERANCE * radius_m
+        points = spaced(found.points, radius_m, off_m, roadmap.zones) if found.points else ()
+        why = found.reason
+    else:
+        ways = routes(
+            np.array([start], float), np.array([end], float), radius_m, roadmap, slope, ways=True
+        )
+        links = int(ways.links[0])
+        if ways.codes[0] != FOUND:
+            return (), why_not(int(ways.codes[0]), roadmap.zones[links])
+        points, why = tuple(Position(*p[:3]) for p in ways.poses[0][: links + 1].tolist()), ""
+    if len(points) > MOST_POINTS:
+        return (), f"its way has {len(points)} points, more than {MOST_POINTS}"
+    return points, why
+
+
+def _vias(kind: str, roadmap: Roadmap, ends: tuple[Pose, Pose], around_m: float) -> Roadmap:
+    """The same zones with the via points of a planner."""
+    if kind not in ("GRID", "RRT"):
+        return roadmap
+    places = [(p.north_m, p.east_m) for p in ends]
+    places += [corner for zone in roadmap.zones for corner in zone.vertices]
+    low = [min(p[k] for p in places) - around_m for k in (0, 1)]
+    high = [max(p[k] for p in places) + around_m for k in (0, 1)]
+    made = _grid(low, high) if kind == "GRID" else _samples(low, high)
+    return Roadmap(roadmap.zones, (tuple(made),))
+
+
+def _grid(low: list[float], high: list[float]) -> Iterator[tuple[float, float]]:
+    step = [(high[k] - low[k]) / (SIDE - 1) for k in (0, 1)]
+    return ((low[0] + i * step[0], low[1] + j * step[1]) for i in range(SIDE) for j in range(SIDE))
+
+
+def _samples(low: list[float], high: list[float]) -> Iterator[tuple[float, float]]:
+    draw = random.Random(SAMPLES)  # the same answer to the same question
+    return ((draw.uniform(low[0], high[0]), draw.uniform(low[1], high[1])) for _ in range(SAMPLES))
