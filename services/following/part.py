@@ -97,7 +97,7 @@ def _in_the_way(part: Part, here: Pose, goal: Station) -> str:
 def circling(part: Part, task: int, number: int, asked: Asked, motion: Motion) -> Any:
     """The VehicleActionCommand that keeps a vehicle on its circle, and its camera on the entity."""
     assert part.held is not None
-    places, flyer = part.context.places, part.option.flyer
+    flyer = part.option.flyer
     actions = [loiter(part, task)]
     camera = camera_of(asked, flyer)
     if camera is not None:
@@ -107,7 +107,7 @@ def circling(part: Part, task: int, number: int, asked: Asked, motion: Motion) -
                 "GimbalStareAction",
                 AssociatedTaskList=[task],
                 PayloadID=camera.payload_id,
-                Starepoint=places.location(ground),
+                Starepoint=_location(part.context, ground),
             )
         )
     return lmcp.new(
@@ -130,8 +130,14 @@ def loiter(part: Part, task: int) -> Any:
         Direction="Clockwise",
         Duration=-1,
         Airspeed=flyer.speed_m_s,
-        Location=part.context.places.location(middle),
+        Location=_location(part.context, middle),
     )
+
+
+def _location(context: Context, at: Position) -> Any:
+    """A place as a Location3D; it is not remembered, as there are many of them."""
+    lat, lon = context.places.projection.to_geodetic(at.north_m, at.east_m)
+    return lmcp.new("Location3D", Latitude=lat, Longitude=lon, Altitude=at.alt_m)
 
 
 def released(part: Part, task: int, number: int, points: Mapping[int, Position]) -> tuple[Any, str]:
