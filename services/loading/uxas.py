@@ -145,7 +145,7 @@ class _Cast:
             if kind == "AirVehicleConfiguration":
                 self.configurations[body.ID] = sent
             elif kind == "AirVehicleState":
-                self.states[body.ID] = sent
+                self.states[body.ID] = self.interests.entities[body.ID] = sent
             elif kind in ("KeepInZone", "KeepOutZone"):
                 self.zones[body.ZoneID] = sent
             elif self.interests.add(sent):
@@ -259,7 +259,7 @@ def _tasks(
                 got=str(number),
             )
         sources[f"tasks[{k}]"] = cast.tasks[number].where
-        task = other(cast.tasks[number]) if number in cast.spoken_for else None
+        task = other(cast.tasks[number], cast.interests) if number in cast.spoken_for else None
         if task is None:
             task = read_task(cast.tasks[number], places, vehicles, notes, cast.interests)
         found.append(_eligible(task, cast, vehicles, f"tasks[{k}].eligible", notes))

@@ -88,10 +88,10 @@ class _Reading:
         return known[number].body
 
 
-def other(sent: Sent) -> Task | None:
+def other(sent: Sent, interests: Interests) -> Task | None:
     """A task of a kind that is not covered, for which a service of its own speaks; None for one that is."""
     body = sent.body
-    if type(body).__name__ in READERS:
+    if type(body).__name__ in READERS and not _watches_what_moves(body, interests):
         return None
     return Task(
         id=body.TaskID,
@@ -101,6 +101,17 @@ def other(sent: Sent) -> Task | None:
         eligible=tuple(body.EligibleEntities),
         priority=body.Priority,
     )
+
+
+def _watches_what_moves(body: Any, interests: Interests) -> bool:
+    """Whether it is a watch of what moves, which its service follows."""
+    sent = interests.entities.get(getattr(body, "WatchedEntityID", 0))
+    return sent is not None and type(body).__name__ == "WatchTask" and _speed(sent.body) != 0
+
+
+def _speed(state: Any) -> float:
+    """How fast an entity is, by whatever its state says of that [m/s]."""
+    return float(max(abs(state.Groundspeed), abs(state.u), abs(state.v), abs(state.w)))
 
 
 def task(
@@ -329,13 +340,13 @@ def _pattern(reading: _Reading) -> dict[str, Any]:
 
 
 def _watch(reading: _Reading) -> dict[str, Any]:
-    """An entity that stands still is watched where it stands; one that moves is not covered."""
+    """An entity that stands still is watched where it stands; one that moves its service follows."""
     number = reading.body.WatchedEntityID
     state = reading.named(reading.interests.entities, number, "WatchedEntityID", "entity")
-    speed = max(abs(state.Groundspeed), abs(state.u), abs(state.v), abs(state.w))
+    speed = _speed(state)
     if not speed == 0:
         raise reading.refused(
-            f"{reading.name} watches entity {number}, which moves; that is not covered",
+            f"{reading.name} watches entity {number}, which moves; `cratous uxas` alone follows it",
             "WatchedEntityID",
             "an entity whose state says that it stands still",
             f"{speed:g} m/s",

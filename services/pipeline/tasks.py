@@ -10,7 +10,7 @@ What is asked before options are offered: `questions`. Options and ways are thos
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
@@ -123,12 +123,16 @@ class TaskService:
     )
 
     def __init__(
-        self, contexts: Contexts, task_id: int, kind: TaskKind, ended: Callable[[], None] = nothing
+        self,
+        contexts: Contexts,
+        task_id: int,
+        kind: TaskKind | str,
+        ended: Callable[[], None] = nothing,
     ) -> None:
-        """ended: called when the task is removed."""
+        """kind: of the mission's tasks, or the name of the service; ended: called when the task is removed."""
         self._contexts, self._task_id, self._when_ended = contexts, task_id, ended
         self._request = 0
-        self.name = f"{NAMES[kind]}[{task_id}]"
+        self.name = f"{NAMES[kind] if isinstance(kind, TaskKind) else kind}[{task_id}]"
 
     @property
     def _context(self) -> Context:
@@ -274,9 +278,7 @@ class TaskService:
                 status(self._request, "Warning", [("reason", text)])
                 for text in state.asked.reasons(self._task_id)
             ]
-            context = self._context
-            out.append(offer(context, self._task_id, self._left(state, context)))
-            context.offered.add(self._task_id)
+            out.append(self._offer(self._context, self._left(state, self._context)))
         elif act == ASK_FINAL:
             out.append(way_asked(self._context, self._option(body), body, _route_id(body)))
             return state._replace(chosen=body, vehicle=body.VehicleID), 0
@@ -321,12 +323,21 @@ class TaskService:
 
     def _left(self, state: State, context: Context) -> list[Option]:
         """The options that are offered."""
-        return state.asked.left(context.inputs.options_of(self._task_in(context).id))
+        return state.asked.left(self._options(context))
+
+    def _options(self, context: Context) -> Sequence[Option]:
+        """All ways to fly the task."""
+        return context.inputs.options_of(self._task_in(context).id)
+
+    def _offer(self, context: Context, options: list[Option]) -> Any:
+        """The TaskPlanOptions."""
+        context.offered.add(self._task_id)
+        return offer(context, self._task_id, options)
 
     def _option(self, request: Any) -> Option:
         """The option that an implementation request names."""
-        inputs = self._context.inputs
-        mine = inputs.options_of(self._task_id) if self._task_id in inputs.wanted else ()
+        context = self._context
+        mine = self._options(context) if self._task_id in context.inputs.wanted else ()
         for option in mine:
             if option.option_id == request.OptionID:
                 return option

@@ -23,6 +23,7 @@ from cratous.core.contracts.requests import Line, line_step
 from cratous.services.bus import Envelope, Wake
 from cratous.services.pipeline.answers import Asked, answer, asked_of, refusal
 from cratous.services.pipeline.contexts import Context, Contexts
+from cratous.services.pipeline.followed import FOLLOWED
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import TASKS
 from cratous.services.pipeline.unserved import Unserved
@@ -110,7 +111,7 @@ class AutomationRequestValidatorService:
         elif hasattr(body, "TaskID"):  # another task of this id, which has to initialise itself
             state = state._replace(initialised=state.initialised - {body.TaskID})
             unserved = state.unserved.without([body.TaskID])
-            if topic not in TASKS and self._contexts.source.asks(MANAGER):
+            if topic not in (*TASKS, *FOLLOWED) and self._contexts.source.asks(MANAGER):
                 unserved, wake = unserved.arrived((body.TaskID, envelope.seq), topic)
                 out.append(wake)
             state = state._replace(unserved=unserved)

@@ -151,7 +151,7 @@ def _options(
     camera = camera_for(task, flyer.cameras)
     if camera is not None:
         camera = zoomed(camera, task, flyer.alt_m - terrain_m)
-    reason = _unfit(task, flyer, camera, terrain_m)
+    reason = unfit(task, flyer, camera, terrain_m)
     if reason:
         yield Dropped(task.id, able, "", reason)
         return
@@ -190,7 +190,7 @@ def parts_of(
         camera = camera_for(task, flyer.cameras)
         if camera is not None:
             camera = zoomed(camera, task, flyer.alt_m - terrain_m)
-        if _unfit(task, flyer, camera, terrain_m):
+        if unfit(task, flyer, camera, terrain_m):
             continue
         maps = roadmaps(zones, flyer.radius_m)
         ways = (
@@ -229,7 +229,7 @@ def _part(task: Task, way: Way, flyer: Flyer, zones: Sequence[Zone]) -> InPart |
     return InPart(task.id, way.coverage, outside, ids, names)
 
 
-def _unfit(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float) -> str:
+def unfit(task: Task, flyer: Flyer, camera: Camera | None, terrain_m: float) -> str:
     """Why a class of vehicles cannot do a search at all, or nothing."""
     if task.kind not in SEARCHES:
         return ""

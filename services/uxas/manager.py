@@ -16,6 +16,7 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus, Envelope
+from cratous.services.following.service import FollowingTaskService
 from cratous.services.loading.problems import refuse
 from cratous.services.loading.uxas_settings import (
     Attr,
@@ -25,6 +26,7 @@ from cratous.services.loading.uxas_settings import (
     nearest,
     values_of,
 )
+from cratous.services.pipeline.followed import FOLLOWED, WATCH, WATCH_SERVICE
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import TASKS, TaskService
 from cratous.services.pipeline.world import World
@@ -209,7 +211,7 @@ class ServiceManager:
             raise BadInput(
                 "the id is taken", where=where, item="ServiceID", got=self._names[number]
             )
-        if item.type in TASKS:
+        if item.type in TASKS or item.type in FOLLOWED:
             world = registry.source_of(self._host).world
             if task is None:
                 raise BadInput(
@@ -222,9 +224,7 @@ class ServiceManager:
                 for part in getattr(body, field):
                     if not world.knows(part):
                         world.add(part, where)
-            contexts, kind = registry.contexts_of(self._host), TASKS[item.type]
-            ended = partial(_forget, world, task)
-            self._add(TaskService(contexts, task.TaskID, kind, ended), number)
+            self._add(self._task_service(item.type, task, partial(_forget, world, task)), number)
             return []
         if item.type in not_covered.TASKS and task is not None:
             # no error: another's service may do it, and a request says if nobody does
@@ -237,6 +237,13 @@ class ServiceManager:
         refuse(problems)
         self._make(item, number)
         return []
+
+    def _task_service(self, kind: str, task: Any, ended: Callable[[], None]) -> TaskService:
+        contexts = registry.contexts_of(self._host)
+        if kind == WATCH or kind in FOLLOWED:
+            name = FOLLOWED.get(kind, WATCH_SERVICE)
+            return FollowingTaskService(contexts, task, name, ended)
+        return TaskService(contexts, task.TaskID, TASKS[kind], ended)
 
 
 def _forget(world: World, task: Any) -> None:
@@ -342,7 +349,7 @@ def _whole(text: str) -> bool:
 
 def _nobody_has(kind: str) -> bool:
     """True for a service of UxAS that is not covered, and for a name that resembles no known one."""
-    known = [*registry.KINDS, *TASKS, *bridge_kinds.BRIDGES]
+    known = [*registry.KINDS, *TASKS, *FOLLOWED, *bridge_kinds.BRIDGES]
     slip = get_close_matches(kind, known, 1, SLIP) or ":" in kind
     return user_services.kind_of(kind) is None and (kind in not_covered.SERVICES or not slip)
 
@@ -353,7 +360,7 @@ def _unknown(item: Entry, known: Any) -> BadInput:
             f"tasks of type {item.type} are not covered yet",
             where=item.where,
             item=f"{item.kind}.Type",
-            expected=", ".join(TASKS),
+            expected=", ".join((*TASKS, *FOLLOWED)),
             got=item.type,
         )
     if item.type in not_covered.SERVICES:  # and not in KINDS

@@ -11,11 +11,8 @@ SERVICES = (
 """Services of UxAS that we do not have; a configuration that names one is warned, or refused if strict."""
 
 TASKS = (
-    "afrl.impact.BlockadeTask",
     "afrl.impact.CommRelayTask",
     "afrl.impact.CordonTask",
-    "afrl.impact.EscortTask",
-    "afrl.impact.MultiVehicleWatchTask",
     "uxas.messages.task.AssignmentCoordinatorTask",
     "uxas.messages.task.RendezvousTask",
 )

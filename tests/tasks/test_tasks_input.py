@@ -149,6 +149,7 @@ for _kind, _fields in (
     ("PointOfInterest", {"PointID": 5, "Location": place(45.01)}),
     ("LineOfInterest", {"LineID": 6, "Line": [place(), place(45.02)]}),
     ("AreaOfInterest", {"AreaID": 7, "Area": square_shape()}),
+    ("GroundVehicleState", {"ID": 8, "Location": place(), "Groundspeed": 3.0}),
 ):
     INTERESTS.add(Sent(lmcp.new(_kind, **_fields), "interest.xml", 0))
 
@@ -204,6 +205,7 @@ def hover(**more: Any) -> Any:
         ("LoiterTask", {"DesiredAction": hover(Duration=-1)}, "Duration", "-1"),
         ("LoiterTask", {"DesiredAction": hover(Radius=-5.0)}, "Radius", "-5"),
         ("WatchTask", {"WatchedEntityID": 4}, "WatchedEntityID", "4"),
+        ("WatchTask", {"WatchedEntityID": 8}, "WatchedEntityID", "3 m/s"),
         ("EscortTask", {"SupportedEntityID": 4}, "task 1", "EscortTask"),
     ],
 )

@@ -1,0 +1,134 @@
+"""The options of a task that keeps to an entity: one for each vehicle and slot, and how they go together.
+
+Each option flies to the circle about the place where its vehicle meets the entity. A task of several vehicles is
+a choice of all ways to give each slot a vehicle of its own.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import permutations
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.kernel import Vec2
+from cratous.core.routing.loiter_discs import broken_by
+from cratous.core.routing.visibility import name_of
+from cratous.core.tasks.stations import outruns
+from cratous.services.following.asked import Asked
+from cratous.services.following.motion import Motion
+from cratous.services.following.stations import camera_of, station
+from cratous.services.pipeline.contexts import Context
+from cratous.services.pipeline.implementation import offer
+from cratous.services.planning.flyers import MOMENT_MS, Flyer, flyer_of, straight
+from cratous.services.planning.options import Dropped, Option, hold_rooms, unfit
+from cratous.spec.mission import Position, Task
+from cratous.spec.mission.plan import Pose
+
+WAYS_MOST = 336
+"""More ways to give vehicles to slots (three of eight) are not offered."""
+
+
+def options_of(
+    context: Context, task: Task, asked: Asked, motion: Motion
+) -> tuple[list[Option], list[Dropped]]:
+    """The options of a task, slots in the order of their numbers, and what is not offered, with the reason."""
+    mission, made, dropped = context.inputs.mission, list[Option](), list[Dropped]()
+    able = [v for v in mission.vehicles if not task.eligible or v.id in task.eligible]
+    if math.perm(len(able), asked.needed) > WAYS_MOST:
+        text = (
+            f"{len(able)} vehicles may be {asked.needed} at a time in more than {WAYS_MOST} ways: "
+            "name fewer as EligibleEntities"
+        )
+        return [], [Dropped(task.id, tuple(v.id for v in able), "", text)]
+    for slot in range(asked.needed):
+        for k, vehicle in enumerate(able):
+            number = slot * len(able) + k + 1
+            flyer = flyer_of(vehicle)
+            start = context.inputs.starts[vehicle.id]
+            found = _option(context, task, asked, motion, slot, flyer, start)
+            if isinstance(found, Option):
+                made.append(_named(found, number, vehicle.id))
+            elif slot == 0 or "region" in found.label:
+                dropped.append(found._replace(vehicles=(vehicle.id,)))
+    return made, dropped
+
+
+def _named(option: Option, number: int, vehicle: int) -> Option:
+    from dataclasses import replace
+
+    return replace(option, option_id=number, vehicles=(vehicle,))
+
+
+def _option(
+    context: Context, task: Task, asked: Asked, motion: Motion, slot: int, flyer: Flyer, start: Pose
+) -> Option | Dropped:
+    terrain_m, zones = context.inputs.mission.frame.terrain_m, context.inputs.zones
+    reason = ""
+    if asked.looks is not None:
+        camera = camera_of(asked, flyer)
+        reason = unfit(asked.looks, flyer, camera, terrain_m)
+        if camera is None and asked.watches:
+            reason = reason or "it has no camera, and what it watches is seen by one alone"
+    if not reason and not outruns(motion.velocity, flyer.speed_m_s):
+        speed = math.hypot(*motion.velocity)
+        reason = (
+            f"entity {asked.entity} moves at {speed:.1f} m/s, and it flies {flyer.speed_m_s:g} m/s"
+        )
+    if reason:
+        return Dropped(task.id, (), "", reason)
+    here = Vec2(start.north_m, start.east_m)
+    at, _ = motion.met_from(here, flyer.speed_m_s)
+    goal = station(asked, slot, flyer, motion._replace(at=at), terrain_m)
+    heading = math.atan2(goal.at.y - here.y, goal.at.x - here.x)
+    bad = broken_by(Position(*goal.at, flyer.alt_m), goal.radius_m, zones)
+    # it comes to the rim of its circle, and makes for the middle
+    rim = Pose(
+        goal.at.x - goal.radius_m * math.cos(heading),
+        goal.at.y - goal.radius_m * math.sin(heading),
+        flyer.alt_m,
+        heading,
+    )
+    label = f"slot {slot + 1}"
+    way = straight(label, rim, MOMENT_MS, flyer.speed_m_s)
+    leg = first_bad_leg(way.points, zones)
+    if bad is not None or leg is not None:
+        zone = bad if bad is not None else leg[1] if leg is not None else None
+        assert zone is not None
+        text = f"its circle about entity {asked.entity} breaks {name_of(zone)}"
+        return Dropped(task.id, (), f"region, {label}", text)
+    rooms = hold_rooms(way.start, flyer.radius_m, zones)
+    lasts = max(asked.least_ms, MOMENT_MS)
+    return Option(task.id, 0, (), flyer, way.start, way.end, way.points, lasts, rooms, label)
+
+
+def slot_of(option: Option) -> int:
+    """Which slot an option is for, from 0."""
+    return int(option.label.removeprefix("slot ")) - 1
+
+
+def offered(context: Context, task_id: int, options: Sequence[Option], needed: int) -> Any:
+    """TaskPlanOptions; without options where too few vehicles are left for all slots."""
+    if needed == 1:
+        return offer(context, task_id, options)
+    by_slot = {(slot_of(o), o.vehicles[0]): o.option_id for o in options}
+    vehicles = sorted({vehicle for _, vehicle in by_slot})
+    ways = [
+        [by_slot[slot, vehicle] for slot, vehicle in enumerate(chosen)]
+        for chosen in permutations(vehicles, needed)
+        if all((slot, vehicle) in by_slot for slot, vehicle in enumerate(chosen))
+    ]
+    used = {number for way in ways for number in way}
+    made = offer(context, task_id, [o for o in options if o.option_id in used])
+    if not ways:
+        return made
+    terms = ["|(" + " ".join(f"p{number}" for number in way) + ")" for way in ways]
+    return lmcp.new(
+        "TaskPlanOptions",
+        CorrespondingAutomationRequestID=made.CorrespondingAutomationRequestID,
+        TaskID=made.TaskID,
+        Composition=terms[0] if len(terms) == 1 else f"+({' '.join(terms)})",
+        Options=made.Options,
+    )

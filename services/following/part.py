@@ -1,0 +1,162 @@
+"""One vehicle's part in a task that keeps to an entity: what it is told, and what becomes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.kernel import Vec2
+from cratous.core.routing.loiter_discs import broken_by
+from cratous.core.routing.visibility import name_of
+from cratous.services.following.asked import Asked
+from cratous.services.following.motion import Motion
+from cratous.services.following.offering import slot_of
+from cratous.services.following.stations import Station, at_station, camera_of, station
+from cratous.services.loading.places import Places
+from cratous.services.pipeline.contexts import Context
+from cratous.services.pipeline.tasks import State
+from cratous.services.planning.options import Option
+from cratous.spec.mission import Position
+from cratous.spec.mission.plan import Pose
+
+COMMANDS_FROM = 2**40
+"""CommandIDs of these tasks: beyond those of plans."""
+
+
+class Part(NamedTuple):
+    """state: of the task's life for this vehicle; option: that it flies, in the context of its request.
+
+    begins: number of the waypoint from which on it follows; then: the one that it goes on to; held: the circle it
+    was told last; seen_ms: when it was heard last; there: whether it then did what is asked; blocked: the
+    zone that keeps it from its circle, which was told.
+    """
+
+    state: State
+    option: Option
+    context: Context
+    begins: int
+    then: int
+    held: Station | None = None
+    seen_ms: int = 0
+    there: bool = False
+    blocked: str = ""
+
+    @property
+    def vehicle(self) -> int:
+        """Its id."""
+        return self.state.vehicle
+
+
+def command_id(task: int, ticket: int) -> int:
+    """The CommandID by which a vehicle's state shows that it does what this task tells it."""
+    return COMMANDS_FROM + task % 2**20 * 2**10 + ticket % 2**10
+
+
+def follows(part: Part, body: Any, number: int) -> bool:
+    """Whether a state is of a vehicle that circles as this task has told it."""
+    return bool(
+        part.held is not None and body.CurrentCommand == number and body.Mode.name == "Loiter"
+    )
+
+
+def heard(part: Part, body: Any, asked: Asked, motion: Motion, fresh: bool, now_ms: int) -> Part:
+    """With a state of the vehicle: where it is to circle now, and whether it does what is asked.
+
+    motion: of the entity at that time; not fresh: nobody knows where that is, so nobody is there.
+    """
+    context, flyer, slot = part.context, part.option.flyer, slot_of(part.option)
+    frame = context.inputs.mission.frame
+    here = context.places.pose(
+        body.Location, body.Heading, f"state of vehicle {body.ID}", "Location"
+    )
+    at, camera = Vec2(here.north_m, here.east_m), camera_of(asked, flyer)
+    now = station(asked, slot, flyer, motion, frame.terrain_m)
+    places = Places(frame)
+    there = fresh and at_station(asked, slot, body, at, now, motion, places, camera)
+    # it takes about as long as a turn takes until it is there
+    led = motion._replace(at=motion.after(flyer.radius_m / flyer.speed_m_s))
+    goal = station(asked, slot, flyer, led, frame.terrain_m)
+    zone = _in_the_way(part, here, goal)
+    if zone:
+        return part._replace(there=there, seen_ms=now_ms, blocked=zone)
+    return part._replace(there=there, seen_ms=now_ms, held=goal, blocked="")
+
+
+def _in_the_way(part: Part, here: Pose, goal: Station) -> str:
+    """The zone that a circle, or the straight way to its middle, breaks; nothing if none."""
+    zones, middle = part.context.inputs.zones, Position(*goal.at, part.option.flyer.alt_m)
+    zone = broken_by(middle, goal.radius_m, zones)
+    if zone is None:
+        leg = first_bad_leg((Position(*here[:3]), middle), zones)
+        zone = None if leg is None else leg[1]
+    return "" if zone is None else name_of(zone)
+
+
+def circling(part: Part, task: int, number: int, asked: Asked, motion: Motion) -> Any:
+    """The VehicleActionCommand that keeps a vehicle on its circle, and its camera on the entity."""
+    assert part.held is not None
+    flyer = part.option.flyer
+    actions = [loiter(part, task)]
+    camera = camera_of(asked, flyer)
+    if camera is not None:
+        ground = Position(*motion.at, part.context.inputs.mission.frame.terrain_m)
+        actions.append(
+            lmcp.new(
+                "GimbalStareAction",
+                AssociatedTaskList=[task],
+                PayloadID=camera.payload_id,
+                Starepoint=_location(part.context, ground),
+            )
+        )
+    return lmcp.new(
+        "VehicleActionCommand",
+        CommandID=number,
+        VehicleID=part.vehicle,
+        VehicleActionList=actions,
+    )
+
+
+def loiter(part: Part, task: int) -> Any:
+    """The LoiterAction of the circle that a vehicle was told last, without an end."""
+    assert part.held is not None
+    flyer, middle = part.option.flyer, Position(*part.held.at, part.option.flyer.alt_m)
+    return lmcp.new(
+        "LoiterAction",
+        AssociatedTaskList=[task],
+        LoiterType="Circular",
+        Radius=part.held.radius_m,
+        Direction="Clockwise",
+        Duration=-1,
+        Airspeed=flyer.speed_m_s,
+        Location=_location(part.context, middle),
+    )
+
+
+def _location(context: Context, at: Position) -> Any:
+    """A place as a Location3D; it is not remembered, as there are many of them."""
+    lat, lon = context.places.projection.to_geodetic(at.north_m, at.east_m)
+    return lmcp.new("Location3D", Latitude=lat, Longitude=lon, Altitude=at.alt_m)
+
+
+def released(part: Part, task: int, number: int, points: Mapping[int, Position]) -> tuple[Any, str]:
+    """The command that sends a vehicle on to its plan's next waypoint, or None and the zone in the way.
+
+    points: the waypoints of its plan by number. The loiter beside it is for autopilots that take
+    GoToWaypointAction alone for the end of all commands, as AMASE's.
+    """
+    goal = points.get(part.then)
+    if goal is None or part.held is None:
+        return None, "its plan, which has no waypoint after the task,"
+    here = Position(*part.held.at, part.option.flyer.alt_m)
+    leg = first_bad_leg((here, goal), part.context.inputs.zones)
+    if leg is not None:
+        return None, name_of(leg[1])
+    on = lmcp.new("GoToWaypointAction", WaypointNumber=part.then)
+    return lmcp.new(
+        "VehicleActionCommand",
+        CommandID=number,
+        VehicleID=part.vehicle,
+        VehicleActionList=[loiter(part, task), on],
+    ), ""

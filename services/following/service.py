@@ -1,0 +1,295 @@
+"""The service of a task that keeps to what moves: a task's service, with a life of its own for each vehicle.
+
+Requests, options and routes go as in `pipeline.tasks`. From the choice of an option on, its vehicle has a life by
+the same kernel `task_step`. When it makes for the option's path it is told to circle about the entity
+(VehicleActionCommand), with each of its states anew. The task is complete when as many vehicles as it asks
+for have done what it asks, at one time and without a break, for as long as it asks: `kept_step` says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.core.authority.timeliness import in_time
+from cratous.core.tasks.stations import Kept, kept_step
+from cratous.services.bus import Envelope
+from cratous.services.following import part as parts_of
+from cratous.services.following.asked import Asked, asked_of
+from cratous.services.following.motion import STALE_MS, Motion, motion_of
+from cratous.services.following.offering import offered, options_of
+from cratous.services.following.part import Part
+from cratous.services.pipeline.contexts import UNIQUE, Context, Contexts
+from cratous.services.pipeline.status import status
+from cratous.services.pipeline.tasks import (
+    ACTIVE,
+    CHOSEN,
+    HANDED_BACK,
+    LISTED,
+    PUBLISH_OPTIONS,
+    UNLISTED,
+    WITH_UXAS,
+    WITHDRAWN,
+    State,
+    TaskService,
+)
+from cratous.services.planning.options import Dropped, Option
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Position, TaskKind
+
+CHOICE = "uxas.messages.task.TaskImplementationRequest"
+ROUTES = "uxas.messages.route.RoutePlanResponse"
+RESPONSE = "afrl.cmasi.AutomationResponse"
+FINAL, SELECTED = 5, 6
+"""A task's states from the choice of an option on, as `spec.contracts.tasks` has them."""
+SILENT_MS = 3_000
+"""Of a vehicle that was not heard for longer nobody knows whether it is where it was."""
+
+
+class Following(NamedTuple):
+    """lead: the task until options are chosen; parts: of the vehicles; still: the entity stands, and the lead
+    alone does the task; kept: how long the parts have done what is asked; now_ms: of the newest state;
+    plans: waypoints of the vehicles' plans by number."""
+
+    lead: State = State()
+    still: bool = False
+    parts: tuple[Part, ...] = ()
+    kept: Kept = Kept(-1, False)
+    now_ms: int = 0
+    plans: Mapping[int, Mapping[int, Position]] = MappingProxyType({})
+
+    def with_part(self, part: Part) -> Following:
+        """With a part in place of the one of its vehicle."""
+        rest = [p for p in self.parts if p.option.vehicles != part.option.vehicles]
+        return self._replace(parts=(*rest, part))
+
+
+Step = tuple[Following, list[Any]]
+
+
+class FollowingTaskService(TaskService):
+    """One task that keeps to an entity."""
+
+    def __init__(self, contexts: Contexts, body: Any, name: str, ended: Callable[[], None]) -> None:
+        """body: the task's message; name: of the service."""
+        super().__init__(contexts, body.TaskID, name, ended)
+        self._body = body
+        self._made: tuple[Context, list[Option], list[Dropped]] | None = None
+
+    def start(self) -> Any:
+        return Following()
+
+    def begin(self, state: Any) -> tuple[Any, Iterable[Any]]:
+        lead, out = super().begin(state.lead)
+        return state._replace(lead=lead), out
+
+    def stop(self, state: Any) -> None:
+        super().stop(state.lead)
+
+    # what the lead offers
+
+    def _still(self, context: Context) -> bool:
+        return self._task_in(context).kind is not TaskKind.OTHER
+
+    def _found(self, context: Context) -> tuple[list[Option], list[Dropped]]:
+        """The options as the entity moved when they were first asked for, for the newest request."""
+        if self._made is None or self._made[0] is not context:
+            asked, motion = self._asked(context), self._motion(context)
+            found = options_of(context, self._task_in(context), asked, motion)
+            self._made = (context, *found)
+        return self._made[1], self._made[2]
+
+    def _options(self, context: Context) -> Any:
+        return super()._options(context) if self._still(context) else self._found(context)[0]
+
+    def _offer(self, context: Context, options: list[Option]) -> Any:
+        if self._still(context):
+            return super()._offer(context, options)
+        return offered(context, self._task_id, options, self._asked(context).needed)
+
+    def _do(self, state: State, act: int, body: Any, out: list[Any]) -> tuple[State, int]:
+        if act == PUBLISH_OPTIONS and not self._still(self._context):
+            for no in self._found(self._context)[1]:
+                who = ", ".join(map(str, no.vehicles))
+                text = f"vehicle {who} is not offered for task {self._task_id}: {no.reason}"
+                out.append(status(self._request, "Warning", [("reason", text)]))
+        return super()._do(state, act, body, out)
+
+    def _asked(self, context: Context) -> Asked:
+        return asked_of(self._body, context.places)
+
+    def _motion(self, context: Context) -> Motion:
+        asked = self._asked(context)
+        known = self._contexts.world
+        state = known.get("state", asked.entity)
+        if state is None:
+            raise BadInput(
+                f"task {self._task_id} keeps to an entity that nobody has told of",
+                where=f"task {self._task_id}",
+                item=f"{type(self._body).__name__}: entity",
+                expected="one of " + (", ".join(map(str, sorted(known.ids("state")))) or "none"),
+                got=str(asked.entity),
+            )
+        return motion_of(state, context.places, f"state of entity {asked.entity}", asked.route)
+
+    # messages
+
+    def handle(self, state: Any, envelope: Envelope, now_ms: int) -> tuple[Any, Iterable[Any]]:
+        body, topic = envelope.body, envelope.topic
+        if topic == UNIQUE:
+            return self._asked_for(state, envelope, now_ms)
+        if state.still:
+            lead, out = super().handle(state.lead, envelope, now_ms)
+            return state._replace(lead=lead), out
+        if topic == CHOICE:
+            return self._chosen(state, body)
+        if topic == RESPONSE:
+            return self._planned(state, body)
+        if hasattr(body, "AssociatedTasks"):
+            return self._told(state, body)
+        out = list[Any]()
+        lead, more = super().handle(state.lead, envelope, now_ms)
+        out += more
+        state = state._replace(lead=lead)
+        for part in state.parts:
+            own, more = super().handle(part.state, envelope, now_ms)
+            if topic == ROUTES:
+                part = _implemented(part, more)
+            state = state.with_part(part._replace(state=own))
+            out += more if topic == ROUTES else ()
+        kept = tuple(part for part in state.parts if part.state.task.state >= FINAL)
+        return state._replace(parts=kept), out
+
+    def _asked_for(self, state: Following, envelope: Envelope, now_ms: int) -> Step:
+        """A request: one with this task ends what is flown of it, as it does for any task."""
+        lead, more = super().handle(state.lead, envelope, now_ms)
+        out = list(more)
+        if lead == state.lead:
+            return state, out
+        number = envelope.body.RequestID
+        context = self._contexts.of(number)
+        for part in state.parts:
+            _, more = self._advance(part.state, WITHDRAWN, 0, envelope.body)
+            out += more
+        still = self._still(context)
+        return Following(lead, still, now_ms=state.now_ms, plans=state.plans), out
+
+    def _chosen(self, state: Following, body: Any) -> Step:
+        """A vehicle is to fly an option: from here on it has a life of its own."""
+        if body.TaskID != self._task_id:
+            return state, []
+        ticket = state.lead.ticket(body.CorrespondingAutomationRequestID)
+        own, out = self._advance(state.lead, CHOSEN, ticket, body)
+        if own.chosen is None:
+            return state, list(out)
+        option = self._option(body)
+        return state.with_part(Part(own, option, self._context, 0, 0)), list(out)
+
+    def _planned(self, state: Following, response: Any) -> Step:
+        """Plans: their waypoints are kept, and one without this task ends it for its vehicle."""
+        out, left = list[Any](), []
+        for part in state.parts:
+            if self._withdrawn(part.state, response):
+                out += self._advance(part.state, WITHDRAWN, 0, response)[1]
+            else:
+                left.append(part)
+        plans = dict(state.plans)
+        for part in left:
+            for command in response.MissionCommandList:
+                if command.VehicleID == part.vehicle:
+                    plans[part.vehicle] = _points(part.context, command)
+        return state._replace(parts=tuple(left), plans=plans), out
+
+    def _told(self, state: Following, body: Any) -> Step:
+        """A vehicle's state: its life, where it has to circle, and whether all have done what is asked."""
+        part = next((p for p in state.parts if p.vehicle == body.ID), None)
+        if part is None or part.state.task.state < SELECTED:
+            return state, []
+        if part.state.away == HANDED_BACK and body.Mode.name == "Waypoint":
+            part = part._replace(state=part.state._replace(away=WITH_UXAS))
+        if part.state.away:
+            return state, []
+        number = parts_of.command_id(self._task_id, part.state.task.request)
+        follows = parts_of.follows(part, body, number)
+        lists = self._task_id in body.AssociatedTasks
+        out = list[Any]()
+        if lists and part.state.task.state < ACTIVE:
+            own, more = self._advance(part.state, LISTED, 0, body)
+            part, out = part._replace(state=own), list(more)
+        if part.state.task.state < ACTIVE:
+            return state, out
+        if not (lists or follows):
+            # it flies by another's command, or went on without having heard this task's
+            _, more = self._advance(part.state, WITHDRAWN, 0, None)
+            rest = tuple(p for p in state.parts if p is not part and p.vehicle != body.ID)
+            return state._replace(parts=rest, kept=Kept(-1, False)), [*out, *more]
+        now_ms = max(state.now_ms, body.Time, 0)
+        state = state._replace(now_ms=now_ms)
+        waits = not follows and (body.Mode.name != "Waypoint" or body.CurrentWaypoint < part.begins)
+        if waits:
+            return state.with_part(part), out
+        asked, motion = self._asked(part.context), self._motion(part.context)
+        fresh = in_time(min(motion.time_ms, now_ms), now_ms, STALE_MS)
+        late_s = min(now_ms - motion.time_ms, STALE_MS) / 1000
+        motion = motion._replace(at=motion.after(max(late_s, 0.0)))
+        before = part.blocked
+        part = parts_of.heard(part, body, asked, motion, fresh, now_ms)
+        if part.blocked and part.blocked != before:
+            text = f"vehicle {part.vehicle} does not follow: {part.blocked} lies in the way"
+            out.append(self._warning(text))
+        elif part.held is not None and not part.blocked:
+            out.append(parts_of.circling(part, self._task_id, number, asked, motion))
+        state = state.with_part(part)
+        count = sum(p.there and in_time(p.seen_ms, now_ms, SILENT_MS) for p in state.parts)
+        kept = kept_step(state.kept, count, asked.needed, now_ms, asked.least_ms)
+        state = state._replace(kept=kept)
+        return self._over(state, body, out) if kept.done else (state, out)
+
+    def _over(self, state: Following, body: Any, out: list[Any]) -> Step:
+        """Complete: the vehicles are sent on to what comes next in their plans."""
+        involved = sorted(part.vehicle for part in state.parts)
+        out.append(
+            lmcp.new(
+                "TaskComplete",
+                TaskID=self._task_id,
+                EntitiesInvolved=involved,
+                TimeTaskCompleted=body.Time,
+            )
+        )
+        for part in state.parts:
+            _, more = self._advance(part.state, UNLISTED, 0, body)
+            out += [one for one in more if type(one).__name__ != "TaskComplete"]
+            number = parts_of.command_id(self._task_id, part.state.task.request)
+            points = state.plans.get(part.vehicle, {})
+            command, zone = parts_of.released(part, self._task_id, number, points)
+            if command is not None:
+                out.append(command)
+            else:
+                text = f"vehicle {part.vehicle} stays on its circle: {zone} keeps it from its plan"
+                out.append(self._warning(text))
+        return state._replace(parts=(), kept=Kept(-1, False)), out
+
+    def _warning(self, text: str) -> Any:
+        told = [("TaskID", str(self._task_id)), ("reason", f"task {self._task_id}: {text}")]
+        return status(0, "Warning", told)
+
+
+def _implemented(part: Part, more: Iterable[Any]) -> Part:
+    """With the waypoints that its plan has for the task, if they are among what is said."""
+    for one in more:
+        if type(one).__name__ == "TaskImplementationResponse":
+            own = [w for w in one.TaskWaypoints if w.AssociatedTasks]
+            waits = any(type(a).__name__ == "LoiterAction" for a in own[0].VehicleActionList)
+            return part._replace(begins=own[0].Number + waits, then=own[-1].Number + 1)
+    return part
+
+
+def _points(context: Context, command: Any) -> dict[int, Position]:
+    """The waypoints of a plan by number."""
+    found = {}
+    for w in command.WaypointList:
+        pose = context.places.pose(w, 0.0, f"MissionCommand {command.CommandID}", f"{w.Number}")
+        found[w.Number] = Position(*pose[:3])
+    return found

@@ -1,0 +1,101 @@
+"""Where each vehicle of a task circles about what moves, and whether it is there.
+
+A station is a circle. Vehicles of one task have different ones: about one place each is RING_M wider than the
+one before, side by side their centres are two radii and RING_M apart. Who is there the kernels say.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from cratous.core.kernel import Vec2
+from cratous.core.tasks.stations import beside, in_ring
+from cratous.services.following.asked import Asked
+from cratous.services.following.motion import Motion
+from cratous.services.loading.places import Places
+from cratous.services.mission.sensor import sees
+from cratous.services.planning.flyers import Flyer, camera_for
+from cratous.services.planning.point_ways import tilted
+from cratous.spec.mission import Camera
+
+RING_M = 150.0
+"""How far the circles of two vehicles of one task are apart at least."""
+
+LEAST_TILT_RAD = 0.01
+"""A camera that looks down by less is taken to look down by this much."""
+
+
+class Station(NamedTuple):
+    """A circle: its middle, north and east [m], and its radius [m]."""
+
+    at: Vec2
+    radius_m: float
+
+
+def camera_of(asked: Asked, flyer: Flyer) -> Camera | None:
+    """The camera that looks, None where the task looks at nothing or there is none."""
+    return None if asked.looks is None else camera_for(asked.looks, flyer.cameras)
+
+
+def station(asked: Asked, slot: int, flyer: Flyer, there: Motion, terrain_m: float) -> Station:
+    """The circle of a slot, counted from 0, about an entity that is where its motion says."""
+    radius = flyer.radius_m
+    if asked.kind == "BlockadeTask":
+        return Station(_between(asked, slot, radius, there), radius)
+    if asked.kind == "EscortTask":
+        return Station(there.at, max(radius, asked.standoff_m))
+    assert asked.looks is not None
+    for view in tilted(asked.looks, camera_of(asked, flyer)):
+        # a camera that cannot look down sees the middle of a wide circle only
+        tilt = max(-view.elevation_rad, LEAST_TILT_RAD)
+        radius = max(radius, (flyer.alt_m - terrain_m) / math.tan(tilt))
+    return Station(there.at, radius + slot * RING_M)
+
+
+def _between(asked: Asked, slot: int, radius_m: float, there: Motion) -> Vec2:
+    """On the way from an entity to what is to be kept from it, or ahead of it, and beside that."""
+    north, east = there.velocity
+    far_m = asked.standoff_m
+    if asked.protected is not None:
+        north, east = asked.protected.x - there.at.x, asked.protected.y - there.at.y
+        far_m = min(far_m, math.hypot(north, east))
+    length = math.hypot(north, east)
+    north, east = (1.0, 0.0) if length == 0 else (north / length, east / length)
+    aside_m = (slot + 1) // 2 * (2 * radius_m + RING_M) * (1 if slot % 2 else -1)
+    return Vec2(
+        there.at.x + far_m * north - aside_m * east, there.at.y + far_m * east + aside_m * north
+    )
+
+
+def at_station(
+    asked: Asked, slot: int, state: Any, here: Vec2, goal: Station, there: Motion, places: Places,
+    camera: Camera | None,
+) -> bool:  # fmt: skip
+    """Whether a vehicle, by its state, does at this moment what its task asks of it.
+
+    A watch: a footprint of its camera contains the entity's place, and it is no farther from that than two
+    radii of its circle. An escort: no farther from the entity than that. A blockade: no farther than two radii from the way between the entity and
+    what is protected, on its side of it; without one, no farther from its own circle's middle.
+    """
+    reach_m = 2 * goal.radius_m
+    if asked.watches and (camera is None or not _seen(state, camera, there.at, places)):
+        return False
+    if asked.kind != "BlockadeTask":
+        return in_ring(there.at, here, 0, reach_m)
+    if asked.protected is None:
+        return in_ring(goal.at, here, 0, reach_m)
+    aside_m = (slot + 1) // 2 * (2 * goal.radius_m + RING_M)
+    return beside(here, there.at, asked.protected, reach_m + aside_m)
+
+
+def _seen(state: Any, camera: Camera, at: Vec2, places: Places) -> bool:
+    """Whether the footprint that a state tells of a camera contains a place."""
+    for payload in state.PayloadStateList:
+        footprint = getattr(payload, "Footprint", None)
+        if footprint is None or len(footprint) < 3 or payload.PayloadID != camera.camera_id:
+            continue
+        quad = tuple(places.local(p.Latitude, p.Longitude) for p in footprint)
+        if all(math.isfinite(x) for corner in quad for x in corner):
+            return sees(quad, (at.x, at.y))
+    return False
