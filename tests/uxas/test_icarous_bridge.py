@@ -8,7 +8,9 @@ from typing import Any
 
 import pytest
 from bridge_flight import (
+    SERVICE,
     TASK,
+    WAY,
     Aircraft,
     Proxy,
     Simulator,
@@ -27,9 +29,6 @@ from cratous.bridge.text_port import TextPort
 from cratous.bridge.text_protocol.handshake import DEFAULT_SECRET, secret_of_environment
 from cratous.services.cli import main
 from cratous.spec.errors import BadInput
-
-SERVICE = "IcarousCommunicationService"
-WAY = ((0.0, 0.0), (1500.0, 0.0), (3500.0, 0.0), (4500.0, 0.0))
 
 
 def at(port: int) -> Address:
