@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from flight_tools import flown, meeting, of_type, plain_steps, with_deadline
+from flight_tools import flown, meeting, of_type, plain_steps, told_to_icarous, with_deadline
 
 from cratous.bridge import lmcp
 from cratous.bridge.link import LinkEvent
@@ -292,17 +292,11 @@ def test_what_came_before_the_end_of_a_link_is_heard_before_it(
 
 def test_icarous_is_told_the_way_of_another_plan(monkeypatch: pytest.MonkeyPatch) -> None:
     """A plan that is made for a deadline, before anything was flown, is told as any other."""
-    told, send = list[Message](), Bridge.to_icarous
-
-    def listening(bridge: Bridge, vehicle_id: int, message: Message) -> bool:
-        if vehicle_id == 1:
-            told.append(message)
-        return send(bridge, vehicle_id, message)
-
-    monkeypatch.setattr(Bridge, "to_icarous", listening)
+    heard = told_to_icarous(monkeypatch)
     mission, plan = with_deadline()
     result, _ = flown(mission, plan)
     assert result.replans == 1
+    told = [message for vehicle, message in heard if vehicle == 1]
     first = next(k for k, m in enumerate(told) if isinstance(m, WaypointReached))
     assert sum(isinstance(m, StartMission) for m in told[:first]) == 2
 
@@ -311,18 +305,12 @@ def test_a_zone_that_is_known_from_the_start_binds_everybody(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """A change at 0 ms is told to ICAROUS as the mission's own zones are."""
-    told, send = list[Message](), Bridge.to_icarous
-
-    def listening(bridge: Bridge, vehicle_id: int, message: Message) -> bool:
-        told.append(message)
-        return send(bridge, vehicle_id, message)
-
-    monkeypatch.setattr(Bridge, "to_icarous", listening)
+    told = told_to_icarous(monkeypatch)
     far = replace(ZONE, vertices=((0.0, 5000.0), (0.0, 5090.0), (90.0, 5090.0)))
     later, there = replace(far, id=5), Simulation(limit_ms=2000)
     both = (Change(0, ZONE_APPEARS, zone=far), Change(1000, ZONE_APPEARS, zone=later))
     flown(replace(meeting(), traffic=(), changes=both, simulation=there))
-    assert [m.zone for m in told if isinstance(m, FenceDone)] == [1, 2]
+    assert [m.zone for _, m in told if isinstance(m, FenceDone)] == [1, 2]
 
 
 def test_a_state_survives_a_restart() -> None:

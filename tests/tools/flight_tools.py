@@ -8,7 +8,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
+import pytest
+
 from cratous.bridge import lmcp
+from cratous.bridge.loopback import Bridge
+from cratous.bridge.text_protocol import Message
 from cratous.services.bus import Bus
 from cratous.services.flight.loop import FlightResult, fly
 from cratous.services.pipeline.plan import make_plan
@@ -68,6 +72,18 @@ def flown(mission: Mission, plan: Plan | None = None) -> tuple[FlightResult, lis
     bus, log = Bus(lmcp.full_names), list[Any]()
     bus.tap(lambda envelope: log.append(envelope.body))
     return fly(mission, plan or make_plan(mission), bus), log
+
+
+def told_to_icarous(patch: pytest.MonkeyPatch) -> list[tuple[int, Message]]:
+    """What the bridge tells ICAROUS from now on, with the vehicle whose it is."""
+    told, send = list[tuple[int, Message]](), Bridge.to_icarous
+
+    def listening(bridge: Bridge, vehicle_id: int, message: Message) -> bool:
+        told.append((vehicle_id, message))
+        return send(bridge, vehicle_id, message)
+
+    patch.setattr(Bridge, "to_icarous", listening)
+    return told
 
 
 def of_type(log: list[Any], name: str, **fields: Any) -> list[Any]:
