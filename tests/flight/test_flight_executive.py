@@ -9,7 +9,8 @@ from typing import Any
 
 import pytest
 from flight_tools import VOLUME, flown, of_type
-from flight_tools import vehicle as plain_vehicle
+from flight_tools import vehicle as blind
+from mission_tools import plain_mission
 
 from cratous.bridge import lmcp
 from cratous.core.geofence.mission_legs import leg_ok
@@ -27,7 +28,6 @@ from cratous.spec.constraint_rows import (
 from cratous.spec.mission import (
     Camera,
     Daa,
-    Frame,
     Mission,
     Position,
     Simulation,
@@ -43,7 +43,7 @@ from cratous.spec.mission.plan import PlanItem
 
 
 def vehicle(vid: int, north: float, east: float) -> Vehicle:
-    return replace(plain_vehicle(vid, north, east), cameras=(Camera(),))
+    return replace(blind(vid, north, east), cameras=(Camera(),))
 
 
 def ground(north: float, east: float) -> Position:
@@ -56,13 +56,11 @@ POINT = Task(2, TaskKind.POINT_SEARCH, "bridge", (ground(2000, 5000),), eligible
 
 def mission(relations: str, **changes: Any) -> Mission:
     """Two vehicles far apart: one searches a line, the other a point."""
-    made = Mission(
-        "executive",
-        "test",
-        Frame(45.0, -121.0, 0.0),
+    made = plain_mission(
         (vehicle(1, 0, 0), vehicle(2, 0, 5000)),
         (LINE, POINT),
-        Daa(VOLUME),
+        name="executive",
+        daa=Daa(VOLUME),
         relations=relations,
         instances=(1, 2),
         simulation=Simulation(limit_ms=1_200_000),

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from mission_tools import plain_mission
 
 from cratous.bridge import lmcp
 from cratous.bridge.loopback import Bridge
@@ -19,7 +20,6 @@ from cratous.services.pipeline.plan import make_plan
 from cratous.spec.constraint_rows import NOT_AFTER, Row
 from cratous.spec.mission import (
     Daa,
-    Frame,
     Mission,
     Position,
     Simulation,
@@ -45,13 +45,11 @@ def meeting() -> Mission:
     """One vehicle flies north to a point; traffic crosses its path at the same time and height."""
     task = Task(1, TaskKind.MUST_FLY, "far", (Position(6000.0, 0.0, 300.0),))
     other = Traffic(90, Position(2640.0, -2640.0, 300.0), Velocity(0.0, 22.0, 0.0))
-    return Mission(
-        "link",
-        "test",
-        Frame(45.0, -121.0, 0.0),
+    return plain_mission(
         (vehicle(1, 0.0, 0.0),),
         (task,),
-        Daa(VOLUME),
+        name="link",
+        daa=Daa(VOLUME),
         traffic=(other,),
         instances=(1,),
         simulation=Simulation(limit_ms=400_000),
