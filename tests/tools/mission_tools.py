@@ -21,3 +21,17 @@ def plain_mission(vehicles: tuple[Vehicle, ...], tasks: tuple[Task, ...], **more
         "daa": Daa(WellClear(100.0, 30.0, 10.0, 0.0)),
     }
     return Mission(vehicles=vehicles, tasks=tasks, **{**fields, **more})
+
+
+FRAME_TEXT = "frame: {latitude_deg: 45.3, longitude_deg: -121.0, terrain_m: 0}\n"
+"""The frame of missions that are written as YAML."""
+
+
+def vehicle_text(
+    number: int, east_m: int, alt_m: int, slowest: object = 18, fastest: object = 35
+) -> str:
+    """A vehicle in YAML that flies north at 25 m/s, with its least and greatest speed [m/s]."""
+    place = f"{{north_m: 0, east_m: {east_m}, alt_m: {alt_m}}}"
+    speeds = f"speed_m_s: 25, min_speed_m_s: {slowest}, max_speed_m_s: {fastest}"
+    limits = "max_bank_deg: 35, max_climb_m_s: 5"
+    return f"  - {{id: {number}, position: {place}, heading_deg: 0, {speeds}, {limits}}}\n"
