@@ -29,7 +29,7 @@ from cratous.services.bus import Bus
 from cratous.services.flight import link_end
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.link_end import State, UxasEnd
-from cratous.services.flight.loop import fly
+from cratous.services.flight.loop import FlightResult, fly
 from cratous.services.flight.messages import (
     Beat,
     Connected,
@@ -194,9 +194,17 @@ def test_nothing_goes_down_an_ended_connection() -> None:
 # ---- in flight -----------------------------------------------------------------------------------
 
 
-def test_the_kernel_of_modes_decides_what_is_flown(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture(scope="module")
+def undisturbed() -> tuple[FlightResult, list[Any]]:
+    """The meeting, flown without anything of the tests' in its way."""
+    return flown(meeting())
+
+
+def test_the_kernel_of_modes_decides_what_is_flown(
+    undisturbed: tuple[FlightResult, list[Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """With a kernel that believes no takeover UxAS never takes the vehicle back in its way."""
-    _, log = flown(meeting())
+    _, log = undisturbed
     right, states = link_end.link_mode, repr(of_type(log, "TruthState"))
     monkeypatch.setattr(link_end, "link_mode", lambda end, *_: Linked(end, 0))
     _, log = flown(meeting())
@@ -225,10 +233,12 @@ def sending(
     monkeypatch.setattr(Bridge, "to_uxas", changed)
 
 
-def test_a_forged_mode_takes_no_authority(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_forged_mode_takes_no_authority(
+    undisturbed: tuple[FlightResult, list[Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """At every heartbeat somebody claims a huge epoch: the flight is the same; each claim is refused,
     counted, and told with the verdict of G4."""
-    right, log = flown(meeting())
+    right, log = undisturbed
     states = repr(of_type(log, "TruthState"))
     forged = (SetMode("ACTIVE", 10**14), SetMode("PASSIVE", 10**14))
     sending(monkeypatch, lambda _, m: (*forged, m) if isinstance(m, Heartbeat) else (m,))
