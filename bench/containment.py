@@ -8,13 +8,11 @@ machine does not count.
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
 import shapely
-from table import alone
+from table import alone, least
 
 from cratous.core import geofence
 from cratous.core.geofence.planar import locate
@@ -24,17 +22,6 @@ N = 1_000_000
 BOUNDARY = 20_000
 ROUNDS = 9
 CORNERS = (4, 10, 20, 40)
-
-
-def least(runs: list[Callable[[], object]], rounds: int, n: int) -> list[float]:
-    """Least CPU time of each [ns a point], the runs taking turns."""
-    times = [[0.0] * rounds for _ in runs]
-    for k in range(rounds):
-        for row, run in zip(times, runs, strict=True):
-            start = time.process_time()
-            run()
-            row[k] = time.process_time() - start
-    return [min(row) / n * 1e9 for row in times]
 
 
 def star(rng: np.random.Generator, n: int) -> np.ndarray:

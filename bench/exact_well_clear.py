@@ -3,7 +3,7 @@
 The C function is compiled here with `gcc -O3 -march=native` into a temporary folder; it has no
 branches, reads the same arrays and writes the same bytes. Exact verdicts are checked against
 rationals on a sample before anything is measured. Times are the least of several rounds in which
-all contenders take turns.
+all contenders take turns, of CPU time.
 """
 
 from __future__ import annotations
@@ -13,13 +13,12 @@ import functools
 import shutil
 import subprocess
 import tempfile
-import time
 from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
-from table import alone
+from table import alone, least
 
 from cratous.core.kernel import Vec2
 from cratous.core.readings.exact import exactly
@@ -120,17 +119,6 @@ def check(columns: Columns, verdicts: np.ndarray, sample: int = 500) -> int:
             raise SystemExit(f"state {i}: the exact reading is wrong")
         wrong += bool(plain[i]) != wanted
     return wrong
-
-
-def least(runs: list[Callable[[], object]], rounds: int, n: int) -> list[float]:
-    """Least time of each [ns a state], the runs taking turns."""
-    times = [[0.0] * rounds for _ in runs]
-    for k in range(rounds):
-        for row, run in zip(times, runs, strict=True):
-            start = time.perf_counter()
-            run()
-            row[k] = time.perf_counter() - start
-    return [min(row) / n * 1e9 for row in times]
 
 
 def rows() -> list[tuple[str, float, str, float]]:

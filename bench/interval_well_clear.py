@@ -3,7 +3,7 @@
 The C function is compiled here with `gcc -O3 -march=native` into a temporary folder; it has no
 branches, reads the same arrays, takes the same thresholds and writes the same two arrays. The
 results are compared bit by bit before anything is measured. Times are the least of several rounds
-in which the contenders take turns.
+in which the contenders take turns, of CPU time.
 """
 
 from __future__ import annotations
@@ -23,8 +23,7 @@ from cratous.core.readings.machine.compiled import compiled
 from cratous.core.well_clear import violation_during_taumod, violation_interval_taumod
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from exact_well_clear import least
-from table import alone
+from table import alone, least
 
 N = 1_000_000
 ROUNDS = 25

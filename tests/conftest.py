@@ -74,6 +74,19 @@ def fly_once(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Path], Path]
 
 
 @pytest.fixture
+def run(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, str]]:
+    """Run a command line in this process; gives exit code, standard output and standard error."""
+    from cratous.services.cli import main
+
+    def call(*arguments: object) -> tuple[int, str, str]:
+        code = main([str(part) for part in arguments])
+        printed = capsys.readouterr()
+        return code, printed.out, printed.err
+
+    return call
+
+
+@pytest.fixture
 def opened() -> Iterator[list[Any]]:
     """Everything in here is closed at the end."""
     made: list[Any] = []

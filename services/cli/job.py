@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from cratous.services.mission.availability import absent
 from cratous.services.mission.wind import known_at
@@ -20,6 +20,11 @@ from cratous.spec.mission.plan import (
     in_part_of,
     left_out_of,
 )
+
+if TYPE_CHECKING:
+    from cratous.services.certify.report import Flown
+    from cratous.services.logs.log import LogWriter
+    from cratous.services.monitor import Monitor
 
 Tell = Callable[[str], None]
 
@@ -140,69 +145,107 @@ def fly_mission(
 
     standing: of `core.ledger.require`, asked before anything is flown in this process.
     """
-    from cratous import __version__
-    from cratous.services.assumptions.said import sentence as assumed
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory, summary
-    from cratous.services.certify.report import (
-        Flown,
-        Judged,
-        build_report,
-        environment,
-        mission_hash,
-    )
-    from cratous.services.certify.verdicts import broken_of, constraint_rows, plan_rows
+    from cratous.services.certify.report import Flown, Judged, build_report, environment
+    from cratous.services.certify.verdicts import constraint_rows, plan_rows
     from cratous.services.flight.loop import fly
     from cratous.services.logs.log import LogWriter
-    from cratous.services.logs.records import to_data
-    from cratous.services.monitor import Monitor
-    from cratous.services.results.names import ASSUMPTIONS, CERTIFICATE_NAME, LOG_NAME
+    from cratous.services.results.names import LOG_NAME
 
     if not settings.daa:
         mission = replace(mission, instances=())
     bus = new_bus()
     log = folder / LOG_NAME
     flown = Flown(settings.command, settings.daa, inventory(standing, None), environment())
-    meta = {
-        "mission": to_data(mission),
-        "version": __version__,
-        "seed": mission.seed,
-        "mission_hash": mission_hash(mission),
-        **flown.meta(),
-    }
-    with LogWriter(log, **meta) as writer:
+    with LogWriter(log, **log_meta(mission, flown)) as writer:
         bus.tap(writer.tap)
         if onlooker is not None:
             onlooker.joined(bus)
         bus.tap(planning_told(_passing(tell), len(mission.tasks)))
         with counted() as calls:
             plan, checks = plan_and_check(mission, bus)
-            said = (plan_line(mission, plan, checks), *left_out_lines(plan), *absent_lines(mission))
-            for line in said:
-                tell(line)
-            refuse_bad_plan(checks)
-            if plan.certificate:
-                write_certificate(bus, folder / CERTIFICATE_NAME)
-            writer.note("plan", to_data(plan))
-            monitor = Monitor(
-                mission,
-                plan,
-                lambda v: tell(f"VIOLATION {sentence(v)}"),
-                lambda row: tell(f"ASSUMPTION {assumed(row)}"),
-            )
+            tell_plan(mission, plan, checks, tell)
+            accept_plan(plan, checks, bus, folder, writer)
+            monitor = watching(mission, plan, tell)
             bus.tap(monitor.tap)
             if onlooker is not None:
                 onlooker.planned(checks, monitor)
             fly(mission, plan, bus, daa=settings.daa, progress=_progress(tell))
             verdicts, assumptions = monitor.verdicts(), monitor.assumptions()
-        counts = calls.data()
-        flown = replace(flown, proofs=inventory(standing, counts))
-        writer.note("calls", counts)
-        writer.note(ASSUMPTIONS, broken_of(assumptions))
-        writer.note("proofs", flown.meta()["proofs"])
+        flown = noted(writer, flown, standing, calls.data(), assumptions)
     tell(f"evidence: {summary(flown.proofs)}")
     rows = plan_rows(checks) + constraint_rows(verdicts, "flight")
     return build_report(mission, plan, Judged(rows, assumptions), log, flown)
+
+
+def log_meta(mission: Mission, flown: Flown) -> dict[str, Any]:
+    """What a log says of its flight before anything is flown."""
+    from cratous import __version__
+    from cratous.services.certify.report import mission_hash
+    from cratous.services.logs.records import to_data
+
+    return {
+        "mission": to_data(mission),
+        "version": __version__,
+        "seed": mission.seed,
+        "mission_hash": mission_hash(mission),
+        **flown.meta(),
+    }
+
+
+def tell_plan(mission: Mission, plan: Plan, checks: list[Verdict], tell: Tell) -> None:
+    """Say what is planned, what is left out, and who takes no part at the start."""
+    for line in (
+        plan_line(mission, plan, checks),
+        *left_out_lines(plan),
+        *absent_lines(mission),
+    ):
+        tell(line)
+
+
+def accept_plan(
+    plan: Plan, checks: list[Verdict], bus: Any, folder: Path, writer: LogWriter
+) -> None:
+    """Keep a plan that passes its check in the log, its certificate in `folder`; NoPlan if it fails."""
+    from cratous.services.logs.records import to_data
+    from cratous.services.results.names import CERTIFICATE_NAME
+
+    refuse_bad_plan(checks)
+    if plan.certificate:
+        write_certificate(bus, folder / CERTIFICATE_NAME)
+    writer.note("plan", to_data(plan))
+
+
+def watching(mission: Mission, plan: Plan, tell: Tell) -> Monitor:
+    """A monitor of the flight that tells what is violated and which assumption breaks."""
+    from cratous.services.assumptions.said import sentence as assumed
+    from cratous.services.monitor import Monitor
+
+    return Monitor(
+        mission,
+        plan,
+        lambda v: tell(f"VIOLATION {sentence(v)}"),
+        lambda row: tell(f"ASSUMPTION {assumed(row)}"),
+    )
+
+
+def noted(
+    writer: LogWriter, flown: Flown, standing: Any, counts: dict[str, Any], assumptions: Any
+) -> Flown:
+    """What is known of a flight when it has ended, as the log keeps it too.
+
+    standing: of the ledger; counts: the calls of each kernel; assumptions: as the monitor found them.
+    """
+    from cratous.services.certify.proofs import inventory
+    from cratous.services.certify.verdicts import broken_of
+    from cratous.services.results.names import ASSUMPTIONS
+
+    flown = replace(flown, proofs=inventory(standing, counts))
+    writer.note("calls", counts)
+    writer.note(ASSUMPTIONS, broken_of(assumptions))
+    writer.note("proofs", flown.meta()["proofs"])
+    return flown
 
 
 def refuse_bad_plan(checks: list[Verdict]) -> None:

@@ -6,9 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from cratous import __version__
 from cratous.core import ledger
-from cratous.services.assumptions.said import sentence as assumed
 from cratous.services.certify.evidence import counted
 from cratous.services.certify.proofs import inventory, summary
 from cratous.services.certify.report import (
@@ -19,25 +17,23 @@ from cratous.services.certify.report import (
     mission_hash,
     write_report,
 )
-from cratous.services.certify.verdicts import broken_of, constraint_rows, plan_rows
+from cratous.services.certify.verdicts import constraint_rows, plan_rows
 from cratous.services.cli.job import (
     Settings,
     Tell,
-    left_out_lines,
+    accept_plan,
+    log_meta,
     new_bus,
+    noted,
     plan_and_check,
-    plan_line,
-    refuse_bad_plan,
-    sentence,
-    write_certificate,
+    tell_plan,
+    watching,
 )
 from cratous.services.logs.log import LogWriter
-from cratous.services.logs.records import to_data
-from cratous.services.monitor import Monitor
 from cratous.services.processes.coverage import told_of
 from cratous.services.processes.flight import Flying, fly
 from cratous.services.processes.recorder import Recorder
-from cratous.services.results.names import ASSUMPTIONS, CERTIFICATE_NAME, LOG_NAME
+from cratous.services.results.names import LOG_NAME
 from cratous.spec.mission import Mission
 
 STATES_MS = 550
@@ -58,29 +54,13 @@ def run_in_processes(
     tell(f"proofs: {standing.line}")
     flown = Flown(settings.command, settings.daa, inventory(standing, None), environment())
     log = folder / LOG_NAME
-    meta = {
-        "mission": to_data(mission),
-        "version": __version__,
-        "seed": mission.seed,
-        "mission_hash": mission_hash(mission),
-        **flown.meta(),
-    }
-    with LogWriter(log, **meta) as writer:
+    with LogWriter(log, **log_meta(mission, flown)) as writer:
         with counted() as calls:
             planning, bus = new_bus(), new_bus()
             plan, checks = plan_and_check(mission, planning)
-            for line in (plan_line(mission, plan, checks), *left_out_lines(plan)):
-                tell(line)
-            refuse_bad_plan(checks)
-            if plan.certificate:
-                write_certificate(planning, folder / CERTIFICATE_NAME)
-            writer.note("plan", to_data(plan))
-            monitor = Monitor(
-                mission,
-                plan,
-                lambda v: tell(f"VIOLATION {sentence(v)}"),
-                lambda row: tell(f"ASSUMPTION {assumed(row)}"),
-            )
+            tell_plan(mission, plan, checks, tell)
+            accept_plan(plan, checks, planning, folder, writer)
+            monitor = watching(mission, plan, tell)
             bus.tap(writer.tap)
             bus.tap(monitor.tap)
             how = Flying(path, digest, folder, rate, settings.allow_unproved, tell)
@@ -89,11 +69,7 @@ def run_in_processes(
             if ended.why:
                 tell(f"NOT FLOWN TO ITS END: {ended.why}")
             verdicts, assumptions = monitor.verdicts(), monitor.assumptions()
-        counts = calls.data()
-        flown = replace(flown, proofs=inventory(standing, counts))
-        writer.note("calls", counts)
-        writer.note(ASSUMPTIONS, broken_of(assumptions))
-        writer.note("proofs", flown.meta()["proofs"])
+        flown = noted(writer, flown, standing, calls.data(), assumptions)
     tell(f"evidence: {summary(flown.proofs)}")
     rows = plan_rows(checks) + constraint_rows(verdicts, "flight")
     report = build_report(mission, plan, Judged(rows, assumptions), log, flown)

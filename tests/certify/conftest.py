@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from certify_tools import ROOT, Run, read
+from certify_tools import ROOT, read
 
 from cratous.services.certify import flight_record, rejudge, report, result_files
 from cratous.services.cli import main
@@ -22,16 +22,6 @@ def flown(tmp_path_factory: pytest.TempPathFactory, fly_once: Callable[[Path], P
     done = fly_once(ROOT / "examples" / "crossing" / "mission.yaml")
     assert json.loads((done / "report.json").read_text())["exit_code"] in (0, 3)
     return Path(shutil.copytree(done, tmp_path_factory.mktemp("flown") / "crossing"))
-
-
-@pytest.fixture
-def run(capsys: pytest.CaptureFixture[str]) -> Run:
-    def call(*arguments: object) -> tuple[int, str, str]:
-        code = main([str(part) for part in arguments])
-        printed = capsys.readouterr()
-        return code, printed.out, printed.err
-
-    return call
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 import yaml
-from certify_tools import Run, edited, read
+from certify_tools import Run, read, unconfirmed
 
 from cratous.services.argument.form import faults, schema_text
 
@@ -70,10 +70,7 @@ def test_the_command_writes_the_same_bytes_again(
 def test_there_is_none_of_what_is_not_confirmed(
     run: Run, flown: Path, judged: None, tmp_path: Path
 ) -> None:
-    folder = edited(flown, tmp_path)
-    whole = read(folder)
-    whole["constraints"][0]["verdict"] = "violated"
-    (folder / "report.json").write_text(json.dumps(whole), encoding="utf-8")
+    folder = unconfirmed(flown, tmp_path)
     assert run("certify", folder, "--argument", "-o", tmp_path / "v")[0] == 1
     assert not (tmp_path / "v").exists()
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from certify_tools import ROOT, Run, edited, read
+from certify_tools import ROOT, Run, edited, read, unconfirmed
 from lxml import etree
 
 from cratous.services.attestation.findings import Subject, doubt, unshown
@@ -208,10 +208,7 @@ def test_the_command_writes_the_same_bytes_again(
 def test_nothing_is_written_of_what_is_not_confirmed(
     run: Run, flown: Path, judged: None, tmp_path: Path
 ) -> None:
-    folder = edited(flown, tmp_path)
-    whole = read(folder)
-    whole["constraints"][0]["verdict"] = "violated"
-    (folder / "report.json").write_text(json.dumps(whole), encoding="utf-8")
+    folder = unconfirmed(flown, tmp_path)
     code, out, err = run("certify", folder, "-o", tmp_path / "views")
     assert (code, out, (tmp_path / "views").exists()) == (1, "", False)
     assert "not written: junit.xml: the report is not confirmed" in err

@@ -24,18 +24,6 @@ WATERWAY = ROOT.parent / "shared" / "examples" / "openuxas" / "waterway"
 Run = Callable[..., tuple[int, str, str]]
 
 
-@pytest.fixture
-def run(capsys: pytest.CaptureFixture[str]) -> Run:
-    """Run a command line; gives exit code, standard output and standard error."""
-
-    def call(*arguments: object) -> tuple[int, str, str]:
-        code = main([str(part) for part in arguments])
-        printed = capsys.readouterr()
-        return code, printed.out, printed.err
-
-    return call
-
-
 @pytest.fixture(scope="module")
 def flown(fly_once: Callable[[Path], Path]) -> Path:
     """The folder of a flown crossing; whether the ledger vouches is another test's business."""

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mission_tools import plain_mission, plain_vehicle
 
 from cratous.bridge import lmcp
 from cratous.core.daa.state import DIMENSIONS
@@ -24,8 +25,6 @@ from cratous.spec.daa.parameters import Parameters
 from cratous.spec.daa.presets import preset
 from cratous.spec.mission import (
     Daa,
-    Frame,
-    Mission,
     Position,
     Task,
     TaskKind,
@@ -47,8 +46,7 @@ def p() -> Parameters:
 
 
 def vehicle(number: int, protected: bool = True) -> Vehicle:
-    at = Position(0.0, 0.0, 300.0)
-    return Vehicle(number, "", at, 0.0, 20.0, 15.0, 30.0, 0.5, 5.0, protected)
+    return plain_vehicle(number, Position(0.0, 0.0, 300.0), protected)
 
 
 def head_on(appears_ms: int, until_ms: int = 40000, begin_ms: int = 0) -> list[Scene]:
@@ -152,7 +150,7 @@ def verdicts(scenes: list[Scene], numbers: tuple[int, ...] = (1,)) -> list[Any]:
     others = tuple(
         Traffic(9, Position(0.0, 0.0, 0.0), still, ms) for ms in there[:1] if 9 not in numbers
     )
-    mission = Mission("m", "", Frame(45.0, -121.0), vehicles, tasks, Daa(VOLUME, 15.0), (), others)
+    mission = plain_mission(vehicles, tasks, daa=Daa(VOLUME, 15.0), traffic=others)
     monitor = Monitor(mission, Plan("m", (), (), (1,), 3000, "MINMAX", 1, True))
     for s in scenes:
         for number, (east, north, up) in s.places.items():

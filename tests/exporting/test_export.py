@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from cratous.services.cli import main
 from cratous.services.exporting.exported import AMASE, FORMATS, UXAS, exported
 from cratous.services.loading import count_requests, load
 from cratous.services.mission.frames import Projection
@@ -211,15 +210,6 @@ def test_bad_scenarios_are_refused(
 # the command ------------------------------------------------------------------------------------
 
 Run = Callable[..., tuple[int, str, str]]
-
-
-@pytest.fixture
-def run(capsys: pytest.CaptureFixture[str]) -> Run:
-    def call(*words: object) -> tuple[int, str, str]:
-        code = main([str(word) for word in words])
-        return code, *capsys.readouterr()
-
-    return call
 
 
 @pytest.mark.parametrize("form", FORMATS)

@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from mission_tools import plain_mission
 
 from cratous.bridge import lmcp
 from cratous.core.kernel import Vec2
@@ -20,7 +21,6 @@ from cratous.services.bus import Bus
 from cratous.services.flight.loop import FlightResult, fly
 from cratous.spec.mission import (
     Daa,
-    Frame,
     Mission,
     Position,
     Simulation,
@@ -64,13 +64,11 @@ def crossing(
     one = vehicle(1, 0.0, speed_1, t_s)
     two = vehicle(2, math.radians(angle_deg), speed_2, t_s)
     tasks = tuple(Task(k, TaskKind.MUST_FLY, f"task {k}", ()) for k in (11, 12))
-    mission = Mission(
-        "crossing",
-        "test",
-        Frame(45.0, -121.0, 0.0),
+    mission = plain_mission(
         (one, two),
         tasks,
-        Daa(VOLUME),
+        name="crossing",
+        daa=Daa(VOLUME),
         instances=(1, 2),
         simulation=Simulation(limit_ms=900_000),
     )

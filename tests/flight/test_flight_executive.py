@@ -9,11 +9,13 @@ from typing import Any
 
 import pytest
 from flight_tools import VOLUME, flown, of_type
-from flight_tools import vehicle as plain_vehicle
+from flight_tools import vehicle as blind
+from mission_tools import plain_mission
 
 from cratous.bridge import lmcp
 from cratous.core.geofence.mission_legs import leg_ok
 from cratous.core.routing.polylines import Track
+from cratous.services.flight.loop import FlightResult
 from cratous.services.flight.timing import broken_by, closed_by, opens_ms
 from cratous.services.pipeline.plan import make_plan
 from cratous.spec.constraint_rows import (
@@ -27,7 +29,6 @@ from cratous.spec.constraint_rows import (
 from cratous.spec.mission import (
     Camera,
     Daa,
-    Frame,
     Mission,
     Position,
     Simulation,
@@ -39,11 +40,13 @@ from cratous.spec.mission import (
     Zone,
     ZoneKind,
 )
-from cratous.spec.mission.plan import PlanItem
+from cratous.spec.mission.plan import Plan, PlanItem
+
+Flown = tuple[Plan, FlightResult, list[Any]]
 
 
 def vehicle(vid: int, north: float, east: float) -> Vehicle:
-    return replace(plain_vehicle(vid, north, east), cameras=(Camera(),))
+    return replace(blind(vid, north, east), cameras=(Camera(),))
 
 
 def ground(north: float, east: float) -> Position:
@@ -56,13 +59,11 @@ POINT = Task(2, TaskKind.POINT_SEARCH, "bridge", (ground(2000, 5000),), eligible
 
 def mission(relations: str, **changes: Any) -> Mission:
     """Two vehicles far apart: one searches a line, the other a point."""
-    made = Mission(
-        "executive",
-        "test",
-        Frame(45.0, -121.0, 0.0),
+    made = plain_mission(
         (vehicle(1, 0, 0), vehicle(2, 0, 5000)),
         (LINE, POINT),
-        Daa(VOLUME),
+        name="executive",
+        daa=Daa(VOLUME),
         relations=relations,
         instances=(1, 2),
         simulation=Simulation(limit_ms=1_200_000),
@@ -74,10 +75,16 @@ def phases(log: list[Any], task: int) -> list[str]:
     return [p.Phase.name for p in of_type(log, "TaskProgress", TaskID=task)]
 
 
-def test_planned_times_are_flown() -> None:
+@pytest.fixture(scope="module")
+def in_order() -> Flown:
+    """The point after the line, and nothing in the way."""
     m = mission(".(p1 p2)")
     plan = make_plan(m)
-    result, log = flown(m, plan)
+    return plan, *flown(m, plan)
+
+
+def test_planned_times_are_flown(in_order: Flown) -> None:
+    plan, result, log = in_order
     assert result.outcome == "complete"
     for item in plan.items:
         assert result.starts[item.task_id] == pytest.approx(item.start_ms, abs=1000)
@@ -86,10 +93,8 @@ def test_planned_times_are_flown() -> None:
     assert phases(log, 1) == ["Transit", "Active", "Complete"]
 
 
-def test_vehicle_loiters_while_its_predecessor_is_not_done() -> None:
-    m = mission(".(p1 p2)")
-    plan = make_plan(m)
-    result, log = flown(m, plan)
+def test_vehicle_loiters_while_its_predecessor_is_not_done(in_order: Flown) -> None:
+    plan, result, log = in_order
     (waiting,) = of_type(log, "TaskProgress", TaskID=2, Phase=lmcp.enums["TaskPhase"].Waiting)
     assert "p2" in waiting.Note
     hold = next(item.hold for item in plan.items if item.task_id == 2)
@@ -109,10 +114,16 @@ def delayed() -> Mission:
     return mission(".(p1 p2)", traffic=(other,))
 
 
-def test_successor_waits_for_a_predecessor_delayed_by_traffic() -> None:
+@pytest.fixture(scope="module")
+def late() -> Flown:
+    """The delayed mission, flown."""
     m = delayed()
     plan = make_plan(m)
-    result, log = flown(m, plan)
+    return plan, *flown(m, plan)
+
+
+def test_successor_waits_for_a_predecessor_delayed_by_traffic(late: Flown) -> None:
+    plan, result, log = late
     planned = {item.task_id: item for item in plan.items}
     assert result.outcome == "complete"
     assert result.takeovers >= 1
@@ -122,11 +133,9 @@ def test_successor_waits_for_a_predecessor_delayed_by_traffic() -> None:
     assert phases(log, 1)[:4] == ["Transit", "Active", "Suspended", "Active"]
 
 
-def test_interrupted_search_flies_its_whole_path() -> None:
+def test_interrupted_search_flies_its_whole_path(late: Flown) -> None:
     """Every place of the task's path is flown over while the task is active."""
-    m = delayed()
-    plan = make_plan(m)
-    _, log = flown(m, plan)
+    plan, _, log = late
     path = Track(next(item.path for item in plan.items if item.task_id == 1))
     active, marks, covered = False, set(), 0
     for body in log:

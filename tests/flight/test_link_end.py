@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from flight_tools import flown, meeting, of_type, plain_steps, with_deadline
+from flight_tools import flown, meeting, of_type, plain_steps, told_to_icarous, with_deadline
 
 from cratous.bridge import lmcp
 from cratous.bridge.link import LinkEvent
@@ -29,7 +29,7 @@ from cratous.services.bus import Bus
 from cratous.services.flight import link_end
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.link_end import State, UxasEnd
-from cratous.services.flight.loop import fly
+from cratous.services.flight.loop import FlightResult, fly
 from cratous.services.flight.messages import (
     Beat,
     Connected,
@@ -194,9 +194,17 @@ def test_nothing_goes_down_an_ended_connection() -> None:
 # ---- in flight -----------------------------------------------------------------------------------
 
 
-def test_the_kernel_of_modes_decides_what_is_flown(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture(scope="module")
+def undisturbed() -> tuple[FlightResult, list[Any]]:
+    """The meeting, flown without anything of the tests' in its way."""
+    return flown(meeting())
+
+
+def test_the_kernel_of_modes_decides_what_is_flown(
+    undisturbed: tuple[FlightResult, list[Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """With a kernel that believes no takeover UxAS never takes the vehicle back in its way."""
-    _, log = flown(meeting())
+    _, log = undisturbed
     right, states = link_end.link_mode, repr(of_type(log, "TruthState"))
     monkeypatch.setattr(link_end, "link_mode", lambda end, *_: Linked(end, 0))
     _, log = flown(meeting())
@@ -225,10 +233,12 @@ def sending(
     monkeypatch.setattr(Bridge, "to_uxas", changed)
 
 
-def test_a_forged_mode_takes_no_authority(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_forged_mode_takes_no_authority(
+    undisturbed: tuple[FlightResult, list[Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """At every heartbeat somebody claims a huge epoch: the flight is the same; each claim is refused,
     counted, and told with the verdict of G4."""
-    right, log = flown(meeting())
+    right, log = undisturbed
     states = repr(of_type(log, "TruthState"))
     forged = (SetMode("ACTIVE", 10**14), SetMode("PASSIVE", 10**14))
     sending(monkeypatch, lambda _, m: (*forged, m) if isinstance(m, Heartbeat) else (m,))
@@ -292,17 +302,11 @@ def test_what_came_before_the_end_of_a_link_is_heard_before_it(
 
 def test_icarous_is_told_the_way_of_another_plan(monkeypatch: pytest.MonkeyPatch) -> None:
     """A plan that is made for a deadline, before anything was flown, is told as any other."""
-    told, send = list[Message](), Bridge.to_icarous
-
-    def listening(bridge: Bridge, vehicle_id: int, message: Message) -> bool:
-        if vehicle_id == 1:
-            told.append(message)
-        return send(bridge, vehicle_id, message)
-
-    monkeypatch.setattr(Bridge, "to_icarous", listening)
+    heard = told_to_icarous(monkeypatch)
     mission, plan = with_deadline()
     result, _ = flown(mission, plan)
     assert result.replans == 1
+    told = [message for vehicle, message in heard if vehicle == 1]
     first = next(k for k, m in enumerate(told) if isinstance(m, WaypointReached))
     assert sum(isinstance(m, StartMission) for m in told[:first]) == 2
 
@@ -311,18 +315,12 @@ def test_a_zone_that_is_known_from_the_start_binds_everybody(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """A change at 0 ms is told to ICAROUS as the mission's own zones are."""
-    told, send = list[Message](), Bridge.to_icarous
-
-    def listening(bridge: Bridge, vehicle_id: int, message: Message) -> bool:
-        told.append(message)
-        return send(bridge, vehicle_id, message)
-
-    monkeypatch.setattr(Bridge, "to_icarous", listening)
+    told = told_to_icarous(monkeypatch)
     far = replace(ZONE, vertices=((0.0, 5000.0), (0.0, 5090.0), (90.0, 5090.0)))
     later, there = replace(far, id=5), Simulation(limit_ms=2000)
     both = (Change(0, ZONE_APPEARS, zone=far), Change(1000, ZONE_APPEARS, zone=later))
     flown(replace(meeting(), traffic=(), changes=both, simulation=there))
-    assert [m.zone for m in told if isinstance(m, FenceDone)] == [1, 2]
+    assert [m.zone for _, m in told if isinstance(m, FenceDone)] == [1, 2]
 
 
 def test_a_state_survives_a_restart() -> None:

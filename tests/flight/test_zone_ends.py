@@ -9,14 +9,13 @@ from typing import Any
 
 import pytest
 import yaml
-from flight_tools import flown, meeting
+from flight_tools import flown, meeting, told_to_icarous
 from hypothesis import given
 from hypothesis import strategies as st
 from judge_tools import Edit, edited, verdicts, with_monitor
 from judge_tools import Message as Logged
 
-from cratous.bridge.loopback import Bridge
-from cratous.bridge.text_protocol import FenceDone, HardReset, Message, StartMission
+from cratous.bridge.text_protocol import FenceDone, HardReset, StartMission
 from cratous.judge import judge
 from cratous.services.cli.job import Settings, run_mission
 from cratous.services.flight.replan_triggers import undone_by
@@ -116,19 +115,13 @@ def test_judge_and_monitor_hold_each_leg_that_was_begun_before_the_end(
 
 
 def test_icarous_forgets_the_zone_and_keeps_the_rest(monkeypatch: pytest.MonkeyPatch) -> None:
-    told, send = list[Message](), Bridge.to_icarous
-
-    def listening(bridge: Bridge, vehicle_id: int, message: Message) -> bool:
-        if vehicle_id == 1:
-            told.append(message)
-        return send(bridge, vehicle_id, message)
-
-    monkeypatch.setattr(Bridge, "to_icarous", listening)
+    heard = told_to_icarous(monkeypatch)
     first = Zone(4, ZoneKind.KEEP_OUT, RING, 0.0, 900.0)
     both = (first, replace(first, id=5))
     end = ZoneEnd(1000, ZONE_ENDS, zone_id=4)
     flown(replace(meeting(), zones=both, changes=(end,), traffic=(),
                   simulation=Simulation(limit_ms=2000)))  # fmt: skip
+    told = [message for vehicle, message in heard if vehicle == 1]
     k = next(k for k, m in enumerate(told) if isinstance(m, HardReset))
     assert [m.zone for m in told[:k] if isinstance(m, FenceDone)] == [1, 2]
     assert [m.zone for m in told[k:] if isinstance(m, FenceDone)] == [1]

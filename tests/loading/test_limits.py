@@ -155,27 +155,32 @@ def test_a_chunk_of_a_log_is_inflated_within_its_bound(tmp_path: Path) -> None:
     assert "a chunk of" in done.stdout
 
 
-def test_a_view_is_no_table_of_a_log(tmp_path: Path) -> None:
-    file = tmp_path / "log.sqlite"
+def log_of(folder: Path, *statements: str) -> Path:
+    """A file of SQLite with a table `meta`, and what else is stated."""
+    file = folder / "log.sqlite"
     with sqlite3.connect(file) as made:
-        made.execute("CREATE TABLE meta(key TEXT, value TEXT)")
-        made.execute(
-            "CREATE VIEW messages AS WITH RECURSIVE n(seq) AS (SELECT 0 UNION ALL SELECT seq + 1 "
-            "FROM n) SELECT seq, 0 AS time_ms, 'a' AS source, 'b' AS topic, '{}' AS body FROM n"
-        )
+        for statement in ("CREATE TABLE meta(key TEXT, value TEXT)", *statements):
+            made.execute(statement)
+    return file
+
+
+def test_a_view_is_no_table_of_a_log(tmp_path: Path) -> None:
+    file = log_of(
+        tmp_path,
+        "CREATE VIEW messages AS WITH RECURSIVE n(seq) AS (SELECT 0 UNION ALL SELECT seq + 1 "
+        "FROM n) SELECT seq, 0 AS time_ms, 'a' AS source, 'b' AS topic, '{}' AS body FROM n",
+    )
     with pytest.raises(BadInput, match="not a message log"):
         open_log(file)
 
 
 def test_a_value_of_a_log_is_bounded(tmp_path: Path) -> None:
-    file = tmp_path / "log.sqlite"
-    with sqlite3.connect(file) as made:
-        made.execute("CREATE TABLE meta(key TEXT, value TEXT)")
-        made.execute(
-            "CREATE TABLE messages(seq INTEGER PRIMARY KEY, time_ms INTEGER, source TEXT, "
-            "topic TEXT, body TEXT)"
-        )
-        made.execute("INSERT INTO messages VALUES(0, 0, 'a', 'b', zeroblob(100000000))")
+    file = log_of(
+        tmp_path,
+        "CREATE TABLE messages(seq INTEGER PRIMARY KEY, time_ms INTEGER, source TEXT, "
+        "topic TEXT, body TEXT)",
+        "INSERT INTO messages VALUES(0, 0, 'a', 'b', zeroblob(100000000))",
+    )
     with pytest.raises(BadInput, match="damaged"):
         list(open_log(file).entries())
 

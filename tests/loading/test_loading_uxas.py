@@ -48,6 +48,13 @@ def small_assign(tmp_path: Path) -> Path:
     return folder
 
 
+def changed(tmp_path: Path, file: str, old: str, new: str) -> Path:
+    """The same with one file changed."""
+    folder = small_assign(tmp_path)
+    edit(folder / file, old, new)
+    return folder
+
+
 def test_waterway(waterway: Mission) -> None:
     assert waterway.name == "waterway"
     assert [vehicle.id for vehicle in waterway.vehicles] == [400, 500]
@@ -114,17 +121,14 @@ def test_zones_of_the_operating_region(tmp_path: Path) -> None:
 
 
 def test_zones_outside_the_region_do_not_bind(tmp_path: Path) -> None:
-    folder = small_assign(tmp_path)
-    edit(folder / "inputs" / "OperatingRegion_10.xml", "<int64>2</int64>", "")
-    mission = load(folder)
+    mission = load(changed(tmp_path, "inputs/OperatingRegion_10.xml", "<int64>2</int64>", ""))
     assert [zone.id for zone in mission.zones] == [3, 1]
     assert any("not binding: 2" in note for note in mission.notes)
 
 
 def test_tasks_without_a_place_in_the_relations_are_noted(tmp_path: Path) -> None:
-    folder = small_assign(tmp_path)
-    edit(folder / "inputs" / "AutomationRequest_All.xml", "|(.(p1 p3) .(p2 p4))", ".(p1 p3)")
-    mission = load(folder)
+    request = "inputs/AutomationRequest_All.xml"
+    mission = load(changed(tmp_path, request, "|(.(p1 p3) .(p2 p4))", ".(p1 p3)"))
     assert [task.id for task in mission.tasks] == [1, 3]
     assert any("not done: 2, 4" in note for note in mission.notes)
 
@@ -147,8 +151,7 @@ def test_tasks_without_a_place_in_the_relations_are_noted(tmp_path: Path) -> Non
     ],
 )  # fmt: skip
 def test_refusals(tmp_path: Path, file: str, old: str, new: str, words: str) -> None:
-    folder = small_assign(tmp_path)
-    edit(folder / file, old, new)
+    folder = changed(tmp_path, file, old, new)
     with pytest.raises(BadInput) as caught:
         load(folder)
     assert words in str(caught.value)
@@ -156,12 +159,8 @@ def test_refusals(tmp_path: Path, file: str, old: str, new: str, words: str) -> 
 
 
 def test_fewer_instances_than_vehicles(tmp_path: Path) -> None:
-    folder = small_assign(tmp_path)
-    edit(
-        folder / "cfg_run.xml",
-        '<Service Type="SensorManagerService"/>',
-        '<Service Type="IcarousCommunicationService" NumberOfUAVs="1"/>',
-    )
+    service = '<Service Type="IcarousCommunicationService" NumberOfUAVs="1"/>'
+    folder = changed(tmp_path, "cfg_run.xml", '<Service Type="SensorManagerService"/>', service)
     mission = load(folder)
     assert mission.instances == (1,)
     assert all(vehicle.protected for vehicle in mission.vehicles)

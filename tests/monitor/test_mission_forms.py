@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mission_tools import FRAME_TEXT, vehicle_text
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus
@@ -20,20 +21,19 @@ from cratous.services.monitor import Monitor
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission.guarantees import exit_code
 
-HEAD = """
+VEHICLES = vehicle_text(1, 0, 400) + vehicle_text(2, 2000, 600, "SLOW", "FAST")
+HEAD = (
+    f"""
 name: forms
-frame: {latitude_deg: 45.3, longitude_deg: -121.0, terrain_m: 0}
-simulation: {step_ms: 500, heartbeat_ms: 1000}
+{FRAME_TEXT}simulation: {{step_ms: 500, heartbeat_ms: 1000}}
 vehicles:
-  - {id: 1, position: {north_m: 0, east_m: 0, alt_m: 400}, heading_deg: 0, speed_m_s: 25,
-     min_speed_m_s: 18, max_speed_m_s: 35, max_bank_deg: 35, max_climb_m_s: 5}
-  - {id: 2, position: {north_m: 0, east_m: 2000, alt_m: 600}, heading_deg: 0, speed_m_s: 25,
-     min_speed_m_s: SLOW, max_speed_m_s: FAST, max_bank_deg: 35, max_climb_m_s: 5}
-tasks:
+{VEHICLES}"""
+    + """tasks:
   - {id: 1, kind: must_fly, points: [{north_m: 1000, east_m: 0, alt_m: 400}], eligible: ONE}
   - {id: 2, kind: must_fly, points: [{north_m: 1000, east_m: 2000, alt_m: 600}], eligible: TWO}
   - {id: 3, kind: must_fly, points: [{north_m: 1800, east_m: 0, alt_m: 400}], eligible: THREE}
 """
+)
 
 
 def wind(at_s: int, north_m_s: int) -> str:

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from mission_tools import FRAME_TEXT, vehicle_text
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus
@@ -23,18 +24,14 @@ from cratous.spec.mission import Change, Mission, changes
 from cratous.spec.mission.guarantees import Outcome, Verdict
 from cratous.spec.mission.plan import Plan
 
-TEXT = """
+VEHICLES = "".join(vehicle_text(k, 2000 * (k - 1), 200 + 200 * k) for k in (1, 2, 3))
+TEXT = (
+    f"""
 name: promised
-frame: {latitude_deg: 45.3, longitude_deg: -121.0, terrain_m: 0}
-simulation: {step_ms: 500, heartbeat_ms: 1000}
+{FRAME_TEXT}simulation: {{step_ms: 500, heartbeat_ms: 1000}}
 vehicles:
-  - {id: 1, position: {north_m: 0, east_m: 0, alt_m: 400}, heading_deg: 0, speed_m_s: 25,
-     min_speed_m_s: 18, max_speed_m_s: 35, max_bank_deg: 35, max_climb_m_s: 5}
-  - {id: 2, position: {north_m: 0, east_m: 2000, alt_m: 600}, heading_deg: 0, speed_m_s: 25,
-     min_speed_m_s: 18, max_speed_m_s: 35, max_bank_deg: 35, max_climb_m_s: 5}
-  - {id: 3, position: {north_m: 0, east_m: 4000, alt_m: 800}, heading_deg: 0, speed_m_s: 25,
-     min_speed_m_s: 18, max_speed_m_s: 35, max_bank_deg: 35, max_climb_m_s: 5}
-tasks:
+{VEHICLES}"""
+    + """tasks:
   - {id: 1, kind: must_fly, eligible: [1], points: [{north_m: 500, east_m: 0, alt_m: 400}]}
   - {id: 2, kind: must_fly, eligible: [2], points: [{north_m: 900, east_m: 2000, alt_m: 600}]}
 relations: ".(p1 p2)"
@@ -47,6 +44,7 @@ changes:
   - {at_s: 10, vehicle_joins: 3}
   - {at_s: 12.2, zone: {id: 6, kind: keep_out, vertices: [[7000, 7000], [7000, 7500], [7500, 7500]]}}
 """
+)
 Flown = tuple[Mission, Plan, list[Any]]
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from fractions import Fraction
 
 import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
+from permit_tools import ROUND, hit, off
 
 from cratous.core.kernel import Vec2
 from cratous.core.permit.for_ever import above_for_ever, beside_for_ever, hold_clear
@@ -38,14 +38,7 @@ MEETINGS = st.builds(
     st.fractions(0, 100, max_denominator=4), st.fractions(0, 60, max_denominator=4),
 )  # fmt: skip
 GONE = st.fractions(-5, 60, max_denominator=4)
-ROUND = [(0.0, 0.0), *[(math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8)]]
 STEADY = Growth(0.0, 0.0, 0.0)
-
-
-def off(direction: tuple[float, float], wide: Fraction, high: Fraction) -> motion.Off:
-    """A place as far off as is possible, a little inside so that the sine's rounding is no matter."""
-    x, y = (Fraction(part) * Fraction(999, 1000) for part in direction)
-    return motion.Off(wide * x, wide * y, high)  # type: ignore[arg-type]
 
 
 def left(pieces: list[Piece], meeting: Meeting, gone: Fraction) -> tuple[list[Piece], Meeting]:
@@ -101,10 +94,7 @@ def test_what_is_permitted_from_an_instant_on_is_not_hit_after_it(
         own = off(data.draw(st.sampled_from(ROUND)), rho, rho)
         wide, high = reach_after(meeting.wide, at), reach_after(meeting.high, at)
         other = off(data.draw(st.sampled_from(ROUND)), wide, -high)
-        way = motion.Way(False, 0, 0, 0, 0)
-        for piece in pieces:
-            way = motion.way_step(way, *piece, meeting, motion.Offs(own, other), at)  # type: ignore[arg-type]
-        assert not motion.way_result(way)
+        assert not hit(pieces, meeting, own, other, at)
 
 
 def test_what_is_over_does_not_count() -> None:

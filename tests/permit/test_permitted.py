@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from fractions import Fraction
 
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from permit_tools import ROUND, hit, off
 
 from cratous.core.kernel import Vec2
 from cratous.core.permit.pieces import (
@@ -40,25 +40,6 @@ MEETINGS = st.builds(
     Meeting, VECTORS, PLACES, VELOCITIES, SPEEDS, GROWTHS, GROWTHS,
     st.fractions(0, 300, max_denominator=4), st.fractions(0, 60, max_denominator=4),
 )  # fmt: skip
-ROUND = [(0, 0), *[(math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8)]]
-
-
-def hit(
-    pieces: list[Piece], meeting: Meeting, own: motion.Off, other: motion.Off, at: object
-) -> bool:
-    """The definition's fold."""
-    way = motion.Way(False, 0, 0, 0, 0)
-    for piece in pieces:
-        way = motion.way_step(way, *piece, meeting, motion.Offs(own, other), at)  # type: ignore[arg-type]
-    return motion.way_result(way)
-
-
-def off(
-    share: Fraction, direction: tuple[float, float], wide: Fraction, high: Fraction
-) -> motion.Off:
-    """A place off by part of what is possible, a little inside so that the sine's rounding is no matter."""
-    x, y = (Fraction(part) * Fraction(999, 1000) for part in direction)
-    return motion.Off(share * wide * x, share * wide * y, share * high)  # type: ignore[arg-type]
 
 
 @settings(max_examples=80, deadline=None)
@@ -74,9 +55,11 @@ def test_what_is_permitted_is_not_hit(
         at = whole * data.draw(st.fractions(0, 1, max_denominator=16))
         rho = max(piece.rho_m for piece in pieces)
         one, two = data.draw(st.sampled_from(ROUND)), data.draw(st.sampled_from(ROUND))
-        own = off(data.draw(st.sampled_from([Fraction(-1), Fraction(1)])), one, rho, rho)
+        side = data.draw(st.sampled_from([Fraction(-1), Fraction(1)]))
+        own = off(one, side * rho, side * rho)
         wide, high = reach_after(meeting.wide, at), reach_after(meeting.high, at)
-        other = off(data.draw(st.sampled_from([Fraction(-1), Fraction(1)])), two, wide, high)
+        side = data.draw(st.sampled_from([Fraction(-1), Fraction(1)]))
+        other = off(two, side * wide, side * high)
         assert not hit(pieces, meeting, own, other, at)
 
 

@@ -21,9 +21,7 @@ FIRST_PLAN_NODES = 80
 
 @pytest.fixture
 def assigner(tmp_path: Path) -> Rig:
-    rig = Rig(tmp_path, ASSIGNMENT)
-    rig.tell(*vehicle(1), *vehicle(2, 0.01), must_fly(5), must_fly(6))
-    return rig
+    return Rig(tmp_path, ASSIGNMENT).with_two()
 
 
 @pytest.mark.shows(

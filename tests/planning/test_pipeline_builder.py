@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from pipeline_messages import ended, unique
+from pipeline_messages import ended, implementation, unique
 from pipeline_tools import Rig, place, vehicle
 
 from cratous.bridge import lmcp
@@ -29,17 +29,8 @@ def implemented(asked: Any, *waypoints: int, latitude: float = 0.5) -> Any:
         lmcp.new("Waypoint", Number=n, NextWaypoint=n + 1, AssociatedTasks=[asked.TaskID])
         for n in waypoints
     ]
-    return lmcp.new(
-        "TaskImplementationResponse",
-        ResponseID=asked.RequestID,
-        CorrespondingAutomationRequestID=asked.CorrespondingAutomationRequestID,
-        TaskID=asked.TaskID,
-        VehicleID=asked.VehicleID,
-        TaskWaypoints=points,
-        FinalLocation=place(latitude),
-        FinalHeading=45.0,
-        FinalTime=9_000,
-    )
+    end = place(latitude)
+    return implementation(asked, points, FinalLocation=end, FinalHeading=45.0, FinalTime=9_000)
 
 
 @pytest.mark.shows(

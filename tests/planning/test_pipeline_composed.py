@@ -15,6 +15,7 @@ from typing import Any
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from pipeline_messages import STEPS
 from pipeline_tools import PIPELINE, Rig, loiter, request, vehicle
 
 from cratous.bridge import lmcp
@@ -22,19 +23,7 @@ from cratous.services.bus import Envelope
 
 VALIDATOR = "AutomationRequestValidatorService"
 LIMIT_MS = 1000
-LOSABLE = (
-    "UniqueAutomationRequest",
-    "TaskPlanOptions",
-    "RoutePlanRequest",
-    "RoutePlanResponse",
-    "AssignmentCostMatrix",
-    "TaskAssignmentSummary",
-    "TaskImplementationRequest",
-    "TaskImplementationResponse",
-    "UniqueAutomationResponse",
-    "ServiceStatus",
-    "TaskInitialized",
-)
+LOSABLE = (*STEPS, "ServiceStatus", "TaskInitialized")
 
 
 class Unruly:

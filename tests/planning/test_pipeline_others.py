@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from pipeline_messages import cost, matrix, option, options, unique
+from pipeline_messages import cost, implementation, matrix, option, options, unique
 from pipeline_tools import Rig, must_fly, place, request, vehicle
 
 from cratous.bridge import lmcp
@@ -68,19 +68,9 @@ class OtherTask:
             )
             for k, at in enumerate((latitude, latitude + 0.002))
         ]
-        return None, [
-            lmcp.new(
-                "TaskImplementationResponse",
-                ResponseID=body.RequestID,
-                CorrespondingAutomationRequestID=body.CorrespondingAutomationRequestID,
-                TaskID=self.task,
-                OptionID=body.OptionID,
-                VehicleID=body.VehicleID,
-                TaskWaypoints=points,
-                FinalLocation=place(latitude + 0.002),
-                FinalTime=max(body.StartTime, body.TimeThreshold) + 10_000,
-            )
-        ]
+        end_ms = max(body.StartTime, body.TimeThreshold) + 10_000
+        end = place(latitude + 0.002)
+        return None, [implementation(body, points, FinalLocation=end, FinalTime=end_ms)]
 
 
 @pytest.fixture

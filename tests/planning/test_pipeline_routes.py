@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from pipeline_messages import ended, option, options, planned, unique
-from pipeline_tools import Rig, must_fly, place, vehicle
+from pipeline_tools import Rig, place, vehicle
 
 from cratous.bridge import lmcp
 
@@ -15,9 +15,7 @@ AGGREGATOR, PLANNER = "RouteAggregatorService", "RoutePlannerVisibilityService"
 
 @pytest.fixture
 def collector(tmp_path: Path) -> Rig:
-    rig = Rig(tmp_path, AGGREGATOR)
-    rig.tell(*vehicle(1), *vehicle(2, 0.01), must_fly(5), must_fly(6))
-    return rig
+    return Rig(tmp_path, AGGREGATOR).with_two()
 
 
 @pytest.mark.shows(

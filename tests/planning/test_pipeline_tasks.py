@@ -14,6 +14,18 @@ from cratous.bridge import lmcp
 TASKS = "Task services"
 
 
+def to_be_implemented(option: int, of: int = 1) -> Any:
+    """A request that task 5 be implemented by vehicle 1; of: which automation request."""
+    return lmcp.new(
+        "TaskImplementationRequest",
+        CorrespondingAutomationRequestID=of,
+        VehicleID=1,
+        TaskID=5,
+        OptionID=option,
+        StartPosition=place(0.0),
+    )
+
+
 @pytest.mark.shows(
     "TaskManagerService",
     "Task",
@@ -112,15 +124,7 @@ def test_a_task_answers_only_its_own_request_and_options(tmp_path: Path) -> None
     (offered,) = rig.got("TaskPlanOptions")
     numbers = [o.OptionID for o in offered.Options]
     assert offered.Composition == "+(" + " ".join(f"p{n}" for n in numbers) + ")"
-    asked = lmcp.new(
-        "TaskImplementationRequest",
-        RequestID=1,
-        CorrespondingAutomationRequestID=9,
-        VehicleID=1,
-        TaskID=5,
-        OptionID=numbers[0],
-        StartPosition=place(0.0),
-    )
+    asked = to_be_implemented(numbers[0], of=9).copy(RequestID=1)
     rig.tell(asked)
     assert not rig.got("RoutePlanRequest")
     mine = asked.copy(CorrespondingAutomationRequestID=1)
@@ -147,14 +151,7 @@ def test_a_task_lets_a_request_go_that_has_ended(tmp_path: Path, end: str) -> No
     rig.tell(*vehicle(1), loiter(5))
     rig.tell(unique(1, 5))
     (offered,) = rig.got("TaskPlanOptions")
-    asked = lmcp.new(
-        "TaskImplementationRequest",
-        CorrespondingAutomationRequestID=1,
-        VehicleID=1,
-        TaskID=5,
-        OptionID=offered.Options[0].OptionID,
-        StartPosition=place(0.0),
-    )
+    asked = to_be_implemented(offered.Options[0].OptionID)
     ending = lmcp.new("UniqueAutomationResponse", ResponseID=1) if end == "response" else ended(1)
     rig.tell(ending, asked)
     assert not rig.got("RoutePlanRequest")
@@ -168,15 +165,7 @@ def test_a_route_that_is_not_there_is_an_error_with_its_reason(tmp_path: Path) -
     rig = Rig(tmp_path, "TaskManagerService")
     rig.tell(*vehicle(1), loiter(5))
     rig.tell(unique(1, 5))
-    asked = lmcp.new(
-        "TaskImplementationRequest",
-        CorrespondingAutomationRequestID=1,
-        VehicleID=1,
-        TaskID=5,
-        OptionID=1,
-        StartPosition=place(0.0),
-    )
-    rig.tell(asked)
+    rig.tell(to_be_implemented(1))
     (route,) = rig.got("RoutePlanRequest")
     why = [lmcp.new("KeyValuePair", Key="reason", Value="a wall")]
     plan = lmcp.new("RoutePlan", RouteID=1, RouteCost=-1, RouteError=why)

@@ -6,18 +6,15 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from mission_tools import plain_mission, plain_vehicle
 
 from cratous.services.monitor.plan_check import check_plan
 from cratous.services.monitor.relations import row_choices
 from cratous.spec.mission import (
-    Daa,
-    Frame,
     Mission,
     Position,
     Task,
     TaskKind,
-    Vehicle,
-    WellClear,
     Zone,
     ZoneKind,
 )
@@ -29,16 +26,15 @@ def place(north: float, east: float = 0.0) -> Position:
     return Position(north, east, 100.0)
 
 
-VEHICLES = tuple(Vehicle(k, "", place(0.0), 0.0, 20.0, 15.0, 30.0, 0.5, 5.0, True) for k in (1, 2))
+VEHICLES = tuple(plain_vehicle(k, place(0.0)) for k in (1, 2))
 TASKS = (
     Task(1, TaskKind.MUST_FLY, "", (place(1000.0),), eligible=(1,)),
     Task(2, TaskKind.MUST_FLY, "", (place(2000.0),)),
 )
 ZONE = Zone(5, ZoneKind.KEEP_OUT, ((500.0, 50.0), (600.0, 50.0), (600.0, 90.0)), 0.0, 1000.0)
-MISSION = Mission(
-    "test", "", Frame(45.0, -121.0), VEHICLES, TASKS, Daa(WellClear(100.0, 30.0, 10.0, 0.0)),
-    zones=(ZONE,), relations=".(p1 p2)_[0-300000]", instances=(1, 2),
-)  # fmt: skip
+MISSION = plain_mission(
+    VEHICLES, TASKS, zones=(ZONE,), relations=".(p1 p2)_[0-300000]", instances=(1, 2)
+)
 FIRST = PlanItem(
     1, 1, 1, (place(0), place(900)), (place(900), place(1000)), None, 20.0,
     0, 45_000, 0, 45_000, 50_000, 0.0,

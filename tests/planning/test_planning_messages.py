@@ -4,6 +4,7 @@ import math
 from itertools import pairwise
 
 import pytest
+from pipeline_messages import STEPS
 from planning_tools import mission
 
 from cratous.bridge import lmcp
@@ -20,20 +21,7 @@ def test_the_pipeline_speaks_the_messages_of_uxas_in_order():
     bus.tap(lambda e: seen.append((e.topic.rsplit(".", 1)[-1], e.source, e.body)))
     plan = make_plan(of, bus)
     names = [name for name, _, _ in seen]
-    chain = [
-        "AutomationRequest",
-        "UniqueAutomationRequest",
-        "TaskPlanOptions",
-        "RoutePlanRequest",
-        "RoutePlanResponse",
-        "AssignmentCostMatrix",
-        "TaskAssignmentSummary",
-        "TaskImplementationRequest",
-        "TaskImplementationResponse",
-        "UniqueAutomationResponse",
-        "AutomationResponse",
-    ]
-    places = [names.index(name) for name in chain]
+    places = [names.index(name) for name in ("AutomationRequest", *STEPS, "AutomationResponse")]
     assert places == sorted(places)
     assert names.count("TaskPlanOptions") == 2
     assert names.count("AutomationResponse") == 1

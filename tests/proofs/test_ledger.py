@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -100,20 +102,29 @@ ATTACKS = {
 }  # fmt: skip
 
 
+@contextlib.contextmanager
+def restored(*files: Path) -> Iterator[None]:
+    """Whatever is done to the files: afterwards they are as they were."""
+    before = {file: file.read_text() for file in files}
+    try:
+        yield
+    finally:
+        for file, text in before.items():
+            file.write_text(text)
+
+
 @pytest.mark.parametrize("name", sorted(ATTACKS))
 def test_attack_is_caught(name: str, product: Path) -> None:
     place, old, new, wanted = ATTACKS[name]
     file = product / "cratous" / place
     original = file.read_text()
-    if old is None:
-        file.unlink()
-    else:
-        assert old in original, f"{old!r} is not in {place}: this attack needs an update"
-        file.write_text(original.replace(old, new))
-    try:
+    with restored(file):
+        if old is None:
+            file.unlink()
+        else:
+            assert old in original, f"{old!r} is not in {place}: this attack needs an update"
+            file.write_text(original.replace(old, new))
         done = check(product)
-    finally:
-        file.write_text(original)
     assert done.returncode == 1, done.stdout + done.stderr
     assert "Refused" in done.stdout
     assert wanted in done.stdout
@@ -158,6 +169,7 @@ def test_a_function_replaced_in_memory_is_caught(product: Path) -> None:
 
 PLANT = """
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from cratous.core.readings.machine import compiled
 from cratous.core.geofence.planar import straddles
@@ -238,20 +250,14 @@ def test_a_ledger_that_was_sealed_again_is_caught_by_proving(
     edit: str, place: str, old: str, new: str, wanted: str, product: Path
 ) -> None:
     """The seal is no secret: only a new proof shows that such a ledger lies. CI makes one."""
-    folder = product / "cratous" / RECORDS
-    before = {f: f.read_text() for f in folder.rglob("*.json")}
-    file = product / "cratous" / place if place else next(iter(before))
-    original = file.read_text()
-    if place:
-        assert old in original
-        file.write_text(original.replace(old, new))
-    try:
+    file = product / "cratous" / place
+    with restored(*(product / "cratous" / RECORDS).rglob("*.json"), *([file] if place else [])):
+        if place:
+            original = file.read_text()
+            assert old in original
+            file.write_text(original.replace(old, new))
         assert check(product, RESEAL.format(edit=edit)).returncode == 0
         done = prove(product, "--check")
-    finally:
-        file.write_text(original)
-        for record, said in before.items():
-            record.write_text(said)
     assert done.returncode == 1, done.stdout + done.stderr
     assert wanted in done.stdout + done.stderr
 
@@ -262,23 +268,20 @@ def test_a_driver_that_no_longer_calls_its_checker_is_refused_by_the_prover(prod
     original = file.read_text()
     changed = original.replace("violation_within(", "bool(")
     assert changed != original
-    file.write_text(changed)
-    try:
+    with restored(file):
+        file.write_text(changed)
         done = prove(product)
-    finally:
-        file.write_text(original)
     assert done.returncode == 2, done.stdout + done.stderr
     assert "nothing calls 'cratous.core.well_clear.during.violation_within'" in done.stderr
 
 
 def test_comments_and_layout_change_nothing(product: Path) -> None:
     file = product / "cratous" / "core" / "well_clear" / "now.py"
-    original = file.read_text()
-    file.write_text(original.replace("    if ss <= dd:", "    # a remark\n    if  ss<=dd :"))
-    try:
+    with restored(file):
+        file.write_text(
+            file.read_text().replace("    if ss <= dd:", "    # a remark\n    if  ss<=dd :")
+        )
         done = check(product)
-    finally:
-        file.write_text(original)
     assert done.returncode == 0, done.stdout + done.stderr
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from typing import Any
 
 import pytest
 import z3
@@ -164,25 +165,31 @@ def test_assumptions_stay_visible():
     assert data["theorems"]["test"]["assumptions"][0][1] == "nobody"
 
 
-def test_a_wrong_fold_is_refuted():
-    locate = named("meets_boundary").function
-    assert isinstance(locate, Fold)
-    broken = Fold(locate.name, locate.implements, locate.step, True)
+def _fold_statuses(fold: Any, model_step: Any, weak: bool = False) -> dict[str, str]:
+    """What comes of each obligation where a fold over edges is to be its model; weak: related to anything."""
 
     def claim(c: Claim) -> None:
         p, q, a, b = (c.vector(n) for n in "pqab")
         c.fold(
-            broken,
+            fold,
             acc=c.boolean("met"),
             model=c.boolean("model"),
             item=(a, b),
             context=(p, q),
             model_start=False,
-            model_step=locate.step,
-            relation=c.same,
+            model_step=model_step,
+            relation=(lambda met, model: c.same(met, met)) if weak else c.same,
         )
 
-    statuses = {o.obligation.kind: o.status for o in _prove(claim).outcomes}
+    return {o.obligation.kind: o.status for o in _prove(claim).outcomes}
+
+
+def test_a_wrong_fold_is_refuted():
+    locate = named("meets_boundary").function
+    assert isinstance(locate, Fold)
+    broken = Fold(locate.name, locate.implements, locate.step, True)
+
+    statuses = _fold_statuses(broken, locate.step)
     assert statuses["base"] == "refuted"
     assert statuses["use"] == "proved"
 
@@ -193,20 +200,7 @@ def test_a_fold_without_a_finish_gives_its_accumulator(weak: bool, use: str) -> 
     assert isinstance(meets, Fold)
     assert meets.finish is None
 
-    def claim(c: Claim) -> None:
-        p, q, a, b = (c.vector(n) for n in "pqab")
-        c.fold(
-            meets,
-            acc=c.boolean("met"),
-            model=c.boolean("model"),
-            item=(a, b),
-            context=(p, q),
-            model_start=False,
-            model_step=meets.step,
-            relation=(lambda met, model: c.same(met, met)) if weak else c.same,
-        )
-
-    assert {o.obligation.kind: o.status for o in _prove(claim).outcomes}["use"] == use
+    assert _fold_statuses(meets, meets.step, weak)["use"] == use
 
 
 # -- the subset -----------------------------------------------------------------------------

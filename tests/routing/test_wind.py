@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from mission_tools import FRAME_TEXT, vehicle_text
 
 from cratous.bridge import lmcp
 from cratous.core.routing.wind import holds_in_wind
@@ -24,20 +25,19 @@ from cratous.spec.mission.changes import words
 from cratous.spec.mission.guarantees import Outcome
 from cratous.spec.routing import wind
 
-MISSION = """
+VEHICLES = vehicle_text(1, 0, 400) + vehicle_text(2, 3000, 600, 15, 50)
+MISSION = (
+    f"""
 name: wind
-frame: {latitude_deg: 45.3, longitude_deg: -121.0, terrain_m: 0}
-vehicles:
-  - {id: 1, position: {north_m: 0, east_m: 0, alt_m: 400}, heading_deg: 0, speed_m_s: 25,
-     min_speed_m_s: 18, max_speed_m_s: 35, max_bank_deg: 35, max_climb_m_s: 5}
-  - {id: 2, position: {north_m: 0, east_m: 3000, alt_m: 600}, heading_deg: 0, speed_m_s: 25,
-     min_speed_m_s: 15, max_speed_m_s: 50, max_bank_deg: 35, max_climb_m_s: 5}
-tasks:
+{FRAME_TEXT}vehicles:
+{VEHICLES}"""
+    + """tasks:
   - {id: 1, kind: must_fly, points: [{north_m: 3000, east_m: 0, alt_m: 400}]}
   - {id: 2, kind: must_fly, points: [{north_m: 3000, east_m: 3000, alt_m: 600}]}
 relations: "|(p1 p2)"
 changes:
 """
+)
 STEADY = "  - {at_s: 10, wind: {north_m_s: 6, east_m_s: 0}}\n"
 FASTER = "  - {at_s: 20, wind: {north_m_s: 0, east_m_s: -8}}\n"
 STORM = "  - {at_s: 30, wind: {north_m_s: 9, east_m_s: 9}}\n"

@@ -20,6 +20,15 @@ def edited(flown: Path, tmp_path: Path) -> Path:
     return folder
 
 
+def unconfirmed(flown: Path, tmp_path: Path) -> Path:
+    """The same, with a verdict in the report that its log does not give."""
+    folder = edited(flown, tmp_path)
+    whole = read(folder)
+    whole["constraints"][0]["verdict"] = "violated"
+    (folder / "report.json").write_text(json.dumps(whole), encoding="utf-8")
+    return folder
+
+
 def read(folder: Path) -> dict[str, Any]:
     return dict(json.loads((folder / "report.json").read_text(encoding="utf-8")))
 

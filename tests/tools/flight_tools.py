@@ -8,14 +8,18 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
+import pytest
+from mission_tools import plain_mission
+
 from cratous.bridge import lmcp
+from cratous.bridge.loopback import Bridge
+from cratous.bridge.text_protocol import Message
 from cratous.services.bus import Bus
 from cratous.services.flight.loop import FlightResult, fly
 from cratous.services.pipeline.plan import make_plan
 from cratous.spec.constraint_rows import NOT_AFTER, Row
 from cratous.spec.mission import (
     Daa,
-    Frame,
     Mission,
     Position,
     Simulation,
@@ -41,13 +45,11 @@ def meeting() -> Mission:
     """One vehicle flies north to a point; traffic crosses its path at the same time and height."""
     task = Task(1, TaskKind.MUST_FLY, "far", (Position(6000.0, 0.0, 300.0),))
     other = Traffic(90, Position(2640.0, -2640.0, 300.0), Velocity(0.0, 22.0, 0.0))
-    return Mission(
-        "link",
-        "test",
-        Frame(45.0, -121.0, 0.0),
+    return plain_mission(
         (vehicle(1, 0.0, 0.0),),
         (task,),
-        Daa(VOLUME),
+        name="link",
+        daa=Daa(VOLUME),
         traffic=(other,),
         instances=(1,),
         simulation=Simulation(limit_ms=400_000),
@@ -68,6 +70,18 @@ def flown(mission: Mission, plan: Plan | None = None) -> tuple[FlightResult, lis
     bus, log = Bus(lmcp.full_names), list[Any]()
     bus.tap(lambda envelope: log.append(envelope.body))
     return fly(mission, plan or make_plan(mission), bus), log
+
+
+def told_to_icarous(patch: pytest.MonkeyPatch) -> list[tuple[int, Message]]:
+    """What the bridge tells ICAROUS from now on, with the vehicle whose it is."""
+    told, send = list[tuple[int, Message]](), Bridge.to_icarous
+
+    def listening(bridge: Bridge, vehicle_id: int, message: Message) -> bool:
+        told.append((vehicle_id, message))
+        return send(bridge, vehicle_id, message)
+
+    patch.setattr(Bridge, "to_icarous", listening)
+    return told
 
 
 def of_type(log: list[Any], name: str, **fields: Any) -> list[Any]:

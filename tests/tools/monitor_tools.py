@@ -5,17 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from mission_tools import plain_mission, plain_vehicle
+
 from cratous.bridge import lmcp
 from cratous.services.monitor import Monitor
 from cratous.spec.mission import (
-    Daa,
-    Frame,
     Mission,
     Position,
     Task,
     TaskKind,
     Vehicle,
-    WellClear,
 )
 from cratous.spec.mission.plan import Plan, PlanItem
 
@@ -28,8 +27,7 @@ class Envelope:
 
 
 def vehicle(number: int, protected: bool = True) -> Vehicle:
-    at = Position(0.0, 0.0, 100.0)
-    return Vehicle(number, "", at, 0.0, 20.0, 15.0, 30.0, 0.5, 5.0, protected)
+    return plain_vehicle(number, Position(0.0, 0.0, 100.0), protected)
 
 
 def item(task: int, number: int, start: int, end: int) -> PlanItem:
@@ -39,19 +37,15 @@ def item(task: int, number: int, start: int, end: int) -> PlanItem:
 
 def mission(**more: Any) -> Mission:
     basis: dict[str, Any] = {
-        "name": "test",
-        "source": "",
-        "frame": Frame(45.0, -121.0),
         "vehicles": (vehicle(1), vehicle(2)),
         "tasks": (
             Task(1, TaskKind.MUST_FLY, "", (Position(10.0, 5000.0, 100.0),)),
             Task(2, TaskKind.MUST_FLY, "", (Position(50.0, 10000.0, 100.0),)),
         ),
-        "daa": Daa(WellClear(100.0, 30.0, 10.0, 0.0)),
         "relations": ".(p1 p2)",
         "instances": (1, 2),
     }
-    return Mission(**{**basis, **more})
+    return plain_mission(**{**basis, **more})
 
 
 PLAN = Plan(

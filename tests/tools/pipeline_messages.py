@@ -8,6 +8,19 @@ from pipeline_tools import place, request
 
 from cratous.bridge import lmcp
 
+STEPS = (
+    "UniqueAutomationRequest",
+    "TaskPlanOptions",
+    "RoutePlanRequest",
+    "RoutePlanResponse",
+    "AssignmentCostMatrix",
+    "TaskAssignmentSummary",
+    "TaskImplementationRequest",
+    "TaskImplementationResponse",
+    "UniqueAutomationResponse",
+)
+"""What is told on the way from a request to its answer, in this order."""
+
 
 def unique(number: int, *tasks: int, vehicles: tuple[int, ...] = (1,), **more: Any) -> Any:
     original = request(*tasks, vehicles=vehicles, **more)
@@ -48,6 +61,20 @@ def planned(asked: Any, cost: int = 7, missing: tuple[int, ...] = ()) -> Any:
         ResponseID=asked.RequestID,
         VehicleID=asked.VehicleID,
         RouteResponses=plans,
+    )
+
+
+def implementation(asked: Any, points: list[Any], **more: Any) -> Any:
+    """A task's answer to a TaskImplementationRequest."""
+    return lmcp.new(
+        "TaskImplementationResponse",
+        ResponseID=asked.RequestID,
+        CorrespondingAutomationRequestID=asked.CorrespondingAutomationRequestID,
+        TaskID=asked.TaskID,
+        OptionID=asked.OptionID,
+        VehicleID=asked.VehicleID,
+        TaskWaypoints=points,
+        **more,
     )
 
 

@@ -92,6 +92,11 @@ class Rig:
     def bus(self) -> Any:
         return self.one.bus
 
+    def with_two(self) -> Rig:
+        """Itself, told of two vehicles and of two points to fly to."""
+        self.tell(*vehicle(1), *vehicle(2, 0.01), must_fly(5), must_fly(6))
+        return self
+
     def tell(self, *bodies: Any, source: str = "test") -> None:
         """Publish messages at once, and run until nothing is queued."""
         for body in bodies:

@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from mission_tools import plain_mission
 
 from cratous.core.assignment.earliest_times import rows_hold
 from cratous.core.geofence.mission_legs import first_bad_leg
@@ -12,7 +13,6 @@ from cratous.spec.mission import (
     Camera,
     Daa,
     Frame,
-    Mission,
     Position,
     Task,
     TaskKind,
@@ -52,7 +52,8 @@ FOUR = (
 
 def mission(tasks=FOUR, vehicles=TWO, **more):
     daa = Daa(WellClear(1000.0, 100.0, 30.0, 30.0))
-    return Mission("m", "m.yaml", Frame(45.0, -120.0), vehicles, tasks, daa, **more)
+    frame = Frame(45.0, -120.0)
+    return plain_mission(vehicles, tasks, name="m", source="m.yaml", frame=frame, daa=daa, **more)
 
 
 def assert_flyable(plan, of):

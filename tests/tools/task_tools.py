@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from mission_tools import plain_mission
+
 from cratous.services.planning.options import expand
 from cratous.spec.mission import (
     Camera,
-    Daa,
     Frame,
     Mission,
     Pattern,
@@ -16,7 +17,6 @@ from cratous.spec.mission import (
     Task,
     TaskKind,
     Vehicle,
-    WellClear,
     Zone,
     ZoneKind,
 )
@@ -45,9 +45,8 @@ def point(**more: Any) -> Task:
 
 
 def mission(task: Task, who: Vehicle | None = None, zones: tuple[Zone, ...] = ()) -> Mission:
-    daa = Daa(WellClear(100.0, 30.0, 10.0, 0.0))
     frame = Frame(45.0, -120.0)
-    return Mission("m", "m.yaml", frame, (who or vehicle(),), (task,), daa, zones=zones)
+    return plain_mission((who or vehicle(),), (task,), source="m.yaml", frame=frame, zones=zones)
 
 
 def options(task: Task, who: Vehicle | None = None, zones: tuple[Zone, ...] = ()) -> Any:

@@ -8,7 +8,9 @@ from typing import Any
 
 import pytest
 from bridge_flight import (
+    SERVICE,
     TASK,
+    WAY,
     Aircraft,
     Proxy,
     Simulator,
@@ -31,9 +33,6 @@ from cratous.services.cli import main
 from cratous.services.cli.icarous import craft_of
 from cratous.services.loading import load
 from cratous.spec.errors import BadInput
-
-SERVICE = "IcarousCommunicationService"
-WAY = ((0.0, 0.0), (1500.0, 0.0), (3500.0, 0.0), (4500.0, 0.0))
 
 
 def at(port: int) -> Address:

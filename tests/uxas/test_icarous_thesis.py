@@ -9,8 +9,10 @@ from typing import Any
 import pytest
 from bridge_flight import (
     BEAT_MS,
+    SERVICE,
     STEP_S,
     TASK,
+    WAY,
     Aircraft,
     Simulator,
     command,
@@ -30,8 +32,6 @@ from cratous.services.cli.icarous import craft_of
 from cratous.services.icarous_program.program import Program
 from cratous.services.icarous_program.step import IcarousEnd
 
-SERVICE = "IcarousCommunicationService"
-WAY = ((0.0, 0.0), (1500.0, 0.0), (3500.0, 0.0), (4500.0, 0.0))
 THESIS = tp.Dialect.THESIS
 
 

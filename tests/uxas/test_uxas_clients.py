@@ -11,24 +11,24 @@ from pathlib import Path
 from typing import Any
 
 from bridge_tools import ALL, TCP, tcp_server
-from pipeline_messages import option, options
-from pipeline_tools import place, request, vehicle
+from pipeline_messages import implementation, option, options
+from pipeline_tools import PIPELINE, place, request, vehicle
 from uxas_tools import LIMIT_S, Client, free_port, process, started, until, write_cfg
 
 from cratous.bridge import lmcp
 
-PIPELINE = "".join(
-    f'<Service Type="{name}"/>\n'
-    for name in (
-        "TaskManagerService",
-        "AutomationRequestValidatorService",
-        "RoutePlannerVisibilityService",
-        "RouteAggregatorService",
-        "AssignmentTreeBranchBoundService",
-        "PlanBuilderService",
-    )
-)
+SERVICES = "".join(f'<Service Type="{name}"/>\n' for name in PIPELINE)
 LEFT_OUT = ("MessageLoggerDataService",)
+
+
+def joined(
+    folder: Path, opened: list[Any], attributes: str = "", services: str = SERVICES
+) -> tuple[Any, Any, Client]:
+    """The process, what it says, and a client of it; attributes: of the bridge."""
+    one, said, port = tcp_server(folder, attributes, more=services)
+    opened.append(one)
+    opened.append(Client(port))
+    return one, said, opened[-1]
 
 
 def send_one_vehicle_and_its_task(client: Client, shared: Path) -> None:
@@ -82,10 +82,7 @@ def test_the_waterway_mission_for_a_cmasi_client(shared: Path, tmp_path: Path) -
 def test_each_request_gets_one_response_in_order_with_reasons(
     shared: Path, tmp_path: Path, opened: list[Any]
 ) -> None:
-    one, said, port = tcp_server(tmp_path, more=PIPELINE)
-    opened.append(one)
-    client = Client(port)
-    opened.append(client)
+    one, said, client = joined(tmp_path, opened)
     send_one_vehicle_and_its_task(client, shared)
     request = lmcp.new("AutomationRequest", EntityList=[400], TaskList=[1000])
     for body in (
@@ -128,10 +125,7 @@ def test_each_request_gets_one_response_in_order_with_reasons(
 def test_a_second_task_of_the_same_id_takes_the_place_of_the_first(
     tmp_path: Path, opened: list[Any]
 ) -> None:
-    one, _, port = tcp_server(tmp_path, more=PIPELINE)
-    opened.append(one)
-    client = Client(port)
-    opened.append(client)
+    one, _, client = joined(tmp_path, opened)
     for x in (1.0, 2.0):
         point = lmcp.new("Location3D", Latitude=x)
         client.send(lmcp.new("PointSearchTask", TaskID=3, SearchLocation=point))
@@ -145,14 +139,11 @@ def test_a_second_task_of_the_same_id_takes_the_place_of_the_first(
 def test_a_request_without_a_response_is_answered_in_time_and_strays_do_not_end_it(
     shared: Path, tmp_path: Path, opened: list[Any]
 ) -> None:
-    slow = PIPELINE.replace(
+    slow = SERVICES.replace(
         '"AutomationRequestValidatorService"',
         '"AutomationRequestValidatorService" MaxResponseTime_ms="1000"',
     )
-    one, said, port = tcp_server(tmp_path, 'Trust="TRUE"', more=slow)
-    opened.append(one)
-    client = Client(port)
-    opened.append(client)
+    one, said, client = joined(tmp_path, opened, 'Trust="TRUE"', slow)
     send_one_vehicle_and_its_task(client, shared)
     until(lambda: "TaskInitialized" in client.kinds(), one)
     number = next(n for n, name in one.manager.services.items() if name == "PlanBuilderService")
@@ -183,7 +174,7 @@ def test_a_recorded_simulator_session_tells_the_world(
     server = socket.create_server(("127.0.0.1", 0))
     opened.append(server)
     body = TCP.replace("TRUE", "FALSE").format(server.getsockname()[1], "", ALL)
-    one, said = process(write_cfg(tmp_path, PIPELINE + body))
+    one, said = process(write_cfg(tmp_path, SERVICES + body))
     opened.append(one)
     kinds: Counter[str] = Counter()
     one.bus.tap(lambda e: kinds.update([e.topic.rpartition(".")[2]]))
@@ -206,10 +197,7 @@ def test_a_client_s_task_service_takes_part_over_a_bridge(
     tmp_path: Path, opened: list[Any]
 ) -> None:
     """A kind of task that nobody here does, done by a client that says how it is flown."""
-    one, _, port = tcp_server(tmp_path, more=PIPELINE)
-    opened.append(one)
-    client = Client(port)
-    opened.append(client)
+    one, _, client = joined(tmp_path, opened)
     for body in (*vehicle(1), lmcp.new("RendezvousTask", TaskID=9)):
         client.send(body)
     client.send(lmcp.new("TaskInitialized", TaskID=9))
@@ -233,19 +221,13 @@ def test_a_client_s_task_service_takes_part_over_a_bridge(
         points = [
             lmcp.new("Waypoint", Number=start, Latitude=0.02 * k, AssociatedTasks=[9], Speed=20.0)
         ]
-        client.send(
-            lmcp.new(
-                "TaskImplementationResponse",
-                ResponseID=body.RequestID,
-                CorrespondingAutomationRequestID=number,
-                TaskID=9,
-                OptionID=body.OptionID,
-                VehicleID=1,
-                TaskWaypoints=points,
-                FinalLocation=place(0.02 * k + 0.002),
-                FinalTime=body.TimeThreshold + 1000,
-            )
+        assert (body.CorrespondingAutomationRequestID, body.TaskID, body.VehicleID) == (
+            number,
+            9,
+            1,
         )
+        end, end_ms = place(0.02 * k + 0.002), body.TimeThreshold + 1000
+        client.send(implementation(body, points, FinalLocation=end, FinalTime=end_ms))
     (command,) = told("AutomationResponse").MissionCommandList
     assert [w.Latitude for w in command.WaypointList] == [0.02, 0.04, 0.04], (
         "and an end without a task"
