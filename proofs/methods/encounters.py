@@ -34,3 +34,29 @@ def by_name(limits: Thresholds) -> dict[str, Any]:
     """Thresholds under the names that theorems give them, for lemmas."""
     dthr, zthr, tthr, tcoa, vmod = limits
     return {"dthr": dthr, "zthr": zthr, "tthr": tthr, "tcoa": tcoa, "vmod": vmod}
+
+
+def any_by_tcoa(c: Claim) -> tuple[tuple[Any, Any, Any, Any], list[Any]]:
+    """Any relative state, and any thresholds of the standard, none below 0: `dthr`, `zthr`, `tthr`, `tcoa`."""
+    limits = c.reals("dthr zthr tthr tcoa")
+    for threshold in limits:
+        c.premise(threshold >= 0)
+    return any_state(c), limits
+
+
+def any_nested_thresholds(c: Claim) -> tuple[Thresholds, Thresholds]:
+    """Any thresholds, none below 0, and any that are no less, named with a 2 behind."""
+    names = "dthr zthr tthr tcoa vmod"
+    small, great = c.reals(names), c.reals(" ".join(name + "2" for name in names.split()))
+    for low, high in zip(small, great, strict=True):
+        c.premise(low >= 0)
+        c.premise(low <= high)
+    return Thresholds(*small), Thresholds(*great)
+
+
+def any_cylinder(c: Claim) -> tuple[Any, Any, Any, Any, Any, Any]:
+    """Any relative state `s`, `v`, `sz`, `vz`, and any cylinder `radius`, `half`, neither below 0."""
+    radius, half = c.reals("radius half")
+    c.premise(radius >= 0)
+    c.premise(half >= 0)
+    return *any_state(c), radius, half

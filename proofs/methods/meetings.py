@@ -76,6 +76,13 @@ def offs_by_name(offs: motion.Offs) -> dict[str, Any]:
     return {f"{name}_{axis}": v for name, off in parts for axis, v in zip("xyz", off, strict=True)}
 
 
+def any_growth(c: Claim) -> Growth:
+    """Any growth of a radius, `start`, `rate`, `gain`, that shrinks nowhere."""
+    growth = Growth(*c.reals("start rate gain"))
+    _grows(c, growth)
+    return growth
+
+
 def _tube(c: Claim) -> Tube:
     wide, high = (Growth(*c.reals(f"{n}_start {n}_rate {n}_gain")) for n in ("wide", "high"))
     return Tube(wide, high)
@@ -83,4 +90,8 @@ def _tube(c: Claim) -> Tube:
 
 def _none_shrinks(c: Claim, tube: Tube) -> None:
     for growth in tube:
-        c.premise(c.all_of(growth.start_m >= 0, growth.rate_m_s >= 0, growth.gain_m_s2 >= 0))
+        _grows(c, growth)
+
+
+def _grows(c: Claim, growth: Growth) -> None:
+    c.premise(c.all_of(growth.start_m >= 0, growth.rate_m_s >= 0, growth.gain_m_s2 >= 0))

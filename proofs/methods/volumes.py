@@ -11,9 +11,14 @@ from typing import Any
 
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import layer_violation, vertical_interval
-from cratous.core.well_clear.thresholds import Thresholds
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.encounters import any_in_the_plane, any_state, any_thresholds, by_name
+from cratous.proofs.methods.encounters import (
+    any_in_the_plane,
+    any_nested_thresholds,
+    any_state,
+    any_thresholds,
+    by_name,
+)
 from cratous.spec import well_clear
 
 
@@ -97,16 +102,11 @@ def volume_is_monotone(
     violation_now: Any,
 ) -> None:
     """The volume grows with each of its thresholds."""
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz = c.reals("sz vz")
-    names = "dthr zthr tthr tcoa vmod"
-    small, great = c.reals(names), c.reals(" ".join(name + "2" for name in names.split()))
-    for low, high in zip(small, great, strict=True):
-        c.premise(low >= 0)
-        c.premise(low <= high)
+    s, v, sz, vz = any_state(c)
+    small, great = any_nested_thresholds(c)
     c.opaque(horizontal_now, layer_violation)
-    before = c.use(violation_now, s, v, sz, vz, Thresholds(*small))
-    after = c.use(violation_now, s, v, sz, vz, Thresholds(*great))
+    before = c.use(violation_now, s, v, sz, vz, small)
+    after = c.use(violation_now, s, v, sz, vz, great)
     (dthr, zthr, tthr, tcoa, vmod), (dthr2, zthr2, tthr2, tcoa2, vmod2) = small, great
     c.lemma(
         lemma,

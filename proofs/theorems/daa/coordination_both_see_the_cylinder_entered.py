@@ -3,17 +3,15 @@
 from cratous.core.daa.coordination import enters_cylinder
 from cratous.core.kernel import Vec2
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_cylinder
 from cratous.spec.daa import coordination as daa_coordination
 
 EXACT = "daa_coordination_cylinder_is_entered_exactly"
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, radius, half = c.reals("sz vz radius half")
+    s, v, sz, vz, radius, half = any_cylinder(c)
     begin, end, closest = c.reals("begin end closest")
-    c.premise(radius >= 0)
-    c.premise(half >= 0)
     vv, sv = v.x * v.x + v.y * v.y, s.x * v.x + s.y * v.y
     c.premise(c.implies(vv > 0, vv * closest + sv == 0))
     # when the heights are within half of each other

@@ -5,17 +5,14 @@ from cratous.core.kernel import Vec2
 from cratous.core.well_clear import horizontal_violation, layer_violation
 from cratous.core.well_clear.thresholds import Thresholds
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_nested_thresholds, any_state
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, t = c.reals("sz vz t")
-    names = "dthr zthr tthr tcoa vmod"
-    small, great = c.reals(names), c.reals(" ".join(name + "2" for name in names.split()))
-    for low, high in zip(small, great, strict=True):
-        c.premise(low >= 0)
-        c.premise(low <= high)
+    s, v, sz, vz = any_state(c)
+    t = c.real("t")
+    small, great = any_nested_thresholds(c)
     c.opaque(
         horizontal_violation,
         layer_violation,

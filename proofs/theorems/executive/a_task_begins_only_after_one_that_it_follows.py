@@ -5,27 +5,18 @@ from typing import Any
 
 from cratous.core.executive.steps import begun_before, some_begun_before
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.folds import verdict_is_defined
 from cratous.spec import executive
 
 
 def claim(c: Claim) -> None:
     known, start = c.boolean("known"), c.integer("start")
     at, lo, later = c.integer("at"), c.integer("lo"), c.integer("later")
-    acc, model = c.boolean("acc"), c.boolean("model")
 
     def step(ok: Any, has_begun: Any, when: Any, instant: Any, distance: Any) -> Any:
         return executive.followed(ok, has_begun, when, instant, distance)
 
-    c.fold(
-        some_begun_before,
-        acc=acc,
-        model=model,
-        item=(known, start),
-        context=(at, lo),
-        model_start=False,
-        model_step=step,
-        relation=c.same,
-    )
+    verdict_is_defined(c, some_begun_before, (known, start), (at, lo), step, start=False)
     before = c.boolean("before")
     now = c.use(begun_before, before, known, start, at, lo)
     c.show(c.same(now, c.define(executive.followed, before, known, start, at, lo)), "one more")

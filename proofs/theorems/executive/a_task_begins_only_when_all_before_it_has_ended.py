@@ -5,27 +5,18 @@ from typing import Any
 
 from cratous.core.executive.steps import all_ended_before, ended_before, may_begin
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.folds import verdict_is_defined
 from cratous.spec import executive
 
 
 def claim(c: Claim) -> None:
     known, end = c.boolean("known"), c.integer("end")
     at, lo, life, early = c.integer("at"), c.integer("lo"), c.integer("life"), c.boolean("early")
-    acc, model = c.boolean("acc"), c.boolean("model")
 
     def step(ok: Any, has_ended: Any, when: Any, instant: Any, distance: Any) -> Any:
         return executive.preceded_by(ok, has_ended, when, instant, distance)
 
-    c.fold(
-        all_ended_before,
-        acc=acc,
-        model=model,
-        item=(known, end),
-        context=(at, lo),
-        model_start=True,
-        model_step=step,
-        relation=c.same,
-    )
+    verdict_is_defined(c, all_ended_before, (known, end), (at, lo), step, start=True)
     before, is_life = c.boolean("before"), c.all_of(life >= 0, life <= executive.FAILED)
     c.premise(is_life)
     rows_open = c.use(ended_before, before, known, end, at, lo)

@@ -5,6 +5,7 @@ from typing import Any
 
 from cratous.core.geofence.distance import comes_within, leg_within
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.folds import verdict_is_defined
 from cratous.spec.geofence import any_step
 
 
@@ -15,13 +16,4 @@ def model_step(near: Any, a: Any, b: Any, p: Any, q: Any, d: Any) -> Any:
 def claim(c: Claim) -> None:
     p, q, a, b, d = c.vector("p"), c.vector("q"), c.vector("a"), c.vector("b"), c.real("d")
     c.opaque(leg_within)
-    c.fold(
-        comes_within,
-        acc=c.boolean("near"),
-        model=c.boolean("model_near"),
-        item=(a, b),
-        context=(p, q, d),
-        model_start=False,
-        model_step=model_step,
-        relation=c.same,
-    )
+    verdict_is_defined(c, comes_within, (a, b), (p, q, d), model_step, start=False)

@@ -5,6 +5,7 @@ from typing import Any
 
 from cratous.core.geofence.planar import meets_boundary, segments_meet
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.folds import verdict_is_defined
 from cratous.spec.geofence import any_step
 
 
@@ -15,13 +16,4 @@ def model_step(met: Any, a: Any, b: Any, p: Any, q: Any) -> Any:
 def claim(c: Claim) -> None:
     p, q, a, b = c.vector("p"), c.vector("q"), c.vector("a"), c.vector("b")
     c.opaque(segments_meet)
-    c.fold(
-        meets_boundary,
-        acc=c.boolean("met"),
-        model=c.boolean("model_met"),
-        item=(a, b),
-        context=(p, q),
-        model_start=False,
-        model_step=model_step,
-        relation=c.same,
-    )
+    verdict_is_defined(c, meets_boundary, (a, b), (p, q), model_step, start=False)

@@ -5,7 +5,8 @@ from typing import Any
 
 from cratous.core.geofence.regions import place_in_any
 from cratous.proofs.claim import Claim
-from cratous.spec.geofence import Parts, in_closed, in_open, place_of, union_step
+from cratous.proofs.methods.folds import places_are_combined
+from cratous.spec.geofence import in_closed, in_open, union_step
 
 
 def model_step(parts: Any, place: Any) -> Any:
@@ -13,21 +14,4 @@ def model_step(parts: Any, place: Any) -> Any:
 
 
 def claim(c: Claim) -> None:
-    place = c.integer("place")
-    c.premise(c.any_of(place == -1, place == 0, place == 1))
-
-    def related(found: Any, parts: Any) -> Any:
-        word = c.when(parts.open, 1, c.when(parts.closed, 0, -1))
-        return c.all_of(c.same(found, word), c.implies(parts.open, parts.closed))
-
-    c.fold(
-        place_in_any,
-        acc=c.whole("found"),
-        model=Parts(c.boolean("open"), c.boolean("closed")),
-        item=(place,),
-        context=(),
-        model_start=Parts(False, False),
-        model_step=model_step,
-        model_finish=place_of,
-        relation=related,
-    )
+    places_are_combined(c, place_in_any, model_step, start=False)

@@ -3,13 +3,13 @@ it, however the radius grows; where it is refused, it is not so at its begin or 
 
 from cratous.core.permit.pieces import above_during
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.meetings import any_growth
 from cratous.spec.permit import motion
 
 
 def claim(c: Claim) -> None:
-    growth = motion.Growth(*c.reals("start rate gain"))
+    growth = any_growth(c)
     sz, vz, d, t = c.reals("sz vz d t")
-    c.premise(c.all_of(growth.start_m >= 0, growth.rate_m_s >= 0, growth.gain_m_s2 >= 0))
     c.premise(c.all_of(t >= 0, t <= d))
     above = c.use(above_during, sz, vz, growth, d)
     left = sz + t * vz - c.define(motion.reach, growth, t)

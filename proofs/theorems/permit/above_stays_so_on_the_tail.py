@@ -2,13 +2,13 @@
 
 from cratous.core.permit.pieces import above_during, growth_after
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.meetings import any_growth
 from cratous.spec.permit import motion
 
 
 def claim(c: Claim) -> None:
-    growth = motion.Growth(*c.reals("start rate gain"))
+    growth = any_growth(c)
     sz, vz, d, k = c.reals("sz vz d k")
-    c.premise(c.all_of(growth.start_m >= 0, growth.rate_m_s >= 0, growth.gain_m_s2 >= 0))
     c.premise(c.all_of(k >= 0, k <= d))
     above = c.use(above_during, sz, vz, growth, d)
     named = {"start": growth.start_m, "rate": growth.rate_m_s, "gain": growth.gain_m_s2}

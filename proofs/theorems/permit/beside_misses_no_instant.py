@@ -4,14 +4,14 @@ of the piece, however the radius grows."""
 from cratous.core.permit.pieces import beside_during
 from cratous.core.well_clear import dips_to_zero
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.meetings import any_growth
 from cratous.spec.permit import motion
 
 
 def claim(c: Claim) -> None:
     s, v = c.vector("s"), c.vector("v")
-    growth = motion.Growth(*c.reals("start rate gain"))
+    growth = any_growth(c)
     d, t = c.reals("d t")
-    c.premise(c.all_of(growth.start_m >= 0, growth.rate_m_s >= 0, growth.gain_m_s2 >= 0))
     c.premise(c.all_of(t >= 0, t <= d))
     c.opaque(dips_to_zero)
     beside = c.use(beside_during, s, v, growth, d)

@@ -5,19 +5,13 @@ from typing import Any
 
 from cratous.core.requirements.since import Broken, Found, Since, since_holds
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.samples import START, any_sample
 from cratous.spec.requirements.operators import Meant, since_step
-
-START = -(2**62)
 
 
 def claim(c: Claim) -> None:
-    time, phi, psi = c.integer("time"), c.integer("phi"), c.integer("psi")
-    at, low, high = c.integer("at"), c.integer("low"), c.integer("high")
-    for verdict in (phi, psi):
-        c.premise(verdict >= 0)
-        c.premise(verdict <= 2)
-    c.premise(low >= 0)
-    c.premise(low <= high)
+    sample, asked = any_sample(c)
+    at, _, high = asked
     acc = Since(
         c.whole("last"),
         Found(c.whole("latest_true"), c.whole("candidate")),
@@ -47,8 +41,8 @@ def claim(c: Claim) -> None:
         since_holds,
         acc=acc,
         model=model,
-        item=(time, phi, psi),
-        context=(at, low, high),
+        item=sample,
+        context=asked,
         model_start=Meant(START, 2, 0),
         model_step=since_step,
         model_finish=lambda m: m.value,

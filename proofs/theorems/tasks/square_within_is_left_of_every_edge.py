@@ -5,6 +5,7 @@ from typing import Any
 
 from cratous.core.tasks.coverage_steps import square_left_of, square_within
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.folds import verdict_is_defined
 from cratous.spec.geofence import every_step
 
 
@@ -16,13 +17,4 @@ def claim(c: Claim) -> None:
     centre, a, b = c.vector("centre"), c.vector("a"), c.vector("b")
     half = c.real("half")
     c.opaque(square_left_of)
-    c.fold(
-        square_within,
-        acc=c.boolean("so_far"),
-        model=c.boolean("model_so_far"),
-        item=(a, b),
-        context=(centre, half),
-        model_start=True,
-        model_step=model_step,
-        relation=c.same,
-    )
+    verdict_is_defined(c, square_within, (a, b), (centre, half), model_step, start=True)

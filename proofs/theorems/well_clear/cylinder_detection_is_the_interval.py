@@ -14,13 +14,12 @@ from cratous.core.well_clear import (
     violation_times_tep,
 )
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_cylinder
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, radius, half, begin, end, witness = c.reals("sz vz radius half begin end witness")
-    c.premise(radius >= 0)
-    c.premise(half >= 0)
+    s, v, sz, vz, radius, half = any_cylinder(c)
+    begin, end, witness = c.reals("begin end witness")
     c.opaque(
         horizontal_interval_tep,
         layer_window,

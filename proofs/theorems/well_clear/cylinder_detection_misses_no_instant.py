@@ -3,14 +3,13 @@ flight, then at no instant of [B, T] is it inside."""
 
 from cratous.core.well_clear import cylinder_during, violation_during_tep
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_cylinder
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, radius, half, begin, end, t = c.reals("sz vz radius half begin end t")
-    c.premise(radius >= 0)
-    c.premise(half >= 0)
+    s, v, sz, vz, radius, half = any_cylinder(c)
+    begin, end, t = c.reals("begin end t")
     c.premise(begin <= t)
     c.premise(t <= end)
     c.opaque(violation_during_tep, well_clear.violation_tep_at)

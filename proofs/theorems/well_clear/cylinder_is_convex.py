@@ -5,15 +5,13 @@ from cratous.core.kernel import Vec2
 from cratous.core.well_clear.interval import violation_interval_tep
 from cratous.core.well_clear.now import cylinder_violation, violation_tep
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_cylinder
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, radius, half = c.reals("sz vz radius half")
+    s, v, sz, vz, radius, half = any_cylinder(c)
     early, middle, late = c.reals("early middle late")
-    c.premise(radius >= 0)
-    c.premise(half >= 0)
     c.premise(early <= middle)
     c.premise(middle <= late)
     c.opaque(

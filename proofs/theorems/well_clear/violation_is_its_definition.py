@@ -3,14 +3,12 @@ volume of the definition are violated at once."""
 
 from cratous.core.well_clear import violation
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_by_tcoa
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa = c.reals("sz vz dthr zthr tthr tcoa")
-    for threshold in (dthr, zthr, tthr, tcoa):
-        c.premise(threshold >= 0)
+    (s, v, sz, vz), (dthr, zthr, tthr, tcoa) = any_by_tcoa(c)
     arguments = (s, v, sz, vz, dthr, zthr, tthr, tcoa)
     verdict = c.use(violation, *arguments)
     c.show(c.same(verdict, c.define(well_clear.violation, *arguments)))

@@ -4,13 +4,11 @@ ownship, for every relative state and all thresholds not below zero."""
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import violation
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_by_tcoa
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa = c.reals("sz vz dthr zthr tthr tcoa")
-    for threshold in (dthr, zthr, tthr, tcoa):
-        c.premise(threshold >= 0)
+    (s, v, sz, vz), (dthr, zthr, tthr, tcoa) = any_by_tcoa(c)
     ours = c.use(violation, s, v, sz, vz, dthr, zthr, tthr, tcoa)
     back_s, back_v = Vec2(0 - s.x, 0 - s.y), Vec2(0 - v.x, 0 - v.y)
     theirs = c.use(violation, back_s, back_v, 0 - sz, 0 - vz, dthr, zthr, tthr, tcoa)

@@ -3,13 +3,11 @@
 from cratous.core.well_clear import violation, violation_taumod
 from cratous.core.well_clear.thresholds import Thresholds
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.encounters import any_by_tcoa
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa = c.reals("sz vz dthr zthr tthr tcoa")
-    for threshold in (dthr, zthr, tthr, tcoa):
-        c.premise(threshold >= 0)
+    (s, v, sz, vz), (dthr, zthr, tthr, tcoa) = any_by_tcoa(c)
     standard = c.use(violation, s, v, sz, vz, dthr, zthr, tthr, tcoa)
     c.show(
         c.same(
