@@ -112,7 +112,7 @@ def document() -> str:
         "Generated from the registry of services and the tests by `make docs`; do not edit. A row",
         "stands here with the tests that send the message or set the attribute (or receive what is",
         "sent) and assert an effect; a row without one fails the suite. How services are configured",
-        "is in [uxas.md](uxas.md). A subscription to a base type (Task, EntityState,",
+        "is in [uxas.md](../guides/uxas.md). A subscription to a base type (Task, EntityState,",
         "EntityConfiguration, AbstractZone) is one to all of its kinds.",
     ]
     last = ""

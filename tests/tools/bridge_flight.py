@@ -31,7 +31,6 @@ FRAME = Frame(45.0, -121.0, 0.0)
 PLANE = Projection(FRAME)
 LIMITS = Limits(15.0, 33.0, math.radians(30.0), 5.0)
 STEP_S, BEAT_MS = 0.25, 500
-SERVICE = "IcarousCommunicationService"
 WAY = ((0.0, 0.0), (1500.0, 0.0), (3500.0, 0.0), (4500.0, 0.0))
 TASK = 7
 MISSION = """

@@ -8,7 +8,6 @@ from typing import Any
 
 import pytest
 from bridge_flight import (
-    SERVICE,
     TASK,
     WAY,
     Aircraft,
@@ -33,6 +32,8 @@ from cratous.services.cli import main
 from cratous.services.cli.icarous import craft_of
 from cratous.services.loading import load
 from cratous.spec.errors import BadInput
+
+SERVICE = "IcarousCommunicationService"  # named here for the table of services
 
 
 def at(port: int) -> Address:

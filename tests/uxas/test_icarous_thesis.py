@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 from bridge_flight import (
     BEAT_MS,
-    SERVICE,
     STEP_S,
     TASK,
     WAY,
@@ -31,6 +30,8 @@ from cratous.services.cli import main
 from cratous.services.cli.icarous import craft_of
 from cratous.services.icarous_program.program import Program
 from cratous.services.icarous_program.step import IcarousEnd
+
+SERVICE = "IcarousCommunicationService"  # named here for the table of services
 
 THESIS = tp.Dialect.THESIS
 
