@@ -145,6 +145,28 @@ def test_undone_tasks_stay_undone_and_begun_ones_make_the_choice() -> None:
         make_plan(mission(FOUR[:1], relations="p1_[0-9]"))
 
 
+def test_of_a_choice_of_which_nothing_is_done_each_task_has_a_reason() -> None:
+    plan = make_plan(mission(relations="|(+(p1_[0-9] .(p2_[0-9] p4)) p3)"))
+    assert [item.task_id for item in plan.items] == [3]
+    found = {left.task_id: left for left in left_out_of(plan)}
+    assert found.keys() == {1, 2, 4}
+    assert found[1].reason.startswith("task 1 must end by 0.009 s")
+    assert found[2].reason.startswith("task 2 must end by 0.009 s")
+    assert found[4].reason.startswith("it must wait for what is not done")
+
+
+def test_a_choice_that_could_be_made_but_leaves_out_more_says_so() -> None:
+    """Task 4 has no schedule and goes before task 1; of `|(p2 p4)` p2 could be done."""
+    tasks_of = (*(replace(task, priority=1) for task in FOUR[:1]), *FOUR[1:3])
+    more = replace(FOUR[3], priority=2)
+    of = mission((*tasks_of, more), relations="|(+(p1_[0-9] |(p2 p4_[0-9])) p3)")
+    plan = make_plan(of)
+    assert [item.task_id for item in plan.items] == [3]
+    found = {left.task_id: left.reason for left in left_out_of(plan)}
+    assert found.keys() == {1, 2, 4}
+    assert found[2] == "it could be done, but another choice of the relations leaves out less"
+
+
 def test_what_was_flown_stays_done_whatever_became_of_what_it_followed() -> None:
     """Of `~(p2 p1)` p2 was begun and given up, p1 flown; the window of p3 cannot be kept: nothing is left, no error."""
     of = mission(FOUR[:3], relations="|(~(p2 p1) p3_[0-9])")
