@@ -103,16 +103,12 @@ def _on_end(config: Config, state: State, chain: Chain, at_ms: int, out: Out) ->
     if item is None or moved.act == LAST_LAP:
         return state.put(chain.enter(Phase(moved.phase), Track(last_lap(chain)), at_ms))
     if moved.act == GO_ON:
-        share, told = next(
-            (
-                (math.floor(1000 * p.share) / 1000, f"in part: {p.text}")
-                for p in in_part_of(state.plan)
-                if p.task_id == item.task_id
-            ),
-            (1.0, ""),
-        )
+        part = next((p for p in in_part_of(state.plan) if p.task_id == item.task_id), None)
+        share = 1.0 if part is None else math.floor(1000 * part.share) / 1000
+        told = "" if part is None else f"in part: {part.text}"
         out.append(progress(chain, at_ms, "Complete", told, share))
-        return next_item(config, state.ended(item.task_id, at_ms), chain, at_ms, out)
+        state = state.ended(item.task_id, at_ms, whole=part is None)
+        return next_item(config, state, chain, at_ms, out)
     if moved.act == START:
         return _start(state, chain, item, at_ms, out)
     if moved.act == LAP:
