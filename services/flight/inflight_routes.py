@@ -1,7 +1,8 @@
 """Tracks made in flight: to the next task, back onto the path that was left, around at the end.
 
 What is planned is flown as it is planned; these are made where a vehicle does not come from where
-the plan has it. Zones and turns are the router's; where it finds no way that keeps the zones there is none, but for one out of zones that enclose a vehicle without tasks.
+the plan has it. Zones and turns are the router's; where it finds no way that keeps the zones there is
+none, but for one out of zones that enclose a vehicle without tasks.
 What is flown is judged by the monitor.
 """
 
