@@ -14,6 +14,7 @@ from cratous.services.flight.replan_triggers import (
     handed_over,
     left_by,
     nobody_may,
+    orders_missed,
     touched_by,
     undone_by,
 )
@@ -21,10 +22,11 @@ from cratous.services.flight.task_transitions import begin, give_up, progress
 from cratous.services.mission.availability import absent
 from cratous.services.mission.wind import all_in_wind, in_wind, known_at, told, wind_at
 from cratous.services.planning.zones import hard_zones
+from cratous.spec.algebra.meaning import tasks
 from cratous.spec.executive import FOR_CHANGE
 from cratous.spec.mission import Change
-from cratous.spec.mission.asked import asked
-from cratous.spec.mission.changes import ZONE_ENDS, ZoneEnd, split, words
+from cratous.spec.mission.asked import asked, term_of
+from cratous.spec.mission.changes import ZONE_ENDS, ZoneEnd, split, with_choices, words
 from cratous.spec.mission.plan import Plan, left_out_of
 
 NAME = "uxas"
@@ -77,7 +79,8 @@ def change(config: Config, state: State, due: Sequence[Change], out: Out) -> Sta
     touched = touched_by(
         due, zones, state.by_vehicle(), dict(state.ends), dict(state.aircraft), undone
     )
-    why = "; ".join(text for text in (blown, touched) if text)
+    missed = orders_missed(known, due, dict(state.starts), dict(state.ends)) if touched else ""
+    why = "; ".join(text for text in (blown, touched, missed) if text)
     if not why:
         _tell(state, what, "the plan holds as it is", out)
         return state
@@ -119,7 +122,7 @@ def planned(config: Config, state: State, plan: Plan, asked_for: Asked, out: Out
 
 def unplanned(config: Config, state: State, no_plan: str, asked_for: Asked, out: Out) -> State:
     """After a change nothing that is left can be done."""
-    todo = left(state)
+    todo = _open(state)
     none = nobody_may(state.known, todo, absent(config.mission, state.now_ms))
     why = "; ".join(filter(None, (asked_for.why, none)))
     _tell(state, asked_for.what, f"no plan for what is left ({no_plan}): {why}", out)
@@ -130,8 +133,25 @@ def unplanned(config: Config, state: State, no_plan: str, asked_for: Asked, out:
 def left(state: State) -> list[int]:
     """The tasks that are asked for and not done."""
     ends = dict(state.ends).keys()
-    accepted = ends | {item.task_id for item in state.plan.items}
-    return [task for task in asked(state.known, ends, accepted) if task not in ends]
+    return [task for task in _asked(state) if task not in ends]
+
+
+def _open(state: State) -> list[int]:
+    """The tasks not done of every choice that may still be made, by number."""
+    term = term_of(with_choices(state.known, dict(state.starts).keys()))
+    ends = dict(state.ends).keys()
+    return [] if term is None else sorted(set(tasks(term)) - ends)
+
+
+def unserved(state: State) -> list[int]:
+    """The tasks that are asked for and not done whole."""
+    ends = dict(state.ends).keys()
+    return [task for task in _asked(state) if task not in ends or task in state.in_part]
+
+
+def _asked(state: State) -> tuple[int, ...]:
+    ends = dict(state.ends).keys()
+    return asked(state.known, ends, ends | {item.task_id for item in state.plan.items})
 
 
 def _tell(state: State, what: str, answer: str, out: Out) -> None:

@@ -210,7 +210,8 @@ class Executive:
         away = [vid for vid, gate in message.gates if gate.owner != UXAS]
         kinds = (*BRINGS_WORK, *(MAY_FREE_WORK if state.left_out else ()))
         expected = sum(c.kind in kinds for c in state.to_come)
-        todo = len(changes.left(state)) if not flying else 0  # while some fly it is no matter
+        # while some fly it is no matter; of a search that was flown in part the rest is left
+        todo = len(changes.unserved(state)) if not flying else 0
         how = OUTCOMES[flight_outcome(flying, len(away), expected, todo, now_ms, limit_ms)]
         if not how:
             return state

@@ -66,7 +66,7 @@ class State:
     bind, with their padding turned into vertices; to_come: changes that nobody knows of yet; aircraft:
     of the vehicles, as told last; epochs: in which UxAS took a vehicle back (0 for others): what its commands
     name; starts, ends: real ones; failed: tasks with the reason; left_out: those that the plan in force
-    leaves out, with the reason;
+    leaves out, with the reason; in_part: tasks of which a part was flown, to its end;
     commands, replans, finished: counts; hurry: some deadline is near; asked: for which plan."""
 
     known: Mission
@@ -83,6 +83,7 @@ class State:
     ends: Times = ()
     failed: tuple[tuple[int, str], ...] = ()
     left_out: tuple[tuple[int, str], ...] = ()
+    in_part: tuple[int, ...] = ()
     commands: int = 0
     replans: int = 0
     finished: int = 0
@@ -126,9 +127,10 @@ class State:
         failed = dict(self.failed)
         return {task: at_ms for task, at_ms in self.starts if task not in failed}
 
-    def ended(self, task_id: int, at_ms: int) -> State:
-        """A task has ended."""
-        return replace(self, ends=_with(dict(self.ends), task_id, at_ms))
+    def ended(self, task_id: int, at_ms: int, whole: bool = True) -> State:
+        """A task has ended; whole: not just a part of it was flown."""
+        in_part = self.in_part if whole else (*self.in_part, task_id)
+        return replace(self, ends=_with(dict(self.ends), task_id, at_ms), in_part=in_part)
 
     def has_failed(self, task_id: int, why: str) -> State:
         """A task has failed."""

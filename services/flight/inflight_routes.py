@@ -1,16 +1,20 @@
 """Tracks made in flight: to the next task, back onto the path that was left, around at the end.
 
 What is planned is flown as it is planned; these are made where a vehicle does not come from where
-the plan has it. Zones and turns are the router's; where it finds no way that keeps the zones there is none.
+the plan has it. Zones and turns are the router's; where it finds no way that keeps the zones there is
+none, but for one out of zones that enclose a vehicle without tasks.
 What is flown is judged by the monitor.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from itertools import pairwise
 from typing import NamedTuple
 
-from cratous.core.routing.dubins import STRAIGHT, pose_after
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.routing.dubins import STRAIGHT, cut, dubins, pose_after
 from cratous.core.routing.polylines import Track
 from cratous.services.flight import chain as chains
 from cratous.services.flight.chain import Chain, Phase
@@ -30,10 +34,12 @@ class Back(NamedTuple):
 
 
 class Last(NamedTuple):
-    """Where a vehicle circles at the end of its chain, and whether its circle keeps the zones."""
+    """Where a vehicle circles at the end of its chain, and whether its circle, and the way there, keep
+    the zones."""
 
     track: Track
     kept: bool
+    way_kept: bool = True
 
 
 AWAY = (3.0, 6.0, 12.0, 24.0)
@@ -111,8 +117,24 @@ class Ways:
         return Last(chains.final_loiter(pose, radius_m, layer_m, slope, self.zones), True)
 
     def _near(self, chain: Chain, state: AirState, pose: Pose) -> Last:
-        """A way to the nearest place found where a circle keeps the zones, and a lap there; if there is none,
-        a circle at the pose that breaks one."""
+        """A way to the nearest place found where a circle keeps the zones, and a lap there. If no way there
+        keeps them, one that is in them as shortly as can be; without a place a circle at the pose that breaks one."""
+        across: list[tuple[float, float, Track]] = []
+        for place, lap in self._places(chain, pose):
+            way = self._to(chain, state, place)
+            if way:
+                return Last(Track((*way, *lap)), True)
+            direct = cut(dubins(state.pose, place, _radius_m(chain)), place)
+            bad = [leg for leg in pairwise(direct) if first_bad_leg(leg, self.zones) is not None]
+            broken_m, way_m = (sum(math.dist(*leg) for leg in g) for g in (bad, pairwise(direct)))
+            # to ten metres: a place that is far away is no better for a metre less
+            across.append((round(broken_m, -1), way_m, Track((*direct, *lap))))
+        if across:
+            return Last(min(across, key=lambda one: one[:2])[2], True, way_kept=False)
+        return Last(chains.final_loiter(pose, _radius_m(chain), 0.0, 0.0, ()), False)
+
+    def _places(self, chain: Chain, pose: Pose) -> Iterator[tuple[Pose, tuple[Position, ...]]]:
+        """Places about a pose where a circle keeps the zones, the nearest first, each with the rest of its lap."""
         radius_m = _radius_m(chain)
         for away in AWAY:
             for k in range(BEARINGS):
@@ -121,11 +143,8 @@ class Ways:
                     STRAIGHT, away * radius_m, radius_m,
                 )  # fmt: skip
                 hold = chains.tangent_hold(at, radius_m, self.zones)
-                way = self._to(chain, state, at) if hold is not None else ()
-                if hold is not None and way:
-                    lap = chains.lap_points(hold, Position(*at[:3]))
-                    return Last(Track((*way, *lap[1:])), True)
-        return Last(chains.final_loiter(pose, radius_m, 0.0, 0.0, ()), False)
+                if hold is not None:
+                    yield at, tuple(chains.lap_points(hold, Position(*at[:3]))[1:])
 
     def _to(self, chain: Chain, state: AirState, target: Pose) -> tuple[Position, ...]:
         slope = chain.vehicle.max_climb_m_s / chain.speed_m_s

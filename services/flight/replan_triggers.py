@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from itertools import islice
 
 from cratous.core.executive.steps import change_counts
 from cratous.core.geofence.mission_legs import first_bad_leg
@@ -10,7 +11,11 @@ from cratous.core.routing.visibility import name_of
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState
 from cratous.spec import executive
+from cratous.spec.algebra.meaning import branches, rows
+from cratous.spec.algebra.partial import waits_for
+from cratous.spec.constraint_rows import AFTER_END
 from cratous.spec.mission import Change, Mission, Zone
+from cratous.spec.mission.asked import term_of
 from cratous.spec.mission.changes import (
     TASK_ADDED,
     TASK_REMOVED,
@@ -18,9 +23,12 @@ from cratous.spec.mission.changes import (
     VEHICLE_LOST,
     ZONE_ENDS,
     ZoneEnd,
+    with_choices,
 )
 from cratous.spec.mission.plan import Plan, in_part_of, left_out_of, left_out_text
 
+BRANCHES_MAX = 64
+"""So many ways to resolve `+` are looked at for orders that are missed."""
 KINDS = {
     VEHICLE_LOST: executive.LOST,
     VEHICLE_JOINS: executive.JOINS,
@@ -82,6 +90,25 @@ def undone_by(change: Change, plan: Plan, settled: Collection[int]) -> list[int]
     tasks = {one.task_id for one in left_out_of(plan)}
     tasks |= {one.task_id for one in in_part_of(plan) if change.zone_id in one.zones}
     return sorted(tasks.difference(settled))
+
+
+def orders_missed(
+    known: Mission, due: Sequence[Change], starts: Mapping[int, int], ends: Collection[int]
+) -> str:
+    """Which orders can be kept no more, since a task had begun before one that it waits for was asked for."""
+    term = term_of(with_choices(known, set(starts)))
+    if term is None:
+        return ""
+    new = {change.task for change in due if change.kind == TASK_ADDED}
+    found: dict[str, None] = {}
+    for branch in islice(branches(term), BRANCHES_MAX):
+        for row in rows(branch):
+            before = set(ends) if row.kind == AFTER_END else set(starts)
+            missed = new & set(row.group) - before
+            if row.i in starts and missed and waits_for(row, before):
+                began = f"task {row.i} began at {starts[row.i] / 1000:.2f} s"
+                found[f"{row.text} cannot be kept any more: {began}"] = None
+    return "; ".join(found)
 
 
 def touched_by(

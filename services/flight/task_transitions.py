@@ -34,6 +34,9 @@ EARLY_MS = 500
 NO_WAY = "no way there keeps the zones"
 NO_HOLD = "it would have to wait, and no circle at its start keeps the zones"
 NO_CIRCLE = "no circle there or near keeps the zones: it circles across them"
+NO_WAY_OUT = (
+    "no way to a circle that keeps the zones was found: it crosses them once, as shortly as found"
+)
 NAME = "uxas/executive"
 """The sender of what the executive says of itself."""
 
@@ -103,16 +106,12 @@ def _on_end(config: Config, state: State, chain: Chain, at_ms: int, out: Out) ->
     if item is None or moved.act == LAST_LAP:
         return state.put(chain.enter(Phase(moved.phase), Track(last_lap(chain)), at_ms))
     if moved.act == GO_ON:
-        share, told = next(
-            (
-                (math.floor(1000 * p.share) / 1000, f"in part: {p.text}")
-                for p in in_part_of(state.plan)
-                if p.task_id == item.task_id
-            ),
-            (1.0, ""),
-        )
+        part = next((p for p in in_part_of(state.plan) if p.task_id == item.task_id), None)
+        share = 1.0 if part is None else math.floor(1000 * part.share) / 1000
+        told = "" if part is None else f"in part: {part.text}"
         out.append(progress(chain, at_ms, "Complete", told, share))
-        return next_item(config, state.ended(item.task_id, at_ms), chain, at_ms, out)
+        state = state.ended(item.task_id, at_ms, whole=part is None)
+        return next_item(config, state, chain, at_ms, out)
     if moved.act == START:
         return _start(state, chain, item, at_ms, out)
     if moved.act == LAP:
@@ -180,12 +179,13 @@ def _loiter(config: Config, state: State, chain: Chain, at_ms: int, out: Out) ->
 
 
 def circling(config: Config, state: State, chain: Chain, layer_m: float, out: Out) -> Track:
-    """A vehicle's track with nothing left to fly, raised by a layer. If its circle breaks a zone, that is said."""
+    """A vehicle's track with nothing left to fly, raised by a layer. If that breaks a zone, it is said."""
     vid = chain.vehicle.id
     last = config.ways(state.zones).last(chain, state.air(vid), layer_m)
-    if not last.kept:
+    if not (last.kept and last.way_kept):
         what = f"vehicle {vid} has nothing left to fly"
-        out.append(Say(mission_change(state.now_ms, what, NO_CIRCLE), NAME))
+        told = NO_WAY_OUT if last.kept else NO_CIRCLE
+        out.append(Say(mission_change(state.now_ms, what, told), NAME))
     return last.track
 
 

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from cratous.core.algebra.steps import Ran, in_order
 from cratous.core.kernel import qualified
 from cratous.core.schedule.choice import as_asked
-from cratous.core.schedule.rows import eligible
+from cratous.core.schedule.rows import eligible, runs_forward
 from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok
 from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.relations import branch_rows, by_term, is_choice
 from cratous.services.monitor.required_rows import (
     CHOICE,
+    Bound,
     Watched,
     eligible_item,
     fence_item,
@@ -23,6 +24,7 @@ from cratous.services.monitor.required_rows import (
 from cratous.services.monitor.samples import Sample
 from cratous.spec.constraint_rows import AFTER_END, AFTER_START, Row
 from cratous.spec.mission import Mission, Position, Zone
+from cratous.spec.mission.changes import requested_ms
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
 ACTIVE, COMPLETE, FAILED = "Active", "Complete", "Failed"
@@ -33,12 +35,29 @@ WAITS = {AFTER_END: 1, AFTER_START: 2}
 @dataclass
 class Fence:
     """What has been seen of one vehicle and one zone. first, last: the positions of the vehicle's track
-    between which it was held to the zone."""
+    between which it was held to the zone; over: the zone appeared where the vehicle was; left_ms: since when
+    the vehicle has been out of it; again_ms: when it came in again."""
 
     first: int
     last: int
     checks: int = 0
     broken_ms: int | None = None
+    over: bool = False
+    left_ms: int | None = None
+    again_ms: int | None = None
+
+    def words(self) -> str:
+        """How the zone was broken."""
+        at = f"{(self.broken_ms or 0) / 1000:.2f} s"
+        if not self.over:
+            return f"entered at {at}"
+        left = (
+            "did not leave it"
+            if self.left_ms is None
+            else f"left it by {self.left_ms / 1000:.2f} s"
+        )
+        again = "" if self.again_ms is None else f", and entered it at {self.again_ms / 1000:.2f} s"
+        return f"it appeared over the vehicle at {at}, which {left}{again}"
 
 
 class ConstraintWatch:
@@ -81,9 +100,21 @@ class ConstraintWatch:
                 fence = self._fences.setdefault((vehicle, zone.id), Fence(last - 1, last))
                 fence.last = last
                 fence.checks += 1
-                if not exact_leg_ok(p, q, zone) and fence.broken_ms is None:
-                    fence.broken_ms = before[vehicle].time_ms
-                    self.violations.append(self._fence_verdict(vehicle, zone, fence, ""))
+                self._leg(vehicle, (p, q), bound, before[vehicle].time_ms)
+
+    def _leg(self, vehicle: int, leg: tuple[Position, Position], bound: Bound, at_ms: int) -> None:
+        """One flown leg, begun at an instant, against a zone."""
+        zone, fence = bound.zone, self._fences[vehicle, bound.zone.id]
+        clear = exact_leg_ok(*leg, zone)
+        if clear and fence.broken_ms is not None and fence.left_ms is None:
+            fence.left_ms = at_ms
+        elif not clear and fence.broken_ms is None:
+            fence.broken_ms = at_ms
+            late, first = zone not in self._mission.zones, fence.checks == 1
+            fence.over = late and first and not exact_leg_ok(leg[0], leg[0], zone)
+            self.violations.append(self._fence_verdict(vehicle, zone, fence, ""))
+        elif not clear and fence.left_ms is not None and fence.again_ms is None:
+            fence.again_ms = at_ms
 
     def _fence_verdict(self, vehicle: int, zone: Zone, fence: Fence, unseen: str) -> Verdict:
         broken = fence.broken_ms is not None
@@ -91,7 +122,7 @@ class ConstraintWatch:
         note = f"{fence.checks} flown legs"
         outcome = Outcome.HOLDS
         if broken:
-            note, outcome = f"entered at {(fence.broken_ms or 0) / 1000:.2f} s", Outcome.VIOLATED
+            note, outcome = fence.words(), Outcome.VIOLATED
         elif unseen:
             note, outcome = f"{note}; {unseen}", Outcome.UNKNOWN
         return Verdict(
@@ -152,7 +183,9 @@ class ConstraintWatch:
         for row in kept.rows if kept is not None else ():
             missing = [t for t in (row.i, *row.group) if t not in times]
             if kept is not None and not missing:
-                yield kept.verdict(row, times, "flight")
+                found = kept.verdict(row, times, "flight")
+                late = self._asked_late(row) if found.outcome is Outcome.VIOLATED else ""
+                yield replace(found, note=f"{found.note}{late}")
                 continue
             yield self._unfinished(row, missing, ending)
 
@@ -168,12 +201,22 @@ class ConstraintWatch:
                 event = "ended" if row.kind == AFTER_END else "begun"
                 names = ", ".join(map(str, sorted(set(row.group) & set(missing))))
                 note = f"task {row.i} began, though task {names} had not {event} by then"
+                note += self._asked_late(row)
                 return Verdict(
                     "G1", item, Outcome.VIOLATED, Kind.EXACT, note, time_ms=start, checks=1,
                     method="in_order", kernels=(qualified(in_order),),
                 )  # fmt: skip
         note = f"not judged: task {', '.join(map(str, missing))} was not flown to its end"
         return Verdict("G1", item, Outcome.UNKNOWN, Kind.OBSERVED, note)
+
+    def _asked_late(self, row: Row) -> str:
+        """Of a row by which a task waits for others: which of these were asked for only after it began."""
+        start, said = self._starts.get(row.i), ""
+        for task in row.group if row.kind in WAITS and start is not None else ():
+            since = requested_ms(self._mission, task)
+            if since is not None and start is not None and runs_forward(start + 1, since):
+                said += f"; task {task} was asked for only at {since / 1000:.2f} s"
+        return said
 
     def _eligibility(self, seen: Watched, ending: Ending) -> Iterator[Verdict]:
         known = {task.id: task for task in self._mission.tasks}

@@ -129,7 +129,8 @@ def _found(offered: Read) -> mission_assign.Found:
     mission, problem = inputs.mission, inputs.problem(travel_of(inputs, rows))
     limits = mission_assign.limits_of(mission)
     try:
-        found = mission_assign.assign(problem, limits)
+        # of a mission the part that can be done says why the rest cannot
+        found = mission_assign.assign(problem, limits, tell=bool(offered.split.ids))
     except BadInput as error:
         # only what is said of tasks better elsewhere is no mistake of ours
         why = without_vehicles.why_none(inputs) or tuple(inputs.undone.values())
@@ -152,7 +153,8 @@ def _found(offered: Read) -> mission_assign.Found:
         if part.assignment is not None:
             return part
         unreached = [t for t in tasks if t not in {row.DestinationTaskID for row in rows}]
-        raise NoPlan(_nothing(inputs, part, unreached) or found.reasons)
+        why = _nothing(inputs, part, unreached) or found.reasons
+        raise NoPlan(why or mission_assign.assign(problem, limits).reasons)
     return found
 
 

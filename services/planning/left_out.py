@@ -11,7 +11,7 @@ from cratous.services.planning.assign import Limits
 from cratous.services.planning.mission_assign import Found
 from cratous.services.planning.partial import PROBES, Part, Parts, restricted
 from cratous.spec.algebra.meaning import rows, tasks
-from cratous.spec.algebra.partial import only, waits_for
+from cratous.spec.algebra.partial import may_be_done, only, waits_for
 from cratous.spec.assignment.search import AssignmentProblem
 from cratous.spec.mission.plan import ORDER, TIME, LeftOut, Remedy
 
@@ -44,7 +44,7 @@ def assign_part(
         return found
     done = set(found.assignment.branch.tasks)
     part = next(part for part in chosen.parts if part[1] == done)
-    left = _Reasons(all_of, part, unable, remedies).all()
+    left = (*_Reasons(all_of, part, unable, remedies).all(), *_other_choices(all_of, part, unable))
     assignment = _numbered(found.assignment, made, problem)
     return replace(found, assignment=assignment, left_out=left, sure=chosen.sure)
 
@@ -57,6 +57,19 @@ def _nothing(all_of: Parts, unable: Mapping[int, str]) -> tuple[LeftOut, ...]:
             part = k, all_of.flown
             for one in _Reasons(all_of, part, unable, lambda _task: ()).all():
                 found.setdefault(one.task_id, one)
+    return tuple(found[task] for task in sorted(found))
+
+
+def _other_choices(all_of: Parts, part: Part, unable: Mapping[int, str]) -> tuple[LeftOut, ...]:
+    """Why no other operand of a `+` is done, where nothing of that `+` is; remedies are not sought."""
+    k, kept = part
+    told = set(tasks(all_of.branches[k]))
+    found: dict[int, LeftOut] = {}
+    for other, branch in enumerate(all_of.branches):
+        new = set(tasks(branch)) - told - found.keys()
+        if new and kept <= set(tasks(branch)) and may_be_done(branch, kept):
+            every = _Reasons(all_of, (other, kept), unable, lambda _task: (), chosen=False).all()
+            found.update((one.task_id, one) for one in every if one.task_id in new)
     return tuple(found[task] for task in sorted(found))
 
 
@@ -77,8 +90,11 @@ class _Reasons:
         part: Part,
         unable: Mapping[int, str],
         remedies: Callable[[int], tuple[Remedy, ...]],
+        chosen: bool = True,
     ) -> None:
-        self.remedies = remedies
+        """chosen: the part is of the branch that was chosen; else of another one, of which it may lack
+        what could be done."""
+        self.remedies, self.chosen = remedies, chosen
         self.all_of, self.part, self.unable = all_of, part, unable
         self.branch = all_of.branches[part[0]]
         self.limit = all_of.asked + MORE
@@ -118,6 +134,9 @@ class _Reasons:
         """A task that has no schedule beside those that are planned, and which of these are to blame."""
         all_of, (k, kept) = self.all_of, self.part
         want = kept | all_of.needed(k, task)
+        if not self.chosen and all_of.asked < self.limit and all_of.ask((k, want)):
+            why = "it could be done, but another choice of the relations leaves out less"
+            return LeftOut(task, why, tuple(waiting))
         clash = next((c for c in all_of.conflicts.get(k, ()) if task in c and c <= want), None) or (
             all_of.conflict((k, want)) if all_of.asked < self.limit else None
         )

@@ -143,11 +143,14 @@ def limits_of(mission: Mission) -> Limits:
     return Limits(nodes=nodes, gap=mission.gap, width=WIDTH)
 
 
-def assign(problem: AssignmentProblem, limits: Limits) -> Found:
-    """The best assignment within the limits. BadInput for a problem that means nothing."""
+def assign(problem: AssignmentProblem, limits: Limits, *, tell: bool = True) -> Found:
+    """The best assignment within the limits. BadInput for a problem that means nothing.
+
+    tell: if there is none, with the reasons, which take far longer to find than that there is none.
+    """
     found = solve(problem, limits)
     if found.cost is None:
-        return Found(None, None, reasons.timing_reasons(problem, found))
+        return Found(None, None, reasons.timing_reasons(problem, found) if tell else ())
     solution, certificate = certified(problem, found, solvers=False)
     verdict = verify(certificate)
     if verdict.wrong:

@@ -29,7 +29,7 @@ from cratous.services.processes.files import (
 from cratous.services.processes.recorder import Recorder
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 from cratous.spec.mission import Mission
-from cratous.spec.mission.plan import Plan
+from cratous.spec.mission.plan import Plan, in_part_of
 
 Tell = Callable[[str], None]
 SIMULATOR, UXAS = "simulator", "uxas"
@@ -300,7 +300,8 @@ class _Flight:
         """How the mission has ended, empty while it has not."""
         left = asked - self.complete
         if left <= self.failed.keys() and not self.away:
-            return "failed" if left else "complete"
+            in_part = asked & {one.task_id for one in in_part_of(self.plan)}
+            return "failed" if left or in_part else "complete"
         return "limit" if late else ""
 
     def _failed(self, task: int, why: str) -> None:

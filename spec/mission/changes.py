@@ -50,6 +50,13 @@ def words(change: Change) -> str:
     }[change.kind]
 
 
+def requested_ms(mission: Mission, task: int) -> int | None:
+    """When a task that was not there at the start was asked for first [ms]; None for one that was there."""
+    mine = [c for c in mission.changes if c.task == task and c.kind in (TASK_ADDED, TASK_REMOVED)]
+    first = min(mine, key=lambda change: change.at_ms, default=None)
+    return first.at_ms if first is not None and first.kind == TASK_ADDED else None
+
+
 def split(changes: Iterable[Change], now_ms: int) -> tuple[list[Change], list[Change]]:
     """The changes that are known at an instant, and those to come, each in the order of time."""
     row = sorted(changes, key=lambda change: change.at_ms)

@@ -13,6 +13,7 @@ from cratous.bridge import lmcp
 from cratous.services.bus import Bus
 from cratous.services.cli.job import plan_and_check
 from cratous.services.flight.loop import fly
+from cratous.services.flight.replan_triggers import orders_missed
 from cratous.services.loading import load
 from cratous.services.monitor import Monitor
 from cratous.spec.errors import BadInput
@@ -149,3 +150,25 @@ def test_a_change_of_what_does_not_exist_is_refused(
     with pytest.raises(BadInput) as caught:
         load(file)
     assert item in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("relations", "starts", "ends", "missed"),
+    [
+        ("~(p2 p1)", {1: 59_130}, {1: 60_000}, True),
+        (".(p2 p1)", {1: 59_130}, {1: 60_000}, True),
+        ("~(p2 p1)", {}, {}, False),
+        ("~(p1 p2)", {1: 59_130}, {1: 60_000}, False),
+        # another task had opened it
+        ("~(|(p2 p4) p1)", {4: 100, 1: 59_130}, {}, False),
+        ("~(+(p2 p4) p1)", {4: 100, 1: 59_130}, {}, False),
+    ],
+)
+def test_an_order_that_a_late_task_finds_broken_is_told(
+    relations: str, starts: dict[int, int], ends: dict[int, int], missed: bool
+) -> None:
+    known = replace(load(POPUP), changes=(), relations=relations)
+    told = orders_missed(known, [Change(70_000, changes.TASK_ADDED, task=2)], starts, ends)
+    assert bool(told) == missed
+    if missed:
+        assert told.endswith("cannot be kept any more: task 1 began at 59.13 s")

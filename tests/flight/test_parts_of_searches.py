@@ -112,6 +112,7 @@ def test_a_zone_that_appears_on_a_line_leaves_the_rest_to_fly(tmp_path: Path) ->
     report, rows = run(load(MISSIONS / "line_cut.yaml"), tmp_path)
     row, after = rows["task 7 served"], rows["task 8 served"]
     assert (row["verdict"], after["verdict"], report["exit_code"]) == ("violated", "holds", 1)
+    assert report["flight"]["outcome"] == "failed", "what was asked for is not all done"
     assert "49.8 % of it lies outside of keep-out zone 12" in row["note"]
     (outside,) = row["evidence"]["outside_zones"]
     assert outside["share"] == pytest.approx(0.5, abs=0.01)

@@ -137,6 +137,24 @@ def test_who_ends_where_no_circle_keeps_the_zones_goes_where_one_does() -> None:
     assert of_type(said, "MissionChange") == []
 
 
+def test_who_is_caught_among_zones_crosses_them_once_to_a_free_circle() -> None:
+    """Walls on both sides of HERE and ahead of it: no turn back keeps them, and circles there would break them for ever."""
+    spans = (
+        (1500.0, 2400.0, 100.0, 200.0),
+        (1500.0, 2400.0, 400.0, 500.0),
+        (2080.0, 2180.0, 100.0, 500.0),
+    )
+    walls = tuple(
+        Zone(k, ZoneKind.KEEP_OUT, ((s, w), (s, e), (n, e), (n, w)), 0.0, 1000.0)
+        for k, (s, n, w, e) in enumerate(spans, 1)
+    )  # fmt: skip
+    state, said = ended_at_here(walls)
+    (told,) = of_type(said, "MissionChange")
+    assert told.Consequence == task_transitions.NO_WAY_OUT
+    assert first_bad_leg(state.chain(1).track.points, walls) is not None
+    assert first_bad_leg(remaining_path.last_lap(state.chain(1)), walls) is None
+
+
 def test_who_can_circle_nowhere_says_so() -> None:
     cage = box(ZoneKind.KEEP_IN, 1950.0, 2050.0, 1000.0)
     state, said = ended_at_here((cage,))

@@ -8,12 +8,14 @@ from monitor_tools import PLAN, apart, beats, done, mission, progress, truth, ve
 from cratous.bridge import lmcp
 from cratous.services.monitor import Monitor
 from cratous.spec.mission import (
+    Change,
     Mission,
     Position,
     Task,
     TaskKind,
     Zone,
     ZoneKind,
+    changes,
 )
 from cratous.spec.mission.guarantees import Outcome
 
@@ -76,6 +78,25 @@ def test_entering_a_keep_out_between_samples_is_seen():
     assert seen["G1:zone: keep_out 7, flight of vehicle 1"].outcome is Outcome.HOLDS
 
 
+def test_a_zone_that_appears_over_a_vehicle_is_told_as_that_and_when_it_was_left():
+    corners = ((10.0, -5.0), (30.0, -5.0), (30.0, 5.0), (10.0, 5.0))
+    zone = Zone(7, ZoneKind.KEEP_OUT, corners, 0.0, 500.0)
+    of = mission(zones=(), changes=(Change(250, changes.ZONE, zone=zone),))
+    item = "G1:zone: keep_out 7, flight of vehicle 1"
+    flight = [truth(1, 250 * k, 20 * k, 0) for k in range(4)]
+    row = watch(of, [*flight, *done(750)])[item]
+    assert (row.outcome, row.time_ms) == (Outcome.VIOLATED, 250)
+    assert row.note == "it appeared over the vehicle at 0.25 s, which left it by 0.50 s"
+    back = [*flight, truth(1, 1000, 20, 0)]
+    assert watch(of, [*back, *done(1000)])[item].note.endswith(", and entered it at 0.75 s")
+    assert watch(of, [*flight[:2], truth(1, 500, 25, 0), *done(500)])[item].note.endswith(
+        "which did not leave it"
+    )
+    # ahead of the vehicle it is entered
+    ahead = [truth(1, 0, 0, 0), truth(1, 250, 5, 0), truth(1, 500, 20, 0)]
+    assert watch(of, [*ahead, *done(500)])[item].note == "entered at 0.25 s"
+
+
 def test_order_is_judged_by_real_times():
     early = [progress(2, 2, 900, "Active") if m[0] == 2000 else m for m in done()]
     verdict = watch(mission(), [*apart(), *beats(3000), *early])["G1"]
@@ -127,6 +148,17 @@ def test_a_task_that_began_before_one_that_it_waits_for_is_told_as_it_was():
     (row,) = [v for k, v in seen.items() if k.startswith("G1:flight: `~(p1 p2)`: p2 starts")]
     assert row.outcome is Outcome.VIOLATED
     assert row.note == "task 2 began, though task 1 had not begun by then"
+
+
+@pytest.mark.parametrize("relations", ["~(p1 p2)", ".(p1 p2)"])
+def test_an_order_that_was_broken_before_the_other_task_was_asked_for_says_so(relations):
+    late = (Change(2500, changes.TASK_ADDED, task=1),)
+    begun = [m for m in done() if getattr(m[1], "TaskID", 0) != 1]
+    flown = [*apart(), *beats(3000), *begun, progress(1, 1, 2750, "Active")]
+    seen = watch(mission(relations=relations, changes=late), flown)
+    (row,) = [v for k, v in seen.items() if k.startswith(f"G1:flight: `{relations}`: p2 starts")]
+    assert row.outcome is Outcome.VIOLATED
+    assert row.note.endswith("; task 1 was asked for only at 2.50 s")
 
 
 def test_the_tasks_of_a_later_plan_count():

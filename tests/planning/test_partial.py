@@ -14,13 +14,14 @@ from cratous.services.bus import Bus
 from cratous.services.cli.plan import why_lines
 from cratous.services.monitor.plan_check import PART, WHOLE, check_plan
 from cratous.services.pipeline.plan import make_plan
+from cratous.services.planning import reasons
 from cratous.services.planning.assign import Limits, search
 from cratous.services.planning.assign_problem import parts
 from cratous.services.planning.partial import Parts, part_problem, restricted
 from cratous.services.planning.why import why
 from cratous.spec.algebra.meaning import tasks
 from cratous.spec.algebra.partial import may_be_done, only
-from cratous.spec.assignment.search import AssignmentProblem, Choice
+from cratous.spec.assignment.search import AssignmentProblem, Choice, Solution
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission.guarantees import Outcome
 from cratous.spec.mission.plan import PartialPlan, Pose, left_out_of
@@ -143,6 +144,45 @@ def test_undone_tasks_stay_undone_and_begun_ones_make_the_choice() -> None:
     assert {left.task_id for left in left_out_of(plan)} == {4}, "p3 is of another choice"
     with pytest.raises(NoPlan):
         make_plan(mission(FOUR[:1], relations="p1_[0-9]"))
+
+
+def test_of_a_choice_of_which_nothing_is_done_each_task_has_a_reason() -> None:
+    plan = make_plan(mission(relations="|(+(p1_[0-9] .(p2_[0-9] p4)) p3)"))
+    assert [item.task_id for item in plan.items] == [3]
+    found = {left.task_id: left for left in left_out_of(plan)}
+    assert found.keys() == {1, 2, 4}
+    assert found[1].reason.startswith("task 1 must end by 0.009 s")
+    assert found[2].reason.startswith("task 2 must end by 0.009 s")
+    assert found[4].reason.startswith("it must wait for what is not done")
+
+
+def test_the_whole_gets_no_reasons_where_a_part_can_be_done(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """They would be thrown away, and cost most of the time of planning."""
+    asked: list[tuple[int, ...]] = []
+    found = reasons.timing_reasons
+
+    def told(problem: AssignmentProblem, solution: Solution) -> tuple[str, ...]:
+        asked.append(problem.tasks)
+        return found(problem, solution)
+
+    monkeypatch.setattr(reasons, "timing_reasons", told)
+    plan = make_plan(mission(relations="|(p1_[0-9] p2 p3 p4)"))
+    assert [left.task_id for left in left_out_of(plan)] == [1]
+    assert asked == [(1,)]
+
+
+def test_a_choice_that_could_be_made_but_leaves_out_more_says_so() -> None:
+    """Task 4 has no schedule and goes before task 1; of `|(p2 p4)` p2 could be done."""
+    tasks_of = (*(replace(task, priority=1) for task in FOUR[:1]), *FOUR[1:3])
+    more = replace(FOUR[3], priority=2)
+    of = mission((*tasks_of, more), relations="|(+(p1_[0-9] |(p2 p4_[0-9])) p3)")
+    plan = make_plan(of)
+    assert [item.task_id for item in plan.items] == [3]
+    found = {left.task_id: left.reason for left in left_out_of(plan)}
+    assert found.keys() == {1, 2, 4}
+    assert found[2] == "it could be done, but another choice of the relations leaves out less"
 
 
 def test_what_was_flown_stays_done_whatever_became_of_what_it_followed() -> None:

@@ -146,7 +146,7 @@ def test_requests_on_one_bus_have_ids_of_their_own_and_the_newest_certificate() 
 
 
 def test_bad_input_stays_bad_input(monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(*_: Any) -> None:
+    def refuse(*_: Any, **_more: Any) -> None:
         raise BadInput("a problem that means nothing", item="choices")
 
     for module in uses("mission_assign"):
