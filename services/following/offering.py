@@ -37,6 +37,9 @@ def options_of(
     """The options of a task, slots in the order of their numbers, and what is not offered, with the reason."""
     mission, made, dropped = context.inputs.mission, list[Option](), list[Dropped]()
     able = [v for v in mission.vehicles if not task.eligible or v.id in task.eligible]
+    if asked.entity in [v.id for v in able]:
+        able = [v for v in able if v.id != asked.entity]
+        dropped.append(Dropped(task.id, (asked.entity,), "", "the task keeps to this very one"))
     if math.perm(len(able), asked.needed) > WAYS_MOST:
         text = (
             f"{len(able)} vehicles may be {asked.needed} at a time in more than {WAYS_MOST} ways: "
