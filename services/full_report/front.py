@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from cratous.services.certify.html import losses, margin, seconds
+from cratous.services.certify.html import losses, margin, repeats, seconds
 from cratous.services.full_report.document import DASH, Head, Part, Section, Table, Words
 from cratous.services.full_report.pictures import flight_pictures, time_line
 
@@ -47,7 +47,7 @@ def _verdict(report: Data) -> Iterator[Part]:
     yield Words(TRUSTED, "soft")
     yield Words(not_covered(report), "soft")
     yield Words(
-        f"Made again by {report['command']}: log digest {report['log']['digest']}, "
+        f"{'Made again' if repeats(report) else 'Flown, in real time,'} by {report['command']}: log digest {report['log']['digest']}, "
         f"{report['log']['messages']} messages; mission {report['mission_hash']}; ledger "
         f"{report['proofs']['seal'] or 'none'}. Not signed here: a signed statement stands beside it, if any.",
         "soft",
@@ -106,7 +106,7 @@ def flight_page(report: Data) -> Section:
 
 def _flight(report: Data) -> Iterator[Part]:
     flight = report["flight"]
-    yield time_line(report)
+    yield from time_line(report)
     yield Head("Tasks served")
     rows: list[tuple[str, ...]] = [
         (f"p{s['task']}", str(s["vehicle"] or DASH), s["phase"], seconds(s["time_ms"]),
