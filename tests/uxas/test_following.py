@@ -138,6 +138,15 @@ def test_an_escort_stays_about_an_entity_that_turns_where_its_route_does(tmp_pat
     assert min(apart_m(flight, 1, 0, end_s - 61)) > 300
 
 
+def test_one_vehicle_does_two_tasks_on_one_entity_one_after_the_other(tmp_path: Path) -> None:
+    """The way to the second circle is listed in a state, however near the first one was left."""
+    half_a_minute = [lmcp.new("KeyValuePair", Key="Duration_ms", Value="30000")]
+    tasks = [escort(TaskID=number, Parameters=half_a_minute) for number in (5, 6)]
+    flight = flown(tmp_path, *tasks, seconds=400.0)
+    assert [body.TaskID for body in flight.of("TaskActive")] == [5, 6]
+    assert [body.TaskID for body in flight.of("TaskComplete")] == [5, 6]
+
+
 def test_a_blockade_is_between_the_entity_and_what_is_protected_and_ends_with_another_plan(
     tmp_path: Path,
 ) -> None:
