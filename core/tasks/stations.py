@@ -14,7 +14,11 @@ def outruns(velocity: Vec2, speed_m_s: float) -> bool:
     return velocity.x * velocity.x + velocity.y * velocity.y < speed_m_s * speed_m_s
 
 
-@kernel(implements="stations.in_ring_at", nonnegative=("least_m", "most_m"))
+@kernel(
+    implements="stations.in_ring_at",
+    nonnegative=("least_m", "most_m"),
+    restates="two bounds of a Euclidean distance, compared by their squares",
+)
 def in_ring(p: Vec2, q: Vec2, least_m: float, most_m: float) -> bool:
     """True iff q is no nearer to p than least_m [m], >= 0, and no farther than most_m [m], >= least_m."""
     apart = apart_squared(p, q)
