@@ -10,6 +10,7 @@ from cratous.services.full_report.document import DASH, Head, Part, Section, Tab
 from cratous.services.full_report.pictures import flight_pictures, time_line
 
 Data = dict[str, Any]
+ACCEPTED = "cratous.PlanAccepted"
 WORDS = {
     "holds": "All requirements hold", "violated": "A requirement is violated",
     "unknown": "Something is unknown", "excused": "A loss is excused",
@@ -116,8 +117,9 @@ def _flight(report: Data) -> Iterator[Part]:
     rows += [(f"p{t}", DASH, "never ended", DASH, DASH, "") for t in flight["unserved"]]
     head = ("Task", "Vehicle", "Ended as", "At", "Served", "Note")
     yield Table(head, tuple(rows), (9, 9, 18, 12, 12, 40), (3, 4), "The mission has no task.")
-    yield Head("Plan")
+    yield Head("Plan before the flight")
     yield plan_table(report)
+    yield from later_plans(report)
     yield Head("Takeovers")
     taken = [
         (str(t["vehicle"]), seconds(t["from_ms"]), seconds(t["to_ms"]),
@@ -145,6 +147,17 @@ def plan_table(report: Data) -> Table:
     ]
     head = ("Task", "Vehicle", "Departs", "Arrives", "Waits", "Starts", "Ends")
     return Table(head, tuple(rows), (10, 10, 16, 16, 16, 16, 16), (2, 3, 4, 5, 6), "Nothing is planned.")  # fmt: skip
+
+
+def later_plans(report: Data) -> Iterator[Words]:
+    """That others than the plan that stands here were flown, if so."""
+    more = report["log"]["by_topic"].get(ACCEPTED, 0) - 1
+    if more > 0:
+        yield Words(
+            f"In flight {more} more plan{'' if more == 1 else 's'} took the place of this one. Of a later plan no "
+            "certificate is written and no row of the plan check speaks; what was flown by it is judged as flown.",
+            "soft",
+        )
 
 
 def loss_parts(report: Data) -> Iterator[Part]:

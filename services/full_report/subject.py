@@ -16,7 +16,7 @@ from cratous.services.full_report.document import (
     Table,
     Words,
 )
-from cratous.services.full_report.front import not_covered, plan_table
+from cratous.services.full_report.front import later_plans, not_covered, plan_table
 from cratous.spec.mission.plan import cost_text, percent
 
 Data = dict[str, Any]
@@ -134,6 +134,7 @@ def _assignment(report: Data) -> Iterator[Part]:
         yield Words("Certificate: none was written, so no optimality is claimed here.")
     yield Words(f"Two solvers on the optimum: {NOT_ASKED}.")
     yield plan_table(report)
+    yield from later_plans(report)
     if plan.get("left_out"):
         yield Head("Left out")
         rows = [(f"p{o['task_id']}", o["reason"], ", ".join(f"p{t}" for t in o["waiting"])) for o in plan["left_out"]]  # fmt: skip

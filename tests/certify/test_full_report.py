@@ -148,6 +148,16 @@ def test_a_flight_in_real_time_is_not_said_to_be_made_again(flown: Path) -> None
     assert "gives the message log with the digest" in render(read(flown))
 
 
+def test_later_plans_are_told_beside_the_one_that_is_certified(flown: Path) -> None:
+    report = copy.deepcopy(read(flown))
+    assert report["log"]["by_topic"]["cratous.PlanAccepted"] == 1
+    assert "took the place" not in "".join(sections(report).values())
+    report["log"]["by_topic"]["cratous.PlanAccepted"] = 4
+    found = sections(report)
+    for name in ("flight", "assignment"):
+        assert "In flight 3 more plans took the place of this one" in found[name]
+
+
 def many(flown: Path, count: int) -> Subject:
     """The report of a flight of so many vehicles, each of which flew as the first."""
     report = copy.deepcopy(read(flown))
