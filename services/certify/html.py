@@ -65,13 +65,18 @@ def margin(row: dict[str, Any]) -> str:
     return f"{row['margin']:.4g} {unit}".strip()
 
 
+def repeats(report: dict[str, Any]) -> bool:
+    """Whether the command gives the same log again: processes fly in real time, and give another one each time."""
+    return "--processes" not in report["command"].split()
+
+
 def render(report: dict[str, Any]) -> str:
     """The page; every text from the report is escaped."""
     text: str = _environment().get_template("report.html").render(
         r=report, map=map_view(report), time=time_view(report), near=separation_view(report),
         high=altitude_view(report), rows_of=_rows_of(report),
         gantt=_gantt(report), tree=_tree(report), losses=losses(report), names=_names(report),
-        chains=chains(report), statuses=statuses(report["proofs"]),
+        chains=chains(report), statuses=statuses(report["proofs"]), repeats=repeats(report),
     )  # fmt: skip
     return text
 

@@ -13,6 +13,8 @@ from cratous.spec.errors import BadInput
 
 STALE_MS = 5_000
 """Of an entity whose newest state is older nobody knows where it is."""
+SPEED_MOST_M_S = 1_000.0
+"""Of an entity that is said to be faster nobody knows where it will be."""
 ROUNDS = 30
 """Steps to where a vehicle meets an entity; each halves the error at least where it flies twice as fast."""
 
@@ -61,24 +63,22 @@ def _rest(at: Vec2, route: Sequence[Vec2]) -> Sequence[Vec2]:
     return route[min(gaps)[1] + 1 :]
 
 
-def velocity_of(state: Any) -> Vec2:
-    """Velocity over ground of an EntityState [m/s]: by speed and course, else by speed ahead and heading."""
-    speed, course = state.Groundspeed, state.Course
-    if speed == 0:
-        speed, course = state.u, state.Heading
-    at = math.radians(course)
-    return Vec2(speed * math.cos(at), speed * math.sin(at))
-
-
 def motion_of(
     state: Any, places: RequestPlaces, where: str, route: tuple[Vec2, ...] = ()
 ) -> Motion:
-    """The motion that an EntityState tells; BadInput for one at no place or of no speed."""
+    """The motion that an EntityState tells: over ground by speed and course, else by speed ahead and heading.
+
+    BadInput for one at no place, of no speed or of no direction.
+    """
     pose = places.pose(state.Location, 0.0, where, "Location")
-    velocity = velocity_of(state)
-    if not all(map(math.isfinite, velocity)):
+    names, speed, course = "Groundspeed, Course", state.Groundspeed, state.Course
+    if speed == 0:
+        names, speed, course = "u, Heading", state.u, state.Heading
+    if not (abs(speed) <= SPEED_MOST_M_S and math.isfinite(course)):
         raise BadInput(
-            "a state without a velocity", where=where, item="Groundspeed, Course",
-            expected="finite numbers", got=f"{state.Groundspeed:g}, {state.Course:g}",
+            "a state without a velocity", where=where, item=names,
+            expected=f"finite numbers, at most {SPEED_MOST_M_S:g} m/s", got=f"{speed:g}, {course:g}",
         )  # fmt: skip
+    at = math.radians(course)
+    velocity = Vec2(speed * math.cos(at), speed * math.sin(at))
     return Motion(Vec2(pose.north_m, pose.east_m), velocity, max(0, state.Time), route)

@@ -27,6 +27,9 @@ from cratous.services.planning.options import Dropped, Option, hold_rooms, unfit
 from cratous.spec.mission import Position, Task
 from cratous.spec.mission.plan import Pose
 
+APPROACH = 3.0
+"""The way by which a vehicle comes to its circle is so many turn radii long where zones allow it: a waypoint counts
+as reached two radii ahead, and a shorter way might be passed between two states, so that nobody hears of it."""
 WAYS_MOST = 336
 """More ways to give vehicles to slots (three of eight) are not offered."""
 
@@ -37,6 +40,9 @@ def options_of(
     """The options of a task, slots in the order of their numbers, and what is not offered, with the reason."""
     mission, made, dropped = context.inputs.mission, list[Option](), list[Dropped]()
     able = [v for v in mission.vehicles if not task.eligible or v.id in task.eligible]
+    if asked.entity in [v.id for v in able]:
+        able = [v for v in able if v.id != asked.entity]
+        dropped.append(Dropped(task.id, (asked.entity,), "", "the task keeps to this very one"))
     if math.perm(len(able), asked.needed) > WAYS_MOST:
         text = (
             f"{len(able)} vehicles may be {asked.needed} at a time in more than {WAYS_MOST} ways: "
@@ -92,15 +98,19 @@ def _option(
         heading,
     )
     label = f"slot {slot + 1}"
-    way = straight(label, rim, MOMENT_MS, flyer.speed_m_s)
-    leg = first_bad_leg(way.points, zones)
+    long_ms = round(1000 * APPROACH * flyer.radius_m / flyer.speed_m_s)
+    for way_ms in (max(long_ms, MOMENT_MS), MOMENT_MS):
+        way = straight(label, rim, way_ms, flyer.speed_m_s)
+        leg = first_bad_leg(way.points, zones)
+        if leg is None:
+            break
     if bad is not None or leg is not None:
         zone = bad if bad is not None else leg[1] if leg is not None else None
         assert zone is not None
         text = f"its circle about entity {asked.entity} breaks {name_of(zone)}"
         return Dropped(task.id, (), f"region, {label}", text)
     rooms = hold_rooms(way.start, flyer.radius_m, zones)
-    lasts = max(asked.least_ms, MOMENT_MS)
+    lasts = max(asked.least_ms, way.duration_ms)
     return Option(task.id, 0, (), flyer, way.start, way.end, way.points, lasts, rooms, label)
 
 

@@ -29,8 +29,8 @@ class Part(NamedTuple):
     """state: of the task's life for this vehicle; option: that it flies, in the context of its request.
 
     begins: number of the waypoint from which on it follows; then: the one that it goes on to; held: the circle it
-    was told last; seen_ms: when it was heard last; there: whether it then did what is asked; blocked: the
-    zone that keeps it from its circle, which was told.
+    was told last; seen_ms: when it was heard last; there: whether it then did what is asked; blocked: what
+    keeps it from its circle, which was told.
     """
 
     state: State

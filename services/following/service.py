@@ -46,6 +46,8 @@ FINAL, SELECTED = 5, 6
 """A task's states from the choice of an option on, as `spec.contracts.tasks` has them."""
 SILENT_MS = 3_000
 """Of a vehicle that was not heard for longer nobody knows whether it is where it was."""
+LOST = "the state of the entity"
+"""What keeps a vehicle from its circle where the entity is told of no more, or by no state that is one."""
 
 
 class Following(NamedTuple):
@@ -67,6 +69,12 @@ class Following(NamedTuple):
 
 
 Step = tuple[Following, list[Any]]
+
+
+def _kept(state: Following, needed: int, now_ms: int, least_ms: int) -> Kept:
+    """How long as many as are needed have done what is asked, counted now; least_ms: 0 ends nothing."""
+    count = sum(p.there and in_time(p.seen_ms, now_ms, SILENT_MS) for p in state.parts)
+    return kept_step(state.kept, count, needed, now_ms, least_ms)
 
 
 class FollowingTaskService(TaskService):
@@ -226,12 +234,17 @@ class FollowingTaskService(TaskService):
             rest = tuple(p for p in state.parts if p is not part and p.vehicle != body.ID)
             return state._replace(parts=rest, kept=Kept(-1, False)), [*out, *more]
         now_ms = max(state.now_ms, body.Time, 0)
-        state = state._replace(now_ms=now_ms)
+        asked = self._asked(part.context)
+        # who was silent until now was there until then, not since
+        state = state._replace(now_ms=now_ms, kept=_kept(state, asked.needed, now_ms, 0))
         waits = not follows and (body.Mode.name != "Waypoint" or body.CurrentWaypoint < part.begins)
         if waits:
             return state.with_part(part), out
-        asked, motion = self._asked(part.context), self._motion(part.context)
-        fresh = in_time(min(motion.time_ms, now_ms), now_ms, STALE_MS)
+        try:
+            motion = self._motion(part.context)
+        except BadInput as error:
+            return self._lost(state, part, error, out)
+        fresh = in_time(min(motion.time_ms, now_ms), max(motion.time_ms, now_ms), STALE_MS)
         late_s = min(now_ms - motion.time_ms, STALE_MS) / 1000
         motion = motion._replace(at=motion.after(max(late_s, 0.0)))
         before = part.blocked
@@ -242,10 +255,17 @@ class FollowingTaskService(TaskService):
         elif part.held is not None and not part.blocked:
             out.append(parts_of.circling(part, self._task_id, number, asked, motion))
         state = state.with_part(part)
-        count = sum(p.there and in_time(p.seen_ms, now_ms, SILENT_MS) for p in state.parts)
-        kept = kept_step(state.kept, count, asked.needed, now_ms, asked.least_ms)
+        kept = _kept(state, asked.needed, now_ms, asked.least_ms)
         state = state._replace(kept=kept)
         return self._over(state, body, out) if kept.done else (state, out)
+
+    def _lost(self, state: Following, part: Part, error: BadInput, out: list[Any]) -> Step:
+        """Nothing tells any more where the entity is: nobody is there, which is said once."""
+        asked = self._asked(part.context)
+        if part.blocked != LOST:
+            out.append(self._warning(f"vehicle {part.vehicle} does not follow: {error}"))
+        state = state.with_part(part._replace(there=False, seen_ms=state.now_ms, blocked=LOST))
+        return state._replace(kept=_kept(state, asked.needed, state.now_ms, asked.least_ms)), out
 
     def _over(self, state: Following, body: Any, out: list[Any]) -> Step:
         """Complete: the vehicles are sent on to what comes next in their plans."""

@@ -8,6 +8,7 @@ from typing import Any
 from cratous.core import ledger
 from cratous.services.argument.build import argument
 from cratous.services.attestation.findings import Subject, doubt, unshown
+from cratous.services.certify.html import repeats
 from cratous.services.certify.proofs import NOT_RECORDED, statuses
 from cratous.services.full_report.document import (
     DASH,
@@ -139,7 +140,12 @@ def _tools(report: Data) -> Iterator[Part]:
     if code:
         yield Words(f"Services and bridge: code {code['digest']}, running {code['running']}; {code['release']}.")  # fmt: skip
     yield Words(f"Processor and memory: {NOT_OBSERVED}. Qualification data (DO-330): none.")
-    yield Words("The same mission, seed and versions give the same log and report, byte for byte; no time of day is in them.")  # fmt: skip
+    yield Words(
+        "The same mission, seed and versions give the same log and report, byte for byte; no time of day is in them."
+        if repeats(report)
+        else "Flown by processes, in real time: another flight of the same mission gives another log. The same log "
+        "gives the same report."
+    )
 
 
 def argued(subject: Subject) -> Section:
@@ -178,7 +184,10 @@ def _reproduction(report: Data) -> Iterator[Part]:
         ("plan", report["plan"]["hash"]), ("certificate", report["plan"]["certificate"] or "none"),
         ("ledger", report["proofs"]["seal"] or "none"),
     ]  # fmt: skip
-    yield Table(("Expected digest of", "SHA-256"), tuple(rows), (30, 70))
+    expected = (
+        "Expected digest of" if repeats(report) else "Digest, of this flight alone for its log, of"
+    )
+    yield Table((expected, "SHA-256"), tuple(rows), (30, 70))
     rows = [
         ("cratous certify FOLDER", "judges the log again and compares all that is written of it"),
         ("cratous judge FOLDER", "judges the log by a program that shares no code"),

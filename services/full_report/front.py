@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from cratous.services.certify.html import losses, margin, seconds
+from cratous.services.certify.html import losses, margin, repeats, seconds
 from cratous.services.full_report.document import DASH, Head, Part, Section, Table, Words
 from cratous.services.full_report.pictures import flight_pictures, time_line
 
 Data = dict[str, Any]
+ACCEPTED = "cratous.PlanAccepted"
 WORDS = {
     "holds": "All requirements hold", "violated": "A requirement is violated",
     "unknown": "Something is unknown", "excused": "A loss is excused",
@@ -47,7 +48,7 @@ def _verdict(report: Data) -> Iterator[Part]:
     yield Words(TRUSTED, "soft")
     yield Words(not_covered(report), "soft")
     yield Words(
-        f"Made again by {report['command']}: log digest {report['log']['digest']}, "
+        f"{'Made again' if repeats(report) else 'Flown, in real time,'} by {report['command']}: log digest {report['log']['digest']}, "
         f"{report['log']['messages']} messages; mission {report['mission_hash']}; ledger "
         f"{report['proofs']['seal'] or 'none'}. Not signed here: a signed statement stands beside it, if any.",
         "soft",
@@ -106,7 +107,7 @@ def flight_page(report: Data) -> Section:
 
 def _flight(report: Data) -> Iterator[Part]:
     flight = report["flight"]
-    yield time_line(report)
+    yield from time_line(report)
     yield Head("Tasks served")
     rows: list[tuple[str, ...]] = [
         (f"p{s['task']}", str(s["vehicle"] or DASH), s["phase"], seconds(s["time_ms"]),
@@ -116,8 +117,9 @@ def _flight(report: Data) -> Iterator[Part]:
     rows += [(f"p{t}", DASH, "never ended", DASH, DASH, "") for t in flight["unserved"]]
     head = ("Task", "Vehicle", "Ended as", "At", "Served", "Note")
     yield Table(head, tuple(rows), (9, 9, 18, 12, 12, 40), (3, 4), "The mission has no task.")
-    yield Head("Plan")
+    yield Head("Plan before the flight")
     yield plan_table(report)
+    yield from later_plans(report)
     yield Head("Takeovers")
     taken = [
         (str(t["vehicle"]), seconds(t["from_ms"]), seconds(t["to_ms"]),
@@ -145,6 +147,17 @@ def plan_table(report: Data) -> Table:
     ]
     head = ("Task", "Vehicle", "Departs", "Arrives", "Waits", "Starts", "Ends")
     return Table(head, tuple(rows), (10, 10, 16, 16, 16, 16, 16), (2, 3, 4, 5, 6), "Nothing is planned.")  # fmt: skip
+
+
+def later_plans(report: Data) -> Iterator[Words]:
+    """That others than the plan that stands here were flown, if so."""
+    more = report["log"]["by_topic"].get(ACCEPTED, 0) - 1
+    if more > 0:
+        yield Words(
+            f"In flight {more} more plan{'' if more == 1 else 's'} took the place of this one. Of a later plan no "
+            "certificate is written and no row of the plan check speaks; what was flown by it is judged as flown.",
+            "soft",
+        )
 
 
 def loss_parts(report: Data) -> Iterator[Part]:

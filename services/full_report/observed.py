@@ -76,7 +76,9 @@ def _authority(report: Data) -> Table:
         for a in report["flight"]["authority"]
     ]
     head = ("At", "Vehicle", "Owner from then on", "Epoch", "Reason")
-    return Table(head, tuple(rows), (12, 10, 20, 10, 48), (0,), "UxAS commanded all the time.")
+    return Table(
+        head, tuple(rows), (12, 10, 20, 10, 48), (0,), "No change of command is in the log."
+    )
 
 
 def runtime(report: Data) -> Section:

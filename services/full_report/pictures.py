@@ -12,6 +12,10 @@ from cratous.services.full_report.document import Beside, Picture, Words
 from cratous.services.full_report.shapes import Disc, Label, Line, Shape, box, places
 
 Data = dict[str, Any]
+NAMED = 6
+"""So many curves are named below a chart."""
+ROWS = 20
+"""So many vehicles stand in one time line: more would not fit on a page."""
 NORTH = ((0.0, 0.0), (9.0, 26.0), (0.0, 20.0), (-9.0, 26.0))
 
 
@@ -95,9 +99,11 @@ def _altitudes(report: Data) -> Picture | None:
     curves = view["curves"]
     shapes = [*_axes(view), *(Line(places(c["points"]), f"track {c['color']}") for c in curves)]
     caption = [
-        (f"{c['label']} {c['low_m']} to {c['high_m']} m", f"track {c['color']}") for c in curves[:6]
+        (f"{c['label']} {c['low_m']} to {c['high_m']} m", f"track {c['color']}")
+        for c in curves[:NAMED]
     ]
-    title = "Altitude above mean sea level"
+    of = "" if len(curves) <= NAMED else f" (the first {NAMED} of {len(curves)} vehicles are named)"
+    title = f"Altitude above mean sea level{of}"
     return Picture(title, view["width"], view["height"], tuple(shapes), tuple(caption))
 
 
@@ -121,22 +127,33 @@ def _distances(report: Data) -> Picture | None:
     return Picture(title, view["width"], view["height"], tuple(shapes), tuple(caption))
 
 
-def time_line(report: Data) -> Picture | Words:
-    """What each vehicle did, from left to right; in words where there are too few bars to draw any."""
+def time_line(report: Data) -> tuple[Picture | Words, ...]:
+    """What each vehicle did, from left to right, ROWS vehicles a picture; in words where no bar can be drawn."""
     view = time_view(report)
     if not view["bars"]:
-        return Words("Time line: not observed.", "soft")
+        return (Words("Time line: not observed.", "soft"),)
+    count = len(view["rows"])
+    return tuple(_rows(view, k, min(k + ROWS, count)) for k in range(0, count, ROWS))
+
+
+def _rows(view: Data, begin: int, end: int) -> Picture:
+    """The time line of the vehicles of some rows: from `begin` on, before `end`."""
+    top, bottom = begin * BAR_ROW, (end - begin) * BAR_ROW
     shapes: list[Shape] = []
     for tick in view["ticks"]:
-        shapes.append(Line(((tick["x"], 0.0), (tick["x"], view["bottom"])), "rule"))
-        shapes.append(Label((tick["x"], view["bottom"] + 20), tick["text"], "middle", soft=True))
-    for row in view["rows"]:
-        shapes.append(Label((4.0, row["y"] + BAR_ROW / 2), row["label"]))
+        shapes.append(Line(((tick["x"], 0.0), (tick["x"], bottom)), "rule"))
+        shapes.append(Label((tick["x"], bottom + 20), tick["text"], "middle", soft=True))
+    for row in view["rows"][begin:end]:
+        shapes.append(Label((4.0, row["y"] - top + BAR_ROW / 2), row["label"]))
     for bar in view["bars"]:
-        # who commands stands in a row of its own below what is done
-        high, down = (8.0, 30.0) if bar["what"] == "icarous" else (20.0, 10.0)
-        corners = box(bar["x"], bar["y"] + down, bar["width"], high)
-        shapes.append(Line(corners, f"bar {bar['what']}", closed=True))
+        y = bar["y"] - top
+        if 0 <= y < bottom:
+            # who commands stands in a row of its own below what is done
+            high, down = (8.0, 30.0) if bar["what"] == "icarous" else (20.0, 10.0)
+            corners = box(bar["x"], y + down, bar["width"], high)
+            shapes.append(Line(corners, f"bar {bar['what']}", closed=True))
     named = (("on the way", "bar transit"), ("waits (loiters)", "bar wait"), ("task", "bar task"),
              ("task suspended, returns to it", "bar return"), ("ICAROUS in command", "bar icarous"))  # fmt: skip
-    return Picture("Time line", view["width"], view["height"], tuple(shapes), named)
+    count, foot = len(view["rows"]), view["height"] - view["bottom"]
+    of = "" if count <= ROWS else f", vehicles {begin + 1} to {end} of {count}"
+    return Picture(f"Time line{of}", view["width"], bottom + foot, tuple(shapes), named)

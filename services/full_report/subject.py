@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from cratous.services.certify.html import margin, seconds
+from cratous.services.certify.html import margin, repeats, seconds
 from cratous.services.full_report.document import (
     DASH,
     NOT_ASKED,
@@ -16,7 +16,7 @@ from cratous.services.full_report.document import (
     Table,
     Words,
 )
-from cratous.services.full_report.front import not_covered, plan_table
+from cratous.services.full_report.front import later_plans, not_covered, plan_table
 from cratous.spec.mission.plan import cost_text, percent
 
 Data = dict[str, Any]
@@ -42,7 +42,8 @@ def _subject(report: Data) -> Iterator[Part]:
     yield Words(
         f"Frame: north, east [m] of latitude {frame['latitude_deg']}, longitude {frame['longitude_deg']} degrees; "
         f"altitudes [m] above mean sea level, ground at {frame['terrain_m']} m. Times [ms] after mission start, "
-        f"virtual, in steps of {simulation['step_ms']} ms. Seed {mission['seed']}. Well clear: "
+        f"{'virtual, in steps of' if repeats(report) else 'real, states at most'} {simulation['step_ms']} ms"
+        f"{'' if repeats(report) else ' apart'}. Seed {mission['seed']}. Well clear: "
         f"{', '.join(f'{k} {v:g}' for k, v in sorted(mission['daa']['well_clear'].items()))}."
     )
     yield Words(f"Relations: {mission['relations'] or 'none'}", "code")
@@ -66,6 +67,11 @@ def _subject(report: Data) -> Iterator[Part]:
     yield Table(head, tuple(rows), (10, 20, 20, 15, 35), empty="No task.")
     yield Head("Zones and traffic")
     rows = [(str(z["id"]), z["kind"].replace("_", "-"), f"{len(z['vertices'])} corners") for z in mission["zones"]]  # fmt: skip
+    rows += [
+        (str(c["zone"]["id"]), c["zone"]["kind"].replace("_", "-"),
+         f"{len(c['zone']['vertices'])} corners, from {seconds(c['at_ms'])} on")
+        for c in mission["changes"] if c["zone"]
+    ]  # fmt: skip
     rows += [(str(t["id"]), "traffic", t.get("label", "")) for t in mission["traffic"]]
     yield Table(("Id", "Kind", "What"), tuple(rows), (20, 30, 50), empty="Neither zones nor traffic.")  # fmt: skip
 
@@ -128,6 +134,7 @@ def _assignment(report: Data) -> Iterator[Part]:
         yield Words("Certificate: none was written, so no optimality is claimed here.")
     yield Words(f"Two solvers on the optimum: {NOT_ASKED}.")
     yield plan_table(report)
+    yield from later_plans(report)
     if plan.get("left_out"):
         yield Head("Left out")
         rows = [(f"p{o['task_id']}", o["reason"], ", ".join(f"p{t}" for t in o["waiting"])) for o in plan["left_out"]]  # fmt: skip

@@ -53,7 +53,7 @@ class Monitor:
         self._assumed = AssumptionWatch(mission)
         self._last_ms, self._over = 0, False
         self._tell, self._tell_broken = on_violation, on_broken
-        self._told = 0
+        self._told = [0, 0]
 
     def tap(self, envelope: Any) -> None:
         """One message of the bus or of a log: anything with `topic`, `time_ms` and `body`."""
@@ -86,10 +86,10 @@ class Monitor:
             self.authority.end(body)
             self.bridge.end(body)
         if self._tell is not None:
-            events = self.separation.violations + self.constraints.violations
-            for verdict in events[self._told :]:
-                self._tell(verdict)
-            self._told = len(events)
+            for k, events in enumerate((self.separation.violations, self.constraints.violations)):
+                for verdict in events[self._told[k] :]:
+                    self._tell(verdict)
+                self._told[k] = len(events)
         for row in self._assumed.tap(short, envelope):
             if self._tell_broken is not None:
                 self._tell_broken(row)

@@ -23,7 +23,7 @@ from cratous.services.monitor.required_rows import (
 )
 from cratous.services.monitor.samples import Sample
 from cratous.spec.constraint_rows import AFTER_END, AFTER_START, Row
-from cratous.spec.mission import Mission, Position, Zone
+from cratous.spec.mission import Mission, Position, Zone, ZoneKind
 from cratous.spec.mission.changes import requested_ms
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
@@ -35,8 +35,8 @@ WAITS = {AFTER_END: 1, AFTER_START: 2}
 @dataclass
 class Fence:
     """What has been seen of one vehicle and one zone. first, last: the positions of the vehicle's track
-    between which it was held to the zone; over: the zone appeared where the vehicle was; left_ms: since when
-    the vehicle has been out of it; again_ms: when it came in again."""
+    between which it was held to the zone; over: the zone appeared where the vehicle had no right to be; left_ms:
+    since when the vehicle has kept it; again_ms: when it broke it again."""
 
     first: int
     last: int
@@ -46,18 +46,22 @@ class Fence:
     left_ms: int | None = None
     again_ms: int | None = None
 
-    def words(self) -> str:
-        """How the zone was broken."""
+    def words(self, kind: ZoneKind, so_far: bool) -> str:
+        """How a zone of a kind was broken; so_far: as it happens, when what comes of it is not known."""
         at = f"{(self.broken_ms or 0) / 1000:.2f} s"
+        out = kind is ZoneKind.KEEP_OUT
         if not self.over:
-            return f"entered at {at}"
-        left = (
-            "did not leave it"
-            if self.left_ms is None
-            else f"left it by {self.left_ms / 1000:.2f} s"
+            return f"{'entered' if out else 'left'} at {at}"
+        where, kept, broke = (
+            ("over", "left it", "entered it") if out else ("beside", "entered it", "left it")
         )
-        again = "" if self.again_ms is None else f", and entered it at {self.again_ms / 1000:.2f} s"
-        return f"it appeared over the vehicle at {at}, which {left}{again}"
+        said = f"it appeared {where} the vehicle at {at}"
+        if so_far:
+            return said
+        if self.left_ms is None:
+            return f"{said}, which did not {'leave' if out else 'enter'} it"
+        again = "" if self.again_ms is None else f", and {broke} at {self.again_ms / 1000:.2f} s"
+        return f"{said}, which {kept} by {self.left_ms / 1000:.2f} s{again}"
 
 
 class ConstraintWatch:
@@ -112,17 +116,19 @@ class ConstraintWatch:
             fence.broken_ms = at_ms
             late, first = zone not in self._mission.zones, fence.checks == 1
             fence.over = late and first and not exact_leg_ok(leg[0], leg[0], zone)
-            self.violations.append(self._fence_verdict(vehicle, zone, fence, ""))
+            self.violations.append(self._fence_verdict(vehicle, zone, fence, so_far=True))
         elif not clear and fence.left_ms is not None and fence.again_ms is None:
             fence.again_ms = at_ms
 
-    def _fence_verdict(self, vehicle: int, zone: Zone, fence: Fence, unseen: str) -> Verdict:
+    def _fence_verdict(
+        self, vehicle: int, zone: Zone, fence: Fence, unseen: str = "", so_far: bool = False
+    ) -> Verdict:
         broken = fence.broken_ms is not None
         distance = distance_m(self._tracks[vehicle][fence.first : fence.last + 1], zone)
         note = f"{fence.checks} flown legs"
         outcome = Outcome.HOLDS
         if broken:
-            note, outcome = fence.words(), Outcome.VIOLATED
+            note, outcome = fence.words(zone.kind, so_far), Outcome.VIOLATED
         elif unseen:
             note, outcome = f"{note}; {unseen}", Outcome.UNKNOWN
         return Verdict(

@@ -13,10 +13,12 @@ import pytest
 from certify_tools import Run, edited, read
 
 from cratous.services.attestation.findings import Subject
+from cratous.services.certify.html import render
 from cratous.services.full_report import account
-from cratous.services.full_report.document import Head, Table, Words
+from cratous.services.full_report.document import Beside, Head, Picture, Table, Words
 from cratous.services.full_report.page import html
 from cratous.services.full_report.sections import document
+from cratous.services.full_report.shapes import Label, Line
 
 BAD_TEXT = "<b>&\"'\x1b[2J\x00\ud800\u202e中→" + "x" * 9000
 NAMES = [
@@ -121,6 +123,69 @@ def test_rows_that_do_not_hold_and_broken_assumptions_are_told(flown: Path) -> N
     assert "its source is another" in found["proofs"]
 
 
+def test_zones_that_appear_in_flight_are_listed(flown: Path) -> None:
+    report = copy.deepcopy(read(flown))
+    late = {"id": 77, "kind": "keep_out", "vertices": [[0, 0], [9, 0], [9, 9]], "label": ""}
+    report["mission"].update(
+        zones=[], traffic=[], changes=[{"at_ms": 90_000, "kind": "zone", "zone": late}]
+    )
+    found = sections(report)["subject"]
+    assert "77\nkeep-out\n3 corners, from 90.0 s on" in found
+    assert "Neither zones nor traffic" not in found
+
+
+def test_a_flight_in_real_time_is_not_said_to_be_made_again(flown: Path) -> None:
+    report = copy.deepcopy(read(flown))
+    before = sections(report)
+    assert "byte for byte" in before["tools"]
+    report["command"] += " --processes"
+    found = sections(report)
+    assert "gives another log" in found["tools"]
+    assert not [text for text in found.values() if "byte for byte" in text or "Made again" in text]
+    assert "virtual, in steps of" in before["subject"]
+    assert "virtual" not in found["subject"]
+    assert "and gives another log" in render(report)
+    assert "gives the message log with the digest" in render(read(flown))
+
+
+def test_later_plans_are_told_beside_the_one_that_is_certified(flown: Path) -> None:
+    report = copy.deepcopy(read(flown))
+    assert report["log"]["by_topic"]["cratous.PlanAccepted"] == 1
+    assert "took the place" not in "".join(sections(report).values())
+    report["log"]["by_topic"]["cratous.PlanAccepted"] = 4
+    found = sections(report)
+    for name in ("flight", "assignment"):
+        assert "In flight 3 more plans took the place of this one" in found[name]
+
+
+def many(flown: Path, count: int) -> Subject:
+    """The report of a flight of so many vehicles, each of which flew as the first."""
+    report = copy.deepcopy(read(flown))
+    first, bar = report["mission"]["vehicles"][0], report["flight"]["bars"][0]
+    numbers = range(1, count + 1)
+    report["mission"]["vehicles"] = [{**first, "id": k, "label": f"UAV-{k:03}"} for k in numbers]
+    report["flight"]["bars"] = [{**bar, "vehicle": k} for k in numbers]
+    report["flight"]["tracks"] = {str(k): report["flight"]["tracks"]["1"][:3] for k in numbers}
+    return Subject(report, ())
+
+
+def test_many_vehicles_are_all_in_the_time_lines(flown: Path) -> None:
+    verdict, flight = document(many(flown, 45), full=False).sections
+    lines = [part for part in flight.parts if isinstance(part, Picture)]
+    assert [one.title for one in lines] == [
+        "Time line, vehicles 1 to 20 of 45", "Time line, vehicles 21 to 40 of 45",
+        "Time line, vehicles 41 to 45 of 45",
+    ]  # fmt: skip
+    for k, one in enumerate(lines):
+        labels = [s.text for s in one.shapes if isinstance(s, Label) and s.text.startswith("UAV")]
+        assert labels == [f"UAV-{n:03}" for n in range(20 * k + 1, min(20 * k + 20, 45) + 1)]
+        bars = [s for s in one.shapes if isinstance(s, Line) and s.style.startswith("bar")]
+        assert len(bars) == len(labels)
+        assert all(0 < y < one.height for bar in bars for _, y in bar.places)
+    (beside,) = (part for part in verdict.parts if isinstance(part, Beside))
+    assert "(the first 6 of 45 vehicles are named)" in beside.right[0].title
+
+
 def test_an_argument_that_cannot_be_made_is_said(
     flown: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -179,6 +244,8 @@ def test_texts_from_anywhere_in_the_pdf(flown: Path) -> None:
 
     assert shown("a中b→c\x00\ud800é–") == "a\\u4e2db->c\\x00\\ud800é–"
     assert pages_of(pdf(document(hostile(flown), full=False))) > 2
+    # many vehicles: no picture is higher than a page
+    assert pages_of(pdf(document(many(flown, 45), full=False))) > 2
 
 
 def test_the_command_writes_and_refuses(

@@ -3,7 +3,18 @@
 from __future__ import annotations
 
 import pytest
-from monitor_tools import PLAN, apart, beats, done, mission, progress, truth, vehicle, watch
+from monitor_tools import (
+    PLAN,
+    Envelope,
+    apart,
+    beats,
+    done,
+    mission,
+    progress,
+    truth,
+    vehicle,
+    watch,
+)
 
 from cratous.bridge import lmcp
 from cratous.services.monitor import Monitor
@@ -95,6 +106,38 @@ def test_a_zone_that_appears_over_a_vehicle_is_told_as_that_and_when_it_was_left
     # ahead of the vehicle it is entered
     ahead = [truth(1, 0, 0, 0), truth(1, 250, 5, 0), truth(1, 500, 20, 0)]
     assert watch(of, [*ahead, *done(500)])[item].note == "entered at 0.25 s"
+
+
+def test_a_zone_to_keep_in_is_left_not_entered():
+    corners = ((10.0, -5.0), (30.0, -5.0), (30.0, 5.0), (10.0, 5.0))
+    zone = Zone(7, ZoneKind.KEEP_IN, corners, 0.0, 500.0)
+    item = "G1:zone: keep_in 7, flight of vehicle 1"
+    of = mission(zones=(), changes=(Change(0, changes.ZONE, zone=zone),))
+    flight = [truth(1, 250 * k, 2 + 10 * k, 0) for k in range(5)]
+    assert watch(of, [*flight, *done(1000)])[item].note == (
+        "it appeared beside the vehicle at 0.00 s, which entered it by 0.25 s, and left it at 0.50 s"
+    )
+    assert watch(of, [*flight[:2], *done(250)])[item].note.endswith("which did not enter it")
+    of = mission(zones=(zone,))
+    inside = [truth(1, 250 * k, 12 + 10 * k, 0) for k in range(3)]
+    assert watch(of, [*inside, *done(500)])[item].note == "left at 0.25 s"
+
+
+def test_each_violation_is_told_once_as_it_happens_in_whatever_order():
+    corners = ((10.0, -5.0), (30.0, -5.0), (30.0, 5.0), (10.0, 5.0))
+    zone = Zone(7, ZoneKind.KEEP_OUT, corners, 0.0, 500.0)
+    of = mission(zones=(), changes=(Change(0, changes.ZONE, zone=zone),))
+    first = [truth(v, ms, 20, 5000.0 * (v - 1)) for ms in (0, 250) for v in (1, 2)]
+    then = [truth(v, ms, 20, 0) for ms in (500, 750) for v in (1, 2)]
+    told: list[tuple[str, str]] = []
+    monitor = Monitor(of, PLAN, lambda verdict: told.append((verdict.item, verdict.note)))
+    for time_ms, body in (*first, *then, *done(1000)):
+        monitor.tap(Envelope(lmcp.full_names(body)[0], time_ms, body))
+    assert [item for item, _ in told].count("zone: keep_out 7, flight of vehicle 1") == 1
+    assert len(told) == len(set(told)) == 3
+    # what the vehicle does about it is not known yet
+    assert told[0][1] == "it appeared over the vehicle at 0.00 s"
+    assert any("well clear" in f"{item} {note}" for item, note in told), told
 
 
 def test_order_is_judged_by_real_times():

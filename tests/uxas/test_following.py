@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from pipeline_tools import PIPELINE, Rig, must_fly, place, request, vehicle
+from following_tools import ENTITY, aircraft, escort, moving, refused
+from pipeline_tools import PIPELINE, Rig, must_fly, place, request
 from uxas_flight import Flight, fly, local
 from uxas_tools import write_cfg
 
@@ -19,35 +20,9 @@ from cratous.services.mission.sensor import sees
 from cratous.services.simulator.world import Event
 
 TASKS = "Task services"
-ENTITY, DWELL_MS = 9, 60_000
+DWELL_MS = 60_000
 RADIUS_M = 1.1 * 20**2 / (9.80665 * math.tan(math.radians(30)))
 """The tightest planned turn, and the narrowest circle; that of a second vehicle is 150 m wider."""
-
-
-def aircraft(number: int, latitude: float, speed: float = 20.0) -> list[Any]:
-    """Configuration and state of an aircraft whose camera turns freely."""
-    configuration, state = vehicle(number, latitude)
-    gimbal, camera = configuration.PayloadConfigurationList
-    gimbal = gimbal.copy(
-        MinAzimuth=-180.0, MaxAzimuth=180.0, MaxAzimuthSlewRate=100.0, MaxElevationSlewRate=100.0
-    )
-    level = configuration.NominalFlightProfile.copy(VerticalSpeed=0.0, Airspeed=speed)
-    return [
-        configuration.copy(
-            NominalFlightProfile=level,
-            NominalSpeed=speed,
-            MinimumSpeed=5.0,
-            PayloadConfigurationList=[gimbal, camera],
-        ),
-        state.copy(u=speed, Airspeed=speed, EnergyAvailable=100.0),
-    ]
-
-
-def moving(speed: float = 6.0, course: float = 0.0) -> list[Any]:
-    """An entity near the ground that flies straight on."""
-    configuration, state = aircraft(ENTITY, 0.03, speed)
-    low = place(0.03, 0.002).copy(Altitude=1.0)
-    return [configuration, state.copy(Location=low, Heading=course)]
 
 
 def flown(
@@ -163,6 +138,15 @@ def test_an_escort_stays_about_an_entity_that_turns_where_its_route_does(tmp_pat
     assert min(apart_m(flight, 1, 0, end_s - 61)) > 300
 
 
+def test_one_vehicle_does_two_tasks_on_one_entity_one_after_the_other(tmp_path: Path) -> None:
+    """The way to the second circle is listed in a state, however near the first one was left."""
+    half_a_minute = [lmcp.new("KeyValuePair", Key="Duration_ms", Value="30000")]
+    tasks = [escort(TaskID=number, Parameters=half_a_minute) for number in (5, 6)]
+    flight = flown(tmp_path, *tasks, seconds=400.0)
+    assert [body.TaskID for body in flight.of("TaskActive")] == [5, 6]
+    assert [body.TaskID for body in flight.of("TaskComplete")] == [5, 6]
+
+
 def test_a_blockade_is_between_the_entity_and_what_is_protected_and_ends_with_another_plan(
     tmp_path: Path,
 ) -> None:
@@ -181,19 +165,6 @@ def test_a_blockade_is_between_the_entity_and_what_is_protected_and_ends_with_an
         ]
         assert min(p.x for p in ahead) > 0, "ahead of it, on the side of what is protected"
         assert max(math.hypot(*p) for p in ahead) < 1_200
-
-
-def refused(folder: Path, task: Any, *more: Any, vehicles: tuple[int, ...] = (1,)) -> list[str]:
-    """What is said of a request with this task."""
-    folder.mkdir(exist_ok=True)
-    rig = Rig(folder)
-    rig.tell(*(b for v in vehicles for b in aircraft(v, 0.001 * v)), *more, task)
-    rig.tell(request(5, vehicles=vehicles))
-    return rig.reasons() + rig.reasons("Warning")
-
-
-def escort(**more: Any) -> Any:
-    return lmcp.new("EscortTask", **{"TaskID": 5, "SupportedEntityID": ENTITY, **more})
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,91 @@
+"""Tasks that keep to what moves, when nobody tells of it any more, or tells what is no state."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+from following_tools import ENTITY, aircraft, escort, moving, refused
+from pipeline_tools import Rig, place, request, vehicle
+
+from cratous.bridge import lmcp
+
+
+def escorted(folder: Path) -> tuple[Rig, Any]:
+    """An aircraft that escorts for ten seconds, told to circle; and its state there."""
+    rig = Rig(folder)
+    task = escort(Parameters=[lmcp.new("KeyValuePair", Key="Duration_ms", Value="10000")])
+    rig.tell(*aircraft(1, 0.029), *moving(1.0), task, request(5))
+    state = aircraft(1, 0.0301)[1].copy(
+        Location=place(0.0301, 0.002), Mode="Waypoint", CurrentWaypoint=99
+    )
+    rig.tell(state.copy(AssociatedTasks=[5], Time=1000))
+    (command,) = rig.got("VehicleActionCommand")
+    return rig, state.copy(Mode="Loiter", CurrentCommand=command.CommandID)
+
+
+def test_what_nobody_told_of_for_a_while_was_not_kept_to(tmp_path: Path) -> None:
+    rig, state = escorted(tmp_path)
+    entity = moving(1.0)[1]
+    for time_ms in (2000, 3000, 100_000, 101_000, 102_000):
+        rig.tell(entity.copy(Time=time_ms), state.copy(Time=time_ms))
+    assert not rig.got("TaskComplete"), "both were silent from 3 s to 100 s"
+    # a state from the future is no newer for ever
+    rig.tell(entity.copy(Time=10**9))
+    for time_ms in range(103_000, 130_000, 1000):
+        rig.tell(state.copy(Time=time_ms))
+    assert not rig.got("TaskComplete")
+    for time_ms in range(130_000, 141_000, 1000):
+        rig.tell(entity.copy(Time=time_ms), state.copy(Time=time_ms))
+    (complete,) = rig.got("TaskComplete")
+    assert complete.TimeTaskCompleted == 140_000
+
+
+@pytest.mark.parametrize(
+    ("bad", "reason"),
+    [
+        (None, "an entity that nobody has told of"),
+        ({"Groundspeed": math.nan}, "expected finite numbers, at most 1000 m/s; got nan, 0"),
+        ({"Groundspeed": 5.0, "Course": math.inf}, "Groundspeed, Course"),
+        ({"Groundspeed": 1e7}, "got 1e+07, 0"),
+        ({"Location": place(math.nan)}, "not a place"),
+    ],
+)
+def test_an_entity_that_vanishes_is_said_once_and_nobody_keeps_to_it(
+    tmp_path: Path, bad: dict[str, Any] | None, reason: str
+) -> None:
+    rig, state = escorted(tmp_path)
+    entity, told = moving(1.0)[1], len(rig.said)
+    rig.tell(entity.copy(Time=2000), state.copy(Time=2000))
+    if bad is None:
+        rig.tell(lmcp.new("RemoveEntities", EntityList=[ENTITY]))
+    commands = len(rig.got("VehicleActionCommand"))
+    for time_ms in range(3000, 20_000, 1000):
+        rig.tell(*[] if bad is None else [entity.copy(Time=time_ms, **bad)])
+        rig.tell(state.copy(Time=time_ms))
+    (said,) = [text for text in rig.reasons("Warning") if "vehicle 1 does not follow" in text]
+    assert reason in said
+    assert len(rig.got("VehicleActionCommand")) == commands
+    assert not [line for line in rig.said[told:] if "fails" in line], rig.said[told:]
+    for time_ms in range(20_000, 31_000, 1000):
+        rig.tell(entity.copy(Time=time_ms), state.copy(Time=time_ms))
+    (complete,) = rig.got("TaskComplete")
+    assert complete.TimeTaskCompleted == 30_000, "ten seconds from where it is told of again"
+
+
+def test_a_task_whose_entity_moves_in_no_direction_is_refused(tmp_path: Path) -> None:
+    configuration, state = moving(1.0)
+    said = refused(tmp_path, escort(), configuration, state.copy(Heading=math.inf))
+    assert any("u, Heading: a state without a velocity" in text for text in said), said
+
+
+def test_nobody_keeps_to_himself(tmp_path: Path) -> None:
+    rig = Rig(tmp_path)
+    rig.tell(*vehicle(1), escort(SupportedEntityID=1), request(5))
+    assert not rig.got("TaskPlanOptions")[0].Options
+    assert any("the task keeps to this very one" in text for text in rig.reasons("Warning"))
+    rig.tell(*vehicle(2, 0.01), request(5, vehicles=(1, 2)))
+    (option,) = rig.got("TaskPlanOptions")[1].Options
+    assert option.EligibleEntities == [2]
