@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -38,6 +37,7 @@ BLOCK = ((800.0, -600.0), (800.0, 600.0), (1400.0, 600.0), (1400.0, -600.0))
 LIMITS = Limits(15.0, 33.0, 0.52, 5.0)
 ROUND = ((0.0, 0.0), (600.0, 900.0), (1600.0, 900.0), (3000.0, 0.0))
 Point = tuple[float, float]
+LONG = 'RouteTimeout_s="60"'
 
 
 def place(point: Point) -> Any:
@@ -238,21 +238,27 @@ def test_an_answer_that_is_no_route_falls_back_with_the_reason(
 
 
 @pytest.mark.shows(SERVICE, "RouteTimeout_s")
-def test_no_answer_a_late_one_and_one_to_another_request(tmp_path: Path, opened: list[Any]) -> None:
-    rig = Rig(tmp_path, opened, 'NumberOfUAVs="1" RoutePlannerUsed="1" RouteTimeout_s="0.2"')
+def test_no_answer_a_late_one_and_one_to_another_request(
+    tmp_path: Path, opened: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rig = Rig(tmp_path, opened, 'NumberOfUAVs="1" RoutePlannerUsed="1" RouteTimeout_s="30"')
     rig.tell(request((3000.0, 0.0)))
     rig.fallen("no ICAROUS is connected that answers")
     rig.sent.clear()
     one = rig.fake(1)
     rig.tell(request((3000.0, 0.0), (0.0, 2000.0)))
+    (service,) = rig.process.ports
+    with monkeypatch.context() as still:  # its time runs from the first look, whenever the last was
+        still.setattr(service.port, "step", lambda _now_s: [])
+        for later_s in (0, 29, 30):
+            assert rig.routes._out
+            service.pump(1e9 + later_s)
     late = asked_of(rig, one)
-    begun = time.monotonic()
     plans = rig.answer().RouteResponses
     # who has not answered in time is not asked again before it has
     assert len(one.all(tp.RouteRequest)) == 1
-    assert "no answer within 0.2 s" in plans[0].RouteError[0].Value
+    assert "no answer within 30 s" in plans[0].RouteError[0].Value
     assert "no ICAROUS is connected that answers" in plans[1].RouteError[0].Value
-    assert time.monotonic() - begun > 0.1
     one.say(*answer(late, *ROUND))
     rig.heard_late()
     assert len(rig.got("RoutePlanResponse")) == 1
@@ -337,7 +343,7 @@ def test_too_many_ways_are_planned_by_the_own_planner(
 @pytest.mark.parametrize("kind", routes_module.PLANNERS)
 def test_what_our_icarous_answers_is_a_route(tmp_path: Path, opened: list[Any], kind: str) -> None:
     number = routes_module.PLANNERS.index(kind)
-    rig = Rig(tmp_path, opened, f'NumberOfUAVs="1" RoutePlannerUsed="{number}"')
+    rig = Rig(tmp_path, opened, f'NumberOfUAVs="1" RoutePlannerUsed="{number}" {LONG}')
     one = rig.fake(1)
     rig.tell(request((3000.0, 0.0)))
     asked = asked_of(rig, one)
@@ -354,7 +360,7 @@ def test_what_our_icarous_answers_is_a_route(tmp_path: Path, opened: list[Any], 
 
 
 def test_the_way_of_a_mission_is_that_of_icarous(tmp_path: Path, opened: list[Any]) -> None:
-    rig = Rig(tmp_path, opened, 'NumberOfUAVs="1" RoutePlannerUsed="1"', whole=True)
+    rig = Rig(tmp_path, opened, f'NumberOfUAVs="1" RoutePlannerUsed="1" {LONG}', whole=True)
     one = rig.fake(1)
     task = lmcp.new("MustFlyTask", TaskID=3, Position=place((3000.0, 0.0)))
     rig.tell(task)
@@ -385,16 +391,3 @@ def test_our_icarous_plans_among_the_zones_that_it_was_told(
     assert obeys(plan)
     assert not plan.RouteError
     assert any("UxAS asks for a route (ASTAR): a way of 4 points" in text for text in said)
-
-
-def test_where_our_icarous_finds_no_way_it_says_so() -> None:
-    ends = (*PLANE.to_geodetic(0.0, 0.0), 300.0, *PLANE.to_geodetic(1000.0, 0.0), 300.0)
-    zone = Zone(1, ZoneKind.KEEP_OUT, BLOCK, 0.0, 500.0)
-    for kind in routes_module.PLANNERS:
-        asked = tp.RouteRequest(kind, *ends, 0.0, 22.0, 0.0, 4)
-        assert Planner(PLANE, LIMITS).answer(asked, (zone,)) == (
-            [tp.RouteStart(4), tp.RouteEnd(4)],
-            "its end breaks keep-out zone 1",
-        )
-    fast = tp.RouteRequest("ASTAR", *ends, 0.0, 99.0, 0.0, 4)
-    assert "expected 15 to 33 m/s" in Planner(PLANE, LIMITS).answer(fast, ())[1]
