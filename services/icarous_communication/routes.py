@@ -168,8 +168,8 @@ class Routes:
             places, way = planner.asked_way(
                 self._contexts, body, body.RouteRequests[wanted.position]
             )
-        except CratousError as error:
-            return self._own(wanted, "; ".join(reasons_of(error)))
+        except Exception as error:
+            return self._own(wanted, _why(error))
         self._numbers += 1
         vehicle, to_geodetic = places.mission.vehicle(body.VehicleID), places.projection.to_geodetic
         start, end = way
@@ -203,7 +203,10 @@ class Routes:
             why = f"its way has {one.told} places, more than {MOST_POINTS}"
         elif places:
             constraint = body.RouteRequests[one.wanted.position]
-            plan, why = planner.led_over(self._contexts, body, constraint, places)
+            try:
+                plan, why = planner.led_over(self._contexts, body, constraint, places)
+            except Exception as error:
+                why = _why(error)
         del self._out[vid]
         if plan is None:
             return self._own(one.wanted, _of(vid, why))
@@ -214,7 +217,11 @@ class Routes:
         """UxAS's own planner plans a way, and that is said."""
         request = self._requests[wanted.ticket]
         body = request.asked.body
-        (plan,) = planner.plans_of(self._contexts, body, [body.RouteRequests[wanted.position]])
+        constraint = body.RouteRequests[wanted.position]
+        try:
+            (plan,) = planner.plans_of(self._contexts, body, [constraint])
+        except Exception as error:
+            plan = planner.refused(getattr(constraint, "RouteID", 0), (_why(error),))
         text = f"route of vehicle {body.VehicleID} planned by UxAS: {why}"
         plan.RouteError = [*plan.RouteError, lmcp.new("KeyValuePair", Key="reason", Value=text)]
         request.plans[wanted.position] = plan
@@ -239,6 +246,13 @@ class Routes:
         by_icarous = sum(not plan.RouteError for plan in plans)
         text = f"routes of vehicle {body.VehicleID}: {by_icarous} of {len(plans)} by ICAROUS"
         return [Note("INFO", text), Say(planner.answered(request.asked, plans), self._name)]
+
+
+def _why(error: Exception) -> str:
+    """Whatever goes wrong with one way neither ends UxAS nor leaves its request without an answer."""
+    if isinstance(error, CratousError):
+        return "; ".join(reasons_of(error))
+    return f"it cannot be planned: {error!r}"
 
 
 def _of(vid: int, why: str) -> str:
