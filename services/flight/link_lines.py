@@ -15,6 +15,7 @@ from cratous.bridge.text_protocol import (
     Traffic,
     Waypoint,
 )
+from cratous.core.authority.gate import UXAS, Gate
 from cratous.services.flight.dynamics import AirState
 from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Position, Zone, ZoneKind
@@ -24,6 +25,11 @@ FAR_M = 1e6
 
 MOST_AGAIN = 5
 """So often the missing lines of one plan or zone are sent again."""
+
+MOST_SAID = Gate(UXAS, 10**12, False)
+"""No instance begins a connection in a greater epoch; one that has given so many in a flight does not exist."""
+MOST_TOLD = Gate(UXAS, 10**14, False)
+"""No instance goes on from a greater epoch, so that all that follow have room on a line, which takes 15 digits."""
 
 Aircraft = tuple[tuple[int, AirState], ...]
 Places = dict[int, tuple[float, float]]

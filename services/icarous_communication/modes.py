@@ -17,8 +17,9 @@ from cratous.core.authority.gate import (
 )
 from cratous.core.authority.link_end import link_mode
 from cratous.services.flight.link_end import UNTOUCHED, Peer
+from cratous.services.flight.link_lines import MOST_SAID
 from cratous.services.flight.messages import Down
-from cratous.services.icarous_communication.state import Note, Out
+from cratous.services.icarous_communication.state import Out, Refuse
 from cratous.spec.authority.link_end import OVERTAKEN, REFUSED
 
 NO_EPOCH = -1
@@ -35,17 +36,23 @@ class Said(NamedTuple):
 
 def read(peer: Peer, line: SetMode, fresh: bool) -> Said:
     """What a SETMOD says, as the kernel `link_mode` has it. fresh: the first of a connection, which may
-    say any epoch after those that are known here."""
+    say any epoch after those that are known here, up to MOST_SAID."""
     active, gate = line.mode == "ACTIVE", peer.gate
-    if fresh and line.epoch is not None and not epoch_given(gate, line.epoch):
-        gates = [Gate(ICAROUS if active else UXAS, line.epoch, False)]
+    epoch_told = gate.epoch if line.epoch is None else line.epoch
+    if fresh and _after(gate, epoch_told):
+        gates = [Gate(ICAROUS if active else UXAS, epoch_told, False)]
     else:
         gates = [gate, gate_takeover(gate) if active else gate_offer(gate)]
     for one in gates:
         epoch = one.epoch if line.epoch is None else line.epoch
         if link_mode(peer.end, one, active, epoch).act not in (OVERTAKEN, REFUSED):
             return Said(SetMode(line.mode, epoch), one, True)
-    return Said(SetMode(line.mode, gate.epoch if line.epoch is None else line.epoch), gate, False)
+    return Said(SetMode(line.mode, epoch_told), gate, False)
+
+
+def _after(gate: Gate, epoch: int) -> bool:
+    """True for an epoch after those of a gate that leaves room for others."""
+    return not epoch_given(gate, epoch) and epoch_given(MOST_SAID, epoch)
 
 
 def anew(peer: Peer) -> Peer:
@@ -67,10 +74,10 @@ def forgotten(peer: Peer, line: SetMode, fresh: bool) -> EpochTold | None:
 
 
 def told(vehicle_id: int, line: SetMode, over: EpochTold) -> list[Out]:
-    """That line, and a sentence for the log."""
+    """That line, and why for the log."""
     text = f"vehicle {vehicle_id}: ICAROUS is in epoch {line.epoch}, which is over"
-    note = Note("WARN", f"{text}: it is told that epoch {over.epoch} was given")
-    return [note, Down(vehicle_id, (over,))]
+    why = Refuse("mode of an epoch that is over", f"{text}: it is told that {over.epoch} was given")
+    return [why, Down(vehicle_id, (over,))]
 
 
 def unknown(peer: Peer, fresh: bool) -> bool:

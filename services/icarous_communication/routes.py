@@ -57,11 +57,12 @@ class Wanted(NamedTuple):
 
 
 class Outstanding(NamedTuple):
-    """A WPREQ that is out. places: of the answer, None before it has begun; told: how many came."""
+    """A WPREQ that is out. until_s: None before the first look after it was sent; places: of the answer, None before
+    it has begun; told: how many came."""
 
     wanted: Wanted
     number: int
-    until_s: float
+    until_s: float | None = None
     places: tuple[tuple[float, float, float], ...] | None = None
     told: int = 0
 
@@ -100,11 +101,20 @@ class Routes:
             out += self._own(one, f"more than {MOST_WAITING} ways wait for ICAROUS")
         return out if wanted else [*out, *self._answered(self._tickets)]
 
-    def step(self, now_s: float, seated: Sequence[int]) -> list[Out]:
-        """Send what can be sent, give up what is overdue. seated: the vehicles whose instances are there."""
+    def look(self, now_s: float) -> list[Out]:
+        """Give up what is overdue. An answer's time runs from the first look after its WPREQ was sent: what this
+        process does in between is no time of the instance's."""
         out: list[Out] = []
-        for late in [v for v, one in self._out.items() if is_due(one.until_s, now_s)]:
-            out += self._overdue(late)
+        for vid, one in list(self._out.items()):
+            if one.until_s is None:
+                self._out[vid] = one._replace(until_s=now_s + self._wait_s)
+            elif is_due(one.until_s, now_s):
+                out += self._overdue(vid)
+        return out
+
+    def step(self, seated: Sequence[int]) -> list[Out]:
+        """Send what can be sent. seated: the vehicles whose instances are there."""
+        out: list[Out] = []
         kept: deque[Wanted] = deque()
         while self._waiting:
             wanted = self._waiting.popleft()
@@ -114,7 +124,7 @@ class Routes:
             elif vid in self._out:
                 kept.append(wanted)
             else:
-                out += self._sent(vid, wanted, now_s)
+                out += self._sent(vid, wanted)
         self._waiting = kept
         return out
 
@@ -151,15 +161,15 @@ class Routes:
         able = [vid for vid in seated if vid not in self._mute]
         return own if own in able else min(able, default=None)
 
-    def _sent(self, vid: int, wanted: Wanted, now_s: float) -> list[Out]:
+    def _sent(self, vid: int, wanted: Wanted) -> list[Out]:
         """The WPREQ of a way; what it is cannot be known here, UxAS's own planner says why."""
         body = self._requests[wanted.ticket].asked.body
         try:
             places, way = planner.asked_way(
                 self._contexts, body, body.RouteRequests[wanted.position]
             )
-        except CratousError as error:
-            return self._own(wanted, "; ".join(reasons_of(error)))
+        except Exception as error:
+            return self._own(wanted, _why(error))
         self._numbers += 1
         vehicle, to_geodetic = places.mission.vehicle(body.VehicleID), places.projection.to_geodetic
         start, end = way
@@ -174,7 +184,7 @@ class Routes:
             0.0,
             self._numbers,
         )
-        self._out[vid] = Outstanding(wanted, self._numbers, now_s + self._wait_s)
+        self._out[vid] = Outstanding(wanted, self._numbers)
         return [Down(vid, (line,))]
 
     def _overdue(self, vid: int) -> list[Out]:
@@ -193,7 +203,10 @@ class Routes:
             why = f"its way has {one.told} places, more than {MOST_POINTS}"
         elif places:
             constraint = body.RouteRequests[one.wanted.position]
-            plan, why = planner.led_over(self._contexts, body, constraint, places)
+            try:
+                plan, why = planner.led_over(self._contexts, body, constraint, places)
+            except Exception as error:
+                why = _why(error)
         del self._out[vid]
         if plan is None:
             return self._own(one.wanted, _of(vid, why))
@@ -204,7 +217,11 @@ class Routes:
         """UxAS's own planner plans a way, and that is said."""
         request = self._requests[wanted.ticket]
         body = request.asked.body
-        (plan,) = planner.plans_of(self._contexts, body, [body.RouteRequests[wanted.position]])
+        constraint = body.RouteRequests[wanted.position]
+        try:
+            (plan,) = planner.plans_of(self._contexts, body, [constraint])
+        except Exception as error:
+            plan = planner.refused(getattr(constraint, "RouteID", 0), (_why(error),))
         text = f"route of vehicle {body.VehicleID} planned by UxAS: {why}"
         plan.RouteError = [*plan.RouteError, lmcp.new("KeyValuePair", Key="reason", Value=text)]
         request.plans[wanted.position] = plan
@@ -229,6 +246,13 @@ class Routes:
         by_icarous = sum(not plan.RouteError for plan in plans)
         text = f"routes of vehicle {body.VehicleID}: {by_icarous} of {len(plans)} by ICAROUS"
         return [Note("INFO", text), Say(planner.answered(request.asked, plans), self._name)]
+
+
+def _why(error: Exception) -> str:
+    """Whatever goes wrong with one way neither ends UxAS nor leaves its request without an answer."""
+    if isinstance(error, CratousError):
+        return "; ".join(reasons_of(error))
+    return f"it cannot be planned: {error!r}"
 
 
 def _of(vid: int, why: str) -> str:

@@ -87,7 +87,7 @@ class IcarousCommunicationService:
         )
         self._step = Communication(name, settings.deviation_m, settings.dialect)
         self._seats = Seats(settings.instances, settings.ids)
-        self._routes, self._now_s = routes, 0.0
+        self._routes = routes
         self._early: dict[int, list[Message]] = {}
         self._known: set[int] = set()
         self._tally = Tally(name, report)
@@ -155,19 +155,19 @@ class IcarousCommunicationService:
 
     def pump(self, now_s: float) -> int:
         """What has arrived, to the step; how much that was."""
-        self._now_s = now_s
         self._redial.step(now_s)
         arrived = self.port.step(now_s)
         for came in arrived:
             self._came(came, now_s)
         for key, vid in self._seats.settle(self._known, now_s):
             self._seated(key, vid)
+        self._publish([] if self._routes is None else self._routes.look(now_s))
         self._publish(self._planned())
         return len(arrived)
 
     def _planned(self) -> list[Out]:
-        """What is due of the routes that ICAROUS plans."""
-        return [] if self._routes is None else self._routes.step(self._now_s, self._seats.vehicles)
+        """What can be asked of the routes that ICAROUS plans."""
+        return [] if self._routes is None else self._routes.step(self._seats.vehicles)
 
     def _publish(self, answers: list[Out]) -> None:
         if answers:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from pathlib import Path
 
-from cratous.core.authority.gate import ICAROUS, UXAS, Gate
+from cratous.core.authority.gate import ICAROUS, UXAS, Gate, epoch_given
 from cratous.core.files.whole_file import write_atomically
+from cratous.services.flight.link_lines import MOST_TOLD
 from cratous.services.icarous_program.step import resumed
 from cratous.spec.errors import BadInput
 from cratous.spec.files.text_file import bytes_of
@@ -23,12 +25,17 @@ class EpochFile:
 
     def resumed(self) -> Gate:
         """The gate to begin with; BadInput if the file is none, or of another vehicle."""
-        if not self._path.exists():
-            return Gate(UXAS, 0, False)
+        with suppress(OSError):  # what cannot be looked at cannot be read either
+            if not self._path.exists():
+                return Gate(UXAS, 0, False)
         expected = f"`vehicle {self._vehicle_id} epoch N UxAS` or `... ICAROUS`, or no file"
         data = bytes_of(self._path, expected=expected)
         found = _LINE.fullmatch(data)
-        if found is None or int(found[1]) != self._vehicle_id:
+        if (
+            found is None
+            or int(found[1]) != self._vehicle_id
+            or not epoch_given(MOST_TOLD, int(found[2]))
+        ):
             raise BadInput(
                 "not the epoch of this vehicle",
                 where=str(self._path),

@@ -17,6 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from cratous.bridge.text_protocol import Message, RouteEnd, RoutePoint, RouteRequest, RouteStart
+from cratous.core.geofence.distance import FARTHER, edge_against
+from cratous.core.kernel import Vec2
 from cratous.core.routing.bulk import FOUND
 from cratous.core.routing.visibility import Roadmap, route, routes, why_not
 from cratous.core.routing.wind import holds_in_wind
@@ -36,6 +38,8 @@ AROUND = 4.0
 """Grid and samples reach beyond places and zones by this many turn radii."""
 MOST_POINTS = 256
 """UxAS takes no longer answer."""
+CLIMBS_MOST_M = 200_000.0
+"""A way that has to be longer than this [m] to reach its altitude is none: it would be all turns."""
 
 
 class Planner(NamedTuple):
@@ -68,6 +72,10 @@ class Planner(NamedTuple):
         end = Pose(north, east, asked.end_alt_m, straight)
         radius = TURN_MARGIN * turn_radius_m(speed, self.limits.max_bank_rad)
         slope, why = self.limits.max_climb_m_s / speed, ""
+        at_start, at_end = Vec2(start.alt_m, 0.0), Vec2(end.alt_m, 0.0)
+        if edge_against(at_end, at_start, at_start, slope * CLIMBS_MOST_M) == FARTHER:
+            rise = end.alt_m - start.alt_m
+            return (), f"its altitude changes by {rise:.3g} m, too much for this airframe"
         for roadmap in roadmaps(zones, radius):
             vias = _vias(asked.planner, roadmap, (start, end), AROUND * radius)
             points, why = _searched(asked.planner, start, end, radius, slope, vias)

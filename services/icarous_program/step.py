@@ -43,6 +43,7 @@ from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import PIECE_S, Ability, Motion
 from cratous.core.avoidance.prediction import Intruder
 from cratous.services.flight.dynamics import MAX_ACCELERATION_M_S2, Limits, turn_rate_rad_s
+from cratous.services.flight.link_lines import MOST_TOLD
 from cratous.services.icarous import state as icarous
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Foresees, Line, Sensed, Up, Wish
@@ -192,6 +193,8 @@ class IcarousEnd:
         had is offered back."""
         if epoch_given(state.gate, line.epoch):
             return state, ()
+        if not epoch_given(MOST_TOLD, line.epoch):
+            return state, (Refuse("epoch after which there is no room for others", str(line)),)
         state = replace(state, gate=resumed(Gate(OWNERS[line.owner], line.epoch, False)))
         text = (
             f"epoch {line.epoch} was given before this start: going on in epoch {state.gate.epoch}"

@@ -75,7 +75,7 @@ def plans_of(contexts: Contexts, request: Any, constraints: Sequence[Any]) -> li
     try:
         return _plans(contexts, request, constraints)
     except CratousError as error:
-        return [_refused(c.RouteID, reasons_of(error)) for c in constraints]
+        return [refused(c.RouteID, reasons_of(error)) for c in constraints]
 
 
 def _plans(contexts: Contexts, request: Any, constraints: Sequence[Any]) -> list[Any]:
@@ -88,7 +88,7 @@ def _plans(contexts: Contexts, request: Any, constraints: Sequence[Any]) -> list
         cost = routes.travel_ms(vehicle, k, k)
         if cost is None:
             reason = routes.route(vehicle, k, k).reason
-            plans.append(_refused(constraint.RouteID, (reason,)))
+            plans.append(refused(constraint.RouteID, (reason,)))
             continue
         plan = lmcp.new("RoutePlan", RouteID=constraint.RouteID, RouteCost=cost)
         if not request.IsCostOnlyRequest:
@@ -165,6 +165,7 @@ def _way(places: RequestPlaces, constraint: Any, cruise_m: float) -> Way:
     return Way(start, end)
 
 
-def _refused(route: int, reasons: Iterable[str]) -> Any:
+def refused(route: int, reasons: Iterable[str]) -> Any:
+    """The RoutePlan of a way that there is not, and why."""
     why = [lmcp.new("KeyValuePair", Key="reason", Value=text) for text in reasons]
     return lmcp.new("RoutePlan", RouteID=route, RouteCost=-1, RouteError=why)

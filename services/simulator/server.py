@@ -114,8 +114,9 @@ class Server:
         self._wait(max(0.0, (TICK_S - self._behind_s) / self.rate))
 
     def _count(self) -> None:
-        """Shut the door behind the last of the only clients; ClientGone if one of them is no longer there."""
-        if not self._only:
+        """Shut the door behind the last of the only clients; ClientGone if one of them is no longer there and
+        nobody has asked to end."""
+        if not self._only or self.stopping or self.state == "Stopped":
             return
         if self._peers == self._only:
             self.port.shut()

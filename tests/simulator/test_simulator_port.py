@@ -146,6 +146,18 @@ def test_of_only_two_clients_nobody_takes_the_place() -> None:
             socket.create_connection(("127.0.0.1", port), 5)
 
 
+def test_an_only_client_that_asks_to_end_and_goes_ends_it_in_order() -> None:
+    plan = of_text(scenario(FLIGHT), "test")
+    where = address("tcp://127.0.0.1:0", ("tcp",), free=True)
+    server = Server(lambda: World(plan.events, 600), where, lambda *_: None, only=1)
+    client = Client(server.port.bound[1])
+    turn(server, 1)
+    client.send(lmcp.new("SessionStatus", State="Stopped"))
+    client.close()
+    server.run()
+    assert server.state == "Stopped"
+
+
 @pytest.mark.parametrize(
     ("options", "item"),
     [

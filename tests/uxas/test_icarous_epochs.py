@@ -18,11 +18,12 @@ from cratous.bridge.redial import Redial
 from cratous.bridge.text_port import TextPort
 from cratous.core.authority.gate import ICAROUS, UXAS, Gate, gate_takeover
 from cratous.services.flight.dynamics import Limits
+from cratous.services.flight.link_lines import MOST_SAID
 from cratous.services.icarous.state import Config
 from cratous.services.icarous_program import program as program_module
 from cratous.services.icarous_program.epochs import EpochFile
 from cratous.services.icarous_program.program import Program
-from cratous.services.icarous_program.step import Craft, IcarousEnd, State, Tell
+from cratous.services.icarous_program.step import Craft, IcarousEnd, Refuse, State, Tell
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Daa
 
@@ -173,12 +174,37 @@ def test_an_epoch_that_was_never_given_is_refused_after_a_restart_too(
     one.close()
     rig.until(lambda: gone(rig))
     two = rig.fake(hello=1)
-    two.say(tp.SetMode("ACTIVE", 1), tp.SetMode("PASSIVE", 0))
-    rig.until(lambda: len(two.all(tp.EpochTold)) == 2)
+    two.say(*[tp.SetMode("ACTIVE", 1)] * 4, tp.SetMode("PASSIVE", 0))
+    rig.until(lambda: len(two.all(tp.EpochTold)) == 5)
+    # one that goes on like that does not fill the log: the 1st, 2nd, 4th... are in it
+    assert sum("which is over" in line for line in rig.said) == 3
     assert set(two.all(tp.EpochTold)) == {tp.EpochTold("ICAROUS", 5)}
     two.say(tp.SetMode("ACTIVE", 5), tp.SetMode("ACTIVE", 40))
     rig.until(lambda: rig.got("ModeRefused"))
     assert [(m.Epoch, m.GateEpoch) for m in rig.got("ModeRefused")] == [(40, 5)]
+
+
+def test_no_peer_raises_an_epoch_so_far_that_the_next_one_has_no_room(
+    tmp_path: Path, opened: list[Any]
+) -> None:
+    far = 10**15 - 1  # the greatest that a line can say
+    rig = Rig(tmp_path, ONE, opened)
+    flying(rig)
+    one = rig.fake(hello=1)
+    one.say(tp.SetMode("ACTIVE", far))
+    rig.until(lambda: rig.got("ModeRefused"))
+    assert not rig.got("AuthorityChange")
+    one.say(tp.SetMode("ACTIVE", MOST_SAID.epoch))
+    rig.until(lambda: rig.got("AuthorityChange"))
+    one.close()
+    rig.until(lambda: gone(rig))
+    # one that is started anew goes on even from there
+    pilot = Pilot(rig, opened, tmp_path / "epoch")
+    pilot.until(lambda: pilot.known() == pilot.gate == Gate(UXAS, MOST_SAID.epoch + 1, False))
+    state_ = pilot.program.state
+    after, answers = IcarousEnd(CRAFT).handle(state_, tp.EpochTold("ICAROUS", far))
+    assert after == state_
+    assert [type(a) for a in answers] == [Refuse]
 
 
 @given(st.integers(0, 9), st.sampled_from(["UXAS", "ICAROUS"]), st.integers(0, 9), st.booleans())
@@ -200,7 +226,8 @@ def test_what_is_told_never_takes_an_epoch_back(
 @pytest.mark.parametrize(
     "text",
     ["", "vehicle 2 epoch 3 UxAS\n", "vehicle 1 epoch -3 UxAS\n", "vehicle 1 epoch 3 UxAS",
-     "vehicle 1 epoch 3 Nobody\n", "vehicle 1 epoch " + "9" * 40 + " UxAS\n"],
+     "vehicle 1 epoch 3 Nobody\n", "vehicle 1 epoch " + "9" * 40 + " UxAS\n",
+     "vehicle 1 epoch " + "9" * 15 + " ICAROUS\n"],
 )  # fmt: skip
 def test_a_file_that_is_no_epoch_of_this_vehicle_is_refused(tmp_path: Path, text: str) -> None:
     file = tmp_path / "epoch"
@@ -209,3 +236,9 @@ def test_a_file_that_is_no_epoch_of_this_vehicle_is_refused(tmp_path: Path, text
         EpochFile(file, 1).resumed()
     EpochFile(file, 1).keep(Gate(ICAROUS, 4, True))
     assert EpochFile(file, 1).resumed() == Gate(ICAROUS, 4, True)
+
+
+@pytest.mark.parametrize("name", [".", "e" * 300])
+def test_a_name_that_can_be_no_file_is_refused(tmp_path: Path, name: str) -> None:
+    with pytest.raises(BadInput, match="cannot be read"):
+        EpochFile(tmp_path / name, 1).resumed()

@@ -4,23 +4,30 @@ from __future__ import annotations
 
 import itertools
 import math
-import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
-from icarous_rig import Fake
 from icarous_tools import VOLUME
-from pipeline_tools import PIPELINE
-from uxas_tools import process, until, write_cfg
+from route_rig import (
+    BLOCK,
+    LIMITS,
+    LONG,
+    PLANE,
+    ROUND,
+    Point,
+    Rig,
+    answer,
+    asked_of,
+    obeys,
+    place,
+    request,
+)
 
 from cratous.bridge import lmcp
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.port import Address
 from cratous.bridge.text_port import TextPort
-from cratous.core.geofence.mission_legs import first_bad_leg
-from cratous.services.flight.dynamics import Limits
 from cratous.services.icarous.state import Config
 from cratous.services.icarous_communication import routes as routes_module
 from cratous.services.icarous_communication.routes import MOST_POINTS
@@ -28,142 +35,11 @@ from cratous.services.icarous_program import program as program_module
 from cratous.services.icarous_program.program import Program
 from cratous.services.icarous_program.routes import Planner
 from cratous.services.icarous_program.step import Craft, IcarousEnd
-from cratous.services.mission.frames import Projection
-from cratous.spec.mission import Daa, Frame, Position, Zone, ZoneKind
+from cratous.services.pipeline import planner
+from cratous.spec.mission import Daa, Zone, ZoneKind
 
 SERVICE, PLANNER = "IcarousCommunicationService", "RoutePlannerVisibilityService"
 AGGREGATOR = "RouteAggregatorService"
-PLANE = Projection(Frame(45.0, -121.0))
-BLOCK = ((800.0, -600.0), (800.0, 600.0), (1400.0, 600.0), (1400.0, -600.0))
-LIMITS = Limits(15.0, 33.0, 0.52, 5.0)
-ROUND = ((0.0, 0.0), (600.0, 900.0), (1600.0, 900.0), (3000.0, 0.0))
-Point = tuple[float, float]
-
-
-def place(point: Point) -> Any:
-    lat, lon = PLANE.to_geodetic(*point)
-    return lmcp.new("Location3D", Latitude=lat, Longitude=lon, Altitude=300.0)
-
-
-def vehicle(number: int) -> list[Any]:
-    profile = lmcp.new("FlightProfile", Airspeed=22.0, MaxBankAngle=30.0, VerticalSpeed=3.0)
-    configuration = lmcp.new(
-        "AirVehicleConfiguration", ID=number, NominalSpeed=22.0, NominalAltitude=300.0,
-        NominalAltitudeType="MSL", MinimumSpeed=15.0, MaximumSpeed=33.0,
-        NominalFlightProfile=profile,
-    )  # fmt: skip
-    return [configuration, lmcp.new("AirVehicleState", ID=number, Location=place((0.0, 0.0)))]
-
-
-def block() -> Any:
-    boundary = lmcp.new("Polygon", BoundaryPoints=[place(corner) for corner in BLOCK])
-    return lmcp.new(
-        "KeepOutZone", ZoneID=1, MaxAltitude=500.0, MaxAltitudeType="MSL", MinAltitudeType="MSL",
-        Boundary=boundary,
-    )  # fmt: skip
-
-
-def request(*ends: Point, number: int = 7, vehicle_id: int = 1, costs: bool = False) -> Any:
-    ways = [
-        lmcp.new(
-            "RouteConstraints", RouteID=10 + k, StartLocation=place((0.0, 0.0)),
-            EndLocation=place(end),
-        )
-        for k, end in enumerate(ends)
-    ]  # fmt: skip
-    return lmcp.new(
-        "RoutePlanRequest", RequestID=number, VehicleID=vehicle_id, OperatingRegion=5,
-        RouteRequests=ways, IsCostOnlyRequest=costs,
-    )  # fmt: skip
-
-
-class Rig:
-    """The service beside UxAS's own planner, vehicles, a zone on the way, and instances that do as they are told."""
-
-    def __init__(
-        self,
-        folder: Path,
-        opened: list[Any],
-        more: str = "",
-        planner: str = "",
-        whole: bool = False,
-    ) -> None:
-        more = more or 'NumberOfUAVs="2" RoutePlannerUsed="1" RouteTimeout_s="60"'
-        text = f'<Service Type="{PLANNER}" {planner}/>'
-        text += f'<Service Type="{AGGREGATOR}" UseICAROUSRoutePlanner="true"/>'
-        others = [name for name in PIPELINE if name not in (PLANNER, AGGREGATOR)]
-        text += "".join(f'<Service Type="{name}"/>' for name in others) if whole else ""
-        text += f'<Service Type="{SERVICE}" Address="tcp://127.0.0.1:0" {more}/>'
-        self.process, self.said = process(write_cfg(folder, text))
-        opened.append(self.process)
-        self.sent: list[Any] = []
-        self.process.bus.tap(self.sent.append)
-        (service,) = self.process.ports
-        self.port, self.routes = service.port.bound[1], service._routes
-        self.opened = opened
-        region = lmcp.new("OperatingRegion", ID=5, KeepOutAreas=[1])
-        self.tell(block(), region, *vehicle(1), *vehicle(2))
-
-    def tell(self, *bodies: Any) -> None:
-        for body in bodies:
-            self.process.bus.publish(body, "test")
-        self.process.turn(0.0)
-
-    def fake(self, hello: int | None, dialect: tp.Dialect = tp.Dialect.CRATOUS) -> Fake:
-        one = Fake(self.port, hello, dialect)
-        self.opened.append(one)
-        self.until(lambda: one.all(tp.FenceDone) or self.tell(*vehicle(1)))
-        return one
-
-    def until(self, done: Callable[[], Any]) -> None:
-        until(done, self.process, limit_s=60.0)
-
-    def got(self, kind: str, source: str = "") -> list[Any]:
-        return [
-            e.body for e in self.sent
-            if type(e.body).__name__ == kind and source in ("", e.source)
-        ]  # fmt: skip
-
-    def heard_late(self) -> None:
-        """The late answer has come; the next one may take its time."""
-        self.until(lambda: not self.routes._mute)
-        assert self.said.has("route that nobody waits for")
-        self.routes._wait_s = 60.0
-
-    def answer(self) -> Any:
-        """The one response to request 7."""
-        self.until(lambda: self.got("RoutePlanResponse"))
-        (one,) = self.got("RoutePlanResponse")
-        assert one.ResponseID == 7
-        return one
-
-    def fallen(self, why: str) -> Any:
-        """The response that UxAS's own planner has made, with the reason everywhere."""
-        (plan,) = self.answer().RouteResponses
-        assert why in " ".join(pair.Value for pair in plan.RouteError)
-        told = [p.Value for s in self.got("ServiceStatus", SERVICE) for p in s.Info]
-        assert any(why in text for text in told)
-        assert self.said.has("planned by UxAS")
-        assert obeys(plan)
-        return plan
-
-
-def obeys(plan: Any) -> bool:
-    """The route has a cost, and its legs stay out of the zone."""
-    zone = Zone(1, ZoneKind.KEEP_OUT, BLOCK, 0.0, 500.0)
-    path = [Position(*PLANE.to_local(w.Latitude, w.Longitude), w.Altitude) for w in plan.Waypoints]
-    return bool(plan.RouteCost > 0) and first_bad_leg(path, (zone,)) is None
-
-
-def answer(asked: tp.RouteRequest, *points: Point, alt_m: float = 300.0) -> list[tp.Message]:
-    number = asked.request
-    between = [tp.RoutePoint(*PLANE.to_geodetic(*p), alt_m, 22.0, number) for p in points]
-    return [tp.RouteStart(number), *between, tp.RouteEnd(number)]
-
-
-def asked_of(rig: Rig, one: Fake, count: int = 1) -> Any:
-    rig.until(lambda: len(one.all(tp.RouteRequest)) == count)
-    return one.all(tp.RouteRequest)[-1]
 
 
 @pytest.mark.shows(SERVICE, "RoutePlannerUsed", "RoutePlanRequest", "RoutePlanResponse",
@@ -238,21 +114,27 @@ def test_an_answer_that_is_no_route_falls_back_with_the_reason(
 
 
 @pytest.mark.shows(SERVICE, "RouteTimeout_s")
-def test_no_answer_a_late_one_and_one_to_another_request(tmp_path: Path, opened: list[Any]) -> None:
-    rig = Rig(tmp_path, opened, 'NumberOfUAVs="1" RoutePlannerUsed="1" RouteTimeout_s="0.2"')
+def test_no_answer_a_late_one_and_one_to_another_request(
+    tmp_path: Path, opened: list[Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rig = Rig(tmp_path, opened, 'NumberOfUAVs="1" RoutePlannerUsed="1" RouteTimeout_s="30"')
     rig.tell(request((3000.0, 0.0)))
     rig.fallen("no ICAROUS is connected that answers")
     rig.sent.clear()
     one = rig.fake(1)
     rig.tell(request((3000.0, 0.0), (0.0, 2000.0)))
+    (service,) = rig.process.ports
+    with monkeypatch.context() as still:  # its time runs from the first look, whenever the last was
+        still.setattr(service.port, "step", lambda _now_s: [])
+        for later_s in (0, 29, 30):
+            assert rig.routes._out
+            service.pump(1e9 + later_s)
     late = asked_of(rig, one)
-    begun = time.monotonic()
     plans = rig.answer().RouteResponses
     # who has not answered in time is not asked again before it has
     assert len(one.all(tp.RouteRequest)) == 1
-    assert "no answer within 0.2 s" in plans[0].RouteError[0].Value
+    assert "no answer within 30 s" in plans[0].RouteError[0].Value
     assert "no ICAROUS is connected that answers" in plans[1].RouteError[0].Value
-    assert time.monotonic() - begun > 0.1
     one.say(*answer(late, *ROUND))
     rig.heard_late()
     assert len(rig.got("RoutePlanResponse")) == 1
@@ -261,6 +143,25 @@ def test_no_answer_a_late_one_and_one_to_another_request(tmp_path: Path, opened:
     one.say(*answer(asked_of(rig, one, 2), (0.0, 2000.0)))
     (plan,) = rig.answer().RouteResponses
     assert plan.RouteCost > 0
+
+
+@pytest.mark.parametrize("where", ["asked_way", "led_over"])
+def test_what_fails_at_one_way_neither_ends_uxas_nor_stays_unanswered(
+    tmp_path: Path, opened: list[Any], monkeypatch: pytest.MonkeyPatch, where: str
+) -> None:
+    def fails(*_: Any) -> None:
+        raise MemoryError(where)
+
+    rig = Rig(tmp_path, opened)
+    one = rig.fake(1)
+    monkeypatch.setattr(planner, where, fails)
+    monkeypatch.setattr(planner, "plans_of", fails)
+    rig.tell(request((3000.0, 0.0)))
+    if where == "led_over":
+        one.say(*answer(asked_of(rig, one), *ROUND))
+    (plan,) = rig.answer().RouteResponses
+    assert (plan.RouteID, plan.RouteCost) == (10, -1)
+    assert all("MemoryError" in pair.Value for pair in plan.RouteError)
 
 
 def test_wrong_numbers_lines_without_a_beginning_and_a_lost_link(
@@ -337,7 +238,7 @@ def test_too_many_ways_are_planned_by_the_own_planner(
 @pytest.mark.parametrize("kind", routes_module.PLANNERS)
 def test_what_our_icarous_answers_is_a_route(tmp_path: Path, opened: list[Any], kind: str) -> None:
     number = routes_module.PLANNERS.index(kind)
-    rig = Rig(tmp_path, opened, f'NumberOfUAVs="1" RoutePlannerUsed="{number}"')
+    rig = Rig(tmp_path, opened, f'NumberOfUAVs="1" RoutePlannerUsed="{number}" {LONG}')
     one = rig.fake(1)
     rig.tell(request((3000.0, 0.0)))
     asked = asked_of(rig, one)
@@ -354,7 +255,7 @@ def test_what_our_icarous_answers_is_a_route(tmp_path: Path, opened: list[Any], 
 
 
 def test_the_way_of_a_mission_is_that_of_icarous(tmp_path: Path, opened: list[Any]) -> None:
-    rig = Rig(tmp_path, opened, 'NumberOfUAVs="1" RoutePlannerUsed="1"', whole=True)
+    rig = Rig(tmp_path, opened, f'NumberOfUAVs="1" RoutePlannerUsed="1" {LONG}', whole=True)
     one = rig.fake(1)
     task = lmcp.new("MustFlyTask", TaskID=3, Position=place((3000.0, 0.0)))
     rig.tell(task)
@@ -385,16 +286,3 @@ def test_our_icarous_plans_among_the_zones_that_it_was_told(
     assert obeys(plan)
     assert not plan.RouteError
     assert any("UxAS asks for a route (ASTAR): a way of 4 points" in text for text in said)
-
-
-def test_where_our_icarous_finds_no_way_it_says_so() -> None:
-    ends = (*PLANE.to_geodetic(0.0, 0.0), 300.0, *PLANE.to_geodetic(1000.0, 0.0), 300.0)
-    zone = Zone(1, ZoneKind.KEEP_OUT, BLOCK, 0.0, 500.0)
-    for kind in routes_module.PLANNERS:
-        asked = tp.RouteRequest(kind, *ends, 0.0, 22.0, 0.0, 4)
-        assert Planner(PLANE, LIMITS).answer(asked, (zone,)) == (
-            [tp.RouteStart(4), tp.RouteEnd(4)],
-            "its end breaks keep-out zone 1",
-        )
-    fast = tp.RouteRequest("ASTAR", *ends, 0.0, 99.0, 0.0, 4)
-    assert "expected 15 to 33 m/s" in Planner(PLANE, LIMITS).answer(fast, ())[1]
