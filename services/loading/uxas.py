@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import replace
-from math import isfinite
 from pathlib import Path
 
 from cratous.services.loading import uxas_parts as parts
@@ -198,7 +197,7 @@ def _frame(cast: _Cast) -> Frame:
         place
         for sent in cast.cfg.messages
         for place in parts.locations(sent.body)
-        if isfinite(place[0]) and isfinite(place[1])
+        if parts.is_place(*place)  # another one is refused where it is needed
     ]
     if not found:
         raise BadInput("no message has a place", where=str(cast.cfg.path), expected="vehicles")
