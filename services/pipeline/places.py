@@ -32,7 +32,7 @@ def _spot(location: Any) -> _Spot:
 def read_pose(location: Any, heading_deg: float, places: Places, where: str, item: str) -> Pose:
     """A Location3D and a heading as a pose of a frame; BadInput for what is no place or no heading."""
     position = point(location, places, Sent(None, where, 0), item)
-    return Pose(*position, heading(heading_deg, where, item))
+    return Pose(*position, heading(heading_deg, where, f"heading at {item}"))
 
 
 class Way(NamedTuple):
@@ -83,7 +83,7 @@ class RequestPlaces:
         known = None if location is None else self._points.get(_spot(location))
         if known is None:
             return read_pose(location, heading_deg, self._places, where, item)
-        return Pose(*known, heading(heading_deg, where, item))
+        return Pose(*known, heading(heading_deg, where, f"heading at {item}"))
 
     def spaced(
         self, points: Sequence[Position], radius_m: float, outside: Outside | None
