@@ -84,7 +84,9 @@ def _of(function: FunctionType) -> Iterator[str]:
     module, scope = function.__module__, function.__globals__
     said = _file_says(module)
     names = tuple(names_of(function.__code__))
-    if function.__builtins__ is not vars(builtins):  # type: ignore[attr-defined]
+    # what an interpreter has and its stubs do not
+    whole: Any = function
+    if whole.__builtins__ is not vars(builtins):
         yield f"{module}.__builtins__"
     for used in names:
         if used not in scope:
