@@ -68,9 +68,7 @@ def heard(part: Part, body: Any, asked: Asked, motion: Motion, fresh: bool, now_
     """
     context, flyer, slot = part.context, part.option.flyer, slot_of(part.option)
     frame = context.inputs.mission.frame
-    here = context.places.pose(
-        body.Location, body.Heading, f"state of vehicle {body.ID}", "Location"
-    )
+    here = context.places.pose(body.Location, 0.0, f"state of vehicle {body.ID}", "Location")
     at, camera = Vec2(here.north_m, here.east_m), camera_of(asked, flyer)
     now = station(asked, slot, flyer, motion, frame.terrain_m)
     places = Places(frame)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import replace
-from math import isfinite
 from pathlib import Path
 
 from cratous.services.loading import uxas_parts as parts
@@ -194,14 +193,11 @@ class _Cast:
 
 def _frame(cast: _Cast) -> Frame:
     """A frame in the middle of everything that has a place, so that errors stay small."""
-    found = [
-        place
-        for sent in cast.cfg.messages
-        for place in parts.locations(sent.body)
-        if isfinite(place[0]) and isfinite(place[1])
-    ]
-    if not found:
+    places = [place for sent in cast.cfg.messages for place in parts.locations(sent.body)]
+    if not places:
         raise BadInput("no message has a place", where=str(cast.cfg.path), expected="vehicles")
+    # what is no place is refused where it is needed
+    found = [place for place in places if parts.is_place(*place)] or [(0.0, 0.0)]
     # places that nobody has filled in lie at 0, 0; where the frame lies changes no meaning
     latitudes, longitudes = zip(*([p for p in found if p != (0.0, 0.0)] or found), strict=True)
     return Frame(

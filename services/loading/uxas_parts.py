@@ -38,7 +38,7 @@ def point(location: Any, places: Places, sent: Sent, item: str) -> Position:
     if location is None:
         raise BadInput("a place is missing", where=sent.where, item=item, expected="a Location3D")
     values = (location.Latitude, location.Longitude, location.Altitude)
-    if not all(isfinite(v) for v in values) or abs(values[0]) > 89 or abs(values[1]) > 180:
+    if not isfinite(location.Altitude) or not is_place(*values[:2]):
         raise BadInput(
             "not a place",
             where=sent.where,
@@ -50,6 +50,20 @@ def point(location: Any, places: Places, sent: Sent, item: str) -> Position:
     kind = location.AltitudeType.name
     altitude = msl(location.Altitude, kind, places.terrain_m, sent.where, item)
     return Position(north_m, east_m, float(altitude))
+
+
+def is_place(latitude_deg: float, longitude_deg: float) -> bool:
+    """Whether a frame can have a place there; not a number is none."""
+    return abs(latitude_deg) <= 89 and abs(longitude_deg) <= 180
+
+
+def heading(degrees: float, where: str, item: str) -> float:
+    """A heading [deg] in radians; BadInput if it is no number."""
+    if not isfinite(degrees):
+        raise BadInput(
+            "not a heading", where=where, item=item, expected="a finite number", got=f"{degrees:g}"
+        )
+    return radians(degrees)
 
 
 def vehicle(configuration: Sent, state: Sent, places: Places, notes: list[str]) -> Vehicle:
@@ -96,7 +110,7 @@ def vehicle(configuration: Sent, state: Sent, places: Places, notes: list[str]) 
         id=body.ID,
         label=body.Label or f"vehicle {body.ID}",
         position=position,
-        heading_rad=radians(state.body.Heading),
+        heading_rad=heading(state.body.Heading, state.where, "Heading"),
         speed_m_s=float(speed),
         min_speed_m_s=float(body.MinimumSpeed),
         max_speed_m_s=float(body.MaximumSpeed),

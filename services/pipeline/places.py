@@ -7,13 +7,12 @@ lost on the way through messages; any other is read from the message.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import radians
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.services.loading.places import Places
 from cratous.services.loading.uxas_cfg import Sent
-from cratous.services.loading.uxas_parts import point
+from cratous.services.loading.uxas_parts import heading, point
 from cratous.services.mission.frames import Projection, compass
 from cratous.services.pipeline.outside import Outside
 from cratous.services.planning.routes import Routes
@@ -31,9 +30,9 @@ def _spot(location: Any) -> _Spot:
 
 
 def read_pose(location: Any, heading_deg: float, places: Places, where: str, item: str) -> Pose:
-    """A Location3D and a heading as a pose of a frame; BadInput for what is no place."""
+    """A Location3D and a heading as a pose of a frame; BadInput for what is no place or no heading."""
     position = point(location, places, Sent(None, where, 0), item)
-    return Pose(*position, radians(heading_deg))
+    return Pose(*position, heading(heading_deg, where, f"heading at {item}"))
 
 
 class Way(NamedTuple):
@@ -77,14 +76,14 @@ class RequestPlaces:
         return None if location is None else self._poses.get((_spot(location), heading_deg))
 
     def pose(self, location: Any, heading_deg: float, where: str, item: str) -> Pose:
-        """A Location3D and a heading as a pose of the frame; BadInput for what is no place."""
+        """A Location3D and a heading as a pose of the frame; BadInput for what is no place or no heading."""
         exact = self.exact(location, heading_deg)
         if exact is not None:
             return exact
         known = None if location is None else self._points.get(_spot(location))
         if known is None:
             return read_pose(location, heading_deg, self._places, where, item)
-        return Pose(*known, radians(heading_deg))
+        return Pose(*known, heading(heading_deg, where, f"heading at {item}"))
 
     def spaced(
         self, points: Sequence[Position], radius_m: float, outside: Outside | None

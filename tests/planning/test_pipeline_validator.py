@@ -327,7 +327,9 @@ def test_requests_are_planned_whatever_their_ids(tmp_path: Path) -> None:
     assert [u.RequestID for u in rig.got("UniqueAutomationRequest")] == [90, 40, -3, 1]
 
 
-def test_a_watch_of_what_stands_still_is_planned_and_of_what_moves_refused(tmp_path: Path) -> None:
+def test_a_watch_of_what_stands_still_is_planned_and_of_what_is_as_fast_refused(
+    tmp_path: Path,
+) -> None:
     rig = Rig(tmp_path)
     watch = lmcp.new("WatchTask", TaskID=5, WatchedEntityID=2)
     still = lmcp.new("GroundVehicleState", ID=2, Location=place(0.02).copy(Altitude=0.0))
@@ -335,4 +337,6 @@ def test_a_watch_of_what_stands_still_is_planned_and_of_what_moves_refused(tmp_p
     (command,) = rig.got("AutomationResponse")[0].MissionCommandList
     assert {t for w in command.WaypointList for t in w.AssociatedTasks} == {5}
     rig.tell(still.copy(Groundspeed=20.0), request(5))
-    assert "moves" in rig.got("AutomationResponse")[1].Info[0].Value
+    assert not rig.got("AutomationResponse")[1].MissionCommandList
+    said = "entity 2 moves at 20.0 m/s, and it flies 20 m/s"
+    assert any(said in text for text in rig.reasons("Warning")), rig.reasons("Warning")

@@ -179,7 +179,7 @@ def test_a_blockade_is_between_the_entity_and_what_is_protected_and_ends_with_an
         ),
         (
             escort(PrescribedWaypoints=[lmcp.new("Waypoint", Latitude=99.0)]),
-            "too far from the frame",
+            "PrescribedWaypoints[0]: not a place",
         ),
         (escort(SupportedEntityID=77), "an entity that nobody has told of"),
         (
