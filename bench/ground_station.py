@@ -5,12 +5,13 @@
 The log is made first: states of the vehicles at 2 Hz, each on a circle of its own. Then `cratous serve`
 is started on it, the page opened in a browser of its own, and played at the pace of the clock. Wall
 times, on the machine as it is; a frame is the time between two calls of requestAnimationFrame, and
-its script the time that the page's own drawing takes of it.
+the script is the part of it that the page itself draws in.
 """
 
 from __future__ import annotations
 
 import argparse
+import shutil
 import sys
 import tempfile
 import time
@@ -106,6 +107,8 @@ def main() -> None:
     options.add_argument("--minutes", type=float, default=5.0)
     options.add_argument("--seconds", type=float, default=30.0, help="how long it is played")
     given = options.parse_args()
+    if not (shutil.which("chromium") or shutil.which("chromium-browser")):
+        raise SystemExit("there is no Chromium on this machine")
     with tempfile.TemporaryDirectory() as folder:
         log = made(Path(folder), given.vehicles, given.minutes)
         for name, value in measured(log, given.seconds)._asdict().items():

@@ -158,10 +158,17 @@ export class FlightMap {
     if (owner === 1) this.stroke(color("icarous"), 5); else this.stroke(colorOf(this.recording, id), 2.5);
   }
 
-  // up to the last row that is past
+  // up to the last row but one that is past: the last one may be replaced while it is flown
   trail(id, time) {
-    const track = this.recording.tracks[id], last = lastAt(track, time, row => row[0]);
-    for (let from = this.drawn.to[id] ?? 0; from < last;) {
+    const track = this.recording.tracks[id], done = lastAt(track, time, row => row[0]) - 1;
+    this.rows(id, this.drawn.to[id] ?? 0, done);
+    this.drawn.to[id] = Math.max(done, 0);
+  }
+
+  // from row to row of a track, but for what nobody saw
+  rows(id, first, last) {
+    const track = this.recording.tracks[id];
+    for (let from = first; from < last;) {
       let to = from + 1;
       if (!broken(track, from)) {
         while (to < last && track[to][4] === track[from][4] && !broken(track, to)) to++;
@@ -169,12 +176,12 @@ export class FlightMap {
       }
       from = to;
     }
-    this.drawn.to[id] = Math.max(last - 1, 0); // while it is flown, its last row may be replaced
   }
 
-  // from the last row to where it is now
+  // the rest of it, to where it is now
   newest(id, time) {
     const track = this.recording.tracks[id], last = lastAt(track, time, row => row[0]), now = positionAt(track, time);
+    this.rows(id, Math.max(last - 1, 0), last);
     if (now && now.seen) this.piece(id, track[last][4], [[track[last][1], track[last][2]], [now.north, now.east]]);
   }
 
