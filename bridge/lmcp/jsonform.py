@@ -77,7 +77,7 @@ def _spell_non_finite(value: Any) -> Any:
 
 
 def to_data(obj: LmcpObject) -> dict[str, Any]:
-    """The JSON form as plain data, as reading `to_json` again gives it; for objects as they are read."""
+    """The data that the text of `to_json` holds; of an object that was read from bytes, whose fields are of their types."""
     cls: Any = type(obj)
     reals, others, keys = _plan(cls)
     values = [cls.type_name, *cls.values_of(obj)]
