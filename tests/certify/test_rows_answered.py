@@ -223,6 +223,10 @@ ASSUMED: dict[str, tuple[Edit, str]] = {
     "held, and not to be watched": (
         entry(FREE, state="held", note=""), f"{FREE} cannot be watched, and is held",
     ),
+    "not to be watched, for another reason": (
+        entry(FREE, note="all is well"),
+        f"{FREE} cannot be watched, and is not observed, after 0 checks, with the note 'all is well'",
+    ),
     "held without a check": (
         entry("clock", state="held", note="", checks=0), "clock is held without a check",
     ),
