@@ -55,7 +55,10 @@ def _of(row: Data, one: Assumption) -> Iterator[str]:
         one.why_not,
         0,
     ):
-        yield f"{name} cannot be watched, and is {row['state']}"
+        said = (
+            f"{row['state']}, after {row['checks']} checks, with the note {row['note'] or 'none'!r}"
+        )
+        yield f"{name} cannot be watched, and is {said}"
     if row["state"] != State.NOT_OBSERVED and not row["checks"]:
         yield f"{name} is {row['state']} without a check"
     if (row["state"] == State.HELD) == bool(row["note"]):

@@ -1,8 +1,8 @@
-"""Are the rows of a report on its plan those that the check of a plan writes of this mission and plan?
+"""Are the rows of a report on its plan those that the check of a plan writes of mission and plan?
 
-Mission and plan are what the log recorded, so which rows there must be follows from them; whether a row
-holds is the kernels' matter (`cratous certify`). The rows on order and timing are those of the flight, which
-the judge knows, unless the mission changes or leaves a choice.
+Mission and plan are what the log recorded, so which rows there must be follows from them; whether a
+row holds is the kernels' matter (`cratous certify`). The rows on order and timing are those of the
+flight, which the judge knows, unless the mission changes or leaves a choice.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ SENTENCE = re.compile(r"plan: `[^`]+`: p[0-9]+ (starts|ends) ")
 def plan_faults(report: Data) -> list[str]:
     """Rows on the plan that are missing, or that no check writes."""
     there = {row["item"] for row in report["constraints"] if row["source"] == "plan"}
-    must, may = _expected(report)
+    must = _expected(report)
     said = {item for item in there if SENTENCE.match(item)}
     found = [f"G1 lacks the row on the plan: {item}" for item in sorted(must - there)]
     if len(there & {WHOLE, PART}) != 1:
         found.append(f"G1 has to have one row on the plan of these: {WHOLE}; {PART}")
-    strange = sorted(there - must - may - said - {WHOLE, PART})
+    strange = sorted(there - must - said - {WHOLE, PART})
     found += [f"G1 has a row on the plan that no check writes: {item}" for item in strange]
     found += _tasks(report, there)
     if is_settled(report) and WHOLE in there:
@@ -39,31 +39,27 @@ def plan_faults(report: Data) -> list[str]:
 
 
 def is_settled(report: Data) -> bool:
-    """Whether plan and flight have the same rows on order and timing: nothing changes, nothing is chosen."""
+    """Whether plan and flight have the same rows on order and timing: no change, no choice."""
     mission = report["mission"]
     return not mission["changes"] and "+" not in mission["relations"]
 
 
-def _expected(report: Data) -> tuple[set[str], set[str]]:
-    """(rows that there must be, rows that there may be): the latter of zones that are known later."""
+def _expected(report: Data) -> set[str]:
+    """The rows that there must be besides those of tasks, order and timing as a whole."""
     mission, items = report["mission"], report["plan"]["items"]
     vehicles = {item["vehicle_id"] for item in items}
     must = {AT_ONCE} | {f"chain: vehicle {number}" for number in vehicles}
     must |= {f"eligibility: task {item['task_id']}" for item in items}
-    late = [change["zone"] for change in mission["changes"] if change.get("zone")]
-    # one that has ended before the flight begins is none of the plan's
-    over = {c["zone_id"] for c in mission["changes"] if c.get("zone_id") and not c["at_ms"]}
-    late += [zone for zone in mission["zones"] if zone["id"] in over]
-    known = [zone for zone in mission["zones"] if zone["id"] not in over]
-    zones, later = (
-        {
-            f"zone: {zone['kind']} {zone['id']}, planned route of vehicle {number}"
-            for zone in some
-            for number in vehicles
-        }
-        for some in (known, late)
-    )
-    return must | zones, later
+    # the plan is made with what is known at its beginning
+    begun = [change for change in mission["changes"] if change["at_ms"] <= 0]
+    over = {change["zone_id"] for change in begun if change.get("zone_id")}
+    appeared = [change["zone"] for change in begun if change.get("zone")]
+    return must | {
+        f"zone: {zone['kind']} {zone['id']}, planned route of vehicle {number}"
+        for zone in (*mission["zones"], *appeared)
+        for number in vehicles
+        if zone["id"] not in over
+    }
 
 
 def _tasks(report: Data, there: set[str]) -> list[str]:

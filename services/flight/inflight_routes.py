@@ -117,8 +117,11 @@ class Ways:
         return Last(chains.final_loiter(pose, radius_m, layer_m, slope, self.zones), True)
 
     def _near(self, chain: Chain, state: AirState, pose: Pose) -> Last:
-        """A way to the nearest place found where a circle keeps the zones, and a lap there. If no way there
-        keeps them, one that is in them as shortly as can be; without a place a circle at the pose that breaks one."""
+        """A way to the nearest place found where a circle keeps the zones, and a lap there.
+
+        If no way there keeps them, the direct one whose legs that break a zone are shortest together, each
+        counted whole; without a place a circle at the pose that breaks one.
+        """
         across: list[tuple[float, float, Track]] = []
         for place, lap in self._places(chain, pose):
             way = self._to(chain, state, place)
@@ -134,7 +137,7 @@ class Ways:
         return Last(chains.final_loiter(pose, _radius_m(chain), 0.0, 0.0, ()), False)
 
     def _places(self, chain: Chain, pose: Pose) -> Iterator[tuple[Pose, tuple[Position, ...]]]:
-        """Places about a pose where a circle keeps the zones, the nearest first, each with the rest of its lap."""
+        """Places about a pose where a circle keeps the zones, nearest first, with the rest of the lap."""
         radius_m = _radius_m(chain)
         for away in AWAY:
             for k in range(BEARINGS):

@@ -35,7 +35,7 @@ NO_WAY = "no way there keeps the zones"
 NO_HOLD = "it would have to wait, and no circle at its start keeps the zones"
 NO_CIRCLE = "no circle there or near keeps the zones: it circles across them"
 NO_WAY_OUT = (
-    "no way to a circle that keeps the zones was found: it crosses them once, as shortly as found"
+    "no way that keeps the zones was found to a circle that does: it crosses them on the way there"
 )
 NAME = "uxas/executive"
 """The sender of what the executive says of itself."""

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
-from certify_tools import Run, meta, read
+from certify_tools import ROOT, Run, meta, read
 
 pytest.importorskip("cryptography", reason="the extra `sign` is not installed")
 
@@ -19,7 +20,13 @@ from cratous.services.attestation.assumed import assumption_faults
 from cratous.services.attestation.planned import PART, WHOLE, is_settled, plan_faults
 from cratous.services.certify.rejudge import subject
 from cratous.services.certify.verdicts import plan_rows
+from cratous.services.loading import load
+from cratous.services.logs.records import to_data
+from cratous.services.mission.wind import known_at
 from cratous.services.monitor.plan_check import check_plan
+from cratous.services.pipeline.plan import make_plan
+from cratous.spec.mission import Change
+from cratous.spec.mission.changes import ZONE, ZONE_ENDS, ZoneEnd
 
 Report = dict[str, Any]
 Edit = Callable[[Report], None]
@@ -109,20 +116,39 @@ def ordered(report: Report) -> Report:
 def test_an_order_that_the_plan_leaves_out_is_missed(flown: Path) -> None:
     report = ordered(read(flown))
     assert plan_faults(report) == []
+    other = copy.deepcopy(report)
+    renamed(f"flight: {SENTENCE}", SENTENCE)(other)  # no row of a flight
+    has_not = f"G1 has a row on the plan, which the flight has not: plan: {SENTENCE}"
+    assert plan_faults(other) == [f"report.json: {has_not}"]
     dropped(f"plan: {SENTENCE}")(report)
     said = f"G1 lacks the row on the plan, which the flight has: plan: {SENTENCE}"
     assert plan_faults(report) == [f"report.json: {said}"]
     report["mission"]["relations"] = ".(p1 +(p2 p3))"
     assert not is_settled(report)
     assert plan_faults(report) == []  # another branch may have been flown: it is said to be open
+    report["mission"].update(relations=".(p1 p2)", changes=[{"at_ms": 9, "vehicle": 1}])
+    assert not is_settled(report)
+    assert plan_faults(report) == []  # and so may another plan
 
 
-def test_a_plan_without_a_task_is_not_whole(flown: Path) -> None:
-    report = read(flown)
+def without_a_task(report: Report) -> None:
     report["mission"]["tasks"].append({**report["mission"]["tasks"][0], "id": 99})
-    assert plan_faults(report) == [
-        f"report.json: by the tasks of the plan this does not hold: {WHOLE}"
-    ]
+
+
+def with_a_part(report: Report) -> None:
+    report["plan"]["in_part"] = [{"task_id": report["plan"]["items"][0]["task_id"], "share": 0.5}]
+
+
+@pytest.mark.parametrize("edit", [without_a_task, with_a_part])
+def test_a_plan_without_all_of_its_tasks_is_not_whole(flown: Path, edit: Edit) -> None:
+    report = read(flown)
+    edit(report)
+    said = f"report.json: by the tasks of the plan this does not hold: {WHOLE}"
+    assert plan_faults(report) == [said]
+    part = copy.deepcopy(report)
+    renamed(WHOLE, PART)(part)
+    next(row for row in report["constraints"] if row["item"] == WHOLE)["verdict"] = "violated"
+    assert plan_faults(part) == plan_faults(report) == []
 
 
 def test_the_check_of_a_plan_writes_the_rows_that_are_expected(flown: Path) -> None:
@@ -133,6 +159,40 @@ def test_the_check_of_a_plan_writes_the_rows_that_are_expected(flown: Path) -> N
     ]
     report["constraints"] = [*rows, *(r for r in report["constraints"] if r["source"] != "plan")]
     assert plan_faults(report) == []
+
+
+@pytest.fixture(scope="module")
+def zoned() -> Report:
+    """What a report says of a plan made when zone 12 has ended, 13 has appeared, and 14 is to come."""
+    mission = load(ROOT / "tests" / "missions" / "zone_ends.yaml")
+    (zone,) = mission.zones
+    far = tuple((north + 9000.0, east) for north, east in zone.vertices)
+    others = (
+        Change(0, ZONE, zone=replace(zone, id=13, vertices=far)),
+        Change(100_000, ZONE, zone=replace(zone, id=14, vertices=far)),
+    )
+    kept, ends = replace(zone, id=11, vertices=far), ZoneEnd(0, ZONE_ENDS, zone_id=12)
+    mission = replace(mission, zones=(kept, zone), changes=(ends, *others))
+    known = known_at(mission, 0)
+    plan = make_plan(known)
+    rows = plan_rows(check_plan(known, plan))
+    return {"mission": to_data(mission), "plan": to_data(plan), "constraints": rows}
+
+
+@pytest.mark.parametrize("zone", [11, 13])
+def test_each_zone_known_when_a_plan_is_made_has_its_row(zoned: Report, zone: int) -> None:
+    assert plan_faults(zoned) == []
+    report, item = copy.deepcopy(zoned), f"zone: keep_out {zone}, planned route of vehicle 1"
+    dropped(item)(report)
+    assert plan_faults(report) == [f"report.json: G1 lacks the row on the plan: {item}"]
+
+
+@pytest.mark.parametrize("zone", [12, 14])
+def test_a_zone_that_is_over_or_to_come_has_none(zoned: Report, zone: int) -> None:
+    report, item = copy.deepcopy(zoned), f"zone: keep_out {zone}, planned route of vehicle 1"
+    invented(item)(report)
+    said = f"report.json: G1 has a row on the plan that no check writes: {item}"
+    assert plan_faults(report) == [said]
 
 
 # ---- assumptions ---------------------------------------------------------------------------------
@@ -162,6 +222,10 @@ ASSUMED: dict[str, tuple[Edit, str]] = {
     "fewer theorems": (entry("clock", theorems=[]), "clock has another text, other theorems"),
     "held, and not to be watched": (
         entry(FREE, state="held", note=""), f"{FREE} cannot be watched, and is held",
+    ),
+    "not to be watched, for another reason": (
+        entry(FREE, note="all is well"),
+        f"{FREE} cannot be watched, and is not observed, after 0 checks, with the note 'all is well'",
     ),
     "held without a check": (
         entry("clock", state="held", note="", checks=0), "clock is held without a check",
