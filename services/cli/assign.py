@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import click
 
 from cratous.core.files.whole_file import write_atomically
+from cratous.services.cli.numbers import AnyNumber
 from cratous.services.cli.show import say
 from cratous.spec.assignment.search import CUMULATIVE, MINMAX, AssignmentProblem, Cost, Solution
 from cratous.spec.errors import BadInput
@@ -29,9 +30,9 @@ class Output(NamedTuple):
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--semantics", type=click.Choice(["time", "order"]), default="time")
 @click.option("--cost", default="MINMAX", help="MINMAX, CUMULATIVE, or weights `makespan,team`.")
-@click.option("--seconds", type=float, default=None, help="Stop then, with what is known.")
+@click.option("--seconds", type=AnyNumber(), default=None, help="Stop then, with what is known.")
 @click.option("--nodes", type=int, default=None, help="Stop after so many; 0: first leaf.")
-@click.option("--gap", type=float, default=0.0, help="Stop at this gap, e.g. 0.05.")
+@click.option("--gap", type=AnyNumber(), default=0.0, help="Stop at this gap, e.g. 0.05.")
 @click.option("--seed", type=int, default=1)
 @click.option("--certificate", type=click.Path(path_type=Path), default=None)
 @click.option(

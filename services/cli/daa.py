@@ -13,6 +13,7 @@ from typing import Any
 import click
 
 from cratous.core.files.whole_file import write_atomically
+from cratous.services.cli.numbers import AnyNumber
 from cratous.services.cli.show import say
 from cratous.spec.errors import BadInput
 from cratous.spec.files.printable import printable
@@ -151,7 +152,7 @@ def _first_alert(steps: Iterator[Any]) -> Any:
 @OWN
 @OUT
 @JSON
-@click.option("--time", "time_s", type=float, help="Only the step at this time [s].")
+@click.option("--time", "time_s", type=AnyNumber(), help="Only the step at this time [s].")
 def excuse(
     file: Path, config: str, ownship: str, out: Path | None, as_json: bool, time_s: float | None
 ) -> int:
@@ -184,7 +185,7 @@ def excuse(
 @click.option(
     "--time",
     "time_s",
-    type=float,
+    type=AnyNumber(),
     help="The step at this time [s]; by default the first with an alert.",
 )
 def explain(

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from cratous.services.cli.numbers import AnyNumber
 from cratous.services.cli.show import say
 from cratous.spec.errors import BadInput
 
@@ -221,7 +222,7 @@ def _told(what: str, problems: list[str]) -> int:
 @click.argument("path", metavar="LOG", type=click.Path(path_type=Path))
 @selecting
 @click.option("--new", is_flag=True, help="Only messages from now on.")
-@click.option("--for", "seconds", type=float, help="Stop after so many seconds.")
+@click.option("--for", "seconds", type=AnyNumber(), help="Stop after so many seconds.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON lines.")
 def follow(path: Path, new: bool, seconds: float | None, as_json: bool, **choice: Any) -> int:
     """Print the messages of a LOG as they are written, until its writer closes it.
@@ -335,7 +336,7 @@ def import_(path: Path, target: Path, salvage: bool) -> int:
 @log.command()
 @click.argument("path", metavar="LOG", type=click.Path(path_type=Path))
 @selecting
-@click.option("--rate", type=float, default=1.0, show_default=True,
+@click.option("--rate", type=AnyNumber(), default=1.0, show_default=True,
               help="Times faster than it was; 0 as fast as it goes.")  # fmt: skip
 @click.option("--connect", "connect_to", metavar="ADDRESS",
               help="Send sentinel frames to a TCP server, as tcp://127.0.0.1:5555.")  # fmt: skip

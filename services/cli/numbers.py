@@ -1,4 +1,4 @@
-"""Numbers as options take them."""
+"""Numbers as options take them: NaN, which click takes for one, also of any range, is none."""
 
 from __future__ import annotations
 
@@ -6,13 +6,18 @@ import math
 from typing import Any
 
 import click
+from click.types import FloatParamType
 
 
-class Number(click.FloatRange):
-    """A number in a range. NaN, which click takes for one of any range, is none."""
+class AnyNumber(FloatParamType):
+    """A number."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         number = super().convert(value, param, ctx)
         if math.isnan(number):
             self.fail(f"{value!r} is not a number.", param, ctx)
         return number
+
+
+class Number(AnyNumber, click.FloatRange):
+    """A number in a range."""

@@ -57,7 +57,9 @@ def asked_of(body: Any, places: RequestPlaces) -> Asked:
     elif not least:
         least = dwell
     route: list[Vec2] = []
-    for k, waypoint in enumerate(list(getattr(body, "PrescribedWaypoints", ()))[:ROUTE_MOST]):
+    prescribed = getattr(body, "PrescribedWaypoints", ())
+    _within(len(prescribed), 0, ROUTE_MOST, where, "number of PrescribedWaypoints")
+    for k, waypoint in enumerate(prescribed):
         pose = places.pose(waypoint, 0.0, where, f"PrescribedWaypoints[{k}]")
         route.append(Vec2(pose.north_m, pose.east_m))
     protected = getattr(body, "ProtectedLocation", None)
@@ -68,6 +70,13 @@ def asked_of(body: Any, places: RequestPlaces) -> Asked:
     return Asked(
         kind, entity, needed, standoff, least, _looks(body, where), tuple(route), kept
     )  # fmt: skip
+
+
+def unused_of(body: Any) -> list[str]:
+    """What a task's message asks for and gets not, in words."""
+    route = getattr(body, "RouteID", 0)
+    said = f"RouteID {route} of task {body.TaskID} is not used: where the entity goes is PrescribedWaypoints, or straight on"
+    return [said] if route else []
 
 
 def _duration(body: Any, where: str) -> int:

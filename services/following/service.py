@@ -17,7 +17,7 @@ from cratous.core.authority.timeliness import in_time
 from cratous.core.tasks.stations import Kept, kept_step
 from cratous.services.bus import Envelope
 from cratous.services.following import part as parts_of
-from cratous.services.following.asked import Asked, asked_of
+from cratous.services.following.asked import Asked, asked_of, unused_of
 from cratous.services.following.motion import STALE_MS, Motion, motion_of
 from cratous.services.following.offering import offered, options_of
 from cratous.services.following.part import Part
@@ -119,10 +119,12 @@ class FollowingTaskService(TaskService):
 
     def _do(self, state: State, act: int, body: Any, out: list[Any]) -> tuple[State, int]:
         if act == PUBLISH_OPTIONS and not self._still(self._context):
+            told = unused_of(self._body)
             for no in self._found(self._context)[1]:
                 who = ", ".join(map(str, no.vehicles))
-                text = f"vehicle {who} is not offered for task {self._task_id}: {no.reason}"
-                out.append(status(self._request, "Warning", [("reason", text)]))
+                who = f"vehicle {who}" if who else no.label or "a place about the entity"
+                told.append(f"{who} is not offered for task {self._task_id}: {no.reason}")
+            out += [status(self._request, "Warning", [("reason", text)]) for text in told]
         return super()._do(state, act, body, out)
 
     def _asked(self, context: Context) -> Asked:

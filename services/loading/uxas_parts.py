@@ -38,12 +38,14 @@ def point(location: Any, places: Places, sent: Sent, item: str) -> Position:
     if location is None:
         raise BadInput("a place is missing", where=sent.where, item=item, expected="a Location3D")
     values = (location.Latitude, location.Longitude, location.Altitude)
-    if not isfinite(location.Altitude) or not is_place(*values[:2]):
+    low, high = UNBOUNDED_M
+    if not low <= location.Altitude <= high or not is_place(*values[:2]):
         raise BadInput(
             "not a place",
             where=sent.where,
             item=item,
-            expected="a latitude within ±89 and a longitude within ±180 degrees",
+            expected="a latitude within ±89 and a longitude within ±180 degrees, and an altitude "
+            f"from {low:g} to {high:g} m",
             got=f"{values[0]:g}, {values[1]:g}, altitude {values[2]:g}",
         )
     north_m, east_m = places.local(location.Latitude, location.Longitude)

@@ -66,6 +66,12 @@ def test_the_judge_prints_no_control_characters(
         ["icarous", "--vehicle", "1", "--mission", "mission.yaml", "--wait", "nan"],
         ["monitor", "log.sqlite", "--seconds", "nan"],
         ["warm", "--prune", "--days", "nan"],
+        ["log", "follow", "log.sqlite", "--for", "nan"],
+        ["log", "replay", "log.sqlite", "--rate", "nan"],
+        ["assign", "problem.json", "--seconds", "nan"],
+        ["assign", "problem.json", "--gap", "nan"],
+        ["daa", "excuse", "two.daa", "--time", "nan"],
+        ["daa", "explain", "two.daa", "--time", "nan"],
     ],
 )
 def test_what_is_no_number_is_in_no_range(

@@ -30,6 +30,7 @@ def test_a_bad_state_of_another_keeps_nobody_from_planning(
         ({"Heading": math.nan}, "Heading: not a heading; expected a finite number; got nan"),
         ({"Heading": -math.inf}, "Heading: not a heading; expected a finite number; got -inf"),
         ({"Location": place(89.5)}, "Location: not a place"),
+        ({"Location": place(0.0).copy(Altitude=1e9)}, "an altitude from -1000 to 100000 m; got"),
     ],
 )
 def test_a_vehicle_with_a_bad_state_is_refused_with_the_reason(

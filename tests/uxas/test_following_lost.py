@@ -11,6 +11,7 @@ from following_tools import ENTITY, aircraft, escort, moving, refused
 from pipeline_tools import Rig, place, request, vehicle
 
 from cratous.bridge import lmcp
+from cratous.services.following.asked import ROUTE_MOST
 
 
 def escorted(folder: Path) -> tuple[Rig, Any]:
@@ -89,3 +90,18 @@ def test_nobody_keeps_to_himself(tmp_path: Path) -> None:
     rig.tell(*vehicle(2, 0.01), request(5, vehicles=(1, 2)))
     (option,) = rig.got("TaskPlanOptions")[1].Options
     assert option.EligibleEntities == [2]
+
+
+def test_what_is_not_used_of_an_escort_is_said(tmp_path: Path) -> None:
+    assert refused(tmp_path / "a", escort(RouteID=7), *moving()) == [
+        "RouteID 7 of task 5 is not used: where the entity goes is PrescribedWaypoints, or straight on"
+    ]
+    assert refused(tmp_path / "b", escort(), *moving()) == []
+
+
+def test_a_way_of_too_many_places_is_refused_and_not_cut(tmp_path: Path) -> None:
+    way = [lmcp.new("Waypoint", Number=k, Latitude=0.03) for k in range(ROUTE_MOST + 1)]
+    (said,) = refused(tmp_path / "a", escort(PrescribedWaypoints=way), *moving())
+    assert "number of PrescribedWaypoints" in said
+    assert f"expected 0 to {ROUTE_MOST}; got {ROUTE_MOST + 1}" in said
+    assert refused(tmp_path / "b", escort(PrescribedWaypoints=way[1:]), *moving()) == []
