@@ -49,3 +49,16 @@ def refused(folder: Path, task: Any, *more: Any, vehicles: tuple[int, ...] = (1,
 
 def escort(**more: Any) -> Any:
     return lmcp.new("EscortTask", **{"TaskID": 5, "SupportedEntityID": ENTITY, **more})
+
+
+def escorted(folder: Path) -> tuple[Rig, Any]:
+    """An aircraft that escorts for ten seconds, told to circle; and its state there."""
+    rig = Rig(folder)
+    task = escort(Parameters=[lmcp.new("KeyValuePair", Key="Duration_ms", Value="10000")])
+    rig.tell(*aircraft(1, 0.029), *moving(1.0), task, request(5))
+    state = aircraft(1, 0.0301)[1].copy(
+        Location=place(0.0301, 0.002), Mode="Waypoint", CurrentWaypoint=99
+    )
+    rig.tell(state.copy(AssociatedTasks=[5], Time=1000))
+    (command,) = rig.got("VehicleActionCommand")
+    return rig, state.copy(Mode="Loiter", CurrentCommand=command.CommandID)

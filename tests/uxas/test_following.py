@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from following_tools import ENTITY, aircraft, escort, moving, refused
+from following_tools import ENTITY, aircraft, escort, escorted, moving, refused
 from pipeline_tools import PIPELINE, Rig, must_fly, place, request
 from uxas_flight import Flight, fly, local
 from uxas_tools import write_cfg
@@ -255,15 +255,7 @@ def test_who_flies_by_another_s_command_ends_the_task_undone(tmp_path: Path) -> 
 
 def test_nobody_counts_as_there_when_the_entity_or_he_was_not_heard(tmp_path: Path) -> None:
     """An entity that fell silent: the dwell does not go on, whatever the vehicle says."""
-    rig = Rig(tmp_path)
-    task = escort(Parameters=[lmcp.new("KeyValuePair", Key="Duration_ms", Value="10000")])
-    rig.tell(*aircraft(1, 0.029), *moving(1.0), task, request(5))
-    state = aircraft(1, 0.0301)[1].copy(
-        Location=place(0.0301, 0.002), Mode="Waypoint", CurrentWaypoint=99
-    )
-    rig.tell(state.copy(AssociatedTasks=[5], Time=1000))
-    (command,) = rig.got("VehicleActionCommand")
-    state = state.copy(Mode="Loiter", CurrentCommand=command.CommandID)
+    rig, state = escorted(tmp_path)
     for time_ms in range(2000, 30_000, 1000):
         rig.tell(state.copy(Time=time_ms))
     assert not rig.got("TaskComplete")

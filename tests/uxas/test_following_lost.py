@@ -7,24 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from following_tools import ENTITY, aircraft, escort, moving, refused
+from following_tools import ENTITY, escort, escorted, moving, refused
 from pipeline_tools import Rig, place, request, vehicle
 
 from cratous.bridge import lmcp
 from cratous.services.following.asked import ROUTE_MOST
-
-
-def escorted(folder: Path) -> tuple[Rig, Any]:
-    """An aircraft that escorts for ten seconds, told to circle; and its state there."""
-    rig = Rig(folder)
-    task = escort(Parameters=[lmcp.new("KeyValuePair", Key="Duration_ms", Value="10000")])
-    rig.tell(*aircraft(1, 0.029), *moving(1.0), task, request(5))
-    state = aircraft(1, 0.0301)[1].copy(
-        Location=place(0.0301, 0.002), Mode="Waypoint", CurrentWaypoint=99
-    )
-    rig.tell(state.copy(AssociatedTasks=[5], Time=1000))
-    (command,) = rig.got("VehicleActionCommand")
-    return rig, state.copy(Mode="Loiter", CurrentCommand=command.CommandID)
 
 
 def test_what_nobody_told_of_for_a_while_was_not_kept_to(tmp_path: Path) -> None:
