@@ -32,6 +32,8 @@ EXCUSES: dict[str, tuple[tuple[str, ...], str]] = {
     "core.ledger.check_everything": (("REGISTRY",), ENTRY),
     "core.ledger.require": (("REGISTRY",), "names for what is refused"),
     "core.ledger.meant_methods._of": (("vars",), RUNS),
+    "core.ledger.meant_methods._is_made": (("vars",), RUNS),
+    "core.ledger.meant_methods._made_anew": (("getattr", "vars"), RUNS),
     "core.ledger.meant_methods._other_fields": (("vars",), RUNS),
     "core.ledger.meant_methods._written": (("modules",), RUNS),
     "core.ledger.meant_methods.GETTER": (("vars",), RUNS),

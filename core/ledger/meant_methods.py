@@ -1,7 +1,8 @@
 """Methods and fields of classes that are not what the files of their classes say.
 
 A method is found through its class while the code runs, so another one that the class was given runs in
-its place. What dataclass, NamedTuple and Enum make of a class is the library's, under its name.
+its place. What dataclass and NamedTuple make of a class from a text is held against what they make anew of a
+class like it; other methods of the library's are known by file and name.
 """
 
 from __future__ import annotations
@@ -15,14 +16,21 @@ import inspect
 import sys
 import typing
 from collections.abc import Iterator
-from types import FunctionType, MemberDescriptorType, ModuleType
+from types import CodeType, FunctionType, MemberDescriptorType, ModuleType
 from typing import Any
 
 from cratous.core.kernel.sources import ours, runs_as_written, written_names
 
 MAKERS: tuple[ModuleType, ...] = (abc, collections, dataclasses, enum, functools, typing)
-LIBRARY = frozenset({"<string>", *(str(module.__file__) for module in MAKERS)})
-"""Where the code of methods lies that Python's library makes."""
+LIBRARY = frozenset(str(module.__file__) for module in MAKERS)
+"""Where the code of methods lies that Python's library gives to a class."""
+OTHERWISE = {
+    "__getstate__": "_dataclass_getstate",
+    "__setstate__": "_dataclass_setstate",
+    "_new_member_": "__new__",
+}
+"""What the library names otherwise than the name under which it gives it to a class."""
+SETTINGS = ("init", "repr", "eq", "order", "unsafe_hash", "frozen")
 GETTER: Any = type(vars(collections.namedtuple("_Pair", "first"))["first"])
 """What reads a field of a NamedTuple."""
 
@@ -36,13 +44,18 @@ def other_methods(item: type) -> Iterator[str]:
 
 def _of(one: type) -> Iterator[str]:
     has, head = vars(one), f"{one.__qualname__}."
-    for name in _written(one.__module__).get(one.__qualname__, ()):
+    written = _written(one.__module__).get(one.__qualname__, ())
+    for name in written:
         value = has.get(name)
         inner = inspect.isclass(value) and value.__qualname__ == head + name
         if not inner and not _functions(value):
             yield f"{one.__module__}.{head}{name}"
     for name, value in has.items():
-        if not all(_is_own(function, one, name) for function in _functions(value)):
+        functions = _functions(value)
+        if not all(
+            _is_own(f, one, name) or (name not in written and _is_made(f, one, name))
+            for f in functions
+        ):
             yield f"{one.__module__}.{head}{name}"
     for name in sorted(_other_fields(one)):
         yield f"{one.__module__}.{head}{name}"
@@ -76,10 +89,45 @@ def _functions(value: Any) -> list[Any]:
 def _is_own(function: Any, one: type, name: str) -> bool:
     if not isinstance(function, FunctionType):
         return False
-    if function.__code__.co_filename in LIBRARY:
-        return True
     named = (function.__module__, function.__qualname__)
     return named == (one.__module__, f"{one.__qualname__}.{name}") and runs_as_written(function)
+
+
+def _is_made(function: Any, one: type, name: str) -> bool:
+    """Whether a method is what the library makes for such a class under this name."""
+    if not isinstance(function, FunctionType):
+        return False
+    code = function.__code__
+    if code.co_filename in LIBRARY and function.__name__ == OTHERWISE.get(name, name):
+        return True
+    twins = _functions(vars(_made_anew(one)).get(name))
+    return any(_does(code) == _does(twin.__code__) for twin in twins)
+
+
+def _does(code: CodeType) -> tuple[Any, ...]:
+    return code.co_filename, code.co_code, code.co_consts, code.co_names, code.co_varnames
+
+
+@functools.cache
+def _made_anew(one: type) -> type:
+    """A class like this one, of a record or a dataclass, with the methods that the library makes from texts."""
+    has = vars(one)
+    if "_field_defaults" in has:
+        return collections.namedtuple(one.__name__, has["_fields"])
+    if "__dataclass_params__" not in has:
+        return object
+    settings = {name: getattr(has["__dataclass_params__"], name) for name in SETTINGS}
+    own = {"__post_init__": print} if hasattr(one, "__post_init__") else {}
+    fields = [(f.name, f.type, _like(f)) for f in dataclasses.fields(one)]
+    return dataclasses.make_dataclass(one.__name__, fields, namespace=own, **settings)
+
+
+def _like(field: Any) -> Any:
+    found: Any = dataclasses.field(
+        init=field.init, repr=field.repr, hash=field.hash, compare=field.compare
+    )
+    found.default, found.default_factory = field.default, field.default_factory
+    return found
 
 
 def _other_fields(one: type) -> set[str]:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import builtins
 import cmath
+import dataclasses
 import functools
 import importlib
 import inspect
 import math
 from types import FunctionType
+from typing import Any
 
 import pytest
 
@@ -174,9 +176,26 @@ def test_what_is_asked_of_a_module_of_ours_is_what_its_file_says(monkeypatch):
     assert replaced([user], {}) == [f"{integers.__name__}.decider"]
 
 
+FROM_TEXT: dict[str, Any] = {}
+exec(
+    "def aside_m(self, t_s): return 0.0\n"
+    "def __init__(self, *values): pass\n"
+    "def __new__(cls, *values): return tuple.__new__(cls, values[::-1])\n",
+    FROM_TEXT,
+)
+
+
 @pytest.mark.parametrize(
     ("owner", "name", "other"),
     [
+        # made from a text, as the library makes methods, or by the library for something else
+        (Drift, "aside_m", FROM_TEXT["aside_m"]),
+        (Polygon, "aside_m", FROM_TEXT["aside_m"]),
+        (Polygon, "__init__", FROM_TEXT["__init__"]),
+        (Polygon, "__eq__", dataclasses.make_dataclass("Other", ["value"]).__eq__),
+        (Ability, "__new__", staticmethod(FROM_TEXT["__new__"])),
+        (Drift, "aside_m", dataclasses.fields),
+        (Polygon, "__hash__", dataclasses.fields),
         # by a function of elsewhere, by a method of another name, by what is no method
         (Drift, "aside_m", lambda self, t_s: 0.0),
         (Drift, "aside_m", manoeuvre.velocity_of),
