@@ -75,7 +75,7 @@ def way_back_is_free(config: Config, state: State, sensed: Sensed, in_turn: froz
     tightest_m = sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
     points, radius_m = way_on(told, sensed.motion, tightest_m), TURN_MARGIN * tightest_m
     now, horizon = sensed.motion, horizon_s(scene)
-    met = set(state.avoided) - in_turn
+    met = state.avoided - in_turn
     avoided = [other for other in scene.intruders if other.id in met]
     for way in ways_back(now, radius_m, points, horizon):
         ahead = with_hold(way, sensed, scene, config.daa.well_clear, TURN_MARGIN)

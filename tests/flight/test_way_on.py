@@ -28,6 +28,7 @@ from cratous.services.icarous import state as icarous
 from cratous.services.icarous.foresight import way_back_is_free
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.permits import NONE
 from cratous.services.icarous.return_to_path import rejoining, way_on
 from cratous.services.loading import load
 from cratous.services.mission.frames import Projection
@@ -111,7 +112,7 @@ def test_the_way_back_is_free_only_if_it_is_on_either_side(side: int) -> None:
         Position(3e3, 0, 3e2),
     )
     told = Told(waypoints=waypoints, next_index=1, resume=waypoints[1])
-    state = icarous.State(told=told, avoided=(9,))
+    state = icarous.State(told=told, met=(icarous.Met(9, NONE),))
     config = icarous.Config(1, Daa(VOLUME), PROJECTION, 500)
     beside = Intruder(9, Position(-200.0, 340.0 * side, 300.0), Velocity(0.0, 0.0, 0.0))
     for others, free in (((beside,), False), ((), True)):
