@@ -167,7 +167,8 @@ def summary(report: dict[str, Any], folder: Path | None) -> dict[str, Any]:
 
 
 def _show(report: dict[str, Any], folder: Path) -> None:
-    from cratous.services.assumptions.said import sentence
+    from cratous.services.assumptions.said import GROUNDLESS, sentence
+    from cratous.services.certify.verdicts import without_ground
 
     flight = report["flight"]
     requirement_table(report["requirements"])
@@ -181,6 +182,8 @@ def _show(report: dict[str, Any], folder: Path) -> None:
     for row in report["assumptions"]:
         if row["state"] == "broken":
             say(f"assumption {row['name']}: {sentence(row)}")
+    if without_ground(report["command"], report["assumptions"]):
+        say(GROUNDLESS)
     count = len(flight["takeovers"])
     say(
         f"{report['verdict'].upper()}: {flight['outcome']}, {flight['end_ms'] / 1000:.1f} s of "
