@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -61,6 +62,9 @@ def test_no_icarous_is_started_where_clients_are_waited_for(
     one._start = lambda name, *words: started.update({name: words})  # type: ignore[method-assign]
     one.start()
     assert set(started) == ({"uxas"} if original else {"uxas", "icarous_1", "icarous_2"})
+    for name, words in started.items():
+        # a mission that was changed since is not flown
+        assert (("--mission-hash", how.digest) in pairwise(words)) is (name != "uxas")
     asks = [text for text in told if text.startswith("start the original's clients")]
     assert len(asks) == original
     assert not original or asks[0].endswith("for vehicle 1, then 2: UxAS waits for 2")

@@ -21,6 +21,7 @@ from uxas_tools import ended
 
 from cratous.services.cli import main
 from cratous.services.processes.children import Children, ProcessEnded
+from cratous.services.processes.leash import ENDS_WITH
 
 LIMIT_S = 600.0
 STARTED = "process icarous_2: pid"
@@ -100,6 +101,13 @@ def test_one_whose_owner_is_killed_ends_as_well(tmp_path: Path) -> None:
     assert "ended at" in (tmp_path / "simulator.txt").read_text(), "in order, as by SIGTERM"
 
 
+def test_one_whose_owner_has_ended_already_does_not_begin() -> None:
+    environment = {**os.environ, ENDS_WITH: str(os.getppid())}
+    words = [sys.executable, "-m", "cratous", "version"]
+    begun = subprocess.run(words, env=environment, capture_output=True, check=False)
+    assert (begun.returncode, begun.stdout) == (128 + signal.SIGTERM, b"")
+
+
 def test_a_second_request_to_end_waits_until_all_have_ended(tmp_path: Path) -> None:
     class Slow(Children):
         def end(self) -> dict[str, int]:
@@ -122,7 +130,9 @@ def test_they_are_the_same_program_in_any_folder(
         pid = simulator(children, tmp_path, "simulator")
         environment = Path(f"/proc/{pid}/environ").read_text().split("\0")
     (paths,) = [x.partition("=")[2] for x in environment if x.startswith("PYTHONPATH=")]
-    assert (Path(paths.split(os.pathsep)[0]) / "cratous").samefile(root / "src/cratous")
+    place = Path(paths.split(os.pathsep)[0])
+    assert place.is_absolute(), "it is not of this folder that the process runs in"
+    assert (place / "cratous").samefile(root / "src/cratous")
 
 
 @contextlib.contextmanager
