@@ -55,7 +55,8 @@ class Children:
     """The processes of one flight; leaving the context ends all that still run. logs: what each says, as
     NAME.txt; work: their present folder."""
 
-    def __init__(self, logs: Path, work: Path) -> None:
+    def __init__(self, logs: Path, work: Path, own_secret: bool = True) -> None:
+        """own_secret: of the bridge's handshake, for this flight alone; else that of the environment."""
         self._logs, self._work = logs, work
         place = str(Path(cratous.__file__).absolute().parents[1])
         paths = [place, *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
@@ -64,10 +65,10 @@ class Children:
             "PYTHONUNBUFFERED": "1",
             # the same program, whatever the present folder
             "PYTHONPATH": os.pathsep.join(path for path in paths if path),
-            # of this flight alone: a stranger cannot be one of its ICAROUS instances
-            SECRET_VARIABLE: secrets.token_hex(32),
             ENDS_WITH: str(os.getpid()),
         }
+        if own_secret:  # a stranger cannot be one of its ICAROUS instances
+            self._environment[SECRET_VARIABLE] = secrets.token_hex(32)
         self.running: dict[str, subprocess.Popen[bytes]] = {}
 
     def __enter__(self) -> Children:
