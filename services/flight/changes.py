@@ -9,7 +9,7 @@ from cratous.core.routing.visibility import name_of
 from cratous.services.flight.dynamics import limits_of
 from cratous.services.flight.executive_outputs import command_all
 from cratous.services.flight.executive_state import Asked, Config, Out, State
-from cratous.services.flight.messages import AskPlan, LimitsAre, Say, ZonesKnown
+from cratous.services.flight.messages import AskPlan, LimitsAre, NotPlanned, Say, ZonesKnown
 from cratous.services.flight.notices import mission_change, plan_accepted
 from cratous.services.flight.replan_triggers import (
     handed_over,
@@ -121,13 +121,17 @@ def planned(config: Config, state: State, plan: Plan, asked_for: Asked, out: Out
     return begin(config, state, out)
 
 
-def unplanned(config: Config, state: State, no_plan: str, asked_for: Asked, out: Out) -> State:
+def unplanned(
+    config: Config, state: State, no_plan: NotPlanned, asked_for: Asked, out: Out
+) -> State:
     """After a change nothing that is left can be done."""
     todo = _open(state)
     none = nobody_may(state.known, todo, absent(config.mission, state.now_ms))
     why = "; ".join(filter(None, (asked_for.why, none, _leaving(config, state))))
-    _tell(state, asked_for.what, f"no plan for what is left ({no_plan}): {why}", out)
-    state = give_up(config, state, f"{asked_for.what}: {no_plan}", todo, out)
+    _tell(state, asked_for.what, f"no plan for what is left ({no_plan.why}): {why}", out)
+    of = dict(no_plan.of)
+    told = [(task, f"{asked_for.what}: {of.get(task, no_plan.why)}") for task in todo]
+    state = give_up(config, state, told, out)
     return command_all(config, state, out)
 
 
