@@ -156,9 +156,10 @@ class Planned(NamedTuple):
 
 
 class NotPlanned(NamedTuple):
-    """There is no plan as it was asked for. why: the reasons, in words."""
+    """There is no plan as it was asked for. why: the reasons, in words; of: those of a task, where told apart."""
 
     why: str
+    of: tuple[tuple[int, str], ...] = ()
 
 
 class Report(NamedTuple):
