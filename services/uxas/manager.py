@@ -16,6 +16,7 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus, Envelope
+from cratous.services.following.rendezvous import RendezvousTaskService
 from cratous.services.following.service import FollowingTaskService
 from cratous.services.loading.problems import refuse
 from cratous.services.loading.uxas_settings import (
@@ -26,7 +27,7 @@ from cratous.services.loading.uxas_settings import (
     nearest,
     values_of,
 )
-from cratous.services.pipeline.followed import FOLLOWED, WATCH, WATCH_SERVICE
+from cratous.services.pipeline.followed import FOLLOWED, RENDEZVOUS, WATCH, WATCH_SERVICE
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import TASKS, TaskService
 from cratous.services.pipeline.world import World
@@ -242,7 +243,8 @@ class ServiceManager:
         contexts = registry.contexts_of(self._host)
         if kind == WATCH or kind in FOLLOWED:
             name = FOLLOWED.get(kind, WATCH_SERVICE)
-            return FollowingTaskService(contexts, task, name, ended)
+            made = RendezvousTaskService if kind == RENDEZVOUS else FollowingTaskService
+            return made(contexts, task, name, ended)
         return TaskService(contexts, task.TaskID, TASKS[kind], ended)
 
 

@@ -11,8 +11,6 @@ SERVICES = (
 """Services of UxAS that we do not have; a configuration that names one is warned, or refused if strict."""
 
 TASKS = (
-    "afrl.impact.CommRelayTask",
     "afrl.impact.CordonTask",
     "uxas.messages.task.AssignmentCoordinatorTask",
-    "uxas.messages.task.RendezvousTask",
 )
