@@ -27,6 +27,7 @@ from cratous.services.loading.uxas_settings import (
     nearest,
     values_of,
 )
+from cratous.services.pipeline import coordinator
 from cratous.services.pipeline.followed import FOLLOWED, RENDEZVOUS, WATCH, WATCH_SERVICE
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import TASKS, TaskService
@@ -212,7 +213,7 @@ class ServiceManager:
             raise BadInput(
                 "the id is taken", where=where, item="ServiceID", got=self._names[number]
             )
-        if item.type in TASKS or item.type in FOLLOWED:
+        if item.type in TASKS or item.type in FOLLOWED or item.type == coordinator.KIND:
             world = registry.source_of(self._host).world
             if task is None:
                 raise BadInput(
@@ -239,7 +240,10 @@ class ServiceManager:
         self._make(item, number)
         return []
 
-    def _task_service(self, kind: str, task: Any, ended: Callable[[], None]) -> TaskService:
+    def _task_service(self, kind: str, task: Any, ended: Callable[[], None]) -> Any:
+        if kind == coordinator.KIND:
+            entity, world = self._host.entity_id, registry.source_of(self._host).world
+            return coordinator.AssignmentCoordinatorTaskService(task.TaskID, entity, world, ended)
         contexts = registry.contexts_of(self._host)
         if kind == WATCH or kind in FOLLOWED:
             name = FOLLOWED.get(kind, WATCH_SERVICE)

@@ -10,7 +10,4 @@ SERVICES = (
 )
 """Services of UxAS that we do not have; a configuration that names one is warned, or refused if strict."""
 
-TASKS = (
-    "afrl.impact.CordonTask",
-    "uxas.messages.task.AssignmentCoordinatorTask",
-)
+TASKS = ("afrl.impact.CordonTask",)

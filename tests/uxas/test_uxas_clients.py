@@ -198,7 +198,7 @@ def test_a_client_s_task_service_takes_part_over_a_bridge(
 ) -> None:
     """A kind of task that nobody here does, done by a client that says how it is flown."""
     one, _, client = joined(tmp_path, opened)
-    for body in (*vehicle(1), lmcp.new("AssignmentCoordinatorTask", TaskID=9)):
+    for body in (*vehicle(1), lmcp.new("CordonTask", TaskID=9)):
         client.send(body)
     client.send(lmcp.new("TaskInitialized", TaskID=9))
     client.send(request(9))
