@@ -13,22 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cratous.services.requirements.formula import (
-    FALSE,
-    TRUE,
-    Bounded,
-    Formula,
-    Join,
-    Not,
-    Reaches,
-    compared,
-    eventually,
-    globally,
-    historically,
-    iff,
-    implies,
-    once,
-)
+from cratous.services.requirements import formula as formulas
 from cratous.services.requirements.specification import (
     NotRead,
     Requirement,
@@ -48,11 +33,11 @@ SECTION = re.compile(r"^[ \t]*(INPUT|FTSPEC|PTSPEC|DEFINE|STRUCT|ENUM|ATOMIC)\b"
 DECLARED = re.compile(
     r"\s*([A-Za-z_]\w*(?:\s*,\s*[A-Za-z_]\w*)*)\s*:\s*(bool|int|float)\s*", re.ASCII
 )
-ONE_SIDED: dict[str, Callable[[Formula, int, int], Formula]] = {
-    "G": globally,
-    "F": eventually,
-    "H": historically,
-    "O": once,
+ONE_SIDED: dict[str, Callable[[formulas.Formula, int, int], formulas.Formula]] = {
+    "G": formulas.globally,
+    "F": formulas.eventually,
+    "H": formulas.historically,
+    "O": formulas.once,
 }
 
 
@@ -112,7 +97,7 @@ class _Wrong(Exception):
         self.what, self.offset, self.expected, self.got = what, offset, expected, got
 
 
-def _formula(piece: str, types: dict[str, str]) -> tuple[str, Formula]:
+def _formula(piece: str, types: dict[str, str]) -> tuple[str, formulas.Formula]:
     from lark.exceptions import UnexpectedCharacters, UnexpectedInput, VisitError
 
     try:
@@ -134,12 +119,12 @@ def _formula(piece: str, types: dict[str, str]) -> tuple[str, Formula]:
         raise
 
 
-def _build(tree: Any, types: dict[str, str]) -> tuple[str, Formula]:
+def _build(tree: Any, types: dict[str, str]) -> tuple[str, formulas.Formula]:
     made: list[Any] = []
     for node in tree.iter_subtrees():  # parts before the whole
         node.made = _made(node, types)
         made.append(node)
-    result: tuple[str, Formula] = tree.made
+    result: tuple[str, formulas.Formula] = tree.made
     return result
 
 
@@ -155,18 +140,18 @@ def _made(node: Any, types: dict[str, str]) -> Any:
     if kind in ("number", "negative"):
         return _number(got[0], kind == "negative")
     if kind == "constant":
-        return TRUE if got[0] == "true" else FALSE
+        return formulas.TRUE if got[0] == "true" else formulas.FALSE
     if kind == "compare":
-        return compared(got[0], str(got[1]), got[2])
+        return formulas.compared(got[0], str(got[1]), got[2])
     if kind == "negation":
-        return Not(got[0])
+        return formulas.Not(got[0])
     if kind == "unary":
         return ONE_SIDED[str(got[0])](got[2], *got[1])
     if kind == "binary":
         return _two_sided(*got)
     if kind in ("either", "both"):
-        return Join(got[0], got[1], kind == "both")
-    return (iff if kind == "iff" else implies)(got[0], got[1])
+        return formulas.Join(got[0], got[1], kind == "both")
+    return (formulas.iff if kind == "iff" else formulas.implies)(got[0], got[1])
 
 
 def _bounds(tokens: list[Any]) -> tuple[int, int]:
@@ -190,7 +175,7 @@ def _signal(token: Any, truth: bool, types: dict[str, str]) -> Any:
     wanted = "a signal that INPUT declares as " + ("bool" if truth else "int or float")
     if kind is None or (kind == "bool") != truth:
         raise _Wrong("this is no such signal", token.start_pos, wanted, str(token)[:30])
-    return Reaches(str(token), 1.0) if truth else str(token)
+    return formulas.Reaches(str(token), 1.0) if truth else str(token)
 
 
 def _number(token: Any, negative: bool) -> float:
@@ -200,13 +185,15 @@ def _number(token: Any, negative: bool) -> float:
     return -value if negative else value
 
 
-def _two_sided(phi: Formula, operator: Any, bounds: tuple[int, int], psi: Formula) -> Formula:
+def _two_sided(
+    phi: formulas.Formula, operator: Any, bounds: tuple[int, int], psi: formulas.Formula
+) -> formulas.Formula:
     low, high = bounds
     if operator in ("R", "T"):  # the duals
-        phi, psi = Not(phi), Not(psi)
+        phi, psi = formulas.Not(phi), formulas.Not(psi)
     if operator in ("U", "R"):
-        made: Formula = Bounded(phi, psi, 0, high - low, False)
-        made = eventually(made, low, low) if low else made
+        made: formulas.Formula = formulas.Bounded(phi, psi, 0, high - low, False)
+        made = formulas.eventually(made, low, low) if low else made
     elif low:
         raise _Wrong(
             "a since from a lower bound above 0 is not read: phi may count from it or from 0",
@@ -215,8 +202,8 @@ def _two_sided(phi: Formula, operator: Any, bounds: tuple[int, int], psi: Formul
             f"{operator}[{low},{high}]",
         )
     else:
-        made = Bounded(phi, psi, 0, high, True)
-    return Not(made) if operator in ("R", "T") else made
+        made = formulas.Bounded(phi, psi, 0, high, True)
+    return formulas.Not(made) if operator in ("R", "T") else made
 
 
 @cache
