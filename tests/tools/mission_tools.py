@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
-from cratous.spec.mission import Daa, Frame, Mission, Position, Task, Vehicle, WellClear
+from cratous.spec.mission import Daa, Frame, Mission, Position, Task, TaskKind, Vehicle, WellClear
 
 
 def plain_vehicle(number: int, at: Position, protected: bool = True) -> Vehicle:
     """Heading north at 20 m/s, without a camera."""
     return Vehicle(number, "", at, 0.0, 20.0, 15.0, 30.0, 0.5, 5.0, protected)
+
+
+def must_fly(number: int, at: tuple[float, float, float], **more: Any) -> Task:
+    """A point (north, east, altitude) [m] that has to be flown through; more: fields of the task."""
+    return Task(number, TaskKind.MUST_FLY, points=(Position(*at),), **{"label": "", **more})
 
 
 def plain_mission(vehicles: tuple[Vehicle, ...], tasks: tuple[Task, ...], **more: Any) -> Mission:
