@@ -32,6 +32,12 @@ FRAME_TEXT = "frame: {latitude_deg: 45.3, longitude_deg: -121.0, terrain_m: 0}\n
 """The frame of missions that are written as YAML."""
 
 
+def flown_text(name: str, *vehicles: str) -> str:
+    """The head of a mission in YAML that is flown in steps of 0.5 s, down to its vehicles."""
+    head = f"name: {name}\n{FRAME_TEXT}simulation: {{step_ms: 500, heartbeat_ms: 1000}}\n"
+    return f"{head}vehicles:\n{''.join(vehicles)}"
+
+
 def vehicle_text(
     number: int, east_m: int, alt_m: int, slowest: object = 18, fastest: object = 35
 ) -> str:
