@@ -12,7 +12,7 @@ from typing import Any
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import layer_window
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.encounters import any_state, any_thresholds
+from cratous.proofs.methods.encounters import any_instants, any_state, any_thresholds
 from cratous.spec import well_clear
 
 
@@ -137,9 +137,7 @@ def detection_misses_no_instant(
     s, v, sz, vz = any_state(c)
     limits = any_thresholds(c)
     dthr, zthr, tthr, tcoa, vmod = limits
-    begin, end, t = c.reals("begin end t")
-    c.premise(begin <= t)
-    c.premise(t <= end)
+    begin, t, end = any_instants(c, "begin t end")
     c.opaque(
         horizontal_interval,
         horizontal_during,

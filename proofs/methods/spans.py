@@ -11,7 +11,13 @@ from typing import Any
 
 from cratous.core.well_clear import times_vertical, vertical_interval
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.encounters import any_in_the_plane, any_state, any_thresholds, by_name
+from cratous.proofs.methods.encounters import (
+    any_in_the_plane,
+    any_instants,
+    any_state,
+    any_thresholds,
+    by_name,
+)
 from cratous.spec import well_clear
 
 
@@ -22,9 +28,7 @@ def horizontal_interval_is_exact(
 ) -> None:
     """An instant of [B, T] violates the horizontal volume exactly if it lies in the span."""
     s, v, dthr, tthr = any_in_the_plane(c)
-    begin, end, t = c.reals("begin end t")
-    c.premise(begin <= t)
-    c.premise(t <= end)
+    begin, t, end = any_instants(c, "begin t end")
     span = c.use(horizontal_interval, s, v, dthr, tthr, begin, end)
     violated = c.define(meant_horizontally_at, s, v, dthr, tthr, t)
     c.show(c.same(violated, c.define(well_clear.in_span, *span, t)))
@@ -95,9 +99,7 @@ def interval_is_exact(
     s, v, sz, vz = any_state(c)
     limits = any_thresholds(c)
     dthr, zthr, tthr, tcoa, vmod = limits
-    begin, end, t = c.reals("begin end t")
-    c.premise(begin <= t)
-    c.premise(t <= end)
+    begin, t, end = any_instants(c, "begin t end")
     c.opaque(
         horizontal_interval,
         vertical_interval,

@@ -11,9 +11,11 @@ from typing import Any
 
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import layer_violation, vertical_interval
+from cratous.core.well_clear.thresholds import Thresholds
 from cratous.proofs.claim import Claim
 from cratous.proofs.methods.encounters import (
     any_in_the_plane,
+    any_instants,
     any_nested_thresholds,
     any_state,
     any_thresholds,
@@ -27,6 +29,17 @@ def horizontal_is_its_definition(c: Claim, horizontal_now: Any, meant_horizontal
     s, v, dthr, tthr = any_in_the_plane(c)
     verdict = c.use(horizontal_now, s, v, dthr, tthr)
     c.show(c.same(verdict, c.define(meant_horizontally, s, v, dthr, tthr)))
+
+
+def vertical_is_its_definition(
+    c: Claim, threshold: str, vertical_now: Any, meant_vertically: Any
+) -> None:
+    """The vertical kernel says violated exactly where its definition does; threshold: the one besides ZTHR."""
+    sz, vz, zthr, other = c.reals(f"sz vz zthr {threshold}")
+    c.premise(zthr >= 0)
+    c.premise(other >= 0)
+    verdict = c.use(vertical_now, sz, vz, zthr, other)
+    c.show(c.same(verdict, c.define(meant_vertically, sz, vz, zthr, other)))
 
 
 def decision_is_the_definition(c: Claim, decision: Any, meant_horizontally: Any) -> None:
@@ -80,9 +93,7 @@ def volume_is_convex(
     """What violates at two instants of straight flight violates between them."""
     s, v, sz, vz = any_state(c)
     limits = any_thresholds(c)
-    early, middle, late = c.reals("early middle late")
-    c.premise(early <= middle)
-    c.premise(middle <= late)
+    early, middle, late = any_instants(c, "early middle late")
     c.opaque(violation_interval, meant_at)
     size = by_name(limits)
     state = {"s": s, "v": v, "sz": sz, "vz": vz, "begin": early, "end": late}
@@ -107,16 +118,21 @@ def volume_is_monotone(
     c.opaque(horizontal_now, layer_violation)
     before = c.use(violation_now, s, v, sz, vz, small)
     after = c.use(violation_now, s, v, sz, vz, great)
+    both_parts_grow(c, lemma, (s, v, sz, vz), small, great)
+    c.show(c.implies(before, after))
+
+
+def both_parts_grow(
+    c: Claim, flat: str, state: tuple[Any, Any, Any, Any], small: Thresholds, great: Thresholds
+) -> None:
+    """Use that both parts of a volume grow with their thresholds; flat: the theorem on the horizontal one."""
+    s, v, sz, vz = state
     (dthr, zthr, tthr, tcoa, vmod), (dthr2, zthr2, tthr2, tcoa2, vmod2) = small, great
-    c.lemma(
-        lemma,
-        s=s, v=v, dthr=dthr, tthr=tthr, dthr2=dthr2, tthr2=tthr2,
-    )  # fmt: skip
+    c.lemma(flat, s=s, v=v, dthr=dthr, tthr=tthr, dthr2=dthr2, tthr2=tthr2)
     c.lemma(
         "well_clear_vertical_volume_is_monotone",
         sz=sz, vz=vz, zthr=zthr, tcoa=tcoa, vmod=vmod, zthr2=zthr2, tcoa2=tcoa2, vmod2=vmod2,
     )  # fmt: skip
-    c.show(c.implies(before, after))
 
 
 def volume_is_symmetric(

@@ -8,7 +8,7 @@ from cratous.core.well_clear import (
     violation_during_tep,
 )
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.encounters import any_state, any_thresholds, by_name
+from cratous.proofs.methods.encounters import any_instants, any_state, any_thresholds, by_name
 from cratous.spec import well_clear
 from cratous.spec.daa import meaning as daa_meaning
 
@@ -17,9 +17,7 @@ def claim(c: Claim) -> None:
     kind = c.integer("kind")
     s, v, sz, vz = any_state(c)
     limits = any_thresholds(c)
-    begin, end, t = c.reals("begin end t")
-    c.premise(begin <= t)
-    c.premise(t <= end)
+    begin, t, end = any_instants(c, "begin t end")
     c.opaque(
         violation_during_taumod,
         violation_during_tcpa,
