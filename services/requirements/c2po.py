@@ -14,13 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cratous.services.requirements import formula as formulas
-from cratous.services.requirements.specification import (
-    NotRead,
-    Requirement,
-    Signal,
-    Specification,
-    caret_of,
-)
+from cratous.services.requirements import specification
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import CONFIG_BYTES, at_most, integer_of
 
@@ -41,7 +35,7 @@ ONE_SIDED: dict[str, Callable[[formulas.Formula, int, int], formulas.Formula]] =
 }
 
 
-def read(text: str, where: str = "C2PO") -> Specification:
+def read(text: str, where: str = "C2PO") -> specification.Specification:
     """The requirements of a text. Raises BadInput for one that has none, or declares a signal twice."""
     at_most(len(text.encode()), CONFIG_BYTES, "the requirements are too long", where)
     text = re.sub(r"--[^\n]*", lambda m: " " * len(m.group()), text)
@@ -57,7 +51,9 @@ def read(text: str, where: str = "C2PO") -> Specification:
     if not found:
         raise BadInput("there is no requirement", where=where, expected="FTSPEC or PTSPEC")
     made = [_requirement(n, at, piece, text, types, where) for n, (at, piece) in enumerate(found)]
-    return Specification({name: Signal(kind) for name, kind in types.items()}, tuple(made))
+    return specification.Specification(
+        {name: specification.Signal(kind) for name, kind in types.items()}, tuple(made)
+    )
 
 
 def _pieces(text: str, start: int, end: int) -> Iterator[tuple[int, str]]:
@@ -81,15 +77,15 @@ def _declare(text: str, start: int, end: int, types: dict[str, str], where: str)
 
 def _requirement(
     number: int, at: int, piece: str, text: str, types: dict[str, str], where: str
-) -> Requirement:
+) -> specification.Requirement:
     try:
         name, formula = _formula(piece, types)
-        return Requirement(name or str(number), piece, formula)
+        return specification.Requirement(name or str(number), piece, formula)
     except _Wrong as no:
-        line, column, caret = caret_of(text, at + no.offset)
+        line, column, caret = specification.caret_of(text, at + no.offset)
         place = f"{where}, line {line}, column {column}"
-        refused = NotRead(no.what, place, caret, expected=no.expected, got=no.got)
-        return Requirement(str(number), piece, refused)
+        refused = specification.NotRead(no.what, place, caret, expected=no.expected, got=no.got)
+        return specification.Requirement(str(number), piece, refused)
 
 
 class _Wrong(Exception):
