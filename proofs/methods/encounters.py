@@ -39,6 +39,11 @@ def any_thresholds(c: Claim) -> Thresholds:
     return limits
 
 
+def any_loss(c: Claim) -> tuple[Any, Any, Any, Any, Thresholds]:
+    """Any relative state, and any thresholds of a volume in space that it may violate."""
+    return *any_state(c), any_thresholds(c)
+
+
 def by_name(limits: Thresholds) -> dict[str, Any]:
     """Thresholds under the names that theorems give them, for lemmas."""
     dthr, zthr, tthr, tcoa, vmod = limits

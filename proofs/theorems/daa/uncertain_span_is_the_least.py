@@ -4,13 +4,14 @@ or nothing is known exactly and that span holds an instant: where nothing is, ex
 instant of the volume's own or one that the spans of altitude and circle share."""
 
 from cratous.core.daa.uncertainty import circle_span, layer_span, uncertain_conflict, uncertain_span
-from cratous.core.kernel import Vec2
 from cratous.core.well_clear.during import layer_window, violation_during_taumod
 from cratous.core.well_clear.interval import (
     horizontal_interval_taumod,
     violation_interval_taumod,
 )
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.detections import named_instant
+from cratous.proofs.methods.kinds import TAUMOD
 from cratous.proofs.methods.uncertainty import any_uncertain, spans_of
 from cratous.spec import well_clear
 from cratous.spec.daa import meaning as daa_meaning
@@ -34,14 +35,8 @@ def claim(c: Claim) -> None:
     unknown = c.all_of(es > 0, ez > 0, ev > 0, ew > 0, span.first_s <= span.last_s)
     c.show(c.same(c.use(uncertain_conflict, *asked), c.any_of(plain, unknown)), "a conflict")
     sizes = c.all_of(*[threshold >= 0 for threshold in limits])
-    k, low, high = c.use(layer_window, sz + begin * vz, vz, zthr, tcoa, vmod, end - begin)
-    at_low = Vec2((s.x + begin * v.x) * k + low * v.x, (s.y + begin * v.y) * k + low * v.y)
-    scaled, _ = c.use(
-        horizontal_interval_taumod, at_low, v, dthr * k, tthr * k, low - low, high - low
-    )
-    # the instant that stands for a detection, named by the equation that defines it
     witness = c.real("witness")
-    c.premise(c.implies(k > 0, k * (witness - begin) == low + scaled))
+    named_instant(c, TAUMOD, (s, v, sz, vz, begin, end), limits, witness)
     c.lemma(
         "well_clear_detection_taumod_is_the_interval", when=sizes, witness=witness,
         s=s, v=v, sz=sz, vz=vz, begin=begin, end=end,
