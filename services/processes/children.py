@@ -8,11 +8,8 @@ import signal
 import socket
 import subprocess
 import sys
-import threading
 import time
 from collections import deque
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 
@@ -20,6 +17,7 @@ import cratous
 from cratous.bridge.port import is_due
 from cratous.bridge.text_protocol.handshake import SECRET_VARIABLE
 from cratous.services.processes.leash import ENDS_WITH
+from cratous.services.results.undisturbed import undisturbed
 from cratous.spec.errors import CratousError
 
 GRACE_S = 5.0
@@ -80,7 +78,7 @@ class Children:
         _error: BaseException | None,
         _trace: TracebackType | None,
     ) -> None:
-        with _undisturbed():
+        with undisturbed():  # asked to end twice, it leaves no process behind
             self.end()
 
     def start(self, name: str, *arguments: str) -> int:
@@ -126,21 +124,3 @@ class Children:
                 child.kill()
             child.wait()
         return {name: int(child.returncode) for name, child in self.running.items()}
-
-
-@contextmanager
-def _undisturbed() -> Iterator[None]:
-    """In here signals that ask to end wait: one that is given twice leaves no process behind."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    came: list[int] = []
-    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-    before = {n: signal.signal(n, lambda number, _frame: came.append(number)) for n in numbers}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-        for again in came[:1]:
-            signal.raise_signal(again)

@@ -149,7 +149,9 @@ def flying(root: Path, folder: Path, rate: float) -> Iterator[tuple[Any, Path]]:
             yield running, said
 
 
-def pids_of(said: Path) -> dict[str, int]:
+def pids_once_started(running: Any, said: Path) -> dict[str, int]:
+    """The processes of a flight by name, once all have begun or it has ended."""
+    until(lambda: STARTED in said.read_text() or running.poll() is not None)
     found = re.findall(r"process (\w+): pid (\d+)", said.read_text())
     return {name: int(pid) for name, pid in found}
 
@@ -160,8 +162,7 @@ def test_a_process_that_dies_ends_the_flight_with_3_and_no_requirement_holds(
     root: Path, tmp_path: Path, name: str
 ) -> None:
     with flying(root, tmp_path, 4) as (running, said):
-        until(lambda: STARTED in said.read_text() or running.poll() is not None)
-        pids = pids_of(said)
+        pids = pids_once_started(running, said)
         assert sorted(pids) == ["icarous_1", "icarous_2", "simulator", "uxas"], said.read_text()
         states = tmp_path / "out"
         until(lambda: _commanded(states) or running.poll() is not None)
@@ -186,8 +187,7 @@ def test_asked_to_end_it_leaves_no_process_and_no_results(
     root: Path, tmp_path: Path, number: int
 ) -> None:
     with flying(root, tmp_path, 1) as (running, said):
-        until(lambda: STARTED in said.read_text() or running.poll() is not None)
-        pids = pids_of(said)
+        pids = pids_once_started(running, said)
         running.send_signal(number)
         assert running.wait(60) == 128 + number
     assert len(pids) == 4, said.read_text()
