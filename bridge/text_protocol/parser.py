@@ -33,6 +33,7 @@ from cratous.bridge.text_protocol.messages import (
     Direction,
     Message,
 )
+from cratous.bridge.text_protocol.plain_lines import TAG_BYTES, message_of, plain_lines
 
 MAX_LINE = 4096
 OTHER_DIALECT = "line of another dialect"
@@ -113,6 +114,8 @@ class StreamParser:
                 self._layouts.setdefault(layout.tag, []).append(layout)
                 self._labels[layout.message] = _labels_of(layout, self._thesis)
         self._limits, self._max_line, self._original_peer = limits, max_line, original_peer
+        ours = [one for layouts in self._layouts.values() for one in layouts]
+        self._plain = {} if self._thesis else plain_lines(ours, limits)
         self._pending = bytearray()
         self._dropping = False
         self._line = 1
@@ -122,6 +125,14 @@ class StreamParser:
         records: list[Record] = []
         start = 0
         while (end := data.find(b"\n", start)) >= 0:
+            if not (self._pending or self._dropping) and end - start <= self._max_line:
+                plain = self._plain.get(bytes(data[start : start + TAG_BYTES]))
+                message = None if plain is None else message_of(plain, data, start, end)
+                if message is not None:
+                    records.append(message)
+                    self._line += 1
+                    start = end + 1
+                    continue
             self._extend(data[start:end], records)
             if not self._dropping:
                 self._parse(bytes(self._pending), records)

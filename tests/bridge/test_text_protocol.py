@@ -274,6 +274,25 @@ def test_damaged_line_never_raises(message: tp.Message, at: int, noise: bytes) -
         assert isinstance(record, tp.Message | tp.WireError | tp.Skipped)
 
 
+@given(messages(DOWN) | messages(UP), st.integers(0, 200), st.binary(max_size=3), st.booleans())
+def test_a_line_that_is_read_at_once_is_read_as_piece_by_piece(
+    message: tp.Message, at: int, noise: bytes, instead: bool
+) -> None:
+    """Whole lines of the plain form take another way through the parser; damaged they must not be another message."""
+    line = tp.encode(message)
+    at %= len(line)
+    damaged = line[:at] + noise + line[at + len(noise) * instead :]
+    whole = tp.StreamParser(tp.direction_of(message))
+    pieces = tp.StreamParser(tp.direction_of(message))
+    at_once = whole.feed(damaged) + whole.finish()
+    records = [r for i in range(len(damaged)) for r in pieces.feed(damaged[i : i + 1])]
+    # as text: 1 and 1.0 are one value, but not one kind of number
+    assert repr(at_once) == repr(records + pieces.finish())
+    assert [hash(r) for r in at_once if isinstance(r, tp.Message)] == [
+        hash(r) for r in records if isinstance(r, tp.Message)
+    ]
+
+
 # -- handshake ---------------------------------------------------------------------------------
 
 
