@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from cratous.core.routing.visibility import name_of
 from cratous.services.flight.dynamics import limits_of
 from cratous.services.flight.executive_outputs import command_all
 from cratous.services.flight.executive_state import Asked, Config, Out, State
-from cratous.services.flight.messages import AskPlan, LimitsAre, Say, ZonesKnown
+from cratous.services.flight.messages import AskPlan, LimitsAre, NotPlanned, Say, ZonesKnown
 from cratous.services.flight.notices import mission_change, plan_accepted
 from cratous.services.flight.replan_triggers import (
     handed_over,
@@ -24,7 +25,7 @@ from cratous.services.mission.wind import all_in_wind, in_wind, known_at, told, 
 from cratous.services.planning.zones import hard_zones
 from cratous.spec.algebra.meaning import tasks
 from cratous.spec.executive import FOR_CHANGE
-from cratous.spec.mission import Change
+from cratous.spec.mission import Change, ZoneKind
 from cratous.spec.mission.asked import asked, term_of
 from cratous.spec.mission.changes import ZONE_ENDS, ZoneEnd, split, with_choices, words
 from cratous.spec.mission.plan import Plan, left_out_of
@@ -106,7 +107,7 @@ def planned(config: Config, state: State, plan: Plan, asked_for: Asked, out: Out
     """Fly another plan from here on. The change is known before anything is done about it."""
     if asked_for.kind == FOR_CHANGE:
         moved = handed_over(left_by(state.by_vehicle()), plan)
-        why = "; ".join(filter(None, (asked_for.why, moved)))
+        why = "; ".join(filter(None, (asked_for.why, moved, _leaving(config, state))))
         _tell(state, asked_for.what, f"planned anew: {why}", out)
     state = replace(state, plan=plan, replans=state.replans + 1)
     accept(state, out)
@@ -120,14 +121,33 @@ def planned(config: Config, state: State, plan: Plan, asked_for: Asked, out: Out
     return begin(config, state, out)
 
 
-def unplanned(config: Config, state: State, no_plan: str, asked_for: Asked, out: Out) -> State:
+def unplanned(
+    config: Config, state: State, no_plan: NotPlanned, asked_for: Asked, out: Out
+) -> State:
     """After a change nothing that is left can be done."""
     todo = _open(state)
     none = nobody_may(state.known, todo, absent(config.mission, state.now_ms))
-    why = "; ".join(filter(None, (asked_for.why, none)))
-    _tell(state, asked_for.what, f"no plan for what is left ({no_plan}): {why}", out)
-    state = give_up(config, state, f"{asked_for.what}: {no_plan}", todo, out)
+    why = "; ".join(filter(None, (asked_for.why, none, _leaving(config, state))))
+    _tell(state, asked_for.what, f"no plan for what is left ({no_plan.why}): {why}", out)
+    of = dict(no_plan.of)
+    told = [(task, f"{asked_for.what}: {of.get(task, no_plan.why)}") for task in todo]
+    state = give_up(config, state, told, out)
     return command_all(config, state, out)
+
+
+def _leaving(config: Config, state: State) -> str:
+    """Which vehicles are in zones that bind now, and how each leaves them before all else."""
+    ways, said = config.ways(state.zones), []
+    for chain in state.chains:
+        if chain.suspended:
+            continue
+        inside, out = ways.out_of(chain, state.air(chain.vehicle.id))
+        if inside and out is not None:
+            names = " and ".join(name_of(zone) for zone in inside)
+            verb = "enters" if inside[0].kind is ZoneKind.KEEP_IN else "leaves"
+            told = f"vehicle {chain.vehicle.id} first {verb} {names} by the shortest way found"
+            said.append(f"{told}, {out.inside_m:.0f} m")
+    return "; ".join(said)
 
 
 def left(state: State) -> list[int]:

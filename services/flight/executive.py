@@ -182,7 +182,7 @@ class Executive:
                 return self._events(state, out)
             return self._commands(state, asked.versions, out)
         if act == DROP_LEFT and isinstance(message, NotPlanned):
-            state = changes.unplanned(self.config, state, message.why, asked, out)
+            state = changes.unplanned(self.config, state, message, asked, out)
             return self._events(state, out)
         if act == DROP_LATE:
             state = deadlines.give_up_first(self.config, state, asked.late, out)

@@ -21,6 +21,7 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.rejoining import Router
 from cratous.services.flight.remaining_path import join_in_transit, leaving_m
+from cratous.services.planning.leaving import WayOut, entered, way_out
 from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import PlanItem, Pose
 
@@ -54,6 +55,11 @@ class Ways:
     def __init__(self, zones: tuple[Zone, ...], dt_s: float) -> None:
         self.zones, self.dt_s = zones, dt_s
         self._router = Router(zones)
+
+    def out_of(self, chain: Chain, state: AirState) -> tuple[tuple[Zone, ...], WayOut | None]:
+        """The zones that a vehicle breaks where it is, and the shortest way out of them, None for none."""
+        inside = entered(state.position, self.zones)
+        return inside, way_out(state.pose, round(_radius_m(chain), 3), self.zones)
 
     def transit(self, chain: Chain, state: AirState) -> Track | None:
         """The planned way to the item, or a new one if we do not come from where it begins; None if

@@ -1,4 +1,4 @@
-"""Tasks that a plan leaves out, in flight: each fails by name when it is first left out, with the reason.
+"""Tasks that a plan leaves out, in flight: each fails by name when it is left out, and again for another reason.
 
 A later plan may take such a task up again (a vehicle joins, the wind calms down): it is not given up for
 good, as one that ended undone is.
@@ -15,6 +15,7 @@ from cratous.services.flight.commands import task_progress
 from cratous.services.flight.task_states import fails
 from cratous.spec.mission.plan import LeftOut, PartialPlan, Plan, left_out_of, partial
 
+LEFT_OUT, AT_FIRST = "left out: ", "; when it was first left out: "
 NOBODY = 0
 """The vehicle of a task that was given to none."""
 
@@ -26,7 +27,8 @@ def leave_out(
     chains: Mapping[int, Chain],
     now_ms: int,
 ) -> tuple[dict[int, str], list[Any]]:
-    """The tasks that are left out from now on, with reasons, and a TaskProgress for those that are new.
+    """The tasks that are left out from now on, with reasons, and a TaskProgress for those that are new or have
+    another reason than before.
 
     settled: tasks that have begun, ended and failed; before: those left out until now; chains: of the
     plan before.
@@ -34,14 +36,20 @@ def leave_out(
     starts, ends, failed = settled
     found, said = {}, []
     for one in left_out_of(plan):
-        task, why = one.task_id, f"left out: {one.reason}"
-        if task in before:
-            found[task] = before[task]
-        elif fails(task, starts, ends, failed):
+        task = one.task_id
+        why = _with_first(one.reason, before.get(task, ""))
+        if task in before or fails(task, starts, ends, failed):
             found[task] = why
+        if task in found and before.get(task) != why:
             vehicle, served = _flown_by(task, chains)
             said.append(task_progress(task, vehicle, now_ms, "Failed", served, why))
     return found, said
+
+
+def _with_first(reason: str, before: str) -> str:
+    """Why a task is left out now, and why it first was where that is another reason. before: what was said last."""
+    first = before.partition(AT_FIRST)[2] or before.removeprefix(LEFT_OUT)
+    return f"{LEFT_OUT}{reason}" + (f"{AT_FIRST}{first}" if first not in ("", reason) else "")
 
 
 def unfinished(
@@ -74,7 +82,7 @@ def _flown_by(task: int, chains: Mapping[int, Chain]) -> tuple[int, float]:
     return NOBODY, 0.0
 
 
-def nothing_of(plan: Plan, tasks: Iterable[int], why: str) -> PartialPlan:
-    """A plan by which nobody does anything any more, and why."""
+def nothing_of(plan: Plan, tasks: Iterable[tuple[int, str]]) -> PartialPlan:
+    """A plan by which nobody does anything any more. tasks: all that are left, and why of each."""
     empty = replace(plan, items=(), rows=(), chosen=())
-    return partial(empty, tuple(LeftOut(task, why) for task in tasks), True)
+    return partial(empty, tuple(LeftOut(task, why) for task, why in tasks), True)

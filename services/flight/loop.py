@@ -287,6 +287,7 @@ class _Flight:
 def _planned(asked: AskPlan) -> Planned | NotPlanned:
     """What the planning services answer."""
     from cratous.services.pipeline.plan import make_plan
+    from cratous.services.planning.left_out import NothingDone
 
     try:
         plan = make_plan(
@@ -299,5 +300,6 @@ def _planned(asked: AskPlan) -> Planned | NotPlanned:
             begun=asked.begun,
         )
     except NoPlan as error:
-        return NotPlanned(str(error))
+        of = error.of if isinstance(error, NothingDone) else {}
+        return NotPlanned(str(error), tuple(sorted(of.items())))
     return Planned(plan)

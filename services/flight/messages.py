@@ -66,7 +66,7 @@ class Flown(NamedTuple):
 
 
 class Left(NamedTuple):
-    """Where a vehicle has left the path of its task."""
+    """Where a vehicle has left the path of its task, or where the task begins that it is on its way to."""
 
     vehicle_id: int
     position: Position
@@ -156,9 +156,10 @@ class Planned(NamedTuple):
 
 
 class NotPlanned(NamedTuple):
-    """There is no plan as it was asked for. why: the reasons, in words."""
+    """There is no plan as it was asked for. why: the reasons, in words; of: those of a task, where told apart."""
 
     why: str
+    of: tuple[tuple[int, str], ...] = ()
 
 
 class Report(NamedTuple):

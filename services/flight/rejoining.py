@@ -9,6 +9,7 @@ from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.routing.dubins import cut, dubins
 from cratous.core.routing.visibility import Roadmap, route
 from cratous.services.flight.dynamics import AirState
+from cratous.services.planning.leaving import entered, way_out
 from cratous.services.planning.zones import roadmaps
 from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import Pose
@@ -29,20 +30,31 @@ class Router:
         """A way to the pose that breaks no zone; empty if none is found.
 
         The planner's route, else the shortest Dubins path, if its legs obey the zones. A zone that the
-        vehicle is in already is left on the way, for good: that it has been entered is then what
-        ICAROUS and the monitor see.
+        vehicle is in already is left at once, by the shortest way out, and for good: that it has been
+        entered is then what ICAROUS and the monitor see. Where that leads on to nowhere it is left on the way.
         """
-        here = (state.position,)
-        entered = tuple(z for z in self._zones if first_bad_leg(here, (z,)) is not None)
-        kept = tuple(z for z in self._zones if z not in entered)
         radius = round(radius_m, 3)
+        out = way_out(state.pose, radius, self._zones)
+        begun, start = (out.points[:-1], out.end) if out else ((), state.pose)
+        inside = entered(state.position, self._zones)
+        found = self._around(start, target, (radius, max_slope), () if out else inside)
+        if found or out is None:
+            return (*begun, *found)
+        return self._around(state.pose, target, (radius, max_slope), inside)
+
+    def _around(
+        self, start: Pose, target: Pose, turning: tuple[float, float], inside: tuple[Zone, ...]
+    ) -> Way:
+        """A way around all zones but those that it leaves on the way. turning: radius [m], steepest slope."""
+        radius, max_slope = turning
+        kept = tuple(zone for zone in self._zones if zone not in inside)
         for slope in (max_slope, math.inf):
             for roadmap in self._roadmaps(radius, kept):
-                found = route(state.pose, target, radius, roadmap, slope).points
-                if found and _leaves(found, entered):
+                found = route(start, target, radius, roadmap, slope).points
+                if found and _leaves(found, inside):
                     return found
-        direct = cut(dubins(state.pose, target, radius), target)
-        clear = first_bad_leg(direct, kept) is None and _leaves(direct, entered)
+        direct = cut(dubins(start, target, radius), target)
+        clear = first_bad_leg(direct, kept) is None and _leaves(direct, inside)
         return direct if clear else ()
 
     def _roadmaps(self, radius: float, zones: tuple[Zone, ...]) -> tuple[Roadmap, ...]:
@@ -52,9 +64,9 @@ class Router:
         return self._maps[key]
 
 
-def _leaves(way: Way, entered: tuple[Zone, ...]) -> bool:
+def _leaves(way: Way, inside: tuple[Zone, ...]) -> bool:
     """Whether a way comes out of each of these zones and does not enter it again."""
-    for zone in entered:
+    for zone in inside:
         clear = [first_bad_leg(leg, (zone,)) is None for leg in itertools.pairwise(way)]
         if clear[-1:] != [True] or clear != sorted(clear):
             return False

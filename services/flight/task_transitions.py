@@ -210,7 +210,7 @@ def fail(config: Config, state: State, task_id: int, why: str, out: Out) -> Stat
     return state
 
 
-def give_up(config: Config, state: State, why: str, asked: Iterable[int], out: Out) -> State:
+def give_up(config: Config, state: State, asked: Iterable[tuple[int, str]], out: Out) -> State:
     """Nothing that is left can be done: nobody flies any of it, and all that is asked for fails by
-    name."""
-    return begin(config, replace(state, plan=nothing_of(state.plan, asked, why)), out)
+    name, each with its reason."""
+    return begin(config, replace(state, plan=nothing_of(state.plan, asked)), out)

@@ -139,18 +139,18 @@ def _location(context: Context, at: Position) -> Any:
 
 
 def released(part: Part, task: int, number: int, points: Mapping[int, Position]) -> tuple[Any, str]:
-    """The command that sends a vehicle on to its plan's next waypoint, or None and the zone in the way.
+    """The command that sends a vehicle on to its plan's next waypoint, or None and why it cannot go on.
 
     points: the waypoints of its plan by number. The loiter beside it is for autopilots that take
     GoToWaypointAction alone for the end of all commands, as AMASE's.
     """
     goal = points.get(part.then)
     if goal is None or part.held is None:
-        return None, "its plan, which has no waypoint after the task,"
+        return None, "no waypoint of its plan comes after the task"
     here = Position(*part.held.at, part.option.flyer.alt_m)
     leg = first_bad_leg((here, goal), part.context.inputs.zones)
     if leg is not None:
-        return None, name_of(leg[1])
+        return None, f"{name_of(leg[1])} keeps it from its plan"
     on = lmcp.new("GoToWaypointAction", WaypointNumber=part.then)
     return lmcp.new(
         "VehicleActionCommand",

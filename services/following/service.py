@@ -123,6 +123,7 @@ class FollowingTaskService(TaskService):
     def _do(self, state: State, act: int, body: Any, out: list[Any]) -> tuple[State, int]:
         if act == PUBLISH_OPTIONS and not self._still(self._context):
             told = unused_of(self._body)
+            self._context.withheld[self._task_id] = tuple(self._found(self._context)[1])
             for no in self._found(self._context)[1]:
                 who = ", ".join(map(str, no.vehicles))
                 who = f"vehicle {who}" if who else no.label or "a place about the entity"
@@ -308,11 +309,11 @@ class FollowingTaskService(TaskService):
             out += [one for one in more if type(one).__name__ != "TaskComplete"]
             number = parts_of.command_id(self._task_id, part.state.task.request)
             points = state.plans.get(part.vehicle, {})
-            command, zone = parts_of.released(part, self._task_id, number, points)
+            command, why = parts_of.released(part, self._task_id, number, points)
             if command is not None:
                 out.append(command)
             else:
-                text = f"vehicle {part.vehicle} stays on its circle: {zone} keeps it from its plan"
+                text = f"vehicle {part.vehicle} stays on its circle: {why}"
                 out.append(self._warning(text))
         return state._replace(parts=(), kept=Kept(-1, False)), out
 

@@ -6,7 +6,7 @@ import math
 
 from cratous.services.mission.wind import Wind, in_wind, wind_at
 from cratous.spec.mission import Mission, Vehicle
-from cratous.spec.mission.changes import VEHICLE_LOST, without_vehicles
+from cratous.spec.mission.changes import VEHICLE_JOINS, VEHICLE_LOST, split, without_vehicles
 
 
 def absent(mission: Mission, now_ms: int) -> dict[int, str]:
@@ -16,11 +16,25 @@ def absent(mission: Mission, now_ms: int) -> dict[int, str]:
     for vehicle in mission.vehicles:
         change = away.get(vehicle.id)
         if change is not None:
-            how = "was lost at" if change.kind == VEHICLE_LOST else "joins only at"
-            found[vehicle.id] = f"it {how} {change.at_ms / 1000:.2f} s"
+            lost = change.kind == VEHICLE_LOST
+            at_ms = _lost_ms(mission, vehicle.id, now_ms) if lost else change.at_ms
+            how = "was lost at" if lost else "joins only at"
+            found[vehicle.id] = f"it {how} {at_ms / 1000:.2f} s"
         elif in_wind(vehicle, wind) is None:
             found[vehicle.id] = _too_windy(vehicle, wind)
     return found
+
+
+def _lost_ms(mission: Mission, vehicle_id: int, now_ms: int) -> int:
+    """Since when a vehicle that was lost is: who is lost is not lost again."""
+    happened, _ = split((c for c in mission.changes if c.vehicle == vehicle_id), now_ms)
+    before: list[int] = []
+    for change in happened:
+        if change.kind == VEHICLE_JOINS:
+            before = []
+        elif change.kind == VEHICLE_LOST:
+            before.append(change.at_ms)
+    return before[0]
 
 
 def _too_windy(vehicle: Vehicle, wind: Wind) -> str:

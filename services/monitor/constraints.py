@@ -61,7 +61,8 @@ class Fence:
         if self.left_ms is None:
             return f"{said}, which did not {'leave' if out else 'enter'} it"
         again = "" if self.again_ms is None else f", and {broke} at {self.again_ms / 1000:.2f} s"
-        return f"{said}, which {kept} by {self.left_ms / 1000:.2f} s{again}"
+        took_s = (self.left_ms - (self.broken_ms or 0)) / 1000
+        return f"{said}, which {kept} by {self.left_ms / 1000:.2f} s, within {took_s:.2f} s{again}"
 
 
 class ConstraintWatch:

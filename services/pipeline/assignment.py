@@ -20,7 +20,7 @@ from cratous.services.pipeline.offers import OPTIONS, Read, Told, read, travel_o
 from cratous.services.pipeline.status import status
 from cratous.services.planning import mission_assign, without_vehicles
 from cratous.services.planning.inputs import Inputs
-from cratous.services.planning.left_out import assign_part
+from cratous.services.planning.left_out import NothingDone, assign_part
 from cratous.services.planning.options import Option
 from cratous.services.planning.partial import Parts
 from cratous.services.planning.remedies import remedies_of
@@ -137,7 +137,7 @@ def _found(offered: Read) -> mission_assign.Found:
         if not why:
             raise
         if not problem.choices:
-            raise NoPlan(why) from error
+            raise NothingDone(why, without_vehicles.unable(inputs)) from error
         found = mission_assign.Found(None, None, why)
     if found.assignment is None and offered.split.ids:
         reached = {row.DestinationTaskID for row in rows}
@@ -154,7 +154,8 @@ def _found(offered: Read) -> mission_assign.Found:
             return part
         unreached = [t for t in tasks if t not in {row.DestinationTaskID for row in rows}]
         why = _nothing(inputs, part, unreached) or found.reasons
-        raise NoPlan(why or mission_assign.assign(problem, limits).reasons)
+        of = {one.task_id: one.reason for one in part.left_out}
+        raise NothingDone(why or mission_assign.assign(problem, limits).reasons, of)
     return found
 
 

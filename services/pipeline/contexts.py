@@ -18,6 +18,7 @@ from cratous.services.pipeline.source import Known, Source
 from cratous.services.pipeline.status import status
 from cratous.services.planning.inputs import Inputs
 from cratous.services.planning.mission_assign import Found
+from cratous.services.planning.options import Dropped
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 
 UNIQUE = "uxas.messages.task.UniqueAutomationRequest"
@@ -28,13 +29,14 @@ KEPT = 8
 class Context:
     """One UniqueAutomationRequest and the mission that it asks for.
 
-    offered: tasks whose options were computed here; assigned: what the search has found here;
+    offered: tasks whose options were computed here; withheld: by task, options that it did not offer, and why; assigned: what the search has found here;
     error: why the request ended without a plan.
     """
 
     def __init__(self, request: Any, inputs: Inputs, places: RequestPlaces) -> None:
         self.request, self.inputs, self.places = request, inputs, places
         self.offered: set[int] = set()
+        self.withheld: dict[int, tuple[Dropped, ...]] = {}
         self.assigned: Found | None = None
         self.error: CratousError | None = None
 

@@ -35,13 +35,21 @@ class Told(NamedTuple):
 class Offered(Inputs):
     """Inputs whose options are those that the tasks have offered in messages."""
 
-    def __init__(self, base: Inputs, offered: tuple[Option, ...], known: bool) -> None:
-        """known: options were computed here, so that it is known which were dropped, and why."""
+    def __init__(
+        self,
+        base: Inputs,
+        offered: tuple[Option, ...],
+        known: bool,
+        withheld: Mapping[int, tuple[Dropped, ...]],
+    ) -> None:
+        """known: options were computed here, so that it is known which were dropped, and why; withheld: of
+        tasks that say themselves what they do not offer."""
         super().__init__(
             base.mission, base.starts, base.fixed, base.now_ms, base.flying, base.absent,
             base.undone, base.begun,
         )  # fmt: skip
         self.offered, self._base, self._known = offered, base, known
+        self._withheld = dict(withheld)
 
     @cached_property
     def options(self) -> tuple[Option, ...]:
@@ -49,7 +57,10 @@ class Offered(Inputs):
 
     @cached_property
     def dropped(self) -> tuple[Dropped, ...]:
-        return self._base.dropped if self._known else ()
+        own = self._withheld
+        made = self._base.dropped if self._known else ()
+        told = (drop for task in sorted(own) for drop in own[task])
+        return (*(drop for drop in made if drop.task_id not in own), *told)
 
     @cached_property
     def zones(self) -> tuple[Zone, ...]:
@@ -119,7 +130,7 @@ def read(told: Told, matrix: Any, context: Context) -> Read:
         ]
         rows = [_renamed(row, ids) for row in rows]
         tasks = (*(t for t in tasks if t not in composed), *ids.values())
-    inputs = Offered(parts.inputs, tuple(options), bool(context.offered))
+    inputs = Offered(parts.inputs, tuple(options), bool(context.offered), context.withheld)
     return Read(inputs, rows, tasks, foreign, parts)
 
 

@@ -26,6 +26,7 @@ from cratous.services.pipeline.tasks import TaskService
 from cratous.services.pipeline.validator import AutomationRequestValidatorService
 from cratous.services.planning import stages, without_vehicles
 from cratous.services.planning.inputs import Inputs
+from cratous.services.planning.left_out import NothingDone
 from cratous.services.planning.mission_assign import parts_in, power_w
 from cratous.spec.errors import BadInput, NoPlan
 from cratous.spec.mission import Mission
@@ -95,8 +96,8 @@ def make_plan(
     done: tasks already flown, as (task_id, start_ms, end_ms) or anything with these attributes;
     now_ms: when the vehicles set off; absent: vehicles that are not in the mission as it is known,
     with the reason; undone: tasks that have ended undone, with the reason; begun: tasks that have been begun
-    and are not ended, which make the choice of a `+`. In flight (starts given) a vehicle inside a zone is no bad input: there is just
-    no route from where it is; and nothing may be left to do.
+    and are not ended, which make the choice of a `+`. In flight (starts given) a vehicle inside a zone is no bad input: its
+    routes begin with the shortest way out; and nothing may be left to do.
     """
     flying = starts is not None
     if not mission.tasks and flying:
@@ -111,7 +112,7 @@ def make_plan(
     if not inputs.wanted:
         return _nothing_wanted(inputs)
     if not mission.vehicles:
-        raise NoPlan(without_vehicles.why_none(inputs))
+        raise NothingDone(without_vehicles.why_none(inputs), without_vehicles.unable(inputs))
     requests = requests_on(bus)
     source = MissionSource(inputs)
     with services_on(bus, inputs, Contexts(source), requests) as contexts:
@@ -173,6 +174,8 @@ def _answered(requests: MissionRequests, contexts: Contexts) -> Plan:
         error = contexts.error(unique.RequestID) if unique is not None else None
         if isinstance(error, BadInput):
             raise error
+        if isinstance(error, NothingDone):
+            raise NothingDone(requests.reasons, error.of)
         raise NoPlan(requests.reasons or ("the services have not answered",))
     context = contexts.of(unique.RequestID)
     plan = _exact(context, requests.newest("TaskAssignmentSummary"))

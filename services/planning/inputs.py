@@ -130,7 +130,7 @@ class Inputs:
     @cached_property
     def finder(self) -> Routes:
         """Routes of the mission's vehicles, between no ends yet."""
-        return Routes(self.mission, self.starts, (), self.zones)
+        return Routes(self.mission, self.starts, (), self.zones, self.flying)
 
     @cached_property
     def routes(self) -> Routes:

@@ -13,12 +13,21 @@ from cratous.services.planning.partial import PROBES, Part, Parts, restricted
 from cratous.spec.algebra.meaning import rows, tasks
 from cratous.spec.algebra.partial import may_be_done, only, waits_for
 from cratous.spec.assignment.search import AssignmentProblem
+from cratous.spec.errors import NoPlan
 from cratous.spec.mission.plan import ORDER, TIME, LeftOut, Remedy
 
 MORE = 100
 """Further questions for finding reasons."""
 TOLD_MAX = 3
 """So many constraints that clash are told of a task."""
+
+
+class NothingDone(NoPlan):
+    """Nothing of a mission can be done. of: why, of each task of which it is told apart."""
+
+    def __init__(self, reasons: tuple[str, ...], of: Mapping[int, str]) -> None:
+        self.of = dict(of)
+        super().__init__(reasons)
 
 
 def assign_part(

@@ -65,7 +65,7 @@ def _able(inputs: Inputs, task_id: int, changes: tuple[_Change, ...]) -> tuple[i
     if any(change.kind == ELIGIBILITY for change in changes):
         task = replace(task, eligible=())
     options, _ = expand(inputs.mission, [task], zones, in_part=False)
-    routes = Routes(inputs.mission, inputs.starts, options, zones)
+    routes = Routes(inputs.mission, inputs.starts, options, zones, inputs.flying)
     return tuple(
         vehicle.id
         for v, vehicle in enumerate(inputs.mission.vehicles)

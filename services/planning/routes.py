@@ -12,6 +12,7 @@ import numpy as np
 from cratous.core.assignment.problem import START
 from cratous.core.routing.bulk import FOUND
 from cratous.core.routing.visibility import Roadmap, Route, route, routes
+from cratous.services.planning.leaving import WayOut, way_out
 from cratous.services.planning.options import Flyer, flight_ms, flyer_of
 from cratous.services.planning.vias import Flown, inner, joined
 from cratous.services.planning.zones import roadmaps
@@ -38,7 +39,8 @@ class Routes:
     """Routes of a mission's vehicles from their starts and from option to option.
 
     Vehicles are indices into `mission.vehicles`, options indices into `options`; from START means
-    from where the vehicle is.
+    from where the vehicle is. In flight (`flying`) a route from inside a zone begins with the shortest
+    way out that was found.
     """
 
     def __init__(
@@ -47,11 +49,13 @@ class Routes:
         starts: Mapping[int, Pose],
         options: Sequence[Ending],
         zones: Sequence[Zone],
+        flying: bool = False,
     ) -> None:
         self.options = options
         self.poses = [starts[vehicle.id] for vehicle in mission.vehicles]
         self.flyers = [flyer_of(vehicle) for vehicle in mission.vehicles]
-        self.zones = tuple(zones)
+        self.zones, self.flying = tuple(zones), flying
+        self._out: dict[tuple[Pose, float], WayOut | None] = {}
         self._maps: dict[float, tuple[Roadmap, ...]] = {}
         self._found: dict[Ends, Route] = {}
         self._times: dict[Ends, int | None] = {}
@@ -99,7 +103,23 @@ class Routes:
         """The zones with the margin for tracking that routes of a turn radius keep where there is room."""
         return self._roadmaps(radius_m)[0].zones
 
+    def _way_out(self, start: Pose, radius_m: float) -> WayOut | None:
+        """How a route comes out of zones that it begins in, None if it is in none or may not."""
+        if not self.flying:
+            return None
+        if (start, radius_m) not in self._out:
+            self._out[start, radius_m] = way_out(start, radius_m, self.zones)
+        return self._out[start, radius_m]
+
     def _search(self, start: Pose, flyer: Flyer, end: Pose) -> Route:
+        out = self._way_out(start, flyer.radius_m)
+        if out is not None:
+            found = self._around(out.end, flyer, end)
+            points = (*out.points, *found.points[1:])
+            return Route(points, out.length_m + found.length_m) if found.points else found
+        return self._around(start, flyer, end)
+
+    def _around(self, start: Pose, flyer: Flyer, end: Pose) -> Route:
         if flyer.max_climb_m_s <= 0 and start.alt_m != end.alt_m:
             return Route((), 0.0, "it cannot change its altitude")
         found = Route((), 0.0, "")
@@ -121,12 +141,17 @@ class Routes:
         for roadmap in self._roadmaps(flyer.radius_m):
             if not left:
                 return
-            starts, ends = (np.array([key[k] for key in left], float) for k in (0, 2))
+            outs = [self._way_out(start, flyer.radius_m) for start, _, _ in left]
+            begun = [out.end if out else key[0] for out, key in zip(outs, left, strict=True)]
+            starts, ends = np.array(begun, float), np.array([key[2] for key in left], float)
             found = routes(starts, ends, flyer.radius_m, roadmap, _slope(flyer))
             rest = []
-            for key, code, metres in zip(left, found.codes, found.metres.tolist(), strict=True):
+            for key, out, code, metres in zip(
+                left, outs, found.codes, found.metres.tolist(), strict=True
+            ):
                 if code == FOUND:
-                    self._times[key] = flight_ms(metres, flyer.speed_m_s)
+                    way_m = metres + (out.length_m if out else 0.0)
+                    self._times[key] = flight_ms(way_m, flyer.speed_m_s)
                 else:
                     rest.append(key)
             left = rest

@@ -32,7 +32,8 @@ def unable(inputs: Inputs) -> dict[int, str]:
 
 def _named(inputs: Inputs, task_id: int) -> str:
     label = inputs.mission.task(task_id).label
-    return f"task {task_id}" + (f" ({label})" if label else "")
+    name = f"task {task_id}"
+    return f"{name} ({label})" if label not in ("", name) else name
 
 
 def without_options(inputs: Inputs) -> dict[int, str]:

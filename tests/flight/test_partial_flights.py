@@ -56,7 +56,10 @@ def failures(said: list[Any]) -> list[tuple[int, int, int]]:
 def test_the_example_does_what_can_be_done_and_names_the_rest() -> None:
     result, rows, said = flown(load(EXAMPLE))
     assert set(result.ends) == {2, 5}
-    assert failures(said) == [(1, 0, 0), (3, 2, 30_000), (4, 1, 30_000), (6, 1, 60_000)]
+    first = [(1, 0, 0), (3, 2, 30_000), (4, 1, 30_000), (6, 1, 60_000)]
+    assert [one for one in failures(said) if one in first] == first
+    # of the first the reason is another with every plan, and the last one holds
+    assert [one for one in failures(said) if one not in first] == [(1, 0, 30_000), (1, 0, 60_000)]
     assert set(result.failed) == {1, 3, 4, 6}
     assert "not beside task 2" in result.failed[1]
     assert "vehicle 2: it was lost at 30.00 s" in result.failed[3]

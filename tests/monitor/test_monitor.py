@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from mission_tools import must_fly
 from monitor_tools import (
     PLAN,
     Envelope,
@@ -97,7 +98,9 @@ def test_a_zone_that_appears_over_a_vehicle_is_told_as_that_and_when_it_was_left
     flight = [truth(1, 250 * k, 20 * k, 0) for k in range(4)]
     row = watch(of, [*flight, *done(750)])[item]
     assert (row.outcome, row.time_ms) == (Outcome.VIOLATED, 250)
-    assert row.note == "it appeared over the vehicle at 0.25 s, which left it by 0.50 s"
+    assert (
+        row.note == "it appeared over the vehicle at 0.25 s, which left it by 0.50 s, within 0.25 s"
+    )
     back = [*flight, truth(1, 1000, 20, 0)]
     assert watch(of, [*back, *done(1000)])[item].note.endswith(", and entered it at 0.75 s")
     assert watch(of, [*flight[:2], truth(1, 500, 25, 0), *done(500)])[item].note.endswith(
@@ -115,7 +118,7 @@ def test_a_zone_to_keep_in_is_left_not_entered():
     of = mission(zones=(), changes=(Change(0, changes.ZONE, zone=zone),))
     flight = [truth(1, 250 * k, 2 + 10 * k, 0) for k in range(5)]
     assert watch(of, [*flight, *done(1000)])[item].note == (
-        "it appeared beside the vehicle at 0.00 s, which entered it by 0.25 s, and left it at 0.50 s"
+        "it appeared beside the vehicle at 0.00 s, which entered it by 0.25 s, within 0.25 s, and left it at 0.50 s"
     )
     assert watch(of, [*flight[:2], *done(250)])[item].note.endswith("which did not enter it")
     of = mission(zones=(zone,))
@@ -224,7 +227,7 @@ def test_a_search_must_be_covered_by_footprints():
 
 
 def test_a_point_must_really_be_flown_through():
-    tasks = (Task(1, TaskKind.MUST_FLY, "", (Position(10.0, 5060.0, 100.0),)), mission().tasks[1])
+    tasks = (must_fly(1, (10.0, 5060.0, 100.0)), mission().tasks[1])
     seen = watch(mission(tasks=tasks), [*apart(), *beats(3000), *done()])
     assert seen["G3:task 1 served"].outcome is Outcome.VIOLATED
     assert seen["G3:task 2 served"].outcome is Outcome.HOLDS

@@ -218,6 +218,10 @@ def test_no_circle_about_an_entity_in_a_zone_is_offered_or_flown(tmp_path: Path)
     rig.tell(*aircraft(1, 0.0), *moving(0.5), zone_around(0.031, 0.002), region, escort())
     rig.tell(request(5, OperatingRegion=4))
     assert any("its circle about entity 9 breaks" in text for text in rig.reasons("Warning"))
+    (answer,) = rig.got("AutomationResponse")
+    assert any("its circle about entity 9 breaks" in pair.Value for pair in answer.Info), (
+        answer.Info
+    )
     # a zone that the entity comes into while it is escorted: the aircraft keeps out of it
     rig = Rig(tmp_path / "rig")
     rig.tell(*aircraft(1, 0.02), *moving(5.0), zone_around(0.05, 0.002), region, escort())

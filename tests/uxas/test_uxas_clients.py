@@ -60,7 +60,7 @@ def test_the_waterway_mission_for_a_cmasi_client(shared: Path, tmp_path: Path) -
         bodies += lmcp.xml.read_file(name, [])
     options = [part for name in LEFT_OUT for part in ("--without", name)]
     with started(path, "-runUntil", "300", *options) as running:
-        client = Client(port)
+        client = Client(port, running)
         for body in bodies[:-1]:
             client.send(body)
         client.wait("TaskInitialized")

@@ -1,0 +1,173 @@
+"""The shortest level way out of zones that a vehicle is in, or into keep-ins that it is outside of.
+
+A zone can appear over a vehicle. A turn and a straight way lead out first: to a line, a turn until
+straight towards it and then straight on is the shortest way of all that turn no tighter, and who leaves
+a convex keep-out crosses the line of one of its edges, so of these, two for each edge, one is the
+shortest. Of zones of another form it is the shortest of these and of `EVEN` headings more.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.routing.dubins import LEFT, RIGHT, STRAIGHT, pose_after
+from cratous.core.routing.visibility import start_point
+from cratous.services.planning.zones import MARGIN_M
+from cratous.spec.mission import Position, Zone
+from cratous.spec.mission.plan import Pose
+
+EVEN = 24
+"""So many headings are tried besides those across edges and to corners."""
+CORNERS_MOST = 200
+"""Of so many corners all together these are; of more the even headings alone."""
+ARC_STEP_RAD = math.radians(5)
+"""A turn is flown in legs of this angle at most."""
+OUT_M = 0.5
+"""A crossing of an edge is passed by this much [m]."""
+CLEAR_M = (MARGIN_M + 2.0, 2.0)
+"""So far the way goes on behind the edge, where there is room [m]."""
+
+
+class WayOut(NamedTuple):
+    """points: from where the vehicle is to where other routes begin; end: the pose there; inside_m: length
+    until it is out; length_m: of all of it."""
+
+    points: tuple[Position, ...]
+    end: Pose
+    inside_m: float
+    length_m: float
+
+
+class _Turn(NamedTuple):
+    """A pose after a turn, its arc [m] and the points on it."""
+
+    pose: Pose
+    arc_m: float
+    points: tuple[Position, ...]
+
+
+def entered(at: Position, zones: Sequence[Zone]) -> tuple[Zone, ...]:
+    """The zones that a position breaks."""
+    return tuple(zone for zone in zones if first_bad_leg((at,), (zone,)) is not None)
+
+
+def way_out(pose: Pose, radius_m: float, zones: Sequence[Zone]) -> WayOut | None:
+    """The shortest level way found out of all zones that the pose breaks, which keeps the others; None
+    where it breaks none or no way out was found. zones: without padding; radius_m: of turns [m]."""
+    left = entered(start_point(pose), zones)
+    if not left:
+        return None
+    kept = tuple(zone for zone in zones if zone not in left)
+    found = []
+    for order, turn in enumerate(_turns(pose, radius_m, left, kept)):
+        straight_m = _straight_m(turn.pose, left)
+        if straight_m is not None:
+            # to the centimetre: what is as long is chosen by the order, not by rounding
+            found.append((round(turn.arc_m + straight_m, 2), order, straight_m, turn))
+    found.sort(key=lambda one: one[:2])
+    # first of all ways with room to turn behind them: a gap between zones leads nowhere
+    for room, (inside_m, _, straight_m, turn) in itertools.product((True, False), found):
+        for clear_m in CLEAR_M:
+            out, end = (
+                pose_after(turn.pose, STRAIGHT, way_m, radius_m)
+                for way_m in (straight_m, straight_m + clear_m)
+            )
+            inside = (start_point(turn.pose), start_point(out))
+            beyond = (inside[1], start_point(end))
+            if first_bad_leg(inside, kept) is not None or first_bad_leg(beyond, zones) is not None:
+                continue
+            if not room or _turns_on(end, radius_m, zones):
+                points = (*turn.points, beyond[1])
+                return WayOut(points, end, inside_m, turn.arc_m + straight_m + clear_m)
+    return None
+
+
+def _turns_on(pose: Pose, radius_m: float, zones: Sequence[Zone]) -> bool:
+    """Whether a quarter turn to one side at least keeps the zones."""
+    arcs = (
+        [
+            start_point(pose_after(pose, kind, k * ARC_STEP_RAD * radius_m, radius_m))
+            for k in range(math.ceil(math.pi / 2 / ARC_STEP_RAD) + 1)
+        ]
+        for kind in (RIGHT, LEFT)
+    )
+    return any(first_bad_leg(arc, zones) is None for arc in arcs)
+
+
+def _turns(
+    pose: Pose, radius_m: float, left: Sequence[Zone], kept: Sequence[Zone]
+) -> Iterator[_Turn]:
+    """Turns to all headings, on either side, none farther than the zones to keep, or the way out, allow."""
+    for kind in (RIGHT, LEFT):
+        sign = 1 if kind == RIGHT else -1
+        angles = sorted(
+            (sign * (heading - pose.heading_rad)) % (2 * math.pi)
+            for heading in _headings(pose, radius_m, left)
+        )
+        here, points, turned = pose, [start_point(pose)], 0.0
+        for angle in angles:
+            steps = math.ceil((angle - turned) / ARC_STEP_RAD)
+            for k in range(1, steps + 1):
+                at = turned + (angle - turned) * k / steps
+                here = pose_after(pose, kind, at * radius_m, radius_m)
+                points.append(start_point(here))
+                leg = points[-2:]
+                if first_bad_leg(leg, kept) is not None:
+                    break
+                if first_bad_leg(leg[1:], left) is None:
+                    yield _Turn(here, at * radius_m, tuple(points))
+                    break
+            else:
+                turned = max(turned, angle)
+                yield _Turn(here, turned * radius_m, tuple(points))
+                continue
+            break
+
+
+def _headings(pose: Pose, radius_m: float, left: Sequence[Zone]) -> Iterator[float]:
+    """Headings across the edges of zones, to their corners from here, and evenly spread."""
+    yield pose.heading_rad
+    for k in range(EVEN):
+        yield 2 * math.pi * k / EVEN
+    if sum(len(zone.vertices) for zone in left) > CORNERS_MOST:
+        return
+    for zone in left:
+        for (n, e), (n2, e2) in zip(
+            zone.vertices, (*zone.vertices[1:], zone.vertices[0]), strict=True
+        ):
+            along = math.atan2(e2 - e, n2 - n)
+            yield along + math.pi / 2
+            yield along - math.pi / 2
+            yield math.atan2(e - pose.east_m, n - pose.north_m)
+
+
+def _straight_m(pose: Pose, left: Sequence[Zone]) -> float | None:
+    """How far straight on a pose is out of all these zones, 0 where it is; None if it never is."""
+    if first_bad_leg((start_point(pose),), left) is None:
+        return 0.0
+    for crossing_m in sorted(_crossings_m(pose, left)):
+        at = pose_after(pose, STRAIGHT, crossing_m + OUT_M, 1.0)
+        if first_bad_leg((start_point(at),), left) is None:
+            return crossing_m + OUT_M
+    return None
+
+
+def _crossings_m(pose: Pose, zones: Sequence[Zone]) -> Iterator[float]:
+    """How far straight on lie the lines' crossings with the edges of zones."""
+    north, east = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
+    for zone in zones:
+        beside = [
+            (n - pose.north_m, e - pose.east_m) for n, e in (*zone.vertices, zone.vertices[0])
+        ]
+        across = [e * north - n * east for n, e in beside]
+        ahead = [n * north + e * east for n, e in beside]
+        for k in range(len(beside) - 1):
+            a, b = across[k], across[k + 1]
+            if a * b <= 0 and a != b:
+                way = ahead[k] + (ahead[k + 1] - ahead[k]) * a / (a - b)
+                if way >= 0:
+                    yield way
