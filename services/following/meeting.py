@@ -23,6 +23,7 @@ from cratous.services.following.stations import Station
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.implementation import offer
 from cratous.services.pipeline.places import RequestPlaces
+from cratous.services.pipeline.source import Known
 from cratous.services.planning.flyers import Flyer, flyer_of
 from cratous.services.planning.options import Dropped, Option, flight_ms, hold_rooms
 from cratous.spec.errors import BadInput
@@ -36,8 +37,10 @@ TOLERANCE = "Tolerance_ms"
 TOLERANCE_MS, TOLERANCE_MOST_MS = 2_000, 600_000
 RUN_IN_RADII = 6.0
 """A run-in is so many turn radii long at least, so that it is flown straight."""
-RUN_IN_RESERVE = 1.05
+RUN_IN_RESERVE = 1.25
 RUN_IN_MOST_M = 20_000.0
+LEAST_M_S = 1.0
+"""Who makes less way against the wind is taken to make this."""
 BEYOND_RADII = 2.5
 """A run-in ends so many radii of a turn at the fastest speed beyond its state: at most two ahead the next begins."""
 
@@ -95,13 +98,35 @@ def limits_of(vehicle: Vehicle) -> Limits:
     return Limits(slowest, nominal, max(vehicle.max_speed_m_s, nominal))
 
 
-def lap_s(flyer: Flyer) -> float:
-    """How long a lap of waiting takes [s]."""
-    return 2 * math.pi * flyer.radius_m / flyer.speed_m_s
+def wind_of(state: Any, heading_rad: float) -> Vec2:
+    """The wind that a vehicle's state tells, along a heading and across it [m/s]; BadInput for what is no wind."""
+    speed, source = getattr(state, "WindSpeed", 0.0), getattr(state, "WindDirection", 0.0)
+    if not (math.isfinite(speed) and math.isfinite(source)):
+        raise BadInput(
+            "a wind that is no number", where=f"state of vehicle {state.ID}",
+            item="WindSpeed, WindDirection", expected="finite numbers", got=f"{speed:g}, {source:g}",
+        )  # fmt: skip
+    off = math.radians(source) - heading_rad
+    return Vec2(-speed * math.cos(off), -speed * math.sin(off))
+
+
+def over_ground(limits: Limits, wind: Vec2) -> Limits:
+    """The speeds of a vehicle over ground, at least `LEAST_M_S`; wind: along its way and across it [m/s]."""
+    found = []
+    for speed in limits:
+        along = math.sqrt(max(speed**2 - wind.y**2, 0.0))
+        found.append(max(along + wind.x, LEAST_M_S))
+    return Limits(*found)
+
+
+def lap_s(flyer: Flyer, wind: Vec2 = Vec2(0.0, 0.0)) -> float:
+    """How long a lap of waiting takes [s], in a wind at most ten times as long as without one."""
+    calm_s = 2 * math.pi * flyer.radius_m / flyer.speed_m_s
+    return calm_s / max(1 - (wind.x**2 + wind.y**2) / flyer.speed_m_s**2, 0.1)
 
 
 def options_of(
-    context: Context, task: Task, met: Met
+    context: Context, task: Task, met: Met, world: Known
 ) -> tuple[list[tuple[Option, int]], list[Dropped], list[str]]:
     """The options with the numbers of their states; what is not offered, with the reason; what is not done."""
     made, dropped, notes = list[tuple[Option, int]](), list[Dropped](), list[str]()
@@ -116,7 +141,7 @@ def options_of(
         for k, (entity, pose) in enumerate(met.states):
             if entity not in (0, vehicle.id):
                 continue
-            found = _option(context, task, vehicle, pose)
+            found = _option(context, task, vehicle, pose, world)
             if isinstance(found, str):
                 dropped.append(
                     Dropped(task.id, (vehicle.id,), "", f"RendezvousStates[{k}]: {found}")
@@ -139,17 +164,21 @@ def _numbered(option: Option, number: int, vehicle: int) -> Option:
     return replace(option, option_id=number, vehicles=(vehicle,))
 
 
-def _option(context: Context, task: Task, vehicle: Vehicle, pose: Pose) -> Option | str:
+def _option(
+    context: Context, task: Task, vehicle: Vehicle, pose: Pose, world: Known
+) -> Option | str:
     """The run-in of a vehicle to a state, or why there is none."""
     flyer, limits, zones = flyer_of(vehicle), limits_of(vehicle), context.inputs.zones
-    spread = limits.fastest_m_s - limits.slowest_m_s
-    lap_m2_s = lap_s(flyer) * limits.slowest_m_s * limits.fastest_m_s
+    wind = wind_of(world.get("state", vehicle.id), pose.heading_rad)
+    ground, lap = over_ground(limits, wind), lap_s(flyer, wind)
+    spread = ground.fastest_m_s - ground.slowest_m_s
+    lap_m2_s = lap * ground.slowest_m_s * ground.fastest_m_s
     length = min(RUN_IN_RESERVE * lap_m2_s / spread, RUN_IN_MOST_M) if spread else RUN_IN_MOST_M
     length = max(length, RUN_IN_RADII * flyer.radius_m)
-    if not spares_a_lap(length, lap_s(flyer), limits.slowest_m_s, limits.fastest_m_s):
+    if not spares_a_lap(length, lap, ground.slowest_m_s, ground.fastest_m_s):
         return (
-            f"at {limits.slowest_m_s:g} to {limits.fastest_m_s:g} m/s it cannot make up for a lap of "
-            f"{lap_s(flyer):.1f} s on {length / 1000:g} km, so no common time can be kept"
+            f"at {ground.slowest_m_s:.4g} to {ground.fastest_m_s:.4g} m/s over ground it cannot make up for a "
+            f"lap of {lap:.1f} s on {length / 1000:g} km, so no common time can be kept"
         )
     at = pose._replace(alt_m=flyer.alt_m)
     gate = pose_after(at, 0, -length, 1.0)

@@ -8,19 +8,35 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from cratous.core.kernel import Vec2
+from cratous.services.following.meeting import Limits, lap_s, over_ground
 from cratous.services.following.part import Part
 from cratous.services.following.service import Following
+from cratous.services.planning.flyers import Flyer
 
 
 class Way(NamedTuple):
     """What is left of a vehicle's way: left_m: to its state; waits: it can still wait; laps: it does; passed: it
-    is beyond its state; arrived: when that was [ms], None: not yet."""
+    is beyond its state; arrived: when that was [ms], None: not yet; wind: along its run-in and across it [m/s]."""
 
     left_m: float
     waits: bool
     laps: bool = False
     passed: bool = False
     arrived: int | None = None
+    wind: Vec2 = Vec2(0.0, 0.0)
+
+    def over_ground(self, limits: Limits) -> Limits:
+        """The speeds of a vehicle over ground along its run-in."""
+        return over_ground(limits, self.wind)
+
+    def lap_s(self, flyer: Flyer) -> float:
+        """How long a lap of waiting takes in this wind [s], at most ten times as long as without one."""
+        return lap_s(flyer, self.wind)
+
+    def airspeed(self, ground_m_s: float, limits: Limits) -> float:
+        """The speed through the air, within its limits, at which it flies so fast over ground."""
+        speed = math.hypot(ground_m_s - self.wind.x, self.wind.y)
+        return min(max(speed, limits.slowest_m_s), limits.fastest_m_s)
 
 
 class Progress(NamedTuple):

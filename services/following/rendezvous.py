@@ -30,13 +30,13 @@ from cratous.services.following import part as parts_of
 from cratous.services.following.meeting import (
     Limits,
     Met,
-    lap_s,
     limits_of,
     meeting_of,
     offered,
     options_of,
     waiting_circle,
     ways_of,
+    wind_of,
 )
 from cratous.services.following.part import Part
 from cratous.services.following.progress import Progress, Way, ahead_of, heard, place_of
@@ -76,9 +76,9 @@ class RendezvousTaskService(FollowingTaskService):
 
     def _found(self, context: Context) -> tuple[list[Option], list[Dropped]]:
         if self._made is None or self._made[0] is not context:
-            found, dropped, self._notes = options_of(
-                context, self._task_in(context), self._met(context)
-            )
+            met, world = self._met(context), self._contexts.world
+            task = self._task_in(context)
+            found, dropped, self._notes = options_of(context, task, met, world)
             ways = ways_of(self._met(context), found)
             if not ways:
                 text = f"no {self._met(context).needed} vehicles have a state each"
@@ -144,7 +144,9 @@ class RendezvousTaskService(FollowingTaskService):
         if not (lists or laps):
             return self._undone(state, f"vehicle {part.vehicle} flies it no more", out)
         try:
-            way = self._way(part, body, laps, progress)
+            way = self._way(part, body, laps, progress)._replace(
+                wind=wind_of(body, part.option.start.heading_rad)
+            )
         except BadInput as error:
             if not part.blocked:
                 out.append(self._warning(f"vehicle {part.vehicle} is not steered: {error}"))
@@ -228,22 +230,26 @@ class RendezvousTaskService(FollowingTaskService):
                 return self._waits(state, part, out)
             progress = self._set(state)
         limits, way = self._limits(part), progress.ways[part.vehicle]
+        ground = way.over_ground(limits)
         if self._late(state.now_ms, progress, part, met):
             progress = self._set(state)
         if progress.common is None or self._late(state.now_ms, progress, part, met):
             text = f"there is no common time any more: vehicle {part.vehicle} would be late"
             return self._undone(state, text, out)
         said = self._pace(state.now_ms, progress.common, part, way, met)
+        speed_m_s = way.airspeed(said.speed_m_s, limits)
         state = state._replace(meeting=progress)
         if way.laps:
             left_s = (progress.common - state.now_ms) / 1000
-            again = another_lap(way.left_m, left_s, lap_s(part.option.flyer), limits.nominal_m_s)
+            again = another_lap(
+                way.left_m, left_s, way.lap_s(part.option.flyer), ground.nominal_m_s
+            )
             if said.act == FLY and not again and self._at_gate(part, body):
-                return self._leaves(state, part, said.speed_m_s, out)
+                return self._leaves(state, part, speed_m_s, out)
             return state, out
         if said.act == EARLY and way.waits:
             return self._waits(state, part, out)
-        out.append(self._speed(part, said.speed_m_s))
+        out.append(self._speed(part, speed_m_s))
         return state, out
 
     def _late(self, now_ms: int, progress: Progress, part: Part, met: Met) -> bool:
@@ -255,7 +261,7 @@ class RendezvousTaskService(FollowingTaskService):
         return bool(said.act == LATE)
 
     def _pace(self, now_ms: int, common: int, part: Part, way: Way, met: Met) -> Pace:
-        limits = self._limits(part)
+        limits = way.over_ground(self._limits(part))
         # half of the tolerance is for what no speed mends: turns, states between which it flies on
         return pace(
             way.left_m,
@@ -271,11 +277,12 @@ class RendezvousTaskService(FollowingTaskService):
         for fast in (False, True):
             meeting = Meeting(0, NO_END)
             for part in state.parts:
-                way, limits = progress.ways[part.vehicle], self._limits(part)
+                way = progress.ways[part.vehicle]
+                limits = way.over_ground(self._limits(part))
                 soonest, latest = way.arrived, way.arrived
                 if way.arrived is None:
                     speed = limits.fastest_m_s if fast else limits.nominal_m_s
-                    lap = lap_s(part.option.flyer) if way.laps else 0.0
+                    lap = way.lap_s(part.option.flyer) if way.laps else 0.0
                     soonest = now_ms + math.ceil(1000 * (lap + way.left_m / speed))
                     latest = now_ms + math.floor(1000 * way.left_m / limits.slowest_m_s)
                 meeting = meeting_step(meeting, soonest, NO_END if way.waits else latest)

@@ -37,7 +37,7 @@ def meeting(*entities: int, needed: int | None = None, **more: Any) -> Any:
 
 
 def flown(
-    folder: Path, *tasks: Any, at: dict[int, float], seconds: float, slowest: float = 15.0
+    folder: Path, *tasks: Any, at: dict[int, float], seconds: float, wind: tuple[float, ...] = ()
 ) -> Flight:
     """Vehicles, which begin at latitudes, do tasks."""
     kinds = "".join(f'<Service Type="{kind}"/>\n' for kind in PIPELINE)
@@ -46,7 +46,10 @@ def flown(
     for k, (vehicle, latitude) in enumerate(at.items()):
         configuration, state = aircraft(vehicle, latitude)
         there = place(latitude, 0.002 * k)
-        bodies += [configuration.copy(MinimumSpeed=slowest), state.copy(Location=there)]
+        bodies += [configuration.copy(MinimumSpeed=15.0), state.copy(Location=there)]
+    if wind:
+        # its speed, and where it comes from
+        bodies.insert(0, lmcp.new("WeatherReport", WindSpeed=wind[0], WindDirection=wind[1]))
     events = [Event(0.1 * k, body, "") for k, body in enumerate(bodies)]
     said = [(1.0, one) for one in tasks]
     numbers = [one.TaskID for one in tasks]
@@ -84,6 +87,16 @@ def test_three_vehicles_pass_their_states_at_one_time(tmp_path: Path) -> None:
     assert any(s.Mode.name == "Loiter" for s in flight.states(3))
     speeds = [s.Airspeed for v in (1, 2, 3) for s in flight.states(v) if s.Time > 60_000]
     assert 14.9 < min(speeds) <= max(speeds) < 30.1
+
+
+def test_the_wind_moves_the_common_time_and_not_the_vehicles_apart(tmp_path: Path) -> None:
+    """A wind from behind: the slowest that they fly over ground is 23 m/s, and a lap takes longer."""
+    at, wind = {1: 0.0, 2: -0.01, 3: 0.01}, (8.0, 180.0)
+    flight = flown(tmp_path, meeting(1, 2, 3), at=at, seconds=270.0, wind=wind)
+    assert flight.of("TaskComplete")[0].EntitiesInvolved == [1, 2, 3]
+    found = [passed_s(flight, v, PLACES[v - 1]) for v in (1, 2, 3)]
+    assert max(time for time, _ in found) - min(time for time, _ in found) <= 2.0
+    assert max(away for _, away in found) < 40
 
 
 def test_two_of_three_come_to_one_place_and_go_on_in_their_plans(tmp_path: Path) -> None:
@@ -237,6 +250,7 @@ def test_where_no_common_time_is_left_it_is_said_and_nobody_waits(tmp_path: Path
         ({"Location": place(PLACES[1][0] + 0.001, PLACES[1][1] + 0.01)}, "m aside"),
         ({"ID": 9, "Time": 40_000}, "vehicle 2 was not heard for 30 s"),
         ({"Location": place(math.nan)}, "vehicle 2 is not steered"),
+        ({"WindSpeed": math.nan}, "a wind that is no number"),
     ],
 )
 def test_who_falls_out_is_said_and_another_request_is_done(
