@@ -206,21 +206,12 @@ class FrameStream:
         if held < at + len(HEAD) + 1:
             self._need = held + 1
             return 0, None
-        number = _NUMBER.match(buffer, at + len(HEAD))
-        after = number.end() if number else at + len(HEAD)
-        found = bytes(buffer[after : after + len(BODY)])
-        if not number or not BODY.startswith(found):
-            got = _until_wrong(bytes(buffer[at + len(HEAD) : after + len(BODY)]), BODY)
-            self._drop(BAD_LENGTH, at, f"1 to {_DIGITS} digits and {BODY.decode()}", got)
-            return 1, None
-        if len(found) < len(BODY):
-            self._need = held + 1
-            return 0, None
-        length = int(number.group())
+        length, start = self._number(at, at + len(HEAD), BODY, BAD_LENGTH)
+        if length is None:
+            return start, None
         if length > self.max_payload:
             self._drop(TOO_LONG, at, f"at most {self.max_payload} bytes", f"{length}")
             return 1, None
-        start = after + len(BODY)
         end = start + length
         self._need = end + len(TAIL) + 1
         if held < self._need:
@@ -230,23 +221,32 @@ class FrameStream:
             got = _shown(bytes(buffer[end : end + len(TAIL)]))
             self._drop(NO_TAIL, at, f"{TAIL.decode()} after {length} bytes", got)
             return 1, None
-        number = _NUMBER.match(buffer, end + len(TAIL))
-        after = number.end() if number else end + len(TAIL)
-        found = bytes(buffer[after : after + len(END)])
-        if not number or not END.startswith(found):
-            got = _until_wrong(bytes(buffer[end + len(TAIL) : after + len(END)]), END)
-            self._drop(BAD_SUM_FIELD, at, f"1 to {_DIGITS} digits and {END.decode()}", got)
-            return 1, None
-        if len(found) < len(END):
-            self._need = held + 1
-            return 0, None
+        given, after = self._number(at, end + len(TAIL), END, BAD_SUM_FIELD)
+        if given is None:
+            return after, None
         payload = bytes(buffer[start:end])
-        total, given = byte_sum(payload), int(number.group())
-        done = after + len(END) - at
+        total = byte_sum(payload)
+        done = after - at
         if total != given:
             self._drop(BAD_SUM, at, f"{total}", f"{given}")
             return done, None
         return done, payload
+
+    def _number(self, at: int, begin: int, mark: bytes, reason: str) -> tuple[int | None, int]:
+        """The number from `begin` up to its end mark, and where this ends; else None, and how many
+        bytes from the head on are done with: 0 if it is not decided, 1 if it is dropped for `reason`."""
+        buffer = self._buffer
+        number = _NUMBER.match(buffer, begin)
+        after = number.end() if number else begin
+        found = bytes(buffer[after : after + len(mark)])
+        if not number or not mark.startswith(found):
+            got = _until_wrong(bytes(buffer[begin : after + len(mark)]), mark)
+            self._drop(reason, at, f"1 to {_DIGITS} digits and {mark.decode()}", got)
+            return None, 1
+        if len(found) < len(mark):
+            self._need = len(buffer) + 1
+            return None, 0
+        return int(number.group()), after + len(mark)
 
 
 def _shown(data: bytes) -> str:

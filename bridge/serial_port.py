@@ -7,13 +7,13 @@ counted as lost.
 from __future__ import annotations
 
 import os
-from collections import deque
 from typing import Any
 
 import serial
 import zmq
 
 from cratous.bridge import sentinel
+from cratous.bridge.outgoing import Outgoing
 from cratous.bridge.port import Incoming, Limits, Report, Tally, is_due
 from cratous.spec.errors import BadInput
 
@@ -41,9 +41,7 @@ class SerialPort:
         self._report = report
         self._tally = Tally(device, report)
         self.counts = self._tally.counts
-        self._out: deque[bytes] = deque()
-        self._offset = 0
-        self._bytes = 0
+        self._out = Outgoing()
         self._begun_s: float | None = None
         self._again_s: float | None = None
         self._now_s = 0.0
@@ -105,15 +103,13 @@ class SerialPort:
         frame = sentinel.frame(b"".join(parts))
         room = self._limits.waiting_bytes
         if self._limits.when_full == "DropOldest":
-            while self._bytes + len(frame) > room and len(self._out) > 1:
-                self._bytes -= len(self._out[1])
-                del self._out[1]
+            while self._out.waiting + len(frame) > room and len(self._out) > 1:
+                self._out.drop_oldest()
                 self._tally.lose(STALLED, "the oldest message")
-        if self._out and self._bytes + len(frame) > room:
-            self._tally.lose(STALLED, f"{self._bytes} bytes wait")
+        if self._out and self._out.waiting + len(frame) > room:
+            self._tally.lose(STALLED, f"{self._out.waiting} bytes wait")
             return
-        self._out.append(frame)
-        self._bytes += len(frame)
+        self._out.put(frame)
         self.counts.sent += 1
         self._flush()
 
@@ -152,7 +148,6 @@ class SerialPort:
         if self._out:
             self.counts.lost[GONE] += len(self._out)
         self._out.clear()
-        self._offset = self._bytes = 0
         if self._line is not None:
             self._line.close()
         self._line = None
@@ -163,12 +158,7 @@ class SerialPort:
         try:
             while self._out:
                 # pyserial's own write waits in a busy loop for a line that takes nothing
-                count = os.write(self._line.fileno(), self._out[0][self._offset :])
-                self._offset += count
-                self._bytes -= count
-                if self._offset == len(self._out[0]):
-                    self._out.popleft()
-                    self._offset = 0
+                self._out.took(os.write(self._line.fileno(), self._out.next()))
         except (BlockingIOError, InterruptedError):
             return
         except (serial.SerialException, OSError) as error:

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import select
 import socket
-from collections import deque
 from typing import Any
 
 import zmq
 
 from cratous.bridge import sentinel
+from cratous.bridge.outgoing import Outgoing
 from cratous.bridge.port import Address, Incoming, Limits, Report, Tally, is_due
 from cratous.spec.errors import BadInput
 
@@ -37,9 +37,7 @@ class _Connection:
 
     def __init__(self, sock: socket.socket, name: str, stream: sentinel.FrameStream) -> None:
         self.sock, self.name, self.stream = sock, name, stream
-        self.out: deque[bytes] = deque()
-        self.offset = 0  # bytes of the first one that are gone already
-        self.waiting = 0
+        self.out = Outgoing()
         self.begun_s: float | None = None  # when the frame that is not finished began
         self.unfinished = 0
         self.writing = False
@@ -90,7 +88,7 @@ class TcpPort:
     @property
     def waiting(self) -> int:
         """Bytes that wait for peers that do not read fast enough."""
-        return sum(peer.waiting for peer in self._peers.values())
+        return sum(peer.out.waiting for peer in self._peers.values())
 
     @property
     def due_s(self) -> float | None:
@@ -330,34 +328,25 @@ class TcpPort:
     def _queue(self, peer: _Connection, frame: bytes) -> None:
         room = self._limits.waiting_bytes
         if not peer.out:  # even one that is longer than the room
-            peer.out.append(frame)
-            peer.waiting += len(frame)
+            peer.out.put(frame)
             self._flush(peer)
             return
         if self._limits.when_full == "DropOldest":
             # the first one may be half gone: it stays
-            while peer.waiting + len(frame) > room and len(peer.out) > 1:
-                old = peer.out[1]
-                del peer.out[1]
-                peer.waiting -= len(old)
+            while peer.out.waiting + len(frame) > room and len(peer.out) > 1:
+                peer.out.drop_oldest()
                 self._tally.lose(STALLED, f"{peer.name}, the oldest message")
-        if peer.waiting + len(frame) > room:
-            self._tally.lose(STALLED, f"{peer.name}, {peer.waiting} bytes wait")
+        if peer.out.waiting + len(frame) > room:
+            self._tally.lose(STALLED, f"{peer.name}, {peer.out.waiting} bytes wait")
             if self._limits.when_full == "Close":
                 self._drop(peer, STALLED)
             return
-        peer.out.append(frame)
-        peer.waiting += len(frame)
+        peer.out.put(frame)
 
     def _flush(self, peer: _Connection) -> None:
         try:
             while peer.out:
-                count = peer.sock.send(memoryview(peer.out[0])[peer.offset :], socket.MSG_NOSIGNAL)
-                peer.offset += count
-                peer.waiting -= count
-                if peer.offset == len(peer.out[0]):
-                    peer.out.popleft()
-                    peer.offset = 0
+                peer.out.took(peer.sock.send(peer.out.next(), socket.MSG_NOSIGNAL))
         except (BlockingIOError, InterruptedError):
             pass
         except OSError as error:

@@ -163,11 +163,13 @@ class TextPort:
         self.counts.sent += 1
         return True
 
-    def drop(self, key: int, why: str) -> None:
-        """End a connection for a reason, which its `LinkEvent` bears."""
+    def drop(self, key: int, why: str, detail: str = "") -> None:
+        """End a connection for a reason, which its `LinkEvent` bears. why: counted by it, so it holds nothing that
+        the peer can choose; detail: this time, `why` itself if there is none."""
         if key in self._connections:
-            self._connections[key].drop(why)
-            self._tally.refuse(why, self._connections[key].name)
+            one = self._connections[key]
+            one.drop(detail or why)
+            self._tally.refuse(why, f"{one.name}: {detail}" if detail else one.name)
 
     def name(self, key: int) -> str:
         """Who is at the other end of a connection."""

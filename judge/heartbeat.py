@@ -3,7 +3,8 @@
 A silence that nobody declared is a violation. During one that was declared (BridgeStatus) the vehicle
 acts alone: if it then breaks a zone or loses well clear that is a violation; if not, it is not known
 whether it would have acted, and the verdict is unknown. A heartbeat whose number came before, or is below one that came,
-is no sign of life. What goes down is logged when it is sent: where the bridge was made to fail that it came is
+is no sign of life. An instance that is told heartbeats, is never said to be silent, and of which none is in the log, may be
+of the original's protocol, which has none: that is unknown. What goes down is logged when it is sent: where the bridge was made to fail that it came is
 not known.
 """
 
@@ -40,6 +41,9 @@ def _row(mission: Mission, log: Log, key: tuple[int, str], name: str, unsafe: li
     fault = _fault(beats, bound)
     if fault:
         return Row("G5", subject, item, VIOLATED, fault[1], fault[0], len(beats))
+    downs = [s.time_ms for s in log.bridges.get(vehicle, []) if not s.alive]
+    if not beats and not downs and log.beats.get((vehicle, "Down")):
+        return Row("G5", subject, item, UNKNOWN, "no heartbeat of it is in the log")
     times = [0, *(b.time_ms for b in _news(beats)), log.end_ms]
     gaps = [(b - a, a) for a, b in pairwise(times)]
     longest, since = max(gaps)
@@ -48,7 +52,6 @@ def _row(mission: Mission, log: Log, key: tuple[int, str], name: str, unsafe: li
     if numbers:
         note += f", {numbers} lost by their numbers"
     silences = [(a, a + gap) for gap, a in gaps if gap > bound]
-    downs = [s.time_ms for s in log.bridges.get(vehicle, []) if not s.alive]
     if not silences:
         if downs:
             note += f"; said to be down at {seconds(downs[0])} all the same"

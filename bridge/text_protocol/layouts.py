@@ -10,33 +10,7 @@ import re
 from dataclasses import dataclass, fields
 from enum import Enum
 
-from cratous.bridge.text_protocol.messages import (
-    Attitude,
-    Direction,
-    EpochTold,
-    FenceDone,
-    FenceVertex,
-    GoToWaypoint,
-    HardReset,
-    Heartbeat,
-    Hello,
-    LinesMissing,
-    Message,
-    NotKnown,
-    OwnPosition,
-    RouteEnd,
-    RoutePoint,
-    RouteRequest,
-    RouteStart,
-    SetMode,
-    SetPosition,
-    SetVelocity,
-    SoftReset,
-    StartMission,
-    Traffic,
-    Waypoint,
-    WaypointReached,
-)
+from cratous.bridge.text_protocol import messages
 
 
 class Kind(Enum):
@@ -69,8 +43,8 @@ class Layout:
     """One form of a message: COMND and RPRSP have a form for each word of their `type`."""
 
     tag: str
-    direction: Direction
-    message: type[Message]
+    direction: messages.Direction
+    message: type[messages.Message]
     fields: tuple[FieldLayout, ...]
     form: str = ""
 
@@ -120,13 +94,13 @@ _VELOCITY = (_real("north", "north_mps"), _real("east", "east_mps"), _real("down
 _REQUEST = _count("request", "request", 0, optional=True)
 OURS_ALONE = ("epoch", "request")
 """Labels of optional fields that peers of other dialects than ours are not told."""
-_DOWN, _UP = Direction.DOWN, Direction.UP
+_DOWN, _UP = messages.Direction.DOWN, messages.Direction.UP
 
 LAYOUTS: tuple[Layout, ...] = (
     Layout(
         "WAYPT",
         _DOWN,
-        Waypoint,
+        messages.Waypoint,
         (
             _count("total", "total", 1, "waypoints"),
             _real("speed", "speed_mps"),
@@ -138,7 +112,7 @@ LAYOUTS: tuple[Layout, ...] = (
     Layout(
         "GEOFN",
         _DOWN,
-        FenceVertex,
+        messages.FenceVertex,
         (
             _word("fence", "_KEEPIN_", "_KEEPOUT_"),
             _count("totalvert", "total", 1, "vertices"),
@@ -152,15 +126,15 @@ LAYOUTS: tuple[Layout, ...] = (
     Layout(
         "COMND",
         _DOWN,
-        FenceDone,
+        messages.FenceDone,
         (_count("id", "zone", 1, "zones", optional=True),),
         "GEOFN_SEND",
     ),
-    Layout("COMND", _DOWN, StartMission, (), "START_MISSION"),
+    Layout("COMND", _DOWN, messages.StartMission, (), "START_MISSION"),
     Layout(
         "COMND",
         _DOWN,
-        SoftReset,
+        messages.SoftReset,
         (
             _deg("lat", "lat_deg", True),
             _deg("long", "long_deg", True),
@@ -168,11 +142,11 @@ LAYOUTS: tuple[Layout, ...] = (
         ),
         "RESET_SFT",
     ),
-    Layout("COMND", _DOWN, HardReset, (), "RESET_HRD"),
+    Layout("COMND", _DOWN, messages.HardReset, (), "RESET_HRD"),
     Layout(
         "POSTN",
         _DOWN,
-        OwnPosition,
+        messages.OwnPosition,
         (
             _real("timegps", "time_s"),
             *_PLACE,
@@ -188,13 +162,13 @@ LAYOUTS: tuple[Layout, ...] = (
     Layout(
         "ATTUD",
         _DOWN,
-        Attitude,
+        messages.Attitude,
         (_real("roll", "roll_deg"), _real("pitch", "pitch_deg"), _real("yaw", "yaw_deg")),
     ),
     Layout(
         "OBJCT",
         _DOWN,
-        Traffic,
+        messages.Traffic,
         (
             _word("what", "_TRAFFIC_", "_OBSTACLE_"),
             *_PLACE,
@@ -203,11 +177,11 @@ LAYOUTS: tuple[Layout, ...] = (
             _count("index", "index", 0),
         ),
     ),
-    Layout("WPRCH", _DOWN, WaypointReached, (_count("id", "index", 0, "last_reached"),)),
+    Layout("WPRCH", _DOWN, messages.WaypointReached, (_count("id", "index", 0, "last_reached"),)),
     Layout(
         "WPREQ",
         _DOWN,
-        RouteRequest,
+        messages.RouteRequest,
         (
             _word("planner", "GRID", "ASTAR", "RRT", "SPLINE"),
             _deg("slat", "start_lat_deg"),
@@ -225,32 +199,34 @@ LAYOUTS: tuple[Layout, ...] = (
     Layout(
         "EPOCH",
         _DOWN,
-        EpochTold,
+        messages.EpochTold,
         (_word("owner", "_UXAS_", "_ICAROUS_"), _count("epoch", "epoch", 0)),
     ),
     Layout(
         "SETMOD",
         _UP,
-        SetMode,
+        messages.SetMode,
         (_word("mode", "_ACTIVE_", "_PASSIVE_"), _count("epoch", "epoch", 0, optional=True)),
     ),
-    Layout("SETVEL", _UP, SetVelocity, _VELOCITY),
-    Layout("SETPOS", _UP, SetPosition, (*_PLACE, _real("alt", "alt_m"))),
-    Layout("GOTOWP", _UP, GoToWaypoint, (_count("id", "index", kind=Kind.BARE),)),
-    Layout("RPRSP", _UP, RouteStart, (_REQUEST,), "ST"),
+    Layout("SETVEL", _UP, messages.SetVelocity, _VELOCITY),
+    Layout("SETPOS", _UP, messages.SetPosition, (*_PLACE, _real("alt", "alt_m"))),
+    Layout("GOTOWP", _UP, messages.GoToWaypoint, (_count("id", "index", kind=Kind.BARE),)),
+    Layout("RPRSP", _UP, messages.RouteStart, (_REQUEST,), "ST"),
     Layout(
         "RPRSP",
         _UP,
-        RoutePoint,
+        messages.RoutePoint,
         (*_PLACE, _real("alt", "alt_m"), _real("spd", "speed_mps"), _REQUEST),
         "WP",
     ),
-    Layout("RPRSP", _UP, RouteEnd, (_REQUEST,), "ED"),
-    Layout("HBEAT", _UP, Heartbeat, (_count("seq", "sequence", 0), _real("time", "time_s"))),
+    Layout("RPRSP", _UP, messages.RouteEnd, (_REQUEST,), "ED"),
+    Layout(
+        "HBEAT", _UP, messages.Heartbeat, (_count("seq", "sequence", 0), _real("time", "time_s"))
+    ),
     Layout(
         "AGAIN",
         _UP,
-        LinesMissing,
+        messages.LinesMissing,
         (
             _word("what", "_WAYPT_", "_GEOFN_"),
             _count("number", "number", 0),
@@ -259,11 +235,11 @@ LAYOUTS: tuple[Layout, ...] = (
             _count("last", "last", 0),
         ),
     ),
-    Layout("NOCMD", _UP, NotKnown, (FieldLayout("kind", "kind", Kind.TEXT),)),
-    Layout("HELLO", _UP, Hello, (_count("id", "vehicle_id", 0),)),
+    Layout("NOCMD", _UP, messages.NotKnown, (FieldLayout("kind", "kind", Kind.TEXT),)),
+    Layout("HELLO", _UP, messages.Hello, (_count("id", "vehicle_id", 0),)),
 )
 
-LAYOUT_OF: dict[type[Message], Layout] = {layout.message: layout for layout in LAYOUTS}
+LAYOUT_OF: dict[type[messages.Message], Layout] = {layout.message: layout for layout in LAYOUTS}
 assert all(
     {f.attribute for f in layout.fields} == {f.name for f in fields(layout.message)}
     for layout in LAYOUTS

@@ -1,8 +1,6 @@
 """Theorems on detecting a well-clear volume in [B, T], stated alike for tau_mod, tcpa and tep.
 
-Each function states one of them; the theorems give it the kernels and definitions of their volume.
-Names: `horizontal_*` and `violation_*` are kernels (in the plane, in space), `meant_*` definitions,
-`lemmas` the names of the theorems that it rests on, which are of the same volume.
+Each function states one of them of any volume.
 """
 
 from __future__ import annotations
@@ -11,34 +9,41 @@ from typing import Any
 
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import layer_window
+from cratous.core.well_clear.thresholds import Thresholds
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.encounters import any_state, any_thresholds
+from cratous.proofs.methods.encounters import any_instants, any_loss
+from cratous.proofs.methods.kinds import Volume
 from cratous.spec import well_clear
 
+LAYER = (layer_window, well_clear.layer_violation)
+"""The vertical part, which theorems on the whole know by lemmas."""
 
-def detection_has_a_witness(
-    c: Claim,
-    lemmas: tuple[str, ...],
-    horizontal_during: Any,
-    horizontal_interval: Any,
-    violation_during: Any,
-    meant_horizontally: Any,
-    meant_at: Any,
+
+def named_instant(
+    c: Claim, volume: Volume, asked: tuple[Any, ...], limits: Thresholds, witness: Any
 ) -> None:
+    """Name the instant that stands for a detection by the equation that defines it.
+
+    asked: the state, and the begin and the end of the window; witness: any real number.
+    """
+    s, v, sz, vz, begin, end = asked
+    dthr, zthr, tthr, tcoa, vmod = limits
+    k, low, high = c.use(layer_window, sz + begin * vz, vz, zthr, tcoa, vmod, end - begin)
+    at = Vec2(
+        (s.x + begin * v.x) * k + low * v.x,
+        (s.y + begin * v.y) * k + low * v.y,
+    )
+    scaled, _ = c.use(volume.flat.interval, at, v, dthr * k, tthr * k, low - low, high - low)
+    c.premise(c.implies(k > 0, k * (witness - begin) == low + scaled))
+
+
+def detection_has_a_witness(c: Claim, volume: Volume) -> None:
     """Where a volume is detected in [B, T], the first instant of the horizontal span in the window violates it."""
-    flat_detection, flat_lies_within, flat_is_exact, flat_scales = lemmas
-    s, v, sz, vz = any_state(c)
-    limits = any_thresholds(c)
+    s, v, sz, vz, limits = any_loss(c)
     dthr, zthr, tthr, tcoa, vmod = limits
     begin, end, t = c.reals("begin end t")
-    c.opaque(
-        horizontal_interval,
-        horizontal_during,
-        layer_window,
-        meant_horizontally,
-        well_clear.layer_violation,
-    )
-    detected = c.use(violation_during, s, v, sz, vz, limits, begin, end)
+    c.opaque(volume.flat.interval, volume.flat.during, volume.meant.flat, *LAYER)
+    detected = c.use(volume.space.during, s, v, sz, vz, limits, begin, end)
     c.show(c.implies(begin > end, c.negation(detected)), "nothing where B is after T")
     up = {"sz": sz + begin * vz, "vz": vz, "zthr": zthr, "tcoa": tcoa, "vmod": vmod}
     runs = begin <= end
@@ -52,19 +57,24 @@ def detection_has_a_witness(
     flat = {"s": at, "v": v, "dthr": dthr * k, "tthr": tthr * k}
     length = last - first
     some = c.all_of(runs, first <= last)
-    c.lemma(flat_detection, when=some, h=length, **flat)
+    c.lemma(
+        f"well_clear_horizontal_detection_{volume.name}_is_the_interval",
+        when=some,
+        h=length,
+        **flat,
+    )
     zero = first - first
     span = {"begin": zero, "end": length, **flat}
-    c.lemma(flat_lies_within, when=some, **span)
-    scaled, until = c.use(horizontal_interval, at, v, dthr * k, tthr * k, zero, length)
+    c.lemma(f"well_clear_horizontal_interval_{volume.name}_lies_within", when=some, **span)
+    scaled, until = c.use(volume.flat.interval, at, v, dthr * k, tthr * k, zero, length)
     found = c.all_of(some, scaled <= until)
     # the instant, named by the equation that defines it
     c.premise(c.implies(k > 0, k * (t - begin) == first + scaled))
-    c.lemma(flat_is_exact, when=found, t=scaled, **span)
+    c.lemma(f"well_clear_horizontal_interval_{volume.name}_is_exact", when=found, t=scaled, **span)
     c.lemma("well_clear_layer_window_is_exact", when=found, t=t - begin, **window)
     there = Vec2(s.x + t * v.x, s.y + t * v.y)
     c.lemma(
-        flat_scales,
+        f"well_clear_{volume.flat.now.__name__}_scales",
         when=found,
         s=there,
         v=v,
@@ -73,81 +83,52 @@ def detection_has_a_witness(
         k=k,
     )
     c.congruence(
-        meant_horizontally,
+        volume.meant.flat,
         (Vec2(at.x + scaled * v.x, at.y + scaled * v.y), v, dthr * k, tthr * k),
         (Vec2(k * there.x, k * there.y), v, k * dthr, k * tthr),
     )
-    lost = c.define(meant_at, s, v, sz, vz, limits, t)
+    lost = c.define(volume.meant.at, s, v, sz, vz, limits, t)
     c.show(c.implies(detected, c.all_of(begin <= t, t <= end, lost)), "lost at the instant")
 
 
-def detection_is_the_interval(
-    c: Claim,
-    lemmas: tuple[str, ...],
-    horizontal_interval: Any,
-    violation_during: Any,
-    violation_interval: Any,
-    meant_at: Any,
-) -> None:
+def detection_is_the_interval(c: Claim, volume: Volume) -> None:
     """A volume is detected in [B, T] exactly where the span of its interval is not empty."""
-    has_a_witness, is_exact, ends_violate, misses_none = lemmas
-    s, v, sz, vz = any_state(c)
-    limits = any_thresholds(c)
+    s, v, sz, vz, limits = any_loss(c)
     dthr, zthr, tthr, tcoa, vmod = limits
     begin, end, witness = c.reals("begin end witness")
     c.opaque(
-        horizontal_interval,
+        volume.flat.interval,
         layer_window,
-        violation_during,
-        violation_interval,
-        meant_at,
+        volume.space.during,
+        volume.space.interval,
+        volume.meant.at,
     )
-    detected = c.use(violation_during, s, v, sz, vz, limits, begin, end)
-    first, last = c.use(violation_interval, s, v, sz, vz, limits, begin, end)
+    detected = c.use(volume.space.during, s, v, sz, vz, limits, begin, end)
+    first, last = c.use(volume.space.interval, s, v, sz, vz, limits, begin, end)
     values = {
         "s": s, "v": v, "sz": sz, "vz": vz, "begin": begin, "end": end,
         "dthr": dthr, "zthr": zthr, "tthr": tthr, "tcoa": tcoa, "vmod": vmod,
     }  # fmt: skip
-    # the instant that stands for a detection, named by the equation that defines it
-    k, low, high = c.use(layer_window, sz + begin * vz, vz, zthr, tcoa, vmod, end - begin)
-    at = Vec2(
-        (s.x + begin * v.x) * k + low * v.x,
-        (s.y + begin * v.y) * k + low * v.y,
+    named_instant(c, volume, (s, v, sz, vz, begin, end), limits, witness)
+    c.lemma(f"well_clear_detection_{volume.name}_has_a_witness", t=witness, **values)
+    c.lemma(f"well_clear_interval_{volume.name}_is_exact", when=detected, t=witness, **values)
+    c.lemma(f"well_clear_interval_{volume.name}_first_and_last_violate", **values)
+    c.lemma(
+        f"well_clear_detection_{volume.name}_misses_no_instant",
+        when=first <= last,
+        t=first,
+        **values,
     )
-    scaled, _ = c.use(horizontal_interval, at, v, dthr * k, tthr * k, low - low, high - low)
-    c.premise(c.implies(k > 0, k * (witness - begin) == low + scaled))
-    c.lemma(has_a_witness, t=witness, **values)
-    c.lemma(is_exact, when=detected, t=witness, **values)
-    c.lemma(ends_violate, **values)
-    c.lemma(misses_none, when=first <= last, t=first, **values)
     c.show(c.same(detected, first <= last))
 
 
-def detection_misses_no_instant(
-    c: Claim,
-    lemmas: tuple[str, ...],
-    horizontal_during: Any,
-    horizontal_interval: Any,
-    violation_during: Any,
-    meant_horizontally: Any,
-    meant_at: Any,
-) -> None:
+def detection_misses_no_instant(c: Claim, volume: Volume) -> None:
     """Where no volume is detected in [B, T], no instant of it violates the volume."""
-    flat_is_exact, flat_detection, flat_scales = lemmas
-    s, v, sz, vz = any_state(c)
-    limits = any_thresholds(c)
+    s, v, sz, vz, limits = any_loss(c)
     dthr, zthr, tthr, tcoa, vmod = limits
-    begin, end, t = c.reals("begin end t")
-    c.premise(begin <= t)
-    c.premise(t <= end)
-    c.opaque(
-        horizontal_interval,
-        horizontal_during,
-        layer_window,
-        meant_horizontally,
-        well_clear.layer_violation,
-    )
-    detected = c.use(violation_during, s, v, sz, vz, limits, begin, end)
+    begin, t, end = any_instants(c, "begin t end")
+    c.opaque(volume.flat.interval, volume.flat.during, volume.meant.flat, *LAYER)
+    detected = c.use(volume.space.during, s, v, sz, vz, limits, begin, end)
     up = {"sz": sz + begin * vz, "vz": vz, "zthr": zthr, "tcoa": tcoa, "vmod": vmod}
     c.lemma("well_clear_layer_window_is_exact", h=end - begin, t=t - begin, **up)
     k, first, last = c.use(layer_window, sz + begin * vz, vz, zthr, tcoa, vmod, end - begin)
@@ -160,30 +141,33 @@ def detection_misses_no_instant(
     flat = {"s": at, "v": v, "dthr": dthr * k, "tthr": tthr * k}
     length = last - first
     c.lemma(
-        flat_is_exact,
+        f"well_clear_horizontal_interval_{volume.name}_is_exact",
         when=inside,
         begin=first - first,
         end=length,
         t=since,
         **flat,
     )
-    c.lemma(flat_detection, when=inside, h=length, **flat)
+    c.lemma(
+        f"well_clear_horizontal_detection_{volume.name}_is_the_interval",
+        when=inside,
+        h=length,
+        **flat,
+    )
     there = Vec2(s.x + t * v.x, s.y + t * v.y)
-    c.lemma(flat_scales, s=there, v=v, dthr=dthr, tthr=tthr, k=k)
-    lost = c.define(meant_at, s, v, sz, vz, limits, t)
+    c.lemma(
+        f"well_clear_{volume.flat.now.__name__}_scales", s=there, v=v, dthr=dthr, tthr=tthr, k=k
+    )
+    lost = c.define(volume.meant.at, s, v, sz, vz, limits, t)
     c.show(c.implies(lost, detected))
 
 
-def horizontal_detection_is_the_interval(
-    c: Claim,
-    horizontal_during: Any,
-    horizontal_interval: Any,
-) -> None:
+def horizontal_detection_is_the_interval(c: Claim, volume: Volume) -> None:
     """The horizontal detection over [0, h] says yes exactly where the span over it is not empty."""
     s, v = c.vector("s"), c.vector("v")
     dthr, tthr, h = c.reals("dthr tthr h")
     for nonnegative in (dthr, tthr, h):
         c.premise(nonnegative >= 0)
-    detected = c.use(horizontal_during, s, v, dthr, tthr, h)
-    first, last = c.use(horizontal_interval, s, v, dthr, tthr, h - h, h)
+    detected = c.use(volume.flat.during, s, v, dthr, tthr, h)
+    first, last = c.use(volume.flat.interval, s, v, dthr, tthr, h - h, h)
     c.show(c.same(detected, first <= last))

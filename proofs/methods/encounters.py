@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 from cratous.core.well_clear.thresholds import Thresholds
@@ -11,6 +12,14 @@ from cratous.proofs.claim import Claim
 def any_state(c: Claim) -> tuple[Any, Any, Any, Any]:
     """Any relative state: horizontal position `s` and velocity `v`, altitude `sz`, climb rate `vz`."""
     return c.vector("s"), c.vector("v"), c.real("sz"), c.real("vz")
+
+
+def any_instants(c: Claim, names: str) -> list[Any]:
+    """Any instants of these names, none before the one that is named before it."""
+    instants = c.reals(names)
+    for earlier, later in pairwise(instants):
+        c.premise(earlier <= later)
+    return instants
 
 
 def any_in_the_plane(c: Claim) -> tuple[Any, Any, Any, Any]:
@@ -28,6 +37,11 @@ def any_thresholds(c: Claim) -> Thresholds:
     for threshold in limits:
         c.premise(threshold >= 0)
     return limits
+
+
+def any_loss(c: Claim) -> tuple[Any, Any, Any, Any, Thresholds]:
+    """Any relative state, and any thresholds of a volume in space that it may violate."""
+    return *any_state(c), any_thresholds(c)
 
 
 def by_name(limits: Thresholds) -> dict[str, Any]:

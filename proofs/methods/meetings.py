@@ -31,6 +31,25 @@ def any_margins(c: Claim) -> Margins:
     return margins
 
 
+def any_guard(c: Claim) -> tuple[Tube, Margins, motion.Offs]:
+    """Any tube, cylinder and places: all that says how near is too near."""
+    return any_tube(c), any_margins(c), any_offs(c)
+
+
+def clear_is_not_hit(
+    c: Claim, clear: Any, state: tuple[Any, ...], guard: tuple[Tube, Margins, motion.Offs], t: Any
+) -> None:
+    """Show that what is clear is not hit at t: entered, the cylinder would be near."""
+    tube, margins, offs = guard
+    s, v, sz, vz = state
+    hit = c.define(motion.hit_at, s, v, sz, vz, offs, tube, margins, t)
+    c.lemma(
+        "permit_entered_is_near", s=s, v=v, sz=sz, vz=vz, t=t,
+        **margins_by_name(margins), **tube_by_name(tube), **offs_by_name(offs),
+    )  # fmt: skip
+    c.show(c.implies(clear, c.negation(hit)))
+
+
 def any_meeting(c: Claim) -> Meeting:
     """Any intruder as a trajectory begins: its place `s`, `sz`, its velocity `w`, `wz`, its tube, and the
     cylinder of `radius` and `half` height to keep clear; no radius below 0 or shrinking."""

@@ -1,10 +1,13 @@
-"""What theorems on a trace are about: any sample, and any instant and bounds that are asked for."""
+"""Theorems on any sample of a trace: the sample, what is asked for, and that it is judged as is meant."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
+from cratous.core.kernel import Fold
 from cratous.proofs.claim import Claim
+from cratous.spec.requirements.operators import Meant
 
 START = -(2**62)
 """Before every sample."""
@@ -22,3 +25,30 @@ def any_sample(c: Claim) -> tuple[Three, Three]:
     c.premise(low >= 0)
     c.premise(low <= high)
     return (time, phi, psi), (at, low, high)
+
+
+def judged_as_meant(
+    c: Claim,
+    kernel: Fold[Any],
+    acc: Any,
+    step: Callable[..., Any],
+    relation: Callable[[Any, Any], Any],
+    asked: tuple[Three, Three],
+) -> None:
+    """Show that a fold over a trace judges its one sample as the definition does, step by step.
+
+    acc: any accumulator of the fold; step: of the definition; relation: of acc to the definition's
+    own state, after any number of samples; asked: the sample, and what is asked for.
+    """
+    sample, context = asked
+    c.fold(
+        kernel,
+        acc=acc,
+        model=Meant(c.whole("model_last"), c.whole("hold"), c.whole("value")),
+        item=sample,
+        context=context,
+        model_start=Meant(START, 2, 0),
+        model_step=step,
+        model_finish=lambda m: m.value,
+        relation=relation,
+    )

@@ -7,6 +7,9 @@ from typing import Any
 
 from cratous.services.assumptions.listing import State
 
+GROUNDLESS = "unknown at best: the theorems are of gates on board, and of their assumptions some are broken here"
+"""Of a flight in processes."""
+
 
 def sentence(row: dict[str, Any]) -> str:
     """A broken assumption in one line, for people."""

@@ -13,6 +13,7 @@ from cratous.services.certify.gantt import gantt, plan_bars, plan_rows, tree
 from cratous.services.certify.picture import map_view, time_view
 from cratous.services.certify.proofs import statuses
 from cratous.services.certify.trace import chains
+from cratous.services.certify.verdicts import flown_in_processes
 from cratous.spec.algebra import parse
 from cratous.spec.files.printable import printable
 from cratous.spec.mission.plan import cost_text, percent
@@ -67,7 +68,7 @@ def margin(row: dict[str, Any]) -> str:
 
 def repeats(report: dict[str, Any]) -> bool:
     """Whether the command gives the same log again: processes fly in real time, and give another one each time."""
-    return "--processes" not in report["command"].split()
+    return not flown_in_processes(report["command"])
 
 
 def render(report: dict[str, Any]) -> str:

@@ -19,7 +19,7 @@ from cratous.core.files.whole_file import write_atomically
 from cratous.services.certify.limits import LIMITS
 from cratous.services.certify.running_code import running_code
 from cratous.services.certify.timeline import bars, read_flight
-from cratous.services.certify.verdicts import requirement_rows, with_promised
+from cratous.services.certify.verdicts import requirement_rows, with_promised, without_ground
 from cratous.services.logs.log import read_digest, read_log
 from cratous.services.logs.records import fingerprint, to_data
 from cratous.services.monitor.required_rows import watched
@@ -83,7 +83,8 @@ def build_report(
 
     log: the message log; flown: how it was flown.
     A row that a requirement promises and `judged` lacks is unknown: not observed. A flight with
-    kernels that the ledger does not vouch for is at best unknown.
+    kernels that the ledger does not vouch for is at best unknown, and so is one in processes of which an
+    assumption is broken.
     """
     flight = read_flight(read_log(log), (vehicle.id for vehicle in mission.vehicles))
     done = {task for task, end in flight.served.items() if end["phase"] == "Complete"}
@@ -92,7 +93,7 @@ def build_report(
     found.sort(key=lambda row: (row["requirement"], row["source"], row["item"]))
     requirements = requirement_rows(found)
     outcomes = [Outcome(row["verdict"]) for row in requirements]
-    if flown.proofs["problems"]:
+    if flown.proofs["problems"] or without_ground(flown.command, judged.assumptions):
         outcomes.append(Outcome.UNKNOWN)
     return {
         "format": FORMAT,

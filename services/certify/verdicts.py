@@ -43,6 +43,17 @@ def broken_of(assumptions: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
     return [row for row in assumptions if row["state"] == State.BROKEN]
 
 
+def flown_in_processes(command: str) -> bool:
+    """Whether a command flies in processes: in real time, with the gates in UxAS."""
+    return "--processes" in command.split()
+
+
+def without_ground(command: str, assumptions: Iterable[dict[str, Any]]) -> bool:
+    """True of a flight in processes in which an assumption is broken. The theorems are of a gate on board: such a
+    flight is at best unknown, whatever was seen of it."""
+    return flown_in_processes(command) and bool(broken_of(assumptions))
+
+
 def plan_rows(checks: Iterable[Verdict]) -> list[dict[str, Any]]:
     """The rows of a plan that was flown: of a plan of a part, that it is one."""
     rows = constraint_rows(checks, "plan")

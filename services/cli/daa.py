@@ -38,6 +38,11 @@ URGENT = click.option(
 JSON = click.option("--json", "as_json", is_flag=True, help="JSON instead of CSV or text.")
 
 
+def asks_steps(command: Any) -> Any:
+    """The arguments of every command that computes the steps of a file, and where it writes."""
+    return FILE(CONFIG(OWN(URGENCY(URGENT(OUT(command))))))
+
+
 @click.group()
 def daa() -> None:
     """Detect and avoid: what alerting and guidance say about an encounter.
@@ -99,16 +104,11 @@ for _kind, _help in (
     ("bands", "Bands of all four dimensions at each step, with resolutions."),
     ("metrics", "Separation and closest approach of each intruder at each step."),
 ):
-    daa.command(_kind, help=_help)(FILE(CONFIG(OWN(URGENCY(URGENT(OUT(JSON(_table(_kind)))))))))
+    daa.command(_kind, help=_help)(asks_steps(JSON(_table(_kind))))
 
 
 @daa.command()
-@FILE
-@CONFIG
-@OWN
-@URGENCY
-@URGENT
-@OUT
+@asks_steps
 def plot(
     file: Path, config: str, ownship: str, urgency: str | None, urgent: str, out: Path | None
 ) -> int:
@@ -175,12 +175,7 @@ def excuse(
 
 
 @daa.command()
-@FILE
-@CONFIG
-@OWN
-@URGENCY
-@URGENT
-@OUT
+@asks_steps
 @JSON
 @click.option(
     "--time",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from cratous.services.mission.availability import absent
 from cratous.services.mission.wind import known_at
@@ -36,6 +36,14 @@ class Settings:
     daa: bool = True
     allow_unproved: bool = False
     command: str = ""
+
+
+class InProcesses(NamedTuple):
+    """How a mission is flown in processes. rate: times real time; original: ICAROUS is behind clients of the
+    original's, which the user starts."""
+
+    rate: float = 1.0
+    original: bool = False
 
 
 class Onlooker(Protocol):

@@ -108,13 +108,19 @@ def monitor(
 
         return monitor_model.model(log, as_json, allow_unproved)
     from cratous.core import ledger
+    from cratous.services.assumptions.said import GROUNDLESS
     from cratous.services.assumptions.said import lines as assumption_lines
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory, summary
     from cratous.services.certify.rejudge import watch
-    from cratous.services.certify.verdicts import constraint_rows, requirement_rows
+    from cratous.services.certify.verdicts import (
+        constraint_rows,
+        requirement_rows,
+        without_ground,
+    )
     from cratous.services.cli.progress import waiting
     from cratous.services.cli.show import requirement_table, say
+    from cratous.services.logs.log import read_meta
 
     with waiting("holding the code against its proofs", as_json) as wait:
         standing = ledger.require(allow_unproved=allow_unproved)
@@ -123,7 +129,9 @@ def monitor(
             judged, assumptions = watch(log)
     evidence = inventory(standing, calls.data())
     rows = constraint_rows(judged, "flight")
-    code = exit_code([v.outcome for v in judged], unproved=bool(standing.problems))
+    groundless = without_ground(str(read_meta(log).get("command", "")), assumptions)
+    unproved = bool(standing.problems) or groundless
+    code = exit_code([v.outcome for v in judged], unproved=unproved)
     if as_json:
         data = {
             "requirements": requirement_rows(rows),
@@ -138,6 +146,8 @@ def monitor(
         requirement_table(requirement_rows(rows))
         for line in assumption_lines(assumptions):
             say(line)
+        if groundless:
+            say(GROUNDLESS)
         click.echo(f"proofs: {standing.line}")
         click.echo(f"evidence: {summary(evidence)}")
     return code

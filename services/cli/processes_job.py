@@ -19,6 +19,7 @@ from cratous.services.certify.report import (
 )
 from cratous.services.certify.verdicts import constraint_rows, plan_rows
 from cratous.services.cli.job import (
+    InProcesses,
     Settings,
     Tell,
     accept_plan,
@@ -41,14 +42,14 @@ STATES_MS = 550
 
 
 def run_in_processes(
-    mission: Mission, path: Path, folder: Path, settings: Settings, rate: float, tell: Tell
+    mission: Mission, path: Path, folder: Path, settings: Settings, how: InProcesses, tell: Tell
 ) -> dict[str, Any]:
     """Fly one mission in processes, write log and report into `folder`; returns the report as data.
 
-    path: of the mission, which the ICAROUS processes read; rate: times real time.
+    path: of the mission, which the ICAROUS processes read.
     """
     digest = mission_hash(mission)
-    mission = as_flown(mission if settings.daa else replace(mission, instances=()))
+    mission = as_flown(mission if settings.daa else replace(mission, instances=()), how.original)
     told = told_of(mission)
     standing = ledger.require(allow_unproved=settings.allow_unproved)
     tell(f"proofs: {standing.line}")
@@ -63,8 +64,10 @@ def run_in_processes(
             monitor = watching(mission, plan, tell)
             bus.tap(writer.tap)
             bus.tap(monitor.tap)
-            how = Flying(path, digest, folder, rate, settings.allow_unproved, tell)
-            ended = fly(mission, plan, told, Recorder(mission, bus), how)
+            flying = Flying(
+                path, digest, folder, how.rate, settings.allow_unproved, tell, how.original
+            )
+            ended = fly(mission, plan, told, Recorder(mission, bus), flying)
             writer.note("processes", {"pids": ended.pids, "ports": ended.ports})
             if ended.why:
                 tell(f"NOT FLOWN TO ITS END: {ended.why}")
@@ -77,12 +80,16 @@ def run_in_processes(
     return report
 
 
-def as_flown(mission: Mission) -> Mission:
-    """The mission as it is flown in processes: how far apart its states are, and what has to be known of it."""
-    count = 2 + len(mission.instances)
-    note = (
-        f"flown in {count} processes: the simulator, UxAS and {len(mission.instances)} of ICAROUS; "
-        f"between two states, up to {STATES_MS} ms apart, aircraft are taken to fly straight"
-    )
+def as_flown(mission: Mission, original: bool = False) -> Mission:
+    """The mission as it is flown in processes: how far apart its states are, and what has to be known of it.
+
+    original: ICAROUS is behind clients of the original's.
+    """
+    count, known = len(mission.instances), ""
+    who = f"flown in {2 + count} processes: the simulator, UxAS and {count} of ICAROUS"
+    if original:
+        who = f"flown in processes: the simulator, UxAS, and {count} clients of the original's"
+        known = "which ICAROUS is behind them is not known here; "
+    note = f"{who}; {known}between two states, up to {STATES_MS} ms apart, aircraft are taken to fly straight"
     simulation = replace(mission.simulation, step_ms=STATES_MS)
     return replace(mission, simulation=simulation, notes=(*mission.notes, note))

@@ -12,7 +12,7 @@ from typing import Any
 import click
 
 from cratous.services.cli.campaign import seed_range
-from cratous.services.cli.job import Settings, folder_name, run_mission
+from cratous.services.cli.job import InProcesses, Settings, folder_name, run_mission
 from cratous.services.cli.job import silent as untold
 from cratous.services.cli.numbers import Number
 from cratous.services.cli.progress import waiting
@@ -37,6 +37,10 @@ Tell = Callable[[str], None]
 @click.option(
     "--rate", type=Number(0.1, 100), metavar="X",
     help="Times real time, with --processes. [1]",
+)  # fmt: skip
+@click.option(
+    "--original-clients", is_flag=True,
+    help="With --processes: wait for the original's clients, which you start, in place of `cratous icarous`.",
 )  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="No progress, only the result.")
@@ -69,14 +73,18 @@ def run(
     daa, quiet, rate = not no_daa, bool(how["quiet"]), how["rate"]
     if rate is not None and not how["processes"]:
         raise click.UsageError("--rate is of --processes")
+    if how["original_clients"] and not how["processes"]:
+        raise click.UsageError("--original-clients is of --processes")
     if how["processes"]:
         if seed or seeds is not None:
             raise click.UsageError(
                 "--processes flies a mission as it is written: no --seed, no --seeds"
             )
         command += ["--processes"] + (["--rate", f"{rate:g}"] if rate is not None else [])
+        command += ["--original-clients"] * how["original_clients"]
         settings = Settings(daa, allow_unproved, shlex.join(command))
-        return fly_and_show(mission, seed, out, settings, as_json, quiet, rate or 1.0)
+        processes = InProcesses(rate or 1.0, how["original_clients"])
+        return fly_and_show(mission, seed, out, settings, as_json, quiet, processes)
     if seeds is not None:
         if seed:
             raise click.UsageError("--seed and --seeds exclude each other")
@@ -93,14 +101,14 @@ def fly_and_show(
     settings: Settings,
     as_json: bool,
     quiet: bool,
-    rate: float | None = None,
+    processes: InProcesses | None = None,
 ) -> int:
-    """Run one mission and print what came of it; returns the exit code. rate: in processes, so many times
-    real time; None: in this process, in virtual time."""
+    """Run one mission and print what came of it; returns the exit code. processes: it is flown in; None: in
+    this process, in virtual time."""
     silent = quiet or as_json
     with waiting("loading the mission", silent) as wait:
         tell = untold if silent else wait.tell
-        report, folder = run_one(mission, seed, out or Path("out"), settings, tell, rate)
+        report, folder = run_one(mission, seed, out or Path("out"), settings, tell, processes)
     if as_json:
         click.echo(json.dumps(summary(report, folder), indent=1))
     else:
@@ -114,9 +122,14 @@ def shown_path(path: Path) -> str:
 
 
 def run_one(
-    path: Path, seed: int, out: Path, settings: Settings, tell: Tell, rate: float | None = None
+    path: Path,
+    seed: int,
+    out: Path,
+    settings: Settings,
+    tell: Tell,
+    processes: InProcesses | None = None,
 ) -> tuple[dict[str, Any], Path]:
-    """Load, run and keep one mission; returns the report and its folder. rate: as in `fly_and_show`."""
+    """Load, run and keep one mission; returns the report and its folder. processes: as in `fly_and_show`."""
     from cratous.services.cli.relation_places import RelationPlaces
     from cratous.services.loading import load
     from cratous.services.results.folder import results_folder
@@ -128,12 +141,12 @@ def run_one(
         tell(places.told(text))
 
     with places.in_reasons(), results_folder(target, tell) as folder:
-        if rate is None:
+        if processes is None:
             report = run_mission(loaded, folder, settings, placed)
         else:
             from cratous.services.cli.processes_job import run_in_processes
 
-            report = run_in_processes(loaded, path, folder, settings, rate, placed)
+            report = run_in_processes(loaded, path, folder, settings, processes, placed)
     return report, target
 
 
@@ -154,7 +167,8 @@ def summary(report: dict[str, Any], folder: Path | None) -> dict[str, Any]:
 
 
 def _show(report: dict[str, Any], folder: Path) -> None:
-    from cratous.services.assumptions.said import sentence
+    from cratous.services.assumptions.said import GROUNDLESS, sentence
+    from cratous.services.certify.verdicts import without_ground
 
     flight = report["flight"]
     requirement_table(report["requirements"])
@@ -168,6 +182,8 @@ def _show(report: dict[str, Any], folder: Path) -> None:
     for row in report["assumptions"]:
         if row["state"] == "broken":
             say(f"assumption {row['name']}: {sentence(row)}")
+    if without_ground(report["command"], report["assumptions"]):
+        say(GROUNDLESS)
     count = len(flight["takeovers"])
     say(
         f"{report['verdict'].upper()}: {flight['outcome']}, {flight['end_ms'] / 1000:.1f} s of "

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import signal
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ import click
 from cratous.services.cli.numbers import Number
 
 if TYPE_CHECKING:
+    from cratous.bridge.port import Address
     from cratous.services.simulator.scenario import Scenario
     from cratous.services.simulator.world import World
 
@@ -31,6 +33,10 @@ if TYPE_CHECKING:
     "--only", type=click.IntRange(1, 100), metavar="N",
     help="Let so many clients in and then nobody; end when one of them goes.",
 )  # fmt: skip
+@click.option(
+    "--vehicle", "vehicles", multiple=True, metavar="ID=HOST:PORT",
+    help="A port of its own for a vehicle, with --listen; repeatable.",
+)  # fmt: skip
 @click.option("--until", type=Number(0, min_open=True), help="End after so many seconds of it.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Write all that is told: sentinel frames.")  # fmt: skip
 @click.option(
@@ -43,6 +49,7 @@ def sim(
     rate: float,
     clients: int,
     only: int | None,
+    vehicles: tuple[str, ...],
     until: float | None,
     output: Path | None,
     compatibility: str,
@@ -66,6 +73,10 @@ def sim(
         raise BadInput("not both", item="--listen, -o", expected="one of them")
     if listen is None and (clients or only):
         raise BadInput("clients of nothing", item="--clients, --only", expected="--listen as well")
+    if vehicles and (listen is None or only):
+        raise BadInput(
+            "a vehicle's port", item="--vehicle", expected="--listen as well, and no --only"
+        )
     if only is not None and clients > only:
         raise BadInput(
             "more clients than are let in",
@@ -82,7 +93,8 @@ def sim(
         return World(plan.events, end_s, compatible=compatibility == "amase")
 
     if listen is not None:
-        return _serve(make, plan, listen, {"rate": rate, "clients": clients, "only": only or 0})
+        how = {"rate": rate, "clients": clients, "only": only or 0, "vehicles": _ports(vehicles)}
+        return _serve(make, plan, listen, how)
     began_s = time.monotonic()
     world = make()
     _write(world, output)
@@ -93,6 +105,25 @@ def sim(
         f"{world.time_s / took_s:.0f} times real time"
     )
     return 0
+
+
+def _ports(texts: Sequence[str]) -> dict[int, Address]:
+    """Addresses by vehicle; BadInput for a text that is none, or a vehicle that comes twice."""
+    from cratous.bridge.port import address
+    from cratous.spec.errors import BadInput
+
+    found: dict[int, Address] = {}
+    for text in texts:
+        key, equal, place = text.partition("=")
+        if not equal or not re.fullmatch(r"[0-9]{1,18}", key) or int(key) in found:
+            raise BadInput(
+                "no vehicle with its port, or a vehicle twice",
+                item="--vehicle",
+                expected="ID=HOST:PORT, each ID once",
+                got=text,
+            )
+        found[int(key)] = address(f"tcp://{place}", ("tcp",), item="--vehicle", free=True)
+    return found
 
 
 def _tell_unheard(world: World) -> None:
@@ -138,6 +169,9 @@ def _serve(make: Callable[[], World], plan: Scenario, listen: str, how: Mapping[
         signal.signal(number, stop)
     host, port = server.port.bound
     click.echo(f"{plan.name}: listening on {host}:{port}")
+    for key, its_own in server.vehicle_ports.items():
+        host, port = its_own.bound
+        click.echo(f"vehicle {key}: listening on {host}:{port}")
     server.run()
     _tell_unheard(server.world)
     click.echo(f"{plan.name}: ended at {server.world.time_s:.0f} s")

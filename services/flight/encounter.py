@@ -220,7 +220,14 @@ class _Ours:
                 continue  # asked again at the next heartbeat; ICAROUS flies on until then
             self._link = end
             suspended = suspended_after(self._chain.suspended, act)
+            if suspended and not self._chain.suspended:
+                self._tell_resume()
             self._chain = replace(self._chain, suspended=suspended)
+
+    def _tell_resume(self) -> None:
+        """ICAROUS has taken over: no later than at this point the vehicle comes back onto its way."""
+        told = replace(self._icarous.told, resume=self._chain.track.points[-1])
+        self._icarous = replace(self._icarous, told=told)
 
     def _take_back(self, epoch: int, now_ms: int) -> bool:
         """Command the way back and the rest; False if there is none that keeps the zones."""

@@ -21,7 +21,7 @@ NAME = "uxas/ics"
 
 
 def suspend(state: State, message: Suspend, out: Out) -> State:
-    """ICAROUS has taken over: where the path was left, if a task was active."""
+    """ICAROUS has taken over: where the path was left, if a task was active, or the task's begin."""
     chain = state.chain(message.vehicle_id)
     was, chain = (
         chain,
@@ -32,7 +32,7 @@ def suspend(state: State, message: Suspend, out: Out) -> State:
     left = _resume_point(chain)
     if left is not None:
         out.append(Left(message.vehicle_id, left))
-        if not was.suspended and not was.away:
+        if chain.phase is Phase.TASK and not was.suspended and not was.away:
             note = f"left the path at {chain.path_flown_m():.0f} m"
             said = progress(chain, message.now_ms, "Suspended", note, chain.served())
             out.append(said._replace(source=NAME))
@@ -49,8 +49,11 @@ def because(state: State, message: Because) -> State:
 
 
 def _resume_point(chain: Chain) -> Position | None:
-    """Where the path was left, if a task was active: the sensor misses nothing."""
-    return chain.track.at(leaving_m(chain)) if chain.phase is Phase.TASK else None
+    """Where the path was left, if a task was active: the sensor misses nothing. Before a task the way comes back
+    onto the path no later than where the task begins; behind the last there is no such place."""
+    if chain.phase is Phase.TASK:
+        return chain.track.at(leaving_m(chain))
+    return chain.track.points[-1] if chain.item is not None else None
 
 
 def take_back(config: Config, state: State, message: TakeBack, out: Out) -> State:

@@ -66,7 +66,7 @@ class Flown(NamedTuple):
 
 
 class Left(NamedTuple):
-    """Where a vehicle has left the path of its task."""
+    """Where a vehicle has left the path of its task, or where the task begins that it is on its way to."""
 
     vehicle_id: int
     position: Position

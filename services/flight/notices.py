@@ -17,14 +17,12 @@ from cratous.spec.mission.plan import Plan
 
 def gate_state(vehicle_id: int, now_ms: int, gate: Gate) -> Any:
     """How a vehicle's gate stands, as a `GateState`."""
-    return lmcp.new(
-        "GateState",
-        VehicleID=vehicle_id,
-        Time=now_ms,
-        Owner=SENDERS[gate.owner],
-        Epoch=gate.epoch,
-        Offered=gate.offered,
-    )
+    return _of_gate("GateState", vehicle_id, now_ms, gate, Offered=gate.offered)
+
+
+def _of_gate(name: str, vehicle_id: int, now_ms: int, gate: Gate, **more: Any) -> Any:
+    owner = SENDERS[gate.owner]
+    return lmcp.new(name, VehicleID=vehicle_id, Time=now_ms, Owner=owner, Epoch=gate.epoch, **more)
 
 
 def dropped(command: Any, now_ms: int, sender: int, gate: Gate) -> Any:
@@ -65,15 +63,8 @@ def authority_change(
     vehicle_id: int, now_ms: int, gate: Gate, reason: str, intruder_id: int
 ) -> Any:
     """Who commands a vehicle from now on, since which epoch and why, as an `AuthorityChange`."""
-    return lmcp.new(
-        "AuthorityChange",
-        VehicleID=vehicle_id,
-        Time=now_ms,
-        Owner=SENDERS[gate.owner],
-        Epoch=gate.epoch,
-        Reason=reason,
-        IntruderID=intruder_id,
-    )
+    more = {"Reason": reason, "IntruderID": intruder_id}
+    return _of_gate("AuthorityChange", vehicle_id, now_ms, gate, **more)
 
 
 def plan_accepted(now_ms: int, plan: Plan, done: frozenset[int]) -> Any:

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from cratous.core.kernel import Vec2
 from cratous.services.pipeline.places import RequestPlaces
+from cratous.services.pipeline.source import Known
 from cratous.services.planning.flyers import MOMENT_MS
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Position, Task, TaskKind
@@ -20,10 +21,21 @@ DURATION = "Duration_ms"
 ROUTE_MOST = 1024
 
 
+RANGE_MOST_M = 1_000_000.0
+
+
+class Tower(NamedTuple):
+    """A radio tower: where it stands, north and east [m], and how far it reaches [m]."""
+
+    at: Vec2
+    range_m: float
+
+
 class Asked(NamedTuple):
     """entity: its id; needed: vehicles at one time; standoff [m]; least: for how long without a break [ms], 0:
     until another plan; looks: a search task that it is for the camera, None: it looks at nothing; route: of
-    the entity; protected: the place to keep the entity from."""
+    the entity; protected: the place to keep the entity from; tower: that it is to be in touch with; entity 0: what
+    is supported stands at `stands`."""
 
     kind: str
     entity: int
@@ -33,6 +45,8 @@ class Asked(NamedTuple):
     looks: Task | None
     route: tuple[Vec2, ...]
     protected: Vec2 | None
+    tower: Tower | None = None
+    stands: Vec2 | None = None
 
     @property
     def watches(self) -> bool:
@@ -40,10 +54,14 @@ class Asked(NamedTuple):
         return self.kind in ("WatchTask", "MultiVehicleWatchTask")
 
 
-def asked_of(body: Any, places: RequestPlaces) -> Asked:
-    """What a task's message asks for; BadInput names what cannot be."""
+def asked_of(body: Any, places: RequestPlaces, tower: Tower | None = None) -> Asked:
+    """What a task's message asks for; BadInput names what cannot be. tower: of a relay."""
     kind, where = type(body).__name__, f"task {body.TaskID}"
-    names = {"EscortTask": "SupportedEntityID", "BlockadeTask": "BlockedEntityID"}
+    names = {
+        "EscortTask": "SupportedEntityID",
+        "BlockadeTask": "BlockedEntityID",
+        "CommRelayTask": "SupportedEntityID",
+    }
     entity = getattr(body, names.get(kind, "WatchedEntityID"))
     needed = getattr(body, "NumberVehicles", 1)
     _within(needed, 1, VEHICLES_MOST, where, "NumberVehicles")
@@ -68,15 +86,54 @@ def asked_of(body: Any, places: RequestPlaces) -> Asked:
         pose = places.pose(protected, 0.0, where, "ProtectedLocation")
         kept = Vec2(pose.north_m, pose.east_m)
     return Asked(
-        kind, entity, needed, standoff, least, _looks(body, where), tuple(route), kept
+        kind, entity, needed, standoff, least, _looks(body, where), tuple(route), kept,
+        tower, _stands(body, places, where),
     )  # fmt: skip
+
+
+def _stands(body: Any, places: RequestPlaces, where: str) -> Vec2 | None:
+    """Where what a relay supports stands, if it is no entity."""
+    if type(body).__name__ != "CommRelayTask" or body.SupportedEntityID:
+        return None
+    if body.DestinationLocation is None:
+        raise BadInput(
+            "it supports nothing", where=where, item="SupportedEntityID, DestinationLocation",
+            expected="an entity, or a place", got="neither",
+        )  # fmt: skip
+    pose = places.pose(body.DestinationLocation, 0.0, where, "DestinationLocation")
+    return Vec2(pose.north_m, pose.east_m)
+
+
+def tower_of(body: Any, places: RequestPlaces, world: Known) -> Tower:
+    """The radio tower of a relay, by its configuration, and its state if there is one; BadInput for none."""
+    where, number = f"task {body.TaskID}", body.TowerID
+    known = {n: world.get("configuration", n) for n in world.ids("configuration")}
+    towers = {n: c for n, c in known.items() if type(c).__name__ == "RadioTowerConfiguration"}
+    if number not in towers:
+        raise BadInput(
+            f"task {body.TaskID} is in touch with a tower that nobody has told of",
+            where=where, item="TowerID",
+            expected="one of " + (", ".join(map(str, sorted(towers))) or "none"),
+            got=str(number),
+        )  # fmt: skip
+    range_m, state = float(towers[number].Range), world.get("state", number)
+    _within(range_m, 1, RANGE_MOST_M, where, f"Range of tower {number}")
+    at = towers[number].Position if state is None else state.Location
+    pose = places.pose(at, 0.0, where, f"place of tower {number}")
+    return Tower(Vec2(pose.north_m, pose.east_m), range_m)
 
 
 def unused_of(body: Any) -> list[str]:
     """What a task's message asks for and gets not, in words."""
+    said, of = [], f"of task {body.TaskID} is not used"
     route = getattr(body, "RouteID", 0)
-    said = f"RouteID {route} of task {body.TaskID} is not used: where the entity goes is PrescribedWaypoints, or straight on"
-    return [said] if route else []
+    if route:
+        text = "where the entity goes is PrescribedWaypoints, or straight on"
+        said.append(f"RouteID {route} {of}: {text}")
+    if getattr(body, "DestinationLocation", None) is not None and body.SupportedEntityID:
+        text = f"entity {body.SupportedEntityID} is supported where its states say that it is"
+        said.append(f"DestinationLocation {of}: {text}")
+    return said
 
 
 def _duration(body: Any, where: str) -> int:

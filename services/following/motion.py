@@ -42,6 +42,15 @@ class Motion(NamedTuple):
             way_m -= step_m
         return here
 
+    def halfway_to(self, place: Vec2) -> Motion:
+        """The motion of the middle between it and a place that stands."""
+
+        def middle(p: Vec2) -> Vec2:
+            return Vec2((p.x + place.x) / 2, (p.y + place.y) / 2)
+
+        slow = Vec2(self.velocity.x / 2, self.velocity.y / 2)
+        return Motion(middle(self.at), slow, self.time_ms, tuple(map(middle, self.route)))
+
     def met_from(self, start: Vec2, speed_m_s: float) -> tuple[Vec2, float]:
         """Where and in how many seconds one who flies straight at this speed, the greater one, meets it."""
         seconds = 0.0

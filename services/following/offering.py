@@ -19,7 +19,7 @@ from cratous.core.routing.visibility import name_of
 from cratous.core.tasks.stations import outruns
 from cratous.services.following.asked import Asked
 from cratous.services.following.motion import Motion
-from cratous.services.following.stations import camera_of, station
+from cratous.services.following.stations import camera_of, relays, station
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.implementation import offer
 from cratous.services.planning.flyers import MOMENT_MS, Flyer, flyer_of, straight
@@ -80,14 +80,19 @@ def _option(
             reason = reason or "it has no camera, and what it watches is seen by one alone"
     if not reason and not outruns(motion.velocity, flyer.speed_m_s):
         speed = math.hypot(*motion.velocity)
-        reason = (
-            f"entity {asked.entity} moves at {speed:.1f} m/s, and it flies {flyer.speed_m_s:g} m/s"
-        )
+        who = f"entity {asked.entity}"
+        if asked.tower is not None:
+            who = f"the middle between {who} and the tower"
+        reason = f"{who} moves at {speed:.1f} m/s, and it flies {flyer.speed_m_s:g} m/s"
     if reason:
         return Dropped(task.id, (), "", reason)
     here = Vec2(start.north_m, start.east_m)
     at, _ = motion.met_from(here, flyer.speed_m_s)
-    goal = station(asked, slot, flyer, motion._replace(at=at), terrain_m)
+    met = motion._replace(at=at)
+    goal = station(asked, slot, flyer, met, terrain_m)
+    if asked.tower is not None and not relays(asked.tower, met, at, goal.radius_m):
+        text = f"halfway it is not in reach of both, of {asked.tower.range_m:g} m, all around its circle"
+        return Dropped(task.id, (), "", text)
     heading = math.atan2(goal.at.y - here.y, goal.at.x - here.x)
     bad = broken_by(Position(*goal.at, flyer.alt_m), goal.radius_m, zones)
     # it comes to the rim of its circle, and makes for the middle

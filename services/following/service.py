@@ -14,10 +14,11 @@ from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
 from cratous.core.authority.timeliness import in_time
+from cratous.core.kernel import Vec2
 from cratous.core.tasks.stations import Kept, kept_step
 from cratous.services.bus import Envelope
 from cratous.services.following import part as parts_of
-from cratous.services.following.asked import Asked, asked_of, unused_of
+from cratous.services.following.asked import Asked, Tower, asked_of, tower_of, unused_of
 from cratous.services.following.motion import STALE_MS, Motion, motion_of
 from cratous.services.following.offering import offered, options_of
 from cratous.services.following.part import Part
@@ -53,7 +54,7 @@ LOST = "the state of the entity"
 class Following(NamedTuple):
     """lead: the task until options are chosen; parts: of the vehicles; still: the entity stands, and the lead
     alone does the task; kept: how long the parts have done what is asked; now_ms: of the newest state;
-    plans: waypoints of the vehicles' plans by number."""
+    plans: waypoints of the vehicles' plans by number; meeting: how far a rendezvous is, None for another task."""
 
     lead: State = State()
     still: bool = False
@@ -61,6 +62,7 @@ class Following(NamedTuple):
     kept: Kept = Kept(-1, False)
     now_ms: int = 0
     plans: Mapping[int, Mapping[int, Position]] = MappingProxyType({})
+    meeting: Any = None
 
     def with_part(self, part: Part) -> Following:
         """With a part in place of the one of its vehicle."""
@@ -85,6 +87,7 @@ class FollowingTaskService(TaskService):
         super().__init__(contexts, body.TaskID, name, ended)
         self._body = body
         self._made: tuple[Context, list[Option], list[Dropped]] | None = None
+        self._stood: tuple[Context, Tower] | None = None
 
     def start(self) -> Any:
         return Following()
@@ -129,10 +132,25 @@ class FollowingTaskService(TaskService):
         return super()._do(state, act, body, out)
 
     def _asked(self, context: Context) -> Asked:
-        return asked_of(self._body, context.places)
+        return asked_of(self._body, context.places, self._tower(context))
+
+    def _tower(self, context: Context) -> Tower | None:
+        """The tower of a relay as it was when the options were made: towers stand."""
+        if type(self._body).__name__ != "CommRelayTask":
+            return None
+        if self._stood is None or self._stood[0] is not context:
+            self._stood = (context, tower_of(self._body, context.places, self._contexts.world))
+        return self._stood[1]
 
     def _motion(self, context: Context) -> Motion:
+        """Of the entity; for a relay that of the middle between it and the tower."""
         asked = self._asked(context)
+        motion = self._moves(context, asked)
+        return motion if asked.tower is None else motion.halfway_to(asked.tower.at)
+
+    def _moves(self, context: Context, asked: Asked) -> Motion:
+        if asked.stands is not None:
+            return Motion(asked.stands, Vec2(0.0, 0.0), 0)
         known = self._contexts.world
         state = known.get("state", asked.entity)
         if state is None:
@@ -247,11 +265,16 @@ class FollowingTaskService(TaskService):
             motion = self._motion(part.context)
         except BadInput as error:
             return self._lost(state, part, error, out)
+        if asked.stands is not None:  # nobody has to tell where it is
+            motion = motion._replace(time_ms=now_ms)
         fresh = in_time(min(motion.time_ms, now_ms), max(motion.time_ms, now_ms), STALE_MS)
         late_s = min(now_ms - motion.time_ms, STALE_MS) / 1000
         motion = motion._replace(at=motion.after(max(late_s, 0.0)))
-        before = part.blocked
+        before, was = part.blocked, part.there
         part = parts_of.heard(part, body, asked, motion, fresh, now_ms)
+        if was and not part.there and asked.tower is not None:
+            text = f"vehicle {part.vehicle} is no longer in reach of the tower and what it supports"
+            out.append(self._warning(text))
         if part.blocked and part.blocked != before:
             text = f"vehicle {part.vehicle} does not follow: {part.blocked} lies in the way"
             out.append(self._warning(text))

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from cratous.core.kernel import Vec2
 from cratous.core.tasks.stations import beside, in_ring
-from cratous.services.following.asked import Asked
+from cratous.services.following.asked import Asked, Tower
 from cratous.services.following.motion import Motion
 from cratous.services.loading.places import Places
 from cratous.services.mission.sensor import sees
@@ -43,6 +43,8 @@ def station(asked: Asked, slot: int, flyer: Flyer, there: Motion, terrain_m: flo
     radius = flyer.radius_m
     if asked.kind == "BlockadeTask":
         return Station(_between(asked, slot, radius, there), radius)
+    if asked.tower is not None:
+        return Station(there.at, radius)  # halfway already
     if asked.kind == "EscortTask":
         return Station(there.at, max(radius, asked.standoff_m))
     assert asked.looks is not None
@@ -77,7 +79,10 @@ def at_station(
     A watch: a footprint of its camera contains the entity's place, and it is no farther from that than two
     radii of its circle. An escort: no farther from the entity than that. A blockade: no farther than two radii from the way between the entity and
     what is protected, on its side of it; without one, no farther from its own circle's middle.
+    A relay: no farther than the tower reaches from the tower and from what is supported.
     """
+    if asked.tower is not None:
+        return relays(asked.tower, there, here)
     reach_m = 2 * goal.radius_m
     if asked.watches and (camera is None or not _seen(state, camera, there.at, places)):
         return False
@@ -87,6 +92,16 @@ def at_station(
         return in_ring(goal.at, here, 0, reach_m)
     aside_m = (slot + 1) // 2 * (2 * goal.radius_m + RING_M)
     return beside(here, there.at, asked.protected, reach_m + aside_m)
+
+
+def relays(tower: Tower, middle: Motion, here: Vec2, spare_m: float = 0.0) -> bool:
+    """Whether who is here is in reach of the tower and of what is supported; middle: between them.
+
+    spare_m: so much farther from both it would still be.
+    """
+    reach_m = max(tower.range_m - spare_m, 0.0)
+    supported = Vec2(2 * middle.at.x - tower.at.x, 2 * middle.at.y - tower.at.y)
+    return in_ring(tower.at, here, 0, reach_m) and in_ring(supported, here, 0, reach_m)
 
 
 def _seen(state: Any, camera: Camera, at: Vec2, places: Places) -> bool:

@@ -10,67 +10,64 @@ from cratous.services.argument.build import argument
 from cratous.services.attestation.findings import Subject, doubt, unshown
 from cratous.services.certify.html import repeats
 from cratous.services.certify.proofs import NOT_RECORDED, statuses
-from cratous.services.full_report.document import (
-    DASH,
-    NOT_ASKED,
-    NOT_OBSERVED,
-    Head,
-    Part,
-    Section,
-    Table,
-    Words,
-)
+from cratous.services.full_report import document
 from cratous.spec.errors import CratousError
 from cratous.spec.mission.guarantees import Outcome
 
 Data = dict[str, Any]
 
 
-def proofs(report: Data, names: dict[str, str]) -> Section:
+def proofs(report: Data, names: dict[str, str]) -> document.Section:
     """Section 7. names: how each kernel is called, of `trace.traced`."""
-    return Section("proofs", "7 Proofs of the kernels that were called", tuple(_proofs(report, names)))  # fmt: skip
+    return document.Section("proofs", "7 Proofs of the kernels that were called", tuple(_proofs(report, names)))  # fmt: skip
 
 
-def _proofs(report: Data, names: dict[str, str]) -> Iterator[Part]:
+def _proofs(report: Data, names: dict[str, str]) -> Iterator[document.Part]:
     found = report["proofs"]
-    yield Words(f"Ledger of the run: {found['line']}; {found['solver']}; seal {found['seal'] or 'none'}.")  # fmt: skip
+    yield document.Words(f"Ledger of the run: {found['line']}; {found['solver']}; seal {found['seal'] or 'none'}.")  # fmt: skip
     for one in found["problems"]:
-        yield Words(f"Not vouched for: {one['kernel']}: {one['what']}", "alarm")
+        yield document.Words(f"Not vouched for: {one['kernel']}: {one['what']}", "alarm")
     if found["calls"] == NOT_RECORDED:
-        yield Words("What was called in this run was not recorded, so no kernel is listed as evidence.", "alarm")  # fmt: skip
+        yield document.Words("What was called in this run was not recorded, so no kernel is listed as evidence.", "alarm")  # fmt: skip
     if found["uncounted"]:
-        yield Words(f"Registered too late to be counted: {', '.join(found['uncounted'])}.", "alarm")
+        yield document.Words(
+            f"Registered too late to be counted: {', '.join(found['uncounted'])}.", "alarm"
+        )
     said = "; ".join(f"{number} {status}" for status, number in statuses(found).items())
-    yield Words(
+    yield document.Words(
         f"Kernels, folds and drivers: {len(found['kernels'])}. {said}. Below each name the SHA-256 of its syntax tree "
         "that the gate held against the ledger before the flight: what was proved is what ran, but for what is named "
         "above as not vouched for. Solver time, unsat cores and proof "
-        f"objects: {NOT_OBSERVED}, the report has none."
+        f"objects: {document.NOT_OBSERVED}, the report has none."
     )
     rows: list[tuple[str, ...]] = [
-        (f"{names.get(name, name)}\n{one['source'] or 'no source digest'}", str(one["count"] or DASH), one["status"],
-         f"{one['definition'] or DASH}\n{', '.join(one['against'] or one['theorems'])}")
+        (f"{names.get(name, name)}\n{one['source'] or 'no source digest'}", str(one["count"] or document.DASH), one["status"],
+         f"{one['definition'] or document.DASH}\n{', '.join(one['against'] or one['theorems'])}")
         for name, one in sorted(found["kernels"].items())
     ]  # fmt: skip
     head = ("Name, source digest", "Calls", "Status", "Definition, theorems")
-    yield Table(head, tuple(rows), (38, 9, 17, 36), (1,))
-    yield Head("Theorems, with the lemmas that they rest on")
+    yield document.Table(head, tuple(rows), (38, 9, 17, 36), (1,))
+    yield document.Head("Theorems, with the lemmas that they rest on")
     rows = [
         (f"{t['sentence']}\n{name}" + (f"; rests on {', '.join(t['lemmas'])}" if t["lemmas"] else ""),
          t["status"], str(t["obligations"]))
         for name, t in sorted(found["theorems"].items())
     ]  # fmt: skip
-    yield Table(("Theorem", "Status", "Obligations"), tuple(rows), (76, 12, 12), (2,))
-    yield Head("Definitions")
-    yield Table(("Definition", "File"), tuple(sorted(found["definitions"].items())), (55, 45))
+    yield document.Table(("Theorem", "Status", "Obligations"), tuple(rows), (76, 12, 12), (2,))
+    yield document.Head("Definitions")
+    yield document.Table(
+        ("Definition", "File"), tuple(sorted(found["definitions"].items())), (55, 45)
+    )
 
 
-def coverage(subject: Subject, chains: Data) -> Section:
+def coverage(subject: Subject, chains: Data) -> document.Section:
     """Section 9. chains: of `trace.traced`."""
-    return Section("coverage", "9 Coverage and traceability", tuple(_coverage(subject, chains)))
+    return document.Section(
+        "coverage", "9 Coverage and traceability", tuple(_coverage(subject, chains))
+    )
 
 
-def _coverage(subject: Subject, chains: Data) -> Iterator[Part]:
+def _coverage(subject: Subject, chains: Data) -> Iterator[document.Part]:
     report, names = subject.report, chains["names"]
     rows: list[tuple[str, ...]] = []
     for number, row in enumerate(chains["rows"], 1):
@@ -79,68 +76,76 @@ def _coverage(subject: Subject, chains: Data) -> Iterator[Part]:
             for c in row["chains"]
         ]
         lacks = "; ".join(row["missing"]) or ("undecided" if row["undecided"] else "complete")
-        rows.append((str(number), row["requirement"], row["item"], "\n".join(links) or DASH, lacks))
+        rows.append(
+            (str(number), row["requirement"], row["item"], "\n".join(links) or document.DASH, lacks)
+        )
     kept = len(rows) - chains["missing"] - chains["undecided"]
-    yield Words(
+    yield document.Words(
         f"{kept} of {len(rows)} rows trace to a definition, {chains['undecided']} undecided, {chains['missing']} with "
         "something missing."
     )
-    yield Table(("No", "", "Constraint", "Kernel, theorems, definition", "Trace"), tuple(rows), (5, 5, 22, 53, 15))  # fmt: skip
-    yield Head("Nothing tested these")
+    yield document.Table(("No", "", "Constraint", "Kernel, theorems, definition", "Trace"), tuple(rows), (5, 5, 22, 53, 15))  # fmt: skip
+    yield document.Head("Nothing tested these")
     untested = [
         (one["requirement"], one["title"], "no row") for one in report["requirements"] if not one["constraints"]
     ]  # fmt: skip
     untested += [
         (row["requirement"], row["item"], doubt(row)) for row in report["constraints"] if not row["checks"]
     ]  # fmt: skip
-    yield Table(("", "Requirement or constraint", "Why"), tuple(untested), (8, 46, 46), empty="Every constraint was checked at least once.")  # fmt: skip
-    yield Head("Called, and named by no row")
+    yield document.Table(("", "Requirement or constraint", "Why"), tuple(untested), (8, 46, 46), empty="Every constraint was checked at least once.")  # fmt: skip
+    yield document.Head("Called, and named by no row")
     named = {name for row in report["constraints"] for name in row["kernels"]}
     called = sorted(names.get(k, k) for k in report["proofs"]["kernels"] if k not in named)
-    yield Words(f"{len(called)}, called to plan, to fly, or inside of others: {', '.join(called) or 'none'}.")  # fmt: skip
-    yield Words(f"Tests: on record in no run. Code that was not reached: {NOT_OBSERVED}.")
+    yield document.Words(f"{len(called)}, called to plan, to fly, or inside of others: {', '.join(called) or 'none'}.")  # fmt: skip
+    yield document.Words(
+        f"Tests: on record in no run. Code that was not reached: {document.NOT_OBSERVED}."
+    )
 
 
-def discrepancies(subject: Subject) -> Section:
+def discrepancies(subject: Subject) -> document.Section:
     """Section 10."""
-    return Section("discrepancies", "10 Discrepancies, limits, what is unknown", tuple(_discrepancies(subject)))  # fmt: skip
+    return document.Section("discrepancies", "10 Discrepancies, limits, what is unknown", tuple(_discrepancies(subject)))  # fmt: skip
 
 
-def _discrepancies(subject: Subject) -> Iterator[Part]:
+def _discrepancies(subject: Subject) -> Iterator[document.Part]:
     report = subject.report
-    yield Words("Between the report and what its log gives: none. A report with any is not written as this view.")  # fmt: skip
-    yield Head("Rows that do not hold")
+    yield document.Words("Between the report and what its log gives: none. A report with any is not written as this view.")  # fmt: skip
+    yield document.Head("Rows that do not hold")
     rows: list[tuple[str, ...]] = [
         (row["requirement"], row["item"], row["verdict"], row["note"])
         for row in report["constraints"]
         if row["verdict"] != Outcome.HOLDS
     ]
-    yield Table(("", "Constraint", "Verdict", "Note"), tuple(rows), (7, 38, 13, 42), empty="None.")
-    yield Head("Not shown")
-    yield Table(("What", "Why"), tuple(unshown(subject)), (50, 50), empty="Nothing was left unchecked.")  # fmt: skip
-    yield Head("Notes of the mission")
+    yield document.Table(
+        ("", "Constraint", "Verdict", "Note"), tuple(rows), (7, 38, 13, 42), empty="None."
+    )
+    yield document.Head("Not shown")
+    yield document.Table(("What", "Why"), tuple(unshown(subject)), (50, 50), empty="Nothing was left unchecked.")  # fmt: skip
+    yield document.Head("Notes of the mission")
     for text in report["mission"]["notes"] or ("None.",):
-        yield Words(text, "item")
-    yield Words(f"Changes since a last report: {NOT_ASKED}.")
+        yield document.Words(text, "item")
+    yield document.Words(f"Changes since a last report: {document.NOT_ASKED}.")
 
 
-def tools(report: Data) -> Section:
+def tools(report: Data) -> document.Section:
     """Section 11."""
-    return Section("tools", "11 Tools and environment", tuple(_tools(report)))
+    return document.Section("tools", "11 Tools and environment", tuple(_tools(report)))
 
 
-def _tools(report: Data) -> Iterator[Part]:
+def _tools(report: Data) -> Iterator[document.Part]:
     used = report["environment"]
-    yield Words(report["limits"][0] if report["limits"] else "No tool is qualified.")
+    yield document.Words(report["limits"][0] if report["limits"] else "No tool is qualified.")
     rows: list[tuple[str, ...]] = [(report["product"]["name"], report["product"]["version"]), ("Python", used["python"]),
             ("System", used["system"]), ("Solver of the ledger", report["proofs"]["solver"]),
             *sorted(used["packages"].items())]  # fmt: skip
-    yield Table(("Tool", "Version"), tuple(rows), (50, 50))
+    yield document.Table(("Tool", "Version"), tuple(rows), (50, 50))
     code = used.get("code")
     if code:
-        yield Words(f"Services and bridge: code {code['digest']}, running {code['running']}; {code['release']}.")  # fmt: skip
-    yield Words(f"Processor and memory: {NOT_OBSERVED}. Qualification data (DO-330): none.")
-    yield Words(
+        yield document.Words(f"Services and bridge: code {code['digest']}, running {code['running']}; {code['release']}.")  # fmt: skip
+    yield document.Words(
+        f"Processor and memory: {document.NOT_OBSERVED}. Qualification data (DO-330): none."
+    )
+    yield document.Words(
         "The same mission, seed and versions give the same log and report, byte for byte; no time of day is in them."
         if repeats(report)
         else "Flown by processes, in real time: another flight of the same mission gives another log. The same log "
@@ -148,37 +153,37 @@ def _tools(report: Data) -> Iterator[Part]:
     )
 
 
-def argued(subject: Subject) -> Section:
+def argued(subject: Subject) -> document.Section:
     """Section 12, from the ledger as it is now; says so where it cannot be made."""
-    return Section("argument", "12 Assurance argument", tuple(_argued(subject)))
+    return document.Section("argument", "12 Assurance argument", tuple(_argued(subject)))
 
 
-def _argued(subject: Subject) -> Iterator[Part]:
+def _argued(subject: Subject) -> Iterator[document.Part]:
     try:
         kept = ledger.read()
         elements = argument(subject.report, unshown(subject), kept)
     except CratousError as error:
-        yield Words(f"Not made: {error}", "alarm")
+        yield document.Words(f"Not made: {error}", "alarm")
         return
-    yield Words(
+    yield document.Words(
         f"Goal Structuring Notation, held against the ledger with the seal {kept['seal'] or 'none'}. Drawn, and "
         "as YAML: cratous certify --argument."
     )
     rows: list[tuple[str, ...]] = [
         (e.id, str(e.kind.name).lower(), e.text, "" if e.kind.name not in ("GOAL", "STRATEGY") else str(e.state),
-         "\n".join(", ".join(names) for names in (e.supported_by, e.in_context_of) if names) or DASH)
+         "\n".join(", ".join(names) for names in (e.supported_by, e.in_context_of) if names) or document.DASH)
         for e in elements.values()
     ]  # fmt: skip
-    yield Table(("Id", "Kind", "Text", "State", "Supported by, in context of"), tuple(rows), (16, 9, 42, 10, 23))  # fmt: skip
+    yield document.Table(("Id", "Kind", "Text", "State", "Supported by, in context of"), tuple(rows), (16, 9, 42, 10, 23))  # fmt: skip
 
 
-def reproduction(report: Data) -> Section:
+def reproduction(report: Data) -> document.Section:
     """Section 13."""
-    return Section("reproduction", "13 Reproduction", tuple(_reproduction(report)))
+    return document.Section("reproduction", "13 Reproduction", tuple(_reproduction(report)))
 
 
-def _reproduction(report: Data) -> Iterator[Part]:
-    yield Words(report["command"], "code")
+def _reproduction(report: Data) -> Iterator[document.Part]:
+    yield document.Words(report["command"], "code")
     rows: list[tuple[str, ...]] = [
         ("log of the flight", report["log"]["digest"]), ("mission", report["mission_hash"]),
         ("plan", report["plan"]["hash"]), ("certificate", report["plan"]["certificate"] or "none"),
@@ -187,7 +192,7 @@ def _reproduction(report: Data) -> Iterator[Part]:
     expected = (
         "Expected digest of" if repeats(report) else "Digest, of this flight alone for its log, of"
     )
-    yield Table((expected, "SHA-256"), tuple(rows), (30, 70))
+    yield document.Table((expected, "SHA-256"), tuple(rows), (30, 70))
     rows = [
         ("cratous certify FOLDER", "judges the log again and compares all that is written of it"),
         ("cratous judge FOLDER", "judges the log by a program that shares no code"),
@@ -195,5 +200,5 @@ def _reproduction(report: Data) -> Iterator[Part]:
         ("cratous prove --check --recheck", "proves every kernel again, and by a second solver"),
         ("cratous certify --verify FOLDER --public-key FILE", "signature and digests of all files"),
     ]  # fmt: skip
-    yield Table(("Command", "What it does"), tuple(rows), (50, 50))
-    yield Words(f"Time that this takes: {NOT_OBSERVED}.")
+    yield document.Table(("Command", "What it does"), tuple(rows), (50, 50))
+    yield document.Words(f"Time that this takes: {document.NOT_OBSERVED}.")

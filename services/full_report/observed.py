@@ -7,15 +7,7 @@ from typing import Any
 
 from cratous.services.assumptions.said import measured
 from cratous.services.certify.html import margin, seconds
-from cratous.services.full_report.document import (
-    DASH,
-    NOT_OBSERVED,
-    Head,
-    Part,
-    Section,
-    Table,
-    Words,
-)
+from cratous.services.full_report import document
 from cratous.services.full_report.front import loss_parts
 from cratous.services.full_report.pictures import flight_pictures
 
@@ -29,93 +21,103 @@ BETWEEN = (
 )
 
 
-def trajectory(report: Data, chains: Data) -> Section:
+def trajectory(report: Data, chains: Data) -> document.Section:
     """Section 5. chains: of `trace.traced`."""
-    return Section("trajectory", "5 Trajectory evidence", tuple(_trajectory(report, chains)))
+    return document.Section(
+        "trajectory", "5 Trajectory evidence", tuple(_trajectory(report, chains))
+    )
 
 
-def _trajectory(report: Data, chains: Data) -> Iterator[Part]:
+def _trajectory(report: Data, chains: Data) -> Iterator[document.Part]:
     rows = list(zip(report["constraints"], chains["rows"], strict=True))
     zones = [pair for pair in rows if pair[0]["item"].startswith(ZONES)]
     clear = [pair for pair in rows if pair[0]["requirement"] == "G2"]
     yield flight_pictures(report)
-    yield Head("Containment")
+    yield document.Head("Containment")
     yield _table(zones, chains, "No row: the mission has no zone, or nothing of it was observed.")
-    yield Head("Well clear")
-    yield _table(clear, chains, NOT_OBSERVED)
-    yield Head("Between the samples")
-    yield Words(BETWEEN)
+    yield document.Head("Well clear")
+    yield _table(clear, chains, document.NOT_OBSERVED)
+    yield document.Head("Between the samples")
+    yield document.Words(BETWEEN)
     names = {t for _, row in (*zones, *clear) for chain in row["chains"] for t in chain["theorems"]}
     theorems = report["proofs"]["theorems"]
     told = [(n, theorems[n]["sentence"], theorems[n]["status"]) for n in sorted(names) if n in theorems]  # fmt: skip
-    yield Table(("Theorem", "What it says", "Status"), tuple(told), (34, 54, 12))
-    yield Head("Alerts and manoeuvres")
+    yield document.Table(("Theorem", "What it says", "Status"), tuple(told), (34, 54, 12))
+    yield document.Head("Alerts and manoeuvres")
     takeovers = report["flight"]["takeovers"]
-    first = seconds(min(t["from_ms"] for t in takeovers)) if takeovers else NOT_OBSERVED
-    yield Words(
+    first = seconds(min(t["from_ms"] for t in takeovers)) if takeovers else document.NOT_OBSERVED
+    yield document.Words(
         f"Conflict messages: {report['log']['by_topic'].get(CONFLICT, 0)}. First takeover: {first}. "
-        f"Time to the first alert: {NOT_OBSERVED}, the report keeps takeovers only."
+        f"Time to the first alert: {document.NOT_OBSERVED}, the report keeps takeovers only."
     )
     yield _authority(report)
     yield from loss_parts(report)
 
 
-def _table(rows: list[tuple[Data, Data]], chains: Data, empty: str) -> Table:
+def _table(rows: list[tuple[Data, Data]], chains: Data, empty: str) -> document.Table:
     found = [
         (f"{row['item']}\n{row['note']}", row["verdict"], margin(row), seconds(row["time_ms"]),
-         str(row["checks"]), ", ".join(chains["names"][c["kernel"]] for c in chain["chains"]) or DASH)
+         str(row["checks"]), ", ".join(chains["names"][c["kernel"]] for c in chain["chains"]) or document.DASH)
         for row, chain in rows
     ]  # fmt: skip
     head = ("Constraint", "Verdict", "Margin", "At", "Checks", "Decided by")
-    return Table(head, tuple(found), (36, 10, 12, 10, 9, 23), (2, 3, 4), empty)
+    return document.Table(head, tuple(found), (36, 10, 12, 10, 9, 23), (2, 3, 4), empty)
 
 
-def _authority(report: Data) -> Table:
+def _authority(report: Data) -> document.Table:
     rows = [
         (seconds(a["time_ms"]), str(a["vehicle"]), a["owner"], str(a["epoch"]), a["reason"])
         for a in report["flight"]["authority"]
     ]
     head = ("At", "Vehicle", "Owner from then on", "Epoch", "Reason")
-    return Table(
+    return document.Table(
         head, tuple(rows), (12, 10, 20, 10, 48), (0,), "No change of command is in the log."
     )
 
 
-def runtime(report: Data) -> Section:
+def runtime(report: Data) -> document.Section:
     """Section 6."""
-    return Section("runtime", "6 Runtime evidence", tuple(_runtime(report)))
+    return document.Section("runtime", "6 Runtime evidence", tuple(_runtime(report)))
 
 
-def _runtime(report: Data) -> Iterator[Part]:
+def _runtime(report: Data) -> Iterator[document.Part]:
     log, flight = report["log"], report["flight"]
-    yield Words(f"{log['messages']} messages, {flight['outcome']} at {seconds(flight['end_ms'])}.")
-    yield Words("The verdicts of the monitor are those of section 3; that they came while it flew is not recorded here.")  # fmt: skip
-    yield Head("Bridge: heartbeats and delay")
+    yield document.Words(
+        f"{log['messages']} messages, {flight['outcome']} at {seconds(flight['end_ms'])}."
+    )
+    yield document.Words("The verdicts of the monitor are those of section 3; that they came while it flew is not recorded here.")  # fmt: skip
+    yield document.Head("Bridge: heartbeats and delay")
     rows: list[tuple[str, ...]] = [
         (f"{r['item']}\n{r['note']}", r["verdict"], margin(r), str(r["checks"]))
         for r in report["constraints"]
         if r["requirement"] == "G5"
     ]
-    yield Table(("Constraint", "Verdict", "Margin", "Checks"), tuple(rows), (58, 14, 16, 12), (2, 3))  # fmt: skip
-    yield Words("Messages lost or late: see the assumptions on the link in section 8.", "soft")
-    yield Head("Events")
+    yield document.Table(("Constraint", "Verdict", "Margin", "Checks"), tuple(rows), (58, 14, 16, 12), (2, 3))  # fmt: skip
+    yield document.Words(
+        "Messages lost or late: see the assumptions on the link in section 8.", "soft"
+    )
+    yield document.Head("Events")
     rows = [
-        (seconds(e["time_ms"]), DASH if e["vehicle"] is None else str(e["vehicle"]), e["text"])
+        (
+            seconds(e["time_ms"]),
+            document.DASH if e["vehicle"] is None else str(e["vehicle"]),
+            e["text"],
+        )
         for e in flight["events"]
     ]
-    yield Table(("At", "Vehicle", "Event"), tuple(rows), (14, 12, 74), (0,))
-    yield Head("Messages by topic")
+    yield document.Table(("At", "Vehicle", "Event"), tuple(rows), (14, 12, 74), (0,))
+    yield document.Head("Messages by topic")
     rows = [(topic, str(number)) for topic, number in sorted(log["by_topic"].items())]
-    yield Table(("Topic", "Messages"), tuple(rows), (80, 20), (1,))
+    yield document.Table(("Topic", "Messages"), tuple(rows), (80, 20), (1,))
 
 
-def assumptions(report: Data) -> Section:
+def assumptions(report: Data) -> document.Section:
     """Section 8."""
-    return Section("assumptions", "8 Assumptions, and whether they held", tuple(_assumptions(report)))  # fmt: skip
+    return document.Section("assumptions", "8 Assumptions, and whether they held", tuple(_assumptions(report)))  # fmt: skip
 
 
-def _assumptions(report: Data) -> Iterator[Part]:
-    yield Words(
+def _assumptions(report: Data) -> Iterator[document.Part]:
+    yield document.Words(
         "What the theorems on the whole system assume, as it was watched in the messages of this flight. No verdict "
         "depends on it: where one is broken, no theorem speaks for the guarantees beside it from then on. Justified "
         "in docs/proofs/assumptions.md; an owner is not recorded."
@@ -125,15 +127,15 @@ def _assumptions(report: Data) -> Iterator[Part]:
         lost = f"; without ground since: {one['lost']}; still holds: {one['stands']}" if one["lost"] else ""  # fmt: skip
         since = f" since {seconds(one['since_ms'])}" if one["since_ms"] is not None else ""
         rows.append(
-            (f"{one['text']}\n{one['name']}", one["state"] + ("\n" + since if since else ""), measured(one) or DASH,
-             str(one["checks"]), ", ".join(one["guarantees"]), f"{one['note'] or DASH}{lost}")
+            (f"{one['text']}\n{one['name']}", one["state"] + ("\n" + since if since else ""), measured(one) or document.DASH,
+             str(one["checks"]), ", ".join(one["guarantees"]), f"{one['note'] or document.DASH}{lost}")
         )  # fmt: skip
     head = ("Assumption", "State", "Worst seen", "Checks", "About", "Note")
-    yield Table(head, tuple(rows), (32, 13, 15, 8, 9, 23), (3,))
-    yield Head("Limits of the report")
+    yield document.Table(head, tuple(rows), (32, 13, 15, 8, 9, 23), (3,))
+    yield document.Head("Limits of the report")
     for text in report["limits"]:
-        yield Words(text, "item")
-    yield Head("Assumed by single theorems")
+        yield document.Words(text, "item")
+    yield document.Head("Assumed by single theorems")
     theorems = report["proofs"]["theorems"]
     told = [(name, text) for name in sorted(theorems) for text in theorems[name]["assumptions"]]
-    yield Table(("Theorem", "Assumes"), tuple(told), (40, 60), empty="None.")
+    yield document.Table(("Theorem", "Assumes"), tuple(told), (40, 60), empty="None.")

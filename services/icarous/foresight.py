@@ -12,7 +12,13 @@ from cratous.core.avoidance.way_ahead import near_line, there_within
 from cratous.core.permit.remainder import way_permits
 from cratous.services.icarous.ending import Ahead, horizon_s, with_hold
 from cratous.services.icarous.messages import Sensed
-from cratous.services.icarous.return_to_path import bearing_rad, flat, goal_index, way_back
+from cratous.services.icarous.return_to_path import (
+    bearing_rad,
+    flat,
+    goal_index,
+    way_on,
+    ways_back,
+)
 from cratous.services.icarous.state import Config, State
 from cratous.spec.mission import Position
 
@@ -66,20 +72,21 @@ def way_back_is_free(config: Config, state: State, sensed: Sensed, in_turn: froz
     told, scene = state.told, scene_of(config, state, sensed)
     if not told.waypoints:
         return predicted(config, state, sensed, scene).first_of_all_s(scene.intruders) is None
-    points = told.waypoints[min(state.goal, len(told.waypoints) - 1) :]
-    if told.resume is not None:
-        points = (told.resume, *told.waypoints[min(told.next_index, len(told.waypoints)) :])
-    radius_m = TURN_MARGIN * sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
-    way = way_back(sensed.motion, radius_m, points, horizon_s(scene))
-    ahead = with_hold(way, sensed, scene, config.daa.well_clear, TURN_MARGIN)
-    if ahead.first_of_all_s(scene.intruders) is not None:
-        return False
-    if first_zone_s(ahead.pieces, scene.zones, 5.0) is not None:
-        return False
-    whole = way_back(sensed.motion, radius_m, points, math.inf).pieces
-    met = set(state.avoided) - in_turn
+    tightest_m = sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
+    points, radius_m = way_on(told, sensed.motion, tightest_m), TURN_MARGIN * tightest_m
+    now, horizon = sensed.motion, horizon_s(scene)
+    met = state.avoided - in_turn
+    avoided = [other for other in scene.intruders if other.id in met]
+    for way in ways_back(now, radius_m, points, horizon):
+        ahead = with_hold(way, sensed, scene, config.daa.well_clear, TURN_MARGIN)
+        if ahead.first_of_all_s(scene.intruders) is not None:
+            return False
+        if first_zone_s(ahead.pieces, scene.zones, 5.0) is not None:
+            return False
     return all(
-        way_permits(whole, other, scene.volume) for other in scene.intruders if other.id in met
+        way_permits(whole.pieces, other, scene.volume)
+        for whole in ways_back(now, radius_m, points, math.inf)
+        for other in avoided
     )
 
 

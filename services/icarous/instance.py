@@ -19,6 +19,7 @@ from cratous.core.authority.cycle import cycle_begun, cycle_flown, cycle_watched
 from cratous.core.authority.gate import ICAROUS, gate_accepts
 from cratous.core.avoidance.manoeuvre import velocity_of
 from cratous.core.avoidance.resolution import Choice
+from cratous.services.icarous import permits
 from cratous.services.icarous.foresight import (
     describe,
     manoeuvre,
@@ -41,7 +42,6 @@ from cratous.services.icarous.messages import (
 from cratous.services.icarous.return_to_path import PERSIST_MS, RELAPSE_MS
 from cratous.services.icarous.state import Config, State
 from cratous.services.icarous.traffic_monitor import (
-    Threat,
     courses,
     most_urgent,
     nearest,
@@ -91,10 +91,11 @@ class Instance:
         commands = gate_accepts(sensed.gate, ICAROUS, sensed.gate.epoch)
         cycle = cycle_begun(state.cycle, commands, sensed.now_ms)
         flew, watches = state.cycle.mode != MONITOR, cycle.mode == MONITOR
-        if flew and watches:
-            state = replace(state, held=None, threats=())
         now = courses(sensed.intruders)
         in_turn = turning(now, state.courses, self.config.heartbeat_ms / 1000)
+        if flew and watches:
+            state = replace(state, held=None, threats=())
+            state = permits.resumed(self.config, state, sensed, in_turn)
         state = replace(state, cycle=cycle, courses=now, beats=state.beats + 1)
         if watches:
             state, out = self._watch(state, sensed, in_turn)
@@ -105,37 +106,39 @@ class Instance:
 
     def _watch(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
         """MONITOR: take over if a conflict is foreseen that is ours to act on."""
-        found, conflict = self._foreseen(state, sensed, in_turn)
-        state = replace(state, threats=found)
+        state, conflict = self._foreseen(state, sensed, in_turn)
         cycled = cycle_watched(state.cycle, conflict is not None, sensed.now_ms, RELAPSE_MS)
         if cycled.act == NOTHING or conflict is None:
             return replace(state, cycle=cycled.cycle), ()
-        avoided = tuple(sorted({*state.avoided, conflict.intruder_id}))
-        state = replace(state, cycle=cycled.cycle, goal=state.told.next_index, avoided=avoided)
-        state, choice = manoeuvre(self.config, state, sensed)
         vid, first_s = self.config.vehicle_id, conflict.first_s
         reason = f"{conflict.why}: loss predicted in {first_s:.1f} s"
+        if conflict.intruder_id:
+            reason += permits.told_why(state, conflict.intruder_id)
+            state = permits.taken_over(state, conflict.intruder_id)
+        state = replace(state, cycle=cycled.cycle, goal=state.told.next_index)
+        state, choice = manoeuvre(self.config, state, sensed)
         foresees = Foresees(vid, sensed.now_ms, conflict.intruder_id, first_s, describe(choice))
         wish = Wish(vid, cycled.act, reason, conflict.intruder_id)
         return state, (wish, foresees, *self._commands(sensed, choice, cycled.act))
 
     def _foreseen(
         self, state: State, sensed: Sensed, in_turn: frozenset[int]
-    ) -> tuple[tuple[Threat, ...], Conflict | None]:
-        """All predicted losses of well clear, and the conflict to act on."""
+    ) -> tuple[State, Conflict | None]:
+        """All predicted losses of well clear, what is still permitted, and the conflict to act on."""
         scene = scene_of(self.config, state, sensed)
         ahead = predicted(self.config, state, sensed, scene)
         limits = nearest(sensed.ability, scene.volume, self.config.heartbeat_ms)
         own, seen = self.config.vehicle_id, sensed.intruders
         found = threats(own, ahead, seen, state.threats, sensed.now_ms, limits, in_turn)
-        urgent = most_urgent(found)
+        state = permits.looked(self.config, replace(state, threats=found), sensed, ahead)
+        urgent = most_urgent(permits.acting(state, found))
         if urgent is not None:
-            return found, Conflict("traffic", urgent.intruder_id, urgent.first_violation_s)
+            return state, Conflict("traffic", urgent.intruder_id, urgent.first_violation_s)
         if len(ahead.pieces) == 1 and not ahead.holds:
             zone_s = zone_ahead_s(sensed.motion, sensed.ability, ahead.pieces, state.told.zones)
             if zone_s is not None:
-                return found, Conflict("zone", 0, zone_s)
-        return found, None
+                return state, Conflict("zone", 0, zone_s)
+        return state, None
 
     def _fly(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
         """AVOID and HANDBACK: fly the manoeuvre, and see whether the way back is free."""

@@ -6,7 +6,9 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from cratous.core.authority.cycle import Cycle
+from cratous.core.avoidance.prediction import Intruder
 from cratous.core.avoidance.resolution import Choice
+from cratous.core.permit.encounter import Encounter
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.traffic_monitor import Threat, Tracks
 from cratous.services.mission.frames import Projection
@@ -29,11 +31,22 @@ class Config(NamedTuple):
     original: bool = False
 
 
+class Met(NamedTuple):
+    """An intruder because of which ICAROUS has taken over. predicted: as it was seen when the way was permitted
+    against it, at made_ms [ms]; why: the last permit did not last, "" before there was one."""
+
+    intruder_id: int
+    encounter: Encounter
+    predicted: Intruder | None = None
+    made_ms: int = 0
+    why: str = ""
+
+
 @dataclass(frozen=True)
 class State:
     """cycle: who flies, as the kernels have it; told: what has come over the bridge; threats and
     courses: of the last heartbeat; held: the manoeuvre being flown; goal: index of the waypoint that
-    it makes for; beats: heartbeats so far; avoided: the intruders for which it has taken over."""
+    it makes for; beats: heartbeats so far; met: the intruders because of which it has taken over."""
 
     cycle: Cycle = START
     told: Told = field(default_factory=Told)
@@ -42,4 +55,13 @@ class State:
     held: Choice | None = None
     goal: int = 0
     beats: int = 0
-    avoided: tuple[int, ...] = ()
+    met: tuple[Met, ...] = ()
+
+    @property
+    def avoided(self) -> frozenset[int]:
+        """Because of whom it has taken over."""
+        return frozenset(one.intruder_id for one in self.met)
+
+    def find(self, intruder_id: int) -> Met | None:
+        """What is known of an intruder because of which it has taken over."""
+        return next((one for one in self.met if one.intruder_id == intruder_id), None)

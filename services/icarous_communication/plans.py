@@ -105,6 +105,22 @@ def plan_of(
     )
 
 
+def begins_as(plan: Plan | None, told: Plan | None) -> bool:
+    """True if a vehicle that flies a plan, and has passed nothing of it, is given the same way again."""
+    return (
+        plan is not None
+        and told is not None
+        and (told.goal, told.told) == (plan.goal, plan.told)
+        and _legs(plan) == _legs(told)
+    )
+
+
+def _legs(plan: Plan) -> list[tuple[float, ...]]:
+    """What makes the way of a plan, from its first waypoint on."""
+    found = plan.waypoints[plan.goal :]
+    return [(w.Number, w.Latitude, w.Longitude, w.Altitude, w.Speed) for w in found]
+
+
 def shown(plan: Plan, number: int, long_enough: bool) -> Plan:
     """The plan with the waypoint that the vehicle says it makes for.
 

@@ -38,6 +38,8 @@ MOST_POINTS = 256
 """An answer of more places is none."""
 MOST_WAITING = 1000
 """Ways that wait for an instance; those beyond are planned by UxAS's own planner at once."""
+FAILURES = (CratousError, MemoryError)
+"""What one way may end in: it cannot be, or takes more memory than there is."""
 RouteLine = RouteStart | RoutePoint | RouteEnd
 
 
@@ -168,7 +170,7 @@ class Routes:
             places, way = planner.asked_way(
                 self._contexts, body, body.RouteRequests[wanted.position]
             )
-        except Exception as error:
+        except FAILURES as error:
             return self._own(wanted, _why(error))
         self._numbers += 1
         vehicle, to_geodetic = places.mission.vehicle(body.VehicleID), places.projection.to_geodetic
@@ -205,7 +207,7 @@ class Routes:
             constraint = body.RouteRequests[one.wanted.position]
             try:
                 plan, why = planner.led_over(self._contexts, body, constraint, places)
-            except Exception as error:
+            except FAILURES as error:
                 why = _why(error)
         del self._out[vid]
         if plan is None:
@@ -220,7 +222,7 @@ class Routes:
         constraint = body.RouteRequests[wanted.position]
         try:
             (plan,) = planner.plans_of(self._contexts, body, [constraint])
-        except Exception as error:
+        except FAILURES as error:
             plan = planner.refused(getattr(constraint, "RouteID", 0), (_why(error),))
         text = f"route of vehicle {body.VehicleID} planned by UxAS: {why}"
         plan.RouteError = [*plan.RouteError, lmcp.new("KeyValuePair", Key="reason", Value=text)]
@@ -248,8 +250,8 @@ class Routes:
         return [Note("INFO", text), Say(planner.answered(request.asked, plans), self._name)]
 
 
-def _why(error: Exception) -> str:
-    """Whatever goes wrong with one way neither ends UxAS nor leaves its request without an answer."""
+def _why(error: CratousError | MemoryError) -> str:
+    """What goes wrong with one way neither ends UxAS nor leaves its request without an answer."""
     if isinstance(error, CratousError):
         return "; ".join(reasons_of(error))
     return f"it cannot be planned: {error!r}"

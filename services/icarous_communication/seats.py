@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import NamedTuple
 
 from cratous.bridge.port import is_due
 
 GRACE_S = 1.0
 """A connection that has said nothing for this long [s] is one that never says HELLO."""
+
+
+class Refusal(NamedTuple):
+    """Why a connection is refused. why: counted by it, one of a few; detail: this time, with what the peer said."""
+
+    why: str
+    detail: str
 
 
 class Seats:
@@ -43,26 +51,28 @@ class Seats:
         """When `settle` has something to do."""
         return min(self._new.values(), default=None)
 
-    def opened(self, key: int, now_s: float) -> str:
+    def opened(self, key: int, now_s: float) -> Refusal | None:
         """A connection is open; why it is refused, if it is."""
         if self.come >= self._count:
-            return f"more instances than NumberOfUAVs = {self._count}"
+            return Refusal("too many", f"more instances than NumberOfUAVs = {self._count}")
         self._new[key] = now_s + GRACE_S
-        return ""
+        return None
 
-    def hello(self, key: int, vehicle_id: int) -> str:
+    def hello(self, key: int, vehicle_id: int) -> Refusal | None:
         """It says for whom it speaks; why that is refused, if it is."""
-        if key in self._vehicle:
-            same = self._vehicle[key] == vehicle_id
-            return "" if same else f"a second HELLO: {vehicle_id} after {self._vehicle[key]}"
+        had = self._vehicle.get(key)
+        if had is not None:
+            text = f"a second HELLO: {vehicle_id} after {had}"
+            return None if had == vehicle_id else Refusal("another HELLO", text)
         if self._ids and vehicle_id not in self._ids:
             expected = ", ".join(map(str, self._ids))
-            return f"HELLO of vehicle {vehicle_id}, expected one of {expected}"
+            text = f"HELLO of vehicle {vehicle_id}, expected one of {expected}"
+            return Refusal("HELLO of a stranger", text)
         if vehicle_id in self._vehicle.values():
-            return f"a second instance for vehicle {vehicle_id}"
+            return Refusal("vehicle taken", f"a second instance for vehicle {vehicle_id}")
         self._forget(key)
         self._vehicle[key] = vehicle_id
-        return ""
+        return None
 
     def speaks(self, key: int) -> None:
         """Its first line is none of HELLO."""

@@ -18,7 +18,7 @@ from cratous.bridge.text_protocol import Heartbeat, Hello, Message, Skipped
 from cratous.services.bus import Bus, Envelope, Wake
 from cratous.services.flight.messages import Down, Lost, Say
 from cratous.services.icarous_communication.routes import GROUP, REQUEST, RouteLine, Routes
-from cratous.services.icarous_communication.seats import Seats
+from cratous.services.icarous_communication.seats import Refusal, Seats
 from cratous.services.icarous_communication.settings import Settings
 from cratous.services.icarous_communication.step import (
     Communication,
@@ -201,9 +201,9 @@ class IcarousCommunicationService:
                 self._gone(key, event)
             case Hello(vid):
                 had = self._seats.vehicle(key)
-                why = self._seats.hello(key, vid)
-                self._refuse(key, why)
-                if not why and had is None:
+                refusal = self._seats.hello(key, vid)
+                self._refuse(key, refusal)
+                if refusal is None and had is None:
                     self._seated(key, vid)
             case Message() as line:
                 self._line(key, line)
@@ -243,9 +243,9 @@ class IcarousCommunicationService:
         for line in self._early.pop(key, ()):
             self._line(key, line)
 
-    def _refuse(self, key: int, why: str) -> None:
-        if why:
-            self.port.drop(key, why)
+    def _refuse(self, key: int, refusal: Refusal | None) -> None:
+        if refusal is not None:
+            self.port.drop(key, refusal.why, refusal.detail)
 
     def _stepped(self, step: Callable[[State], Step]) -> None:
         """A step that a connection has caused; the bus keeps the state."""

@@ -101,13 +101,7 @@ def _keys(
     else:
         item, expected = "Dialect", 'v2, an address of loopback, or PlainBeyondLoopback="true"'
     got = f'Dialect="{v["Dialect"]}" VehicleIDs="{v["VehicleIDs"]}" Keys="{v["Keys"]}"'
-    raise BadInput(
-        "no authentication",
-        where=entry.where,
-        item=f"{entry.type}.{item}",
-        expected=expected,
-        got=got,
-    )
+    raise entry.refusal("no authentication", item, expected, got)
 
 
 def _to(entry: Entry, text: str, count: int) -> tuple[Address, ...]:

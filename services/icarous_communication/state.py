@@ -9,6 +9,7 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from cratous.bridge.text_protocol import Dialect, Message, SoftReset, Waypoint
+from cratous.bridge.text_protocol.layouts import ORIGINAL_LIMITS
 from cratous.core.authority.timeliness import in_time
 from cratous.services.flight import link_end
 from cratous.services.flight.dynamics import AirState, turn_radius_m
@@ -16,7 +17,8 @@ from cratous.services.flight.messages import Down, Say
 from cratous.services.icarous.foresight import TURN_MARGIN
 from cratous.services.icarous_communication.plans import Away, Plan, position_of
 from cratous.services.mission.frames import Projection
-from cratous.spec.mission import Frame, Position
+from cratous.services.uxas.daidalus.zones import surroundings
+from cratous.spec.mission import Frame, Position, Zone
 
 TRAFFIC_KEPT_MS = 5000
 """An aircraft whose state is of a time farther than this [ms] from another's is not told to that one."""
@@ -105,6 +107,27 @@ def air_state(body: Any, projection: Projection) -> AirState:
         climb = body.VerticalSpeed
     place = position_of(body.Location, projection)
     return AirState(place, math.atan2(east, north), math.hypot(north, east), climb)
+
+
+def tellable(
+    frame: Frame, bodies: Iterable[Any], dialect: Dialect
+) -> tuple[tuple[Zone, ...], list[Note]]:
+    """The zones that peers are told, whole, and about the others why not. The original's client publishes a fence
+    for each GEOFN_SEND, with whatever it holds of it, and counts them itself."""
+    around = surroundings(frame, bodies, "MSL")
+    fit, why = around.zones, list(around.missing)
+    if dialect is Dialect.ORIGINAL:
+        most, corners = ORIGINAL_LIMITS.zones, ORIGINAL_LIMITS.vertices
+        fit = tuple(zone for zone in fit if len(zone.vertices) in range(corners + 1))
+        alone = "the original's client is not told of it"
+        why += [
+            f"zone {z.id}: more than {corners} vertices; {alone}"
+            for z in around.zones
+            if z not in fit
+        ]
+        why += [f"zone {z.id}: more than {most} zones; {alone}" for z in fit[most:]]
+        fit = fit[:most]
+    return fit, [Note("WARN", text) for text in why]
 
 
 def turn_radius_of(craft: Craft, air: AirState) -> float:

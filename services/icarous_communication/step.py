@@ -40,6 +40,7 @@ from cratous.services.icarous_communication import modes
 from cratous.services.icarous_communication.plans import (
     Away,
     Plan,
+    begins_as,
     deviates,
     next_part,
     part,
@@ -62,6 +63,7 @@ from cratous.services.icarous_communication.state import (
     left_out,
     placed,
     plane,
+    tellable,
     turn_radius_of,
 )
 from cratous.services.icarous_communication.steering import (
@@ -74,7 +76,7 @@ from cratous.services.icarous_communication.steering import (
     told,
 )
 from cratous.services.pipeline.status import status
-from cratous.services.uxas.daidalus.zones import frame_at, surroundings
+from cratous.services.uxas.daidalus.zones import frame_at
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame, Position
 
@@ -198,8 +200,10 @@ class Communication:
         assert state.frame is not None
         craft = state.craft(vid)
         here = None if craft.air is None else craft.air.position
-        craft = replace(craft, plan=plan_of(command, plane(state.frame), now_ms, here))
-        state, more = self._route(state.put(vid, craft), vid)
+        plan = plan_of(command, plane(state.frame), now_ms, here)
+        if begins_as(plan, craft.plan):  # what a waypoint manager hands on is told already
+            return state, out
+        state, more = self._route(state.put(vid, replace(craft, plan=plan)), vid)
         return state, [*out, *more]
 
     def zone(self, state: State, body: Any) -> Step:
@@ -257,16 +261,16 @@ class Communication:
         return state, [*notes, *out]
 
     def _deviation(self, state: State, vid: int, away: Away, craft: Craft, air: AirState) -> Step:
-        """Its tasks, if any, pause when the vehicle is farther from its leg than is allowed, once a takeover."""
+        """Its tasks, if any, pause when the vehicle is farther from its leg than is allowed, once a takeover. The
+        original's client is not told the place: at a RESET_SFT it has its ICAROUS forget what it avoids."""
         plan = craft.plan
         if away.paused or not away.tasks or plan is None:
             return state, []
         if not deviates(plan, air.position, self.allowed_m):
             return state, []
         state = state.put(vid, replace(craft, away=away._replace(paused=True)))
-        point, out = resume_point(plan, away.left), list[Out]()
-        if point is not None:
-            state, out = self._end(state, Left(vid, point))
+        point = None if self.dialect is Dialect.ORIGINAL else resume_point(plan, away.left)
+        state, out = self._end(state, Left(vid, point)) if point else (state, [])
         paused = [Say(lmcp.new("TaskPause", TaskID=task), self.name) for task in away.tasks]
         text = f"vehicle {vid} is more than {self.allowed_m:g} m from its leg; tasks pause"
         return state, [*out, *paused, Note("INFO", f"{text}: {list(away.tasks)}")]
@@ -299,10 +303,8 @@ class Communication:
         left = Position(0.0, 0.0, 0.0) if craft.air is None else craft.air.position
         # an instance that comes again has had the vehicle all the time
         state = state.put(vid, replace(craft, away=craft.away or Away(left, tasks)))
-        return state, [
-            Note("WARN", f"vehicle {vid}: ICAROUS has it, in epoch {peer.gate.epoch}"),
-            *told(self.name, vid, now_ms, peer.gate),
-        ]
+        note = Note("WARN", f"vehicle {vid}: ICAROUS has it, in epoch {peer.gate.epoch}")
+        return state, [note, *told(self.name, vid, now_ms, peer.gate)]
 
     def _take_back(self, state: State, vid: int, epoch: int, now_ms: int) -> Step:
         """Tasks resume, the mission goes on, ICAROUS is told the way; without a mission it holds."""
@@ -324,6 +326,7 @@ class Communication:
         away, plan, air = craft.away, craft.plan, craft.air
         state = state.put(vid, replace(craft, away=None, holds=False, handed=True, waiting=None))
         if craft.waiting is not None:
+            state = state.put(vid, replace(state.craft(vid), plan=None))
             state, out = self._in_force(state, vid, craft.waiting, now_ms)
             return state, [Say(craft.waiting, self.name), *out]
         if plan is None or away is None or air is None or state.frame is None:
@@ -367,13 +370,10 @@ class Communication:
 
     def _by_uxas(self, state: State, vid: int, command: Any) -> list[Out]:
         """What UxAS commands a vehicle that has a gate here."""
-        peer = state.link.peer(vid)
-        fresh = self.dialect.ours and vid in state.fresh
-        return (
-            []
-            if peer is None or modes.unknown(peer, fresh)
-            else [at_gate(self.name, vid, peer.gate, UXAS, command)]
-        )
+        peer, fresh = state.link.peer(vid), self.dialect.ours and vid in state.fresh
+        if peer is None or modes.unknown(peer, fresh):
+            return []
+        return [at_gate(self.name, vid, peer.gate, UXAS, command)]
 
     def _free(self, state: State, vid: int) -> State:
         """It is heard: what made the vehicle hold is over."""
@@ -395,6 +395,6 @@ class Communication:
         """All zones to all instances."""
         if state.frame is None:
             return state, []
-        around = surroundings(state.frame, state.zones.values(), "MSL")
-        state, out = self._end(state, ZonesKnown(around.zones))
-        return state, [*out, *(Note("WARN", text) for text in around.missing)]
+        zones, notes = tellable(state.frame, state.zones.values(), self.dialect)
+        state, out = self._end(state, ZonesKnown(zones))
+        return state, [*out, *notes]

@@ -29,16 +29,8 @@ from cratous.bridge.text_protocol import (
     StartMission,
     Traffic,
 )
+from cratous.core.authority import gate as gates
 from cratous.core.authority.cycle import gate_wished
-from cratous.core.authority.gate import (
-    ICAROUS,
-    UXAS,
-    Gate,
-    epoch_given,
-    gate_accepts,
-    gate_after,
-    gate_offer,
-)
 from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.manoeuvre import PIECE_S, Ability, Motion
 from cratous.core.avoidance.prediction import Intruder
@@ -67,9 +59,9 @@ MOST_TRAFFIC = 500
 SPEEDS = (0.5, 2.0)
 """A speed below this part of the airframe's least, or above this multiple of its greatest, is no state
 of this airframe."""
-UNTOUCHED = Gate(UXAS, 0, False)
+UNTOUCHED = gates.Gate(gates.UXAS, 0, False)
 """UxAS commands, and has always done so."""
-OWNERS = {"UXAS": UXAS, "ICAROUS": ICAROUS}
+OWNERS = {"UXAS": gates.UXAS, "ICAROUS": gates.ICAROUS}
 ACTS = {OFFER: "offers control back", WITHDRAW: "withdraws its offer", TAKE_OVER: "takes over"}
 
 
@@ -125,7 +117,7 @@ class State:
     of which lines are asked for again."""
 
     instance: icarous.State = field(default_factory=icarous.State)
-    gate: Gate = UNTOUCHED
+    gate: gates.Gate = UNTOUCHED
     seen: Mapping[int, Seen] = field(default_factory=dict)
     now_ms: int | None = None
     beat_ms: int = 0
@@ -135,15 +127,15 @@ class State:
 Step = tuple[State, tuple[Answer, ...]]
 
 
-def resumed(gate: Gate) -> Gate:
+def resumed(gate: gates.Gate) -> gates.Gate:
     """The gate with which an instance that was started anew goes on, of the last one of the former: nobody steers for
     ICAROUS now, so what it had is offered back in a new epoch."""
-    return gate_offer(gate)
+    return gates.gate_offer(gate)
 
 
-def mode_of(gate: Gate) -> SetMode:
+def mode_of(gate: gates.Gate) -> SetMode:
     """What UxAS hears of a gate on a new connection."""
-    active = not gate_accepts(gate, UXAS, gate.epoch)
+    active = not gates.gate_accepts(gate, gates.UXAS, gate.epoch)
     return SetMode("ACTIVE" if active else "PASSIVE", gate.epoch)
 
 
@@ -191,11 +183,11 @@ class IcarousEnd:
     def _synchronised(self, state: State, line: EpochTold) -> Step:
         """UxAS knows a greater epoch: this instance was started anew. It goes on from there, and what ICAROUS
         had is offered back."""
-        if epoch_given(state.gate, line.epoch):
+        if gates.epoch_given(state.gate, line.epoch):
             return state, ()
-        if not epoch_given(MOST_TOLD, line.epoch):
+        if not gates.epoch_given(MOST_TOLD, line.epoch):
             return state, (Refuse("epoch after which there is no room for others", str(line)),)
-        state = replace(state, gate=resumed(Gate(OWNERS[line.owner], line.epoch, False)))
+        state = replace(state, gate=resumed(gates.Gate(OWNERS[line.owner], line.epoch, False)))
         text = (
             f"epoch {line.epoch} was given before this start: going on in epoch {state.gate.epoch}"
         )
@@ -272,7 +264,7 @@ class IcarousEnd:
 
     def _taken(self, state: State) -> Step:
         """UxAS commands the vehicle again, if it may."""
-        after = gate_after(state.gate, UXAS, state.gate.epoch)
+        after = gates.gate_after(state.gate, gates.UXAS, state.gate.epoch)
         if after == state.gate:
             return state, ()
         return replace(state, gate=after), (Note("INFO", f"epoch {after.epoch}: UxAS commands"),)

@@ -1,6 +1,6 @@
 """What a schema cannot say of a mission: names that exist, shapes that are shapes, fair starts.
 
-Each check gives its findings as `BadInput` in the user's terms; `where(item)` says in which file
+Each check gives its findings in the user's terms; `where(item)` says in which file
 (and line) an item like `zones[0].vertices` stands. Geometry is decided by the kernels on exact
 rationals, so a zone that merely touches itself is found too.
 """
@@ -10,7 +10,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator
 from fractions import Fraction
+from functools import wraps
 from math import hypot, isfinite
+from typing import NamedTuple
 
 from cratous.core.geofence.planar import edges_of, keep_in_leg_ok, keep_out_leg_ok, locate
 from cratous.core.kernel import Vec2
@@ -29,38 +31,55 @@ ONE_POINT = (
 )
 
 
+class Finding(NamedTuple):
+    """What is wrong with an item; at: the item that stands in the file, where it is another."""
+
+    item: str
+    what: str
+    expected: str
+    got: str
+    at: str = ""
+
+
+def _refused(
+    check: Callable[[Mission], Iterator[Finding]],
+) -> Callable[[Mission, Where], Iterator[BadInput]]:
+    """The check, with what it finds as errors that say where."""
+
+    @wraps(check)
+    def problems(mission: Mission, where: Where) -> Iterator[BadInput]:
+        for item, what, expected, got, at in check(mission):
+            yield BadInput(what, where=where(at or item), item=item, expected=expected, got=got)
+
+    return problems
+
+
 def mission_problems(mission: Mission, where: Where) -> list[BadInput]:
     """Everything wrong with the mission before its zones are padded."""
     found: list[BadInput] = []
     for check in (_ids, _vehicles, _powers, _tasks, _zones, _places, _numbers, _instances):
-        found.extend(check(mission, where))
+        found.extend(_refused(check)(mission, where))
     return found or list(relation_problems(mission, where))
 
 
-def _duplicates(items: list[tuple[str, int]], where: Where) -> Iterator[BadInput]:
+def _duplicates(items: list[tuple[str, int]]) -> Iterator[Finding]:
     counts = Counter(number for _, number in items)
     seen: set[int] = set()
     for item, number in items:
         if counts[number] > 1 and number in seen:
-            yield BadInput(
-                "an id is used twice",
-                where=where(item),
-                item=item,
-                expected="ids that differ",
-                got=str(number),
-            )
+            yield Finding(item, "an id is used twice", "ids that differ", str(number))
         seen.add(number)
 
 
-def _ids(mission: Mission, where: Where) -> Iterator[BadInput]:
+def _ids(mission: Mission) -> Iterator[Finding]:
     aircraft = [(f"vehicles[{k}].id", v.id) for k, v in enumerate(mission.vehicles)]
     aircraft += [(f"traffic[{k}].id", t.id) for k, t in enumerate(mission.traffic)]
-    yield from _duplicates(aircraft, where)
-    yield from _duplicates([(f"tasks[{k}].id", t.id) for k, t in enumerate(mission.tasks)], where)
-    yield from _duplicates([(f"zones[{k}].id", z.id) for k, z in enumerate(mission.zones)], where)
+    yield from _duplicates(aircraft)
+    yield from _duplicates([(f"tasks[{k}].id", t.id) for k, t in enumerate(mission.tasks)])
+    yield from _duplicates([(f"zones[{k}].id", z.id) for k, z in enumerate(mission.zones)])
 
 
-def _vehicles(mission: Mission, where: Where) -> Iterator[BadInput]:
+def _vehicles(mission: Mission) -> Iterator[Finding]:
     for k, vehicle in enumerate(mission.vehicles):
         low, high = vehicle.min_speed_m_s, vehicle.max_speed_m_s
         item = f"vehicles[{k}].speed_m_s"
@@ -77,109 +96,93 @@ def _vehicles(mission: Mission, where: Where) -> Iterator[BadInput]:
             if low > high:
                 most = vehicle.speed_m_s == low
                 expected = f"at most {high:g} m/s" if most else f"at least {low:g} m/s"
-        yield BadInput(what, where=where(item), item=item, expected=expected, got=f"{got:g} m/s")
+        yield Finding(item, what, expected, f"{got:g} m/s")
 
 
-def _powers(mission: Mission, where: Where) -> Iterator[BadInput]:
+def _powers(mission: Mission) -> Iterator[Finding]:
     for k, vehicle in enumerate(mission.vehicles):
         if mission.cost == "ENERGY" and vehicle.power_w is None:
-            yield BadInput(
-                f"the cost ENERGY needs what vehicle {vehicle.id} draws in flight",
-                where=where(f"vehicles[{k}]"),
-                item=f"vehicles[{k}].power_w",
-                expected="a number of watts",
-                got="nothing",
-            )
+            what = f"the cost ENERGY needs what vehicle {vehicle.id} draws in flight"
+            item = f"vehicles[{k}].power_w"
+            yield Finding(item, what, "a number of watts", "nothing", at=f"vehicles[{k}]")
 
 
-def _tasks(mission: Mission, where: Where) -> Iterator[BadInput]:
+def _tasks(mission: Mission) -> Iterator[Finding]:
     ids = [vehicle.id for vehicle in mission.vehicles]
     for k, task in enumerate(mission.tasks):
         item = f"tasks[{k}].eligible"
         for unknown in (number for number in task.eligible if number not in ids):
-            yield BadInput(
+            yield Finding(
+                item,
                 f"task {task.id} names an eligible vehicle that does not exist",
-                where=where(item),
-                item=item,
-                expected="one of " + ", ".join(map(str, ids)),
-                got=str(unknown),
+                "one of " + ", ".join(map(str, ids)),
+                str(unknown),
             )
         item = f"tasks[{k}].points"
         if task.kind in ONE_POINT and len(task.points) != 1:
-            yield BadInput(
-                f"a {task.kind} task has one point",
-                where=where(item),
-                item=item,
-                expected="1 point",
-                got=f"{len(task.points)}",
+            yield Finding(
+                item, f"a {task.kind} task has one point", "1 point", f"{len(task.points)}"
             )
         if task.kind == TaskKind.LINE_SEARCH and len(set(task.points)) < 2:
-            yield BadInput(
+            yield Finding(
+                item,
                 "a line_search task needs a line",
-                where=where(item),
-                item=item,
-                expected="2 or more different points",
-                got=f"{len(set(task.points))}",
+                "2 or more different points",
+                f"{len(set(task.points))}",
             )
         if task.kind == TaskKind.AREA_SEARCH:
             problem = polygon_problem([point[:2] for point in task.points])
             if problem:
-                yield BadInput(
+                yield Finding(
+                    item,
                     f"the area of task {task.id} is not a valid polygon: {problem}",
-                    where=where(item),
-                    item=item,
-                    expected="a simple polygon, edges meeting only at shared corners",
-                    got=problem,
+                    "a simple polygon, edges meeting only at shared corners",
+                    problem,
                 )
         if task.kind == TaskKind.PATTERN_SEARCH and task.pattern is None:
             item = f"tasks[{k}].pattern"
-            yield BadInput(
+            yield Finding(
+                item,
                 "a pattern_search task needs a pattern",
-                where=where(item),
-                item=item,
-                expected="one of " + ", ".join(Pattern),
-                got="none",
+                "one of " + ", ".join(Pattern),
+                "none",
             )
         if task.kind == TaskKind.PATTERN_SEARCH and not task.extent_m > 0:
             item = f"tasks[{k}].extent_m"
-            yield BadInput(
+            yield Finding(
+                item,
                 "a pattern_search task needs an extent",
-                where=where(item),
-                item=item,
-                expected="more than 0 m",
-                got=f"{task.extent_m:g} m",
+                "more than 0 m",
+                f"{task.extent_m:g} m",
             )
         if task.kind == TaskKind.LOITER and task.duration_ms <= 0:
             item = f"tasks[{k}].duration_s"
-            yield BadInput(
+            yield Finding(
+                item,
                 "a loiter task needs a duration",
-                where=where(item),
-                item=item,
-                expected="more than 0 s",
-                got=f"{task.duration_ms / 1000:g} s",
+                "more than 0 s",
+                f"{task.duration_ms / 1000:g} s",
             )
 
 
-def _zones(mission: Mission, where: Where) -> Iterator[BadInput]:
+def _zones(mission: Mission) -> Iterator[Finding]:
     for k, zone in enumerate(mission.zones):
         item = f"zones[{k}].vertices"
         problem = polygon_problem(zone.vertices)
         if problem:
-            yield BadInput(
+            yield Finding(
+                item,
                 f"zone {zone.id} is not a valid polygon: {problem}",
-                where=where(item),
-                item=item,
-                expected="a simple polygon, edges meeting only at shared corners",
-                got=problem,
+                "a simple polygon, edges meeting only at shared corners",
+                problem,
             )
         if zone.floor_m >= zone.ceiling_m:
             item = f"zones[{k}].ceiling_m"
-            yield BadInput(
+            yield Finding(
+                item,
                 f"zone {zone.id} has no height",
-                where=where(item),
-                item=item,
-                expected=f"a ceiling above the floor of {zone.floor_m:g} m",
-                got=f"{zone.ceiling_m:g} m",
+                f"a ceiling above the floor of {zone.floor_m:g} m",
+                f"{zone.ceiling_m:g} m",
             )
 
 
@@ -200,7 +203,7 @@ def _points(mission: Mission) -> Iterator[tuple[str, tuple[float, ...]]]:
         yield f"traffic[{k}].position", traffic.position
 
 
-def _places(mission: Mission, where: Where) -> Iterator[BadInput]:
+def _places(mission: Mission) -> Iterator[Finding]:
     frame = mission.frame
     for item, point in _points(mission):
         north, east = point[0], point[1]
@@ -208,59 +211,45 @@ def _places(mission: Mission, where: Where) -> Iterator[BadInput]:
             continue
         distance = hypot(north, east)
         if distance > MAX_REACH_M:
-            yield BadInput(
+            yield Finding(
+                item,
                 "too far from the frame's origin",
-                where=where(item),
-                item=item,
-                expected=f"at most {MAX_REACH_M / 1000:g} km",
-                got=f"{distance / 1000:.1f} km",
+                f"at most {MAX_REACH_M / 1000:g} km",
+                f"{distance / 1000:.1f} km",
             )
         near = max(abs(frame.latitude_deg), abs(frame.longitude_deg)) > 3
         if near and abs(north - frame.latitude_deg) < 1 and abs(east - frame.longitude_deg) < 1:
-            yield BadInput(
+            yield Finding(
+                item,
                 "degrees where metres are meant",
-                where=where(item),
-                item=item,
-                expected="north_m and east_m from the frame's origin, "
-                "or latitude_deg and longitude_deg",
-                got=f"{north:g}, {east:g}, which is the frame's own latitude and longitude",
+                "north_m and east_m from the frame's origin, or latitude_deg and longitude_deg",
+                f"{north:g}, {east:g}, which is the frame's own latitude and longitude",
             )
 
 
-def _numbers(mission: Mission, where: Where) -> Iterator[BadInput]:
+def _numbers(mission: Mission) -> Iterator[Finding]:
     for item, point in _points(mission):
         if not all(isfinite(value) for value in point):
-            yield BadInput(
-                "not a finite number",
-                where=where(item),
-                item=item,
-                expected="finite numbers",
-                got=", ".join(map(repr, point)),
+            yield Finding(
+                item, "not a finite number", "finite numbers", ", ".join(map(repr, point))
             )
     volume = mission.daa.well_clear
     for name in ("dthr_m", "zthr_m", "tthr_s", "tcoa_s"):
         value = getattr(volume, name)
         if not (isfinite(value) and value >= 0):
             item = f"daa.well_clear.{name}"
-            yield BadInput(
-                "a threshold is negative or not finite",
-                where=where(item),
-                item=item,
-                expected="0 or more",
-                got=f"{value:g}",
-            )
+            yield Finding(item, "a threshold is negative or not finite", "0 or more", f"{value:g}")
 
 
-def _instances(mission: Mission, where: Where) -> Iterator[BadInput]:
+def _instances(mission: Mission) -> Iterator[Finding]:
     known = [vehicle.id for vehicle in mission.vehicles]
     for number in mission.instances:
         if number not in known:
-            yield BadInput(
+            yield Finding(
+                "bridge.instances",
                 "an ICAROUS instance for a vehicle that does not exist",
-                where=where("bridge.instances"),
-                item="bridge.instances",
-                expected=", ".join(map(str, known)),
-                got=str(number),
+                ", ".join(map(str, known)),
+                str(number),
             )
 
 
@@ -300,33 +289,33 @@ def relation_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
             )
 
 
-def change_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
+@_refused
+def change_problems(mission: Mission) -> Iterator[Finding]:
     """Changes in flight of vehicles or tasks that do not exist, and a mission that begins empty."""
     vehicles, tasks = {v.id for v in mission.vehicles}, {t.id for t in mission.tasks}
     for k, change in enumerate(mission.changes):
         known = vehicles if change.vehicle else tasks
         number = change.vehicle or change.task
         if number and number not in known:
-            yield BadInput(
+            yield Finding(
+                f"changes[{k}].{change.kind}",
                 f"{'vehicle' if change.vehicle else 'task'} {number} does not exist",
-                where=where(f"changes[{k}].{change.kind}"),
-                item=f"changes[{k}].{change.kind}",
-                expected="one of " + ", ".join(map(str, sorted(known))),
-                got=str(number),
+                "one of " + ", ".join(map(str, sorted(known))),
+                str(number),
             )
     later = [c for c in mission.changes if c.kind in (changes.TASK_ADDED, changes.VEHICLE_JOINS)]
     for all_of, name in ((vehicles, "vehicle"), (tasks, "task")):
         if all_of and all_of <= {getattr(c, name) for c in later}:
-            yield BadInput(
+            yield Finding(
+                "changes",
                 f"the mission begins without a {name}",
-                where=where("changes"),
-                item="changes",
-                expected=f"a {name} that takes part from the start",
-                got="all of them come later",
+                f"a {name} that takes part from the start",
+                "all of them come later",
             )
 
 
-def zone_end_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
+@_refused
+def zone_end_problems(mission: Mission) -> Iterator[Finding]:
     """Ends in flight of zones that do not exist, have ended before, or bind no leg until then."""
     step_ms = mission.simulation.step_ms
     known = {zone.id: 0 for zone in mission.zones}
@@ -352,28 +341,28 @@ def zone_end_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
         else:
             ended[number] = change.at_ms
             continue
-        yield BadInput(what, where=where(item), item=item, expected=expected, got=got)
+        yield Finding(item, what, expected, got)
 
 
-def start_problems(mission: Mission, where: Where) -> Iterator[BadInput]:
+@_refused
+def start_problems(mission: Mission) -> Iterator[Finding]:
     """Vehicles whose start is inside a keep-out or not inside a keep-in (padding included)."""
     for k, vehicle in enumerate(mission.vehicles):
         for zone in mission.zones:
             if not start_is_allowed(vehicle.position, zone):
                 out = zone.kind == ZoneKind.KEEP_OUT
                 item = f"vehicles[{k}].position"
-                yield BadInput(
+                yield Finding(
+                    item,
                     f"vehicle {vehicle.id} starts "
                     + (
                         f"inside keep-out zone {zone.id}"
                         if out
                         else f"outside keep-in zone {zone.id}"
                     ),
-                    where=where(item),
-                    item=item,
-                    expected=f"a start {'outside' if out else 'strictly inside'} it"
+                    f"a start {'outside' if out else 'strictly inside'} it"
                     + f" (between {zone.floor_m:g} and {zone.ceiling_m:g} m MSL)",
-                    got=_place(vehicle.position),
+                    _place(vehicle.position),
                 )
 
 

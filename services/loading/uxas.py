@@ -7,7 +7,7 @@ zones of its operating region bind. Whatever has no counterpart here is refused 
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -299,30 +299,26 @@ def _named_only(tasks: list[Task], request: Sent, notes: list[str]) -> list[Task
     return [task for task in tasks if task.id in named]
 
 
+def _unknown(what: str, where: str, item: str, known: Iterable[int], got: int) -> BadInput:
+    names = ", ".join(map(str, sorted(known))) or "none"
+    return BadInput(what, where=where, item=item, expected=f"one of {names}", got=str(got))
+
+
 def _zones(cast: _Cast, request: Sent, notes: list[str]) -> list[Sent]:
     """The zones of the request's operating region; the others do not bind."""
     number = request.body.OperatingRegion
     named: list[int] = []
     if number:
         if number not in cast.regions:
-            raise BadInput(
-                f"operating region {number} does not exist",
-                where=request.where,
-                item="OperatingRegion",
-                expected="one of " + (", ".join(map(str, sorted(cast.regions))) or "none"),
-                got=str(number),
-            )
+            what = f"operating region {number} does not exist"
+            raise _unknown(what, request.where, "OperatingRegion", cast.regions, number)
         region = cast.regions[number]
         named = [*region.body.KeepInAreas, *region.body.KeepOutAreas]
         for zone in named:
             if zone not in cast.zones:
-                raise BadInput(
-                    f"zone {zone} of operating region {number} does not exist",
-                    where=region.where,
-                    item="KeepInAreas, KeepOutAreas",
-                    expected="one of " + (", ".join(map(str, sorted(cast.zones))) or "none"),
-                    got=str(zone),
-                )
+                what = f"zone {zone} of operating region {number} does not exist"
+                item = "KeepInAreas, KeepOutAreas"
+                raise _unknown(what, region.where, item, cast.zones, zone)
     idle = [str(zone) for zone in cast.zones if zone not in named]
     if idle:
         notes.append(f"zones outside the operating region, so not binding: {', '.join(idle)}")

@@ -96,6 +96,11 @@ class Entry:
         file = self.where.rpartition(":")[0]
         return f"{file}:{element.sourceline}" if file else self.where
 
+    def refusal(self, what: str, attribute: str, expected: str, got: str) -> BadInput:
+        """The error that says what is wrong with an attribute."""
+        item = f"{self.type}.{attribute}"
+        return BadInput(what, where=self.where, item=item, expected=expected, got=got)
+
 
 @dataclass(frozen=True)
 class Configuration:

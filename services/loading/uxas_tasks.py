@@ -144,20 +144,22 @@ def task(
     )
 
 
+def _not_below_0(reading: _Reading, field: str, what: str, unit: str) -> float:
+    value = float(getattr(reading.body, field))
+    if not (isfinite(value) and value >= 0):
+        raise reading.refused(
+            f"{reading.name} has no {what}", field, f"0 or more {unit}", f"{value:g}"
+        )
+    return value
+
+
 def _search(reading: _Reading, kind: TaskKind) -> dict[str, Any]:
     """What all search tasks say: dwell, wavelength, ground sample distance."""
     body, notes = reading.body, reading.notes
     bands = [band.name for band in body.DesiredWavelengthBands]
     if len(bands) > 1:
         notes.append(f"{reading.name}: any of the bands {', '.join(bands)} will do")
-    gsd = float(body.GroundSampleDistance)
-    if not (isfinite(gsd) and gsd >= 0):
-        raise reading.refused(
-            f"{reading.name} has no ground sample distance",
-            "GroundSampleDistance",
-            "0 or more meters a pixel",
-            f"{gsd:g}",
-        )
+    gsd = _not_below_0(reading, "GroundSampleDistance", "ground sample distance", "meters a pixel")
     if body.DwellTime > 0 and kind is not TaskKind.POINT_SEARCH:
         notes.append(f"{reading.name}: its dwell of {body.DwellTime} ms at any point is not held")
     return {
@@ -212,14 +214,7 @@ def _point(reading: _Reading) -> dict[str, Any]:
     body = reading.body
     impact = type(body).__name__ == "ImpactPointSearchTask"
     place = _place(reading) if impact else reading.point(body.SearchLocation, "SearchLocation")
-    standoff = float(body.StandoffDistance)
-    if not (isfinite(standoff) and standoff >= 0):
-        raise reading.refused(
-            f"{reading.name} has no standoff",
-            "StandoffDistance",
-            "0 or more meters",
-            f"{standoff:g}",
-        )
+    standoff = _not_below_0(reading, "StandoffDistance", "standoff", "meters")
     found = {
         "kind": TaskKind.POINT_SEARCH,
         "points": (place,),

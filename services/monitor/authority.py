@@ -14,25 +14,16 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from cratous.core.authority.gate import (
-    ICAROUS,
-    UXAS,
-    Gate,
-    epoch_given,
-    gate_accepts,
-    gate_after,
-    gate_offer,
-    gate_takeover,
-)
+from cratous.core.authority import gate as gates
 from cratous.core.kernel import qualified
 from cratous.services.monitor.required_rows import authority_item
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Kind, Outcome, Verdict
 
-NAMES = {UXAS: "UxAS", ICAROUS: "ICAROUS"}
-ON_COMMAND = {qualified(gate_accepts), qualified(gate_after)}
-ON_STATE = {qualified(gate_after)}
-ON_CHANGE = {qualified(gate_takeover), qualified(gate_offer)}
+NAMES = {gates.UXAS: "UxAS", gates.ICAROUS: "ICAROUS"}
+ON_COMMAND = {qualified(gates.gate_accepts), qualified(gates.gate_after)}
+ON_STATE = {qualified(gates.gate_after)}
+ON_CHANGE = {qualified(gates.gate_takeover), qualified(gates.gate_offer)}
 """What is asked about a command, a state of the gate, and one that no command led to."""
 
 
@@ -43,7 +34,7 @@ class Command:
     why its link is down, as was said last, empty while it is not; unended: the takeover that a link that is
     down has left open at the end, empty if there is none."""
 
-    gate: Gate = field(default_factory=lambda: Gate(UXAS, 0, False))
+    gate: gates.Gate = field(default_factory=lambda: gates.Gate(gates.UXAS, 0, False))
     due: str = ""
     changes: int = 0
     takeovers: int = 0
@@ -76,8 +67,8 @@ class AuthorityWatch:
             return
         if short == "CommandDropped":
             seen.dropped += 1
-            seen.forged += not epoch_given(seen.gate, body.Epoch)
-            seen.kernels.add(qualified(epoch_given))
+            seen.forged += not gates.epoch_given(seen.gate, body.Epoch)
+            seen.kernels.add(qualified(gates.epoch_given))
             if seen.due != "drop":
                 seen.faults.append((time_ms, "a command was dropped that had authority"))
             seen.due = ""
@@ -99,11 +90,11 @@ class AuthorityWatch:
             seen.down = f"down since {body.Time / 1000:.2f} s ({body.Note})"
 
     def _command(self, seen: Command, body: Any) -> None:
-        sender = ICAROUS if body.Sender.name == "ICAROUS" else UXAS
+        sender = gates.ICAROUS if body.Sender.name == "ICAROUS" else gates.UXAS
         seen.commands += 1
         seen.kernels |= ON_COMMAND
-        accepted = gate_accepts(seen.gate, sender, body.Epoch)
-        after = gate_after(seen.gate, sender, body.Epoch)
+        accepted = gates.gate_accepts(seen.gate, sender, body.Epoch)
+        after = gates.gate_after(seen.gate, sender, body.Epoch)
         seen.due = "state" if after != seen.gate else "" if accepted else "drop"
 
     def _missing(self, seen: Command, time_ms: int) -> None:
@@ -116,24 +107,24 @@ class AuthorityWatch:
         seen.due = ""
 
     def _state(self, seen: Command, body: Any, time_ms: int) -> None:
-        owner = ICAROUS if body.Owner.name == "ICAROUS" else UXAS
-        now, before = Gate(owner, body.Epoch, body.Offered), seen.gate
+        owner = gates.ICAROUS if body.Owner.name == "ICAROUS" else gates.UXAS
+        now, before = gates.Gate(owner, body.Epoch, body.Offered), seen.gate
         seen.kernels |= ON_STATE
-        handback = gate_after(before, UXAS, before.epoch)
-        allowed: tuple[Gate, ...] = (handback,)
+        handback = gates.gate_after(before, gates.UXAS, before.epoch)
+        allowed: tuple[gates.Gate, ...] = (handback,)
         if seen.due != "state":
             self._missing(seen, time_ms)
             seen.kernels |= ON_CHANGE
-            allowed = (gate_takeover(before), gate_offer(before))
+            allowed = (gates.gate_takeover(before), gates.gate_offer(before))
         if now not in allowed:
             text = f"the gate went from {_said(before)} to {_said(now)}"
             seen.faults.append((time_ms, text))
         seen.due, seen.gate = "", now
         seen.changes += 1
-        if before.owner == UXAS and now.owner == ICAROUS:
+        if before.owner == gates.UXAS and now.owner == gates.ICAROUS:
             seen.takeovers += 1
             seen.open_ms = time_ms
-        elif now.owner == UXAS and seen.open_ms is not None:
+        elif now.owner == gates.UXAS and seen.open_ms is not None:
             seen.longest_ms = max(seen.longest_ms, time_ms - seen.open_ms)
             seen.open_ms = None
 
@@ -191,6 +182,6 @@ class AuthorityWatch:
         return found
 
 
-def _said(gate: Gate) -> str:
+def _said(gate: gates.Gate) -> str:
     offered = ", offered" if gate.offered else ""
     return f"{NAMES.get(gate.owner, gate.owner)} in epoch {gate.epoch}{offered}"

@@ -1,4 +1,4 @@
-"""Kinds of tasks that keep to what moves. They follow messages, so `cratous uxas` alone does them."""
+"""Kinds of tasks that keep to what moves, or to each other. They follow messages, so `cratous uxas` alone does them."""
 
 from __future__ import annotations
 
@@ -6,10 +6,14 @@ WATCH = "afrl.impact.WatchTask"
 MANY = "afrl.impact.MultiVehicleWatchTask"
 ESCORT = "afrl.impact.EscortTask"
 BLOCKADE = "afrl.impact.BlockadeTask"
+RELAY = "afrl.impact.CommRelayTask"
+RENDEZVOUS = "uxas.messages.task.RendezvousTask"
 FOLLOWED = {
     MANY: "MultiVehicleWatchTaskService",
     ESCORT: "EscortTaskService",
     BLOCKADE: "BlockadeTaskService",
+    RELAY: "CommRelayTaskService",
+    RENDEZVOUS: "RendezvousTaskService",
 }
 """Full names of types, and those of their services; a WatchTask is one of them where what it watches moves."""
 WATCH_SERVICE = "WatchTaskService"

@@ -32,18 +32,13 @@ def offer(context: Context, task_id: int, options: Sequence[Option]) -> Any:
 
 
 def _option(places: RequestPlaces, option: Option) -> Any:
-    start, start_deg = places.sent(option.start)
-    end, end_deg = places.sent(option.end)
     return lmcp.new(
         "TaskOption",
         TaskID=option.task_id,
         OptionID=option.option_id,
         EligibleEntities=list(option.vehicles),
         Cost=option.duration_ms,
-        StartLocation=start,
-        StartHeading=start_deg,
-        EndLocation=end,
-        EndHeading=end_deg,
+        **places.ends(option.start, option.end),
     )
 
 

@@ -71,6 +71,16 @@ class RequestPlaces:
         self._poses[_spot(made), heading_deg] = pose
         return made, heading_deg
 
+    def ends(self, start: Pose, end: Pose) -> dict[str, Any]:
+        """Where a way begins and ends, as the four fields that messages have for it."""
+        (place, heading_deg), (last, last_deg) = self.sent(start), self.sent(end)
+        return {
+            "StartLocation": place,
+            "StartHeading": heading_deg,
+            "EndLocation": last,
+            "EndHeading": last_deg,
+        }
+
     def exact(self, location: Any, heading_deg: float) -> Pose | None:
         """The pose that was sent as this Location3D and heading, None if none was."""
         return None if location is None else self._poses.get((_spot(location), heading_deg))

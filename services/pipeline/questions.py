@@ -143,13 +143,5 @@ def route_requests(context: Context, task_id: int, options: list[Option], ticket
 
 def _through(places: RequestPlaces, option: Option) -> Any:
     """The way from where an option begins to where it ends."""
-    start, start_deg = places.sent(option.start)
-    end, end_deg = places.sent(option.end)
-    return lmcp.new(
-        "RouteConstraints",
-        RouteID=option.option_id,
-        StartLocation=start,
-        StartHeading=start_deg,
-        EndLocation=end,
-        EndHeading=end_deg,
-    )
+    ends = places.ends(option.start, option.end)
+    return lmcp.new("RouteConstraints", RouteID=option.option_id, **ends)

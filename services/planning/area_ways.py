@@ -9,6 +9,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from cratous.core.geofence.mission_legs import first_bad_leg
@@ -264,13 +265,14 @@ def _candidates(site: _Site, view: View | None, lead_m: float) -> list[Candidate
                 f"that covers squares of {site.side_m:.0f} m"
             )
         width = min(width, seen.width_m)
-    made = {
+    ways: dict[Pattern | None, Callable[[_Site, SwathOf, float, float], list[Candidate]]] = {
         None: _lanes,
         Pattern.SWEEP: _lanes,
-        Pattern.SQUARE: _square,
-        Pattern.SECTOR: _sector,
+        Pattern.SQUARE: _Figure("square", square_spiral, 90),
+        Pattern.SECTOR: _Figure("sectors", sector, 60),
         Pattern.SPIRAL: _spiral,
-    }[site.task.pattern](site, swath_of, width, lead_m)
+    }
+    made = ways[site.task.pattern](site, swath_of, width, lead_m)
     if not made:
         return f"more than {LANES_MOST} lanes of {width:.0f} m would be needed"
     return [_from_start(site, candidate) for candidate in made]
@@ -328,24 +330,24 @@ def _lanes(site: _Site, swath_of: SwathOf, width: float, lead_m: float) -> list[
     return found
 
 
-def _square(site: _Site, swath_of: SwathOf, width: float, lead_m: float) -> list[Candidate]:
-    centre, found = site.task.points[0][:2], []
-    for degrees in range(0, 360, 90):
-        parts = square_spiral(centre, site.task.extent_m, width, math.radians(degrees))
-        if parts:
-            pieces = along(parts, swath_of, site.flyer.alt_m, lead_m)
-            found.append(_candidate(site, f"square from heading {degrees} deg", pieces))
-    return found
+@dataclass(frozen=True)
+class _Figure:
+    """A pattern that is flown from any of some headings: its name, its legs, and how far they are apart [deg]."""
 
+    name: str
+    legs: Callable[..., list[Any]]
+    apart_deg: int
 
-def _sector(site: _Site, swath_of: SwathOf, width: float, lead_m: float) -> list[Candidate]:
-    centre, found = site.task.points[0][:2], []
-    for degrees in range(0, 360, 60):
-        parts = sector(centre, site.task.extent_m, width, math.radians(degrees))
-        if parts:
-            pieces = along(parts, swath_of, site.flyer.alt_m, lead_m)
-            found.append(_candidate(site, f"sectors from heading {degrees} deg", pieces))
-    return found
+    def __call__(
+        self, site: _Site, swath_of: SwathOf, width: float, lead_m: float
+    ) -> list[Candidate]:
+        centre, found = site.task.points[0][:2], []
+        for degrees in range(0, 360, self.apart_deg):
+            parts = self.legs(centre, site.task.extent_m, width, math.radians(degrees))
+            if parts:
+                pieces = along(parts, swath_of, site.flyer.alt_m, lead_m)
+                found.append(_candidate(site, f"{self.name} from heading {degrees} deg", pieces))
+        return found
 
 
 def _spiral(site: _Site, swath_of: SwathOf, width: float, lead_m: float) -> list[Candidate]:

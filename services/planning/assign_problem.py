@@ -27,18 +27,9 @@ from cratous.core.assignment.instance import (
 from cratous.core.assignment.layers import look_ahead
 from cratous.core.assignment.settlement import Settler
 from cratous.core.schedule.rows import runs_forward
-from cratous.spec import algebra
+from cratous.spec import algebra, constraint_rows
 from cratous.spec.algebra import meaning as algebra_meaning
 from cratous.spec.assignment.search import ORDER, TIME, AssignmentProblem, Rows
-from cratous.spec.constraint_rows import (
-    AFTER_END,
-    AFTER_START,
-    NOT_AFTER,
-    NOT_BEFORE,
-    WITHIN_END,
-    WITHIN_START,
-    Row,
-)
 from cratous.spec.errors import BadInput
 
 BRANCHES_MAX = 4096
@@ -52,7 +43,7 @@ class Part:
 
     term: algebra.Term
     tasks: tuple[int, ...]
-    rows: tuple[Row, ...]
+    rows: tuple[constraint_rows.Row, ...]
     orders: int
     choices: tuple[int, ...]
     plain: bool
@@ -201,7 +192,7 @@ def parts(problem: AssignmentProblem) -> tuple[tuple[Part, ...], bool]:
 
 def _rows(
     problem: AssignmentProblem, term: algebra.Term, flown: set[int]
-) -> tuple[tuple[Row, ...], int]:
+) -> tuple[tuple[constraint_rows.Row, ...], int]:
     """The rows about tasks still to do, those of order first, and how many these are."""
     times = {task: (start, end) for task, start, end in problem.done}
     order = algebra_meaning.rows(untimed(term))
@@ -220,7 +211,9 @@ def untimed(term: algebra.Term) -> algebra.Term:
     return replace(term, suffix=None, operands=tuple(untimed(part) for part in term.operands))
 
 
-def _without(row: Row, times: Mapping[int, tuple[int, int]], binds: bool) -> tuple[Row, ...]:
+def _without(
+    row: constraint_rows.Row, times: Mapping[int, tuple[int, int]], binds: bool
+) -> tuple[constraint_rows.Row, ...]:
     """What a row says once some of its group are flown; no task to come starts before those did.
 
     binds: a row of order binds times too; else it is met by what is flown.
@@ -229,32 +222,44 @@ def _without(row: Row, times: Mapping[int, tuple[int, int]], binds: bool) -> tup
     left = tuple(task for task in row.group if task not in times)
     if not gone:
         return (row,)
-    if row.kind == AFTER_END:
-        known = row._replace(kind=NOT_BEFORE, group=(), lo=max(e for _, e in gone) + row.lo)
+    if row.kind == constraint_rows.AFTER_END:
+        known = row._replace(
+            kind=constraint_rows.NOT_BEFORE, group=(), lo=max(e for _, e in gone) + row.lo
+        )
         return (*((known,) if binds else ()), *((row._replace(group=left),) if left else ()))
-    if row.kind == AFTER_START:
-        known = row._replace(kind=NOT_BEFORE, group=(), lo=min(s for s, _ in gone) + row.lo)
+    if row.kind == constraint_rows.AFTER_START:
+        known = row._replace(
+            kind=constraint_rows.NOT_BEFORE, group=(), lo=min(s for s, _ in gone) + row.lo
+        )
         return (known,) if binds else ()
-    if row.kind == WITHIN_START:
-        return (row._replace(kind=NOT_AFTER, group=(), hi=min(s for s, _ in gone) + row.hi),)
-    if row.kind == WITHIN_END and not left:
-        return (row._replace(kind=NOT_AFTER, group=(), hi=max(e for _, e in gone) + row.hi),)
+    if row.kind == constraint_rows.WITHIN_START:
+        return (
+            row._replace(
+                kind=constraint_rows.NOT_AFTER, group=(), hi=min(s for s, _ in gone) + row.hi
+            ),
+        )
+    if row.kind == constraint_rows.WITHIN_END and not left:
+        return (
+            row._replace(
+                kind=constraint_rows.NOT_AFTER, group=(), hi=max(e for _, e in gone) + row.hi
+            ),
+        )
     return (row,)
 
 
-def _windows(problem: AssignmentProblem, tasks: Sequence[int]) -> tuple[Row, ...]:
+def _windows(problem: AssignmentProblem, tasks: Sequence[int]) -> tuple[constraint_rows.Row, ...]:
     found = [
-        Row(NOT_BEFORE, t, (), at, 0, f"task {t} is released at {at} ms")
+        constraint_rows.Row(constraint_rows.NOT_BEFORE, t, (), at, 0, f"task {t} is released at {at} ms")
         for t, at in problem.release_ms if t in tasks
     ]  # fmt: skip
     found += [
-        Row(NOT_AFTER, t, (), 0, at, f"task {t} is due by {at} ms")
+        constraint_rows.Row(constraint_rows.NOT_AFTER, t, (), 0, at, f"task {t} is due by {at} ms")
         for t, at in problem.due_ms if t in tasks
     ]  # fmt: skip
     return tuple(found)
 
 
-def binding(problem: AssignmentProblem, part: Part) -> tuple[Row, ...]:
+def binding(problem: AssignmentProblem, part: Part) -> tuple[constraint_rows.Row, ...]:
     """The rows that bind times: in semantics `order` those of order alone do not."""
     return part.rows[part.orders :] if problem.semantics == ORDER else part.rows
 
@@ -285,7 +290,11 @@ def arrays(problem: AssignmentProblem, part: Part) -> Instance:
         row
         for k, row in enumerate(part.rows)
         if is_plain((row,))
-        and (k < part.orders or p.semantics == TIME or row.kind in (NOT_BEFORE, NOT_AFTER))
+        and (
+            k < part.orders
+            or p.semantics == TIME
+            or row.kind in (constraint_rows.NOT_BEFORE, constraint_rows.NOT_AFTER)
+        )
     ]
     fleet = Fleet(p.ready_ms, may, travel, added)
     return instance(part.tasks, plain, options, fleet, weight, p.semantics == TIME)
@@ -293,7 +302,10 @@ def arrays(problem: AssignmentProblem, part: Part) -> Instance:
 
 def is_exact(problem: AssignmentProblem, part: Part) -> bool:
     """Whether the arrays say all of the branch."""
-    lagged = any(row.kind in (AFTER_END, AFTER_START) for row in part.rows[part.orders :])
+    lagged = any(
+        row.kind in (constraint_rows.AFTER_END, constraint_rows.AFTER_START)
+        for row in part.rows[part.orders :]
+    )
     return part.plain and not (problem.semantics == ORDER and lagged)
 
 

@@ -8,11 +8,8 @@ import signal
 import socket
 import subprocess
 import sys
-import threading
 import time
 from collections import deque
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 
@@ -20,6 +17,7 @@ import cratous
 from cratous.bridge.port import is_due
 from cratous.bridge.text_protocol.handshake import SECRET_VARIABLE
 from cratous.services.processes.leash import ENDS_WITH
+from cratous.services.results.undisturbed import undisturbed
 from cratous.spec.errors import CratousError
 
 GRACE_S = 5.0
@@ -55,7 +53,8 @@ class Children:
     """The processes of one flight; leaving the context ends all that still run. logs: what each says, as
     NAME.txt; work: their present folder."""
 
-    def __init__(self, logs: Path, work: Path) -> None:
+    def __init__(self, logs: Path, work: Path, own_secret: bool = True) -> None:
+        """own_secret: of the bridge's handshake, for this flight alone; else that of the environment."""
         self._logs, self._work = logs, work
         place = str(Path(cratous.__file__).absolute().parents[1])
         paths = [place, *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
@@ -64,10 +63,10 @@ class Children:
             "PYTHONUNBUFFERED": "1",
             # the same program, whatever the present folder
             "PYTHONPATH": os.pathsep.join(path for path in paths if path),
-            # of this flight alone: a stranger cannot be one of its ICAROUS instances
-            SECRET_VARIABLE: secrets.token_hex(32),
             ENDS_WITH: str(os.getpid()),
         }
+        if own_secret:  # a stranger cannot be one of its ICAROUS instances
+            self._environment[SECRET_VARIABLE] = secrets.token_hex(32)
         self.running: dict[str, subprocess.Popen[bytes]] = {}
 
     def __enter__(self) -> Children:
@@ -79,7 +78,7 @@ class Children:
         _error: BaseException | None,
         _trace: TracebackType | None,
     ) -> None:
-        with _undisturbed():
+        with undisturbed():  # asked to end twice, it leaves no process behind
             self.end()
 
     def start(self, name: str, *arguments: str) -> int:
@@ -125,21 +124,3 @@ class Children:
                 child.kill()
             child.wait()
         return {name: int(child.returncode) for name, child in self.running.items()}
-
-
-@contextmanager
-def _undisturbed() -> Iterator[None]:
-    """In here signals that ask to end wait: one that is given twice leaves no process behind."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    came: list[int] = []
-    numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-    before = {n: signal.signal(n, lambda number, _frame: came.append(number)) for n in numbers}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-        for again in came[:1]:
-            signal.raise_signal(again)

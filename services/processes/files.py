@@ -35,6 +35,12 @@ TO_RECORDER = (
 TO_SIMULATOR = ("afrl.cmasi.MissionCommand", "afrl.cmasi.VehicleActionCommand")
 
 
+ORIGINAL_PORT = 5557
+"""Where the original's clients look for UxAS, on this machine."""
+CLIENTS_S = 300
+"""How long UxAS waits for them."""
+
+
 class Ports(NamedTuple):
     """Ports of loopback: of the simulator, of UxAS for whoever records, and for the ICAROUS instances."""
 
@@ -55,9 +61,12 @@ def write_messages(told: Told, folder: Path) -> Path:
 
 
 def write_configuration(
-    mission: Mission, instances: Sequence[int], ports: Ports, folder: Path
+    mission: Mission, instances: Sequence[int], ports: Ports, folder: Path, original: bool = False
 ) -> Path:
-    """The configuration of UxAS: bridges, the services of planning, a waypoint manager a vehicle, ICAROUS."""
+    """The configuration of UxAS: bridges, the services of planning, a waypoint manager a vehicle, ICAROUS.
+
+    original: ICAROUS is behind clients of the original's.
+    """
     communication = {
         "Address": f"tcp://127.0.0.1:{ports.icarous}",
         "Timeout_s": str(STARTS_S),
@@ -65,6 +74,8 @@ def write_configuration(
         "DeviationAllowed": "0",
         "DeviationOrigin": "path",
     }
+    if original:
+        communication |= {"Dialect": "original", "Timeout_s": str(CLIENTS_S)}
     bridges = (
         _bridge(ports.simulator, "FALSE", TO_SIMULATOR)
         # a recorder that does not read loses nothing in silence: its connection ends; nobody else says anything

@@ -21,6 +21,7 @@ from cratous.services.exporting.messages import Told
 from cratous.services.processes.agreement import agrees
 from cratous.services.processes.children import GRACE_S, Children, ProcessEnded, free_port
 from cratous.services.processes.files import (
+    ORIGINAL_PORT,
     Ports,
     write_configuration,
     write_messages,
@@ -52,7 +53,8 @@ class Stuck(CratousError):
 
 class Flying(NamedTuple):
     """How a flight in processes is set up. path: of the mission, for ICAROUS; digest: of that mission, the
-    hash of its report; folder: for what they are given and what they say; rate: times real time."""
+    hash of its report; folder: for what they are given and what they say; rate: times real time; original:
+    ICAROUS is behind clients of the original's, which others start."""
 
     path: Path
     digest: str
@@ -60,6 +62,7 @@ class Flying(NamedTuple):
     rate: float
     allow_unproved: bool
     tell: Tell
+    original: bool = False
 
 
 class Ended(NamedTuple):
@@ -78,7 +81,7 @@ def fly(mission: Mission, plan: Plan, told: Told, recorder: Recorder, how: Flyin
     """
     with (
         TemporaryDirectory(prefix="cratous-") as work,
-        Children(how.folder, Path(work)) as children,
+        Children(how.folder, Path(work), own_secret=not how.original) as children,
     ):
         flight = _Flight(mission, plan, told, recorder, how, children)
         try:
@@ -126,16 +129,22 @@ class _Flight:
         port = self._start_simulator(scenario)
         self._wait("the simulator's first states", self._all_there)
         self._control("Paused", 1.0)
-        self.ports = ports = Ports(port, free_port(), free_port())
+        icarous = ORIGINAL_PORT if how.original else free_port()
+        self.ports = ports = Ports(port, free_port(), icarous)
         instances = sorted(mission.instances)
-        cfg = write_configuration(mission, instances, ports, how.folder)
+        cfg = write_configuration(mission, instances, ports, how.folder, how.original)
         unproved = ("--allow-unproved",) * how.allow_unproved
         self._start(UXAS, "uxas", "-cfgPath", str(cfg.resolve()), *unproved)
         how.tell(f"ports of 127.0.0.1: {_words(ports)}")
         self.uxas = self._connect(ports.recorder)
         # UxAS waits for its ICAROUS instances before it sends anything: nothing goes by unheard
         self._wait("UxAS", lambda: self.uxas is not None and self.uxas.peers == 1)
-        for vehicle in instances:
+        if how.original:
+            who = ", then ".join(map(str, instances))
+            how.tell(
+                f"start the original's clients, for vehicle {who}: UxAS waits for {len(instances)}"
+            )
+        for vehicle in () if how.original else instances:
             where = f"127.0.0.1:{ports.icarous}"
             self._start(
                 f"icarous_{vehicle}", "icarous", "--vehicle", str(vehicle), "--mission",

@@ -13,29 +13,8 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cratous.services.requirements.formula import (
-    FALSE,
-    TRUE,
-    Bounded,
-    Formula,
-    Join,
-    Not,
-    Reaches,
-    compared,
-    eventually,
-    globally,
-    historically,
-    iff,
-    implies,
-    once,
-)
-from cratous.services.requirements.specification import (
-    NotRead,
-    Requirement,
-    Signal,
-    Specification,
-    caret_of,
-)
+from cratous.services.requirements import formula as formulas
+from cratous.services.requirements import specification
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import CONFIG_BYTES, at_most, integer_of
 
@@ -48,15 +27,15 @@ SECTION = re.compile(r"^[ \t]*(INPUT|FTSPEC|PTSPEC|DEFINE|STRUCT|ENUM|ATOMIC)\b"
 DECLARED = re.compile(
     r"\s*([A-Za-z_]\w*(?:\s*,\s*[A-Za-z_]\w*)*)\s*:\s*(bool|int|float)\s*", re.ASCII
 )
-ONE_SIDED: dict[str, Callable[[Formula, int, int], Formula]] = {
-    "G": globally,
-    "F": eventually,
-    "H": historically,
-    "O": once,
+ONE_SIDED: dict[str, Callable[[formulas.Formula, int, int], formulas.Formula]] = {
+    "G": formulas.globally,
+    "F": formulas.eventually,
+    "H": formulas.historically,
+    "O": formulas.once,
 }
 
 
-def read(text: str, where: str = "C2PO") -> Specification:
+def read(text: str, where: str = "C2PO") -> specification.Specification:
     """The requirements of a text. Raises BadInput for one that has none, or declares a signal twice."""
     at_most(len(text.encode()), CONFIG_BYTES, "the requirements are too long", where)
     text = re.sub(r"--[^\n]*", lambda m: " " * len(m.group()), text)
@@ -72,7 +51,9 @@ def read(text: str, where: str = "C2PO") -> Specification:
     if not found:
         raise BadInput("there is no requirement", where=where, expected="FTSPEC or PTSPEC")
     made = [_requirement(n, at, piece, text, types, where) for n, (at, piece) in enumerate(found)]
-    return Specification({name: Signal(kind) for name, kind in types.items()}, tuple(made))
+    return specification.Specification(
+        {name: specification.Signal(kind) for name, kind in types.items()}, tuple(made)
+    )
 
 
 def _pieces(text: str, start: int, end: int) -> Iterator[tuple[int, str]]:
@@ -96,15 +77,15 @@ def _declare(text: str, start: int, end: int, types: dict[str, str], where: str)
 
 def _requirement(
     number: int, at: int, piece: str, text: str, types: dict[str, str], where: str
-) -> Requirement:
+) -> specification.Requirement:
     try:
         name, formula = _formula(piece, types)
-        return Requirement(name or str(number), piece, formula)
+        return specification.Requirement(name or str(number), piece, formula)
     except _Wrong as no:
-        line, column, caret = caret_of(text, at + no.offset)
+        line, column, caret = specification.caret_of(text, at + no.offset)
         place = f"{where}, line {line}, column {column}"
-        refused = NotRead(no.what, place, caret, expected=no.expected, got=no.got)
-        return Requirement(str(number), piece, refused)
+        refused = specification.NotRead(no.what, place, caret, expected=no.expected, got=no.got)
+        return specification.Requirement(str(number), piece, refused)
 
 
 class _Wrong(Exception):
@@ -112,7 +93,7 @@ class _Wrong(Exception):
         self.what, self.offset, self.expected, self.got = what, offset, expected, got
 
 
-def _formula(piece: str, types: dict[str, str]) -> tuple[str, Formula]:
+def _formula(piece: str, types: dict[str, str]) -> tuple[str, formulas.Formula]:
     from lark.exceptions import UnexpectedCharacters, UnexpectedInput, VisitError
 
     try:
@@ -134,12 +115,12 @@ def _formula(piece: str, types: dict[str, str]) -> tuple[str, Formula]:
         raise
 
 
-def _build(tree: Any, types: dict[str, str]) -> tuple[str, Formula]:
+def _build(tree: Any, types: dict[str, str]) -> tuple[str, formulas.Formula]:
     made: list[Any] = []
     for node in tree.iter_subtrees():  # parts before the whole
         node.made = _made(node, types)
         made.append(node)
-    result: tuple[str, Formula] = tree.made
+    result: tuple[str, formulas.Formula] = tree.made
     return result
 
 
@@ -155,18 +136,18 @@ def _made(node: Any, types: dict[str, str]) -> Any:
     if kind in ("number", "negative"):
         return _number(got[0], kind == "negative")
     if kind == "constant":
-        return TRUE if got[0] == "true" else FALSE
+        return formulas.TRUE if got[0] == "true" else formulas.FALSE
     if kind == "compare":
-        return compared(got[0], str(got[1]), got[2])
+        return formulas.compared(got[0], str(got[1]), got[2])
     if kind == "negation":
-        return Not(got[0])
+        return formulas.Not(got[0])
     if kind == "unary":
         return ONE_SIDED[str(got[0])](got[2], *got[1])
     if kind == "binary":
         return _two_sided(*got)
     if kind in ("either", "both"):
-        return Join(got[0], got[1], kind == "both")
-    return (iff if kind == "iff" else implies)(got[0], got[1])
+        return formulas.Join(got[0], got[1], kind == "both")
+    return (formulas.iff if kind == "iff" else formulas.implies)(got[0], got[1])
 
 
 def _bounds(tokens: list[Any]) -> tuple[int, int]:
@@ -190,7 +171,7 @@ def _signal(token: Any, truth: bool, types: dict[str, str]) -> Any:
     wanted = "a signal that INPUT declares as " + ("bool" if truth else "int or float")
     if kind is None or (kind == "bool") != truth:
         raise _Wrong("this is no such signal", token.start_pos, wanted, str(token)[:30])
-    return Reaches(str(token), 1.0) if truth else str(token)
+    return formulas.Reaches(str(token), 1.0) if truth else str(token)
 
 
 def _number(token: Any, negative: bool) -> float:
@@ -200,13 +181,15 @@ def _number(token: Any, negative: bool) -> float:
     return -value if negative else value
 
 
-def _two_sided(phi: Formula, operator: Any, bounds: tuple[int, int], psi: Formula) -> Formula:
+def _two_sided(
+    phi: formulas.Formula, operator: Any, bounds: tuple[int, int], psi: formulas.Formula
+) -> formulas.Formula:
     low, high = bounds
     if operator in ("R", "T"):  # the duals
-        phi, psi = Not(phi), Not(psi)
+        phi, psi = formulas.Not(phi), formulas.Not(psi)
     if operator in ("U", "R"):
-        made: Formula = Bounded(phi, psi, 0, high - low, False)
-        made = eventually(made, low, low) if low else made
+        made: formulas.Formula = formulas.Bounded(phi, psi, 0, high - low, False)
+        made = formulas.eventually(made, low, low) if low else made
     elif low:
         raise _Wrong(
             "a since from a lower bound above 0 is not read: phi may count from it or from 0",
@@ -215,8 +198,8 @@ def _two_sided(phi: Formula, operator: Any, bounds: tuple[int, int], psi: Formul
             f"{operator}[{low},{high}]",
         )
     else:
-        made = Bounded(phi, psi, 0, high, True)
-    return Not(made) if operator in ("R", "T") else made
+        made = formulas.Bounded(phi, psi, 0, high, True)
+    return formulas.Not(made) if operator in ("R", "T") else made
 
 
 @cache

@@ -12,14 +12,7 @@ from collections.abc import Mapping
 from itertools import count
 from math import isfinite
 
-from cratous.core.requirements.since import (
-    Broken,
-    Found,
-    is_due,
-    since_broken,
-    since_decided,
-    since_found,
-)
+from cratous.core.requirements import since
 from cratous.core.requirements.until import Times, until_decided, until_times
 from cratous.core.requirements.verdict import both, either, negated, reaches
 from cratous.services.requirements.formula import (
@@ -164,16 +157,16 @@ class _Until(_Paired):
 class _Since(_Paired):
     def __init__(self, formula: Bounded) -> None:
         super().__init__(formula)
-        self.found, self.broken = Found(NEVER - 1, NEVER - 1), Broken(NEVER, NEVER)
+        self.found, self.broken = since.Found(NEVER - 1, NEVER - 1), since.Broken(NEVER, NEVER)
         self.young: deque[tuple[int, int]] = deque()
         """Samples that are not old enough yet, with their psi."""
 
     def step(self, time: int, phi: int, psi: int, out: Decided) -> None:
         self.young.append((time, psi))
-        while self.young and is_due(self.young[0][0], time, self.low):
-            self.found = since_found(self.found, *self.young.popleft())
-        self.broken = since_broken(self.broken, time, phi)
-        out.append((time, since_decided(self.found, self.broken, time, self.high)))
+        while self.young and since.is_due(self.young[0][0], time, self.low):
+            self.found = since.since_found(self.found, *self.young.popleft())
+        self.broken = since.since_broken(self.broken, time, phi)
+        out.append((time, since.since_decided(self.found, self.broken, time, self.high)))
 
     @property
     def size(self) -> int:

@@ -11,16 +11,7 @@ from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
-from cratous.services.requirements.formula import (
-    Always,
-    Bounded,
-    Formula,
-    Join,
-    Not,
-    Reaches,
-    parts,
-    signals,
-)
+from cratous.services.requirements import formula as formulas
 from cratous.services.requirements.specification import NotRead, Requirement, Specification
 
 if TYPE_CHECKING:
@@ -47,7 +38,7 @@ class _TooLong(Exception):
 def lint(spec: Specification) -> list[Remark]:
     """Everything odd about a file of requirements, in its order."""
     read = [(one, one.formula) for one in spec.requirements if not isinstance(one.formula, NotRead)]
-    used = {name for _, formula in read for name in signals(formula)}
+    used = {name for _, formula in read for name in formulas.signals(formula)}
     found = [
         Remark("unused", name, f"signal {name} is in no requirement")
         for name in spec.signals
@@ -58,18 +49,22 @@ def lint(spec: Specification) -> list[Remark]:
     for one, formula in read:
         ask = _Asked(period)
         try:
-            if not period and any(isinstance(part, Bounded) for part in parts(formula)):
+            if not period and any(
+                isinstance(part, formulas.Bounded) for part in formulas.parts(formula)
+            ):
                 raise _TooLong("nothing says how far samples are apart (trace every ...)")
             term = ask.term(formula)
             found += _about(one, formula, term, ask)
-            written.append((one, term, signals(formula)))
+            written.append((one, term, formulas.signals(formula)))
         except _TooLong as why:
             text = f"{one.name} was not looked into: {why}"
             found.append(Remark("unchecked", one.name, text))
     return found + _duplicates(written)
 
 
-def _about(one: Requirement, formula: Formula, term: z3.BoolRef, ask: _Asked) -> list[Remark]:
+def _about(
+    one: Requirement, formula: formulas.Formula, term: z3.BoolRef, ask: _Asked
+) -> list[Remark]:
     import z3
 
     never, always = _impossible(term), _impossible(z3.Not(term))
@@ -80,7 +75,11 @@ def _about(one: Requirement, formula: Formula, term: z3.BoolRef, ask: _Asked) ->
         return [Remark("unsatisfiable", one.name, text)]
     if always:
         return [Remark("valid", one.name, f"{one.name} says nothing: every trace satisfies it")]
-    if isinstance(formula, Join) and not formula.is_and and isinstance(formula.phi, Not):
+    if (
+        isinstance(formula, formulas.Join)
+        and not formula.is_and
+        and isinstance(formula.phi, formulas.Not)
+    ):
         idle = _impossible(ask.term(formula.phi.phi))
         if idle is None:
             return [Remark("unchecked", one.name, f"{one.name} was not decided within its effort")]
@@ -123,12 +122,12 @@ class _Asked:
         self.period = max(1, period)
         self.known: dict[tuple[int, int], Any] = {}
         self.terms = 0
-        self.kept: list[Formula] = []
+        self.kept: list[formulas.Formula] = []
 
-    def term(self, formula: Formula) -> Any:
+    def term(self, formula: formulas.Formula) -> Any:
         """The formula at sample 0; _TooLong where it needs too many terms."""
         self.kept.append(formula)  # so that no id is given twice
-        todo: list[tuple[Formula, int]] = [(formula, 0)]
+        todo: list[tuple[formulas.Formula, int]] = [(formula, 0)]
         while todo:
             part, at = todo[-1]
             if (id(part), at) in self.known:
@@ -149,38 +148,38 @@ class _Asked:
         if self.terms > MOST_TERMS:
             raise _TooLong(f"it speaks of too many samples (above {MOST_TERMS} terms)")
 
-    def _steps(self, part: Bounded) -> range:
+    def _steps(self, part: formulas.Bounded) -> range:
         first, last = -(-part.low // self.period), part.high // self.period
         if last > MOST_TERMS:
             self._count(last)
         return range(first, last + 1)
 
-    def _needed(self, part: Formula, at: int) -> list[tuple[Formula, int]]:
-        if isinstance(part, Not):
+    def _needed(self, part: formulas.Formula, at: int) -> list[tuple[formulas.Formula, int]]:
+        if isinstance(part, formulas.Not):
             return [(part.phi, at)]
-        if isinstance(part, Join):
+        if isinstance(part, formulas.Join):
             return [(part.phi, at), (part.psi, at)]
-        if not isinstance(part, Bounded):
+        if not isinstance(part, formulas.Bounded):
             return []
         way, steps = (-1 if part.past else 1), self._steps(part)
         self._count(2 * len(steps))
         phis = [(part.phi, at + way * k) for k in range(steps.stop - 1 if steps else 0)]
         return phis + [(part.psi, at + way * k) for k in steps]
 
-    def _made(self, part: Formula, at: int) -> Any:
+    def _made(self, part: formulas.Formula, at: int) -> Any:
         import z3
 
-        if isinstance(part, Always):
+        if isinstance(part, formulas.Always):
             return z3.BoolVal(part.verdict == 2)
-        if isinstance(part, Reaches):
+        if isinstance(part, formulas.Reaches):
             left, right = (
                 z3.Real(f"{side}@{at}") if isinstance(side, str) else z3.Q(*side.as_integer_ratio())
                 for side in (part.left, part.right)
             )
             return left >= right
-        if isinstance(part, Not):
+        if isinstance(part, formulas.Not):
             return z3.Not(self.known[id(part.phi), at])
-        if isinstance(part, Join):
+        if isinstance(part, formulas.Join):
             both = [self.known[id(side), at] for side in (part.phi, part.psi)]
             return z3.And(*both) if part.is_and else z3.Or(*both)
         way = -1 if part.past else 1

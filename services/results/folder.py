@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -26,9 +24,8 @@ from cratous.services.results.swap import (
     refuse_foreign,
     remove,
 )
+from cratous.services.results.undisturbed import undisturbed
 from cratous.spec.errors import BadInput
-
-STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def _nobody(_text: str) -> None:
@@ -121,7 +118,7 @@ class _Run:
         for entry in self.filling.iterdir():
             sync(entry)
         sync(self.filling)
-        with _undisturbed(), in_turn(self.place.parent):
+        with undisturbed(), in_turn(self.place.parent):
             self._stays = True
             os.rename(self.filling, self.space.path / READY)
             try:
@@ -143,20 +140,3 @@ def _remove_empty(made: list[Path]) -> None:
     for folder in made:
         with suppress(OSError):
             folder.rmdir()
-
-
-@contextmanager
-def _undisturbed() -> Iterator[None]:
-    """SIGINT, SIGTERM and SIGHUP are held back, and act at the end."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    came: list[int] = []
-    before = {n: signal.signal(n, lambda number, _frame: came.append(number)) for n in STOPS}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, signal.SIG_DFL if handler is None else handler)
-        if came:
-            signal.raise_signal(came[0])

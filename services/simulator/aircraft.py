@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from cratous.bridge import lmcp
 from cratous.services.simulator import guidance as guide
 from cratous.services.simulator.guidance import DIRECTED, LOITER, WAYPOINT, Guidance
-from cratous.services.simulator.motion import Command, Motion, move
+from cratous.services.simulator.motion import Command, Motion, body_rates, move
 from cratous.services.simulator.performance import Airframe
 from cratous.spec.errors import BadInput
 
@@ -126,6 +126,9 @@ def state(
     """The AirVehicleState that is told, and the aircraft that has told it."""
     m, what = a.motion, shown(a)
     speed, course = ground_motion(a, wind_m_s)
+    rates = body_rates(m)
+    if not a.airframe.compatible:  # AMASE tells them in rad/s, where the message has deg/s
+        rates = degrees(rates[0]), degrees(rates[1]), degrees(rates[2])
     wind: dict[str, float] = {}
     if not a.airframe.compatible:
         wind = {
@@ -136,6 +139,9 @@ def state(
         "AirVehicleState",
         ID=a.id,
         u=m.airspeed_m_s,
+        p=rates[0],
+        q=rates[1],
+        r=rates[2],
         Heading=degrees(m.heading_rad),
         Pitch=degrees(m.pitch_rad),
         Roll=degrees(m.roll_rad),

@@ -20,7 +20,8 @@ ACCELERATION_M_S2 = 10.0
 
 
 class Motion(NamedTuple):
-    """Place [rad, m MSL], attitude [rad], airspeed and velocity over ground [m/s], energy [%]."""
+    """Place [rad, m MSL], attitude [rad], airspeed and velocity over ground [m/s], energy [%]; how fast
+    heading, pitch and roll changed in the last step [rad/s]."""
 
     lat_rad: float
     lon_rad: float
@@ -34,6 +35,20 @@ class Motion(NamedTuple):
     climb_m_s: float
     energy_percent: float
     energy_percent_s: float
+    turning_rad_s: float = 0.0
+    pitching_rad_s: float = 0.0
+    rolling_rad_s: float = 0.0
+
+
+def body_rates(m: Motion) -> tuple[float, float, float]:
+    """Rates of turn about the axes forward, right and down of the aircraft [rad/s], by Euler's angles."""
+    turn, pitch, roll = m.turning_rad_s, m.pitching_rad_s, m.rolling_rad_s
+    level, bank = cos(m.pitch_rad), m.roll_rad
+    return (
+        roll - turn * sin(m.pitch_rad),
+        pitch * cos(bank) + turn * level * sin(bank),
+        turn * level * cos(bank) - pitch * sin(bank),
+    )
 
 
 class Command(NamedTuple):
@@ -83,14 +98,20 @@ def move(
     if m.energy_percent <= 0 or m.alt_m <= ground_m:
         if airframe.compatible:
             return m, max_bank
-        return m._replace(north_m_s=0.0, east_m_s=0.0, climb_m_s=0.0, airspeed_m_s=0.0), max_bank
+        still = {"turning_rad_s": 0.0, "pitching_rad_s": 0.0, "rolling_rad_s": 0.0}
+        m = m._replace(north_m_s=0.0, east_m_s=0.0, climb_m_s=0.0, airspeed_m_s=0.0, **still)
+        return m, max_bank
     climb = copysign(min(abs(profile.vertical_m_s), abs(climb)), climb)
     error = bound_pi(command.course_rad - atan2(m.east_m_s, m.north_m_s))
     wanted = copysign(max_bank * (1 - exp(-BANK_GAIN * abs(error))), error)
     roll = _towards(m.roll_rad, wanted, BANK_RATE_RAD_S * dt_s)
-    heading = m.heading_rad
+    heading, turning = m.heading_rad, 0.0
     if speed > 0:
-        heading = bound_pi(heading + GRAVITY_M_S2 * tan(roll) / speed * dt_s)
+        turning = GRAVITY_M_S2 * tan(roll) / speed
+        heading = bound_pi(heading + turning * dt_s)
+    if airframe.compatible:
+        # AMASE takes the error of the course for the turn of the step
+        turning = error / dt_s
     pitch = _towards(m.pitch_rad, radians(profile.pitch_deg), PITCH_RATE_RAD_S * dt_s)
     change = max(-ACCELERATION_M_S2, min(ACCELERATION_M_S2, command.speed_m_s - speed))
     after = max(airframe.min_speed_m_s, min(airframe.max_speed_m_s, speed + change * dt_s))
@@ -104,5 +125,8 @@ def move(
         lon = bound_pi(lon)
     use = profile.energy_percent_s
     energy = max(0.0, m.energy_percent - use * dt_s)
-    moved = Motion(lat, lon, alt, heading, pitch, roll, after, north, east, climb, energy, use)
+    rates = turning, (pitch - m.pitch_rad) / dt_s, (roll - m.roll_rad) / dt_s
+    moved = Motion(
+        lat, lon, alt, heading, pitch, roll, after, north, east, climb, energy, use, *rates
+    )
     return moved, max_bank

@@ -5,13 +5,17 @@ not read loses its oldest messages and holds up nobody. SessionStatus controls t
 (with its RealTimeMultiple, if that is above 0), Reset, Stopped. Clients that come late are told the
 configurations of all vehicles, which AMASE leaves out. With `only` nobody is let in after so many, also not in
 the place of one that goes: with that one the flight has lost what it was for.
+
+A vehicle may have a port of its own, as AMASE gives it: its clients are told its configuration, its states, the
+VehicleActionCommands for it and the weather, and send what the others send. What is due at time 0 in a compatible world is done
+as it is made, as AMASE does it on loading: before any client is there to be told.
 """
 
 from __future__ import annotations
 
 import select
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -52,21 +56,34 @@ class Server:
         rate: float = 1.0,
         clients: int = 0,
         only: int = 0,
+        vehicles: Mapping[int, Address] | None = None,
     ) -> None:
         self._make = make
-        self.world = make()
         self.rate = rate
         self._clients = clients
         self._only, self._shut = only, False
         limits = replace(LIMITS, connections=only or LIMITS.connections)
         self.port = TcpPort(where, server=True, limits=limits, report=report)
+        self.vehicle_ports: dict[int, TcpPort] = {}
+        try:
+            for key, place in (vehicles or {}).items():
+                self.vehicle_ports[key] = TcpPort(place, server=True, limits=LIMITS, report=report)
+        except BadInput:
+            self._close()
+            raise
         self._tally = Tally("clients", report)
         self._report = report
         self.state = "Running"
         self.stopping = False
         self._known: dict[int, Any] = {}
         self._peers = 0
+        self._peers_of: dict[int, int] = {}
         self._behind_s = 0.0
+        try:
+            self.world = self._begun()
+        except BadInput:
+            self._close()
+            raise
 
     @property
     def refused(self) -> dict[str, int]:
@@ -84,18 +101,32 @@ class Server:
             self.tell(self.world.status("Stopped", self.rate))
             self._linger()
         finally:
-            self.port.close()
+            self._close()
+
+    def _begun(self) -> World:
+        """The world anew; a compatible one has done what is due at time 0."""
+        world = self._make()
+        if world.compatible:
+            for body in world.begin():
+                self.tell(body)
+        return world
+
+    def _ports(self) -> list[TcpPort]:
+        return [self.port, *self.vehicle_ports.values()]
+
+    def _close(self) -> None:
+        for port in self._ports():
+            port.close()
 
     def turn(self, now_s: float, passed_s: float) -> None:
         """Hear the clients, then go on by the time that has passed [s]; waits if nothing is due."""
-        for incoming in self.port.step(now_s):
-            self._take(incoming)
-        if self.port.peers > self._peers:
-            for body in self._known.values():
-                self.tell(body)
-        self._peers = self.port.peers
+        for port in self._ports():
+            for incoming in port.step(now_s):
+                self._take(incoming, port)
+        self._tell_newcomers()
         self._count()
-        self._clients = max(0, self._clients if self._peers < self._clients else 0)
+        there = sum(port.peers for port in self._ports())
+        self._clients = max(0, self._clients if there < self._clients else 0)
         if self.state != "Running" or self._clients:
             self._behind_s = 0.0
             self._wait(0.05)
@@ -113,6 +144,16 @@ class Server:
             return
         self._wait(max(0.0, (TICK_S - self._behind_s) / self.rate))
 
+    def _tell_newcomers(self) -> None:
+        if self.port.peers > self._peers:
+            for body in self._known.values():
+                self.port.send((frame_payload(body),))
+        self._peers = self.port.peers
+        for key, port in self.vehicle_ports.items():
+            if port.peers > self._peers_of.get(key, 0) and key in self._known:
+                port.send((frame_payload(self._known[key]),))
+            self._peers_of[key] = port.peers
+
     def _count(self) -> None:
         """Shut the door behind the last of the only clients; ClientGone if one of them is no longer there and
         nobody has asked to end."""
@@ -125,17 +166,21 @@ class Server:
             raise ClientGone(f"{self._peers} of the {self._only} clients are left")
 
     def _wait(self, most_s: float) -> None:
-        handles = [handle for handle, _ in self.port.handles()]
+        handles = [handle for port in self._ports() for handle, _ in port.handles()]
         select.select(handles, [], [], min(most_s, 0.05))
 
     def _linger(self) -> None:
         end_s = time.monotonic() + LINGER_S
-        while self.port.waiting and time.monotonic() < end_s and not self.stopping:
-            self.port.step(time.monotonic())
+        while time.monotonic() < end_s and not self.stopping:
+            if not any(port.waiting for port in self._ports()):
+                break
+            for port in self._ports():
+                port.step(time.monotonic())
             time.sleep(0.005)
 
-    def tell(self, body: Any, but: str = "") -> None:
-        """Send an object to every client but one; configurations are kept for those that come late."""
+    def tell(self, body: Any, but: str = "", of: TcpPort | None = None) -> None:
+        """Send an object to every client but one, that is of a port; configurations are kept for those
+        that come late."""
         name = type(body).__name__
         if name == "SessionStatus" and not but:
             body = body.copy(RealTimeMultiple=self.rate)
@@ -144,10 +189,15 @@ class Server:
         elif name == "RemoveEntities":
             for key in body.EntityList:
                 self._known.pop(key, None)
-        if self.port.peers:
-            self.port.send((frame_payload(body),), but)
+        of_vehicles = [port for key, port in self.vehicle_ports.items() if _concerns(body, key)]
+        wanted = [port for port in (self.port, *of_vehicles) if port.peers]
+        if wanted:
+            payload = frame_payload(body)
+            for port in wanted:
+                # the name of a client is one of its port alone
+                port.send((payload,), but if port is of else "")
 
-    def _take(self, incoming: Incoming) -> None:
+    def _take(self, incoming: Incoming, port: TcpPort) -> None:
         """What a client has sent; what cannot be taken is reported, and goes to nobody."""
         try:
             message = wire.parse(incoming.parts[0])
@@ -161,18 +211,28 @@ class Server:
         except BadInput as error:
             self._tally.refuse("message", str(error))
             return
-        self.tell(body, incoming.peer)
+        self.tell(body, incoming.peer, port)
 
     def _control(self, body: Any) -> None:
         wanted = body.State.name
         if 0 < body.RealTimeMultiple <= MOST_RATE:
             self.rate = body.RealTimeMultiple
         if wanted == "Reset":
-            self.world = self._make()
+            self.world = self._begun()
             wanted = "Paused"
         self.state = wanted
         self._report("INFO", f"a client asks: {body.State.name}, {self.rate:g} times real time")
         self.tell(self.world.status(wanted))
+
+
+def _concerns(body: Any, vehicle: int) -> bool:
+    """Whether an object is told on the port that a vehicle has of its own."""
+    kind = type(body).__name__
+    if kind in ("AirVehicleState", "AirVehicleConfiguration"):
+        return bool(vehicle == body.ID)
+    if kind == "VehicleActionCommand":
+        return bool(body.VehicleID == vehicle)
+    return kind == "WeatherReport"
 
 
 def frame_payload(body: Any) -> bytes:

@@ -67,6 +67,19 @@ class World:
         """True when the scenario's duration has passed."""
         return self.time_s >= self.duration_s
 
+    def begin(self) -> list[Any]:
+        """What happens at time 0, done before the clock goes, as AMASE does it; those events."""
+        return self._happen()
+
+    def _happen(self) -> list[Any]:
+        """The events that are due by now."""
+        told = []
+        while self._events and self._events[0].time_s <= self.time_s:
+            event = self._events.popleft()
+            self.receive(event.body, event.where)
+            told.append(event.body)
+        return told
+
     def tick(self) -> list[Any]:
         """One tick; the objects that it tells: events, and states and SessionStatus twice a second."""
         self.time_s += TICK_S
@@ -78,10 +91,7 @@ class World:
         if self.time_s - self._told_s > TELL_S:
             self._told_s = self.time_s
             told += [self.status("Running"), *self.states()]
-        while self._events and self._events[0].time_s <= self.time_s:
-            event = self._events.popleft()
-            self.receive(event.body, event.where)
-            told.append(event.body)
+        told += self._happen()
         self._move()
         return told
 

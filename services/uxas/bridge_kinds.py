@@ -193,6 +193,14 @@ def _kind(
     return BridgeKind({**own, **common}, {**SUBSCRIBE, **children}, make)
 
 
+def _addresses(publisher: str, pusher: str) -> dict[str, Attr]:
+    """The attributes of a pair of ends: at the publisher's socket, and at the one that pushes."""
+    return {
+        f"Address{publisher}": Attr(default="tcp://127.0.0.1:5556"),
+        f"Address{pusher}": Attr(default="tcp://127.0.0.1:5555"),
+    }
+
+
 BRIDGES: dict[str, BridgeKind] = {
     "LmcpObjectNetworkTcpBridge": _kind(
         {"TcpAddress": Attr(default="tcp://127.0.0.1:5555"), "Server": flag(False)},
@@ -201,27 +209,20 @@ BRIDGES: dict[str, BridgeKind] = {
         self_generated=True,
     ),
     "LmcpObjectNetworkPublishPullBridge": _kind(
-        {
-            "AddressPUB": Attr(default="tcp://127.0.0.1:5556"),
-            "AddressPULL": Attr(default="tcp://127.0.0.1:5555"),
-        },
+        _addresses("PUB", "PULL"),
         {},
         _publish_pull,
         keys=True,
     ),
     "LmcpObjectNetworkSubscribePushBridge": _kind(
-        {
-            "AddressSUB": Attr(default="tcp://127.0.0.1:5556"),
-            "AddressPUSH": Attr(default="tcp://127.0.0.1:5555"),
-        },
+        _addresses("SUB", "PUSH"),
         EXTERNAL,
         _subscribe_push,
         keys=True,
     ),
     "ImpactSubscribePushBridge": _kind(
         {
-            "AddressSUB": Attr(default="tcp://127.0.0.1:5556"),
-            "AddressPUSH": Attr(default="tcp://127.0.0.1:5555"),
+            **_addresses("SUB", "PUSH"),
             "ExternalID": whole(None),
             "ThrottleConfigurationForwarding": flag(False),
         },

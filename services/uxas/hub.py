@@ -31,42 +31,62 @@ _JOIN_S = 10.0
 _PROBE_MS = 50
 
 
-class Hub:
-    """The process that orders: publishes what its bus delivers, takes in what satellites push."""
+class _Side:
+    """What both sides have: a port, and a count of what it has lost and refused."""
 
-    prefixes = ("",)
-
-    def __init__(self, host: Host, context: Any, pub: str, pull: str, curve: Curve | None) -> None:
-        self._host = host
-        self.port = _port(host, context, ("PUB", pub), ("PULL", pull), True, curve)
-        self._tally = Tally("hub", host.log)
-        self._tally.counts = self.port.counts
-        host.bus.tap(self._publish)
+    def __init__(self, host: Host, port: ZmqPort, name: str) -> None:
+        self._host, self.port = host, port
+        self._tally = Tally(name, host.log)
+        self._tally.counts = port.counts
 
     def pump(self, now_s: float) -> int:
-        """Take in what satellites have pushed."""
+        """Take in what the other side has sent; how many messages that were."""
         count = 0
         for incoming in self.port.step(now_s):
             try:
                 message = wire.parse(incoming.parts[0])
                 if message.content_type == PROBE:
-                    self.port.send(incoming.parts)
+                    self._probed(incoming.parts)
                     continue
-                self._host.arrived(_envelope(self._host.bus, message))
+                self._arrived(message)
                 count += 1
             except BadInput as error:
                 self._tally.refuse(error.what, f"hub: {error}")
         return count
 
-    def close(self) -> None:
-        """Close the sockets."""
-        self.port.close()
-
-    def _publish(self, envelope: Envelope) -> None:
+    def push(self, envelope: Envelope) -> None:
+        """Send one message to the other side."""
         try:
             self.port.send((pack(envelope),))
         except BadInput as error:
             self._tally.lose("message has no form on the wire", str(error))
+
+    def close(self) -> None:
+        """Close the sockets."""
+        self.port.close()
+
+    def _probed(self, parts: tuple[bytes, ...]) -> None:
+        raise NotImplementedError
+
+    def _arrived(self, message: wire.AddressedMessage) -> None:
+        raise NotImplementedError
+
+
+class Hub(_Side):
+    """The process that orders: publishes what its bus delivers, takes in what satellites push."""
+
+    prefixes = ("",)
+
+    def __init__(self, host: Host, context: Any, pub: str, pull: str, curve: Curve | None) -> None:
+        port = _port(host, context, ("PUB", pub), ("PULL", pull), True, curve)
+        super().__init__(host, port, "hub")
+        host.bus.tap(self.push)
+
+    def _probed(self, parts: tuple[bytes, ...]) -> None:
+        self.port.send(parts)
+
+    def _arrived(self, message: wire.AddressedMessage) -> None:
+        self._host.arrived(_envelope(self._host.bus, message))
 
 
 class RemoteBus(Bus):
@@ -86,16 +106,15 @@ class RemoteBus(Bus):
         super().put(envelope)
 
 
-class Satellite:
+class Satellite(_Side):
     """The other side: joins a hub and feeds a `RemoteBus`."""
 
     def __init__(self, host: Host, context: Any, sub: str, push: str, curve: Curve | None) -> None:
         """BadInput if no hub answers within ten seconds."""
         assert isinstance(host.bus, RemoteBus)
-        self._host, self._bus = host, host.bus
-        self.port = _port(host, context, ("PUSH", push), ("SUB", sub), False, curve)
-        self._tally = Tally("satellite", host.log)
-        self._tally.counts = self.port.counts
+        self._bus = host.bus
+        port = _port(host, context, ("PUSH", push), ("SUB", sub), False, curve)
+        super().__init__(host, port, "satellite")
         try:
             self._join(push)
         except BaseException:
@@ -103,30 +122,11 @@ class Satellite:
             raise
         self._bus.satellite = self
 
-    def push(self, envelope: Envelope) -> None:
-        """Send one message to the hub."""
-        try:
-            self.port.send((pack(envelope),))
-        except BadInput as error:
-            self._tally.lose("message has no form on the wire", str(error))
+    def _probed(self, parts: tuple[bytes, ...]) -> None:
+        """It has been heard already."""
 
-    def pump(self, now_s: float) -> int:
-        """Deliver what the hub has ordered."""
-        count = 0
-        for incoming in self.port.step(now_s):
-            try:
-                message = wire.parse(incoming.parts[0])
-                if message.content_type == PROBE:
-                    continue
-                self._bus.hear(_envelope(self._bus, message))
-                count += 1
-            except BadInput as error:
-                self._tally.refuse(error.what, f"hub: {error}")
-        return count
-
-    def close(self) -> None:
-        """Leave the hub."""
-        self.port.close()
+    def _arrived(self, message: wire.AddressedMessage) -> None:
+        self._bus.hear(_envelope(self._bus, message))
 
     def _join(self, push: str) -> None:
         """Until a probe of ours comes back: then nothing of what follows can be missed."""

@@ -8,13 +8,27 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
 from cratous.services.loading.uxas_settings import SEVERITIES
 from cratous.spec.errors import BadInput
 from cratous.spec.files.printable import printable
+
+
+@contextmanager
+def writing_in(folder: Path, what: str) -> Iterator[None]:
+    """An OSError in here says what cannot be done, and that a folder is meant that can be written."""
+    try:
+        yield
+    except OSError as error:
+        raise BadInput(
+            f"{what} ({error.strerror})",
+            where=str(folder),
+            expected="a folder that can be written",
+        ) from None
 
 
 class Logs:
@@ -38,16 +52,10 @@ class Logs:
         self._out: IO[str] | None = None
         self.counts = dict.fromkeys(SEVERITIES, 0)
         if folder is not None:
-            try:
+            with writing_in(folder, "the log cannot be written"):
                 folder.mkdir(parents=True, exist_ok=True)
                 self.path = folder / f"log_{time.time_ns() // 1_000_000}"
                 self._out = self.path.open("a", encoding="utf-8", buffering=1)
-            except OSError as error:
-                raise BadInput(
-                    f"the log cannot be written ({error.strerror})",
-                    where=str(folder),
-                    expected="a folder that can be written",
-                ) from None
 
     def __call__(self, severity: str, text: str) -> None:
         """Log one sentence."""

@@ -16,6 +16,7 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus, Envelope
+from cratous.services.following.rendezvous import RendezvousTaskService
 from cratous.services.following.service import FollowingTaskService
 from cratous.services.loading.problems import refuse
 from cratous.services.loading.uxas_settings import (
@@ -26,7 +27,8 @@ from cratous.services.loading.uxas_settings import (
     nearest,
     values_of,
 )
-from cratous.services.pipeline.followed import FOLLOWED, WATCH, WATCH_SERVICE
+from cratous.services.pipeline import coordinator
+from cratous.services.pipeline.followed import FOLLOWED, RENDEZVOUS, WATCH, WATCH_SERVICE
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import TASKS, TaskService
 from cratous.services.pipeline.world import World
@@ -211,7 +213,7 @@ class ServiceManager:
             raise BadInput(
                 "the id is taken", where=where, item="ServiceID", got=self._names[number]
             )
-        if item.type in TASKS or item.type in FOLLOWED:
+        if item.type in TASKS or item.type in FOLLOWED or item.type == coordinator.KIND:
             world = registry.source_of(self._host).world
             if task is None:
                 raise BadInput(
@@ -238,11 +240,15 @@ class ServiceManager:
         self._make(item, number)
         return []
 
-    def _task_service(self, kind: str, task: Any, ended: Callable[[], None]) -> TaskService:
+    def _task_service(self, kind: str, task: Any, ended: Callable[[], None]) -> Any:
+        if kind == coordinator.KIND:
+            entity, world = self._host.entity_id, registry.source_of(self._host).world
+            return coordinator.AssignmentCoordinatorTaskService(task.TaskID, entity, world, ended)
         contexts = registry.contexts_of(self._host)
         if kind == WATCH or kind in FOLLOWED:
             name = FOLLOWED.get(kind, WATCH_SERVICE)
-            return FollowingTaskService(contexts, task, name, ended)
+            made = RendezvousTaskService if kind == RENDEZVOUS else FollowingTaskService
+            return made(contexts, task, name, ended)
         return TaskService(contexts, task.TaskID, TASKS[kind], ended)
 
 

@@ -10,9 +10,4 @@ SERVICES = (
 )
 """Services of UxAS that we do not have; a configuration that names one is warned, or refused if strict."""
 
-TASKS = (
-    "afrl.impact.CommRelayTask",
-    "afrl.impact.CordonTask",
-    "uxas.messages.task.AssignmentCoordinatorTask",
-    "uxas.messages.task.RendezvousTask",
-)
+TASKS = ("afrl.impact.CordonTask",)

@@ -26,7 +26,7 @@ from cratous.services.pipeline.status import status
 from cratous.services.uxas.bridge_kinds import curve_of
 from cratous.services.uxas.frame import Clock, Host
 from cratous.services.uxas.hub import Hub, RemoteBus, Satellite
-from cratous.services.uxas.logs import Logs
+from cratous.services.uxas.logs import Logs, writing_in
 from cratous.services.uxas.manager import ServiceManager, startup
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 
@@ -281,12 +281,6 @@ def data_folder(config: Configuration, here: Path) -> Path:
     folder = here / "datawork"
     if config.root["isDataTimestamp"]:
         folder = folder / str(time.time_ns() // 1_000_000)
-    try:
+    with writing_in(folder, "the data folder cannot be made"):
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise BadInput(
-            f"the data folder cannot be made ({error.strerror})",
-            where=str(folder),
-            expected="a folder that can be written",
-        ) from None
     return folder

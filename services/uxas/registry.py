@@ -166,12 +166,11 @@ def _vehicle(host: Host, v: dict[str, Any]) -> int:
 
 def _waypoints(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
     if v["NumberWaypointsOverlap"] >= v["NumberWaypointsToServe"]:
-        raise BadInput(
+        raise entry.refusal(
             "segments that do not go on",
-            where=entry.where,
-            item=f"{entry.type}.NumberWaypointsOverlap",
-            expected=f"less than NumberWaypointsToServe = {v['NumberWaypointsToServe']}",
-            got=str(v["NumberWaypointsOverlap"]),
+            "NumberWaypointsOverlap",
+            f"less than NumberWaypointsToServe = {v['NumberWaypointsToServe']}",
+            str(v["NumberWaypointsOverlap"]),
         )
     serving = waypoints.Serving(
         v["NumberWaypointsToServe"],

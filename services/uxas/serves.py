@@ -32,7 +32,7 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
         tasks.TaskService,
         ("TaskInitialized", "SensorFootprintRequests", "TaskPlanOptions", "RoutePlanRequest",
          "TaskImplementationResponse", "TaskActive", "TaskComplete", "VehicleActionCommand",
-         "ServiceStatus"),
+         "ServiceStatus", "AssignmentCoordination", "TaskAutomationRequest"),
     ),
     "RoutePlannerVisibilityService": (
         planner.RoutePlannerVisibilityService, ("RoutePlanResponse",)

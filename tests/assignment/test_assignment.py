@@ -20,16 +20,8 @@ from cratous.services.planning.assign import Limits, solve
 from cratous.services.planning.assign_certificate import certified, verify
 from cratous.services.planning.assign_replay import replayed
 from cratous.services.planning.assign_solvers import none_below, why_infeasible
+from cratous.spec import constraint_rows
 from cratous.spec.assignment.search import ORDER, TIME, AssignmentProblem, Choice
-from cratous.spec.constraint_rows import (
-    AFTER_END,
-    AFTER_START,
-    NOT_AFTER,
-    NOT_BEFORE,
-    WITHIN_END,
-    WITHIN_START,
-    Row,
-)
 from cratous.spec.errors import BadInput
 
 
@@ -38,7 +30,7 @@ def visit(task, previous=-1, travel=100, duration=50, lap=40, widest=80, ready=0
 
 
 def row(kind, i, group=(), lo=0, hi=0):
-    return Row(kind, i, tuple(group), lo, hi, "")
+    return constraint_rows.Row(kind, i, tuple(group), lo, hi, "")
 
 
 @given(st.integers(-5, 500), st.integers(1, 50), st.integers(0, 50))
@@ -61,7 +53,7 @@ def test_no_room_to_hold_means_no_wait():
 
 def test_a_successor_waits_at_least_one_lap():
     chains = [visit(1), visit(2, travel=130)]
-    times = earliest(chains, [row(AFTER_END, 2, (1,))])
+    times = earliest(chains, [row(constraint_rows.AFTER_END, 2, (1,))])
     # arrives at 130, might start at 150, but a lap takes 40
     assert (times.arrive_ms[1], times.start_ms[1], times.end_ms[1]) == (130, 170, 220)
     assert isinstance(times, Times)
@@ -69,7 +61,7 @@ def test_a_successor_waits_at_least_one_lap():
 
 def test_where_there_is_no_room_the_vehicle_waits_before():
     chains = [visit(1, travel=500), visit(2), visit(3, previous=1, travel=10, widest=0)]
-    times = earliest(chains, [row(AFTER_END, 3, (1,))])
+    times = earliest(chains, [row(constraint_rows.AFTER_END, 3, (1,))])
     assert isinstance(times, Times)
     assert times.start_ms[2] == times.arrive_ms[2] >= times.end_ms[0]
     assert times.start_ms[1] > times.arrive_ms[1]
@@ -78,8 +70,8 @@ def test_where_there_is_no_room_the_vehicle_waits_before():
 def test_a_bound_on_the_end_raises_the_reference():
     # 2 may end at most 60 after 1 ends, but 2 arrives late: 1 has to wait
     chains = [visit(1, travel=10), visit(2, travel=1000)]
-    within = row(WITHIN_END, 2, (1,), hi=60)
-    times = earliest(chains, [row(AFTER_END, 2, (1,)), within])
+    within = row(constraint_rows.WITHIN_END, 2, (1,), hi=60)
+    times = earliest(chains, [row(constraint_rows.AFTER_END, 2, (1,)), within])
     assert isinstance(times, Times)
     starts = dict(zip((1, 2), times.start_ms, strict=True))
     ends = dict(zip((1, 2), times.end_ms, strict=True))
@@ -90,7 +82,10 @@ def test_a_bound_on_the_end_raises_the_reference():
 def test_a_group_is_tried_member_by_member():
     # the only member that can wait so long is 2; 1 must end early
     chains = [visit(1), visit(2), visit(3, travel=1000)]
-    wanted = [row(WITHIN_END, 3, (1, 2), hi=10), row(NOT_AFTER, 1, hi=200)]
+    wanted = [
+        row(constraint_rows.WITHIN_END, 3, (1, 2), hi=10),
+        row(constraint_rows.NOT_AFTER, 1, hi=200),
+    ]
     times = earliest(chains, wanted)
     assert isinstance(times, Times)
     assert times.end_ms[0] <= 200
@@ -99,7 +94,7 @@ def test_a_group_is_tried_member_by_member():
 
 def test_the_earliest_start_of_a_group_moves_them_all():
     chains = [visit(1), visit(2), visit(3, travel=1000)]
-    times = earliest(chains, [row(WITHIN_START, 3, (1, 2), hi=100)])
+    times = earliest(chains, [row(constraint_rows.WITHIN_START, 3, (1, 2), hi=100)])
     assert isinstance(times, Times)
     assert times.end_ms[2] <= min(times.start_ms[:2]) + 100
 
@@ -107,10 +102,13 @@ def test_the_earliest_start_of_a_group_moves_them_all():
 @pytest.mark.parametrize(
     "wanted",
     [
-        [row(NOT_AFTER, 1, hi=100)],
-        [row(AFTER_END, 1, (2,)), row(AFTER_END, 2, (1,))],
-        [row(AFTER_START, 2, (1,), lo=100), row(WITHIN_START, 2, (1,), hi=120)],
-        [row(NOT_BEFORE, 1, lo=500), row(NOT_AFTER, 1, hi=540)],
+        [row(constraint_rows.NOT_AFTER, 1, hi=100)],
+        [row(constraint_rows.AFTER_END, 1, (2,)), row(constraint_rows.AFTER_END, 2, (1,))],
+        [
+            row(constraint_rows.AFTER_START, 2, (1,), lo=100),
+            row(constraint_rows.WITHIN_START, 2, (1,), hi=120),
+        ],
+        [row(constraint_rows.NOT_BEFORE, 1, lo=500), row(constraint_rows.NOT_AFTER, 1, hi=540)],
     ],
 )
 def test_what_cannot_be_is_said_with_the_row(wanted):
@@ -119,7 +117,9 @@ def test_what_cannot_be_is_said_with_the_row(wanted):
 
 
 def test_flown_tasks_keep_their_times():
-    times = earliest([visit(1, fixed=700), visit(2, ready=100)], [row(AFTER_END, 2, (1,))])
+    times = earliest(
+        [visit(1, fixed=700), visit(2, ready=100)], [row(constraint_rows.AFTER_END, 2, (1,))]
+    )
     assert (times.start_ms[0], times.end_ms[0]) == (700, 750)
     assert times.start_ms[1] >= 750
 
@@ -280,7 +280,7 @@ def test_alternatives_that_nobody_can_do_are_left_aside():
 def test_best_times_are_chosen_among_the_members_of_a_group():
     # 3 ends within 10 of the last of 1 and 2; the one that waits costs less if it is 2
     chains = [visit(1), visit(2, travel=300), visit(3, travel=1000), visit(4, previous=0)]
-    times = earliest(chains, [row(WITHIN_END, 3, (1, 2), hi=10)])
+    times = earliest(chains, [row(constraint_rows.WITHIN_END, 3, (1, 2), hi=10)])
     assert times.sure
     assert max(times.end_ms) == 1050
     assert times.end_ms[3] < 1050
@@ -290,7 +290,7 @@ def test_the_earliest_of_a_group_does_not_creep():
     # 3 starts 1 after the first of 1 and 2, and 1 comes after 3 on the same vehicle
     chains = [visit(3, travel=1, duration=1, lap=0, widest=1 << 40),
               visit(1, previous=0, travel=1, duration=1), visit(2, travel=10**9)]  # fmt: skip
-    times = earliest(chains, [row(AFTER_START, 3, (1, 2), lo=1)])
+    times = earliest(chains, [row(constraint_rows.AFTER_START, 3, (1, 2), lo=1)])
     assert times.start_ms[0] == 10**9 + 1
 
 

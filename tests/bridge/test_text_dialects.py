@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from wire_messages import messages
+from wire_messages import ATTITUDE, OWN_POSITION, RESET, ROUTE_REQUEST, TRAFFIC, messages
 
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.text_protocol.dialects import LAYOUT_IN
@@ -26,19 +26,18 @@ THESIS_LINES = [
     (tp.Waypoint(1, 100.0, 51.433647, -0.215516, 100.0, 0), EXAMPLE.decode()),
     (tp.FenceVertex("KEEPIN", 12, 1, 45.32, -121.02, 0.0, 1e5, 1),
      "GEOFNtype_KEEPIN_,totalvert12,vertIndex1,lat45.32,long-121.02,floor0,ceil100000,index1,\n"),
-    (tp.OwnPosition(12.5, 45.301234, -120.998765, 700.25, 700.25, 21.213203, -5.5, 1.25,
-                    vehicle_id=1),
+    (OWN_POSITION,
      "POSTNtimegps12.5,lat45.301234,long-120.998765,altabs700.25,altrel700.25,north21.213203,"
      "east-5.5,down1.25,hdop0.1,vdop0.1,numsats25,id1,\n"),
-    (tp.Attitude(-12.5, 3.25, 0.0), "ATTUDroll-12.5,pitch3.25,yaw0,\n"),
-    (tp.Traffic("TRAFFIC", 45.31, -120.95, 680.0, -20.0, 1.5, -0.75, 3),
+    (ATTITUDE, "ATTUDroll-12.5,pitch3.25,yaw0,\n"),
+    (TRAFFIC,
      "OBJCTtype_TRAFFIC_,lat45.31,long-120.95,alt680,north-20,east1.5,down-0.75,index3,\n"),
     (tp.StartMission(), "COMNDtypeSTART_MISSION,\n"),
     (tp.WaypointReached(0), "WPRCHid1,\n"),
-    (tp.RouteRequest("ASTAR", 45.3, -121.0, 700.0, 45.33, -120.95, 700.0, 90.0, 22.0, 0.0),
+    (ROUTE_REQUEST,
      "WPREQtypeASTAR,slat45.3,slong-121,salt700,elat45.33,elong-120.95,ealt700,track90,vh22,vv0,\n"),
     (tp.FenceDone(1), "COMNDtypeGEOFN_SEND,id1,\n"),
-    (tp.SoftReset(45.306, -120.988001, 705.0),
+    (RESET,
      "COMNDtypeRESET_SFT,lat45.306,long-120.988001,alt705,\n"),
     (tp.HardReset(), "COMNDtypeRESET_HRD,\n"),
     (tp.EpochTold("UXAS", 5), "EPOCHtype_UXAS_,epoch5,\n"),

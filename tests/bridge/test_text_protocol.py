@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from wire_messages import messages
+from wire_messages import ATTITUDE, OWN_POSITION, RESET, ROUTE_REQUEST, TRAFFIC, messages
 
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.text_protocol.handshake import (
@@ -49,20 +49,19 @@ ORIGINAL_LINES = [
     (tp.FenceDone(1), "COMND,typeGEOFN_SEND,id1.0,\n"),
     (tp.FenceDone(), "COMND,typeGEOFN_SEND,\n"),
     (tp.StartMission(), "COMND,typeSTART_MISSION,\n"),
-    (tp.SoftReset(45.306, -120.988001, 705.0),
+    (RESET,
      "COMND,typeRESET_SFT,lat45.306000,long-120.988001,alt705.000000,\n"),
     (tp.SoftReset(), "COMND,typeRESET_SFT,\n"),
     (tp.HardReset(), "COMND,typeRESET_HRD,\n"),
-    (tp.OwnPosition(12.5, 45.301234, -120.998765, 700.25, 700.25, 21.213203, -5.5, 1.25,
-                    vehicle_id=1),
+    (OWN_POSITION,
      "POSTN,timegps12.500000,lat45.301234,long-120.998765,altabs700.250000,altrel700.250000,"
      "north21.213203,east-5.500000,down1.250000,hdop0.100000,vdop0.100000,numsats25.0,id1.0,\n"),
-    (tp.Attitude(-12.5, 3.25, 0.0), "ATTUD,roll-12.500000,pitch3.250000,yaw0.000000,\n"),
-    (tp.Traffic("TRAFFIC", 45.31, -120.95, 680.0, -20.0, 1.5, -0.75, 3),
+    (ATTITUDE, "ATTUD,roll-12.500000,pitch3.250000,yaw0.000000,\n"),
+    (TRAFFIC,
      "OBJCT,type_TRAFFIC_,lat45.310000,long-120.950000,alt680.000000,north-20.000000,"
      "east1.500000,down-0.750000,index3.0,\n"),
     (tp.WaypointReached(0), "WPRCH,id0.0,\n"),
-    (tp.RouteRequest("ASTAR", 45.3, -121.0, 700.0, 45.33, -120.95, 700.0, 90.0, 22.0, 0.0),
+    (ROUTE_REQUEST,
      "WPREQ,typeASTAR,slat45.300000,slong-121.000000,salt700.000000,elat45.330000,"
      "elong-120.950000,ealt700.000000,track90.000000,vh22.000000,vv0.000000,\n"),
     (tp.EpochTold("ICAROUS", 5), "EPOCH,type_ICAROUS_,epoch5.0,\n"),

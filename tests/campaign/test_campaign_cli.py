@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from campaign_child import written
+from campaign_tools import loss_found
 
 from cratous.services.cli import main
 
@@ -51,17 +52,14 @@ def test_a_search_without_a_space_is_refused(
 def test_found_is_a_mission_that_fails_alone(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    file, out = tmp_path / "c.yaml", tmp_path / "out"
-    file.write_text(
-        "name: bare\ngenerator: {kind: head_on}\nseeds: [1, 1]\noptions: [{name: bare, daa: false}]\n"
-    )
-    proofs = "--allow-unproved"
-    assert (
-        main(["campaign", str(file), "--find", "G2", "--budget", "1", proofs, "-o", str(out)]) == 1
+    out = loss_found(
+        tmp_path,
+        "name: bare\ngenerator: {kind: head_on}\nseeds: [1, 1]\noptions: [{name: bare, daa: false}]\n",
     )
     assert "G2 fails in bare-bare-seed1, after 1 runs" in capsys.readouterr().out
     case = str(out / "found-G2.yaml")
-    assert main(["run", case, "--no-daa", proofs, "--json", "--out", str(tmp_path / "f")]) == 1
+    flags = ["--no-daa", "--allow-unproved", "--json"]
+    assert main(["run", case, *flags, "--out", str(tmp_path / "f")]) == 1
     found = json.loads(capsys.readouterr().out)
     stored = json.loads((out / "search.json").read_text())
     (row,) = [row for row in found["requirements"] if row["requirement"] == "G2"]

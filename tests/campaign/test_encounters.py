@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 import seeded_faults
 import yaml
+from campaign_tools import loss_found
 from seeded_faults import seeded
 
 from cratous.judge.encounter import judge_encounter
@@ -306,13 +307,11 @@ def test_bad_files_of_states_are_named(
 def test_a_search_finds_an_encounter_and_its_file_shows_it_again(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    file, out = tmp_path / "campaign.yaml", tmp_path / "out"
-    file.write_text(
+    out = loss_found(
+        tmp_path,
         f"{HEAD}generator: {{kind: head_on, ranges: {{time_s: [30, 40]}}}}\nseeds: [5, 6]\n"
-        "options: [{name: bare, daa: false}]\n"
+        "options: [{name: bare, daa: false}]\n",
     )
-    arguments = ["--find", "G2", "--budget", "1", "--allow-unproved", "-o", str(out)]
-    assert main(["campaign", str(file), *arguments]) == 1
     assert "trial-bare-seed5, after 1 runs" in capsys.readouterr().out
     case = out / "found-G2.yaml"
     assert "in this encounter (flown without avoidance)" in case.read_text()

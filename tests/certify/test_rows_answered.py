@@ -13,7 +13,7 @@ from certify_tools import ROOT, Run, meta, read
 
 pytest.importorskip("cryptography", reason="the extra `sign` is not installed")
 
-from signing import retell, sign_whole, verify
+from signing import retell, sign_whole, verify, verify_edited
 
 from cratous.services.assumptions.listing import LISTING
 from cratous.services.attestation.assumed import assumption_faults
@@ -282,10 +282,7 @@ LIMITED: dict[str, Edit] = {
 
 @pytest.mark.parametrize("case", LIMITED)
 def test_the_limits_are_those_of_every_report(run: Run, home: Path, case: str) -> None:
-    report = read(home / "run")
-    LIMITED[case](report)
-    sign_whole(home, report)
-    code, _, err = verify(run, home)
+    code, _, err = verify_edited(run, home, LIMITED[case])
     assert code == 1
     assert "refused: report.json: its limits are not those that every report has" in err
 

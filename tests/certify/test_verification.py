@@ -21,6 +21,7 @@ from signing import (
     sign_whole,
     statement_of,
     verify,
+    verify_edited,
 )
 
 from cratous.services.attestation import planned, recorded
@@ -206,10 +207,7 @@ SUMS: dict[str, tuple[Edit, str]] = {
 @pytest.mark.parametrize("case", SUMS)
 def test_a_summary_that_its_rows_do_not_give_is_refused(run: Run, home: Path, case: str) -> None:
     edit, said = SUMS[case]
-    report = read(home / "run")
-    edit(report)
-    sign_whole(home, report)
-    code, _, err = verify(run, home)
+    code, _, err = verify_edited(run, home, edit)
     assert code == 1
     assert f"refused: report.json: {said}" in err
 
@@ -240,10 +238,7 @@ RECORDED: dict[str, Edit] = {
 
 @pytest.mark.parametrize("name", RECORDED)
 def test_what_the_log_recorded_is_what_the_report_says(run: Run, home: Path, name: str) -> None:
-    report = read(home / "run")
-    RECORDED[name](report)
-    sign_whole(home, report)
-    code, _, err = verify(run, home)
+    code, _, err = verify_edited(run, home, RECORDED[name])
     assert (code, f"refused: report.json: {name} is not what the log recorded" in err) == (1, True)
 
 

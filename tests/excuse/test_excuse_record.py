@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from mission_tools import plain_mission, plain_vehicle
+from mission_tools import must_fly, plain_mission, plain_vehicle
 
 from cratous.bridge import lmcp
 from cratous.core.daa.state import DIMENSIONS
@@ -23,16 +23,7 @@ from cratous.services.flight.dynamics import MAX_ACCELERATION_M_S2
 from cratous.services.monitor import Monitor
 from cratous.spec.daa.parameters import Parameters
 from cratous.spec.daa.presets import preset
-from cratous.spec.mission import (
-    Daa,
-    Position,
-    Task,
-    TaskKind,
-    Traffic,
-    Vehicle,
-    Velocity,
-    WellClear,
-)
+from cratous.spec.mission import Daa, Position, Traffic, Vehicle, Velocity, WellClear
 from cratous.spec.mission.guarantees import Outcome, exit_code
 from cratous.spec.mission.plan import Plan
 
@@ -144,7 +135,7 @@ class Envelope:
 
 def verdicts(scenes: list[Scene], numbers: tuple[int, ...] = (1,)) -> list[Any]:
     vehicles = tuple(vehicle(n) for n in numbers)
-    tasks = (Task(1, TaskKind.MUST_FLY, "", (Position(10.0, 5000.0, 300.0),)),)
+    tasks = (must_fly(1, (10.0, 5000.0, 300.0)),)
     there = [s.time_ms for s in scenes if 9 in s.places]
     still = Velocity(0.0, 0.0, 0.0)
     others = tuple(

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from flight_tools import flown, of_type
 from icarous_tools import ABILITY, NORTH, VOLUME, WIDE
+from mission_tools import must_fly
 
 from cratous.core.authority.gate import Gate
 from cratous.core.avoidance.manoeuvre import way_along
@@ -25,8 +26,6 @@ from cratous.services.loading import load
 from cratous.services.pipeline.plan import make_plan
 from cratous.spec.mission import (
     Position,
-    Task,
-    TaskKind,
     Velocity,
     WellClear,
     Zone,
@@ -186,10 +185,7 @@ def test_a_drone_that_hovers_behind_the_goal_is_in_nobodys_way(behind_m: float) 
 
 def test_the_way_is_told_to_its_end_or_farther_than_is_looked() -> None:
     mission = load(MISSION)
-    tasks = tuple(
-        Task(k, TaskKind.MUST_FLY, "", (Position(1500.0 + 300.0 * k, 0.0, 300.0),))
-        for k in range(1, 6)
-    )
+    tasks = tuple(must_fly(k, (1500.0 + 300.0 * k, 0.0, 300.0)) for k in range(1, 6))
     plan = make_plan(replace(mission, tasks=tasks, traffic=()))
     items = plan.chain(1)
     assert len(items) == 5

@@ -12,18 +12,15 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from mission_tools import plain_mission
+from flight_tools import VOLUME, flown, mission_within, of_type, vehicle
 
 from cratous.bridge import lmcp
 from cratous.core.kernel import Vec2
 from cratous.core.well_clear import StandardThresholds, violation_within
-from cratous.services.bus import Bus
-from cratous.services.flight.loop import FlightResult, fly
+from cratous.services.flight.loop import FlightResult
 from cratous.spec.mission import (
-    Daa,
     Mission,
     Position,
-    Simulation,
     Task,
     TaskKind,
     Vehicle,
@@ -31,18 +28,14 @@ from cratous.spec.mission import (
 )
 from cratous.spec.mission.plan import Plan, PlanItem
 
-VOLUME = WellClear(150.0, 30.0, 15.0, 0.0)
 LEAD_M = 2600.0
 
 
-def vehicle(vid: int, heading: float, speed: float, before_s: float) -> Vehicle:
+def through_origin(vid: int, heading: float, speed: float, before_s: float) -> Vehicle:
     """A vehicle that is at the origin after before_s if it flies on."""
     north = -speed * before_s * math.cos(heading)
     east = -speed * before_s * math.sin(heading)
-    start = Position(north, east, 300.0)
-    return Vehicle(
-        vid, f"UAV {vid}", start, heading, speed, 15.0, 32.0, math.radians(35), 3.0, True
-    )
+    return vehicle(vid, north, east, heading, speed)
 
 
 def item(v: Vehicle, task_id: int, past_m: float = 2000.0) -> PlanItem:
@@ -61,31 +54,13 @@ def crossing(
     angle_deg: float, speed_1: float, speed_2: float, t_s: float = 110.0
 ) -> tuple[Mission, Plan]:
     """Vehicle 1 flies north; 2 crosses it under the angle; both are at the origin at t_s."""
-    one = vehicle(1, 0.0, speed_1, t_s)
-    two = vehicle(2, math.radians(angle_deg), speed_2, t_s)
+    one = through_origin(1, 0.0, speed_1, t_s)
+    two = through_origin(2, math.radians(angle_deg), speed_2, t_s)
     tasks = tuple(Task(k, TaskKind.MUST_FLY, f"task {k}", ()) for k in (11, 12))
-    mission = plain_mission(
-        (one, two),
-        tasks,
-        name="crossing",
-        daa=Daa(VOLUME),
-        instances=(1, 2),
-        simulation=Simulation(limit_ms=900_000),
-    )
+    mission = mission_within(900_000, (one, two), tasks, name="crossing")
     items = (item(one, 11), item(two, 12))
     span = max(i.end_ms for i in items)
     return mission, Plan("crossing", items, (), (1,), span, "MINMAX", 1, True)
-
-
-def flown(mission: Mission, plan: Plan, **options: Any) -> tuple[FlightResult, list[Any]]:
-    """The result, and all bodies in order."""
-    bus, log = Bus(lmcp.full_names), []
-    bus.tap(lambda envelope: log.append(envelope.body))
-    return fly(mission, plan, bus, **options), log
-
-
-def of_type(log: list[Any], name: str) -> list[Any]:
-    return [body for body in log if type(body).__name__ == name]
 
 
 def losses(log: list[Any], volume: WellClear = VOLUME, step_s: float = 0.25) -> list[int]:

@@ -8,9 +8,9 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from flight_tools import VOLUME, flown, of_type
+from flight_tools import flown, mission_within, of_type, traffic
 from flight_tools import vehicle as blind
-from mission_tools import plain_mission
+from mission_tools import must_fly
 
 from cratous.bridge import lmcp
 from cratous.core.geofence.mission_legs import leg_ok
@@ -18,17 +18,9 @@ from cratous.core.routing.polylines import Track
 from cratous.services.flight.loop import FlightResult
 from cratous.services.flight.timing import broken_by, closed_by, opens_ms
 from cratous.services.pipeline.plan import make_plan
-from cratous.spec.constraint_rows import (
-    AFTER_END,
-    AFTER_START,
-    NOT_AFTER,
-    NOT_BEFORE,
-    WITHIN_END,
-    Row,
-)
+from cratous.spec import constraint_rows
 from cratous.spec.mission import (
     Camera,
-    Daa,
     Mission,
     Position,
     Simulation,
@@ -59,15 +51,8 @@ POINT = Task(2, TaskKind.POINT_SEARCH, "bridge", (ground(2000, 5000),), eligible
 
 def mission(relations: str, **changes: Any) -> Mission:
     """Two vehicles far apart: one searches a line, the other a point."""
-    made = plain_mission(
-        (vehicle(1, 0, 0), vehicle(2, 0, 5000)),
-        (LINE, POINT),
-        name="executive",
-        daa=Daa(VOLUME),
-        relations=relations,
-        instances=(1, 2),
-        simulation=Simulation(limit_ms=1_200_000),
-    )
+    two = (vehicle(1, 0, 0), vehicle(2, 0, 5000))
+    made = mission_within(1_200_000, two, (LINE, POINT), name="executive", relations=relations)
     return replace(made, **changes)
 
 
@@ -110,8 +95,7 @@ def test_vehicle_loiters_while_its_predecessor_is_not_done(in_order: Flown) -> N
 
 def delayed() -> Mission:
     """Traffic meets vehicle 1 on its line, so it gives way, goes back and ends late."""
-    other = Traffic(90, Position(2800.0, -2800.0, 300.0), Velocity(0.0, 22.0, 0.0))
-    return mission(".(p1 p2)", traffic=(other,))
+    return mission(".(p1 p2)", traffic=(traffic(2800.0, -2800.0),))
 
 
 @pytest.fixture(scope="module")
@@ -174,7 +158,9 @@ def test_impossible_deadline_is_a_named_failure() -> None:
     m = delayed()
     plan = make_plan(m)
     end = next(item.end_ms for item in plan.items if item.task_id == 1)
-    row = Row(NOT_AFTER, 1, (), 0, end + 4000, f"p1 ends at {end + 4000} ms or earlier")
+    row = constraint_rows.Row(
+        constraint_rows.NOT_AFTER, 1, (), 0, end + 4000, f"p1 ends at {end + 4000} ms or earlier"
+    )
     result, log = flown(m, replace(plan, rows=(*plan.rows, row)))
     assert result.outcome == "failed"
     assert row.text in result.failed[1]
@@ -184,7 +170,7 @@ def test_impossible_deadline_is_a_named_failure() -> None:
     assert "task 1 failed" in result.failed[2]
 
 
-POST = Task(1, TaskKind.MUST_FLY, "post", (Position(6000.0, 2500.0, 300.0),))
+POST = must_fly(1, (6000.0, 2500.0, 300.0), label="post")
 
 
 def against(item: PlanItem, at_m: float = 2600.0, speed: float = 22.0) -> Traffic:
@@ -215,7 +201,9 @@ def test_vehicle_in_a_hurry_is_still_on_time() -> None:
 def test_hopeless_plan_is_made_anew() -> None:
     """A row that the plan in force cannot keep leads to a new plan, from where all are then."""
     m, item = late_mission()
-    row = Row(NOT_AFTER, 1, (), 0, item.end_ms - 60_000, "p1 ends a minute sooner")
+    row = constraint_rows.Row(
+        constraint_rows.NOT_AFTER, 1, (), 0, item.end_ms - 60_000, "p1 ends a minute sooner"
+    )
     plan = make_plan(m)
     result, log = flown(m, replace(plan, rows=(*plan.rows, row)))
     assert (result.outcome, result.replans) == ("complete", 1)
@@ -252,10 +240,10 @@ def test_one_state_of_everyone_each_step_and_heartbeats_each_period() -> None:
 
 
 ROWS = (
-    Row(AFTER_END, 2, (1,), 100, 0, "after the end"),
-    Row(AFTER_START, 3, (1, 2), 0, 0, "after the start"),
-    Row(NOT_BEFORE, 4, (), 500, 0, "not before"),
-    Row(WITHIN_END, 5, (1,), 0, 1000, "within"),
+    constraint_rows.Row(constraint_rows.AFTER_END, 2, (1,), 100, 0, "after the end"),
+    constraint_rows.Row(constraint_rows.AFTER_START, 3, (1, 2), 0, 0, "after the start"),
+    constraint_rows.Row(constraint_rows.NOT_BEFORE, 4, (), 500, 0, "not before"),
+    constraint_rows.Row(constraint_rows.WITHIN_END, 5, (1,), 0, 1000, "within"),
 )
 
 

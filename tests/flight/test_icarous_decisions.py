@@ -20,9 +20,10 @@ from cratous.services.icarous.ending import Ahead
 from cratous.services.icarous.foresight import describe, predicted, way_back_is_free
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.permits import NONE
 from cratous.services.icarous.return_to_path import PERSIST_MS as FREE_MS
 from cratous.services.icarous.return_to_path import goal_index
-from cratous.services.icarous.state import Config, State
+from cratous.services.icarous.state import Config, Met, State
 from cratous.services.icarous.traffic_monitor import (
     PERSIST_MS,
     last_time_s,
@@ -346,6 +347,7 @@ def test_who_was_avoided_is_not_met_again(
         Position(22.0 * meets_s, -22.0 * (meets_s + late_s), 300.0),
         Velocity(0.0, 22.0, 0.0),
     )
-    state = State(told=Told(waypoints=LONG, next_index=1), goal=1, avoided=avoided)
+    met = tuple(Met(intruder, NONE) for intruder in avoided)
+    state = State(told=Told(waypoints=LONG, next_index=1), goal=1, met=met)
     sensed = Sensed(0, NORTH, ABILITY, (other,), Gate(0, 0, False))
     assert way_back_is_free(CONFIG, state, sensed, frozenset(in_turn)) is free

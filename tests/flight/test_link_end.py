@@ -26,28 +26,10 @@ from cratous.bridge.text_protocol import (
 from cratous.core.authority.gate import ICAROUS, UXAS, Gate
 from cratous.core.authority.link_end import Linked
 from cratous.services.bus import Bus
-from cratous.services.flight import link_end
+from cratous.services.flight import link_end, messages
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.link_end import State, UxasEnd
 from cratous.services.flight.loop import FlightResult, fly
-from cratous.services.flight.messages import (
-    Beat,
-    Connected,
-    Down,
-    Flown,
-    GateIs,
-    Heard,
-    Left,
-    Lost,
-    Route,
-    Say,
-    Suspend,
-    TakeBack,
-    ToLinkEnd,
-    Unreadable,
-    Watch,
-    ZonesKnown,
-)
 from cratous.services.logs.records import from_data, to_data
 from cratous.services.mission.frames import Projection
 from cratous.services.monitor import Monitor
@@ -61,31 +43,31 @@ END = UxasEnd(Projection(Frame(45.0, -121.0, 0.0)))
 ZONE = Zone(4, ZoneKind.KEEP_OUT, ((0.0, 0.0), (0.0, 90.0), (90.0, 90.0)), 0.0, 500.0)
 WAY = (Position(0.0, 0.0, 300.0), Position(100.0, 0.0, 300.0), Position(300.0, 0.0, 300.0))
 AIRCRAFT = tuple((k, AirState(Position(10.0 * k, 0.0, 300.0), 0.0, 20.0, 1.0)) for k in (1, 2, 90))
-ALL: tuple[ToLinkEnd, ...] = (
-    ZonesKnown((ZONE,)),
-    Connected(0, (1, 2)),
-    Route(1, WAY, 22.0, 5.0),
-    Flown(1, 110.0),
-    Beat(0, AIRCRAFT),
-    GateIs(1, Gate(ICAROUS, 1, False)),
-    Heard(1, 500, SetMode("ACTIVE", 1)),
-    Left(1, WAY[1]),
-    Heard(1, 500, Heartbeat(sequence=1, time_s=0.5)),
-    GateIs(1, Gate(ICAROUS, 2, True)),
-    Heard(1, 900, SetMode("PASSIVE", 2)),
-    Unreadable(2, 900, "what?"),
-    ZonesKnown((ZONE, replace(ZONE, id=5))),
-    Watch(2500),
-    Lost(1, 3000, LinkEvent("eof")),
-    Beat(3000, AIRCRAFT),
-    Watch(3000),
+ALL: tuple[messages.ToLinkEnd, ...] = (
+    messages.ZonesKnown((ZONE,)),
+    messages.Connected(0, (1, 2)),
+    messages.Route(1, WAY, 22.0, 5.0),
+    messages.Flown(1, 110.0),
+    messages.Beat(0, AIRCRAFT),
+    messages.GateIs(1, Gate(ICAROUS, 1, False)),
+    messages.Heard(1, 500, SetMode("ACTIVE", 1)),
+    messages.Left(1, WAY[1]),
+    messages.Heard(1, 500, Heartbeat(sequence=1, time_s=0.5)),
+    messages.GateIs(1, Gate(ICAROUS, 2, True)),
+    messages.Heard(1, 900, SetMode("PASSIVE", 2)),
+    messages.Unreadable(2, 900, "what?"),
+    messages.ZonesKnown((ZONE, replace(ZONE, id=5))),
+    messages.Watch(2500),
+    messages.Lost(1, 3000, LinkEvent("eof")),
+    messages.Beat(3000, AIRCRAFT),
+    messages.Watch(3000),
 )
 
 
-def after(*messages: ToLinkEnd, state: State = State()) -> tuple[State, list[Any]]:
+def after(*sent: messages.ToLinkEnd, state: State = State()) -> tuple[State, list[Any]]:
     """The state after some messages, and what the last one led to."""
     out: tuple[Any, ...] = ()
-    for message in messages:
+    for message in sent:
         state, out = END.handle(state, message)
     return state, list(out)
 
@@ -101,28 +83,28 @@ def test_handling_one_vehicle_leaves_the_others_alone() -> None:
         if getattr(message, "vehicle_id", 0) == 1:
             moved, out = END.handle(state, message)
             assert moved.peer(2) == state.peer(2)
-            assert {m.vehicle_id for m in out if not isinstance(m, Say)} <= {1}
+            assert {m.vehicle_id for m in out if not isinstance(m, messages.Say)} <= {1}
 
 
 def test_a_vehicle_without_an_instance_is_told_nothing() -> None:
     state, _ = after(*ALL[:2])
-    assert END.handle(state, Route(7, WAY, 22.0, 0.0)) == (state, ())
+    assert END.handle(state, messages.Route(7, WAY, 22.0, 0.0)) == (state, ())
 
 
 TAKEN, OFFERED = Gate(ICAROUS, 1, False), Gate(ICAROUS, 2, True)
-TAKEOVER = (GateIs(1, TAKEN), Heard(1, 500, SetMode("ACTIVE", 1)))
-OFFER = (GateIs(1, OFFERED), Heard(1, 900, SetMode("PASSIVE", 2)))
+TAKEOVER = (messages.GateIs(1, TAKEN), messages.Heard(1, 500, SetMode("ACTIVE", 1)))
+OFFER = (messages.GateIs(1, OFFERED), messages.Heard(1, 900, SetMode("PASSIVE", 2)))
 
 
 def test_a_takeover_suspends_and_an_offer_is_taken_once() -> None:
     state, out = after(*ALL[:2], *TAKEOVER)
-    assert out == [Suspend(1, 500, SUSPEND)]
+    assert out == [messages.Suspend(1, 500, SUSPEND)]
     assert after(TAKEOVER[1], state=state) == (state, [])
     state, out = after(*OFFER, state=state)
-    assert out == [TakeBack(1, 900, TAKE_BACK, 2)]
+    assert out == [messages.TakeBack(1, 900, TAKE_BACK, 2)]
     assert after(OFFER[1], state=state) == (state, [])
     before = state.peer(1)
-    state, out = after(Heard(1, 900, SetMode("ACTIVE", 1)), state=state)
+    state, out = after(messages.Heard(1, 900, SetMode("ACTIVE", 1)), state=state)
     (said,) = out
     assert "epoch 1 is overtaken by one of epoch 2" in said.body.Note
     assert state.peer(1) == before
@@ -130,26 +112,30 @@ def test_a_takeover_suspends_and_an_offer_is_taken_once() -> None:
 
 def test_an_offer_is_taken_also_where_the_takeover_was_not_heard() -> None:
     """Every SETMOD of the takeover was lost: UxAS takes the offer because it hears of it, not unheard."""
-    state, _ = END.handle(State(), Connected(0, (1,)))
-    state, _ = END.handle(state, GateIs(1, Gate(ICAROUS, 2, True)))
-    state, out = END.handle(state, Heard(1, 500, SetMode("PASSIVE", 2)))
-    assert [(m.vehicle_id, m.epoch, m.act) for m in out if isinstance(m, TakeBack)] == [
+    state, _ = END.handle(State(), messages.Connected(0, (1,)))
+    state, _ = END.handle(state, messages.GateIs(1, Gate(ICAROUS, 2, True)))
+    state, out = END.handle(state, messages.Heard(1, 500, SetMode("PASSIVE", 2)))
+    assert [(m.vehicle_id, m.epoch, m.act) for m in out if isinstance(m, messages.TakeBack)] == [
         (1, 2, TAKE_BACK)
     ]
-    _, out = END.handle(state, Heard(1, 1000, SetMode("PASSIVE", 2)))
-    assert not [m for m in out if isinstance(m, TakeBack)]
+    _, out = END.handle(state, messages.Heard(1, 1000, SetMode("PASSIVE", 2)))
+    assert not [m for m in out if isinstance(m, messages.TakeBack)]
     # where nothing is offered there is nothing to take
-    state, _ = END.handle(State(), Connected(0, (1,)))
-    state, _ = END.handle(state, GateIs(1, Gate(UXAS, 2, False)))
-    _, out = END.handle(state, Heard(1, 500, SetMode("PASSIVE", 2)))
-    assert not [m for m in out if isinstance(m, TakeBack)]
+    state, _ = END.handle(State(), messages.Connected(0, (1,)))
+    state, _ = END.handle(state, messages.GateIs(1, Gate(UXAS, 2, False)))
+    _, out = END.handle(state, messages.Heard(1, 500, SetMode("PASSIVE", 2)))
+    assert not [m for m in out if isinstance(m, messages.TakeBack)]
 
 
 def test_a_mode_without_an_epoch_is_of_the_present_one() -> None:
-    state, out = after(*ALL[:2], GateIs(1, TAKEN), Heard(1, 500, SetMode("ACTIVE", None)))
-    assert out == [Suspend(1, 500, SUSPEND)]
-    _, out = after(GateIs(1, OFFERED), Heard(1, 900, SetMode("PASSIVE", None)), state=state)
-    assert out == [TakeBack(1, 900, TAKE_BACK, 2)]
+    state, out = after(
+        *ALL[:2], messages.GateIs(1, TAKEN), messages.Heard(1, 500, SetMode("ACTIVE", None))
+    )
+    assert out == [messages.Suspend(1, 500, SUSPEND)]
+    _, out = after(
+        messages.GateIs(1, OFFERED), messages.Heard(1, 900, SetMode("PASSIVE", None)), state=state
+    )
+    assert out == [messages.TakeBack(1, 900, TAKE_BACK, 2)]
 
 
 @pytest.mark.parametrize(
@@ -165,7 +151,7 @@ def test_a_mode_without_an_epoch_is_of_the_present_one() -> None:
 )
 def test_a_mode_that_cannot_be_true_is_refused(mode: str, epoch: int | None, reason: str) -> None:
     state, _ = after(*ALL[:2], *TAKEOVER, *OFFER)
-    again, (said,) = after(Heard(1, 1000, SetMode(mode, epoch)), state=state)
+    again, (said,) = after(messages.Heard(1, 1000, SetMode(mode, epoch)), state=state)
     assert type(said.body).__name__ == "ModeRefused"
     assert (said.body.Epoch, said.body.GateEpoch) == (2 if epoch is None else epoch, 2)
     assert reason in said.body.Reason
@@ -177,18 +163,18 @@ def test_waypoints_are_told_and_reached_once() -> None:
     (down,) = out
     assert isinstance(down.lines[0], SoftReset)
     assert isinstance(down.lines[-1], StartMission)
-    state, out = after(Flown(1, 110.0), state=state)
-    assert out == [Down(1, (WaypointReached(0), WaypointReached(1)))]
-    assert after(Flown(1, 110.0), state=state) == (state, [])
+    state, out = after(messages.Flown(1, 110.0), state=state)
+    assert out == [messages.Down(1, (WaypointReached(0), WaypointReached(1)))]
+    assert after(messages.Flown(1, 110.0), state=state) == (state, [])
     # a place before those that are told to be reached takes nothing back
-    assert after(Flown(1, 20.0), state=state) == (state, [])
+    assert after(messages.Flown(1, 20.0), state=state) == (state, [])
 
 
 def test_nothing_goes_down_an_ended_connection() -> None:
-    state, _ = after(*ALL[:2], Lost(1, 500, LinkEvent("eof")))
-    for message in (*ALL[2:5], Left(1, WAY[1]), ZonesKnown((ZONE, ZONE))):
+    state, _ = after(*ALL[:2], messages.Lost(1, 500, LinkEvent("eof")))
+    for message in (*ALL[2:5], messages.Left(1, WAY[1]), messages.ZonesKnown((ZONE, ZONE))):
         state, out = END.handle(state, message)
-        assert not [m for m in out if isinstance(m, Down) and m.vehicle_id == 1]
+        assert not [m for m in out if isinstance(m, messages.Down) and m.vehicle_id == 1]
 
 
 # ---- in flight -----------------------------------------------------------------------------------

@@ -132,6 +132,21 @@ def test_heartbeats(tmp_path: Path) -> None:
     assert beats(tmp_path, instances=[]) == "unknown"
 
 
+def test_an_instance_that_never_sends_one_may_be_of_a_protocol_without(tmp_path: Path) -> None:
+    def said(*status: tuple[int, bool]) -> dict[str, str]:
+        scene = Scene(instances=[1]).straight(1, (0, 0, 300), NORTH)
+        for k in range(21):
+            beat = {"VehicleID": 1, "Time": 500 * k, "Direction": "Down", "Sequence": k + 1}
+            scene.say(500 * k, "Heartbeat", **beat)
+        for at, alive in status:
+            scene.say(at, "BridgeStatus", VehicleID=1, Time=at, Alive=alive)
+        found = verdicts(scene.judged(tmp_path))
+        return {k.split()[1]: v for k, v in found.items() if k.startswith("heartbeat")}
+
+    assert said() == {"to": "holds", "from": "unknown"}
+    assert said((9000, True)) == {"to": "holds", "from": "unknown"}
+
+
 def test_a_heartbeat_that_comes_again_or_too_late_is_no_sign_of_life(tmp_path: Path) -> None:
     def said(skip: list[int], extra: list[tuple[int, int]]) -> set[str]:
         scene = Scene(instances=[1]).straight(1, (0, 0, 300), NORTH)

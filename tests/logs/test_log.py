@@ -12,23 +12,13 @@ from typing import NamedTuple
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from mission_tools import must_fly, plain_mission, plain_vehicle
 
 from cratous.services.bus import Envelope
 from cratous.services.logs.log import LogWriter, read_digest, read_envelopes, read_log, read_meta
 from cratous.services.logs.records import canonical, fingerprint, from_data, to_data
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import (
-    Daa,
-    Frame,
-    Mission,
-    Position,
-    Task,
-    TaskKind,
-    Vehicle,
-    WellClear,
-    Zone,
-    ZoneKind,
-)
+from cratous.spec.mission import Mission, Position, Zone, ZoneKind
 
 MESSAGES = [Envelope(k, 250 * k, "sim", "cratous.TruthState", {"k": k}) for k in range(1203)]
 
@@ -165,15 +155,10 @@ def test_not_a_number_has_no_canonical_text() -> None:
 
 
 def test_a_mission_comes_back() -> None:
-    mission = Mission(
-        name="m",
+    mission = plain_mission(
+        (plain_vehicle(1, Position(0.0, 1.0, 2.0)),),
+        (must_fly(1, (1.0, 2.0, 3.0), label="t"),),
         source="m.yaml",
-        frame=Frame(45.0, -120.0),
-        vehicles=(
-            Vehicle(1, "one", Position(0.0, 1.0, 2.0), 0.1, 20.0, 15.0, 30.0, 0.5, 5.0, True),
-        ),
-        tasks=(Task(1, TaskKind.MUST_FLY, "t", (Position(1.0, 2.0, 3.0),)),),
-        daa=Daa(WellClear(150.0, 30.0, 15.0, 0.0)),
         zones=(Zone(3, ZoneKind.KEEP_IN, ((0.0, 0.0), (9.0, 0.0), (0.0, 9.0)), 0.0, 99.0),),
         instances=(1,),
     )

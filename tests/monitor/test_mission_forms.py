@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from mission_tools import FRAME_TEXT, vehicle_text
+from mission_tools import flown_text, vehicle_text
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus
@@ -21,13 +21,8 @@ from cratous.services.monitor import Monitor
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission.guarantees import exit_code
 
-VEHICLES = vehicle_text(1, 0, 400) + vehicle_text(2, 2000, 600, "SLOW", "FAST")
 HEAD = (
-    f"""
-name: forms
-{FRAME_TEXT}simulation: {{step_ms: 500, heartbeat_ms: 1000}}
-vehicles:
-{VEHICLES}"""
+    flown_text("forms", vehicle_text(1, 0, 400), vehicle_text(2, 2000, 600, "SLOW", "FAST"))
     + """tasks:
   - {id: 1, kind: must_fly, points: [{north_m: 1000, east_m: 0, alt_m: 400}], eligible: ONE}
   - {id: 2, kind: must_fly, points: [{north_m: 1000, east_m: 2000, alt_m: 600}], eligible: TWO}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from mission_tools import must_fly
 from monitor_tools import (
     PLAN,
     Envelope,
@@ -226,7 +227,7 @@ def test_a_search_must_be_covered_by_footprints():
 
 
 def test_a_point_must_really_be_flown_through():
-    tasks = (Task(1, TaskKind.MUST_FLY, "", (Position(10.0, 5060.0, 100.0),)), mission().tasks[1])
+    tasks = (must_fly(1, (10.0, 5060.0, 100.0)), mission().tasks[1])
     seen = watch(mission(tasks=tasks), [*apart(), *beats(3000), *done()])
     assert seen["G3:task 1 served"].outcome is Outcome.VIOLATED
     assert seen["G3:task 2 served"].outcome is Outcome.HOLDS

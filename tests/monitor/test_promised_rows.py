@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from mission_tools import FRAME_TEXT, vehicle_text
+from mission_tools import flown_text, vehicle_text
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus
@@ -24,13 +24,8 @@ from cratous.spec.mission import Change, Mission, changes
 from cratous.spec.mission.guarantees import Outcome, Verdict
 from cratous.spec.mission.plan import Plan
 
-VEHICLES = "".join(vehicle_text(k, 2000 * (k - 1), 200 + 200 * k) for k in (1, 2, 3))
 TEXT = (
-    f"""
-name: promised
-{FRAME_TEXT}simulation: {{step_ms: 500, heartbeat_ms: 1000}}
-vehicles:
-{VEHICLES}"""
+    flown_text("promised", *(vehicle_text(k, 2000 * (k - 1), 200 + 200 * k) for k in (1, 2, 3)))
     + """tasks:
   - {id: 1, kind: must_fly, eligible: [1], points: [{north_m: 500, east_m: 0, alt_m: 400}]}
   - {id: 2, kind: must_fly, eligible: [2], points: [{north_m: 900, east_m: 2000, alt_m: 600}]}

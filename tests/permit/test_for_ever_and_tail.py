@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
-from permit_tools import ROUND, hit, off
+from permit_tools import ROUND, encounters, hit, off
 
 from cratous.core.kernel import Vec2
 from cratous.core.permit.for_ever import above_for_ever, beside_for_ever, hold_clear
@@ -24,19 +24,7 @@ from cratous.core.permit.pieces import (
 from cratous.core.readings.exact import exact
 from cratous.spec.permit import motion
 
-PLACES = st.fractions(-400, 400, max_denominator=4)
-SPEEDS = st.fractions(-20, 20, max_denominator=4)
-SMALL = st.fractions(0, 30, max_denominator=4)
-RATES = st.fractions(0, 2, max_denominator=4)
-GROWTHS = st.builds(Growth, SMALL, RATES, st.sampled_from([Fraction(0), Fraction(1, 8)]))
-VECTORS = st.builds(Vec2, PLACES, PLACES)
-VELOCITIES = st.builds(Vec2, SPEEDS, SPEEDS)
-TIMES = st.fractions(0, 20, max_denominator=4)
-PIECES = st.lists(st.builds(Piece, VELOCITIES, SPEEDS, TIMES, SMALL), min_size=1, max_size=4)
-MEETINGS = st.builds(
-    Meeting, VECTORS, PLACES, VELOCITIES, SPEEDS, GROWTHS, GROWTHS,
-    st.fractions(0, 100, max_denominator=4), st.fractions(0, 60, max_denominator=4),
-)  # fmt: skip
+ANY = encounters(400, 20, 4, st.sampled_from([Fraction(0), Fraction(1, 8)]), 100)
 GONE = st.fractions(-5, 60, max_denominator=4)
 STEADY = Growth(0.0, 0.0, 0.0)
 
@@ -63,7 +51,7 @@ def left(pieces: list[Piece], meeting: Meeting, gone: Fraction) -> tuple[list[Pi
 
 
 @settings(max_examples=200, deadline=None)
-@given(PIECES, MEETINGS, GONE)
+@given(ANY.pieces, ANY.meetings, GONE)
 def test_from_an_instant_on_is_what_is_left_then(
     pieces: list[Piece], meeting: Meeting, gone: Fraction
 ) -> None:
@@ -79,7 +67,7 @@ def test_from_an_instant_on_is_what_is_left_then(
 
 
 @settings(max_examples=60, deadline=None)
-@given(PIECES, MEETINGS, GONE, st.data())
+@given(ANY.pieces, ANY.meetings, GONE, st.data())
 def test_what_is_permitted_from_an_instant_on_is_not_hit_after_it(
     pieces: list[Piece], meeting: Meeting, gone: Fraction, data: st.DataObject
 ) -> None:
@@ -113,7 +101,7 @@ def test_what_is_over_does_not_count() -> None:
 
 
 @settings(max_examples=300, deadline=None)
-@given(VECTORS, VELOCITIES, SMALL, RATES)
+@given(ANY.vectors, ANY.velocities, ANY.small, ANY.rates)
 @example(Vec2(20, 0), Vec2(1, 0), Fraction(10), Fraction(1))
 @example(Vec2(20, 0), Vec2(0, 0), Fraction(20), Fraction(0))
 @example(Vec2(20, 0), Vec2(0, 1), Fraction(10), Fraction(1))
@@ -134,7 +122,7 @@ def test_beside_for_ever_is_exact(s: Vec2, v: Vec2, start: Fraction, rate: Fract
 
 
 @settings(max_examples=200, deadline=None)
-@given(PLACES, SPEEDS, SMALL, RATES)
+@given(ANY.places, ANY.speeds, ANY.small, ANY.rates)
 @example(Fraction(20), Fraction(1), Fraction(10), Fraction(1))
 @example(Fraction(10), Fraction(1), Fraction(10), Fraction(1))
 @example(Fraction(20), Fraction(0), Fraction(10), Fraction(1, 4))
@@ -147,7 +135,7 @@ def test_above_for_ever_is_exact(
 
 
 @settings(max_examples=150, deadline=None)
-@given(MEETINGS, SMALL, st.sampled_from(ROUND), st.sampled_from(ROUND), st.integers(0, 400))
+@given(ANY.meetings, ANY.small, st.sampled_from(ROUND), st.sampled_from(ROUND), st.integers(0, 400))
 def test_a_hold_that_is_clear_is_never_hit(
     meeting: Meeting,
     rho: Fraction,

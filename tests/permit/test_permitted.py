@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from permit_tools import ROUND, hit, off
+from permit_tools import ROUND, encounters, hit, off
 
 from cratous.core.kernel import Vec2
 from cratous.core.permit.pieces import (
@@ -24,26 +24,11 @@ from cratous.core.readings.exact import exact
 from cratous.core.readings.machine.compiled import compiled
 from cratous.spec.permit import motion
 
-PLACES = st.fractions(-2000, 2000, max_denominator=8)
-SPEEDS = st.fractions(-40, 40, max_denominator=8)
-SMALL = st.fractions(0, 30, max_denominator=8)
-RATES = st.fractions(0, 2, max_denominator=8)
-GROWTHS = st.builds(Growth, SMALL, RATES, st.fractions(0, 1, max_denominator=8))
-VECTORS = st.builds(Vec2, PLACES, PLACES)
-VELOCITIES = st.builds(Vec2, SPEEDS, SPEEDS)
-PIECES = st.lists(
-    st.builds(Piece, VELOCITIES, SPEEDS, st.fractions(0, 20, max_denominator=4), SMALL),
-    min_size=1,
-    max_size=4,
-)
-MEETINGS = st.builds(
-    Meeting, VECTORS, PLACES, VELOCITIES, SPEEDS, GROWTHS, GROWTHS,
-    st.fractions(0, 300, max_denominator=4), st.fractions(0, 60, max_denominator=4),
-)  # fmt: skip
+ANY = encounters(2000, 40, 8, st.fractions(0, 1, max_denominator=8), 300)
 
 
 @settings(max_examples=80, deadline=None)
-@given(PIECES, MEETINGS, st.data())
+@given(ANY.pieces, ANY.meetings, st.data())
 def test_what_is_permitted_is_not_hit(
     pieces: list[Piece], meeting: Meeting, data: st.DataObject
 ) -> None:
@@ -82,7 +67,7 @@ def test_both_verdicts_occur() -> None:
 
 
 @settings(max_examples=200, deadline=None)
-@given(VECTORS, VELOCITIES, SMALL, RATES, st.fractions(0, 60, max_denominator=4))
+@given(ANY.vectors, ANY.velocities, ANY.small, ANY.rates, st.fractions(0, 60, max_denominator=4))
 @example(Vec2(20, 0), Vec2(0, 0), Fraction(10), Fraction(1), Fraction(10))
 def test_beside_is_exact_where_the_radius_grows_steadily(
     s: Vec2, v: Vec2, start: Fraction, rate: Fraction, d: Fraction
@@ -98,20 +83,28 @@ def test_beside_is_exact_where_the_radius_grows_steadily(
 
 
 @settings(max_examples=200, deadline=None)
-@given(PLACES, SPEEDS, GROWTHS, st.fractions(0, 60, max_denominator=4))
+@given(ANY.places, ANY.speeds, ANY.growths, st.fractions(0, 60, max_denominator=4))
 def test_above_is_exact(sz: Fraction, vz: Fraction, growth: Growth, d: Fraction) -> None:
     least = min(sz + t * vz - reach_after(growth, t) for t in (d * k / 32 for k in range(33)))
     assert above_during(sz, vz, growth, d) == (least > 0)
 
 
 @settings(max_examples=200, deadline=None)
-@given(GROWTHS, SMALL, SMALL)
+@given(ANY.growths, ANY.small, ANY.small)
 def test_growth_is_counted_on(growth: Growth, t: Fraction, more: Fraction) -> None:
     assert reach_after(growth_after(growth, t), more) == reach_after(growth, t + more)
 
 
 @settings(max_examples=200, deadline=None)
-@given(VECTORS, VELOCITIES, GROWTHS, GROWTHS, SMALL, SMALL, st.sampled_from(ROUND))
+@given(
+    ANY.vectors,
+    ANY.velocities,
+    ANY.growths,
+    ANY.growths,
+    ANY.small,
+    ANY.small,
+    st.sampled_from(ROUND),
+)
 @example(Vec2(0, 0), Vec2(0, 0), Growth(1, 0, 0), Growth(1, 0, 0), Fraction(3), Fraction(9), (1, 0))
 def test_a_nested_tube_stays_nested(
     s: Vec2, v: Vec2, new: Growth, old: Growth, age: Fraction, t: Fraction, way: tuple[float, float]

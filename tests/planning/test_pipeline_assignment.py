@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from pipeline_messages import cost, ended, matrix, option, options, unique
-from pipeline_tools import Rig, must_fly, vehicle
+from pipeline_tools import Rig, alone, must_fly, vehicle
 
 from cratous.bridge import lmcp
 from cratous.spec import algebra
@@ -19,9 +19,7 @@ ASSIGNMENT = "AssignmentTreeBranchBoundService"
 FIRST_PLAN_NODES = 80
 
 
-@pytest.fixture
-def assigner(tmp_path: Path) -> Rig:
-    return Rig(tmp_path, ASSIGNMENT).with_two()
+assigner = alone(ASSIGNMENT)
 
 
 @pytest.mark.shows(

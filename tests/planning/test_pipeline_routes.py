@@ -6,16 +6,14 @@ from pathlib import Path
 
 import pytest
 from pipeline_messages import ended, option, options, planned, unique
-from pipeline_tools import Rig, place, vehicle
+from pipeline_tools import Rig, alone, place, vehicle
 
 from cratous.bridge import lmcp
 
 AGGREGATOR, PLANNER = "RouteAggregatorService", "RoutePlannerVisibilityService"
 
 
-@pytest.fixture
-def collector(tmp_path: Path) -> Rig:
-    return Rig(tmp_path, AGGREGATOR).with_two()
+collector = alone(AGGREGATOR)
 
 
 @pytest.mark.shows(

@@ -6,18 +6,11 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from mission_tools import plain_mission, plain_vehicle
+from mission_tools import must_fly, plain_mission, plain_vehicle
 
 from cratous.services.monitor.plan_check import check_plan
 from cratous.services.monitor.relations import row_choices
-from cratous.spec.mission import (
-    Mission,
-    Position,
-    Task,
-    TaskKind,
-    Zone,
-    ZoneKind,
-)
+from cratous.spec.mission import Mission, Position, Zone, ZoneKind
 from cratous.spec.mission.guarantees import Outcome
 from cratous.spec.mission.plan import Hold, Plan, PlanItem
 
@@ -27,10 +20,7 @@ def place(north: float, east: float = 0.0) -> Position:
 
 
 VEHICLES = tuple(plain_vehicle(k, place(0.0)) for k in (1, 2))
-TASKS = (
-    Task(1, TaskKind.MUST_FLY, "", (place(1000.0),), eligible=(1,)),
-    Task(2, TaskKind.MUST_FLY, "", (place(2000.0),)),
-)
+TASKS = (must_fly(1, place(1000.0), eligible=(1,)), must_fly(2, place(2000.0)))
 ZONE = Zone(5, ZoneKind.KEEP_OUT, ((500.0, 50.0), (600.0, 50.0), (600.0, 90.0)), 0.0, 1000.0)
 MISSION = plain_mission(
     VEHICLES, TASKS, zones=(ZONE,), relations=".(p1 p2)_[0-300000]", instances=(1, 2)

@@ -93,6 +93,16 @@ def test_one_that_runs_and_says_nothing_ends_the_flight(
     assert (done.outcome, done.why) == ("", f"{silent} has told nothing of the flight for 60 s")
 
 
+def test_whoever_tells_something_of_the_flight_is_not_silent(root: Path) -> None:
+    one = flight(root, ended=False)
+    one.recorder = SimpleNamespace(heard=id, state=id)
+    one.flown = True
+    one._from_uxas(lmcp.new("TaskActive", TaskID=1))
+    assert list(one.news_s) == [flights.UXAS]
+    one._from_simulator(lmcp.new("AirVehicleState", ID=1, Time=500))
+    assert list(one.news_s) == [flights.UXAS, flights.SIMULATOR]
+
+
 def test_what_cannot_be_read_names_who_says_it(root: Path) -> None:
     one = flight(root, ended=False)
     one.uxas = Port(Incoming((b"rubbish",), "UxAS"))

@@ -146,6 +146,21 @@ def test_of_only_two_clients_nobody_takes_the_place() -> None:
             socket.create_connection(("127.0.0.1", port), 5)
 
 
+def test_of_those_that_come_at_once_only_so_many_are_let_in() -> None:
+    plan = of_text(scenario(FLIGHT), "test")
+    where = address("tcp://127.0.0.1:0", ("tcp",), free=True)
+    server = Server(lambda: World(plan.events, 600), where, lambda *_: None, only=1)
+    with contextlib.closing(server.port), contextlib.ExitStack() as open_ones:
+        clients = [Client(server.port.bound[1]) for _ in range(2)]
+        for client in clients:
+            open_ones.callback(client.close)
+        turn(server, 1)
+        assert "AirVehicleState" in clients[0].kinds()
+        with contextlib.suppress(ConnectionResetError):
+            assert clients[1].kinds() == []
+            assert clients[1].ended
+
+
 def test_an_only_client_that_asks_to_end_and_goes_ends_it_in_order() -> None:
     plan = of_text(scenario(FLIGHT), "test")
     where = address("tcp://127.0.0.1:0", ("tcp",), free=True)
@@ -199,7 +214,7 @@ def test_it_ends_when_it_is_asked_to(tmp_path: Path, number: int) -> None:
     path = tmp_path / "s.xml"
     path.write_text(scenario(FLIGHT))
     with simulating(path) as (running, port):
-        client = Client(port)
+        client = Client(port, running)
         client.wait("AirVehicleState")
         running.send_signal(number)
         assert running.wait(LIMIT_S) == 0
@@ -216,7 +231,7 @@ def test_what_changes_nothing_is_told_at_the_end(
     assert "1 x KeyValuePair changes nothing" in capsys.readouterr().err
     with (tmp_path / "err").open("w+") as errors:
         with simulating(path, errors=errors) as (running, port):
-            client = Client(port)
+            client = Client(port, running)
             client.wait("KeyValuePair")
             client.send(lmcp.new("KeyValuePair", Key="b"))
             client.send(lmcp.new("SessionStatus", State="Stopped"))

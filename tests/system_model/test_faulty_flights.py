@@ -8,13 +8,14 @@ from typing import Any
 import pytest
 from faulty_bridge import FAULTS, faulty
 from flight_tools import meeting, vehicle
+from mission_tools import must_fly
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus
 from cratous.services.flight.loop import fly
 from cratous.services.pipeline.plan import make_plan
 from cratous.services.system_model.replay import Replayed, replay
-from cratous.spec.mission import Mission, Position, Simulation, Task, TaskKind
+from cratous.spec.mission import Mission, Simulation
 
 
 def judged(mission: Mission, kind: str, seed: int) -> Replayed:
@@ -29,7 +30,7 @@ def changed(seed: int) -> Mission:
     """The meeting with another course and speed of the traffic, and a second vehicle beside."""
     (other,) = meeting().traffic
     moved = other.position._replace(east_m=-2640.0 + 22.0 * 5 * seed)
-    second = Task(2, TaskKind.MUST_FLY, "", (Position(3000.0, 9000.0, 300.0),))
+    second = must_fly(2, (3000.0, 9000.0, 300.0))
     return replace(
         meeting(),
         vehicles=(vehicle(1, 0.0, 0.0), vehicle(2, 0.0, 9000.0)),

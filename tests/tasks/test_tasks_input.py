@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 import yaml
+from loading_tools import small
 from task_tools import FIELD, vehicle
 
 from cratous.bridge import lmcp
@@ -36,20 +37,10 @@ def places(*corners: tuple[float, float]) -> list[dict[str, float]]:
 
 
 def written(folder: Path, task: dict[str, Any]) -> Path:
-    data = {
-        "name": "m",
-        "frame": {"latitude_deg": 45, "longitude_deg": -120},
-        "vehicles": [
-            {
-                "id": 1,
-                "position": {"north_m": 0, "east_m": 0, "alt_m": 300},
-                "heading_deg": 0,
-                "speed_m_s": 20,
-                "cameras": [{"payload_id": 1}],
-            }
-        ],
-        "tasks": [{k: v for k, v in task.items() if v is not None}],
-    }
+    data = small()
+    data["vehicles"] = [{**data["vehicles"][0], "cameras": [{"payload_id": 1}]}]
+    data["tasks"] = [{k: v for k, v in task.items() if v is not None}]
+    del data["relations"]
     path = folder / "mission.yaml"
     path.write_text(yaml.safe_dump(data), encoding="utf-8")
     return path

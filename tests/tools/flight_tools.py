@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from mission_tools import plain_mission
+from mission_tools import must_fly, plain_mission
 
 from cratous.bridge import lmcp
 from cratous.bridge.loopback import Bridge
@@ -24,7 +24,6 @@ from cratous.spec.mission import (
     Position,
     Simulation,
     Task,
-    TaskKind,
     Traffic,
     Vehicle,
     Velocity,
@@ -35,25 +34,36 @@ from cratous.spec.mission.plan import Plan
 VOLUME = WellClear(150.0, 30.0, 15.0, 0.0)
 
 
-def vehicle(vid: int, north: float, east: float) -> Vehicle:
-    """A vehicle that flies north at 22 m/s, 300 m high."""
-    where = Position(north, east, 300.0)
-    return Vehicle(vid, f"UAV {vid}", where, 0.0, 22.0, 15.0, 32.0, math.radians(35), 3.0, True)
+def vehicle(
+    vid: int, north: float, east: float, heading: float = 0.0, speed: float = 22.0
+) -> Vehicle:
+    """A vehicle 300 m high, with its heading [rad] and speed [m/s]; told nothing, north at 22 m/s."""
+    where, bank = Position(north, east, 300.0), math.radians(35)
+    return Vehicle(vid, f"UAV {vid}", where, heading, speed, 15.0, 32.0, bank, 3.0, True)
+
+
+def traffic(north: float, east: float, velocity: Velocity = Velocity(0.0, 22.0, 0.0)) -> Traffic:
+    """An intruder, number 90, 300 m high; told nothing else, it flies east at 22 m/s."""
+    return Traffic(90, Position(north, east, 300.0), velocity)
+
+
+def mission_within(
+    limit_ms: int, vehicles: tuple[Vehicle, ...], tasks: tuple[Task, ...], **more: Any
+) -> Mission:
+    """A mission with our volume of well clear in which each task is done once, up to a time [ms]."""
+    fields: dict[str, Any] = {
+        "daa": Daa(VOLUME),
+        "instances": tuple(range(1, len(tasks) + 1)),
+        "simulation": Simulation(limit_ms=limit_ms),
+    }
+    return plain_mission(vehicles, tasks, **{**fields, **more})
 
 
 def meeting() -> Mission:
     """One vehicle flies north to a point; traffic crosses its path at the same time and height."""
-    task = Task(1, TaskKind.MUST_FLY, "far", (Position(6000.0, 0.0, 300.0),))
-    other = Traffic(90, Position(2640.0, -2640.0, 300.0), Velocity(0.0, 22.0, 0.0))
-    return plain_mission(
-        (vehicle(1, 0.0, 0.0),),
-        (task,),
-        name="link",
-        daa=Daa(VOLUME),
-        traffic=(other,),
-        instances=(1,),
-        simulation=Simulation(limit_ms=400_000),
-    )
+    task = must_fly(1, (6000.0, 0.0, 300.0), label="far")
+    other = traffic(2640.0, -2640.0)
+    return mission_within(400_000, (vehicle(1, 0.0, 0.0),), (task,), name="link", traffic=(other,))
 
 
 def with_deadline() -> tuple[Mission, Plan]:
@@ -65,11 +75,13 @@ def with_deadline() -> tuple[Mission, Plan]:
     return mission, replace(plan, rows=(*plan.rows, row))
 
 
-def flown(mission: Mission, plan: Plan | None = None) -> tuple[FlightResult, list[Any]]:
+def flown(
+    mission: Mission, plan: Plan | None = None, **options: Any
+) -> tuple[FlightResult, list[Any]]:
     """The result of a flight, and all bodies that were published."""
     bus, log = Bus(lmcp.full_names), list[Any]()
     bus.tap(lambda envelope: log.append(envelope.body))
-    return fly(mission, plan or make_plan(mission), bus), log
+    return fly(mission, plan or make_plan(mission), bus, **options), log
 
 
 def told_to_icarous(patch: pytest.MonkeyPatch) -> list[tuple[int, Message]]:

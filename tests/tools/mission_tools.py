@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
-from cratous.spec.mission import Daa, Frame, Mission, Position, Task, Vehicle, WellClear
+from cratous.spec.mission import Daa, Frame, Mission, Position, Task, TaskKind, Vehicle, WellClear
 
 
 def plain_vehicle(number: int, at: Position, protected: bool = True) -> Vehicle:
     """Heading north at 20 m/s, without a camera."""
     return Vehicle(number, "", at, 0.0, 20.0, 15.0, 30.0, 0.5, 5.0, protected)
+
+
+def must_fly(number: int, at: tuple[float, float, float], **more: Any) -> Task:
+    """A point (north, east, altitude) [m] that has to be flown through; more: fields of the task."""
+    return Task(number, TaskKind.MUST_FLY, points=(Position(*at),), **{"label": "", **more})
 
 
 def plain_mission(vehicles: tuple[Vehicle, ...], tasks: tuple[Task, ...], **more: Any) -> Mission:
@@ -25,6 +30,12 @@ def plain_mission(vehicles: tuple[Vehicle, ...], tasks: tuple[Task, ...], **more
 
 FRAME_TEXT = "frame: {latitude_deg: 45.3, longitude_deg: -121.0, terrain_m: 0}\n"
 """The frame of missions that are written as YAML."""
+
+
+def flown_text(name: str, *vehicles: str) -> str:
+    """The head of a mission in YAML that is flown in steps of 0.5 s, down to its vehicles."""
+    head = f"name: {name}\n{FRAME_TEXT}simulation: {{step_ms: 500, heartbeat_ms: 1000}}\n"
+    return f"{head}vehicles:\n{''.join(vehicles)}"
 
 
 def vehicle_text(

@@ -5,17 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from mission_tools import plain_mission, plain_vehicle
+from mission_tools import must_fly, plain_mission, plain_vehicle
 
 from cratous.bridge import lmcp
 from cratous.services.monitor import Monitor
-from cratous.spec.mission import (
-    Mission,
-    Position,
-    Task,
-    TaskKind,
-    Vehicle,
-)
+from cratous.spec.mission import Mission, Position, Vehicle
 from cratous.spec.mission.plan import Plan, PlanItem
 
 
@@ -38,10 +32,7 @@ def item(task: int, number: int, start: int, end: int) -> PlanItem:
 def mission(**more: Any) -> Mission:
     basis: dict[str, Any] = {
         "vehicles": (vehicle(1), vehicle(2)),
-        "tasks": (
-            Task(1, TaskKind.MUST_FLY, "", (Position(10.0, 5000.0, 100.0),)),
-            Task(2, TaskKind.MUST_FLY, "", (Position(50.0, 10000.0, 100.0),)),
-        ),
+        "tasks": (must_fly(1, (10.0, 5000.0, 100.0)), must_fly(2, (50.0, 10000.0, 100.0))),
         "relations": ".(p1 p2)",
         "instances": (1, 2),
     }

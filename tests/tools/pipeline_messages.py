@@ -66,16 +66,10 @@ def planned(asked: Any, cost: int = 7, missing: tuple[int, ...] = ()) -> Any:
 
 def implementation(asked: Any, points: list[Any], **more: Any) -> Any:
     """A task's answer to a TaskImplementationRequest."""
-    return lmcp.new(
-        "TaskImplementationResponse",
-        ResponseID=asked.RequestID,
-        CorrespondingAutomationRequestID=asked.CorrespondingAutomationRequestID,
-        TaskID=asked.TaskID,
-        OptionID=asked.OptionID,
-        VehicleID=asked.VehicleID,
-        TaskWaypoints=points,
-        **more,
-    )
+    names = ("CorrespondingAutomationRequestID", "TaskID", "OptionID", "VehicleID")
+    said_back = {name: getattr(asked, name) for name in names}
+    answer = {"ResponseID": asked.RequestID, "TaskWaypoints": points, **said_back, **more}
+    return lmcp.new("TaskImplementationResponse", **answer)
 
 
 def ended(number: int) -> Any:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import pytest
 from uxas_tools import process, write_cfg
 
 from cratous.bridge import lmcp
@@ -122,3 +123,13 @@ class Rig:
         """What the statuses of a kind say."""
         told = [b for b in self.got("ServiceStatus") if b.StatusType.name == kind]
         return [pair.Value for body in told for pair in body.Info if pair.Key == "reason"]
+
+
+def alone(service: str) -> Any:
+    """A fixture: a service by itself, told of two vehicles and of two points to fly to."""
+
+    @pytest.fixture
+    def rig(tmp_path: Path) -> Rig:
+        return Rig(tmp_path, service).with_two()
+
+    return rig

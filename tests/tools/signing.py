@@ -115,6 +115,16 @@ def retell(home: Path, edit: Callable[[dict[str, Any]], None]) -> None:
     sign_whole(home, report)
 
 
+def verify_edited(
+    run: Run, home: Path, edit: Callable[[dict[str, Any]], None]
+) -> tuple[int, str, str]:
+    """What verifying says of a report that was edited, nothing else made to fit, and signed whole."""
+    report = read(home / "run")
+    edit(report)
+    sign_whole(home, report)
+    return verify(run, home)
+
+
 def sign_whole(home: Path, report: dict[str, Any]) -> None:
     """A report as it is, with pages, views, and a good signature over all of it."""
     edit_report(home, **report)

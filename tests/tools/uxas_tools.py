@@ -56,9 +56,11 @@ def until(done: Any, *processes: Process, limit_s: float = LIMIT_S) -> None:
 class Client:
     """A client as a test-suite would have it: a plain socket and sentinel frames."""
 
-    def __init__(self, port: int) -> None:
-        end = time.monotonic() + 5 * LIMIT_S  # another process may have to start first
+    def __init__(self, port: int, of: subprocess.Popen[Any] | None = None) -> None:
+        """of: whose port it is, if that process may have to start first."""
+        end = time.monotonic() + 5 * LIMIT_S  # which may compile
         while True:
+            assert of is None or of.poll() is None, f"it has ended with {of.returncode}"
             try:
                 self.sock = socket.create_connection(("127.0.0.1", port), timeout=5)
                 break
@@ -68,6 +70,7 @@ class Client:
         self.sock.setblocking(False)
         self.stream = sentinel.FrameStream()
         self.got: list[wire.AddressedMessage] = []
+        self.ended = False
 
     def send(self, body: Any, entity: int = 0, service: int = 0) -> None:
         message = wire.enclose(
@@ -84,6 +87,7 @@ class Client:
         with contextlib.suppress(BlockingIOError):
             while data := self.sock.recv(1 << 16):
                 self.got += [wire.parse(p) for p in self.stream.feed(data)]
+            self.ended = True
         return self.got
 
     def kinds(self) -> list[str]:
@@ -93,6 +97,7 @@ class Client:
         """The first message of a kind, from another process, which may have to compile first."""
         end = time.monotonic() + 5 * LIMIT_S
         while kind not in self.kinds():
+            assert not self.ended, f"the connection has ended without a {kind}"
             assert time.monotonic() < end, f"no {kind} came, but {self.kinds()}"
             time.sleep(0.01)
         return lmcp.binary.unpack(self.got[self.kinds().index(kind)].payload)

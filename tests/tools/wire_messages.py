@@ -9,6 +9,17 @@ from hypothesis import strategies as st
 from cratous.bridge import text_protocol as tp
 from cratous.bridge.text_protocol.layouts import LAYOUTS, FieldLayout, Kind, Layout
 
+OWN_POSITION = tp.OwnPosition(
+    12.5, 45.301234, -120.998765, 700.25, 700.25, 21.213203, -5.5, 1.25, vehicle_id=1
+)
+ATTITUDE = tp.Attitude(-12.5, 3.25, 0.0)
+TRAFFIC = tp.Traffic("TRAFFIC", 45.31, -120.95, 680.0, -20.0, 1.5, -0.75, 3)
+RESET = tp.SoftReset(45.306, -120.988001, 705.0)
+ROUTE_REQUEST = tp.RouteRequest(
+    "ASTAR", 45.3, -121.0, 700.0, 45.33, -120.95, 700.0, 90.0, 22.0, 0.0
+)
+"""Messages whose lines are known in each dialect."""
+
 
 def _value(field: FieldLayout) -> st.SearchStrategy[Any]:
     if field.kind is Kind.WORD:

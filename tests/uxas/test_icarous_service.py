@@ -113,6 +113,10 @@ def test_two_instances_for_one_vehicle_and_a_stranger_are_refused(
         other = rig.fake(hello=hello)
         rig.until(lambda other=other: other.read() is not None and other.ended)
         assert rig.said.has(why)
+    for hello in range(10, 14):  # what is counted does not grow with what strangers say
+        other = rig.fake(hello=hello)
+        rig.until(lambda other=other: other.read() is not None and other.ended)
+    assert rig.service.port.counts.refused == {"vehicle taken": 1, "HELLO of a stranger": 5}
     rig.tell(state(1))
     rig.until(lambda: one.all(tp.OwnPosition))
     assert not one.ended

@@ -2,17 +2,15 @@
 
 from cratous.core.authority.timeliness import in_time
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.timely import holds_at_every_instant
 from cratous.spec.authority import timeliness
 
 
 def claim(c: Claim) -> None:
-    last, now, bound, t = (c.integer(name) for name in ("last", "now", "bound", "t"))
+    last, now, bound = (c.integer(name) for name in ("last", "now", "bound"))
     c.premise(bound >= 0)
-    said = c.use(in_time, last, now, bound)
-    at_any = c.define(timeliness.in_time, t, last, now, bound)
-    c.show(c.implies(said, at_any), "in time at every instant")
-    witness = c.define(timeliness.in_time, now, last, now, bound)
-    c.show(c.implies(c.negation(said), c.negation(witness)), "else not in time now")
+    texts = ("in time at every instant", "else not in time now")
+    holds_at_every_instant(c, in_time, timeliness.in_time, (last, now, bound), now, texts)
     came = c.define(timeliness.in_time, last, last, now, bound)
     c.show(c.same(came, last <= now), "in time when it came")
     first_late = last + bound + 1

@@ -3,17 +3,21 @@ after it."""
 
 from cratous.core.authority.timeliness import too_early
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.timely import holds_at_every_instant
 from cratous.spec.authority import timeliness
 
 
 def claim(c: Claim) -> None:
-    at, planned, margin, t = (c.integer(name) for name in ("at", "planned", "margin", "t"))
+    at, planned, margin = (c.integer(name) for name in ("at", "planned", "margin"))
     c.premise(margin >= 0)
-    said = c.use(too_early, at, planned, margin)
-    at_any = c.define(timeliness.too_early, t, at, planned, margin)
-    c.show(c.implies(said, at_any), "the plan is ahead at every instant")
-    witness = c.define(timeliness.too_early, at + margin, at, planned, margin)
-    c.show(c.implies(c.negation(said), c.negation(witness)), "else it comes within the margin")
+    holds_at_every_instant(
+        c,
+        too_early,
+        timeliness.too_early,
+        (at, planned, margin),
+        at + margin,
+        ("the plan is ahead at every instant", "else it comes within the margin"),
+    )
     c.show(
         c.define(timeliness.too_early, at - 1, at, planned, margin), "no word on what was before"
     )

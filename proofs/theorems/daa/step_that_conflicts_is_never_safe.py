@@ -4,14 +4,13 @@ the straight flight from it within the horizon: for every kind of volume and eve
 from cratous.core.daa.steps import piece_counts, straight_from
 from cratous.core.daa.volume import in_conflict
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.encounters import any_state, any_thresholds, by_name
+from cratous.proofs.methods.encounters import any_loss, by_name
 from cratous.spec.daa import meaning as daa_meaning
 
 
 def claim(c: Claim) -> None:
     kind = c.integer("kind")
-    s, v, sz, vz = any_state(c)
-    limits = any_thresholds(c)
+    s, v, sz, vz, limits = any_loss(c)
     piece, at, begin, end, t = c.reals("piece at begin end t")
     c.opaque(in_conflict, daa_meaning.violated_at)
     state = {"kind": kind, "s": s, "v": v, "sz": sz, "vz": vz, "t": t}

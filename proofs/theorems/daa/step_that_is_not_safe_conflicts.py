@@ -4,15 +4,14 @@ flight from it within the horizon, at which the volume is violated; the times ke
 from cratous.core.daa.steps import piece_counts, straight_from
 from cratous.core.daa.volume import conflict_span, in_conflict
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.encounters import any_state, any_thresholds
+from cratous.proofs.methods.encounters import any_loss
 from cratous.proofs.theorems.daa.conflict_has_an_instant import witnesses
 from cratous.spec.daa import meaning as daa_meaning
 
 
 def claim(c: Claim) -> None:
     kind = c.integer("kind")
-    s, v, sz, vz = any_state(c)
-    limits = any_thresholds(c)
+    s, v, sz, vz, limits = any_loss(c)
     dthr, zthr, tthr, tcoa, vmod = limits
     piece, at, begin, end = c.reals("piece at begin end")
     c.opaque(in_conflict, conflict_span, daa_meaning.violated_at)

@@ -3,13 +3,13 @@ little further changes by the velocity there, to first order in the sine of the 
 
 from cratous.core.daa.turn import turn_offset, turned
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.turning import any_angle
 
 
 def claim(c: Claim) -> None:
     v = c.vector("v")
-    cos, sin, small_cos, small_sin = c.reals("cos sin small_cos small_sin")
-    c.premise(cos * cos + sin * sin == 1)
-    c.premise(small_cos * small_cos + small_sin * small_sin == 1)
+    cos, sin = any_angle(c, "cos", "sin")
+    small_cos, small_sin = any_angle(c, "small_cos", "small_sin")
     w = c.use(turned, v, cos, sin)
     x = c.use(turned, w, small_cos, small_sin)
     d, e = c.use(turn_offset, v, w), c.use(turn_offset, v, x)

@@ -3,14 +3,14 @@ by the sum of their angles; so the velocities of all steps lie on one circle."""
 
 from cratous.core.daa.turn import turned
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.turning import any_angle
 from cratous.spec.daa import meaning as daa_meaning
 
 
 def claim(c: Claim) -> None:
     v = c.vector("v")
-    cos_a, sin_a, cos_b, sin_b = c.reals("cos_a sin_a cos_b sin_b")
-    c.premise(cos_a * cos_a + sin_a * sin_a == 1)
-    c.premise(cos_b * cos_b + sin_b * sin_b == 1)
+    cos_a, sin_a = any_angle(c, "cos_a", "sin_a")
+    cos_b, sin_b = any_angle(c, "cos_b", "sin_b")
     w = c.use(turned, v, cos_a, sin_a)
     c.show(c.define(daa_meaning.is_turned, v, w, cos_a, sin_a), "it is turned")
     other = c.vector("other")

@@ -3,19 +3,14 @@ the kernel is not above 0."""
 
 from cratous.core.daa.uncertainty import leaves_at
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.uncertainty import any_growing_disc
 from cratous.spec.daa import meaning as daa_meaning
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    es, ev, dthr, t = c.reals("es ev dthr t")
-    for least in (es, ev, dthr, t):
-        c.premise(least >= 0)
-    wide = dthr + es
-    spare = v.x * v.x + v.y * v.y - ev * ev
-    half = s.x * v.x + s.y * v.y - ev * wide
-    rest = s.x * s.x + s.y * s.y - wide * wide
-    c.premise(spare > 0)
+    s, v, es, ev, dthr, spare, half, rest = any_growing_disc(c)
+    t = c.real("t")
+    c.premise(t >= 0)
     may = c.define(daa_meaning.may_be_within_at, s, v, es, ev, dthr, t)
     sign = c.define(daa_meaning.not_positive, spare, half, rest, t)
     c.show(c.same(may, sign))

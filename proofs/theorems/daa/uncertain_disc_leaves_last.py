@@ -3,20 +3,14 @@ of [0, T] at which the disc comes within the circle, begins now, and ends at T o
 
 from cratous.core.daa.uncertainty import until_left
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.uncertainty import any_growing_disc
 from cratous.spec import well_clear
 from cratous.spec.daa import meaning as daa_meaning
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    es, ev, dthr, end, t = c.reals("es ev dthr end t")
-    for least in (es, ev, dthr):
-        c.premise(least >= 0)
-    wide = dthr + es
-    spare = v.x * v.x + v.y * v.y - ev * ev
-    half = s.x * v.x + s.y * v.y - ev * wide
-    rest = s.x * s.x + s.y * s.y - wide * wide
-    c.premise(spare > 0)
+    s, v, es, ev, dthr, spare, half, rest = any_growing_disc(c)
+    end, t = c.reals("end t")
     c.opaque(until_left, daa_meaning.not_positive, daa_meaning.may_be_within_at)
     first, last = c.use(until_left, spare, half, rest, end)
     values = {"a": spare, "half": half, "rest": rest, "end": end}

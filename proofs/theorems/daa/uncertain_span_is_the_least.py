@@ -3,39 +3,29 @@ the spans of altitude and circle share; and a conflict is found exactly if the v
 or nothing is known exactly and that span holds an instant: where nothing is, exactly if there is an
 instant of the volume's own or one that the spans of altitude and circle share."""
 
-from cratous.core.daa.uncertainty import (
-    Uncertainty,
-    circle_span,
-    layer_span,
-    uncertain_conflict,
-    uncertain_span,
-)
-from cratous.core.kernel import Vec2
+from cratous.core.daa.uncertainty import circle_span, layer_span, uncertain_conflict, uncertain_span
 from cratous.core.well_clear.during import layer_window, violation_during_taumod
 from cratous.core.well_clear.interval import (
     horizontal_interval_taumod,
     violation_interval_taumod,
 )
-from cratous.core.well_clear.thresholds import Thresholds
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.encounters import any_state
+from cratous.proofs.methods.detections import named_instant
+from cratous.proofs.methods.kinds import TAUMOD
+from cratous.proofs.methods.uncertainty import any_uncertain, spans_of
 from cratous.spec import well_clear
 from cratous.spec.daa import meaning as daa_meaning
 
 
 def claim(c: Claim) -> None:
-    s, v, sz, vz = any_state(c)
-    limits = Thresholds(*c.reals("dthr zthr tthr tcoa vmod"))
+    asked = any_uncertain(c)
+    s, v, sz, vz, (es, ez, ev, ew), limits, begin, end = asked
     dthr, zthr, tthr, tcoa, vmod = limits
-    es, ez, ev, ew, begin, end, t = c.reals("es ez ev ew begin end t")
+    t = c.real("t")
     c.opaque(violation_during_taumod, violation_interval_taumod, circle_span, layer_span)
     c.opaque(horizontal_interval_taumod, layer_window)
-    state = (s, v, sz, vz, Uncertainty(es, ez, ev, ew), limits, begin, end)
-    span = c.use(uncertain_span, *state)
-    own = c.use(violation_interval_taumod, s, v, sz, vz, limits, begin, end)
-    layer = c.use(layer_span, sz, vz, ez, ew, zthr, tcoa, vmod, end)
-    circle = c.use(circle_span, s, v, es, ev, dthr, tthr, end)
-    spans = [daa_meaning.Span(*span_of) for span_of in (own, layer, circle)]
+    span = c.use(uncertain_span, *asked)
+    spans = [daa_meaning.Span(*span_of) for span_of in spans_of(c, asked)]
     every = c.define(daa_meaning.in_own_or_both, *spans, begin, end, t)
     c.show(c.implies(every, c.define(well_clear.in_span, *span, t)), "holds them")
     for instant in span:
@@ -43,22 +33,16 @@ def claim(c: Claim) -> None:
         c.show(c.implies(span.first_s <= span.last_s, at), "is the least")
     plain = c.use(violation_during_taumod, s, v, sz, vz, limits, begin, end)
     unknown = c.all_of(es > 0, ez > 0, ev > 0, ew > 0, span.first_s <= span.last_s)
-    c.show(c.same(c.use(uncertain_conflict, *state), c.any_of(plain, unknown)), "a conflict")
+    c.show(c.same(c.use(uncertain_conflict, *asked), c.any_of(plain, unknown)), "a conflict")
     sizes = c.all_of(*[threshold >= 0 for threshold in limits])
-    k, low, high = c.use(layer_window, sz + begin * vz, vz, zthr, tcoa, vmod, end - begin)
-    at_low = Vec2((s.x + begin * v.x) * k + low * v.x, (s.y + begin * v.y) * k + low * v.y)
-    scaled, _ = c.use(
-        horizontal_interval_taumod, at_low, v, dthr * k, tthr * k, low - low, high - low
-    )
-    # the instant that stands for a detection, named by the equation that defines it
     witness = c.real("witness")
-    c.premise(c.implies(k > 0, k * (witness - begin) == low + scaled))
+    named_instant(c, TAUMOD, (s, v, sz, vz, begin, end), limits, witness)
     c.lemma(
         "well_clear_detection_taumod_is_the_interval", when=sizes, witness=witness,
         s=s, v=v, sz=sz, vz=vz, begin=begin, end=end,
         dthr=dthr, zthr=zthr, tthr=tthr, tcoa=tcoa, vmod=vmod,
     )  # fmt: skip
-    found = c.use(uncertain_conflict, *state)
+    found = c.use(uncertain_conflict, *asked)
     inexact = c.all_of(sizes, es > 0, ez > 0, ev > 0, ew > 0)
     c.show(c.implies(c.all_of(inexact, every), found), "a conflict misses no instant")
     at_first = c.define(daa_meaning.in_own_or_both, *spans, begin, end, span.first_s)

@@ -12,13 +12,12 @@ from cratous.core.daa.uncertainty import (
 from cratous.core.well_clear.during import violation_during_taumod
 from cratous.core.well_clear.interval import violation_interval_taumod
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.encounters import any_state, any_thresholds, by_name
+from cratous.proofs.methods.encounters import any_loss, by_name
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    s, v, sz, vz = any_state(c)
-    limits = any_thresholds(c)
+    s, v, sz, vz, limits = any_loss(c)
     es, ez, ev, ew, begin, end, t = c.reals("es ez ev ew begin end t")
     for error in (es, ez, ev, ew):
         c.premise(error >= 0)

@@ -6,6 +6,7 @@ from cratous.core.well_clear import horizontal_violation, layer_violation
 from cratous.core.well_clear.thresholds import Thresholds
 from cratous.proofs.claim import Claim
 from cratous.proofs.methods.encounters import any_nested_thresholds, any_state
+from cratous.proofs.methods.volumes import both_parts_grow
 from cratous.spec import well_clear
 
 
@@ -19,16 +20,8 @@ def claim(c: Claim) -> None:
         well_clear.horizontal_violation,
         well_clear.layer_violation,
     )
-    (dthr, zthr, tthr, tcoa, vmod), (dthr2, zthr2, tthr2, tcoa2, vmod2) = small, great
     there, up = Vec2(s.x + t * v.x, s.y + t * v.y), sz + t * vz
-    c.lemma(
-        "well_clear_horizontal_taumod_is_monotone",
-        s=there, v=v, dthr=dthr, tthr=tthr, dthr2=dthr2, tthr2=tthr2,
-    )  # fmt: skip
-    c.lemma(
-        "well_clear_vertical_volume_is_monotone",
-        sz=up, vz=vz, zthr=zthr, tcoa=tcoa, vmod=vmod, zthr2=zthr2, tcoa2=tcoa2, vmod2=vmod2,
-    )  # fmt: skip
+    both_parts_grow(c, "well_clear_horizontal_taumod_is_monotone", (there, v, up, vz), small, great)
     for d, z, tt, tc, vm in (small, great):
         c.lemma("well_clear_horizontal_violation_is_its_definition", s=there, v=v, dthr=d, tthr=tt)
         c.lemma(
@@ -37,8 +30,8 @@ def claim(c: Claim) -> None:
         )  # fmt: skip
     c.show(
         c.implies(
-            c.use(horizontal_violation, there, v, dthr, tthr),
-            c.use(horizontal_violation, there, v, dthr2, tthr2),
+            c.use(horizontal_violation, there, v, small.dthr_m, small.tthr_s),
+            c.use(horizontal_violation, there, v, great.dthr_m, great.tthr_s),
         ),
         "horizontally",
     )

@@ -4,15 +4,14 @@ volume: for every kind of volume and every state."""
 from cratous.core.daa.volume import in_conflict
 from cratous.core.excuse.way_out import after_piece, piece_lost
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.encounters import any_state, any_thresholds
+from cratous.proofs.methods.encounters import any_loss
 from cratous.spec import excuse
 from cratous.spec.daa import meaning as daa_meaning
 
 
 def claim(c: Claim) -> None:
     kind, so_far = c.integer("kind"), c.integer("so_far")
-    s, v, sz, vz = any_state(c)
-    limits = any_thresholds(c)
+    s, v, sz, vz, limits = any_loss(c)
     dthr, zthr, tthr, tcoa, vmod = limits
     piece, t = c.reals("piece t")
     known, surely = c.boolean("known"), c.boolean("surely")

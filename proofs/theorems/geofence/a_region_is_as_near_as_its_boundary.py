@@ -5,31 +5,23 @@ whether a point is in the widened region."""
 from typing import Any
 
 from cratous.core.geofence.distance import boundary_against, edge_against
-from cratous.core.geofence.planar import (
-    Seen,
-    crosses_ray,
-    locate,
-    meets_boundary,
-    on_segment,
-    segments_meet,
-)
+from cratous.core.geofence.planar import meets_boundary
 from cratous.proofs.claim import Claim
 from cratous.proofs.methods.chains import closed_chain
 from cratous.proofs.methods.crossings import share
-from cratous.proofs.methods.sweeping import swept
+from cratous.proofs.methods.ends import PARTS, edge_of_leg, located, seen_alike
 from cratous.spec import geofence
 
 
 def claim(c: Claim) -> None:
     p, m, d = c.vector("p"), c.vector("m"), c.real("d")
     c.premise(d >= 0)
-    c.opaque(segments_meet, on_segment, crosses_ray, swept, edge_against)
+    c.opaque(*PARTS, edge_against)
     c.opaque(geofence.squared_distance)
     squared = c.define(geofence.squared_distance, p, m)
 
     def edge(a: Any, b: Any) -> None:
-        c.lemma("geofence_crossings_telescope_along_an_edge", p=p, q=m, a=a, b=b)
-        c.lemma("geofence_an_end_on_an_edge_is_a_contact", p=p, q=m, a=a, b=b)
+        edge_of_leg(c, p, m, a, b)
         # the parameters that the lemma wants: of the crossing and the feet, and of their edge points
         wx, wy, ux, uy = m.x - p.x, m.y - p.y, b.x - a.x, b.y - a.y
         det = wx * uy - wy * ux
@@ -44,10 +36,7 @@ def claim(c: Claim) -> None:
 
     def invariant(state: list[Any], first: Any, last: Any) -> Any:
         from_p, from_m, met, least = state
-        differ = c.negation(c.same(from_p.odd, from_m.odd))
-        ends = c.same(c.define(swept, first, p, m), c.define(swept, last, p, m))
-        none_on = c.negation(c.any_of(from_p.on, from_m.on))
-        apart = c.all_of(none_on, c.negation(c.same(differ, ends)))
+        apart = seen_alike(c, p, m, (from_p, from_m), (first, last))
         near = c.all_of(
             c.implies(squared <= d * d, least <= 0), c.implies(squared < d * d, least < 0)
         )
@@ -62,8 +51,8 @@ def claim(c: Claim) -> None:
     closed_chain(
         c,
         [
-            (locate, Seen(c.boolean("p_on"), c.boolean("p_odd")), (p,)),
-            (locate, Seen(c.boolean("m_on"), c.boolean("m_odd")), (m,)),
+            located(c, "p", p),
+            located(c, "m", m),
             (meets_boundary, c.boolean("met"), (p, m)),
             (boundary_against, c.whole("least"), (p, d)),
         ],

@@ -4,22 +4,13 @@ whatever place the vehicle has within rho of its reference and the intruder in i
 from cratous.core.permit.for_ever import above_for_ever, beside_for_ever, hold_clear
 from cratous.proofs.claim import Claim
 from cratous.proofs.methods.encounters import any_state
-from cratous.proofs.methods.meetings import (
-    about,
-    any_margins,
-    any_offs,
-    any_tube,
-    growth_by_name,
-    margins_by_name,
-    offs_by_name,
-    tube_by_name,
-)
+from cratous.proofs.methods.meetings import about, any_guard, clear_is_not_hit, growth_by_name
 from cratous.spec.permit import motion
 
 
 def claim(c: Claim) -> None:
     s, v, sz, vz = any_state(c)
-    tube, margins, offs = any_tube(c), any_margins(c), any_offs(c)
+    tube, margins, offs = any_guard(c)
     t = c.real("t")
     c.premise(t >= 0)
     c.opaque(
@@ -32,9 +23,4 @@ def claim(c: Claim) -> None:
         c.lemma("permit_above_for_ever_has_no_instant", sz=z, vz=w, t=t, **named)
     wider = growth_by_name(around)
     c.lemma("permit_beside_for_ever_has_no_instant", s=s, v=v, t=t, **wider)
-    hit = c.define(motion.hit_at, s, v, sz, vz, offs, tube, margins, t)
-    c.lemma(
-        "permit_entered_is_near", s=s, v=v, sz=sz, vz=vz, t=t,
-        **margins_by_name(margins), **tube_by_name(tube), **offs_by_name(offs),
-    )  # fmt: skip
-    c.show(c.implies(clear, c.negation(hit)))
+    clear_is_not_hit(c, clear, (s, v, sz, vz), (tube, margins, offs), t)

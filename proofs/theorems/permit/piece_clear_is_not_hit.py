@@ -5,22 +5,13 @@ and in altitude, however fast the tube grows."""
 from cratous.core.permit.pieces import above_during, beside_during, piece_clear
 from cratous.proofs.claim import Claim
 from cratous.proofs.methods.encounters import any_state
-from cratous.proofs.methods.meetings import (
-    about,
-    any_margins,
-    any_offs,
-    any_tube,
-    growth_by_name,
-    margins_by_name,
-    offs_by_name,
-    tube_by_name,
-)
+from cratous.proofs.methods.meetings import about, any_guard, clear_is_not_hit, growth_by_name
 from cratous.spec.permit import motion
 
 
 def claim(c: Claim) -> None:
     s, v, sz, vz = any_state(c)
-    tube, margins, offs = any_tube(c), any_margins(c), any_offs(c)
+    tube, margins, offs = any_guard(c)
     d, t = c.reals("d t")
     c.premise(c.all_of(t >= 0, t <= d))
     c.opaque(above_during, beside_during, motion.reached_at, motion.levelled_at, motion.enters_at)
@@ -31,9 +22,4 @@ def claim(c: Claim) -> None:
     c.lemma("permit_above_is_exact", sz=0 - sz, vz=0 - vz, d=d, t=t, **named)
     wider = growth_by_name(around)
     c.lemma("permit_beside_misses_no_instant", s=s, v=v, d=d, t=t, **wider)
-    hit = c.define(motion.hit_at, s, v, sz, vz, offs, tube, margins, t)
-    c.lemma(
-        "permit_entered_is_near", s=s, v=v, sz=sz, vz=vz, t=t,
-        **margins_by_name(margins), **tube_by_name(tube), **offs_by_name(offs),
-    )  # fmt: skip
-    c.show(c.implies(clear, c.negation(hit)))
+    clear_is_not_hit(c, clear, (s, v, sz, vz), (tube, margins, offs), t)

@@ -5,8 +5,8 @@ from typing import Any
 
 from cratous.core.requirements.since import Broken, Found, Since, since_holds
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.samples import START, any_sample
-from cratous.spec.requirements.operators import Meant, since_step
+from cratous.proofs.methods.samples import START, any_sample, judged_as_meant
+from cratous.spec.requirements.operators import since_step
 
 
 def claim(c: Claim) -> None:
@@ -18,7 +18,6 @@ def claim(c: Claim) -> None:
         Broken(c.whole("tainted"), c.whole("broken")),
         c.whole("verdict"),
     )
-    model = Meant(c.whole("model_last"), c.whole("hold"), c.whole("value"))
 
     def related(s: Any, m: Any) -> Any:
         ranged = c.all_of(s.last >= START, s.last <= 2**61, c.same(s.last, m.last))
@@ -37,14 +36,4 @@ def claim(c: Claim) -> None:
         word = c.when(true, 2, c.when(open_, 1, 0))
         return c.all_of(ranged, found, broken, s.verdict == word, c.same(s.verdict, m.value))
 
-    c.fold(
-        since_holds,
-        acc=acc,
-        model=model,
-        item=sample,
-        context=asked,
-        model_start=Meant(START, 2, 0),
-        model_step=since_step,
-        model_finish=lambda m: m.value,
-        relation=related,
-    )
+    judged_as_meant(c, since_holds, acc, since_step, related, (sample, asked))

@@ -5,8 +5,8 @@ from typing import Any
 
 from cratous.core.requirements.until import Times, Until, until_holds
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.samples import START, any_sample
-from cratous.spec.requirements.operators import Meant, until_step
+from cratous.proofs.methods.samples import START, any_sample, judged_as_meant
+from cratous.spec.requirements.operators import until_step
 
 
 def claim(c: Claim) -> None:
@@ -18,7 +18,6 @@ def claim(c: Claim) -> None:
         c.whole("verdict"),
         c.boolean("reached"),
     )
-    model = Meant(c.whole("model_last"), c.whole("hold"), c.whole("value"))
 
     def related(u: Any, m: Any) -> Any:
         ranged = c.all_of(u.last >= START, u.last <= 2**61, c.same(u.last, m.last))
@@ -54,14 +53,4 @@ def claim(c: Claim) -> None:
         )
         return c.all_of(ranged, past, bound, c.any_of(before, waits, decided))
 
-    c.fold(
-        until_holds,
-        acc=acc,
-        model=model,
-        item=sample,
-        context=asked,
-        model_start=Meant(START, 2, 0),
-        model_step=until_step,
-        model_finish=lambda m: m.value,
-        relation=related,
-    )
+    judged_as_meant(c, until_holds, acc, until_step, related, (sample, asked))

@@ -3,15 +3,14 @@ stands for the whole within the bounds of the other three, one rounding and one 
 
 from cratous.core.readings.exact.certainty import surely_above, surely_below
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.products import any_rounding
 from cratous.spec import rounding
 
 
 def claim(c: Claim) -> None:
     main, one, two, both = c.reals("main one two both")
     sizes, bound_one, bound_two, bound_both = c.reals("sizes bound_one bound_two bound_both")
-    value, p, unit, tiny = c.reals("value p unit tiny")
-    c.premise(unit > 0)
-    c.premise(tiny > 0)
+    value, p, unit, tiny = any_rounding(c)
     for part, most in ((main, sizes), (one, bound_one), (two, bound_two), (both, bound_both)):
         c.premise(c.define(rounding.near, part, part, most, 0))
     c.premise(c.define(rounding.rounded, p, sizes, unit, tiny))

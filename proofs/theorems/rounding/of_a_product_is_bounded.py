@@ -4,6 +4,7 @@ one underflow; where it exceeds that, the real product is positive."""
 
 from cratous.core.readings.exact.certainty import surely_above
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.products import any_rounding
 from cratous.spec import rounding
 
 SIZE = "rounding_size_of_a_product_is_bounded"
@@ -12,10 +13,8 @@ SIZE = "rounding_size_of_a_product_is_bounded"
 def claim(c: Claim) -> None:
     v1, e1, p1, b1 = c.reals("v1 e1 p1 b1")
     v2, e2, p2, b2 = c.reals("v2 e2 p2 b2")
-    value, p, unit, tiny = c.reals("value p unit tiny")
+    value, p, unit, tiny = any_rounding(c)
     # the real factors are v1 - e1 and v2 - e2
-    c.premise(unit > 0)
-    c.premise(tiny > 0)
     c.premise(c.define(rounding.near, v1, v1 - e1, p1, b1))
     c.premise(c.define(rounding.near, v2, v2 - e2, p2, b2))
     c.premise(c.define(rounding.rounded, p, p1 * p2, unit, tiny))

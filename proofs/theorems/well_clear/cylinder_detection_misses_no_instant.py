@@ -3,15 +3,13 @@ flight, then at no instant of [B, T] is it inside."""
 
 from cratous.core.well_clear import cylinder_during, violation_during_tep
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.encounters import any_cylinder
+from cratous.proofs.methods.encounters import any_cylinder, any_instants
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
     s, v, sz, vz, radius, half = any_cylinder(c)
-    begin, end, t = c.reals("begin end t")
-    c.premise(begin <= t)
-    c.premise(t <= end)
+    begin, t, end = any_instants(c, "begin t end")
     c.opaque(violation_during_tep, well_clear.violation_tep_at)
     detected = c.use(cylinder_during, s, v, sz, vz, radius, half, begin, end)
     size = {"dthr": radius, "zthr": half, "tthr": 0, "tcoa": 0, "vmod": 0}

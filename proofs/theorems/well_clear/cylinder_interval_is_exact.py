@@ -4,15 +4,13 @@ an empty one is from 1 to 0."""
 
 from cratous.core.well_clear import cylinder_interval, violation_interval_tep
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.encounters import any_cylinder
+from cratous.proofs.methods.encounters import any_cylinder, any_instants
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
     s, v, sz, vz, radius, half = any_cylinder(c)
-    begin, end, t = c.reals("begin end t")
-    c.premise(begin <= t)
-    c.premise(t <= end)
+    begin, t, end = any_instants(c, "begin t end")
     c.opaque(violation_interval_tep, well_clear.violation_tep_at)
     first, last = c.use(cylinder_interval, s, v, sz, vz, radius, half, begin, end)
     state = {"s": s, "v": v, "sz": sz, "vz": vz, "begin": begin, "end": end}

@@ -5,15 +5,13 @@ from cratous.core.kernel import Vec2
 from cratous.core.well_clear.interval import violation_interval_tep
 from cratous.core.well_clear.now import cylinder_violation, violation_tep
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.encounters import any_cylinder
+from cratous.proofs.methods.encounters import any_cylinder, any_instants
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
     s, v, sz, vz, radius, half = any_cylinder(c)
-    early, middle, late = c.reals("early middle late")
-    c.premise(early <= middle)
-    c.premise(middle <= late)
+    early, middle, late = any_instants(c, "early middle late")
     c.opaque(
         violation_interval_tep,
         violation_tep,

@@ -2,27 +2,10 @@
 instant of [B, T] is it lost, for every relative state in space and all thresholds not below zero,
 vertically by TCOA or VMOD."""
 
-from cratous.core.well_clear import (
-    horizontal_interval_taumod,
-    horizontal_violation_within,
-    violation_during_taumod,
-)
 from cratous.proofs.claim import Claim
 from cratous.proofs.methods.detections import detection_misses_no_instant
-from cratous.spec import well_clear
+from cratous.proofs.methods.kinds import TAUMOD
 
 
 def claim(c: Claim) -> None:
-    detection_misses_no_instant(
-        c,
-        (
-            "well_clear_horizontal_interval_taumod_is_exact",
-            "well_clear_horizontal_detection_taumod_is_the_interval",
-            "well_clear_horizontal_violation_scales",
-        ),
-        horizontal_during=horizontal_violation_within,
-        horizontal_interval=horizontal_interval_taumod,
-        violation_during=violation_during_taumod,
-        meant_horizontally=well_clear.horizontal_violation,
-        meant_at=well_clear.violation_taumod_at,
-    )
+    detection_misses_no_instant(c, TAUMOD)

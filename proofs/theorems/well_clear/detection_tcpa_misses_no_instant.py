@@ -2,27 +2,10 @@
 instant of [B, T] is it lost, for every relative state in space and all thresholds not below zero,
 vertically by TCOA or VMOD."""
 
-from cratous.core.well_clear import (
-    horizontal_interval_tcpa,
-    horizontal_violation_within_tcpa,
-    violation_during_tcpa,
-)
 from cratous.proofs.claim import Claim
 from cratous.proofs.methods.detections import detection_misses_no_instant
-from cratous.spec import well_clear
+from cratous.proofs.methods.kinds import TCPA
 
 
 def claim(c: Claim) -> None:
-    detection_misses_no_instant(
-        c,
-        (
-            "well_clear_horizontal_interval_tcpa_is_exact",
-            "well_clear_horizontal_detection_tcpa_is_the_interval",
-            "well_clear_horizontal_violation_tcpa_scales",
-        ),
-        horizontal_during=horizontal_violation_within_tcpa,
-        horizontal_interval=horizontal_interval_tcpa,
-        violation_during=violation_during_tcpa,
-        meant_horizontally=well_clear.horizontal_violation_tcpa,
-        meant_at=well_clear.violation_tcpa_at,
-    )
+    detection_misses_no_instant(c, TCPA)

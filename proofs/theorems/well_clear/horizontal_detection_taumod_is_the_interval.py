@@ -1,14 +1,10 @@
 """The horizontal kernel with taumod that neither divides nor takes roots says `violated during [0, h]`
 exactly when the interval kernel's span over [0, h] is not empty."""
 
-from cratous.core.well_clear import horizontal_interval_taumod, horizontal_violation_within
 from cratous.proofs.claim import Claim
 from cratous.proofs.methods.detections import horizontal_detection_is_the_interval
+from cratous.proofs.methods.kinds import TAUMOD
 
 
 def claim(c: Claim) -> None:
-    horizontal_detection_is_the_interval(
-        c,
-        horizontal_during=horizontal_violation_within,
-        horizontal_interval=horizontal_interval_taumod,
-    )
+    horizontal_detection_is_the_interval(c, TAUMOD)

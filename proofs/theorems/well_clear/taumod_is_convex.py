@@ -1,16 +1,10 @@
 """Well clear by taumod is locally convex: if it is lost at two instants of straight flight, it is lost
 at every instant between them, in any frame."""
 
-from cratous.core.well_clear import violation_interval_taumod
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.kinds import TAUMOD
 from cratous.proofs.methods.volumes import volume_is_convex
-from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    volume_is_convex(
-        c,
-        "well_clear_interval_taumod_is_exact",
-        violation_interval=violation_interval_taumod,
-        meant_at=well_clear.violation_taumod_at,
-    )
+    volume_is_convex(c, TAUMOD)

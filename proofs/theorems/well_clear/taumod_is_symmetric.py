@@ -1,21 +1,10 @@
 """Well clear by taumod is symmetric: seen from the intruder, the verdict now and the first and last
 instant over [B, T] are those that the ownship sees."""
 
-from cratous.core.well_clear import (
-    horizontal_interval_taumod,
-    horizontal_violation,
-    violation_interval_taumod,
-    violation_taumod,
-)
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.kinds import TAUMOD
 from cratous.proofs.methods.volumes import volume_is_symmetric
 
 
 def claim(c: Claim) -> None:
-    volume_is_symmetric(
-        c,
-        horizontal_now=horizontal_violation,
-        horizontal_interval=horizontal_interval_taumod,
-        violation_now=violation_taumod,
-        violation_interval=violation_interval_taumod,
-    )
+    volume_is_symmetric(c, TAUMOD)

@@ -1,16 +1,10 @@
 """Well clear by tep is locally convex: if it is lost at two instants of straight flight, it is lost
 at every instant between them, in any frame."""
 
-from cratous.core.well_clear import violation_interval_tep
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.kinds import TEP
 from cratous.proofs.methods.volumes import volume_is_convex
-from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    volume_is_convex(
-        c,
-        "well_clear_interval_tep_is_exact",
-        violation_interval=violation_interval_tep,
-        meant_at=well_clear.violation_tep_at,
-    )
+    volume_is_convex(c, TEP)

@@ -1,15 +1,10 @@
 """Well clear by tep is monotone in every threshold: greater DTHR, ZTHR, TTHR, TCOA or VMOD, one or
 several of them, never make a violation vanish."""
 
-from cratous.core.well_clear import horizontal_violation_tep, violation_tep
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.kinds import TEP
 from cratous.proofs.methods.volumes import volume_is_monotone
 
 
 def claim(c: Claim) -> None:
-    volume_is_monotone(
-        c,
-        "well_clear_horizontal_tep_is_monotone",
-        horizontal_now=horizontal_violation_tep,
-        violation_now=violation_tep,
-    )
+    volume_is_monotone(c, TEP)

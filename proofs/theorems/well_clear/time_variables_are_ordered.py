@@ -2,12 +2,7 @@
 0 < tep <= tau_mod <= tcpa <= tau; and there each kernel says `violated` exactly when TTHR is at least
 its own time variable."""
 
-from cratous.core.well_clear import (
-    horizontal_violation,
-    horizontal_violation_tau,
-    horizontal_violation_tcpa,
-    horizontal_violation_tep,
-)
+from cratous.core import well_clear as kernels
 from cratous.proofs.claim import Claim
 from cratous.proofs.methods.encounters import any_in_the_plane
 from cratous.spec import well_clear
@@ -22,10 +17,10 @@ def claim(c: Claim) -> None:
     tcpa = c.define(well_clear.time_of_closest_approach, s, v)
     plain = c.define(well_clear.tau, s, v)
     for kernel, time in (
-        (horizontal_violation, modified),
-        (horizontal_violation_tcpa, tcpa),
-        (horizontal_violation_tep, tep),
-        (horizontal_violation_tau, plain),
+        (kernels.horizontal_violation, modified),
+        (kernels.horizontal_violation_tcpa, tcpa),
+        (kernels.horizontal_violation_tep, tep),
+        (kernels.horizontal_violation_tau, plain),
     ):
         c.show(c.same(c.use(kernel, s, v, dthr, tthr), time <= tthr), kernel.__name__)
     c.show(modified <= tcpa, "tau_mod <= tcpa")

@@ -1,17 +1,10 @@
 """If well clear by tep is lost at some instant of [B, T], it is lost at exactly the instants of [B, T]
 between the first and the last one that the kernel gives, these two included."""
 
-from cratous.core.well_clear import violation_interval_tep, violation_times_tep
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.kinds import TEP
 from cratous.proofs.methods.spans import times_are_exact
-from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    times_are_exact(
-        c,
-        ("well_clear_interval_tep_is_exact", "well_clear_times_tep_are_the_interval"),
-        violation_interval=violation_interval_tep,
-        violation_times=violation_times_tep,
-        meant_at=well_clear.violation_tep_at,
-    )
+    times_are_exact(c, TEP)

@@ -1,21 +1,10 @@
 """Where the interval kernel for tep gives a span that is not empty, the kernel that does not ask
 gives the same first and last instant."""
 
-from cratous.core.well_clear import (
-    horizontal_interval_tep,
-    times_tep,
-    violation_interval_tep,
-    violation_times_tep,
-)
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.kinds import TEP
 from cratous.proofs.methods.spans import times_are_the_interval
 
 
 def claim(c: Claim) -> None:
-    times_are_the_interval(
-        c,
-        horizontal_interval=horizontal_interval_tep,
-        horizontal_times=times_tep,
-        violation_interval=violation_interval_tep,
-        violation_times=violation_times_tep,
-    )
+    times_are_the_interval(c, TEP)

@@ -7,13 +7,12 @@ from cratous.core.well_clear import (
     violation_times_tep,
 )
 from cratous.proofs.claim import Claim
-from cratous.proofs.methods.encounters import any_state, any_thresholds
+from cratous.proofs.methods.encounters import any_loss
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    s, v, sz, vz = any_state(c)
-    limits = any_thresholds(c)
+    s, v, sz, vz, limits = any_loss(c)
     begin, end = c.reals("begin end")
     c.premise(begin <= end)
     kernels = {

@@ -3,26 +3,15 @@ instant of [0, h] that can be named: an end of the vertical window, the closest 
 instant of least modified-tau margin."""
 
 from cratous.core.kernel import Vec2
-from cratous.core.well_clear import horizontal_violation_within, vertical_window, violation_within
-from cratous.core.well_clear.thresholds import StandardThresholds
 from cratous.proofs.claim import Claim
+from cratous.proofs.methods.predictions import any_prediction
 from cratous.spec import well_clear
 
 
 def claim(c: Claim) -> None:
-    s, v = c.vector("s"), c.vector("v")
-    sz, vz, dthr, zthr, tthr, tcoa, h = c.reals("sz vz dthr zthr tthr tcoa h")
-    for nonnegative in (dthr, zthr, tthr, tcoa, h):
-        c.premise(nonnegative >= 0)
-    c.opaque(
-        horizontal_violation_within,
-        vertical_window,
-        well_clear.horizontal_violation,
-        well_clear.vertical_violation_at,
-    )
-    limits = StandardThresholds(dthr, zthr, tthr, tcoa)
-    predicted = c.use(violation_within, s, v, sz, vz, limits, h)
-    k, first, last = c.use(vertical_window, sz, vz, zthr, tcoa, h)
+    (s, v, sz, vz), limits, h, predicted, (k, first, last) = any_prediction(c)
+    dthr, zthr, tthr, tcoa = limits
+    c.premise(h >= 0)
     window = {"sz": sz, "vz": vz, "zthr": zthr, "tcoa": tcoa, "h": h}
     c.lemma("well_clear_vertical_window_is_exact", t=h - h, **window)
 

@@ -186,13 +186,7 @@ def _changed(entry: Entry, values: Mapping[str, Any]) -> Parameters:
 
 
 def _refuse(entry: Entry, item: str, expected: str, got: str) -> None:
-    raise BadInput(
-        "values do not fit together",
-        where=entry.where,
-        item=f"{entry.type}.{item}",
-        expected=expected,
-        got=got,
-    )
+    raise entry.refusal("values do not fit together", item, expected, got)
 
 
 def configuration_message(vehicle: int, p: Parameters) -> Any:

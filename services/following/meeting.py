@@ -1,0 +1,247 @@
+"""What a rendezvous asks for, and its options: for each vehicle and state a straight run-in to it.
+
+The run-in begins at a gate, with room beside it to wait in laps, and is so long that flown slowly it takes a
+lap longer than flown fast, so that who waits there can arrive at any time to come. It ends beyond the state, so
+that the vehicle passes that straight on.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations, islice
+from typing import Any, NamedTuple
+
+from cratous.bridge import lmcp
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.kernel import Vec2
+from cratous.core.routing.dubins import pose_after
+from cratous.core.routing.visibility import name_of
+from cratous.core.tasks.rendezvous import spares_a_lap
+from cratous.services.following.offering import WAYS_MOST
+from cratous.services.following.stations import Station
+from cratous.services.pipeline.contexts import Context
+from cratous.services.pipeline.implementation import offer
+from cratous.services.pipeline.places import RequestPlaces
+from cratous.services.planning.flyers import Flyer, flyer_of
+from cratous.services.planning.options import Dropped, Option, flight_ms, hold_rooms
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Position, Task, Vehicle
+from cratous.spec.mission.plan import Pose
+
+PARTICIPANTS_MOST = 8
+STATES_MOST = 64
+TOLERANCE = "Tolerance_ms"
+"""The task parameter that says how far from the common time each may arrive."""
+TOLERANCE_MS, TOLERANCE_MOST_MS = 2_000, 600_000
+RUN_IN_RADII = 6.0
+"""A run-in is so many turn radii long at least, so that it is flown straight."""
+RUN_IN_RESERVE = 1.05
+RUN_IN_MOST_M = 20_000.0
+BEYOND_RADII = 2.5
+"""A run-in ends so many radii of a turn at the fastest speed beyond its state: at most two ahead the next begins."""
+
+
+class Met(NamedTuple):
+    """asked: how many meet; tolerance_ms: of their time; states: of whom (0: anybody) and where."""
+
+    needed: int
+    tolerance_ms: int
+    states: tuple[tuple[int, Pose], ...]
+
+
+def meeting_of(body: Any, places: RequestPlaces) -> Met:
+    """What the message of a rendezvous asks for; BadInput names what cannot be."""
+    where = f"task {body.TaskID}"
+    needed, states = body.NumberOfParticipants, body.RendezvousStates
+    _within(needed, 1, PARTICIPANTS_MOST, where, "NumberOfParticipants")
+    _within(len(states), 1, STATES_MOST, where, "number of RendezvousStates")
+    tolerance = TOLERANCE_MS
+    for pair in body.Parameters:
+        if pair.Key == TOLERANCE:
+            text = pair.Value
+            tolerance = int(text) if text.isascii() and text.isdigit() and len(text) < 10 else 0
+            _within(tolerance, 1, TOLERANCE_MOST_MS, where, f"Parameters: {TOLERANCE}", text)
+    found = []
+    for k, state in enumerate(states):
+        item = f"RendezvousStates[{k}]"
+        pose = places.pose(state.PlanningPosition, state.PlanningHeading, where, item)
+        found.append((state.EntityID, pose))
+    return Met(needed, tolerance, tuple(found))
+
+
+def _within(
+    value: int, least: int, most: int, where: str, item: str, got: str | None = None
+) -> None:
+    if not least <= value <= most:
+        raise BadInput(
+            "out of range", where=where, item=item, expected=f"{least} to {most}",
+            got=str(value) if got is None else got[:40],
+        )  # fmt: skip
+
+
+class Limits(NamedTuple):
+    """Speeds of a vehicle [m/s]."""
+
+    slowest_m_s: float
+    nominal_m_s: float
+    fastest_m_s: float
+
+
+def limits_of(vehicle: Vehicle) -> Limits:
+    """The speeds of a vehicle; one that its configuration leaves out is the nominal one."""
+    nominal = vehicle.speed_m_s
+    slowest = min(vehicle.min_speed_m_s or nominal, nominal)
+    return Limits(slowest, nominal, max(vehicle.max_speed_m_s, nominal))
+
+
+def lap_s(flyer: Flyer) -> float:
+    """How long a lap of waiting takes [s]."""
+    return 2 * math.pi * flyer.radius_m / flyer.speed_m_s
+
+
+def options_of(
+    context: Context, task: Task, met: Met
+) -> tuple[list[tuple[Option, int]], list[Dropped], list[str]]:
+    """The options with the numbers of their states; what is not offered, with the reason; what is not done."""
+    made, dropped, notes = list[tuple[Option, int]](), list[Dropped](), list[str]()
+    vehicles = context.inputs.mission.vehicles
+    able = [v for v in vehicles if not task.eligible or v.id in task.eligible]
+    known = [v.id for v in able]
+    for k, (entity, _) in enumerate(met.states):
+        if entity and entity not in known:
+            text = f"RendezvousStates[{k}] is of entity {entity}, which is none of its vehicles"
+            dropped.append(Dropped(task.id, (entity,), "", text))
+    for vehicle in able:
+        for k, (entity, pose) in enumerate(met.states):
+            if entity not in (0, vehicle.id):
+                continue
+            found = _option(context, task, vehicle, pose)
+            if isinstance(found, str):
+                dropped.append(
+                    Dropped(task.id, (vehicle.id,), "", f"RendezvousStates[{k}]: {found}")
+                )
+            else:
+                number = len(made) + 1
+                made.append((_numbered(found, number, vehicle.id), k))
+                own = pose._replace(alt_m=found.flyer.alt_m)
+                if own != pose:
+                    notes.append(
+                        f"vehicle {vehicle.id} passes RendezvousStates[{k}] of task {task.id} at its own "
+                        f"altitude, {own.alt_m:g} m MSL, not at {pose.alt_m:g} m"
+                    )
+    return made, dropped, notes
+
+
+def _numbered(option: Option, number: int, vehicle: int) -> Option:
+    from dataclasses import replace
+
+    return replace(option, option_id=number, vehicles=(vehicle,))
+
+
+def _option(context: Context, task: Task, vehicle: Vehicle, pose: Pose) -> Option | str:
+    """The run-in of a vehicle to a state, or why there is none."""
+    flyer, limits, zones = flyer_of(vehicle), limits_of(vehicle), context.inputs.zones
+    spread = limits.fastest_m_s - limits.slowest_m_s
+    lap_m2_s = lap_s(flyer) * limits.slowest_m_s * limits.fastest_m_s
+    length = min(RUN_IN_RESERVE * lap_m2_s / spread, RUN_IN_MOST_M) if spread else RUN_IN_MOST_M
+    length = max(length, RUN_IN_RADII * flyer.radius_m)
+    if not spares_a_lap(length, lap_s(flyer), limits.slowest_m_s, limits.fastest_m_s):
+        return (
+            f"at {limits.slowest_m_s:g} to {limits.fastest_m_s:g} m/s it cannot make up for a lap of "
+            f"{lap_s(flyer):.1f} s on {length / 1000:g} km, so no common time can be kept"
+        )
+    at = pose._replace(alt_m=flyer.alt_m)
+    gate = pose_after(at, 0, -length, 1.0)
+    # the radius of a turn grows with the square of the speed
+    beyond = BEYOND_RADII * flyer.radius_m * (limits.fastest_m_s / limits.nominal_m_s) ** 2
+    end = pose_after(at, 0, beyond, 1.0)
+    path = tuple(Position(*p[:3]) for p in (gate, at, end))
+    leg = first_bad_leg(path, zones)
+    if leg is not None:
+        return f"its straight way there breaks {name_of(leg[1])}"
+    rooms = hold_rooms(gate, flyer.radius_m, zones)
+    rooms = tuple(
+        room
+        for room in rooms
+        if first_bad_leg((_middle(gate, flyer, room.clockwise), path[2]), zones) is None
+    )
+    if not rooms:
+        return "its circle to wait on, before its straight way there, breaks a zone"
+    lasts = flight_ms(length + beyond, flyer.speed_m_s)
+    return Option(task.id, 0, (), flyer, gate, end, path, lasts, rooms, "run-in")
+
+
+def _middle(gate: Pose, flyer: Flyer, clockwise: bool) -> Position:
+    """The middle of the circle to wait on beside a gate."""
+    side = gate.heading_rad + (math.pi / 2 if clockwise else -math.pi / 2)
+    return Position(
+        gate.north_m + flyer.radius_m * math.cos(side),
+        gate.east_m + flyer.radius_m * math.sin(side),
+        flyer.alt_m,
+    )
+
+
+def waiting_circle(option: Option) -> tuple[Station, bool]:
+    """The circle on which an option's vehicle waits, and whether clockwise."""
+    clockwise = option.holds[0].clockwise
+    middle = _middle(option.start, option.flyer, clockwise)
+    return Station(Vec2(middle.north_m, middle.east_m), option.flyer.radius_m), clockwise
+
+
+def ways_of(met: Met, options: Sequence[tuple[Option, int]]) -> list[tuple[int, ...]]:
+    """All ways to choose vehicles and to give each a state of its own, as the numbers of options; BadInput if they
+    are too many. One state for anybody is everybody's."""
+    by_vehicle: dict[int, dict[int, int]] = {}
+    for option, k in options:
+        by_vehicle.setdefault(option.vehicles[0], {})[k] = option.option_id
+    groups = math.comb(len(by_vehicle), met.needed)
+    found = list(islice(_ways(met, by_vehicle), WAYS_MOST + 1)) if groups <= WAYS_MOST else []
+    if max(groups, len(found)) > WAYS_MOST:
+        raise BadInput(
+            "vehicles may meet in too many ways", item="RendezvousStates, EligibleEntities",
+            expected=f"at most {WAYS_MOST} ways to give {met.needed} vehicles a state each",
+            got=f"{len(by_vehicle)} vehicles, {len(met.states)} states",
+        )  # fmt: skip
+    return found
+
+
+def _ways(met: Met, by_vehicle: Mapping[int, Mapping[int, int]]) -> Iterator[tuple[int, ...]]:
+    for chosen in combinations(sorted(by_vehicle), met.needed):
+        if len(met.states) == 1:
+            yield tuple(by_vehicle[v][0] for v in chosen)
+            continue
+        # who has the least choice comes first, so that nothing is looked at in vain for long
+        rare = tuple(sorted(chosen, key=lambda v: len(by_vehicle[v])))
+        yield from _given(rare, by_vehicle, frozenset(range(len(met.states))))
+
+
+def _given(
+    chosen: tuple[int, ...], by_vehicle: Mapping[int, Mapping[int, int]], free: frozenset[int]
+) -> Iterator[tuple[int, ...]]:
+    """Each vehicle with a state of its own."""
+    if not chosen:
+        yield ()
+        return
+    for k, number in by_vehicle[chosen[0]].items():
+        if k in free:
+            for rest in _given(chosen[1:], by_vehicle, free - {k}):
+                yield (number, *rest)
+
+
+def offered(context: Context, task_id: int, options: Sequence[Option], ways: Sequence[Any]) -> Any:
+    """TaskPlanOptions: a choice of ways, each flown by all its vehicles; without options where there is none."""
+    left = {option.option_id for option in options}
+    ways = [way for way in ways if left.issuperset(way)]
+    used = {number for way in ways for number in way}
+    made = offer(context, task_id, [o for o in options if o.option_id in used])
+    if not ways:
+        return made
+    terms = ["|(" + " ".join(f"p{number}" for number in way) + ")" for way in ways]
+    return lmcp.new(
+        "TaskPlanOptions",
+        CorrespondingAutomationRequestID=made.CorrespondingAutomationRequestID,
+        TaskID=made.TaskID,
+        Composition=terms[0] if len(terms) == 1 else f"+({' '.join(terms)})",
+        Options=made.Options,
+    )

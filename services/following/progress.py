@@ -1,0 +1,55 @@
+"""How far the vehicles of a rendezvous are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import NamedTuple
+
+from cratous.core.kernel import Vec2
+from cratous.services.following.part import Part
+from cratous.services.following.service import Following
+
+
+class Way(NamedTuple):
+    """What is left of a vehicle's way: left_m: to its state; waits: it can still wait; laps: it does; passed: it
+    is beyond its state; arrived: when that was [ms], None: not yet."""
+
+    left_m: float
+    waits: bool
+    laps: bool = False
+    passed: bool = False
+    arrived: int | None = None
+
+
+class Progress(NamedTuple):
+    """common: when all meet [ms], None: not set; ways: of the vehicles; gone: who have left their circles."""
+
+    common: int | None = None
+    ways: Mapping[int, Way] = MappingProxyType({})
+    gone: frozenset[int] = frozenset()
+
+    def with_way(self, vehicle: int, way: Way) -> Progress:
+        """With what is left of a vehicle's way."""
+        return self._replace(ways={**self.ways, vehicle: way})
+
+
+def heard(state: Following, vehicle: int, now_ms: int) -> Following:
+    """With a vehicle heard now; of those that were never heard the time runs from now on."""
+    parts = tuple(
+        p._replace(seen_ms=now_ms) if p.vehicle == vehicle or not p.seen_ms else p
+        for p in state.parts
+    )
+    return state._replace(parts=parts, now_ms=now_ms)
+
+
+def place_of(part: Part) -> Vec2:
+    """Where a vehicle is to be at the common time."""
+    return Vec2(*part.option.path[1][:2])
+
+
+def ahead_of(part: Part) -> Vec2:
+    """The direction of its run-in."""
+    heading = part.option.start.heading_rad
+    return Vec2(math.cos(heading), math.sin(heading))

@@ -1,0 +1,360 @@
+"""The service of a rendezvous: its vehicles pass their states at one time.
+
+Options, choices and lives go as for a task that keeps to what moves. A vehicle that makes for its run-in waits in
+laps beside its beginning until all are on theirs. Then the common time is set (`common_time`), the first that
+all can keep at their nominal speeds; each leaves its circle when `pace` and `another_lap` say so, and with
+each of its states is told the speed at which it arrives then (SpeedOverrideAction). Who is late moves the common
+time on, if the others can wait for it. Complete: all have passed, each within the tolerance of it.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from cratous.bridge import lmcp
+from cratous.core.authority.timeliness import in_time
+from cratous.core.kernel import Vec2
+from cratous.core.tasks.rendezvous import (
+    Meeting,
+    Pace,
+    another_lap,
+    beyond,
+    common_time,
+    in_company,
+    meeting_step,
+    pace,
+)
+from cratous.core.tasks.stations import in_ring
+from cratous.services.following import part as parts_of
+from cratous.services.following.meeting import (
+    Limits,
+    Met,
+    lap_s,
+    limits_of,
+    meeting_of,
+    offered,
+    options_of,
+    waiting_circle,
+    ways_of,
+)
+from cratous.services.following.part import Part
+from cratous.services.following.progress import Progress, Way, ahead_of, heard, place_of
+from cratous.services.following.service import SELECTED, SILENT_MS, Following, FollowingTaskService
+from cratous.services.pipeline.contexts import Context
+from cratous.services.pipeline.status import status
+from cratous.services.pipeline.tasks import (
+    ACTIVE,
+    HANDED_BACK,
+    LISTED,
+    PUBLISH_OPTIONS,
+    UNLISTED,
+    WITH_UXAS,
+    WITHDRAWN,
+    State,
+)
+from cratous.services.planning.options import Dropped, Option
+from cratous.spec.errors import BadInput
+
+FLY, EARLY, LATE = 0, 1, 2
+"""What `pace` says."""
+NO_END = -1
+"""No end of waiting, as the kernels have it."""
+VANISHED_MS = 30_000
+"""For a vehicle that was not heard for longer the others do not wait."""
+NEAR_GATE = 1.5
+"""A circle to wait on is left no farther from its gate than so many of its radii."""
+
+
+Step = tuple[Following, list[Any]]
+
+
+class RendezvousTaskService(FollowingTaskService):
+    """One rendezvous."""
+
+    # what is offered
+
+    def _found(self, context: Context) -> tuple[list[Option], list[Dropped]]:
+        if self._made is None or self._made[0] is not context:
+            found, dropped, self._notes = options_of(
+                context, self._task_in(context), self._met(context)
+            )
+            ways = ways_of(self._met(context), found)
+            if not ways:
+                text = f"no {self._met(context).needed} vehicles have a state each"
+                dropped.append(Dropped(self._task_id, (), "a rendezvous", text))
+            self._ways = ways
+            self._made = (context, [option for option, _ in found], dropped)
+        return self._made[1], self._made[2]
+
+    def _offer(self, context: Context, options: list[Option]) -> Any:
+        self._found(context)
+        return offered(context, self._task_id, options, self._ways)
+
+    def _do(self, state: State, act: int, body: Any, out: list[Any]) -> tuple[State, int]:
+        if act == PUBLISH_OPTIONS:
+            self._found(self._context)
+            said = [[("reason", text)] for text in self._notes]
+            out += [status(self._request, "Warning", facts) for facts in said]
+        return super()._do(state, act, body, out)
+
+    def _met(self, context: Context) -> Met:
+        return meeting_of(self._body, context.places)
+
+    def _limits(self, part: Part) -> Limits:
+        vehicles = part.context.inputs.mission.vehicles
+        return limits_of(next(v for v in vehicles if v.id == part.vehicle))
+
+    # what is flown
+
+    def _planned(self, state: Following, response: Any) -> Step:
+        before = len(state.parts)
+        state, out = super()._planned(state, response)
+        if state.meeting is not None and len(state.parts) < before:
+            return self._undone(state, "a plan without it came", out)
+        return state, out
+
+    def _told(self, state: Following, body: Any) -> Step:
+        """A vehicle's state: its life, its way, and whether all have met."""
+        now_ms = max(state.now_ms, body.Time, 0)
+        state = heard(state, body.ID, now_ms)
+        part = next((p for p in state.parts if p.vehicle == body.ID), None)
+        if part is None or part.state.task.state < SELECTED:
+            return state, []
+        silent = self._silent(state)
+        if silent is not None:
+            text = f"vehicle {silent.vehicle} was not heard for {VANISHED_MS // 1000} s"
+            return self._undone(state, text, [])
+        if part.state.away == HANDED_BACK and body.Mode.name == "Waypoint":
+            part = part._replace(state=part.state._replace(away=WITH_UXAS))
+        if part.state.away:
+            return state, []
+        lists, out = self._task_id in body.AssociatedTasks, list[Any]()
+        if lists and part.state.task.state < ACTIVE:
+            own, more = self._advance(part.state, LISTED, 0, body)
+            part, out = part._replace(state=own), list(more)
+        if part.state.task.state < ACTIVE:
+            return state, out
+        progress = state.meeting or Progress()
+        number = parts_of.command_id(self._task_id, part.state.task.request)
+        laps = parts_of.follows(part, body, number)
+        way = progress.ways.get(part.vehicle)
+        if way is not None and way.arrived is not None:
+            return state, out
+        if not (lists or laps):
+            return self._undone(state, f"vehicle {part.vehicle} flies it no more", out)
+        try:
+            way = self._way(part, body, laps, progress)
+        except BadInput as error:
+            if not part.blocked:
+                out.append(self._warning(f"vehicle {part.vehicle} is not steered: {error}"))
+            return state.with_part(part._replace(blocked="its state")), out
+        part = part._replace(blocked="")
+        state = state.with_part(part)._replace(meeting=progress.with_way(part.vehicle, way))
+        if way.passed:
+            return self._passed(state, part, body, out)
+        return self._steered(state, part, body, out)
+
+    def _silent(self, state: Following) -> Part | None:
+        """A vehicle that has still to come and was not heard for long."""
+        ways = (state.meeting or Progress()).ways
+        for part in state.parts:
+            way = ways.get(part.vehicle)
+            comes = way is None or way.arrived is None
+            if comes and not in_time(part.seen_ms, state.now_ms, VANISHED_MS):
+                return part
+        return None
+
+    def _way(self, part: Part, body: Any, laps: bool, progress: Progress) -> Way:
+        """What is left of a vehicle's way by its state; less than nothing where it has passed its state."""
+        here, at = self._here(part, body), place_of(part)
+        gone = part.vehicle in progress.gone or body.CurrentWaypoint > part.begins
+        if laps:
+            return Way(math.dist(here, at), True, True)
+        if not gone:
+            gate = part.option.start
+            run_in = math.dist((gate.north_m, gate.east_m), at)
+            return Way(math.dist(here, (gate.north_m, gate.east_m)) + run_in, True)
+        ahead = ahead_of(part)
+        along_m = (at.x - here.x) * ahead.x + (at.y - here.y) * ahead.y
+        return Way(max(along_m, 0.0), False, False, beyond(here, at, ahead))
+
+    def _here(self, part: Part, body: Any) -> Vec2:
+        where = f"state of vehicle {part.vehicle}"
+        pose = part.context.places.pose(body.Location, body.Heading, where, "Location")
+        return Vec2(pose.north_m, pose.east_m)
+
+    def _passed(self, state: Following, part: Part, body: Any, out: list[Any]) -> Step:
+        """It is beyond its state: arrived, if it came by it; and complete, if it is the last one."""
+        here, at = self._here(part, body), place_of(part)
+        if not in_ring(at, here, 0, 2 * part.option.flyer.radius_m):
+            text = f"vehicle {part.vehicle} passed its place {math.dist(here, at):.0f} m aside"
+            return self._undone(state, text, out)
+        progress = state.meeting.with_way(part.vehicle, Way(0.0, False, False, True, state.now_ms))
+        if progress.common is None:
+            text = f"vehicle {part.vehicle} passed its place before all were on their ways"
+            return self._undone(state, text, out)
+        state = state._replace(meeting=progress)
+        out.append(self._speed(part, part.option.flyer.speed_m_s))
+        met = self._met(part.context)
+        arrived = {v: w.arrived for v, w in progress.ways.items() if w.arrived is not None}
+        for vehicle, at_ms in sorted(arrived.items()):
+            if not in_company(at_ms, progress.common, met.tolerance_ms):
+                off_s = (at_ms - progress.common) / 1000
+                text = f"vehicle {vehicle} arrived {off_s:.1f} s after the common time"
+                return self._undone(state, text, out)
+        if len(arrived) < met.needed:
+            return state, out
+        out.append(
+            lmcp.new(
+                "TaskComplete",
+                TaskID=self._task_id,
+                EntitiesInvolved=sorted(arrived),
+                TimeTaskCompleted=body.Time,
+            )
+        )
+        for one in state.parts:
+            _, more = self._advance(one.state, UNLISTED, 0, body)
+            out += [said for said in more if type(said).__name__ != "TaskComplete"]
+        return state._replace(parts=(), meeting=None), out
+
+    def _steered(self, state: Following, part: Part, body: Any, out: list[Any]) -> Step:
+        """It waits, leaves its circle, or flies at the speed at which it arrives in time."""
+        met, progress = self._met(part.context), state.meeting
+        if progress.common is None:
+            told = all(in_time(p.seen_ms, state.now_ms, SILENT_MS) for p in state.parts)
+            ready = all(p.vehicle in progress.ways for p in state.parts)
+            if not (told and ready and len(state.parts) == met.needed):
+                return self._waits(state, part, out)
+            progress = self._set(state)
+        limits, way = self._limits(part), progress.ways[part.vehicle]
+        if self._late(state.now_ms, progress, part, met):
+            progress = self._set(state)
+        if progress.common is None or self._late(state.now_ms, progress, part, met):
+            text = f"there is no common time any more: vehicle {part.vehicle} would be late"
+            return self._undone(state, text, out)
+        said = self._pace(state.now_ms, progress.common, part, way, met)
+        state = state._replace(meeting=progress)
+        if way.laps:
+            left_s = (progress.common - state.now_ms) / 1000
+            again = another_lap(way.left_m, left_s, lap_s(part.option.flyer), limits.nominal_m_s)
+            if said.act == FLY and not again and self._at_gate(part, body):
+                return self._leaves(state, part, said.speed_m_s, out)
+            return state, out
+        if said.act == EARLY and way.waits:
+            return self._waits(state, part, out)
+        out.append(self._speed(part, said.speed_m_s))
+        return state, out
+
+    def _late(self, now_ms: int, progress: Progress, part: Part, met: Met) -> bool:
+        """Whether a vehicle cannot come in time any more, or no time is set."""
+        if progress.common is None:
+            return True
+        way = progress.ways[part.vehicle]
+        said = self._pace(now_ms, progress.common, part, way, met)
+        return bool(said.act == LATE)
+
+    def _pace(self, now_ms: int, common: int, part: Part, way: Way, met: Met) -> Pace:
+        limits = self._limits(part)
+        # half of the tolerance is for what no speed mends: turns, states between which it flies on
+        return pace(
+            way.left_m,
+            (common - now_ms) / 1000,
+            limits.slowest_m_s,
+            limits.fastest_m_s,
+            met.tolerance_ms / 2000,
+        )
+
+    def _set(self, state: Following) -> Progress:
+        """The common time by what is left of all ways: at nominal speeds, else as fast as they fly; None: none."""
+        progress, now_ms = state.meeting, state.now_ms
+        for fast in (False, True):
+            meeting = Meeting(0, NO_END)
+            for part in state.parts:
+                way, limits = progress.ways[part.vehicle], self._limits(part)
+                soonest, latest = way.arrived, way.arrived
+                if way.arrived is None:
+                    speed = limits.fastest_m_s if fast else limits.nominal_m_s
+                    lap = lap_s(part.option.flyer) if way.laps else 0.0
+                    soonest = now_ms + math.ceil(1000 * (lap + way.left_m / speed))
+                    latest = now_ms + math.floor(1000 * way.left_m / limits.slowest_m_s)
+                meeting = meeting_step(meeting, soonest, NO_END if way.waits else latest)
+            common = common_time(meeting)
+            if common.found:
+                break
+        return Progress(common.time if common.found else None, progress.ways, progress.gone)
+
+    def _at_gate(self, part: Part, body: Any) -> bool:
+        """Whether a vehicle that waits is near its gate, and heads for its state, 45 degrees off at most."""
+        here, gate = self._here(part, body), part.option.start
+        heading = math.radians(body.Heading)
+        toward = Vec2(math.cos(heading), math.sin(heading))
+        reach_m = NEAR_GATE * part.option.flyer.radius_m
+        near = in_ring(Vec2(gate.north_m, gate.east_m), here, 0, reach_m)
+        ahead, origin = ahead_of(part), Vec2(0.0, 0.0)
+        left, right = (
+            Vec2(ahead.x + ahead.y, ahead.y - ahead.x),
+            Vec2(ahead.x - ahead.y, ahead.y + ahead.x),
+        )
+        return near and beyond(toward, origin, left) and beyond(toward, origin, right)
+
+    def _waits(self, state: Following, part: Part, out: list[Any]) -> Step:
+        """It waits in laps beside its gate, if it can and does not yet."""
+        way = state.meeting.ways[part.vehicle]
+        if way.laps or not way.waits:
+            return state, out
+        circle, clockwise = waiting_circle(part.option)
+        part = part._replace(held=circle)
+        turn = "Clockwise" if clockwise else "CounterClockwise"
+        action = parts_of.loiter(part, self._task_id).copy(Direction=turn)
+        out.append(self._command(part, [action]))
+        return state.with_part(part), out
+
+    def _leaves(self, state: Following, part: Part, speed_m_s: float, out: list[Any]) -> Step:
+        """It is sent on along its run-in."""
+        number = parts_of.command_id(self._task_id, part.state.task.request)
+        points = state.plans.get(part.vehicle, {})
+        along = part._replace(then=part.then - 1)
+        command, zone = parts_of.released(along, self._task_id, number, points)
+        if command is None:
+            return self._undone(state, f"{zone} keeps vehicle {part.vehicle} from its run-in", out)
+        out += [command, self._speed(part, speed_m_s)]
+        gone = state.meeting.gone | {part.vehicle}
+        return state._replace(meeting=state.meeting._replace(gone=gone)), out
+
+    def _speed(self, part: Part, speed_m_s: float) -> Any:
+        """A command to fly at another speed: one of its own, as not every autopilot knows it."""
+        action = lmcp.new(
+            "SpeedOverrideAction",
+            AssociatedTaskList=[self._task_id],
+            VehicleID=part.vehicle,
+            Speed=speed_m_s,
+        )
+        return self._command(part, [action])
+
+    def _command(self, part: Part, actions: list[Any]) -> Any:
+        return lmcp.new(
+            "VehicleActionCommand",
+            CommandID=parts_of.command_id(self._task_id, part.state.task.request),
+            VehicleID=part.vehicle,
+            VehicleActionList=actions,
+        )
+
+    def _undone(self, state: Following, why: str, out: list[Any]) -> Step:
+        """They do not meet: it is said why, and who waits is sent on in its plan."""
+        out.append(self._warning(f"its vehicles do not meet: {why}"))
+        for part in state.parts:
+            _, more = self._advance(part.state, WITHDRAWN, 0, None)
+            out += more
+            way = (state.meeting or Progress()).ways.get(part.vehicle)
+            if way is not None and way.laps:
+                number = parts_of.command_id(self._task_id, part.state.task.request)
+                points = state.plans.get(part.vehicle, {})
+                command, zone = parts_of.released(part, self._task_id, number, points)
+                if command is None:
+                    text = (
+                        f"vehicle {part.vehicle} stays on its circle: {zone} keeps it from its plan"
+                    )
+                    command = self._warning(text)
+                out.append(command)
+        return state._replace(parts=(), meeting=None), out

@@ -1,0 +1,134 @@
+"""What the way that UxAS flies after a handback is permitted against, intruder by intruder.
+
+At a handback the whole way that was told is held against each intruder because of which ICAROUS has taken over: the
+buffered cylinder, and the mission's own volume, against an intruder that flies straight on. Half of what the buffer
+leaves is for how far it may be off that line, the rest for the vehicle (`docs/proofs/assumptions.md`). While it is
+within it the way is permitted and ICAROUS does not take over because of it, unless the mission's own volume would
+be lost. If it is not, its new line is looked at: the way is permitted against that one too, or it is a surprise. How
+often ICAROUS takes over is counted by the kernels of `core.permit.encounter`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from cratous.core.avoidance.manoeuvre import way_along
+from cratous.core.avoidance.prediction import Intruder, Piece, buffered, first_violation_s
+from cratous.core.kernel import Vec2
+from cratous.core.permit.encounter import (
+    Encounter,
+    encounter_looked,
+    encounter_resumed,
+    encounter_watched,
+)
+from cratous.core.permit.remainder import way_permits
+from cratous.core.permit.tubes import disc_within
+from cratous.services.icarous.ending import Ahead
+from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.state import Config, Met, State
+from cratous.services.icarous.traffic_monitor import Threat
+from cratous.spec.mission import Daa
+
+NONE = Encounter(0, 0, 0, False, False, 0)
+"""An intruder because of which ICAROUS has never taken over."""
+OFF_LINE = "it does not fly as predicted"
+UNFORESEEN = "a loss is predicted that was not as control went back"
+NOT_FREE = "the way was not permitted as control went back"
+ENDED = "what was permitted had ended"
+
+
+def resumed(config: Config, state: State, sensed: Sensed, in_turn: frozenset[int]) -> State:
+    """UxAS has the vehicle again: which intruders its way is permitted against, and until when."""
+    seen = {other.id: other for other in sensed.intruders}
+    pieces = _whole(state, sensed)
+    until_ms = sensed.now_ms + math.floor(1000 * sum(piece.duration_s for piece in pieces))
+    after = []
+    for met in state.met:
+        other = seen.get(met.intruder_id)
+        straight = None if met.intruder_id in in_turn else other
+        allowed = straight is not None and _permitted(pieces, straight, config.daa)
+        one = encounter_resumed(met.encounter, allowed, until_ms)
+        why = met.why if allowed or one == met.encounter else NOT_FREE
+        after.append(Met(met.intruder_id, one, straight, sensed.now_ms, why))
+    return replace(state, met=tuple(after))
+
+
+def looked(config: Config, state: State, sensed: Sensed, ahead: Ahead) -> State:
+    """At a heartbeat under UxAS: which permits last. ahead: the way that is predicted now."""
+    seen = {other.id: other for other in sensed.intruders}
+    after = []
+    for met in state.met:
+        now, allowed = met, True
+        other = seen.get(met.intruder_id) if met.encounter.permitted else None
+        if other is not None and not _on_line(met, other, sensed.now_ms, config.daa):
+            # another line than that which was permitted: the way may be permitted against it as well
+            allowed = _permitted(_whole(state, sensed), other, config.daa)
+            now = met._replace(predicted=other, made_ms=sensed.now_ms, why=OFF_LINE)
+        if other is not None and allowed:
+            allowed = first_violation_s(ahead.pieces, other, config.daa.well_clear) is None
+            now = now if allowed else now._replace(why=UNFORESEEN)
+        one = encounter_looked(met.encounter, allowed, sensed.now_ms)
+        why = ENDED if one.ended > met.encounter.ended else now.why
+        after.append(now._replace(encounter=one, why=met.why if one.permitted else why))
+    return replace(state, met=tuple(after))
+
+
+def _whole(state: State, sensed: Sensed) -> tuple[Piece, ...]:
+    """The way that was told, from here to its end."""
+    told = state.told
+    return way_along(sensed.motion, told.waypoints[told.next_index :], math.inf).pieces
+
+
+def acting(state: State, found: Sequence[Threat]) -> tuple[Threat, ...]:
+    """The threats on which ICAROUS acts: those that are its own, and that nothing permits."""
+    met = {one.intruder_id: one.encounter for one in state.met}
+    return tuple(
+        threat
+        for threat in found
+        if encounter_watched(met.get(threat.intruder_id, NONE), threat.ours_to_act).acts
+    )
+
+
+def taken_over(state: State, intruder_id: int) -> State:
+    """ICAROUS takes over because of an intruder."""
+    before = state.find(intruder_id) or Met(intruder_id, NONE)
+    after = before._replace(encounter=encounter_watched(before.encounter, True).encounter)
+    others = (one for one in state.met if one.intruder_id != intruder_id)
+    return replace(state, met=_sorted((*others, after)))
+
+
+def told_why(state: State, intruder_id: int) -> str:
+    """Why ICAROUS takes over once more because of an intruder; "" if it is the first time."""
+    met = state.find(intruder_id)
+    return f"; again, since {met.why}" if met is not None and met.why else ""
+
+
+def _sorted(all_met: Iterable[Met]) -> tuple[Met, ...]:
+    return tuple(sorted(all_met, key=lambda one: one.intruder_id))
+
+
+def _permitted(pieces: Sequence[Piece], other: Intruder, daa: Daa) -> bool:
+    """The way keeps the buffered cylinder and the mission's own volume clear of one that flies straight on."""
+    if not way_permits(pieces, other, buffered(daa.well_clear, daa.buffer)):
+        return False
+    return first_violation_s(pieces, other, daa.well_clear) is None
+
+
+def _on_line(met: Met, other: Intruder, now_ms: int, daa: Daa) -> bool:
+    """No farther from where it was predicted than half of what the buffer leaves."""
+    if met.predicted is None:
+        return False
+    (was, v), now = met.predicted[1:3], other.position
+    age_s = (now_ms - met.made_ms) / 1000
+    share, volume = (daa.buffer - 1) / 2, daa.well_clear
+    beside = Vec2(
+        now.north_m - was.north_m - v.north_m_s * age_s,
+        now.east_m - was.east_m - v.east_m_s * age_s,
+    )
+    above = Vec2(now.alt_m - was.alt_m + v.down_m_s * age_s, 0.0)
+    return bool(
+        disc_within(beside, 0.0, share * volume.dthr_m)
+        and disc_within(above, 0.0, share * volume.zthr_m)
+    )

@@ -1,0 +1,93 @@
+"""A flight in processes with the original's clients: UxAS waits for them, and no ICAROUS is started."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from cratous.bridge.text_protocol import Dialect
+from cratous.bridge.text_protocol.handshake import SECRET_VARIABLE
+from cratous.services.cli import main
+from cratous.services.cli.processes_job import as_flown
+from cratous.services.icarous_communication.settings import ATTRIBUTES, settings_of
+from cratous.services.loading import load
+from cratous.services.loading.uxas_settings import read, values_of
+from cratous.services.processes import flight as flights
+from cratous.services.processes.children import Children
+from cratous.services.processes.files import CLIENTS_S, ORIGINAL_PORT, Ports, write_configuration
+from cratous.spec.mission import Mission
+
+
+@pytest.fixture(scope="module")
+def crossing(root: Path) -> Mission:
+    return load(root / "examples/crossing/mission.yaml", 0)
+
+
+@pytest.mark.parametrize("original", [True, False])
+def test_uxas_s_end_speaks_with_who_is_there(
+    crossing: Mission, tmp_path: Path, original: bool
+) -> None:
+    ports = Ports(1001, 1002, ORIGINAL_PORT)
+    cfg = write_configuration(crossing, crossing.instances, ports, tmp_path, original)
+    (entry,) = (e for e in read(cfg).entries if e.type == "IcarousCommunicationService")
+    values = values_of(ATTRIBUTES, entry.attributes, str(cfg), entry.type, [])
+    settings = settings_of(entry, values)
+    assert (settings.instances, settings.ids, settings.where.port) == (2, (1, 2), 5557)
+    assert settings.dialect is (Dialect.ORIGINAL if original else Dialect.CRATOUS)
+    assert (settings.wait_s == CLIENTS_S) is original
+
+
+@pytest.mark.parametrize("original", [True, False])
+def test_no_icarous_is_started_where_clients_are_waited_for(
+    crossing: Mission, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, original: bool
+) -> None:
+    told, started = list[str](), dict[str, tuple[str, ...]]()
+    plan: Any = SimpleNamespace(items=[])
+    how: Any = SimpleNamespace(
+        tell=told.append, folder=tmp_path, path=tmp_path, digest="0" * 64, rate=1.0,
+        allow_unproved=True, original=original,
+    )  # fmt: skip
+    nobody: Any = SimpleNamespace()
+    one = flights._Flight(crossing, plan, nobody, SimpleNamespace(accepted=id), how, nobody)  # type: ignore[arg-type]
+    monkeypatch.setattr(flights, "write_scenario", lambda *_: tmp_path)
+    monkeypatch.setattr(flights, "write_messages", lambda *_: None)
+    one._start_simulator = lambda _: 1  # type: ignore[method-assign]
+    one._connect = lambda _: nobody  # type: ignore[method-assign]
+    one._wait = one._control = lambda *_: None  # type: ignore[assignment,method-assign]
+    one._start = lambda name, *words: started.update({name: words})  # type: ignore[method-assign]
+    one.start()
+    assert set(started) == ({"uxas"} if original else {"uxas", "icarous_1", "icarous_2"})
+    for name, words in started.items():
+        # a mission that was changed since is not flown
+        assert (("--mission-hash", how.digest) in pairwise(words)) is (name != "uxas")
+    asks = [text for text in told if text.startswith("start the original's clients")]
+    assert len(asks) == original
+    assert not original or asks[0].endswith("for vehicle 1, then 2: UxAS waits for 2")
+    assert (one.ports.icarous == ORIGINAL_PORT) is original
+
+
+def test_the_secret_is_then_the_one_of_the_environment(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(SECRET_VARIABLE, "ab" * 32)
+    for own in (True, False):
+        children = Children(tmp_path, tmp_path, own_secret=own)
+        assert (children._environment[SECRET_VARIABLE] == "ab" * 32) is not own
+
+
+def test_the_report_does_not_say_which_icarous_flew(crossing: Mission) -> None:
+    mission = replace(crossing, notes=())
+    (ours,), (theirs,) = as_flown(mission).notes, as_flown(mission, original=True).notes
+    assert "and 2 of ICAROUS" in ours
+    assert "2 clients of the original's; which ICAROUS is behind them is not known here" in theirs
+
+
+def test_it_is_of_processes_alone(root: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    mission = str(root / "examples/crossing/mission.yaml")
+    assert main(["run", mission, "--original-clients"]) == 2
+    assert "--original-clients is of --processes" in capsys.readouterr().err
