@@ -198,6 +198,9 @@ def _progress(flight: Flight, body: dict[str, Any]) -> None:
         if earlier["vehicle"] == number:
             if earlier["task"] == task and earlier["phase"] == phase:
                 flight.in_phase.append(said)
+                if phase == "Failed" and task in flight.served:
+                    # it had failed by then; the reason that holds is the one told last
+                    flight.served[task]["note"] = body["Note"]
                 return
             break
     flight.phases.append(said)

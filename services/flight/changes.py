@@ -130,7 +130,7 @@ def unplanned(
     why = "; ".join(filter(None, (asked_for.why, none, _leaving(config, state))))
     _tell(state, asked_for.what, f"no plan for what is left ({no_plan.why}): {why}", out)
     of = dict(no_plan.of)
-    told = [(task, f"{asked_for.what}: {of.get(task, no_plan.why)}") for task in todo]
+    told = [(task, of.get(task) or f"{asked_for.what}: {no_plan.why}") for task in todo]
     state = give_up(config, state, told, out)
     return command_all(config, state, out)
 

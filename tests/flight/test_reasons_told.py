@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from cratous.services.certify.timeline import Flight, _progress
 from cratous.services.flight.left_out import leave_out, nothing_of
 from cratous.services.flight.loop import _planned
 from cratous.services.flight.messages import AskPlan, NotPlanned, Planned
@@ -78,3 +79,11 @@ def test_a_vehicle_in_a_zone_that_appeared_is_planned_for_from_its_way_out() -> 
     )
     assert abs((item.arrive_ms - item.depart_ms) - 1000 * flown_m / item.speed_m_s) < 500
     assert item.depart_ms == 10_000
+
+
+def test_the_report_has_the_reason_that_was_told_last() -> None:
+    flight = Flight()
+    for at_ms, note in ((0, "first"), (20_000, "last")):
+        body = {"VehicleID": 0, "TaskID": 3, "Time": at_ms, "Phase": "Failed", "Served": 0.0}
+        _progress(flight, {**body, "Note": note})
+    assert (flight.served[3]["note"], flight.served[3]["time_ms"]) == ("last", 0)
