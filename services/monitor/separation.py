@@ -5,7 +5,8 @@ with the manoeuvres that were refused as evidence.
 
 Each pair and step is one question to the kernel `violation_within`: is well clear lost at any
 instant of the step, if both fly straight during it? Positions are taken as the rationals that
-the doubles are, so the answer is exact, between the samples too.
+the doubles are, so the answer is exact, between the samples too. It is asked in units of length and
+time in which all of them are whole numbers: the answer is the same, and comes in a fraction of the time.
 """
 
 from __future__ import annotations
@@ -52,6 +53,38 @@ def _relative(own: Sample, other: Sample) -> tuple[Fraction, Fraction, Fraction]
     )
 
 
+class WholeUnits:
+    """Questions to `violation_within` in whole numbers, for thresholds [m, s] in any numbers.
+
+    The kernel's answer does not depend on the units of length and of time. Time is in parts of a
+    millisecond, length in parts of a metre times the span, so that velocity is whole as well.
+    """
+
+    def __init__(self, thresholds: StandardThresholds) -> None:
+        dthr, zthr, tthr, tcoa = (Fraction(x) for x in thresholds)
+        self._lengths = dthr, zthr
+        self._part = math.lcm(dthr.denominator, zthr.denominator)
+        times = tthr * 1000, tcoa * 1000
+        self._parts_of_ms = math.lcm(*(x.denominator for x in times))
+        self._times = [int(x * self._parts_of_ms) for x in times]
+
+    def lost(self, ends: tuple[Sample, Sample, Sample, Sample]) -> bool:
+        """Whether well clear is lost: own and other at the beginning of a span, and at its end."""
+        own, _other, own_after, _other_after = ends
+        span = (own_after.time_ms - own.time_ms) * self._parts_of_ms
+        if span <= 0:
+            raise ValueError(f"a span of {own_after.time_ms - own.time_ms} ms")
+        ratios = [x.as_integer_ratio() for one in ends for x in one.position[:3]]
+        unit = math.lcm(self._part, *(below for _, below in ratios))
+        at = [above * (unit // below) for above, below in ratios]
+        s0, s1 = ([a - b for a, b in zip(p[:3], p[3:], strict=True)] for p in (at[:6], at[6:]))
+        v: Any = [b - a for a, b in zip(s0, s1, strict=True)]
+        s: Any = [x * span for x in s0]
+        dthr, zthr = (int(x * unit) * span for x in self._lengths)
+        thresholds = StandardThresholds(dthr, zthr, *self._times)
+        return bool(violation_within(Vec2(*s[:2]), Vec2(*v[:2]), s[2], v[2], thresholds, span))
+
+
 class SeparationWatch:
     """Well clear of every protected vehicle. `presence`: who was seen when."""
 
@@ -60,12 +93,8 @@ class SeparationWatch:
         self._protected = sorted(v.id for v in mission.vehicles if v.protected)
         volume = mission.daa.well_clear
         self._volume = volume
-        exact: Any = Fraction
-        self._thresholds = StandardThresholds(
-            exact(volume.dthr_m),
-            exact(volume.zthr_m),
-            exact(volume.tthr_s),
-            exact(volume.tcoa_s),
+        self._units = WholeUnits(
+            StandardThresholds(volume.dthr_m, volume.zthr_m, volume.tthr_s, volume.tcoa_s)
         )
         self.pairs: dict[tuple[int, int], Pair] = {}
         self.violations: list[Verdict] = []
@@ -94,23 +123,20 @@ class SeparationWatch:
         self, own: int, other: int, before: dict[int, Sample], after: dict[int, Sample]
     ) -> bool:
         pair = self.pairs.setdefault((own, other), Pair())
-        s0, s1 = _relative(before[own], before[other]), _relative(after[own], after[other])
-        h = Fraction(after[own].time_ms - before[own].time_ms, 1000)
-        v = [(b - a) / h for a, b in zip(s0, s1, strict=True)]
-        s_h: Any = Vec2(*s0[:2])  # type: ignore[arg-type]
-        v_h: Any = Vec2(*v[:2])  # type: ignore[arg-type]
-        sz, vz, span = (_any(x) for x in (s0[2], v[2], h))
-        lost = violation_within(s_h, v_h, sz, vz, self._thresholds, span)
+        lost = self._units.lost((before[own], before[other], after[own], after[other]))
         pair.checks += 1
         self._measure(pair, before[own], before[other])
         self._measure(pair, after[own], after[other])
         if lost:
             pair.lost_steps += 1
+            s0, s1 = _relative(before[own], before[other]), _relative(after[own], after[other])
+            h = Fraction(after[own].time_ms - before[own].time_ms, 1000)
+            v = [(b - a) / h for a, b in zip(s0, s1, strict=True)]
             pair.miss_m = min(pair.miss_m, _miss(*map(float, (*s0[:2], *v[:2]))))
             if pair.lost_ms is None:
                 pair.lost_ms = before[own].time_ms
                 self.violations.append(self._verdict(own, other, pair, "", judge=False))
-        return bool(lost)
+        return lost
 
     def _measure(self, pair: Pair, own: Sample, other: Sample) -> None:
         """Least horizontal distance while within ZTHR; for display only."""
@@ -201,7 +227,3 @@ def _scene(samples: dict[int, Sample]) -> Scene:
         time_ms,
         {i: (s.position.east_m, s.position.north_m, s.position.alt_m) for i, s in samples.items()},
     )
-
-
-def _any(value: Fraction) -> Any:
-    return value

@@ -1,0 +1,69 @@
+"""The monitor asks its kernel in whole units: the answers are those in seconds and metres."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cratous.core.kernel import Vec2
+from cratous.core.well_clear import StandardThresholds, violation_within
+from cratous.services.monitor.samples import Sample
+from cratous.services.monitor.separation import WholeUnits
+from cratous.spec.mission import Position
+
+NUMBERS = st.one_of(
+    st.sampled_from([0.0, 0.1, 150.0, -150.0, 30.0, 149.99999999999997, 1e-300, 2200.7]),
+    st.floats(-400, 400, allow_nan=False),
+)
+PLACES = st.builds(Position, NUMBERS, NUMBERS, NUMBERS)
+LIMITS = st.sampled_from([0.0, 0.1, 15.0, 30.0, 35.3, 150.0])
+
+
+def at(time_ms: int, place: Position) -> Sample:
+    return Sample(time_ms, place, 0.0, True, 0)
+
+
+@given(
+    st.lists(PLACES, min_size=4, max_size=4),
+    st.sampled_from([1, 33, 100, 1000]),
+    st.tuples(LIMITS, LIMITS, LIMITS, LIMITS),
+)
+def test_whole_units_answer_as_metres_and_seconds_do(
+    places: list[Position], span_ms: int, limits: tuple[float, float, float, float]
+) -> None:
+    own, other, own_after, other_after = places
+    s0, s1 = (
+        [Fraction(a) - Fraction(b) for a, b in zip(p[:3], q[:3], strict=True)]
+        for p, q in ((own, other), (own_after, other_after))
+    )
+    h: Any = Fraction(span_ms, 1000)
+    v: Any = [(b - a) / h for a, b in zip(s0, s1, strict=True)]
+    s: Any = s0
+    exact: Any = [Fraction(x) for x in limits]
+    thresholds = StandardThresholds(*exact)
+    wanted = violation_within(Vec2(*s[:2]), Vec2(*v[:2]), s[2], v[2], thresholds, h)
+    ends = (
+        at(500, own),
+        at(500, other),
+        at(500 + span_ms, own_after),
+        at(500 + span_ms, other_after),
+    )
+    assert WholeUnits(StandardThresholds(*limits)).lost(ends) == wanted
+
+
+def test_touching_is_lost_and_a_hair_more_is_not() -> None:
+    units = WholeUnits(StandardThresholds(150.0, 30.0, 0.0, 0.0))
+    for east_m, lost in ((150.0, True), (150.00000000000003, False)):
+        pair = Position(0.0, 0.0, 300.0), Position(0.0, east_m, 330.0)
+        ends = at(0, pair[0]), at(0, pair[1]), at(1000, pair[0]), at(1000, pair[1])
+        assert units.lost(ends) is lost
+
+
+def test_a_span_without_time_is_none() -> None:
+    place = at(7, Position(0.0, 0.0, 0.0))
+    with pytest.raises(ValueError, match="a span of 0 ms"):
+        WholeUnits(StandardThresholds(150.0, 30.0, 0.0, 0.0)).lost((place,) * 4)
