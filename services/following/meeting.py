@@ -12,16 +12,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations, islice
 from typing import Any, NamedTuple
 
-from cratous.bridge import lmcp
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.kernel import Vec2
 from cratous.core.routing.dubins import pose_after
 from cratous.core.routing.visibility import name_of
 from cratous.core.tasks.rendezvous import spares_a_lap
-from cratous.services.following.offering import WAYS_MOST
+from cratous.services.following.offering import WAYS_MOST, choice
 from cratous.services.following.stations import Station
 from cratous.services.pipeline.contexts import Context
-from cratous.services.pipeline.implementation import offer
 from cratous.services.pipeline.places import RequestPlaces
 from cratous.services.pipeline.source import Known
 from cratous.services.planning.flyers import Flyer, flyer_of
@@ -262,15 +260,4 @@ def offered(context: Context, task_id: int, options: Sequence[Option], ways: Seq
     """TaskPlanOptions: a choice of ways, each flown by all its vehicles; without options where there is none."""
     left = {option.option_id for option in options}
     ways = [way for way in ways if left.issuperset(way)]
-    used = {number for way in ways for number in way}
-    made = offer(context, task_id, [o for o in options if o.option_id in used])
-    if not ways:
-        return made
-    terms = ["|(" + " ".join(f"p{number}" for number in way) + ")" for way in ways]
-    return lmcp.new(
-        "TaskPlanOptions",
-        CorrespondingAutomationRequestID=made.CorrespondingAutomationRequestID,
-        TaskID=made.TaskID,
-        Composition=terms[0] if len(terms) == 1 else f"+({' '.join(terms)})",
-        Options=made.Options,
-    )
+    return choice(context, task_id, options, ways)

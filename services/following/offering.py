@@ -135,6 +135,13 @@ def offered(context: Context, task_id: int, options: Sequence[Option], needed: i
         for chosen in permutations(vehicles, needed)
         if all((slot, vehicle) in by_slot for slot, vehicle in enumerate(chosen))
     ]
+    return choice(context, task_id, options, ways)
+
+
+def choice(
+    context: Context, task_id: int, options: Sequence[Option], ways: Sequence[Sequence[int]]
+) -> Any:
+    """TaskPlanOptions: one of the ways, each flown with all of its options; without options where there is none."""
     used = {number for way in ways for number in way}
     made = offer(context, task_id, [o for o in options if o.option_id in used])
     if not ways:

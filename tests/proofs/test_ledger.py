@@ -33,8 +33,8 @@ RECORDS = "core/ledger/records"
 ATTACKS = {
     # what is edited: (file, old, new, what the gate says)
     "a kernel": (
-        "core/well_clear/now.py", "if ss <= dd:", "if ss < dd:",
-        "horizontal_violation: changed since the proof: its source"),
+        "core/well_clear/now.py", "return abs(sz) <= tcoa_s", "return abs(sz) < tcoa_s",
+        "vertical_violation: changed since the proof: its source"),
     "a callee": (
         "core/well_clear/during.py", "return b < 0 and 0 - b", "return b <= 0 and 0 - b",
         "in_conflict: changed since the proof: its source"),
