@@ -167,6 +167,7 @@ def test_the_summary_of_a_run_shows_no_hidden_characters(
     broken = {"name": "clock", "text": "t", "state": "broken", "since_ms": 0, "note": BAD}
     broken |= {"guarantees": ["G5"], "lost": "l", "stands": "s"}
     report = {"requirements": [], "flight": flight, "verdict": "violated", "exit_code": 1}
+    report["command"] = "cratous run --processes"
     report |= {"log": {"digest": "0"}, "assumptions": [broken]}
     _show(report, tmp_path / "a\x1b[2J")
     shown = capsys.readouterr().out

@@ -26,8 +26,8 @@ def edited(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
         shutil.copy(root / "src" / "cratous" / file, home / "cratous")
     kernel = home / "cratous" / "core" / "well_clear" / "now.py"
     text = kernel.read_text()
-    assert "if ss <= dd:" in text
-    kernel.write_text(text.replace("if ss <= dd:", "if ss < dd:"))
+    assert "return abs(sz) <= tcoa_s" in text
+    kernel.write_text(text.replace("return abs(sz) <= tcoa_s", "return abs(sz) < tcoa_s"))
     shutil.copy(root / "examples" / "crossing" / "mission.yaml", home)
     return home
 
@@ -50,7 +50,7 @@ def cratous(home: Path, *words: str) -> subprocess.CompletedProcess[str]:
 def test_an_edited_kernel_is_refused_by_name(edited: Path, command: str) -> None:
     done = cratous(edited, command, "mission.yaml")
     assert done.returncode == 2
-    assert "horizontal_violation: changed since the proof" in done.stderr
+    assert "vertical_violation: changed since the proof" in done.stderr
     assert "--allow-unproved" in done.stderr
     assert not (edited / "out").exists()
 
