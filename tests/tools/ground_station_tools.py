@@ -47,9 +47,12 @@ class Served(NamedTuple):
         return f"http://127.0.0.1:{self.port}/?token={self.token}"
 
     def children(self) -> list[int]:
-        """The processes that it started."""
-        number = self.process.pid
-        return [int(n) for n in Path(f"/proc/{number}/task/{number}/children").read_text().split()]
+        """The processes that it started, whichever of its threads did: one is the main one's once that is over."""
+        found = set[int]()
+        for thread in Path(f"/proc/{self.process.pid}/task").iterdir():
+            with contextlib.suppress(FileNotFoundError, ProcessLookupError):
+                found.update(int(n) for n in (thread / "children").read_text().split())
+        return sorted(found)
 
     def order(self, page: str = "a", body: bytes | None = None, **asked: Any) -> Got:
         """A command of a page."""
