@@ -40,11 +40,13 @@ class Way(NamedTuple):
 
 
 class Progress(NamedTuple):
-    """common: when all meet [ms], None: not set; ways: of the vehicles; gone: who have left their circles."""
+    """common: when all meet [ms], None: not set; ways: of the vehicles; gone: who have left their circles;
+    since: of who waits, when it was told to [ms]."""
 
     common: int | None = None
     ways: Mapping[int, Way] = MappingProxyType({})
     gone: frozenset[int] = frozenset()
+    since: Mapping[int, int] = MappingProxyType({})
 
     def with_way(self, vehicle: int, way: Way) -> Progress:
         """With what is left of a vehicle's way."""

@@ -28,6 +28,7 @@ from cratous.core.tasks.rendezvous import (
 from cratous.core.tasks.stations import in_ring
 from cratous.services.following import part as parts_of
 from cratous.services.following.meeting import (
+    WAIT,
     Limits,
     Met,
     limits_of,
@@ -40,7 +41,13 @@ from cratous.services.following.meeting import (
 )
 from cratous.services.following.part import Part
 from cratous.services.following.progress import Progress, Way, ahead_of, heard, place_of
-from cratous.services.following.service import SELECTED, SILENT_MS, Following, FollowingTaskService
+from cratous.services.following.service import (
+    SELECTED,
+    SILENT_MS,
+    Following,
+    FollowingTaskService,
+    Step,
+)
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import (
@@ -66,9 +73,6 @@ NEAR_GATE = 1.5
 """A circle to wait on is left no farther from its gate than so many of its radii."""
 
 
-Step = tuple[Following, list[Any]]
-
-
 class RendezvousTaskService(FollowingTaskService):
     """One rendezvous."""
 
@@ -79,9 +83,9 @@ class RendezvousTaskService(FollowingTaskService):
             met, world = self._met(context), self._contexts.world
             task = self._task_in(context)
             found, dropped, self._notes = options_of(context, task, met, world)
-            ways = ways_of(self._met(context), found)
+            ways = ways_of(met, found)
             if not ways:
-                text = f"no {self._met(context).needed} vehicles have a state each"
+                text = f"no {met.needed} vehicles have a state each"
                 dropped.append(Dropped(self._task_id, (), "a rendezvous", text))
             self._ways = ways
             self._made = (context, [option for option, _ in found], dropped)
@@ -125,6 +129,9 @@ class RendezvousTaskService(FollowingTaskService):
         if silent is not None:
             text = f"vehicle {silent.vehicle} was not heard for {VANISHED_MS // 1000} s"
             return self._undone(state, text, [])
+        tired = self._tired(state)
+        if tired:
+            return self._undone(state, tired, [])
         if part.state.away == HANDED_BACK and body.Mode.name == "Waypoint":
             part = part._replace(state=part.state._replace(away=WITH_UXAS))
         if part.state.away:
@@ -166,6 +173,22 @@ class RendezvousTaskService(FollowingTaskService):
             if comes and not in_time(part.seen_ms, state.now_ms, VANISHED_MS):
                 return part
         return None
+
+    def _tired(self, state: Following) -> str:
+        """Who has waited for too long, and who has not come; nothing if none has."""
+        progress = state.meeting or Progress()
+        for part in state.parts:
+            since, met = progress.since.get(part.vehicle), self._met(part.context)
+            if since is None or in_time(since, state.now_ms, met.wait_ms):
+                continue
+            late = sorted(
+                p.vehicle
+                for p in state.parts
+                if p.vehicle not in progress.ways or p.blocked or p.state.away
+            )
+            text = f"vehicle {part.vehicle} has waited for {met.wait_ms / 1000:g} s ({WAIT})"
+            return f"{text}, and {', '.join(map(str, late))} has not come" if late else text
+        return ""
 
     def _way(self, part: Part, body: Any, laps: bool, progress: Progress) -> Way:
         """What is left of a vehicle's way by its state; less than nothing where it has passed its state."""
@@ -289,7 +312,7 @@ class RendezvousTaskService(FollowingTaskService):
             common = common_time(meeting)
             if common.found:
                 break
-        return Progress(common.time if common.found else None, progress.ways, progress.gone)
+        return progress._replace(common=common.time if common.found else None)
 
     def _at_gate(self, part: Part, body: Any) -> bool:
         """Whether a vehicle that waits is near its gate, and heads for its state, 45 degrees off at most."""
@@ -307,7 +330,7 @@ class RendezvousTaskService(FollowingTaskService):
 
     def _waits(self, state: Following, part: Part, out: list[Any]) -> Step:
         """It waits in laps beside its gate, if it can and does not yet."""
-        way = state.meeting.ways[part.vehicle]
+        progress, way = state.meeting, state.meeting.ways[part.vehicle]
         if way.laps or not way.waits:
             return state, out
         circle, clockwise = waiting_circle(part.option)
@@ -315,7 +338,8 @@ class RendezvousTaskService(FollowingTaskService):
         turn = "Clockwise" if clockwise else "CounterClockwise"
         action = parts_of.loiter(part, self._task_id).copy(Direction=turn)
         out.append(self._command(part, [action]))
-        return state.with_part(part), out
+        since = {part.vehicle: state.now_ms, **progress.since}
+        return state.with_part(part)._replace(meeting=progress._replace(since=since)), out
 
     def _leaves(self, state: Following, part: Part, speed_m_s: float, out: list[Any]) -> Step:
         """It is sent on along its run-in."""
@@ -327,7 +351,8 @@ class RendezvousTaskService(FollowingTaskService):
             return self._undone(state, f"{zone} keeps vehicle {part.vehicle} from its run-in", out)
         out += [command, self._speed(part, speed_m_s)]
         gone = state.meeting.gone | {part.vehicle}
-        return state._replace(meeting=state.meeting._replace(gone=gone)), out
+        since = {v: t for v, t in state.meeting.since.items() if v != part.vehicle}
+        return state._replace(meeting=state.meeting._replace(gone=gone, since=since)), out
 
     def _speed(self, part: Part, speed_m_s: float) -> Any:
         """A command to fly at another speed: one of its own, as not every autopilot knows it."""

@@ -144,6 +144,10 @@ STATE = lmcp.new("PlanningState", EntityID=0, PlanningPosition=place(0.04))
             {"Parameters": [lmcp.new("KeyValuePair", Key="Tolerance_ms", Value="-1")]},
             "Tolerance_ms: out of range; expected 1 to 600000; got -1",
         ),
+        (
+            {"Parameters": [lmcp.new("KeyValuePair", Key="Wait_ms", Value="9" * 5_000)]},
+            "Wait_ms: out of range; expected 1 to 8.64e+07; got 9999",
+        ),
         ({"RendezvousStates": [STATE.copy(EntityID=77)] * 2}, "entity 77, which is none of its"),
         ({"NumberOfParticipants": 3}, "no 3 vehicles have a state each"),
     ],
@@ -195,9 +199,9 @@ def test_who_cannot_change_its_speed_or_wait_is_not_offered(tmp_path: Path) -> N
         assert any(text in one for one in said), said
 
 
-def under_way(folder: Path) -> tuple[Rig, list[Any]]:
-    """Two vehicles on their run-ins, at one time, and their states then."""
-    rig = told(folder, meeting(1, 2))
+def coming(folder: Path, **more: Any) -> tuple[Rig, list[Any]]:
+    """Two vehicles on their way to their run-ins, and states of theirs on these."""
+    rig = told(folder, meeting(1, 2, **more))
     states = []
     for vehicle, (latitude, longitude) in zip((1, 2), PLACES, strict=False):
         waypoints = next(
@@ -212,9 +216,36 @@ def under_way(folder: Path) -> tuple[Rig, list[Any]]:
                 Mode="Waypoint", CurrentWaypoint=mine[1], Time=1000,
             )
         )  # fmt: skip
+    return rig, states
+
+
+def under_way(folder: Path) -> tuple[Rig, list[Any]]:
+    """Two vehicles on their run-ins, at one time, and their states then."""
+    rig, states = coming(folder)
     rig.tell(*states)
     assert not rig.reasons("Warning")
     return rig, states
+
+
+@pytest.mark.parametrize("change", [{"AssociatedTasks": []}, {"Location": place(math.nan)}])
+def test_nobody_waits_without_end_for_who_is_heard_and_does_not_come(
+    tmp_path: Path, change: dict[str, Any]
+) -> None:
+    """The second one flies something else, or its states are no states, for as long as one looks."""
+    wait = lmcp.new("KeyValuePair", Key="Wait_ms", Value="60000")
+    rig, (one, two) = coming(tmp_path, Parameters=[wait])
+    rig.tell(one.copy(CurrentWaypoint=one.CurrentWaypoint - 1))
+    number = rig.got("VehicleActionCommand")[-1].CommandID
+    waiting = one.copy(Mode="Loiter", CurrentCommand=number)
+    for k in range(2, 62):
+        rig.tell(two.copy(Time=1000 * k, **change), waiting.copy(Time=1000 * k))
+    assert not [t for t in rig.reasons("Warning") if "do not meet" in t], "no longer than 60 s"
+    rig.tell(two.copy(Time=62_000, **change))
+    text = "task 5: its vehicles do not meet: vehicle 1 has waited for 60 s (Wait_ms), and 2 has not come"
+    assert text in rig.reasons("Warning")
+    last = rig.got("VehicleActionCommand")[-1]
+    assert last.VehicleID == 1
+    assert type(last.VehicleActionList[-1]).__name__ == "GoToWaypointAction", "it is sent on"
 
 
 def test_each_is_told_the_speed_at_which_it_arrives(tmp_path: Path) -> None:
