@@ -16,7 +16,8 @@ from cratous.services.planning.flyers import Flyer
 
 class Way(NamedTuple):
     """What is left of a vehicle's way: left_m: to its state; waits: it can still wait; laps: it does; passed: it
-    is beyond its state; arrived: when that was [ms], None: not yet; wind: along its run-in and across it [m/s]."""
+    is beyond its state; arrived: by when it has come there [ms], None: not yet; wind: along its run-in and across
+    it [m/s]; told: the Time of the state that says so [ms]; before: that of the one before."""
 
     left_m: float
     waits: bool
@@ -24,6 +25,8 @@ class Way(NamedTuple):
     passed: bool = False
     arrived: int | None = None
     wind: Vec2 = Vec2(0.0, 0.0)
+    told: int = 0
+    before: int = 0
 
     def over_ground(self, limits: Limits) -> Limits:
         """The speeds of a vehicle over ground along its run-in."""

@@ -151,8 +151,9 @@ class RendezvousTaskService(FollowingTaskService):
         if not (lists or laps):
             return self._undone(state, f"vehicle {part.vehicle} flies it no more", out)
         try:
+            wind, before = wind_of(body, part.option.start.heading_rad), way.told if way else 0
             way = self._way(part, body, laps, progress)._replace(
-                wind=wind_of(body, part.option.start.heading_rad)
+                wind=wind, told=body.Time, before=before
             )
         except BadInput as error:
             if not part.blocked:
@@ -215,18 +216,21 @@ class RendezvousTaskService(FollowingTaskService):
         if not in_ring(at, here, 0, 2 * part.option.flyer.radius_m):
             text = f"vehicle {part.vehicle} passed its place {math.dist(here, at):.0f} m aside"
             return self._undone(state, text, out)
-        progress = state.meeting.with_way(part.vehicle, Way(0.0, False, False, True, state.now_ms))
+        way = state.meeting.ways[part.vehicle]
+        progress = state.meeting.with_way(part.vehicle, way._replace(arrived=way.told))
         if progress.common is None:
             text = f"vehicle {part.vehicle} passed its place before all were on their ways"
             return self._undone(state, text, out)
         state = state._replace(meeting=progress)
         out.append(self._speed(part, part.option.flyer.speed_m_s))
         met = self._met(part.context)
-        arrived = {v: w.arrived for v, w in progress.ways.items() if w.arrived is not None}
-        for vehicle, at_ms in sorted(arrived.items()):
-            if not in_company(at_ms, progress.common, met.tolerance_ms):
-                off_s = (at_ms - progress.common) / 1000
-                text = f"vehicle {vehicle} arrived {off_s:.1f} s after the common time"
+        arrived = {v: w for v, w in progress.ways.items() if w.arrived is not None}
+        for vehicle, way in sorted(arrived.items()):
+            # it passed between two of its states: nobody knows when, so both have to be in time
+            ends = (way.before, way.told)
+            if not all(in_company(t, progress.common, met.tolerance_ms) for t in ends):
+                off = " to ".join(f"{(t - progress.common) / 1000:.1f}" for t in ends)
+                text = f"vehicle {vehicle} arrived {off} s after the common time"
                 return self._undone(state, text, out)
         if len(arrived) < met.needed:
             return state, out

@@ -275,6 +275,34 @@ def test_where_no_common_time_is_left_it_is_said_and_nobody_waits(tmp_path: Path
 
 
 @pytest.mark.parametrize(
+    ("before", "told", "reason"),
+    [
+        (33_500, 34_500, ""),
+        (28_000, 34_500, "vehicle 2 arrived -6.2 to 0.3 s after the common time"),
+        (28_000, 29_000, "vehicle 2 arrived -6.2 to -5.2 s after the common time"),
+    ],
+)
+def test_complete_is_only_what_was_seen_to_be_in_time(
+    tmp_path: Path, before: int, told: int, reason: str
+) -> None:
+    """The second one passes between two of its states; its last one comes when the first one has passed in time."""
+    rig, states = under_way(tmp_path)
+
+    def at(k: int, time_ms: int, north: float) -> Any:
+        there = place(PLACES[k][0] + north, PLACES[k][1])
+        return states[k].copy(Time=time_ms, Location=there)
+
+    for time_ms in (1_000, 15_000, 28_000):
+        north = -0.006 * (34_400 - time_ms) / 33_400
+        rig.tell(*(at(k, time_ms, north) for k in (0, 1)))
+    rig.tell(at(1, before, -0.0002), at(0, 33_500, -0.0002), at(0, 34_500, 0.0001))
+    rig.tell(at(1, told, 0.0001))
+    said = rig.reasons("Warning")
+    assert bool(rig.got("TaskComplete")) == (not reason)
+    assert not reason or any(reason in text for text in said), said
+
+
+@pytest.mark.parametrize(
     ("change", "reason"),
     [
         ({"AssociatedTasks": []}, "vehicle 2 flies it no more"),
