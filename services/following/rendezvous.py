@@ -26,6 +26,7 @@ from cratous.core.tasks.rendezvous import (
     pace,
 )
 from cratous.core.tasks.stations import in_ring
+from cratous.services.bus import Envelope
 from cratous.services.following import part as parts_of
 from cratous.services.following.meeting import (
     WAIT,
@@ -110,6 +111,11 @@ class RendezvousTaskService(FollowingTaskService):
         return limits_of(next(v for v in vehicles if v.id == part.vehicle))
 
     # what is flown
+
+    def _asked_for(self, state: Following, envelope: Envelope, now_ms: int) -> Step:
+        """A request that ends it: a plan may come for others, or none."""
+        after, out = super()._asked_for(state, envelope, now_ms)
+        return after, out if after is state else [*out, *self._sent(state)]
 
     def _planned(self, state: Following, response: Any) -> Step:
         before = len(state.parts)
@@ -350,9 +356,10 @@ class RendezvousTaskService(FollowingTaskService):
         number = parts_of.command_id(self._task_id, part.state.task.request)
         points = state.plans.get(part.vehicle, {})
         along = part._replace(then=part.then - 1)
-        command, zone = parts_of.released(along, self._task_id, number, points)
+        command, why = parts_of.released(along, self._task_id, number, points)
         if command is None:
-            return self._undone(state, f"{zone} keeps vehicle {part.vehicle} from its run-in", out)
+            text = f"vehicle {part.vehicle} cannot leave its circle: {why}"
+            return self._undone(state, text, out)
         out += [command, self._speed(part, speed_m_s)]
         gone = state.meeting.gone | {part.vehicle}
         since = {v: t for v, t in state.meeting.since.items() if v != part.vehicle}
@@ -382,15 +389,9 @@ class RendezvousTaskService(FollowingTaskService):
         for part in state.parts:
             _, more = self._advance(part.state, WITHDRAWN, 0, None)
             out += more
-            way = (state.meeting or Progress()).ways.get(part.vehicle)
-            if way is not None and way.laps:
-                number = parts_of.command_id(self._task_id, part.state.task.request)
-                points = state.plans.get(part.vehicle, {})
-                command, zone = parts_of.released(part, self._task_id, number, points)
-                if command is None:
-                    text = (
-                        f"vehicle {part.vehicle} stays on its circle: {zone} keeps it from its plan"
-                    )
-                    command = self._warning(text)
-                out.append(command)
-        return state._replace(parts=(), meeting=None), out
+        return state._replace(parts=(), meeting=None), [*out, *self._sent(state)]
+
+    def _sent(self, state: Following) -> list[Any]:
+        """Who waits is sent on in its plan."""
+        waiting = (state.meeting or Progress()).since
+        return [self._sent_on(state, part) for part in state.parts if part.vehicle in waiting]

@@ -243,9 +243,27 @@ def test_nobody_waits_without_end_for_who_is_heard_and_does_not_come(
     rig.tell(two.copy(Time=62_000, **change))
     text = "task 5: its vehicles do not meet: vehicle 1 has waited for 60 s (Wait_ms), and 2 has not come"
     assert text in rig.reasons("Warning")
+    assert sent_on(rig) == 1
+
+
+def sent_on(rig: Rig) -> int:
+    """The vehicle that the last command sends on in its plan, 0 for a command of another kind."""
     last = rig.got("VehicleActionCommand")[-1]
-    assert last.VehicleID == 1
-    assert type(last.VehicleActionList[-1]).__name__ == "GoToWaypointAction", "it is sent on"
+    goes = type(last.VehicleActionList[-1]).__name__ == "GoToWaypointAction"
+    return int(last.VehicleID) if goes else 0
+
+
+@pytest.mark.parametrize("end", ["another request", "the other one"])
+def test_nobody_stays_on_its_circle_when_the_task_has_ended(tmp_path: Path, end: str) -> None:
+    """Also who has not yet said that it circles."""
+    rig, (one, two) = coming(tmp_path)
+    rig.tell(one.copy(CurrentWaypoint=one.CurrentWaypoint - 1), two)
+    assert sent_on(rig) != 1
+    if end == "another request":
+        rig.tell(request(5, vehicles=(1, 2)))
+    else:
+        rig.tell(two.copy(AssociatedTasks=[], Time=1200))
+    assert sent_on(rig) == 1
 
 
 def test_each_is_told_the_speed_at_which_it_arrives(tmp_path: Path) -> None:
