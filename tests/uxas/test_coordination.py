@@ -77,6 +77,8 @@ def test_a_request_goes_out_when_all_have_told_and_its_answer_is_the_plan(tmp_pa
     assert {c.VehicleID for c in plan.MissionCommandList} <= {OWN, OTHER}
     assert plan.MissionCommandList
     rig.wait(60_000)
+    rig.tell(asked())
+    assert any("request 7 comes again" in text for text in rig.reasons("Warning"))
     assert len(went_out(rig)) == 1, "once"
 
 
@@ -105,6 +107,14 @@ def test_who_does_not_tell_in_time_is_left_out_by_name(tmp_path: Path) -> None:
     assert [c.VehicleID for c in rig.got("AutomationResponse")[0].MissionCommandList] == [OWN]
     rig.tell(told(OTHER))
     assert len(went_out(rig)) == 1, "too late"
+
+
+def test_what_a_vehicle_tells_counts_and_not_what_the_request_says_of_it(tmp_path: Path) -> None:
+    rig = joined(tmp_path)
+    newer = told(OTHER, at=place(0.002))
+    rig.tell(newer, asked().copy(PlanningStates=[told(OTHER).PlanningState]))
+    (out,) = went_out(rig)
+    assert out.PlanningStates[1] == newer.PlanningState
 
 
 def test_without_a_limit_it_waits(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 from following_tools import aircraft
 from pipeline_tools import PIPELINE, Rig, must_fly, place, request
+from rendezvous_tools import PLACES, meeting, told, under_way
 from uxas_flight import Flight, fly, local
 from uxas_tools import write_cfg
 
@@ -19,21 +20,6 @@ from cratous.bridge import lmcp
 from cratous.services.simulator.world import Event
 
 TASKS = "Task services"
-PLACES = ((0.04, 0.0), (0.04, 0.004), (0.045, 0.01))
-
-
-def meeting(*entities: int, needed: int | None = None, **more: Any) -> Any:
-    """A rendezvous of entities, each at a place of its own, northward."""
-    states = [
-        lmcp.new(
-            "PlanningState", EntityID=entity, PlanningPosition=place(*PLACES[k]),
-            PlanningHeading=0.0,
-        )
-        for k, entity in enumerate(entities)
-    ]  # fmt: skip
-    count = len(entities) if needed is None else needed
-    values = {"NumberOfParticipants": count, "RendezvousStates": states}
-    return lmcp.new("RendezvousTask", **{"TaskID": 5, **values, **more})
 
 
 def flown(
@@ -112,16 +98,6 @@ def test_two_of_three_come_to_one_place_and_go_on_in_their_plans(tmp_path: Path)
     assert max(one[1], two[1]) < 40
 
 
-def told(folder: Path, task: Any, *more: Any, vehicles: int = 2, **limits: float) -> Rig:
-    """What is said of a request with this task."""
-    rig = Rig(folder)
-    for vehicle in range(1, vehicles + 1):
-        configuration, state = aircraft(vehicle, 0.001 * vehicle)
-        rig.tell(configuration.copy(**{"MinimumSpeed": 15.0, **limits}), state)
-    rig.tell(*more, task, request(5, vehicles=tuple(range(1, vehicles + 1))))
-    return rig
-
-
 STATE = lmcp.new("PlanningState", EntityID=0, PlanningPosition=place(0.04))
 
 
@@ -197,73 +173,6 @@ def test_who_cannot_change_its_speed_or_wait_is_not_offered(tmp_path: Path) -> N
         rig.tell(request(5, vehicles=(1, 2), OperatingRegion=4))
         said = rig.reasons("Warning")
         assert any(text in one for one in said), said
-
-
-def coming(folder: Path, **more: Any) -> tuple[Rig, list[Any]]:
-    """Two vehicles on their way to their run-ins, and states of theirs on these."""
-    rig = told(folder, meeting(1, 2, **more))
-    states = []
-    for vehicle, (latitude, longitude) in zip((1, 2), PLACES, strict=False):
-        waypoints = next(
-            c.WaypointList
-            for c in rig.got("AutomationResponse")[-1].MissionCommandList
-            if vehicle == c.VehicleID
-        )
-        mine = [w.Number for w in waypoints if w.AssociatedTasks]
-        states.append(
-            aircraft(vehicle, 0.0)[1].copy(
-                Location=place(latitude - 0.006, longitude), AssociatedTasks=[5],
-                Mode="Waypoint", CurrentWaypoint=mine[1], Time=1000,
-            )
-        )  # fmt: skip
-    return rig, states
-
-
-def under_way(folder: Path) -> tuple[Rig, list[Any]]:
-    """Two vehicles on their run-ins, at one time, and their states then."""
-    rig, states = coming(folder)
-    rig.tell(*states)
-    assert not rig.reasons("Warning")
-    return rig, states
-
-
-@pytest.mark.parametrize("change", [{"AssociatedTasks": []}, {"Location": place(math.nan)}])
-def test_nobody_waits_without_end_for_who_is_heard_and_does_not_come(
-    tmp_path: Path, change: dict[str, Any]
-) -> None:
-    """The second one flies something else, or its states are no states, for as long as one looks."""
-    wait = lmcp.new("KeyValuePair", Key="Wait_ms", Value="60000")
-    rig, (one, two) = coming(tmp_path, Parameters=[wait])
-    rig.tell(one.copy(CurrentWaypoint=one.CurrentWaypoint - 1))
-    number = rig.got("VehicleActionCommand")[-1].CommandID
-    waiting = one.copy(Mode="Loiter", CurrentCommand=number)
-    for k in range(2, 62):
-        rig.tell(two.copy(Time=1000 * k, **change), waiting.copy(Time=1000 * k))
-    assert not [t for t in rig.reasons("Warning") if "do not meet" in t], "no longer than 60 s"
-    rig.tell(two.copy(Time=62_000, **change))
-    text = "task 5: its vehicles do not meet: vehicle 1 has waited for 60 s (Wait_ms), and 2 has not come"
-    assert text in rig.reasons("Warning")
-    assert sent_on(rig) == 1
-
-
-def sent_on(rig: Rig) -> int:
-    """The vehicle that the last command sends on in its plan, 0 for a command of another kind."""
-    last = rig.got("VehicleActionCommand")[-1]
-    goes = type(last.VehicleActionList[-1]).__name__ == "GoToWaypointAction"
-    return int(last.VehicleID) if goes else 0
-
-
-@pytest.mark.parametrize("end", ["another request", "the other one"])
-def test_nobody_stays_on_its_circle_when_the_task_has_ended(tmp_path: Path, end: str) -> None:
-    """Also who has not yet said that it circles."""
-    rig, (one, two) = coming(tmp_path)
-    rig.tell(one.copy(CurrentWaypoint=one.CurrentWaypoint - 1), two)
-    assert sent_on(rig) != 1
-    if end == "another request":
-        rig.tell(request(5, vehicles=(1, 2)))
-    else:
-        rig.tell(two.copy(AssociatedTasks=[], Time=1200))
-    assert sent_on(rig) == 1
 
 
 def test_each_is_told_the_speed_at_which_it_arrives(tmp_path: Path) -> None:
