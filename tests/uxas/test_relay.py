@@ -115,12 +115,26 @@ def under_way(rig: Rig, **more: Any) -> Any:
 
 
 def test_a_place_is_supported_where_no_entity_is(tmp_path: Path) -> None:
-    rig = told(
-        tmp_path, relay(SupportedEntityID=0, DestinationLocation=place(0.03, 0.002)), tower()
-    )
-    under_way(rig)
+    where = {"SupportedEntityID": 0, "DestinationLocation": place(0.03, 0.002)}
+    rig = told(tmp_path, relay(Parameters=minute(), **where), tower())
+    state = under_way(rig)
     at = circled(rig).Location
     assert math.hypot(*local([at], place(0.03, -0.0065))[0]) < 5, "halfway"
+    # nobody has to tell where it is: the minute counts
+    number = rig.got("VehicleActionCommand")[-1].CommandID
+    for k in range(2, 62):
+        assert not rig.got("TaskComplete")
+        rig.tell(state.copy(Mode="Loiter", CurrentCommand=number, Time=1000 * k))
+    assert rig.got("TaskComplete")
+
+
+def test_the_middle_moves_half_as_fast_as_what_is_supported(tmp_path: Path) -> None:
+    """An entity at 30 m/s is relayed by a vehicle that flies 20 m/s, one at 41 m/s is not."""
+    rig = Rig(tmp_path)
+    rig.tell(*aircraft(1, 0.029), *moving(30.0), tower(Range=50_000.0), relay(), request(5))
+    assert rig.got("AutomationResponse")[-1].MissionCommandList, rig.reasons()
+    rig.tell(*moving(41.0), request(5))
+    assert any("and the tower moves at 20.5 m/s" in text for text in rig.reasons("Warning"))
 
 
 def test_what_gets_out_of_reach_is_said_and_the_time_does_not_count(tmp_path: Path) -> None:
