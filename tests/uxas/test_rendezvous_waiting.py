@@ -96,3 +96,14 @@ def test_who_has_passed_flies_on_at_its_own_speed(tmp_path: Path) -> None:
     rig.tell(one.copy(Location=place(0.0401), Time=34_400))
     last = rig.got("VehicleActionCommand")[-1]
     assert (last.VehicleID, last.VehicleActionList[0].Speed) == (1, 20.0)
+
+
+def test_who_evades_has_not_left_it(tmp_path: Path) -> None:
+    """While ICAROUS has a vehicle its states say nothing of the task."""
+    rig, (_, two) = under_way(tmp_path)
+    rig.tell(lmcp.new("AuthorityChange", VehicleID=2, Owner="ICAROUS"))
+    rig.tell(two.copy(AssociatedTasks=[], Time=2_000))
+    assert not rig.reasons("Warning")
+    rig.tell(lmcp.new("AuthorityChange", VehicleID=2, Owner="UxAS"))
+    rig.tell(two.copy(AssociatedTasks=[], Time=3_000))
+    assert any("vehicle 2 flies it no more" in text for text in rig.reasons("Warning"))
