@@ -1,9 +1,10 @@
 """The shortest level way out of zones that a vehicle is in, or into keep-ins that it is outside of.
 
-A zone can appear over a vehicle. A turn and a straight way lead out first: to a line, a turn until
-straight towards it and then straight on is the shortest way of all that turn no tighter, and who leaves
-a convex keep-out crosses the line of one of its edges, so of these, two for each edge, one is the
-shortest. Of zones of another form it is the shortest of these and of `EVEN` headings more.
+A zone can appear over a vehicle. A turn and a straight way lead out first, at the altitude it is at, also
+where a climb would be shorter. To a line, a turn until straight towards it and then straight on is the
+shortest way of all that turn no tighter, and who leaves a convex keep-out crosses the line of one of its
+edges, so of these, two for each edge, one is the shortest. Of all other zones, and of several, it is the
+shortest found of these, of turns towards corners, and of `EVEN` headings more.
 """
 
 from __future__ import annotations
@@ -56,8 +57,9 @@ def entered(at: Position, zones: Sequence[Zone]) -> tuple[Zone, ...]:
 
 
 def way_out(pose: Pose, radius_m: float, zones: Sequence[Zone]) -> WayOut | None:
-    """The shortest level way found out of all zones that the pose breaks, which keeps the others; None
-    where it breaks none or no way out was found. zones: without padding; radius_m: of turns [m]."""
+    """The shortest level way found out of all zones that the pose breaks, which keeps the others; one with
+    room to turn behind it goes before any without. None where it breaks none or no way out was found.
+    zones: without padding; radius_m: of turns [m]."""
     left = entered(start_point(pose), zones)
     if not left:
         return None
@@ -122,7 +124,7 @@ def _turns(
                     yield _Turn(here, at * radius_m, tuple(points))
                     break
             else:
-                turned = max(turned, angle)
+                turned = angle
                 yield _Turn(here, turned * radius_m, tuple(points))
                 continue
             break

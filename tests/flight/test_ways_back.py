@@ -12,7 +12,7 @@ from flight_tools import meeting, of_type
 
 from cratous.bridge import lmcp
 from cratous.core.geofence.mission_legs import first_bad_leg
-from cratous.services.flight import interruption, remaining_path, task_transitions
+from cratous.services.flight import changes, interruption, remaining_path, task_transitions
 from cratous.services.flight.autopilot import Follow
 from cratous.services.flight.chain import Phase
 from cratous.services.flight.commands import decode
@@ -189,3 +189,12 @@ def test_a_task_before_which_no_wait_keeps_the_zones_fails_by_name() -> None:
     out: list[Any] = []
     after = task_transitions._on_end(config, replace(state, plan=late), state.chain(1), 500, out)
     assert dict(after.failed) == {item.task_id: task_transitions.NO_HOLD}
+
+
+def test_what_is_left_and_what_is_entered_is_told_apart() -> None:
+    over = box(ZoneKind.KEEP_OUT, 1900.0, 2200.0, 900.0, 9)
+    beside = box(ZoneKind.KEEP_IN, 2100.0, 9000.0, 900.0, 5)
+    state, _ = ended_at_here((beside, over))
+    mission = replace(meeting(), traffic=())
+    said = changes._leaving(Config(mission, Projection(mission.frame), (1,)), state)
+    assert said.startswith("vehicle 1 first leaves keep-out zone 9 and enters keep-in zone 5, level, by")
