@@ -108,7 +108,7 @@ def _turns(
         sign = 1 if kind == RIGHT else -1
         angles = sorted(
             (sign * (heading - pose.heading_rad)) % (2 * math.pi)
-            for heading in _headings(pose, radius_m, left)
+            for heading in _headings(pose, sign * radius_m, left)
         )
         here, points, turned = pose, [start_point(pose)], 0.0
         for angle in angles:
@@ -131,7 +131,10 @@ def _turns(
 
 
 def _headings(pose: Pose, radius_m: float, left: Sequence[Zone]) -> Iterator[float]:
-    """Headings across the edges of zones, to their corners from here, and evenly spread."""
+    """Headings across the edges of zones, to their corners from the turn, and evenly spread. radius_m: of a
+    turn to the right, below 0 to the left."""
+    centre_n = pose.north_m - radius_m * math.sin(pose.heading_rad)
+    centre_e = pose.east_m + radius_m * math.cos(pose.heading_rad)
     yield pose.heading_rad
     for k in range(EVEN):
         yield 2 * math.pi * k / EVEN
@@ -144,7 +147,10 @@ def _headings(pose: Pose, radius_m: float, left: Sequence[Zone]) -> Iterator[flo
             along = math.atan2(e2 - e, n2 - n)
             yield along + math.pi / 2
             yield along - math.pi / 2
-            yield math.atan2(e - pose.east_m, n - pose.north_m)
+            # along the tangent of the turn that passes the corner
+            n, e = n - centre_n, e - centre_e
+            ahead_m = math.sqrt(max(0.0, n * n + e * e - radius_m * radius_m))
+            yield math.atan2(e, n) + math.atan2(radius_m, ahead_m)
 
 
 def _straight_m(pose: Pose, left: Sequence[Zone]) -> float | None:
