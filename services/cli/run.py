@@ -75,8 +75,6 @@ def run(
         raise click.UsageError("--rate is of --processes")
     if how["original_clients"] and not how["processes"]:
         raise click.UsageError("--original-clients is of --processes")
-    if how["original_clients"] and no_daa:
-        raise click.UsageError("--original-clients are of avoidance, which --no-daa switches off")
     if how["processes"]:
         if seed or seeds is not None:
             raise click.UsageError(

@@ -91,11 +91,3 @@ def test_it_is_of_processes_alone(root: Path, capsys: pytest.CaptureFixture[str]
     mission = str(root / "examples/crossing/mission.yaml")
     assert main(["run", mission, "--original-clients"]) == 2
     assert "--original-clients is of --processes" in capsys.readouterr().err
-
-
-def test_none_are_waited_for_without_avoidance(
-    root: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    mission = str(root / "examples/crossing/mission.yaml")
-    assert main(["run", mission, "--processes", "--original-clients", "--no-daa"]) == 2
-    assert "which --no-daa switches off" in capsys.readouterr().err
