@@ -136,16 +136,16 @@ def unplanned(
 
 
 def _leaving(config: Config, state: State) -> str:
-    """Which vehicles are in zones that bind now, and how each leaves them before all else."""
+    """Which vehicles are in zones that bind now, and how each comes to keep them before all else."""
     ways, said = config.ways(state.zones), []
     for chain in state.chains:
         if chain.suspended:
             continue
         inside, out = ways.out_of(chain, state.air(chain.vehicle.id))
-        if inside and out is not None:
-            names = " and ".join(name_of(zone) for zone in inside)
-            verb = "enters" if inside[0].kind is ZoneKind.KEEP_IN else "leaves"
-            told = f"vehicle {chain.vehicle.id} first {verb} {names} by the shortest way found"
+        if out is not None:
+            kept = [f"leaves {name_of(z)}" for z in inside if z.kind is ZoneKind.KEEP_OUT]
+            kept += [f"enters {name_of(z)}" for z in inside if z.kind is ZoneKind.KEEP_IN]
+            told = f"vehicle {chain.vehicle.id} first {' and '.join(kept)}, level, by the shortest way found"
             said.append(f"{told}, {out.inside_m:.0f} m")
     return "; ".join(said)
 

@@ -57,7 +57,7 @@ class Ways:
         self._router = Router(zones)
 
     def out_of(self, chain: Chain, state: AirState) -> tuple[tuple[Zone, ...], WayOut | None]:
-        """The zones that a vehicle breaks where it is, and the shortest way out of them, None for none."""
+        """The zones that a vehicle breaks where it is, and the shortest level way found out of them, if any."""
         inside = entered(state.position, self.zones)
         return inside, way_out(state.pose, round(_radius_m(chain), 3), self.zones)
 

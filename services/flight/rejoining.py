@@ -30,7 +30,7 @@ class Router:
         """A way to the pose that breaks no zone; empty if none is found.
 
         The planner's route, else the shortest Dubins path, if its legs obey the zones. A zone that the
-        vehicle is in already is left at once, by the shortest way out, and for good: that it has been
+        vehicle is in already is left at once, by the shortest level way found, and for good: that it has been
         entered is then what ICAROUS and the monitor see. Where that leads on to nowhere it is left on the way.
         """
         radius = round(radius_m, 3)

@@ -62,7 +62,7 @@ class Fence:
             return f"{said}, which did not {'leave' if out else 'enter'} it"
         again = "" if self.again_ms is None else f", and {broke} at {self.again_ms / 1000:.2f} s"
         took_s = (self.left_ms - (self.broken_ms or 0)) / 1000
-        return f"{said}, which {kept} by {self.left_ms / 1000:.2f} s, within {took_s:.2f} s{again}"
+        return f"{said}, which {kept} by {self.left_ms / 1000:.2f} s, at most {took_s:.2f} s later{again}"
 
 
 class ConstraintWatch:

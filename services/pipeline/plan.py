@@ -97,7 +97,7 @@ def make_plan(
     now_ms: when the vehicles set off; absent: vehicles that are not in the mission as it is known,
     with the reason; undone: tasks that have ended undone, with the reason; begun: tasks that have been begun
     and are not ended, which make the choice of a `+`. In flight (starts given) a vehicle inside a zone is no bad input: its
-    routes begin with the shortest way out; and nothing may be left to do.
+    routes begin with the shortest level way out; and nothing may be left to do.
     """
     flying = starts is not None
     if not mission.tasks and flying:

@@ -1,9 +1,10 @@
 """The shortest level way out of zones that a vehicle is in, or into keep-ins that it is outside of.
 
-A zone can appear over a vehicle. A turn and a straight way lead out first: to a line, a turn until
-straight towards it and then straight on is the shortest way of all that turn no tighter, and who leaves
-a convex keep-out crosses the line of one of its edges, so of these, two for each edge, one is the
-shortest. Of zones of another form it is the shortest of these and of `EVEN` headings more.
+A zone can appear over a vehicle. A turn and a straight way lead out first, at the altitude it is at, also
+where a climb would be shorter. To a line, a turn until straight towards it and then straight on is the
+shortest way of all that turn no tighter, and who leaves a convex keep-out crosses the line of one of its
+edges, so of these, two for each edge, one is the shortest. Of all other zones, and of several, it is the
+shortest found of these, of turns towards corners, and of `EVEN` headings more.
 """
 
 from __future__ import annotations
@@ -56,8 +57,9 @@ def entered(at: Position, zones: Sequence[Zone]) -> tuple[Zone, ...]:
 
 
 def way_out(pose: Pose, radius_m: float, zones: Sequence[Zone]) -> WayOut | None:
-    """The shortest level way found out of all zones that the pose breaks, which keeps the others; None
-    where it breaks none or no way out was found. zones: without padding; radius_m: of turns [m]."""
+    """The shortest level way found out of all zones that the pose breaks, which keeps the others; one with
+    room to turn behind it goes before any without. None where it breaks none or no way out was found.
+    zones: without padding; radius_m: of turns [m]."""
     left = entered(start_point(pose), zones)
     if not left:
         return None
@@ -106,7 +108,7 @@ def _turns(
         sign = 1 if kind == RIGHT else -1
         angles = sorted(
             (sign * (heading - pose.heading_rad)) % (2 * math.pi)
-            for heading in _headings(pose, radius_m, left)
+            for heading in _headings(pose, sign * radius_m, left)
         )
         here, points, turned = pose, [start_point(pose)], 0.0
         for angle in angles:
@@ -122,14 +124,17 @@ def _turns(
                     yield _Turn(here, at * radius_m, tuple(points))
                     break
             else:
-                turned = max(turned, angle)
+                turned = angle
                 yield _Turn(here, turned * radius_m, tuple(points))
                 continue
             break
 
 
 def _headings(pose: Pose, radius_m: float, left: Sequence[Zone]) -> Iterator[float]:
-    """Headings across the edges of zones, to their corners from here, and evenly spread."""
+    """Headings across the edges of zones, to their corners from the turn, and evenly spread. radius_m: of a
+    turn to the right, below 0 to the left."""
+    centre_n = pose.north_m - radius_m * math.sin(pose.heading_rad)
+    centre_e = pose.east_m + radius_m * math.cos(pose.heading_rad)
     yield pose.heading_rad
     for k in range(EVEN):
         yield 2 * math.pi * k / EVEN
@@ -142,7 +147,10 @@ def _headings(pose: Pose, radius_m: float, left: Sequence[Zone]) -> Iterator[flo
             along = math.atan2(e2 - e, n2 - n)
             yield along + math.pi / 2
             yield along - math.pi / 2
-            yield math.atan2(e - pose.east_m, n - pose.north_m)
+            # along the tangent of the turn that passes the corner
+            n, e = n - centre_n, e - centre_e
+            ahead_m = math.sqrt(max(0.0, n * n + e * e - radius_m * radius_m))
+            yield math.atan2(e, n) + math.atan2(radius_m, ahead_m)
 
 
 def _straight_m(pose: Pose, left: Sequence[Zone]) -> float | None:

@@ -40,7 +40,7 @@ class Routes:
 
     Vehicles are indices into `mission.vehicles`, options indices into `options`; from START means
     from where the vehicle is. In flight (`flying`) a route from inside a zone begins with the shortest
-    way out that was found.
+    level way out that was found.
     """
 
     def __init__(

@@ -12,7 +12,7 @@ from flight_tools import meeting, of_type
 
 from cratous.bridge import lmcp
 from cratous.core.geofence.mission_legs import first_bad_leg
-from cratous.services.flight import interruption, remaining_path, task_transitions
+from cratous.services.flight import changes, interruption, remaining_path, task_transitions
 from cratous.services.flight.autopilot import Follow
 from cratous.services.flight.chain import Phase
 from cratous.services.flight.commands import decode
@@ -23,6 +23,7 @@ from cratous.services.flight.messages import Begin, Say, SetOut, Suspend, TakeBa
 from cratous.services.flight.rejoining import Router
 from cratous.services.mission.frames import Projection
 from cratous.services.pipeline.plan import make_plan
+from cratous.services.planning.leaving import way_out
 from cratous.spec.authority.link_end import SUSPEND, TAKE_BACK
 from cratous.spec.constraint_rows import NOT_BEFORE, Row
 from cratous.spec.executive import FAIL_TASK
@@ -60,6 +61,15 @@ def test_a_zone_that_was_entered_is_left_for_good_and_the_others_are_kept() -> N
     assert not inside[-1]
     # its own zone holds the place: no way comes out of it
     assert router.way_to(HERE, RADIUS_M, Pose(2100.0, 0.0, 300.0, 0.0)) == ()
+
+
+def test_a_zone_that_was_entered_is_left_at_once() -> None:
+    """North, where the edge is nearest, though the way is to the south."""
+    over = box(ZoneKind.KEEP_OUT, 1000.0, 2200.0, 900.0)
+    out = way_out(HERE.pose, RADIUS_M, (over,))
+    assert out is not None
+    way = Router((over,)).way_to(HERE, RADIUS_M, Pose(-2000.0, 0.0, 300.0, math.pi))
+    assert way[: len(out.points)] == out.points
 
 
 def handed_back(zones: tuple[Zone, ...], phase: Phase = Phase.TRANSIT) -> tuple[State, list[Any]]:
@@ -189,3 +199,14 @@ def test_a_task_before_which_no_wait_keeps_the_zones_fails_by_name() -> None:
     out: list[Any] = []
     after = task_transitions._on_end(config, replace(state, plan=late), state.chain(1), 500, out)
     assert dict(after.failed) == {item.task_id: task_transitions.NO_HOLD}
+
+
+def test_what_is_left_and_what_is_entered_is_told_apart() -> None:
+    over = box(ZoneKind.KEEP_OUT, 1900.0, 2200.0, 900.0, 9)
+    beside = box(ZoneKind.KEEP_IN, 2100.0, 9000.0, 900.0, 5)
+    state, _ = ended_at_here((beside, over))
+    mission = replace(meeting(), traffic=())
+    said = changes._leaving(Config(mission, Projection(mission.frame), (1,)), state)
+    assert said.startswith(
+        "vehicle 1 first leaves keep-out zone 9 and enters keep-in zone 5, level, by"
+    )

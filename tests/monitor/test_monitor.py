@@ -98,9 +98,8 @@ def test_a_zone_that_appears_over_a_vehicle_is_told_as_that_and_when_it_was_left
     flight = [truth(1, 250 * k, 20 * k, 0) for k in range(4)]
     row = watch(of, [*flight, *done(750)])[item]
     assert (row.outcome, row.time_ms) == (Outcome.VIOLATED, 250)
-    assert (
-        row.note == "it appeared over the vehicle at 0.25 s, which left it by 0.50 s, within 0.25 s"
-    )
+    said = "it appeared over the vehicle at 0.25 s, which left it by 0.50 s, at most 0.25 s later"
+    assert row.note == said
     back = [*flight, truth(1, 1000, 20, 0)]
     assert watch(of, [*back, *done(1000)])[item].note.endswith(", and entered it at 0.75 s")
     assert watch(of, [*flight[:2], truth(1, 500, 25, 0), *done(500)])[item].note.endswith(
@@ -118,7 +117,7 @@ def test_a_zone_to_keep_in_is_left_not_entered():
     of = mission(zones=(), changes=(Change(0, changes.ZONE, zone=zone),))
     flight = [truth(1, 250 * k, 2 + 10 * k, 0) for k in range(5)]
     assert watch(of, [*flight, *done(1000)])[item].note == (
-        "it appeared beside the vehicle at 0.00 s, which entered it by 0.25 s, within 0.25 s, and left it at 0.50 s"
+        "it appeared beside the vehicle at 0.00 s, which entered it by 0.25 s, at most 0.25 s later, and left it at 0.50 s"
     )
     assert watch(of, [*flight[:2], *done(250)])[item].note.endswith("which did not enter it")
     of = mission(zones=(zone,))

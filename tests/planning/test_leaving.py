@@ -52,6 +52,61 @@ def test_a_wall_before_the_nearest_edge_is_kept() -> None:
     assert first_bad_leg(out.points[-1:], (SQUARE, wall)) is None
 
 
+def test_another_zone_beside_the_turn_is_kept() -> None:
+    """East is the shortest way out, and a post stands in the turn there."""
+    over, post = box(-500.0, -500.0, 500.0, 130.0), box(60.0, 20.0, 82.0, 40.0, 8)
+    pose = Pose(0.0, 0.0, 300.0, 0.0)
+    free, out = way_out(pose, 100.0, (over,)), way_out(pose, 100.0, (over, post))
+    assert free is not None
+    assert out is not None
+    assert first_bad_leg(free.points, (post,)) is not None
+    assert first_bad_leg(out.points, (post,)) is None
+
+
+def test_another_zone_on_the_way_to_the_edge_is_kept() -> None:
+    post = box(200.0, -20.0, 240.0, 20.0, 8)
+    out = way_out(Pose(0.0, 0.0, 300.0, 0.0), 100.0, (SQUARE, post))
+    assert out is not None
+    assert first_bad_leg(out.points, (post,)) is None
+
+
+def test_a_gap_beside_the_ways_across_the_edges_is_found() -> None:
+    walls = (
+        box(505.0, -700.0, 700.0, 200.0, 1), box(505.0, 300.0, 700.0, 700.0, 2),
+        box(-700.0, -700.0, -500.5, 700.0, 3), box(-500.5, 500.5, 505.0, 700.0, 4),
+        box(-500.5, -700.0, 505.0, -500.5, 5),
+    )  # fmt: skip
+    out = way_out(Pose(0.0, 0.0, 300.0, 0.0), 100.0, (SQUARE, *walls))
+    assert out is not None
+    assert first_bad_leg(out.points, walls) is None
+    assert 200.0 < out.end.east_m < 300.0
+
+
+def test_the_way_turns_until_straight_across_an_edge() -> None:
+    """The nearest edge lies 7.5 degrees beside the even headings."""
+    across, far = math.radians(22.5), 3000.0
+    n, e = math.cos(across), math.sin(across)
+    corners = [
+        (a * n - b * e, a * e + b * n)
+        for a, b in ((1000.0, far), (1000.0, -far), (-far, -far), (-far, far))
+    ]
+    out = way_out(Pose(0.0, 0.0, 300.0, 0.0), 100.0, (zone(corners),))
+    assert out is not None
+    wanted = 100.0 * across + 1000.0 - 100.0 * math.sin(across)
+    assert out.inside_m == pytest.approx(wanted + OUT_M, abs=0.02)
+
+
+def test_a_keep_in_is_entered_at_its_corner_where_that_is_nearest() -> None:
+    corner = (300.0, 500.0)
+    cage = zone([corner, (1300.0, 500.0), (1300.0, 1500.0), (300.0, 1500.0)], 9, ZoneKind.KEEP_IN)
+    out = way_out(Pose(0.0, 0.0, 300.0, 0.0), 100.0, (cage,))
+    assert out is not None
+    # from the centre of the turn, 100 m east: its tangent to the corner
+    ahead = math.sqrt(300.0**2 + 400.0**2 - 100.0**2)
+    turn = math.atan2(400.0, 300.0) + math.atan2(100.0, ahead)
+    assert out.inside_m == pytest.approx(100.0 * turn + ahead + OUT_M, abs=0.02)
+
+
 def test_two_zones_over_a_vehicle_are_both_left() -> None:
     other = box(300.0, -900.0, 900.0, 900.0, 8)
     out = way_out(Pose(400.0, 0.0, 300.0, 0.0), 100.0, (SQUARE, other))
