@@ -1,7 +1,7 @@
 """The text protocol of the bridge: lines of heartbeats and plans to messages, on one core.
 
-`python bench/text_lines.py` prints messages a second of CPU time, as they come whole in reads of 64 KiB, and, for comparison, where
-each line is cut in two, so that it is read field by field. The bar is 100,000.
+`python bench/text_lines.py` prints messages a second of CPU time, as they come whole in reads of 64 KiB,
+and, for comparison, where each line is cut in two, so that it is read field by field. The bar is 100,000.
 """
 
 from __future__ import annotations

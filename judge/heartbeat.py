@@ -3,9 +3,8 @@
 A silence that nobody declared is a violation. During one that was declared (BridgeStatus) the vehicle
 acts alone: if it then breaks a zone or loses well clear that is a violation; if not, it is not known
 whether it would have acted, and the verdict is unknown. A heartbeat whose number came before, or is below one that came,
-is no sign of life. An instance that is told heartbeats, is never said to be silent, and of which none is in the log, may be
-of the original's protocol, which has none: that is unknown. What goes down is logged when it is sent: where the bridge was made to fail that it came is
-not known.
+is no sign of life. Of a flight with the original's clients, whose protocol has none, it is unknown what ICAROUS would
+have said. What goes down is logged when it is sent: where the bridge was made to fail that it came is not known.
 """
 
 from __future__ import annotations
@@ -18,6 +17,8 @@ from cratous.judge.mission import Mission
 from cratous.judge.verdict import HOLDS, UNKNOWN, VIOLATED, Row, seconds
 
 PERIODS = 2
+ORIGINAL = "--original-clients"
+"""With this word in its command a flight had the original's clients."""
 
 
 def rows(mission: Mission, log: Log, unsafe: dict[int, list[int]]) -> Iterator[Row]:
@@ -42,8 +43,10 @@ def _row(mission: Mission, log: Log, key: tuple[int, str], name: str, unsafe: li
     if fault:
         return Row("G5", subject, item, VIOLATED, fault[1], fault[0], len(beats))
     downs = [s.time_ms for s in log.bridges.get(vehicle, []) if not s.alive]
-    if not beats and not downs and log.beats.get((vehicle, "Down")):
-        return Row("G5", subject, item, UNKNOWN, "no heartbeat of it is in the log")
+    silent = way == "Up" and ORIGINAL in str(log.meta.get("command", "")).split()
+    if not beats and not downs and (silent or log.end_ms <= bound):
+        why = ": its protocol has none" if silent else ""
+        return Row("G5", subject, item, UNKNOWN, f"no heartbeat of it is in the log{why}")
     times = [0, *(b.time_ms for b in _news(beats)), log.end_ms]
     gaps = [(b - a, a) for a, b in pairwise(times)]
     longest, since = max(gaps)

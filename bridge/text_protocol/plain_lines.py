@@ -85,6 +85,4 @@ def message_of(plain: Plain, data: bytes, start: int, end: int) -> Message | Non
     for k, low, high in plain.within:
         if not low <= values[k] <= high:
             return None
-    message = plain.message.__new__(plain.message)
-    message.__dict__.update(zip(plain.names, values, strict=True))
-    return message
+    return plain.message(**dict(zip(plain.names, values, strict=True)))

@@ -20,7 +20,12 @@ from cratous.services.certify.report import (
 from cratous.services.certify.report_input import read_report
 from cratous.services.certify.report_schema import departures
 from cratous.services.certify.result_files import Files
-from cratous.services.certify.verdicts import broken_of, constraint_rows, plan_rows
+from cratous.services.certify.verdicts import (
+    broken_of,
+    constraint_rows,
+    plan_rows,
+    with_original_clients,
+)
 from cratous.services.logs.log import read_envelopes, read_log, read_meta
 from cratous.services.logs.records import from_data
 from cratous.services.logs.sqlite_log import SqliteLog
@@ -70,7 +75,9 @@ def watch(log: Path) -> Watched:
     """What a fresh monitor says that sees the messages of a log."""
     from cratous.services.monitor import Monitor
 
-    monitor = Monitor(*subject(log))
+    command = read_meta(log).get("command")
+    original = isinstance(command, str) and with_original_clients(command)
+    monitor = Monitor(*subject(log), says_beats=not original)
     for envelope in read_envelopes(log):
         monitor.tap(envelope)
     return Watched(monitor.verdicts(), monitor.assumptions())

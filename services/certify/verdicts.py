@@ -48,6 +48,11 @@ def flown_in_processes(command: str) -> bool:
     return "--processes" in command.split()
 
 
+def with_original_clients(command: str) -> bool:
+    """Whether ICAROUS is behind clients of the original's, whose protocol has no heartbeats."""
+    return flown_in_processes(command) and "--original-clients" in command.split()
+
+
 def without_ground(command: str, assumptions: Iterable[dict[str, Any]]) -> bool:
     """True of a flight in processes in which an assumption is broken. The theorems are of a gate on board: such a
     flight is at best unknown, whatever was seen of it."""

@@ -225,8 +225,11 @@ def accept_plan(
     writer.note("plan", to_data(plan))
 
 
-def watching(mission: Mission, plan: Plan, tell: Tell) -> Monitor:
-    """A monitor of the flight that tells what is violated and which assumption breaks."""
+def watching(mission: Mission, plan: Plan, tell: Tell, says_beats: bool = True) -> Monitor:
+    """A monitor of the flight that tells what is violated and which assumption breaks.
+
+    says_beats: whether the protocol of ICAROUS has heartbeats.
+    """
     from cratous.services.assumptions.said import sentence as assumed
     from cratous.services.monitor import Monitor
 
@@ -235,6 +238,7 @@ def watching(mission: Mission, plan: Plan, tell: Tell) -> Monitor:
         plan,
         lambda v: tell(f"VIOLATION {sentence(v)}"),
         lambda row: tell(f"ASSUMPTION {assumed(row)}"),
+        says_beats,
     )
 
 

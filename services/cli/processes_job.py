@@ -61,7 +61,7 @@ def run_in_processes(
             plan, checks = plan_and_check(mission, planning)
             tell_plan(mission, plan, checks, tell)
             accept_plan(plan, checks, planning, folder, writer)
-            monitor = watching(mission, plan, tell)
+            monitor = watching(mission, plan, tell, says_beats=not how.original)
             bus.tap(writer.tap)
             bus.tap(monitor.tap)
             flying = Flying(

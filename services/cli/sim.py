@@ -46,13 +46,10 @@ if TYPE_CHECKING:
 def sim(
     scenario: Path,
     listen: str | None,
-    rate: float,
-    clients: int,
-    only: int | None,
-    vehicles: tuple[str, ...],
     until: float | None,
     output: Path | None,
     compatibility: str,
+    **how: Any,
 ) -> int:
     """Fly the aircraft of an AMASE SCENARIO (XML).
 
@@ -69,6 +66,7 @@ def sim(
     from cratous.services.simulator.world import World
     from cratous.spec.errors import BadInput
 
+    clients, only, vehicles = how["clients"], how["only"], how["vehicles"]
     if listen is not None and output is not None:
         raise BadInput("not both", item="--listen, -o", expected="one of them")
     if listen is None and (clients or only):
@@ -93,8 +91,7 @@ def sim(
         return World(plan.events, end_s, compatible=compatibility == "amase")
 
     if listen is not None:
-        how = {"rate": rate, "clients": clients, "only": only or 0, "vehicles": _ports(vehicles)}
-        return _serve(make, plan, listen, how)
+        return _serve(make, plan, listen, how | {"only": only or 0, "vehicles": _ports(vehicles)})
     began_s = time.monotonic()
     world = make()
     _write(world, output)

@@ -64,19 +64,19 @@ def asked_of(body: Any, places: RequestPlaces, tower: Tower | None = None) -> As
     }
     entity = getattr(body, names.get(kind, "WatchedEntityID"))
     needed = getattr(body, "NumberVehicles", 1)
-    _within(needed, 1, VEHICLES_MOST, where, "NumberVehicles")
+    within(needed, 1, VEHICLES_MOST, where, "NumberVehicles")
     standoff = float(getattr(body, "StandoffDistance", 0.0))
-    _within(standoff, 0, STANDOFF_MOST_M, where, "StandoffDistance")
+    within(standoff, 0, STANDOFF_MOST_M, where, "StandoffDistance")
     dwell = getattr(body, "DwellTime", 0)
-    _within(dwell, 0, DURATION_MOST_MS, where, "DwellTime")
-    least = _duration(body, where)
+    within(dwell, 0, DURATION_MOST_MS, where, "DwellTime")
+    least = milliseconds(body, DURATION, DURATION_MOST_MS, 0)
     if kind in ("WatchTask", "MultiVehicleWatchTask"):
         least = max(dwell, least, MOMENT_MS)
     elif not least:
         least = dwell
     route: list[Vec2] = []
     prescribed = getattr(body, "PrescribedWaypoints", ())
-    _within(len(prescribed), 0, ROUTE_MOST, where, "number of PrescribedWaypoints")
+    within(len(prescribed), 0, ROUTE_MOST, where, "number of PrescribedWaypoints")
     for k, waypoint in enumerate(prescribed):
         pose = places.pose(waypoint, 0.0, where, f"PrescribedWaypoints[{k}]")
         route.append(Vec2(pose.north_m, pose.east_m))
@@ -117,7 +117,7 @@ def tower_of(body: Any, places: RequestPlaces, world: Known) -> Tower:
             got=str(number),
         )  # fmt: skip
     range_m, state = float(towers[number].Range), world.get("state", number)
-    _within(range_m, 1, RANGE_MOST_M, where, f"Range of tower {number}")
+    within(range_m, 1, RANGE_MOST_M, where, f"Range of tower {number}")
     at = towers[number].Position if state is None else state.Location
     pose = places.pose(at, 0.0, where, f"place of tower {number}")
     return Tower(Vec2(pose.north_m, pose.east_m), range_m)
@@ -136,14 +136,15 @@ def unused_of(body: Any) -> list[str]:
     return said
 
 
-def _duration(body: Any, where: str) -> int:
-    """The task's own duration [ms], 0 for none."""
+def milliseconds(body: Any, key: str, most: int, default: int) -> int:
+    """A parameter of a task's message [ms], 1 to `most`; default: where it has none."""
     for pair in body.Parameters:
-        if pair.Key == DURATION:
-            value = int(pair.Value) if pair.Value.isascii() and pair.Value.isdigit() else 0
-            _within(value, 1, DURATION_MOST_MS, where, f"Parameters: {DURATION}", pair.Value)
+        if pair.Key == key:
+            text = pair.Value
+            value = int(text) if text.isascii() and text.isdigit() and len(text) < 10 else 0
+            within(value, 1, most, f"task {body.TaskID}", f"Parameters: {key}", text)
             return value
-    return 0
+    return default
 
 
 def _looks(body: Any, where: str) -> Task | None:
@@ -151,7 +152,7 @@ def _looks(body: Any, where: str) -> Task | None:
     if not hasattr(body, "DesiredWavelengthBands"):
         return None
     gsd = float(body.GroundSampleDistance)
-    _within(gsd, 0, math.inf, where, "GroundSampleDistance")
+    within(gsd, 0, math.inf, where, "GroundSampleDistance")
     bands = [band.name for band in body.DesiredWavelengthBands]
     return Task(
         id=body.TaskID,
@@ -163,9 +164,10 @@ def _looks(body: Any, where: str) -> Task | None:
     )
 
 
-def _within(
+def within(
     value: float, least: float, most: float, where: str, item: str, got: str | None = None
 ) -> None:
+    """BadInput for what is out of range."""
     if not least <= value <= most:
         raise BadInput(
             "out of range",

@@ -17,7 +17,8 @@ from cratous.core.kernel import Vec2
 from cratous.core.routing.dubins import pose_after
 from cratous.core.routing.visibility import name_of
 from cratous.core.tasks.rendezvous import spares_a_lap
-from cratous.services.following.offering import WAYS_MOST, choice
+from cratous.services.following.asked import milliseconds, within
+from cratous.services.following.offering import WAYS_MOST, choice, named
 from cratous.services.following.stations import Station
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.places import RequestPlaces
@@ -33,6 +34,9 @@ STATES_MOST = 64
 TOLERANCE = "Tolerance_ms"
 """The task parameter that says how far from the common time each may arrive."""
 TOLERANCE_MS, TOLERANCE_MOST_MS = 2_000, 600_000
+WAIT = "Wait_ms"
+"""The task parameter that says how long one waits in laps for the others at most."""
+WAIT_MS, WAIT_MOST_MS = 3_600_000, 86_400_000
 RUN_IN_RADII = 6.0
 """A run-in is so many turn radii long at least, so that it is flown straight."""
 RUN_IN_RESERVE = 1.25
@@ -44,10 +48,12 @@ BEYOND_RADII = 2.5
 
 
 class Met(NamedTuple):
-    """asked: how many meet; tolerance_ms: of their time; states: of whom (0: anybody) and where."""
+    """needed: how many meet; tolerance_ms: of their time; wait_ms: no longer does one wait for the others;
+    states: of whom (0: anybody) and where."""
 
     needed: int
     tolerance_ms: int
+    wait_ms: int
     states: tuple[tuple[int, Pose], ...]
 
 
@@ -55,30 +61,16 @@ def meeting_of(body: Any, places: RequestPlaces) -> Met:
     """What the message of a rendezvous asks for; BadInput names what cannot be."""
     where = f"task {body.TaskID}"
     needed, states = body.NumberOfParticipants, body.RendezvousStates
-    _within(needed, 1, PARTICIPANTS_MOST, where, "NumberOfParticipants")
-    _within(len(states), 1, STATES_MOST, where, "number of RendezvousStates")
-    tolerance = TOLERANCE_MS
-    for pair in body.Parameters:
-        if pair.Key == TOLERANCE:
-            text = pair.Value
-            tolerance = int(text) if text.isascii() and text.isdigit() and len(text) < 10 else 0
-            _within(tolerance, 1, TOLERANCE_MOST_MS, where, f"Parameters: {TOLERANCE}", text)
+    within(needed, 1, PARTICIPANTS_MOST, where, "NumberOfParticipants")
+    within(len(states), 1, STATES_MOST, where, "number of RendezvousStates")
+    tolerance = milliseconds(body, TOLERANCE, TOLERANCE_MOST_MS, TOLERANCE_MS)
+    wait = milliseconds(body, WAIT, WAIT_MOST_MS, WAIT_MS)
     found = []
     for k, state in enumerate(states):
         item = f"RendezvousStates[{k}]"
         pose = places.pose(state.PlanningPosition, state.PlanningHeading, where, item)
         found.append((state.EntityID, pose))
-    return Met(needed, tolerance, tuple(found))
-
-
-def _within(
-    value: int, least: int, most: int, where: str, item: str, got: str | None = None
-) -> None:
-    if not least <= value <= most:
-        raise BadInput(
-            "out of range", where=where, item=item, expected=f"{least} to {most}",
-            got=str(value) if got is None else got[:40],
-        )  # fmt: skip
+    return Met(needed, tolerance, wait, tuple(found))
 
 
 class Limits(NamedTuple):
@@ -146,7 +138,7 @@ def options_of(
                 )
             else:
                 number = len(made) + 1
-                made.append((_numbered(found, number, vehicle.id), k))
+                made.append((named(found, number, vehicle.id), k))
                 own = pose._replace(alt_m=found.flyer.alt_m)
                 if own != pose:
                     notes.append(
@@ -154,12 +146,6 @@ def options_of(
                         f"altitude, {own.alt_m:g} m MSL, not at {pose.alt_m:g} m"
                     )
     return made, dropped, notes
-
-
-def _numbered(option: Option, number: int, vehicle: int) -> Option:
-    from dataclasses import replace
-
-    return replace(option, option_id=number, vehicles=(vehicle,))
 
 
 def _option(

@@ -56,13 +56,14 @@ def options_of(
             start = context.inputs.starts[vehicle.id]
             found = _option(context, task, asked, motion, slot, flyer, start)
             if isinstance(found, Option):
-                made.append(_named(found, number, vehicle.id))
+                made.append(named(found, number, vehicle.id))
             elif slot == 0 or "region" in found.label:
                 dropped.append(found._replace(vehicles=(vehicle.id,)))
     return made, dropped
 
 
-def _named(option: Option, number: int, vehicle: int) -> Option:
+def named(option: Option, number: int, vehicle: int) -> Option:
+    """With its number and its vehicle."""
     from dataclasses import replace
 
     return replace(option, option_id=number, vehicles=(vehicle,))

@@ -16,7 +16,8 @@ from cratous.services.planning.flyers import Flyer
 
 class Way(NamedTuple):
     """What is left of a vehicle's way: left_m: to its state; waits: it can still wait; laps: it does; passed: it
-    is beyond its state; arrived: when that was [ms], None: not yet; wind: along its run-in and across it [m/s]."""
+    is beyond its state; arrived: by when it has come there [ms], None: not yet; wind: along its run-in and across
+    it [m/s]; told: the Time of the state that says so [ms]; before: that of the one before."""
 
     left_m: float
     waits: bool
@@ -24,6 +25,8 @@ class Way(NamedTuple):
     passed: bool = False
     arrived: int | None = None
     wind: Vec2 = Vec2(0.0, 0.0)
+    told: int = 0
+    before: int = 0
 
     def over_ground(self, limits: Limits) -> Limits:
         """The speeds of a vehicle over ground along its run-in."""
@@ -40,11 +43,13 @@ class Way(NamedTuple):
 
 
 class Progress(NamedTuple):
-    """common: when all meet [ms], None: not set; ways: of the vehicles; gone: who have left their circles."""
+    """common: when all meet [ms], None: not set; ways: of the vehicles; gone: who have left their circles;
+    since: of who waits, when it was told to [ms]."""
 
     common: int | None = None
     ways: Mapping[int, Way] = MappingProxyType({})
     gone: frozenset[int] = frozenset()
+    since: Mapping[int, int] = MappingProxyType({})
 
     def with_way(self, vehicle: int, way: Way) -> Progress:
         """With what is left of a vehicle's way."""

@@ -26,8 +26,10 @@ from cratous.core.tasks.rendezvous import (
     pace,
 )
 from cratous.core.tasks.stations import in_ring
+from cratous.services.bus import Envelope
 from cratous.services.following import part as parts_of
 from cratous.services.following.meeting import (
+    WAIT,
     Limits,
     Met,
     limits_of,
@@ -40,7 +42,13 @@ from cratous.services.following.meeting import (
 )
 from cratous.services.following.part import Part
 from cratous.services.following.progress import Progress, Way, ahead_of, heard, place_of
-from cratous.services.following.service import SELECTED, SILENT_MS, Following, FollowingTaskService
+from cratous.services.following.service import (
+    SELECTED,
+    SILENT_MS,
+    Following,
+    FollowingTaskService,
+    Step,
+)
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import (
@@ -66,9 +74,6 @@ NEAR_GATE = 1.5
 """A circle to wait on is left no farther from its gate than so many of its radii."""
 
 
-Step = tuple[Following, list[Any]]
-
-
 class RendezvousTaskService(FollowingTaskService):
     """One rendezvous."""
 
@@ -79,9 +84,9 @@ class RendezvousTaskService(FollowingTaskService):
             met, world = self._met(context), self._contexts.world
             task = self._task_in(context)
             found, dropped, self._notes = options_of(context, task, met, world)
-            ways = ways_of(self._met(context), found)
+            ways = ways_of(met, found)
             if not ways:
-                text = f"no {self._met(context).needed} vehicles have a state each"
+                text = f"no {met.needed} vehicles have a state each"
                 dropped.append(Dropped(self._task_id, (), "a rendezvous", text))
             self._ways = ways
             self._made = (context, [option for option, _ in found], dropped)
@@ -107,6 +112,11 @@ class RendezvousTaskService(FollowingTaskService):
 
     # what is flown
 
+    def _asked_for(self, state: Following, envelope: Envelope, now_ms: int) -> Step:
+        """A request that ends it: a plan may come for others, or none."""
+        after, out = super()._asked_for(state, envelope, now_ms)
+        return after, out if after is state else [*out, *self._sent(state)]
+
     def _planned(self, state: Following, response: Any) -> Step:
         before = len(state.parts)
         state, out = super()._planned(state, response)
@@ -125,6 +135,9 @@ class RendezvousTaskService(FollowingTaskService):
         if silent is not None:
             text = f"vehicle {silent.vehicle} was not heard for {VANISHED_MS // 1000} s"
             return self._undone(state, text, [])
+        tired = self._tired(state)
+        if tired:
+            return self._undone(state, tired, [])
         if part.state.away == HANDED_BACK and body.Mode.name == "Waypoint":
             part = part._replace(state=part.state._replace(away=WITH_UXAS))
         if part.state.away:
@@ -144,8 +157,9 @@ class RendezvousTaskService(FollowingTaskService):
         if not (lists or laps):
             return self._undone(state, f"vehicle {part.vehicle} flies it no more", out)
         try:
+            wind, before = wind_of(body, part.option.start.heading_rad), way.told if way else 0
             way = self._way(part, body, laps, progress)._replace(
-                wind=wind_of(body, part.option.start.heading_rad)
+                wind=wind, told=body.Time, before=before
             )
         except BadInput as error:
             if not part.blocked:
@@ -166,6 +180,22 @@ class RendezvousTaskService(FollowingTaskService):
             if comes and not in_time(part.seen_ms, state.now_ms, VANISHED_MS):
                 return part
         return None
+
+    def _tired(self, state: Following) -> str:
+        """Who has waited for too long, and who has not come; nothing if none has."""
+        progress = state.meeting or Progress()
+        for part in state.parts:
+            since, met = progress.since.get(part.vehicle), self._met(part.context)
+            if since is None or in_time(since, state.now_ms, met.wait_ms):
+                continue
+            late = sorted(
+                p.vehicle
+                for p in state.parts
+                if p.vehicle not in progress.ways or p.blocked or p.state.away
+            )
+            text = f"vehicle {part.vehicle} has waited for {met.wait_ms / 1000:g} s ({WAIT})"
+            return f"{text}, and {', '.join(map(str, late))} has not come" if late else text
+        return ""
 
     def _way(self, part: Part, body: Any, laps: bool, progress: Progress) -> Way:
         """What is left of a vehicle's way by its state; less than nothing where it has passed its state."""
@@ -192,18 +222,21 @@ class RendezvousTaskService(FollowingTaskService):
         if not in_ring(at, here, 0, 2 * part.option.flyer.radius_m):
             text = f"vehicle {part.vehicle} passed its place {math.dist(here, at):.0f} m aside"
             return self._undone(state, text, out)
-        progress = state.meeting.with_way(part.vehicle, Way(0.0, False, False, True, state.now_ms))
+        way = state.meeting.ways[part.vehicle]
+        progress = state.meeting.with_way(part.vehicle, way._replace(arrived=way.told))
         if progress.common is None:
             text = f"vehicle {part.vehicle} passed its place before all were on their ways"
             return self._undone(state, text, out)
         state = state._replace(meeting=progress)
         out.append(self._speed(part, part.option.flyer.speed_m_s))
         met = self._met(part.context)
-        arrived = {v: w.arrived for v, w in progress.ways.items() if w.arrived is not None}
-        for vehicle, at_ms in sorted(arrived.items()):
-            if not in_company(at_ms, progress.common, met.tolerance_ms):
-                off_s = (at_ms - progress.common) / 1000
-                text = f"vehicle {vehicle} arrived {off_s:.1f} s after the common time"
+        arrived = {v: w for v, w in progress.ways.items() if w.arrived is not None}
+        for vehicle, way in sorted(arrived.items()):
+            # it passed between two of its states: nobody knows when, so both have to be in time
+            ends = (way.before, way.told)
+            if not all(in_company(t, progress.common, met.tolerance_ms) for t in ends):
+                off = " to ".join(f"{(t - progress.common) / 1000:.1f}" for t in ends)
+                text = f"vehicle {vehicle} arrived {off} s after the common time"
                 return self._undone(state, text, out)
         if len(arrived) < met.needed:
             return state, out
@@ -289,7 +322,7 @@ class RendezvousTaskService(FollowingTaskService):
             common = common_time(meeting)
             if common.found:
                 break
-        return Progress(common.time if common.found else None, progress.ways, progress.gone)
+        return progress._replace(common=common.time if common.found else None)
 
     def _at_gate(self, part: Part, body: Any) -> bool:
         """Whether a vehicle that waits is near its gate, and heads for its state, 45 degrees off at most."""
@@ -307,7 +340,7 @@ class RendezvousTaskService(FollowingTaskService):
 
     def _waits(self, state: Following, part: Part, out: list[Any]) -> Step:
         """It waits in laps beside its gate, if it can and does not yet."""
-        way = state.meeting.ways[part.vehicle]
+        progress, way = state.meeting, state.meeting.ways[part.vehicle]
         if way.laps or not way.waits:
             return state, out
         circle, clockwise = waiting_circle(part.option)
@@ -315,19 +348,22 @@ class RendezvousTaskService(FollowingTaskService):
         turn = "Clockwise" if clockwise else "CounterClockwise"
         action = parts_of.loiter(part, self._task_id).copy(Direction=turn)
         out.append(self._command(part, [action]))
-        return state.with_part(part), out
+        since = {part.vehicle: state.now_ms, **progress.since}
+        return state.with_part(part)._replace(meeting=progress._replace(since=since)), out
 
     def _leaves(self, state: Following, part: Part, speed_m_s: float, out: list[Any]) -> Step:
         """It is sent on along its run-in."""
         number = parts_of.command_id(self._task_id, part.state.task.request)
         points = state.plans.get(part.vehicle, {})
         along = part._replace(then=part.then - 1)
-        command, zone = parts_of.released(along, self._task_id, number, points)
+        command, why = parts_of.released(along, self._task_id, number, points)
         if command is None:
-            return self._undone(state, f"{zone} keeps vehicle {part.vehicle} from its run-in", out)
+            text = f"vehicle {part.vehicle} cannot leave its circle: {why}"
+            return self._undone(state, text, out)
         out += [command, self._speed(part, speed_m_s)]
         gone = state.meeting.gone | {part.vehicle}
-        return state._replace(meeting=state.meeting._replace(gone=gone)), out
+        since = {v: t for v, t in state.meeting.since.items() if v != part.vehicle}
+        return state._replace(meeting=state.meeting._replace(gone=gone, since=since)), out
 
     def _speed(self, part: Part, speed_m_s: float) -> Any:
         """A command to fly at another speed: one of its own, as not every autopilot knows it."""
@@ -353,15 +389,9 @@ class RendezvousTaskService(FollowingTaskService):
         for part in state.parts:
             _, more = self._advance(part.state, WITHDRAWN, 0, None)
             out += more
-            way = (state.meeting or Progress()).ways.get(part.vehicle)
-            if way is not None and way.laps:
-                number = parts_of.command_id(self._task_id, part.state.task.request)
-                points = state.plans.get(part.vehicle, {})
-                command, zone = parts_of.released(part, self._task_id, number, points)
-                if command is None:
-                    text = (
-                        f"vehicle {part.vehicle} stays on its circle: {zone} keeps it from its plan"
-                    )
-                    command = self._warning(text)
-                out.append(command)
-        return state._replace(parts=(), meeting=None), out
+        return state._replace(parts=(), meeting=None), [*out, *self._sent(state)]
+
+    def _sent(self, state: Following) -> list[Any]:
+        """Who waits is sent on in its plan."""
+        waiting = (state.meeting or Progress()).since
+        return [self._sent_on(state, part) for part in state.parts if part.vehicle in waiting]

@@ -307,15 +307,17 @@ class FollowingTaskService(TaskService):
         for part in state.parts:
             _, more = self._advance(part.state, UNLISTED, 0, body)
             out += [one for one in more if type(one).__name__ != "TaskComplete"]
-            number = parts_of.command_id(self._task_id, part.state.task.request)
-            points = state.plans.get(part.vehicle, {})
-            command, why = parts_of.released(part, self._task_id, number, points)
-            if command is not None:
-                out.append(command)
-            else:
-                text = f"vehicle {part.vehicle} stays on its circle: {why}"
-                out.append(self._warning(text))
+            out.append(self._sent_on(state, part))
         return state._replace(parts=(), kept=Kept(-1, False)), out
+
+    def _sent_on(self, state: Following, part: Part) -> Any:
+        """The command that sends a vehicle on in its plan, or a Warning why it stays on its circle."""
+        number = parts_of.command_id(self._task_id, part.state.task.request)
+        points = state.plans.get(part.vehicle, {})
+        command, why = parts_of.released(part, self._task_id, number, points)
+        if command is None:
+            return self._warning(f"vehicle {part.vehicle} stays on its circle: {why}")
+        return command
 
     def _warning(self, text: str) -> Any:
         told = [("TaskID", str(self._task_id)), ("reason", f"task {self._task_id}: {text}")]

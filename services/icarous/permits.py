@@ -3,15 +3,16 @@
 At a handback the whole way that was told is held against each intruder because of which ICAROUS has taken over: the
 buffered cylinder, and the mission's own volume, against an intruder that flies straight on. Half of what the buffer
 leaves is for how far it may be off that line, the rest for the vehicle (`docs/proofs/assumptions.md`). While it is
-within it the way is permitted and ICAROUS does not take over because of it, unless the mission's own volume would
-be lost. If it is not, its new line is looked at: the way is permitted against that one too, or it is a surprise. How
-often ICAROUS takes over is counted by the kernels of `core.permit.encounter`.
+within it the way is permitted and ICAROUS does not take over because of it, unless a loss of the mission's own
+volume is predicted, or one in the hold that ends the way. Where the intruder leaves its line, or another way is
+told, that is looked at anew: the way is permitted too, or it is a surprise. How often ICAROUS takes over is counted
+by the kernels of `core.permit.encounter`.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from cratous.core.avoidance.manoeuvre import way_along
@@ -34,6 +35,7 @@ from cratous.spec.mission import Daa
 NONE = Encounter(0, 0, 0, False, False, 0)
 """An intruder because of which ICAROUS has never taken over."""
 OFF_LINE = "it does not fly as predicted"
+OTHER_WAY = "another way was told, which is not permitted"
 UNFORESEEN = "a loss is predicted that was not as control went back"
 NOT_FREE = "the way was not permitted as control went back"
 ENDED = "what was permitted had ended"
@@ -51,7 +53,7 @@ def resumed(config: Config, state: State, sensed: Sensed, in_turn: frozenset[int
         allowed = straight is not None and _permitted(pieces, straight, config.daa)
         one = encounter_resumed(met.encounter, allowed, until_ms)
         why = met.why if allowed or one == met.encounter else NOT_FREE
-        after.append(Met(met.intruder_id, one, straight, sensed.now_ms, why))
+        after.append(Met(met.intruder_id, one, straight, sensed.now_ms, state.told.waypoints, why))
     return replace(state, met=tuple(after))
 
 
@@ -59,16 +61,20 @@ def looked(config: Config, state: State, sensed: Sensed, ahead: Ahead) -> State:
     """At a heartbeat under UxAS: which permits last. ahead: the way that is predicted now."""
     seen = {other.id: other for other in sensed.intruders}
     after = []
+    own = ahead._replace(volumes=(config.daa.well_clear,))
     for met in state.met:
-        now, allowed = met, True
         other = seen.get(met.intruder_id) if met.encounter.permitted else None
-        if other is not None and not _on_line(met, other, sensed.now_ms, config.daa):
-            # another line than that which was permitted: the way may be permitted against it as well
-            allowed = _permitted(_whole(state, sensed), other, config.daa)
-            now = met._replace(predicted=other, made_ms=sensed.now_ms, why=OFF_LINE)
-        if other is not None and allowed:
-            allowed = first_violation_s(ahead.pieces, other, config.daa.well_clear) is None
-            now = now if allowed else now._replace(why=UNFORESEEN)
+        now, allowed = met, True
+        if other is not None:
+            on_line = _on_line(met, other, sensed.now_ms, config.daa)
+            if not on_line or met.way != state.told.waypoints:
+                allowed = _permitted(_whole(state, sensed), other, config.daa)
+                why = OTHER_WAY if on_line else OFF_LINE
+                now = Met(
+                    met.intruder_id, met.encounter, other, sensed.now_ms, state.told.waypoints, why
+                )
+            if allowed and own.first_s(other) is not None:
+                allowed, now = False, now._replace(why=UNFORESEEN)
         one = encounter_looked(met.encounter, allowed, sensed.now_ms)
         why = ENDED if one.ended > met.encounter.ended else now.why
         after.append(now._replace(encounter=one, why=met.why if one.permitted else why))
@@ -95,18 +101,14 @@ def taken_over(state: State, intruder_id: int) -> State:
     """ICAROUS takes over because of an intruder."""
     before = state.find(intruder_id) or Met(intruder_id, NONE)
     after = before._replace(encounter=encounter_watched(before.encounter, True).encounter)
-    others = (one for one in state.met if one.intruder_id != intruder_id)
-    return replace(state, met=_sorted((*others, after)))
+    others = [one for one in state.met if one.intruder_id != intruder_id]
+    return replace(state, met=tuple(sorted((*others, after))))
 
 
 def told_why(state: State, intruder_id: int) -> str:
     """Why ICAROUS takes over once more because of an intruder; "" if it is the first time."""
     met = state.find(intruder_id)
     return f"; again, since {met.why}" if met is not None and met.why else ""
-
-
-def _sorted(all_met: Iterable[Met]) -> tuple[Met, ...]:
-    return tuple(sorted(all_met, key=lambda one: one.intruder_id))
 
 
 def _permitted(pieces: Sequence[Piece], other: Intruder, daa: Daa) -> bool:

@@ -13,7 +13,7 @@ from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.traffic_monitor import Threat, Tracks
 from cratous.services.mission.frames import Projection
 from cratous.spec.authority.cycle import MONITOR
-from cratous.spec.mission import Daa
+from cratous.spec.mission import Daa, Position
 
 START = Cycle(MONITOR, 0, False, 0, False, 0)
 """UxAS flies, and has always done so."""
@@ -33,12 +33,13 @@ class Config(NamedTuple):
 
 class Met(NamedTuple):
     """An intruder because of which ICAROUS has taken over. predicted: as it was seen when the way was permitted
-    against it, at made_ms [ms]; why: the last permit did not last, "" before there was one."""
+    against it, at made_ms [ms]; why: the last permit did not last, "" while each has."""
 
     intruder_id: int
     encounter: Encounter
     predicted: Intruder | None = None
     made_ms: int = 0
+    way: tuple[Position, ...] = ()
     why: str = ""
 
 

@@ -31,7 +31,7 @@ class Monitor:
     """Watches one mission. Feed it envelopes with `tap`, ask for `verdicts` and `assumptions` at the end.
 
     on_violation is called once for each new violation, at the moment it is seen; on_broken likewise with the
-    row of each assumption of the theorems that breaks.
+    row of each assumption of the theorems that breaks. says_beats: whether the protocol of ICAROUS has heartbeats.
     """
 
     def __init__(
@@ -40,6 +40,7 @@ class Monitor:
         plan: Plan,
         on_violation: Callable[[Verdict], None] | None = None,
         on_broken: Callable[[dict[str, Any]], None] | None = None,
+        says_beats: bool = True,
     ) -> None:
         self.mission = mission
         self.not_covered = tuple(v.id for v in mission.vehicles if not v.protected)
@@ -49,7 +50,7 @@ class Monitor:
         self.separation = SeparationWatch(mission, self.presence)
         self.completion = CompletionWatch(mission, plan, self.presence)
         self.authority = AuthorityWatch(mission)
-        self.bridge = BridgeWatch(mission)
+        self.bridge = BridgeWatch(mission, says_beats)
         self._assumed = AssumptionWatch(mission)
         self._last_ms, self._over = 0, False
         self._tell, self._tell_broken = on_violation, on_broken

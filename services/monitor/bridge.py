@@ -1,8 +1,9 @@
 """G5: heartbeats in both directions at their period, for every protected vehicle.
 
 That none was late is decided by the fold `beats_in_time`; the longest gap is kept for the note. One that came
-before, or after a later one, is no sign of life. What goes down is logged when UxAS sends it: of a bridge
-that was made to fail that it came is not known.
+before, or after a later one, is no sign of life. That none came at all is a silence from the start to the end;
+of an ICAROUS whose protocol has none it is unknown what it would have said. What goes down is logged when UxAS
+sends it: of a bridge that was made to fail that it came is not known.
 """
 
 from __future__ import annotations
@@ -61,9 +62,10 @@ class Beat:
 
 
 class BridgeWatch:
-    """Liveness of the bridge of every protected vehicle."""
+    """Liveness of the bridge of every protected vehicle. says_beats: whether the protocol of ICAROUS has heartbeats."""
 
-    def __init__(self, mission: Mission) -> None:
+    def __init__(self, mission: Mission, says_beats: bool = True) -> None:
+        self._says_beats = says_beats
         self._bound_ms = PERIODS * mission.simulation.heartbeat_ms
         self._instances = set(mission.instances)
         self._faulty = isinstance(mission.simulation, FaultySimulation)
@@ -91,8 +93,7 @@ class BridgeWatch:
         """The mission ended."""
         self._end_ms = body.Time
         for beat in self._beats.values():
-            if beat.count:
-                beat.end(body.Time)
+            beat.end(body.Time)
 
     def verdicts(self) -> list[Verdict]:
         """One verdict a protected vehicle and direction."""
@@ -106,12 +107,20 @@ class BridgeWatch:
         if vehicle not in self._instances:
             outcome, margin, kernels = Outcome.UNKNOWN, None, NONE
             note = "the vehicle has no ICAROUS instance: there is no bridge to judge"
-        elif not beat.count or self._end_ms is None:
+        elif self._end_ms is None:
             outcome, margin, kernels = Outcome.UNKNOWN, None, NONE
             note = "no heartbeat seen" if not beat.count else "the messages stop too early"
         elif vehicle in self._downs:
             outcome, kernels = Outcome.VIOLATED, NONE
             note = self._downs[vehicle]
+        elif not beat.count:
+            note = "no heartbeat seen"
+            if way == "Up" and not self._says_beats:
+                outcome, note = Outcome.UNKNOWN, f"{note}: its protocol has none"
+            elif outcome is Outcome.HOLDS:  # it ended before one could be late
+                outcome = Outcome.UNKNOWN
+            if outcome is Outcome.UNKNOWN:
+                margin, kernels = None, NONE
         elif self._faulty and way == "Down" and outcome is Outcome.HOLDS:
             outcome, margin, kernels = Outcome.UNKNOWN, None, NONE
             note = f"{note}; these were sent, over a bridge that was made to fail: whether they came is not logged"
@@ -121,7 +130,7 @@ class BridgeWatch:
             outcome,
             Kind.OBSERVED,
             note,
-            time_ms=beat.at_ms,
+            time_ms=beat.at_ms if beat.count else 0,
             vehicles=(vehicle,),
             margin=margin,
             unit="s" if margin is not None else "",

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import os
 import time
+from collections.abc import Callable
 from typing import Any
 
 import zmq
@@ -32,10 +33,14 @@ _PROBE_MS = 50
 
 
 class _Side:
-    """What both sides have: a port, and a count of what it has lost and refused."""
+    """What both sides have: a port, and a count of what it has lost and refused. take: who is given what the
+    other side has sent; echoes: whether its probes are sent back."""
 
-    def __init__(self, host: Host, port: ZmqPort, name: str) -> None:
+    def __init__(
+        self, host: Host, port: ZmqPort, name: str, take: Callable[[Envelope], object], echoes: bool
+    ) -> None:
         self._host, self.port = host, port
+        self._take, self._echoes = take, echoes
         self._tally = Tally(name, host.log)
         self._tally.counts = port.counts
 
@@ -46,9 +51,10 @@ class _Side:
             try:
                 message = wire.parse(incoming.parts[0])
                 if message.content_type == PROBE:
-                    self._probed(incoming.parts)
+                    if self._echoes:
+                        self.port.send(incoming.parts)
                     continue
-                self._arrived(message)
+                self._take(_envelope(self._host.bus, message))
                 count += 1
             except BadInput as error:
                 self._tally.refuse(error.what, f"hub: {error}")
@@ -65,12 +71,6 @@ class _Side:
         """Close the sockets."""
         self.port.close()
 
-    def _probed(self, parts: tuple[bytes, ...]) -> None:
-        raise NotImplementedError
-
-    def _arrived(self, message: wire.AddressedMessage) -> None:
-        raise NotImplementedError
-
 
 class Hub(_Side):
     """The process that orders: publishes what its bus delivers, takes in what satellites push."""
@@ -79,14 +79,8 @@ class Hub(_Side):
 
     def __init__(self, host: Host, context: Any, pub: str, pull: str, curve: Curve | None) -> None:
         port = _port(host, context, ("PUB", pub), ("PULL", pull), True, curve)
-        super().__init__(host, port, "hub")
+        super().__init__(host, port, "hub", host.arrived, echoes=True)
         host.bus.tap(self.push)
-
-    def _probed(self, parts: tuple[bytes, ...]) -> None:
-        self.port.send(parts)
-
-    def _arrived(self, message: wire.AddressedMessage) -> None:
-        self._host.arrived(_envelope(self._host.bus, message))
 
 
 class RemoteBus(Bus):
@@ -114,19 +108,13 @@ class Satellite(_Side):
         assert isinstance(host.bus, RemoteBus)
         self._bus = host.bus
         port = _port(host, context, ("PUSH", push), ("SUB", sub), False, curve)
-        super().__init__(host, port, "satellite")
+        super().__init__(host, port, "satellite", self._bus.hear, echoes=False)
         try:
             self._join(push)
         except BaseException:
             self.port.close()
             raise
         self._bus.satellite = self
-
-    def _probed(self, parts: tuple[bytes, ...]) -> None:
-        """It has been heard already."""
-
-    def _arrived(self, message: wire.AddressedMessage) -> None:
-        self._bus.hear(_envelope(self._bus, message))
 
     def _join(self, push: str) -> None:
         """Until a probe of ours comes back: then nothing of what follows can be missed."""

@@ -24,7 +24,8 @@ from cratous.services.campaign.generators import mission_of
 from cratous.services.icarous import permits
 from cratous.services.icarous.foresight import predicted, scene_of
 from cratous.services.icarous.inbox import Told
-from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.instance import Instance
+from cratous.services.icarous.messages import Sensed, Wish
 from cratous.services.icarous.state import Config, Met, State
 from cratous.services.icarous.traffic_monitor import Threat
 from cratous.services.loading import load
@@ -100,6 +101,27 @@ def test_a_line_that_is_left_is_looked_at_anew(
     assert met.encounter.surprises == (0 if permitted else 1)
 
 
+def test_the_hold_at_the_end_of_the_way_is_looked_at() -> None:
+    """One hovers beside the end: the way is clear of it, the circle that ends it is not."""
+    hovers = Intruder(9, Position(5000.0, 300.0, 300.0), Velocity(0.0, 0.0, 0.0))
+    state = handed_back(hovers)
+    assert looked(state, hovers, 1000).encounter.permitted
+    state = replace(state, told=replace(state.told, next_index=6))
+    met = looked(state, hovers, 200_000)  # 27 s before the end
+    assert (met.encounter.permitted, met.why) == (False, permits.UNFORESEEN)
+
+
+@pytest.mark.parametrize(("east_m", "permitted"), [(0.0, True), (400.0, False)])
+def test_another_way_that_is_told_is_looked_at_anew(east_m: float, permitted: bool) -> None:
+    """It leads past where the other hovers, or through it."""
+    hovers = Intruder(9, Position(3500.0, 400.0, 300.0), Velocity(0.0, 0.0, 0.0))
+    state = handed_back(hovers)
+    other = (*WAY[:4], *(place._replace(east_m=east_m) for place in WAY[4:]), WAY[-1])
+    met = looked(replace(state, told=replace(state.told, waypoints=other)), hovers, 1000)
+    assert (met.encounter.permitted, met.way) == (permitted, other)
+    assert met.why == ("" if permitted else permits.OTHER_WAY)
+
+
 def test_a_permit_ends_with_the_way() -> None:
     gone = BEYOND._replace(position=Position(3000.0, 900.0 + 2272.72, 300.0))
     met = looked(handed_back(), gone, 227_272)
@@ -117,6 +139,23 @@ def test_who_is_permitted_is_not_acted_on_and_others_are() -> None:
     assert [(one.intruder_id, one.encounter.takeovers) for one in taken.met] == [(8, 1), (9, 2)]
     assert permits.told_why(again, 9) == f"; again, since {permits.NOT_FREE}"
     assert permits.told_why(again, 8) == ""
+
+
+@pytest.mark.parametrize("permitted", [True, False])
+def test_the_buffer_alone_takes_no_permitted_way_again(permitted: bool) -> None:
+    """Before a corner the vehicle heads for one that hovers 430 m behind it: inside of the buffered thresholds of
+    time, outside of the mission's own."""
+    hovers = Intruder(9, Position(1430.0, 0.0, 300.0), Velocity(0.0, 0.0, 0.0))
+    way = (*WAY[:3], Position(1000.0, -8000.0, 300.0))
+    told = Told(waypoints=way, next_index=2)
+    state = State(told=told, threats=(Threat(9, 30.0, 0, True),))
+    if permitted:
+        state = permits.resumed(
+            CONFIG, replace(state, met=(Met(9, TAKEN),)), sensed(hovers, 0), frozenset()
+        )
+    state, said = Instance(CONFIG).handle(state, sensed(hovers, 20_000))
+    assert [threat.intruder_id for threat in state.threats] == [9]
+    assert [wish.intruder_id for wish in said if isinstance(wish, Wish)] == [9] * (not permitted)
 
 
 STEPS = st.lists(
@@ -151,10 +190,13 @@ def test_each_takeover_of_vehicles_that_avoid_each_other_has_its_reason(tmp_path
     file.write_text(yaml.safe_dump(data))
     result, log = flown(load(file))
     assert result.outcome == "complete"
-    pairs = set()
+    pairs, reasons = set(), set()
     for taken in of_type(log, "AuthorityChange"):
         if taken.Owner.name == "ICAROUS":
             pair = (taken.VehicleID, taken.IntruderID)
-            assert ("again, since" in taken.Reason) is (pair in pairs), taken.Reason
+            _, again, why = taken.Reason.partition("; again, since ")
+            assert bool(again) is (pair in pairs), taken.Reason
             pairs.add(pair)
+            reasons.add(why)
     assert len(pairs) >= 3
+    assert {"", permits.UNFORESEEN, permits.NOT_FREE} <= reasons

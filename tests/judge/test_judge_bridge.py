@@ -132,9 +132,14 @@ def test_heartbeats(tmp_path: Path) -> None:
     assert beats(tmp_path, instances=[]) == "unknown"
 
 
-def test_an_instance_that_never_sends_one_may_be_of_a_protocol_without(tmp_path: Path) -> None:
-    def said(*status: tuple[int, bool]) -> dict[str, str]:
+def test_an_instance_that_never_sends_one_is_silent_unless_its_protocol_has_none(
+    tmp_path: Path,
+) -> None:
+    def said(
+        *status: tuple[int, bool], command: str = "run m.yaml --processes --original-clients"
+    ) -> dict[str, str]:
         scene = Scene(instances=[1]).straight(1, (0, 0, 300), NORTH)
+        scene.meta["command"] = command
         for k in range(21):
             beat = {"VehicleID": 1, "Time": 500 * k, "Direction": "Down", "Sequence": k + 1}
             scene.say(500 * k, "Heartbeat", **beat)
@@ -145,6 +150,15 @@ def test_an_instance_that_never_sends_one_may_be_of_a_protocol_without(tmp_path:
 
     assert said() == {"to": "holds", "from": "unknown"}
     assert said((9000, True)) == {"to": "holds", "from": "unknown"}
+    for ours in ("run m.yaml --processes", ""):
+        assert said(command=ours) == {"to": "holds", "from": "violated"}
+
+
+def test_a_flight_too_short_for_a_heartbeat_to_be_late_holds_nothing(tmp_path: Path) -> None:
+    for end_ms, expected in ((1000, "unknown"), (2000, "violated")):
+        scene = Scene(end_ms, instances=[1]).straight(1, (0, 0, 300), NORTH)
+        found = verdicts(scene.judged(tmp_path))
+        assert {v for k, v in found.items() if k.startswith("heartbeat")} == {expected}
 
 
 def test_a_heartbeat_that_comes_again_or_too_late_is_no_sign_of_life(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from judge_tools import Edit, Message, edited, verdicts, with_monitor
+from judge_tools import Edit, Message, edited, read, verdicts, with_monitor, write
 
 from cratous.judge import judge
 from cratous.services.cli import main
@@ -87,8 +87,6 @@ def shifted(vehicle: int, at_ms: int, north_m: float, east_m: float, alt_m: floa
 
 
 def position(log: Path, vehicle: int, at_ms: int) -> dict[str, float]:
-    from judge_tools import read
-
     return next(
         m.body for m in read(log)[1]
         if m.kind == "TruthState" and (m.body["VehicleID"], m.body["Time"]) == (vehicle, at_ms)
@@ -166,6 +164,11 @@ FAULTS: dict[str, tuple[Edit, str]] = {
         without(lambda m: beat(m, 50_000, 53_000)), "heartbeat to the ICAROUS instance of 1"),
     "has no heartbeats at the end": (
         without(lambda m: beat(m, 200_000, 900_000)), "heartbeat from the ICAROUS instance of 2"),
+    "has no heartbeats at all": (
+        without(lambda m: m.kind == "Heartbeat"), "heartbeat to the ICAROUS instance of 1"),
+    "never hears of ICAROUS": (
+        without(lambda m: m.kind == "Heartbeat" and m.body["Direction"] == "Up"),
+        "heartbeat from the ICAROUS instance of 1"),
     "ends otherwise": (said("MissionEnd", lambda b: b.update(Outcome="failed")), "end of mission"),
 }  # fmt: skip
 
@@ -177,6 +180,17 @@ def test_a_fault_is_noticed(flown: Flown, tmp_path: Path, fault: str) -> None:
     found = judge(with_monitor(log))
     assert verdicts(found)[item] == "violated"
     assert [d.line() for d in found.disagreements] == []
+
+
+def test_of_a_protocol_without_heartbeats_both_say_unknown(flown: Flown, tmp_path: Path) -> None:
+    meta, messages = read(flown("crossing") / "log.sqlite")
+    meta["command"] += " --processes --original-clients"
+    left = FAULTS["never hears of ICAROUS"][0](messages)
+    found = judge(with_monitor(write(tmp_path / "log.sqlite", meta, left)))
+    assert {k: v for k, v in verdicts(found).items() if v != "holds"} == {
+        f"heartbeat from the ICAROUS instance of {k}": "unknown" for k in (1, 2)
+    }
+    assert not found.differences
 
 
 def test_a_task_is_done_when_it_is_said_to_have_been(flown: Flown, tmp_path: Path) -> None:

@@ -110,6 +110,27 @@ def test_a_silent_bridge_is_seen_and_a_missing_one_is_unknown():
     assert none.outcome is Outcome.UNKNOWN
 
 
+WAYS = {way: f"G5:heartbeat {way} the ICAROUS instance of 1" for way in ("to", "from")}
+
+
+def outcomes(messages: list[tuple[int, Any]], end_ms: int = 3000, **how: bool) -> dict[str, str]:
+    seen = watch(mission(), [*apart(end_ms), *messages, *done(end_ms)], **how)
+    return {way: str(seen[item].outcome) for way, item in WAYS.items()}
+
+
+def test_no_heartbeat_at_all_is_a_silence_unless_the_protocol_has_none():
+    down = [m for m in beats(3000) if m[1].Direction.name == "Down"]
+    assert outcomes([]) == {"to": "violated", "from": "violated"}
+    assert outcomes(down) == {"to": "holds", "from": "violated"}
+    assert outcomes(down, says_beats=False) == {"to": "holds", "from": "unknown"}
+    assert outcomes([], says_beats=False) == {"to": "violated", "from": "unknown"}
+    assert outcomes([*down, link(2500, False)], says_beats=False) == dict.fromkeys(WAYS, "violated")
+
+
+def test_of_a_flight_too_short_for_one_to_be_late_none_is_missed():
+    assert outcomes([], end_ms=1000) == {"to": "unknown", "from": "unknown"}
+
+
 def again(number: int, *times: int) -> list[tuple[int, Any]]:
     """A heartbeat that comes again at these times, both ways of both vehicles."""
     return [

@@ -63,6 +63,28 @@ def test_touching_is_lost_and_a_hair_more_is_not() -> None:
         assert units.lost(ends) is lost
 
 
+@pytest.mark.parametrize(
+    ("limits", "away", "later", "lost"),
+    [
+        # head on at 100 m/s: TTHR before 150 m is reached at 1514.9 m
+        ((150.0, 30.0, 15.0, 0.0), (0.0, 1514.0, 0.0), (0.0, 1510.7, 0.0), True),
+        ((150.0, 30.0, 15.0, 0.0), (0.0, 1520.0, 0.0), (0.0, 1516.7, 0.0), False),
+        # 10 m/s down: TCOA before the same altitude is at 100 m
+        ((150.0, 30.0, 0.0, 10.0), (0.0, 0.0, 99.0), (0.0, 0.0, 98.67), True),
+        ((150.0, 30.0, 0.0, 10.0), (0.0, 0.0, 105.0), (0.0, 0.0, 104.67), False),
+        # places in whole metres, thresholds that are not
+        ((1.5, 30.0, 0.0, 0.0), (1.0, 1.0, 0.0), (1.0, 1.0, 0.0), True),
+        ((1.25, 30.0, 0.0, 0.0), (1.0, 1.0, 0.0), (1.0, 1.0, 0.0), False),
+    ],
+)
+def test_thresholds_are_in_metres_and_seconds(
+    limits: tuple[float, float, float, float], away: Any, later: Any, lost: bool
+) -> None:
+    here = Position(0.0, 0.0, 0.0)
+    ends = at(0, here), at(0, Position(*away)), at(33, here), at(33, Position(*later))
+    assert WholeUnits(StandardThresholds(*limits)).lost(ends) is lost
+
+
 def test_a_span_without_time_is_none() -> None:
     place = at(7, Position(0.0, 0.0, 0.0))
     with pytest.raises(ValueError, match="a span of 0 ms"):

@@ -26,6 +26,7 @@ from cratous.services.cli import main
 from cratous.services.simulator.scenario import of_text
 from cratous.services.simulator.server import Server
 from cratous.services.simulator.world import Event, World
+from cratous.spec.errors import BadInput
 
 RECORDED = Path(__file__).parent / "uxas_waterway.jsonl.gz"
 FLIGHT = mission(waypoint(1, 2, 45.02), waypoint(2, 2, 45.1))
@@ -182,8 +183,14 @@ def test_a_port_of_a_vehicle_that_cannot_be(
 
 
 def test_a_port_that_is_taken_leaves_none_open() -> None:
+    with contextlib.closing(socket.create_server(("127.0.0.1", 0))) as free:
+        mine = free.getsockname()
     with contextlib.closing(socket.create_server(("127.0.0.1", 0))) as taken:
-        port = taken.getsockname()[1]
-        vehicles: Any = {1: address(f"tcp://127.0.0.1:{port}", ("tcp",))}
-        with pytest.raises(Exception, match="cannot listen"):
-            serving(vehicles=vehicles)
+        where, other = (
+            address(f"tcp://127.0.0.1:{port}", ("tcp",))
+            for port in (mine[1], taken.getsockname()[1])
+        )
+        with pytest.raises(BadInput, match="cannot listen") as refused:
+            Server(lambda: World((), 600), where, lambda *_: None, vehicles={1: other})
+    socket.create_server(mine).close()
+    assert refused, "its error still holds the server, so that nobody else has closed the port"

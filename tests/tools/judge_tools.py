@@ -151,6 +151,7 @@ class Scene:
     def __init__(self, end_ms: int = 10_000, **more: Any) -> None:
         self.mission, self.end_ms = mission(**more), end_ms
         self.messages: list[Message] = []
+        self.meta: dict[str, Any] = {"mission": self.mission}
 
     def say(self, time_ms: int, kind: str, **body: Any) -> Scene:
         self.messages.append(
@@ -219,7 +220,7 @@ class Scene:
         if end:
             body = {"$type": "CRATOUS/MissionEnd", "Time": self.end_ms, "Outcome": end}
             messages.append(Message(self.end_ms, "cratous.MissionEnd", body))
-        return write(path, {"mission": self.mission}, messages, seal)
+        return write(path, self.meta, messages, seal)
 
     def judged(self, folder: Path, end: str = "complete", seal: bool = True) -> Judgement:
         return judge(self.write(folder / "log.sqlite", end, seal))

@@ -44,8 +44,8 @@ PLAN = Plan(
 )
 
 
-def watch(m: Mission, messages: list[tuple[int, Any]]) -> dict[str, Any]:
-    monitor = Monitor(m, PLAN)
+def watch(m: Mission, messages: list[tuple[int, Any]], **how: bool) -> dict[str, Any]:
+    monitor = Monitor(m, PLAN, **how)
     for time_ms, body in sorted(messages, key=lambda m: m[0]):
         monitor.tap(Envelope(lmcp.full_names(body)[0], time_ms, body))
     return {v.requirement + (":" + v.item if v.item else ""): v for v in monitor.verdicts()}

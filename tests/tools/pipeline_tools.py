@@ -81,11 +81,11 @@ def request(*tasks: int, vehicles: tuple[int, ...] = (1,), **more: Any) -> Any:
 class Rig:
     """A process with some services, in virtual time; everything on the bus is kept by type."""
 
-    def __init__(self, folder: Path, *services: str, **attributes: str) -> None:
-        """attributes: of services, by type, as text."""
+    def __init__(self, folder: Path, *services: str, entity: int = 100, **attributes: str) -> None:
+        """entity: whose process it is; attributes: of services, by type, as text."""
         names = services or PIPELINE
         text = "".join(f'<Service Type="{n}" {attributes.get(n, "")}/>\n' for n in names)
-        self.one, self.said = process(write_cfg(folder, text), virtual=True)
+        self.one, self.said = process(write_cfg(folder, text, entity=entity), virtual=True)
         self.all: list[Any] = []
         self.one.bus.tap(self.all.append)
 

@@ -17,7 +17,7 @@ from cratous.services.loading.uxas_settings import read
 from cratous.services.uxas.logs import Logs
 from cratous.services.uxas.process import Process
 
-HEAD = '<UxAS FormatVersion="1.0" EntityID="100" EntityType="Aircraft" {}>\n'
+HEAD = '<UxAS FormatVersion="1.0" EntityID="{}" EntityType="Aircraft" {}>\n'
 LIMIT_S = 120.0
 
 
@@ -26,9 +26,9 @@ def free_port() -> int:
         return int(probe.getsockname()[1])
 
 
-def write_cfg(folder: Path, body: str, root: str = "") -> Path:
+def write_cfg(folder: Path, body: str, root: str = "", entity: int = 100) -> Path:
     path = folder / "cfg.xml"
-    path.write_text(HEAD.format(root) + body + "\n</UxAS>\n")
+    path.write_text(HEAD.format(entity, root) + body + "\n</UxAS>\n")
     return path
 
 

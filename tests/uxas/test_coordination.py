@@ -178,3 +178,38 @@ def test_a_request_to_fly_it_is_answered_with_its_kind(tmp_path: Path) -> None:
     rig.wait(2_000)
     rig.tell(request(9, vehicles=(OWN,)))
     assert any("AssignmentCoordinatorTask" in text for text in rig.reasons()), rig.reasons()
+
+
+TOLD_FIRST = (
+    "AirVehicleConfiguration_V", "KeepOutZone_", "OperatingRegion_", "AreaOfInterest_", "LineOfInterest_",
+    "AreaSearchTask_", "AngledAreaSearchTask_", "ImpactLineSearchTask_", "LineSearchTask_",
+    "AirVehicleState_V", "AssignmentCoordinatorTask", "CoordinatedAutomationRequest",
+)  # fmt: skip
+
+
+@pytest.mark.slow
+def test_two_processes_on_the_example_of_openuxas_plan_the_same(
+    shared: Path, tmp_path: Path
+) -> None:
+    folder = shared / "examples/openuxas-shipped/03_Example_DistributedCooperation/MessagesToSend"
+    bodies = [
+        lmcp.xml.read_file(file, [])[0]
+        for kind in TOLD_FIRST
+        for file in sorted(folder.glob(f"{kind}*.xml"))
+        if "V3000" not in file.name
+    ]
+    rigs = []
+    for entity in (1000, 2000):
+        (tmp_path / str(entity)).mkdir()
+        rigs.append(Rig(tmp_path / str(entity), entity=entity))
+        for body in bodies:
+            rigs[-1].tell(body)
+    said = [rig.got("AssignmentCoordination")[0] for rig in rigs]
+    assert not any(went_out(rig) for rig in rigs)
+    for rig, other in zip(rigs, reversed(said), strict=True):
+        rig.tell(other)
+    one, two = (rig.got("AutomationResponse")[0].MissionCommandList for rig in rigs)
+    assert one == two
+    assert [c.VehicleID for c in one] == [1000, 2000]
+    flown = {t for c in one for w in c.WaypointList for t in w.AssociatedTasks}
+    assert flown == {20, 21, 30, 50, 51}

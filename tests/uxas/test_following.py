@@ -178,6 +178,10 @@ def test_a_blockade_is_between_the_entity_and_what_is_protected_and_ends_with_an
             "expected 1 to 8.64e+07; got soon",
         ),
         (
+            escort(Parameters=[lmcp.new("KeyValuePair", Key="Duration_ms", Value="9" * 5_000)]),
+            "expected 1 to 8.64e+07; got 9999",
+        ),
+        (
             escort(PrescribedWaypoints=[lmcp.new("Waypoint", Latitude=99.0)]),
             "PrescribedWaypoints[0]: not a place",
         ),

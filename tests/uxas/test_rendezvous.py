@@ -144,6 +144,10 @@ STATE = lmcp.new("PlanningState", EntityID=0, PlanningPosition=place(0.04))
             {"Parameters": [lmcp.new("KeyValuePair", Key="Tolerance_ms", Value="-1")]},
             "Tolerance_ms: out of range; expected 1 to 600000; got -1",
         ),
+        (
+            {"Parameters": [lmcp.new("KeyValuePair", Key="Wait_ms", Value="9" * 5_000)]},
+            "Wait_ms: out of range; expected 1 to 8.64e+07; got 9999",
+        ),
         ({"RendezvousStates": [STATE.copy(EntityID=77)] * 2}, "entity 77, which is none of its"),
         ({"NumberOfParticipants": 3}, "no 3 vehicles have a state each"),
     ],
@@ -195,9 +199,9 @@ def test_who_cannot_change_its_speed_or_wait_is_not_offered(tmp_path: Path) -> N
         assert any(text in one for one in said), said
 
 
-def under_way(folder: Path) -> tuple[Rig, list[Any]]:
-    """Two vehicles on their run-ins, at one time, and their states then."""
-    rig = told(folder, meeting(1, 2))
+def coming(folder: Path, **more: Any) -> tuple[Rig, list[Any]]:
+    """Two vehicles on their way to their run-ins, and states of theirs on these."""
+    rig = told(folder, meeting(1, 2, **more))
     states = []
     for vehicle, (latitude, longitude) in zip((1, 2), PLACES, strict=False):
         waypoints = next(
@@ -212,9 +216,54 @@ def under_way(folder: Path) -> tuple[Rig, list[Any]]:
                 Mode="Waypoint", CurrentWaypoint=mine[1], Time=1000,
             )
         )  # fmt: skip
+    return rig, states
+
+
+def under_way(folder: Path) -> tuple[Rig, list[Any]]:
+    """Two vehicles on their run-ins, at one time, and their states then."""
+    rig, states = coming(folder)
     rig.tell(*states)
     assert not rig.reasons("Warning")
     return rig, states
+
+
+@pytest.mark.parametrize("change", [{"AssociatedTasks": []}, {"Location": place(math.nan)}])
+def test_nobody_waits_without_end_for_who_is_heard_and_does_not_come(
+    tmp_path: Path, change: dict[str, Any]
+) -> None:
+    """The second one flies something else, or its states are no states, for as long as one looks."""
+    wait = lmcp.new("KeyValuePair", Key="Wait_ms", Value="60000")
+    rig, (one, two) = coming(tmp_path, Parameters=[wait])
+    rig.tell(one.copy(CurrentWaypoint=one.CurrentWaypoint - 1))
+    number = rig.got("VehicleActionCommand")[-1].CommandID
+    waiting = one.copy(Mode="Loiter", CurrentCommand=number)
+    for k in range(2, 62):
+        rig.tell(two.copy(Time=1000 * k, **change), waiting.copy(Time=1000 * k))
+    assert not [t for t in rig.reasons("Warning") if "do not meet" in t], "no longer than 60 s"
+    rig.tell(two.copy(Time=62_000, **change))
+    text = "task 5: its vehicles do not meet: vehicle 1 has waited for 60 s (Wait_ms), and 2 has not come"
+    assert text in rig.reasons("Warning")
+    assert sent_on(rig) == 1
+
+
+def sent_on(rig: Rig) -> int:
+    """The vehicle that the last command sends on in its plan, 0 for a command of another kind."""
+    last = rig.got("VehicleActionCommand")[-1]
+    goes = type(last.VehicleActionList[-1]).__name__ == "GoToWaypointAction"
+    return int(last.VehicleID) if goes else 0
+
+
+@pytest.mark.parametrize("end", ["another request", "the other one"])
+def test_nobody_stays_on_its_circle_when_the_task_has_ended(tmp_path: Path, end: str) -> None:
+    """Also who has not yet said that it circles."""
+    rig, (one, two) = coming(tmp_path)
+    rig.tell(one.copy(CurrentWaypoint=one.CurrentWaypoint - 1), two)
+    assert sent_on(rig) != 1
+    if end == "another request":
+        rig.tell(request(5, vehicles=(1, 2)))
+    else:
+        rig.tell(two.copy(AssociatedTasks=[], Time=1200))
+    assert sent_on(rig) == 1
 
 
 def test_each_is_told_the_speed_at_which_it_arrives(tmp_path: Path) -> None:
@@ -241,6 +290,34 @@ def test_where_no_common_time_is_left_it_is_said_and_nobody_waits(tmp_path: Path
     said = rig.reasons("Warning")
     assert any("there is no common time any more" in text for text in said), said
     assert not rig.got("TaskComplete")
+
+
+@pytest.mark.parametrize(
+    ("before", "told", "reason"),
+    [
+        (33_500, 34_500, ""),
+        (28_000, 34_500, "vehicle 2 arrived -6.2 to 0.3 s after the common time"),
+        (28_000, 29_000, "vehicle 2 arrived -6.2 to -5.2 s after the common time"),
+    ],
+)
+def test_complete_is_only_what_was_seen_to_be_in_time(
+    tmp_path: Path, before: int, told: int, reason: str
+) -> None:
+    """The second one passes between two of its states; its last one comes when the first one has passed in time."""
+    rig, states = under_way(tmp_path)
+
+    def at(k: int, time_ms: int, north: float) -> Any:
+        there = place(PLACES[k][0] + north, PLACES[k][1])
+        return states[k].copy(Time=time_ms, Location=there)
+
+    for time_ms in (1_000, 15_000, 28_000):
+        north = -0.006 * (34_400 - time_ms) / 33_400
+        rig.tell(*(at(k, time_ms, north) for k in (0, 1)))
+    rig.tell(at(1, before, -0.0002), at(0, 33_500, -0.0002), at(0, 34_500, 0.0001))
+    rig.tell(at(1, told, 0.0001))
+    said = rig.reasons("Warning")
+    assert bool(rig.got("TaskComplete")) == (not reason)
+    assert not reason or any(reason in text for text in said), said
 
 
 @pytest.mark.parametrize(
