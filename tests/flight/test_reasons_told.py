@@ -4,14 +4,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from cratous.services.certify.timeline import Flight, _progress
+from cratous.services.flight.changes import unplanned
+from cratous.services.flight.dynamics import AirState
+from cratous.services.flight.executive_state import Asked, Config, first_state
 from cratous.services.flight.left_out import leave_out, nothing_of
 from cratous.services.flight.loop import _planned
 from cratous.services.flight.messages import AskPlan, NotPlanned, Planned
 from cratous.services.loading import load
 from cratous.services.mission.availability import absent
+from cratous.services.mission.frames import Projection
 from cratous.services.pipeline.plan import make_plan
+from cratous.spec.executive import FOR_CHANGE
 from cratous.spec.mission import Change, Position, Zone, ZoneKind
 from cratous.spec.mission.changes import VEHICLE_JOINS, VEHICLE_LOST, known_at
 from cratous.spec.mission.plan import Pose
@@ -62,6 +68,17 @@ def test_where_nothing_can_be_done_each_task_has_its_own_reason() -> None:
     assert "no vehicle can do task 1: vehicle 1" in answer.why, (
         "a label that is its number is not said"
     )
+
+
+def test_of_tasks_that_nobody_can_do_any_more_each_says_its_own_reason() -> None:
+    mission = replace(load(LOST), changes=())
+    config = Config(mission, Projection(mission.frame), ())
+    here = tuple((v.id, AirState(v.position, 0.0, 25.0, 0.0)) for v in mission.vehicles)
+    state = replace(first_state(mission, make_plan(mission)), aircraft=here)
+    out: list[Any] = []
+    answer = NotPlanned("one; two", ((1, "one"),))
+    state = unplanned(config, state, answer, Asked(FOR_CHANGE, "a change", ""), out)
+    assert dict(state.left_out) == {1: "left out: one", 2: "left out: a change: one; two"}
 
 
 def test_a_vehicle_in_a_zone_that_appeared_is_planned_for_from_its_way_out() -> None:

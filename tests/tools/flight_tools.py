@@ -50,10 +50,10 @@ def traffic(north: float, east: float, velocity: Velocity = Velocity(0.0, 22.0, 
 def mission_within(
     limit_ms: int, vehicles: tuple[Vehicle, ...], tasks: tuple[Task, ...], **more: Any
 ) -> Mission:
-    """A mission with our volume of well clear in which each task is done once, up to a time [ms]."""
+    """A mission with our volume of well clear and an ICAROUS for each vehicle, flown up to a time [ms]."""
     fields: dict[str, Any] = {
         "daa": Daa(VOLUME),
-        "instances": tuple(range(1, len(tasks) + 1)),
+        "instances": tuple(one.id for one in vehicles),
         "simulation": Simulation(limit_ms=limit_ms),
     }
     return plain_mission(vehicles, tasks, **{**fields, **more})

@@ -6,6 +6,7 @@ import importlib.util
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 
@@ -34,8 +35,24 @@ def test_a_process_is_timed_with_its_cpu_and_its_exit_code(
 
 def test_a_command_that_fails_is_no_figure(quick: ModuleType, tmp_path: Path) -> None:
     line = quick.Line("nothing", ("plan", str(tmp_path / "none.yaml")), (0,), 1.0)
-    with pytest.raises(SystemExit, match="exit code 2, expected"):
-        quick.measured(line, 1)
+    for cold in (False, True):
+        with pytest.raises(SystemExit, match="exit code 2, expected"):
+            quick.measured(line, 1, cold=cold)
+
+
+def test_a_cold_command_has_an_empty_cache_of_its_own(
+    quick: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given = []
+
+    def timed(_arguments: tuple[str, ...], folder: Path, cache: Path | None = None) -> Any:
+        given.append((cache is not None, cache is None or not cache.exists(), folder))
+        return quick.Took(1.0, 1.0, 0.0, 0)
+
+    monkeypatch.setattr(quick, "timed", timed)
+    for cold in (False, True):
+        quick.measured(quick.Line("any", (), (0,), 1.0), 1, cold=cold)
+    assert [one[:2] for one in given] == [(False, True), (True, True)]
 
 
 def test_the_medians_are_told(quick: ModuleType) -> None:
