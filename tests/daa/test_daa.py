@@ -54,7 +54,13 @@ ALLOWED = {("open-encounters-SUM", "bands"): 3, ("open-scenarios", "resolution s
 
 
 @pytest.mark.parametrize(
-    "name", ["open-encounters", "open-encounters-SUM", "open-scenarios", "open-sequences"]
+    "name",
+    [
+        pytest.param("open-encounters", marks=pytest.mark.slow),
+        "open-encounters-SUM",
+        "open-scenarios",
+        "open-sequences",
+    ],
 )
 def test_published_vectors(name: str, vectors: Path):
     judge = conform.suite("detect-and-avoid")

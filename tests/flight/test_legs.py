@@ -128,6 +128,7 @@ def blocked(*, plans_change: bool) -> tuple[int, str]:
     return failed.Time, result.failed[1]
 
 
+@pytest.mark.slow
 def test_another_plan_in_flight_does_not_free_a_leg_that_is_blocked() -> None:
     """What ICAROUS did on a leg counts on where the vehicle makes for the same task by another plan."""
     at_ms, why = blocked(plans_change=False)

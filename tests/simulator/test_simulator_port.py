@@ -257,6 +257,7 @@ def test_the_command_says_where_a_scenario_is_wrong(
     assert "60 s of 1 aircraft" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_uxas_flies_its_waterway_mission_on_the_simulator(shared: Path, tmp_path: Path) -> None:
     """The example's own configuration and files; vehicles, states and flight are the simulator's."""
     text = (shared / "vectors/amase/scenarios/02_waterway.xml").read_text()

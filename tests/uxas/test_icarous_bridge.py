@@ -44,6 +44,7 @@ def own() -> Aircraft:
     return Aircraft(1, -300.0, 0.0, 0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.shows(
     SERVICE, "MissionCommand", "AirVehicleState", "VehicleActionCommand", "TaskPause", "TaskResume",
     "GateState", "AuthorityChange", "Heartbeat", "BridgeStatus", "NumberOfUAVs", "DeviationAllowed",
@@ -116,6 +117,7 @@ def test_what_stands_on_the_wire_decides_and_a_cut_link_comes_again(
     assert "POSTN that this airframe cannot fly" in said(tmp_path)
 
 
+@pytest.mark.slow
 @pytest.mark.shows(SERVICE, "Keys")
 def test_v2_flies_with_the_key_and_refuses_another_on_both_ends(
     tmp_path: Path, opened: list[Any], monkeypatch: pytest.MonkeyPatch
@@ -141,6 +143,7 @@ def test_v2_flies_with_the_key_and_refuses_another_on_both_ends(
     assert "5b5b5b" not in said(tmp_path)
 
 
+@pytest.mark.slow
 @pytest.mark.shows(SERVICE, "Connect")
 def test_uxas_connects_to_an_icarous_that_listens_and_again_after_a_cut(
     tmp_path: Path, opened: list[Any]

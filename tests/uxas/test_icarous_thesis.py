@@ -114,6 +114,7 @@ def test_takeover_avoidance_handback_and_the_mission_is_done(
     assert not [line for line in rig.said if "refused" in line], list(rig.said)
 
 
+@pytest.mark.slow
 def test_the_command_speaks_it_and_another_dialect_is_refused_on_both_ends(
     tmp_path: Path, opened: list[Any]
 ) -> None:
