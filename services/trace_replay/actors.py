@@ -55,7 +55,7 @@ MOST_BEATS = 60
 
 
 class Held(NamedTuple):
-    """A command that was sent: by whom, in which epoch, after how many changes of the gate."""
+    """A command that was sent: by whom, in which epoch, after how many new epochs of the gate."""
 
     sender: int
     epoch: int
@@ -88,7 +88,8 @@ class Actors(Flight):
         bus = Bus(lmcp.full_names)
         self.sent: list[Held] = []
         self.reports = {UNTOUCHED}
-        self.changes, self.last_of_uxas, self.dropped, self.is_met = 0, NOTHING, False, False
+        self.changes, self.told_epoch = 0, UNTOUCHED.epoch
+        self.last_of_uxas, self.dropped, self.is_met = NOTHING, False, False
         plan, bridge = make_plan(mission), _HoldingBridge((VEHICLE,))
         super().__init__(mission, plan, bus, bridge, (VEHICLE,))
         bus.now_ms = 0
@@ -119,7 +120,8 @@ class Actors(Flight):
     def _link(self, message: ToLinkEnd) -> None:
         if isinstance(message, GateIs):
             self.reports.add(message.gate)
-            self.changes += 1
+            self.changes += message.gate.epoch != self.told_epoch
+            self.told_epoch = message.gate.epoch
         else:
             super()._link(message)
 

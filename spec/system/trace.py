@@ -23,7 +23,7 @@ class Event(NamedTuple):
     """flag: of a heartbeat: the way is free; of a report: control is offered; of a line: ICAROUS commands.
 
     who: of a report: the owner; of a command: the sender (0 UxAS, 1 ICAROUS); epoch: of a report, line or
-    command; changes: of a command: how many changes of the gate there had been when it was made.
+    command; changes: of a command: how many epochs had begun when it was made.
     """
 
     kind: str

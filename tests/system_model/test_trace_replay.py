@@ -61,7 +61,7 @@ def test_the_actors_fly_takeover_offer_and_handback_as_the_design_does() -> None
     assert play(BACK) == (len(BACK), "")
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", [*range(12), 1176])
 def test_whatever_the_design_can_do_the_actors_do(seed: int) -> None:
     entries = walk(seed)
     assert play(entries) == (len(entries), "")
