@@ -16,6 +16,7 @@ from typing import Any
 
 from cratous.services.attestation.argued import argued
 from cratous.services.attestation.assumed import assumption_faults, assumptions_not_judged
+from cratous.services.attestation.blamed import blame_faults
 from cratous.services.attestation.dsse import ENVELOPE_BYTES, opened
 from cratous.services.attestation.findings import Data, Subject
 from cratous.services.attestation.judged import held
@@ -85,7 +86,8 @@ def verify(place: Place, public: Any, judged: Any) -> Verification:
     judgement = judged(place.results)
     answer = held(report, judgement)
     found.refused += [*recorded_faults(report, judgement.meta), *plan_faults(report)]
-    found.refused += [*assumption_faults(report, judgement.meta), *answer.refused]
+    found.refused += [*assumption_faults(report, judgement.meta), *blame_faults(report)]
+    found.refused += answer.refused
     found.undecided = answer.undecided + argument.undecided
     found.expected, found.recomputed = answer.expected, answer.confirmed
     found.not_checked = list(subject.unchecked)

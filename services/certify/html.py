@@ -8,6 +8,7 @@ from typing import Any
 
 from cratous.core.kernel.names import short
 from cratous.services.assumptions.said import measured
+from cratous.services.certify.blame_said import sentence
 from cratous.services.certify.charts import altitude_view, separation_view
 from cratous.services.certify.gantt import gantt, plan_bars, plan_rows, tree
 from cratous.services.certify.picture import map_view, time_view
@@ -42,6 +43,7 @@ def _environment() -> Any:
     environment.filters["margin"] = margin
     environment.filters["percent"] = percent
     environment.filters["measured"] = measured
+    environment.filters["blamed"] = sentence
     environment.filters["cost"] = lambda value, kind: cost_text(kind, value)
     return environment
 
