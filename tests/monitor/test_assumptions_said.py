@@ -117,3 +117,17 @@ def test_monitor_says_them_in_words_and_as_data(
     assert "assumption way back free: not observed (what an instance foresees" in printed
     main(["monitor", str(turning), "--allow-unproved", "--json"])
     assert json.loads(capsys.readouterr().out)["assumptions"] == report["assumptions"]
+
+
+def test_monitor_as_data_says_on_stderr_why_its_exit_code_is_no_0(
+    tmp_path: Path, turning: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log = Path(shutil.copy(turning / "log.sqlite", tmp_path))
+    database = sqlite3.connect(log)
+    with database:
+        database.execute("DELETE FROM messages WHERE topic = 'cratous.MissionEnd'")
+    database.close()
+    assert main(["monitor", str(log), "--allow-unproved", "--json"]) == 3
+    words = capsys.readouterr()
+    assert json.loads(words.out)["exit_code"] == 3
+    assert "G3 Completion: unknown" in words.err
