@@ -20,9 +20,9 @@ from cratous.services.flight.replan_triggers import (
     undone_by,
 )
 from cratous.services.flight.task_transitions import begin, give_up, progress
+from cratous.services.loading.polygons import hard_zones
 from cratous.services.mission.availability import absent
 from cratous.services.mission.wind import all_in_wind, in_wind, known_at, told, wind_at
-from cratous.services.planning.zones import hard_zones
 from cratous.spec.algebra.meaning import tasks
 from cratous.spec.executive import FOR_CHANGE
 from cratous.spec.mission import Change, ZoneKind
