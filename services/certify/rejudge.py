@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cratous.services.certify.blame import Commands
+from cratous.services.certify.command import with_original_clients
 from cratous.services.certify.differences import differences
 from cratous.services.certify.flight_record import flown_of
 from cratous.services.certify.report import (
@@ -25,7 +26,6 @@ from cratous.services.certify.verdicts import (
     broken_of,
     constraint_rows,
     plan_rows,
-    with_original_clients,
 )
 from cratous.services.logs.log import read_envelopes, read_log, read_meta
 from cratous.services.logs.records import from_data

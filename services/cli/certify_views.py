@@ -128,13 +128,14 @@ def verified(results: Path, asked: Asked, as_json: bool) -> int:
     from cratous.services.attestation.dsse import public_key
     from cratous.services.attestation.verification import signed_folder, verify
     from cratous.services.cli.judge import judgement
+    from cratous.services.full_report.views import view
 
     if asked.sign or asked.named or asked.mission:
         raise click.UsageError("--verify writes nothing")
     if asked.public_key is None:
         raise click.UsageError("--verify needs --public-key")
     place = signed_folder(results, asked.out, FOLDER)
-    found = verify(place, public_key(asked.public_key), judgement)
+    found = verify(place, public_key(asked.public_key), judgement, view)
     if as_json:
         click.echo(json.dumps({"verified": not found.refused, **asdict(found)}, indent=1))
         return found.exit_code
