@@ -31,7 +31,7 @@ class Dialect(Enum):
 
     @property
     def ours(self) -> bool:
-        """True if the peer knows HELLO, HBEAT, AGAIN, NOCMD, EPOCH and epochs."""
+        """True if the peer knows HELLO, HBEAT, AGAIN, NOCMD, EPOCH, epochs, and that ICAROUS asks UxAS for ways."""
         return self is Dialect.CRATOUS
 
     @property

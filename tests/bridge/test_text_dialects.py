@@ -40,6 +40,8 @@ THESIS_LINES = [
     (RESET,
      "COMNDtypeRESET_SFT,lat45.306,long-120.988001,alt705,\n"),
     (tp.HardReset(), "COMNDtypeRESET_HRD,\n"),
+    (tp.UxasPlans(), "COMNDtypeUXAS_PLANS,\n"),
+    (tp.IcarousPlans(), "COMNDtypeICAROUS_PLANS,\n"),
     (tp.EpochTold("UXAS", 5), "EPOCHtype_UXAS_,epoch5,\n"),
     (tp.SetMode("ACTIVE"), "SETMOtype_ACTIVE_,\n"),
     (tp.SetVelocity(10.0, 20.0, 1.5), "SETVEnorth10,east20,down1.5,\n"),
