@@ -33,6 +33,7 @@ from cratous.bridge.text_protocol.messages import (
     SoftReset,
     StartMission,
     Traffic,
+    WayOfAnother,
     Waypoint,
     WaypointReached,
 )
@@ -69,6 +70,7 @@ __all__ = [
     "StartMission",
     "StreamParser",
     "Traffic",
+    "WayOfAnother",
     "Waypoint",
     "WaypointReached",
     "WireError",
