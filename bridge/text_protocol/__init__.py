@@ -35,6 +35,7 @@ from cratous.bridge.text_protocol.messages import (
     StartMission,
     Traffic,
     UxasPlans,
+    WayOfAnother,
     Waypoint,
     WaypointReached,
 )
@@ -73,6 +74,7 @@ __all__ = [
     "StreamParser",
     "Traffic",
     "UxasPlans",
+    "WayOfAnother",
     "Waypoint",
     "WaypointReached",
     "WireError",
