@@ -54,6 +54,8 @@ from cratous.spec.mission.plan import Pose
 
 OPTIONS_MOST = 4
 """How many ways over an area are offered."""
+REFUSED_MOST = 8
+"""No more ways are tried when zones have forbidden so many."""
 DEARER = 1.5
 """A way that is longer than the shortest by more than this factor is not offered."""
 LEADS = (0.8, 0.0)
@@ -97,18 +99,22 @@ def _offered(
         yield no_way("", made)
         return
     found = sorted(made, key=lambda c: c.length_m)
-    best_m = found[0].length_m
-    for rank, candidate in enumerate(found):
+    best_m, offered, refused = found[0].length_m, 0, 0
+    for candidate in found:
         if candidate.length_m > DEARER * best_m:
             times = candidate.length_m / best_m
             yield no_way(candidate.label, f"it is {times:.2f} times as long as the shortest")
-        elif rank >= OPTIONS_MOST:
+        elif offered >= OPTIONS_MOST:
             yield no_way(candidate.label, f"{OPTIONS_MOST} that are no longer are offered")
+        elif refused >= REFUSED_MOST:
+            yield no_way(candidate.label, f"{REFUSED_MOST} that are no longer are not possible")
         else:
             way = _way(site, candidate, zones, maps)
             if way.reason:
                 # less room before the lanes may do where the zones are near
                 way = _tighter(site, make, way, zones, maps)
+            refused += bool(way.reason)
+            offered += not way.reason
             yield way
 
 

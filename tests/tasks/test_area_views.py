@@ -89,6 +89,26 @@ def test_a_camera_that_cannot_look_back_or_up_is_not_tilted() -> None:
     assert _best(widths, replace(AROUND, max_elevation_rad=math.radians(-70))) == -90
 
 
+def test_a_camera_that_cannot_look_straight_down_looks_along_the_lanes_there_and_back() -> None:
+    """Ahead of the aircraft alone each turn would be longer by how far it looks."""
+    shy = replace(AROUND, min_elevation_rad=math.radians(-45), max_elevation_rad=0.0)
+    assert _best({-90: 400.0, -45: 400.0}, shy) == -45
+    found, _ = options(area(), vehicle((shy,)))
+    ahead, _ = options(area(), vehicle((replace(shy, max_azimuth_rad=2.0),)))
+    assert min(o.duration_ms for o in found) < 0.9 * min(o.duration_ms for o in ahead)
+
+
+def test_ways_that_zones_forbid_are_not_counted_among_those_offered() -> None:
+    free, _ = options(area(), vehicle((AROUND,)))
+    first, second = free[0].path[:2]
+    n, e = (first.north_m + second.north_m) / 2, (first.east_m + second.east_m) / 2
+    found, dropped = options(
+        area(), vehicle((AROUND,)), zones=(keep_out(n - 40, e - 40, n + 40, e + 40),)
+    )
+    assert free[0].label in {one.label for one in dropped if "breaks" in one.reason}
+    assert len(found) == len(free) == 4
+
+
 def test_where_zones_leave_no_room_beside_the_area_it_is_seen_from_above() -> None:
     north, east = (max(corner[k] for corner in FIELD) for k in (0, 1))
     walls = (
