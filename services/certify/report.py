@@ -19,7 +19,7 @@ from cratous.core.files.whole_file import write_atomically
 from cratous.services.certify.blame import Commands, blame_rows
 from cratous.services.certify.limits import LIMITS
 from cratous.services.certify.running_code import running_code
-from cratous.services.certify.timeline import bars, read_flight
+from cratous.services.certify.timeline import Flight, bars, read_flight
 from cratous.services.certify.verdicts import requirement_rows, with_promised, without_ground
 from cratous.services.logs.log import read_digest, read_log
 from cratous.services.logs.records import fingerprint, to_data
@@ -74,6 +74,12 @@ def plan_hash(plan: Plan) -> str:
     return fingerprint(to_data(plan))
 
 
+def ends_of(flight: Flight, asked: Mission) -> list[dict[str, Any]]:
+    """How each task ended that is asked for to the end: one that was withdrawn has not failed."""
+    wanted = {task.id for task in asked.tasks}
+    return [end for task, end in sorted(flight.served.items()) if task in wanted]
+
+
 def build_report(
     mission: Mission,
     plan: Plan,
@@ -124,7 +130,7 @@ def build_report(
             "events": flight.events,
             "changes": flight.changes,
             "footprints": _seen(flight.footprints, mission),
-            "served": [flight.served[task] for task in sorted(flight.served)],
+            "served": ends_of(flight, seen.asked),
             "unserved": [task for task in sorted(seen.tasks) if task not in flight.served],
         },
         "log": {

@@ -10,7 +10,7 @@ import click
 
 from cratous.services.cli.numbers import Number
 from cratous.spec.errors import BadInput
-from cratous.spec.mission.guarantees import exit_code
+from cratous.spec.mission.guarantees import Outcome, exit_code
 
 
 @click.command()
@@ -135,9 +135,10 @@ def monitor(
     groundless = without_ground(str(read_meta(log).get("command", "")), assumptions)
     unproved = bool(standing.problems) or groundless
     code = exit_code([v.outcome for v in judged], unproved=unproved)
+    required = requirement_rows(rows)
     if as_json:
         data = {
-            "requirements": requirement_rows(rows),
+            "requirements": required,
             "constraints": rows,
             "assumptions": assumptions,
             "blame": blame,
@@ -146,8 +147,15 @@ def monitor(
             "exit_code": code,
         }
         click.echo(json.dumps(data, indent=1))
+        for row in required:
+            if row["verdict"] != Outcome.HOLDS:
+                say(f"{row['requirement']} {row['title']}: {row['verdict']}", err=True)
+        if groundless:
+            say(GROUNDLESS, err=True)
+        if standing.problems:
+            say(f"proofs: {standing.line}", err=True)
     else:
-        requirement_table(requirement_rows(rows))
+        requirement_table(required)
         for line in (*blame_lines(blame), *assumption_lines(assumptions)):
             say(line)
         if groundless:

@@ -82,7 +82,8 @@ def fly_encounter(mission: Mission, *, daa: bool = True) -> Encounter:
         outcome = COMPLETE if any(over) else LIMIT
         if now_ms % mission.simulation.heartbeat_ms == 0:
             seen = _everyone(mission, ours, now_ms)
-            lines = [(one, one.beat(Sense(now_ms, seen, cooperating))) for one in ours]
+            told = tuple((one.id, one.flies) for one in ours if one.instance and one.flies)
+            lines = [(one, one.beat(Sense(now_ms, seen, cooperating), told)) for one in ours]
             for one, modes in lines:
                 one.hear(modes, now_ms)
         for one in ours:
@@ -183,11 +184,20 @@ class _Ours:
         self._chain = self._chain.enter(Phase.TRANSIT, track or straight, at_ms)
         self._command(self.state.gate.epoch)
 
-    def beat(self, sense: Sense) -> list[SetMode]:
-        """A heartbeat of its instance: what it wishes and steers; the modes that it tells UxAS."""
+    @property
+    def flies(self) -> tuple[Position, ...]:
+        """The way that UxAS flies it by, as it was told; () while ICAROUS has it."""
+        return () if self._chain.suspended else self._told.points
+
+    def beat(
+        self, sense: Sense, ways: tuple[tuple[int, tuple[Position, ...]], ...]
+    ) -> list[SetMode]:
+        """A heartbeat of its instance: what it wishes and steers; the modes that it tells UxAS. ways: by which UxAS
+        flies everybody that has an instance."""
         if self.instance is None:
             return []
-        told = replace(self._icarous.told, heard_ms=sense.now_ms)
+        others = tuple(one for one in ways if one[0] != self.id)
+        told = replace(self._icarous.told, heard_ms=sense.now_ms, others=others)
         self._icarous = replace(self._icarous, told=told)
         if track_is_told(
             self._chain.suspended, self._chain.route_version != self._chain.told_version

@@ -6,7 +6,8 @@ ICAROUS's gate is in, at each heartbeat while ICAROUS flies), SETVEL, HBEAT. A S
 the vehicle's own report of its gate says the same; one of an epoch that was never given is refused and
 said. On a takeover the executive suspends the vehicle, and ICAROUS
 is told the resume point by RESET_SFT; on an offer the executive takes the vehicle back in the new
-epoch. Which mode is believed and who counts as alive is decided by the kernels of
+epoch. The way that UxAS flies a vehicle by is told to the instances of the others too (OTHER), and that it is over as
+ICAROUS takes the vehicle. Which mode is believed and who counts as alive is decided by the kernels of
 `core.authority.link_end`.
 """
 
@@ -70,7 +71,7 @@ from cratous.spec.authority.link_end import (
     SUSPEND,
     TAKE_BACK,
 )
-from cratous.spec.mission import Zone
+from cratous.spec.mission import Position, Zone
 
 LINK_LOST_MS = 2000
 """A vehicle's ICAROUS counts as silent when nothing came up for this long [ms]."""
@@ -90,7 +91,8 @@ class Peer:
     marks_m: arc length of each waypoint told, from from_m of the vehicle's track on; reached: how
     many of them are told to be reached; down: heartbeats sent; heard_ms: when it was last heard; gate: as
     the vehicle has reported it last; way: the lines of the way told last; again: how often lines of the
-    plan and of which zone were sent again, ((tag, zone), times).
+    plan and of which zone were sent again, ((tag, zone), times); flies: the way that UxAS flies the vehicle by, as the
+    others' instances are told it, () while ICAROUS has it.
     """
 
     vehicle_id: int
@@ -104,6 +106,7 @@ class Peer:
     gate: Gate = UNTOUCHED
     way: tuple[Message, ...] = ()
     again: tuple[tuple[tuple[str, int], int], ...] = ()
+    flies: tuple[Position, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -149,7 +152,26 @@ class UxasEnd:
         if peer is None:
             return state, ()
         after, out = self._of_one(peer, message)
-        return state.with_peer(after), out
+        state = state.with_peer(after)
+        if after.flies != peer.flies:
+            out = (*out, *self._to_others(state, after))
+        return state, out
+
+    def _to_others(self, state: State, peer: Peer) -> tuple[Down, ...]:
+        """The way that a vehicle flies, to the instances of the others."""
+        told = link_lines.way_of_another(peer.vehicle_id, peer.flies, self.projection)
+        return tuple(
+            down for p in state.peers if p.vehicle_id != peer.vehicle_id for down in _down(p, told)
+        )
+
+    def _of_others(self, state: State, vehicle_id: int) -> list[Message]:
+        """The ways that the others fly, to the instance of one vehicle."""
+        return [
+            line
+            for p in state.peers
+            if p.vehicle_id != vehicle_id and p.flies
+            for line in link_lines.way_of_another(p.vehicle_id, p.flies, self.projection)
+        ]
 
     def _again(self, state: State, vehicle_id: int, line: LinesMissing, now_ms: int) -> Step:
         """What an instance asks for again: those lines and the one that ends them, so often and no more."""
@@ -221,7 +243,8 @@ class UxasEnd:
                 state = state.with_peer(peer)
             else:
                 state = replace(state, peers=(*state.peers, peer))
-            out += _down(peer, [*self._fences(state.zones, 0), *_way_on(peer)])
+            others = self._of_others(state, vid)
+            out += _down(peer, [*self._fences(state.zones, 0), *_way_on(peer), *others])
             out.append(_status(peer, True, now_ms, "connected again" if old else "connected"))
         return state, tuple(out)
 
@@ -231,7 +254,9 @@ class UxasEnd:
         fences = self._fences(zones, known if more else 0)
         out: list[FromLinkEnd] = []
         for peer in state.peers:
-            out += _down(peer, fences if more else [HardReset(), *fences, *_way_on(peer)])
+            others = self._of_others(state, peer.vehicle_id)
+            anew = [HardReset(), *fences, *_way_on(peer), *others]
+            out += _down(peer, fences if more else anew)
             state = state.with_peer(replace(peer, again=()))
         return replace(state, zones=zones), tuple(out)
 
@@ -246,7 +271,13 @@ class UxasEnd:
         track = Track(route.points)
         told = link_lines.way(track.points, route.speed_m_s, self.projection)
         after = replace(
-            peer, marks_m=track.s_m, from_m=route.from_m, reached=0, way=tuple(told), again=()
+            peer,
+            marks_m=track.s_m,
+            from_m=route.from_m,
+            reached=0,
+            way=tuple(told),
+            again=(),
+            flies=track.points,
         )
         return after, _down(peer, told)
 
@@ -316,6 +347,7 @@ def _mode(peer: Peer, line: SetMode, now_ms: int) -> OfOne:
     linked = link_mode(peer.end, peer.gate, line.mode == "ACTIVE", epoch)
     after, vid = replace(peer, end=linked.end), peer.vehicle_id
     if linked.act == SUSPEND:
+        after = replace(after, flies=())
         return after, (Suspend(vid, now_ms, linked.act),)
     if linked.act == TAKE_BACK:
         return after, (TakeBack(vid, now_ms, linked.act, epoch),)

@@ -13,6 +13,7 @@ from cratous.bridge.text_protocol import (
     SoftReset,
     StartMission,
     Traffic,
+    WayOfAnother,
     Waypoint,
 )
 from cratous.core.authority.gate import UXAS, Gate
@@ -82,6 +83,21 @@ def way(points: tuple[Position, ...], speed_m_s: float, projection: Projection) 
         for k, (p, lat, lon) in enumerate(zip(points, lats, lons, strict=True))
     ]
     return [SoftReset(), *waypoints, StartMission()]
+
+
+def way_of_another(
+    vehicle_id: int, points: tuple[Position, ...], projection: Projection
+) -> list[Message]:
+    """The way that another vehicle flies, as OTHER lines; without points one line, which says that none is known."""
+    if not points:
+        return [WayOfAnother(vehicle_id, 0, 0.0, 0.0, 0.0, 0)]
+    lats, lons = projection.to_geodetic_many(
+        [p.north_m for p in points], [p.east_m for p in points]
+    )
+    return [
+        WayOfAnother(vehicle_id, len(points), float(lat), float(lon), p.alt_m, k)
+        for k, (p, lat, lon) in enumerate(zip(points, lats, lons, strict=True))
+    ]
 
 
 def reset_to(p: Position, projection: Projection) -> SoftReset:

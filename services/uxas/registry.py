@@ -13,6 +13,7 @@ from typing import Any
 from cratous.bridge.text_protocol.handshake import secret_of_environment
 from cratous.services.icarous_communication import service as icarous_communication
 from cratous.services.icarous_communication import settings as icarous_settings
+from cratous.services.icarous_communication.proposals import Proposals
 from cratous.services.icarous_communication.routes import GROUP, PLANNERS, Routes
 from cratous.services.loading.uxas_settings import Attr, Entry, choice, flag, number, whole
 from cratous.services.logs.message_logger import MessageLogger
@@ -219,8 +220,9 @@ def _icarous(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int
     if given.planner in range(len(PLANNERS)):
         contexts = contexts_of(host)
         routes = Routes(name, contexts, given.planner, given.answer_s, given.dialect)
+    proposals = Proposals() if given.live else None
     return icarous_communication.IcarousCommunicationService(
-        name, host.bus, host.log, given, secret_of_environment(), routes
+        name, host.bus, host.log, given, secret_of_environment(), routes, proposals
     )
 
 

@@ -21,6 +21,7 @@ from cratous.bridge.text_protocol import (
     SetMode,
     SoftReset,
     StartMission,
+    WayOfAnother,
     WaypointReached,
 )
 from cratous.core.authority.gate import ICAROUS, UXAS, Gate
@@ -160,7 +161,8 @@ def test_a_mode_that_cannot_be_true_is_refused(mode: str, epoch: int | None, rea
 
 def test_waypoints_are_told_and_reached_once() -> None:
     state, out = after(*ALL[:3])
-    (down,) = out
+    down, to_other = out
+    assert [type(line) for line in to_other.lines] == [WayOfAnother] * len(WAY)
     assert isinstance(down.lines[0], SoftReset)
     assert isinstance(down.lines[-1], StartMission)
     state, out = after(messages.Flown(1, 110.0), state=state)
