@@ -1,6 +1,7 @@
-"""Makes pages, map, SARIF, full report and PDF again from the report, and holds the signed files against them.
+"""Makes pages, map, SARIF, full report, PDF and MCAP again, and holds the signed files against them.
 
-What differs was tampered with, if the code that runs here is that of the report. Other code may make other pages:
+All but MCAP, which has the messages of the log, are made from the report alone. What differs was tampered with, if
+the code that runs here is that of the report. Other code may make other pages:
 then it is said that nobody looked into them.
 """
 
@@ -8,25 +9,33 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
+from importlib.metadata import version
 from typing import Any, NamedTuple
 
 from cratous.core import ledger
 from cratous.services.attestation.findings import Subject
-from cratous.services.attestation.names import FULL_NAME, FULL_PDF_NAME, PDF_NAME, SARIF_NAME
+from cratous.services.attestation.names import (
+    FULL_NAME,
+    FULL_PDF_NAME,
+    MCAP_NAME,
+    PDF_NAME,
+    SARIF_NAME,
+    WRITTEN_BY,
+)
 from cratous.services.attestation.sarif import sarif
 from cratous.services.attestation.signed_files import Place
 from cratous.services.attestation.statement import RESULTS
 from cratous.services.attestation.statement import VIEWS as MADE
 from cratous.services.certify.html import map_svg, render
 from cratous.services.certify.running_code import code_digest
-from cratous.services.results.names import HTML_NAME, MAP_NAME, REPORT_NAME
+from cratous.services.results.names import HTML_NAME, LOG_NAME, MAP_NAME, REPORT_NAME
 from cratous.spec.errors import BadInput, CratousError
 from cratous.spec.files.limits import DOCUMENT_BYTES, json_of
 
 WITH_LEDGER = (FULL_NAME, FULL_PDF_NAME)
 """What these say of the assurance argument is made from the ledger as it was when they were written."""
 View = Callable[[Subject, str], bytes]
-"""Makes one of the views for people by its name (`full_report.views.view`)."""
+"""Makes one of the views for people, or MCAP, by its name."""
 
 
 class Again(NamedTuple):
@@ -48,7 +57,7 @@ def pages_again(place: Place, named: dict[str, str], subject: Subject, view: Vie
             )
             continue
         except CratousError as error:
-            found.refused.append(f"{called}: {REPORT_NAME} gives none: {error}")
+            found.refused.append(f"{called}: {_of(called)} gives none: {error}")
             continue
         if _is(place, called, made):
             continue
@@ -56,7 +65,7 @@ def pages_again(place: Place, named: dict[str, str], subject: Subject, view: Vie
         if why:
             found.not_judged.append(f"{called}: {why} makes another one")
         else:
-            found.refused.append(f"{called}: it is not what {REPORT_NAME} gives")
+            found.refused.append(f"{called}: it is not what {_of(called)} gives")
     if f"{MADE}/{SARIF_NAME}" in named:
         lines = f"{MADE}/{SARIF_NAME}: whether its lines of the mission file are right"
         found.not_judged.append(lines)
@@ -68,9 +77,14 @@ def _makers(
 ) -> Iterator[tuple[str, Callable[[], bytes]]]:
     yield f"{RESULTS}/{HTML_NAME}", lambda: render(subject.report).encode()
     yield f"{RESULTS}/{MAP_NAME}", lambda: map_svg(subject.report).encode()
-    for name in (FULL_NAME, PDF_NAME, FULL_PDF_NAME):
+    for name in (FULL_NAME, PDF_NAME, FULL_PDF_NAME, MCAP_NAME):
         if f"{MADE}/{name}" in named:
             yield f"{MADE}/{name}", lambda name=name: view(subject, name)  # type: ignore[misc]
+
+
+def _of(called: str) -> str:
+    """What a file is made from."""
+    return LOG_NAME if called.endswith(MCAP_NAME) else REPORT_NAME
 
 
 def _is(place: Place, called: str, made: bytes) -> bool:
@@ -83,7 +97,11 @@ def _other(called: str, subject: Subject) -> str:
     told = subject.report["environment"].get("code")
     if told is None or told["digest"] != code_digest():
         return "the code that runs here, which is not that of the report,"
-    if called.split("/")[1] in WITH_LEDGER and _seal() != subject.report["proofs"]["seal"]:
+    name = called.split("/")[1]
+    for package, wanted in WRITTEN_BY.get(name, ()):
+        if version(package) != wanted:
+            return f"{package} {version(package)}, where {wanted} is asked for,"
+    if name in WITH_LEDGER and _seal() != subject.report["proofs"]["seal"]:
         return "the ledger that is here, which is not that of the report,"
     return ""
 
