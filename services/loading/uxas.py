@@ -19,14 +19,30 @@ from cratous.services.loading.places import Places
 from cratous.services.loading.polygons import one_region
 from cratous.services.loading.request_kinds import WRAPPED, is_request
 from cratous.services.loading.start_distances import close_starts
-from cratous.services.loading.uxas_cfg import Configuration, Sent, read_all, scenario_states
+from cratous.services.loading.uxas_cfg import (
+    Configuration,
+    Sent,
+    plans_live,
+    read_all,
+    scenario_states,
+)
 from cratous.services.loading.uxas_requests import request_of
 from cratous.services.loading.uxas_tasks import Interests, other
 from cratous.services.loading.uxas_tasks import task as read_task
 from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR, finish
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import integer_of
-from cratous.spec.mission import Daa, Frame, Mission, Simulation, Task, Vehicle, Zone, ZoneKind
+from cratous.spec.mission import (
+    Daa,
+    Frame,
+    LivePlanningMission,
+    Mission,
+    Simulation,
+    Task,
+    Vehicle,
+    Zone,
+    ZoneKind,
+)
 
 LIMIT_MS = 86_400_000
 """UxAS knows no end of the simulation: a day."""
@@ -74,7 +90,7 @@ def mission_of(
     settings = _settings(cfg, notes)
     order = "order" if _compatible(cfg) else "time"
     folder = cfg.path.resolve().parent.name
-    mission = Mission(
+    mission = (LivePlanningMission if plans_live(cfg) else Mission)(
         name=parts.safe_name(folder or cfg.path.stem),
         source=source,
         frame=frame,
