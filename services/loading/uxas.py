@@ -12,20 +12,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from cratous.services.loading import uxas_parts as parts
-from cratous.services.loading.assignment_attributes import Settings, settings_of
+from cratous.services.loading.assignment_attributes import Settings, plans_live, settings_of
 from cratous.services.loading.checks import too_many_instances
 from cratous.services.loading.document import item_key
 from cratous.services.loading.places import Places
 from cratous.services.loading.polygons import one_region
 from cratous.services.loading.request_kinds import WRAPPED, is_request
 from cratous.services.loading.start_distances import close_starts
-from cratous.services.loading.uxas_cfg import (
-    Configuration,
-    Sent,
-    plans_live,
-    read_all,
-    scenario_states,
-)
+from cratous.services.loading.uxas_cfg import Configuration, Sent, read_all, scenario_states
 from cratous.services.loading.uxas_requests import request_of
 from cratous.services.loading.uxas_tasks import Interests, other
 from cratous.services.loading.uxas_tasks import task as read_task
@@ -90,7 +84,8 @@ def mission_of(
     settings = _settings(cfg, notes)
     order = "order" if _compatible(cfg) else "time"
     folder = cfg.path.resolve().parent.name
-    mission = (LivePlanningMission if plans_live(cfg) else Mission)(
+    live = plans_live(cfg.service("IcarousCommunicationService"))
+    mission = (LivePlanningMission if live else Mission)(
         name=parts.safe_name(folder or cfg.path.stem),
         source=source,
         frame=frame,

@@ -239,10 +239,3 @@ def _join(base: Path, name: str) -> Path:
     import os.path
 
     return Path(os.path.normpath(base / name))
-
-
-def plans_live(cfg: Configuration) -> bool:
-    """Whether ICAROUS may ask UxAS's planner for ways back."""
-    found = cfg.service("IcarousCommunicationService")
-    text = "" if found is None else found[0].get("UseUxasRoutePlanner", "")
-    return text.strip().lower() in ("true", "1")
