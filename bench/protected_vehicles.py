@@ -15,10 +15,9 @@ import argparse
 import sys
 import tempfile
 import time
-from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,7 +26,7 @@ from cratous.services.bus import Bus, Envelope
 from cratous.services.flight.loop import fly
 from cratous.services.logs.message_logger import MessageLogger
 from cratous.services.pipeline.plan import make_plan
-from cratous.services.uxas.daidalus.detection import STATE, DaidalusDetection
+from cratous.services.uxas.daidalus.detection import DaidalusDetection
 from cratous.spec.daa.presets import preset
 from cratous.spec.mission import (
     Daa,
@@ -57,15 +56,6 @@ class Figures(NamedTuple):
     beats: int
     bands: int
     takeovers: int
-
-
-class Bands(DaidalusDetection):
-    """The detection service of one vehicle that looks at whole seconds alone."""
-
-    def handle(self, state: Any, envelope: Envelope, now_ms: int) -> tuple[Any, Iterable[Any]]:
-        if envelope.topic == STATE and now_ms % BANDS_MS:
-            return state, ()
-        return super().handle(state, envelope, now_ms)
 
 
 def mission(count: int) -> Mission:
@@ -120,7 +110,7 @@ def measured(count: int, seconds: float, bands: bool) -> Figures:
         bus.tap(logger.tap)
         parameters = preset("do_365b").parameters
         for k in range(count if bands else 0):
-            bus.add(Bands(f"bands {k + 1}", k + 1, parameters))
+            bus.add(DaidalusDetection(f"bands {k + 1}", k + 1, parameters, BANDS_MS))
 
         def tap(envelope: Envelope) -> None:
             found[0] += type(envelope.body).__name__ == "WellClearViolationIntervals"
