@@ -47,6 +47,7 @@ from cratous.services.flight.messages import (
     Over,
     Planned,
     Report,
+    RouteAsked,
     Say,
     Sense,
     SetOut,
@@ -74,7 +75,7 @@ from cratous.services.icarous.messages import (
 )
 from cratous.services.mission.frames import Projection
 from cratous.spec.errors import NoPlan
-from cratous.spec.mission import FaultySimulation, Mission
+from cratous.spec.mission import FaultySimulation, LivePlanningMission, Mission
 from cratous.spec.mission.plan import Plan
 
 Segmenter = Callable[[bytes], Iterable[bytes]]
@@ -125,7 +126,8 @@ class Flight:
         floor = floor_of(mission)
         self.executive = Executive(Config(mission, projection, instances))
         self.executive_state = executive_state.first_state(mission, plan)
-        self.link, self.link_state = UxasEnd(projection), link_end.State()
+        live = isinstance(mission, LivePlanningMission)
+        self.link, self.link_state = UxasEnd(projection, live), link_end.State()
         self.vehicles = {
             v.id: VehicleNode(v, projection, simulation.step_ms / 1000, floor)
             for v in sorted(mission.vehicles, key=lambda v: v.id)
@@ -251,7 +253,7 @@ class Flight:
             match answer:
                 case Say(body, source):
                     self._publish(body, source)
-                case Suspend() | TakeBack():
+                case Suspend() | TakeBack() | RouteAsked():
                     self._executive(answer)
                 case LimitsAre(vid) | Look(vid):
                     self._vehicle(vid, answer)

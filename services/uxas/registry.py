@@ -207,7 +207,8 @@ def _leash(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) 
 
 
 def _detection(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return detection.DaidalusDetection(name, _vehicle(host, v), daidalus.parameters_of(entry, v))
+    parameters, period_ms = daidalus.parameters_of(entry, v), round(1000 * v["Period_s"])
+    return detection.DaidalusDetection(name, _vehicle(host, v), parameters, period_ms)
 
 
 def _response(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
@@ -331,7 +332,9 @@ KINDS: dict[str, Kind] = {
     "IcarousCommunicationService": Kind(
         icarous_settings.ATTRIBUTES, _icarous, single=True, plans=True
     ),
-    "DAIDALUS_WCV_Detection": Kind(daidalus.ATTRIBUTES, _detection, plans=True),
+    "DAIDALUS_WCV_Detection": Kind(
+        {**daidalus.ATTRIBUTES, "Period_s": number(0.0, 0.0, 60.0)}, _detection, plans=True
+    ),
     "DAIDALUS_WCV_Response": Kind(
         {
             "VehicleID": whole(-1, -1),
