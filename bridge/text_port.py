@@ -38,6 +38,7 @@ from cratous.bridge.text_protocol.messages import (
     Message,
     NotKnown,
     UxasPlans,
+    VelocityOfAnother,
     WayOfAnother,
 )
 from cratous.bridge.text_protocol.parser import Record, WireError
@@ -53,6 +54,7 @@ OURS = (
     UxasPlans,
     IcarousPlans,
     WayOfAnother,
+    VelocityOfAnother,
 )
 """What a peer of another dialect than ours is not sent."""
 PATIENCE_S = 1.0

@@ -193,6 +193,7 @@ LAYOUTS: tuple[Layout, ...] = (
             _count("index", "index", 0, "waypoint_index"),
         ),
     ),
+    Layout("OVELO", _DOWN, messages.VelocityOfAnother, (_count("id", "vehicle_id", 0), *_VELOCITY)),
     Layout(
         "WPREQ",
         _DOWN,

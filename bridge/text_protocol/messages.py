@@ -171,6 +171,17 @@ class WayOfAnother(Message):
 
 
 @dataclass(frozen=True)
+class VelocityOfAnother(Message):
+    """OVELO (our dialect): another of UxAS's vehicles is steered by its ICAROUS, to this velocity."""
+
+    tag: ClassVar[str] = "OVELO"
+    vehicle_id: int
+    north_mps: float
+    east_mps: float
+    down_mps: float
+
+
+@dataclass(frozen=True)
 class RouteRequest(Message):
     """WPREQ: plan a route with the planner GRID, ASTAR, RRT or SPLINE. request (our dialect): a number that the
     lines of the answer bear too. In our dialect ICAROUS asks UxAS as well: then UxAS's own planner plans."""

@@ -17,13 +17,14 @@ from cratous.bridge.text_protocol import (
     SoftReset,
     StartMission,
     Traffic,
+    VelocityOfAnother,
     WayOfAnother,
     Waypoint,
 )
 from cratous.core.authority.gate import UXAS, Gate
 from cratous.services.flight.dynamics import AirState
 from cratous.services.mission.frames import Projection
-from cratous.spec.mission import Position, Zone, ZoneKind
+from cratous.spec.mission import Position, Velocity, Zone, ZoneKind
 
 FAR_M = 1e6
 """Altitudes beyond this are sent as this [m]: no aircraft is there."""
@@ -89,10 +90,14 @@ def way(points: tuple[Position, ...], speed_m_s: float, projection: Projection) 
     return [SoftReset(), *waypoints, StartMission()]
 
 
-def way_of_another(
-    vehicle_id: int, points: tuple[Position, ...], projection: Projection
-) -> list[Message]:
-    """The way that another vehicle flies, as OTHER lines; without points one line, which says that none is known."""
+Flies = tuple[Position, ...] | Velocity
+"""The way that UxAS flies a vehicle by, or the velocity to which ICAROUS steers it."""
+
+
+def way_of_another(vehicle_id: int, points: Flies, projection: Projection) -> list[Message]:
+    """How another vehicle flies, as OTHER lines, or OVELO; without points one line, which says that it is not known."""
+    if isinstance(points, Velocity):
+        return [VelocityOfAnother(vehicle_id, *points)]
     if not points:
         return [WayOfAnother(vehicle_id, 0, 0.0, 0.0, 0.0, 0)]
     lats, lons = projection.to_geodetic_many(

@@ -11,12 +11,13 @@ from cratous.bridge.text_protocol import (
     Message,
     SoftReset,
     StartMission,
+    VelocityOfAnother,
     WayOfAnother,
     Waypoint,
     WaypointReached,
 )
 from cratous.services.mission.frames import Projection
-from cratous.spec.mission import Position, Zone, ZoneKind
+from cratous.spec.mission import Position, Velocity, Zone, ZoneKind
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,7 @@ class Told:
     waypoints: the plan in force; next_index: the one to fly to; resume: where the task's path was
     left, while ICAROUS has control; gathering and vertices: what is not yet complete.
     heard_ms: when UxAS was last heard; others: the ways that UxAS flies other vehicles by, and of_others: lines
-    of them that are not yet complete.
+    of them that are not yet complete; steered: to which velocity its ICAROUS steers another vehicle.
     """
 
     zones: tuple[Zone, ...] = ()
@@ -40,6 +41,7 @@ class Told:
     started: bool = False
     others: tuple[tuple[int, tuple[Position, ...]], ...] = ()
     of_others: tuple[WayOfAnother, ...] = ()
+    steered: tuple[tuple[int, Velocity], ...] = ()
 
     def way_of(self, vehicle_id: int) -> tuple[Position, ...]:
         """The way that UxAS flies another vehicle by; () if none is known."""
@@ -74,7 +76,14 @@ def _hear(told: Told, message: Message, projection: Projection, original: bool) 
     if isinstance(message, FenceDone):
         return _close_fence(told, message, projection)
     if isinstance(message, WayOfAnother):
-        return _of_another(told, message, projection)
+        steered = tuple(one for one in told.steered if one[0] != message.vehicle_id)
+        return _of_another(replace(told, steered=steered), message, projection)
+    if isinstance(message, VelocityOfAnother):
+        vid = message.vehicle_id
+        steered = tuple(one for one in told.steered if one[0] != vid)
+        to = Velocity(message.north_mps, message.east_mps, message.down_mps)
+        others = tuple(one for one in told.others if one[0] != vid)
+        return replace(told, others=others, steered=(*steered, (vid, to)))
     return told
 
 

@@ -98,7 +98,9 @@ class Instance:
         cycle = cycle_begun(state.cycle, commands, sensed.now_ms)
         flew, watches = state.cycle.mode != MONITOR, cycle.mode == MONITOR
         now, beat_s = courses(sensed.intruders), self.config.heartbeat_ms / 1000
-        ways, others = with_ways(state.ways, state.told, sensed, self.config.daa, beat_s)
+        ways, others = with_ways(
+            state.ways, state.told, sensed, self.config.daa, beat_s, state.courses
+        )
         sensed = sensed._replace(intruders=others)
         # one whose way is known is where that leads, in a turn too
         in_turn = turning(now, state.courses, beat_s) - {o.id for o in others if o.way}

@@ -11,17 +11,24 @@ import math
 from bisect import bisect_right
 from typing import NamedTuple
 
+from cratous.core.avoidance.manoeuvre import Motion, fly_to, smallest_turn
 from cratous.core.avoidance.prediction import Intruder, Piece, after
+from cratous.core.avoidance.way_ahead import turns
 from cratous.core.kernel import Vec2
 from cratous.core.permit.tubes import disc_within
 from cratous.core.routing.polylines import Track
 from cratous.services.icarous.ending import TRACKING_S, TURN_MARGIN
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.traffic_monitor import TURNING_RAD_S, Tracks
 from cratous.spec.mission import Daa, Position, Velocity
 
 WINDOW_BEATS = 4
 """Where a vehicle is on its way is looked for as far ahead of where it was as it flies in so many heartbeats."""
+
+
+ALWAYS_S = 3600.0
+"""One that ICAROUS steers is taken to fly on straight for this long [s]."""
 
 
 class Followed(NamedTuple):
@@ -37,14 +44,18 @@ Ways = tuple[Followed, ...]
 
 
 def with_ways(
-    before: Ways, told: Told, sensed: Sensed, daa: Daa, beat_s: float
+    before: Ways, told: Told, sensed: Sensed, daa: Daa, beat_s: float, courses: Tracks = ()
 ) -> tuple[Ways, tuple[Intruder, ...]]:
     """The ways that were told, and everybody as is to be reckoned with: by the way that was told while it is kept to.
-    before: what this was at the last heartbeat; beat_s: from one to the next [s]."""
+    before, courses: what this and everybody's course were at the last heartbeat; beat_s: from one to the next [s]."""
+    steered, was = dict(told.steered), dict(courses)
     known = {one.vehicle_id: one for one in before}
     ways, others = list[Followed](), list[Intruder]()
     for other in sensed.intruders:
         points = told.way_of(other.id)
+        if other.id in steered:
+            others.append(_steered(other, steered[other.id], was.get(other.id), sensed, beat_s))
+            continue
         if not points:
             others.append(other)
             continue
@@ -72,6 +83,31 @@ def _hold_m(other: Intruder, sensed: Sensed) -> float:
     speed = _speed_m_s(other)
     tightest_m = speed**2 / (sensed.motion.speed_m_s * sensed.ability.turn_rate_rad_s)
     return 2 * TURN_MARGIN * tightest_m + TRACKING_S * speed
+
+
+def _steered(
+    other: Intruder, to: Velocity, was_rad: float | None, sensed: Sensed, beat_s: float
+) -> Intruder:
+    """One that turns to a velocity and then flies straight on, if it banks like this one and turns there; was_rad:
+    its course a heartbeat ago."""
+    speed, v = _speed_m_s(other), other.velocity
+    course, goal = _course_rad(v), _course_rad(to)
+    if not speed:
+        return other
+    if was_rad is not None:
+        detour = abs(smallest_turn(was_rad, course)) + abs(smallest_turn(course, goal))
+        if turns(detour - abs(smallest_turn(was_rad, goal)), TURNING_RAD_S, beat_s):
+            return other
+    motion, own = sensed.motion, sensed.ability
+    rate = own.turn_rate_rad_s * motion.speed_m_s / speed
+    ability = own._replace(turn_rate_rad_s=rate)
+    now = Motion(other.position, course, speed, -v.down_m_s)
+    way = fly_to(now, ability, goal, math.hypot(*to[:2]), -to.down_m_s, ALWAYS_S, ALWAYS_S)
+    return other._replace(way=way)
+
+
+def _course_rad(v: Velocity) -> float:
+    return math.atan2(v.east_m_s, v.north_m_s)
 
 
 def _keeps(told: Position, now: Position, daa: Daa) -> bool:

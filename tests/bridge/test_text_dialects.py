@@ -45,6 +45,7 @@ THESIS_LINES = [
     (tp.EpochTold("UXAS", 5), "EPOCHtype_UXAS_,epoch5,\n"),
     (tp.WayOfAnother(3, 7, 45.3, -121.0, 700.0, 2),
      "OTHERid3,total7,lat45.3,long-121,alt700,index2,\n"),
+    (tp.VelocityOfAnother(3, 10.0, 20.0, 1.5), "OVELOid3,north10,east20,down1.5,\n"),
     (tp.SetMode("ACTIVE"), "SETMOtype_ACTIVE_,\n"),
     (tp.SetVelocity(10.0, 20.0, 1.5), "SETVEnorth10,east20,down1.5,\n"),
     (tp.SetPosition(45.312, -120.955, 710.0), "SETPOlat45.312,long-120.955,alt710,\n"),

@@ -8,7 +8,13 @@ from itertools import pairwise
 import pytest
 from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME
 
-from cratous.bridge.text_protocol import HardReset, Message, SoftReset, WayOfAnother
+from cratous.bridge.text_protocol import (
+    HardReset,
+    Message,
+    SoftReset,
+    VelocityOfAnother,
+    WayOfAnother,
+)
 from cratous.core.authority.gate import Gate
 from cratous.core.avoidance.manoeuvre import way_along
 from cratous.core.avoidance.prediction import Intruder, Piece, first_violation_s, later, meetings
@@ -130,3 +136,18 @@ def test_no_instant_is_left_out_where_ways_are_cut() -> None:
     for run, straight_on in runs:
         middle = run[0].start_s + run[0].duration_s / 2
         assert later(straight_on, middle).position == pytest.approx(later(one, middle).position)
+
+
+@pytest.mark.parametrize(("was_deg", "turns"), [(85, True), (90, True), (95, False), (None, True)])
+def test_one_that_is_steered_is_predicted_to_turn_there(was_deg: float | None, turns: bool) -> None:
+    """To the south, from the east. From where it would have turned away the last time it is taken to fly straight on."""
+    told = heard([*way_of_another(2, CORNER, PROJECTION), VelocityOfAnother(2, -20.0, 0.0, 0.0)])
+    assert told.way_of(2) == ()
+    sensed = Sensed(0, NORTH, ABILITY, (EAST,), Gate(0, 0, False))
+    before = () if was_deg is None else ((2, math.radians(was_deg)),)
+    _, (one,) = with_ways((), told, sensed, DAA, 0.5, before)
+    assert bool(one.way) is turns
+    if turns:
+        assert one.way[-1].velocity == pytest.approx((-20.0, 0.0, 0.0))
+        assert one.way[0].velocity.east_m_s > 19.0
+    assert heard(way_of_another(2, CORNER, PROJECTION), told).steered == ()
