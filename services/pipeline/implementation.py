@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from cratous.bridge import lmcp
+from cratous.core.authority.timeliness import lasted
 from cratous.services.mission.sensor import zoomed
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.outside import Outside
@@ -18,6 +19,10 @@ from cratous.services.planning.targets import Angles, flown_view
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Camera, Position, Task
 from cratous.spec.mission.plan import Hold
+
+ROUNDED_MS = 50
+"""A shorter wait than this [ms] is none: a way that ICAROUS has found comes by places of six decimals, and may be so
+much shorter than UxAS's own, by which the start was planned."""
 
 
 def offer(context: Context, task_id: int, options: Sequence[Option]) -> Any:
@@ -82,8 +87,9 @@ def implemented(
     path = places.spaced(option.path, option.flyer.radius_m, outside)
     mine = places.waypoints(path, first + len(points), speed, [task.id])
     wait = max(0, request.TimeThreshold - request.StartTime - plan.RouteCost)
-    hold = hold_of(option, wait, context.inputs.zones) if wait > 0 else None
-    if wait > 0 and hold is None:
+    holds = lasted(0, wait, ROUNDED_MS)
+    hold = hold_of(option, wait, context.inputs.zones) if holds else None
+    if holds and hold is None:
         raise NoPlan(
             (
                 f"vehicle {request.VehicleID} has to wait {wait / 1000:.3f} s before task "
