@@ -125,7 +125,7 @@ def vehicle(configuration: Sent, state: Sent, places: Places, notes: list[str]) 
 
 
 def _cameras(configuration: Any, state: Any) -> tuple[Camera, ...]:
-    """Each camera on a gimbal, with its present field of view."""
+    """Each camera on a gimbal, with the widest field of view that it can be told, or its present one."""
     payloads = list(configuration.PayloadConfigurationList)
     views = {
         part.PayloadID: part.HorizontalFieldOfView
@@ -140,8 +140,11 @@ def _cameras(configuration: Any, state: Any) -> tuple[Camera, ...]:
                 continue
             width = camera.VideoStreamHorizontalResolution
             height = camera.VideoStreamVerticalResolution
-            view = views.get(camera.PayloadID, 0) or camera.MaxHorizontalFieldOfView
-            fields = {camera.MinHorizontalFieldOfView, *camera.DiscreteHorizontalFieldOfViewList}
+            discrete = camera.DiscreteHorizontalFieldOfViewList
+            stepped = camera.FieldOfViewMode.name == "Discrete" and discrete
+            widest = max(discrete) if stepped else camera.MaxHorizontalFieldOfView
+            view = max(widest, views.get(camera.PayloadID, 0))
+            fields = {camera.MinHorizontalFieldOfView, *discrete}
             narrower = tuple(sorted(radians(field) for field in fields if 0 < field < view))
             found.append(
                 Camera(

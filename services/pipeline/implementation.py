@@ -136,12 +136,10 @@ def _views(task: Task, option: Option, terrain_m: float) -> list[Any]:
 
 
 def _zoom(task: Task, camera: Camera | None, height_m: float) -> list[Any]:
-    """The camera's field of view, if the task asks for another than the present one."""
-    if camera is None:
+    """The field of view for which the option was made, if the camera has several: it may be set to any."""
+    if camera is None or not camera.zoom_rad:
         return []
     narrow = zoomed(camera, task, height_m)
-    if narrow == camera:
-        return []
     return [
         lmcp.new(
             "CameraAction",

@@ -165,6 +165,27 @@ def test_over_an_area_the_gimbal_is_held_at_the_planned_view(tmp_path: Path) -> 
     assert (look.Azimuth, look.Elevation) == pytest.approx((60.0, -45.0))
 
 
+def test_an_area_is_searched_with_the_widest_view_that_the_camera_has_and_it_is_told(
+    tmp_path: Path,
+) -> None:
+    """As the vehicle tells its state, its camera is zoomed in, which is no reason to search that way."""
+    made = []
+    for zoomed in ([], [lmcp.new("CameraState", PayloadID=2, HorizontalFieldOfView=15.0)]):
+        configuration, state = aircraft(50.0)
+        gimbal, camera = configuration.PayloadConfigurationList
+        both = [gimbal, camera.copy(MinHorizontalFieldOfView=10.0)]
+        rig = Rig(tmp_path)
+        state = state.copy(PayloadStateList=[*state.PayloadStateList, *zoomed])
+        rig.tell(configuration.copy(PayloadConfigurationList=both), state)
+        rig.tell(shape("AreaSearchTask"), request(5))
+        (mission,) = rig.got("AutomationResponse")[-1].MissionCommandList
+        actions = [a for point in mission.WaypointList for a in point.VehicleActionList]
+        told = [a for a in actions if a.type_name == "CMASI/CameraAction"]
+        assert [(a.PayloadID, a.HorizontalFieldOfView) for a in told] == [(2, pytest.approx(50.0))]
+        made.append(len(mission.WaypointList))
+    assert made[0] == made[1]
+
+
 def test_a_point_is_stared_at_and_what_needs_no_look_is_not(tmp_path: Path) -> None:
     rig = Rig(tmp_path)
     rig.tell(*aircraft(50.0), shape("PointSearchTask"), must_fly(6), request(5))
