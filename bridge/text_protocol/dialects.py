@@ -31,7 +31,7 @@ class Dialect(Enum):
 
     @property
     def ours(self) -> bool:
-        """True if the peer knows HELLO, HBEAT, AGAIN, NOCMD, EPOCH, OTHER, OVELO and epochs."""
+        """True if the peer knows HELLO, HBEAT, AGAIN, NOCMD, EPOCH, OTHER, OVELO, epochs, and is asked for ways."""
         return self is Dialect.CRATOUS
 
     @property

@@ -91,6 +91,20 @@ class HardReset(Message):
 
 
 @dataclass(frozen=True)
+class UxasPlans(Message):
+    """COMND UXAS_PLANS (our dialect): UxAS plans live: ICAROUS may ask it for ways by WPREQ."""
+
+    tag: ClassVar[str] = "COMND"
+
+
+@dataclass(frozen=True)
+class IcarousPlans(Message):
+    """COMND ICAROUS_PLANS (our dialect): live planning is ICAROUS's own again, as it is without a word."""
+
+    tag: ClassVar[str] = "COMND"
+
+
+@dataclass(frozen=True)
 class OwnPosition(Message):
     """POSTN: position and velocity of the vehicle itself; altitudes above mean sea level."""
 
@@ -170,7 +184,7 @@ class VelocityOfAnother(Message):
 @dataclass(frozen=True)
 class RouteRequest(Message):
     """WPREQ: plan a route with the planner GRID, ASTAR, RRT or SPLINE. request (our dialect): a number that the
-    lines of the answer bear too."""
+    lines of the answer bear too. In our dialect ICAROUS asks UxAS as well: then UxAS's own planner plans."""
 
     tag: ClassVar[str] = "WPREQ"
     planner: str
@@ -198,11 +212,13 @@ class EpochTold(Message):
 
 @dataclass(frozen=True)
 class SetMode(Message):
-    """SETMOD: ICAROUS takes over (ACTIVE) or hands back (PASSIVE)."""
+    """SETMOD: ICAROUS takes over (ACTIVE) or hands back (PASSIVE). request (our dialect): it hands back onto UxAS's
+    answer to its WPREQ of this number."""
 
     tag: ClassVar[str] = "SETMOD"
     mode: str
     epoch: int | None = None
+    request: int | None = None
 
 
 @dataclass(frozen=True)

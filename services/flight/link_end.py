@@ -26,9 +26,11 @@ from cratous.bridge.text_protocol import (
     LinesMissing,
     Message,
     NotKnown,
+    RouteRequest,
     SetMode,
     SetVelocity,
     StartMission,
+    UxasPlans,
     Waypoint,
     WaypointReached,
 )
@@ -47,7 +49,9 @@ from cratous.services.flight.messages import (
     Heard,
     Left,
     Lost,
+    Proposed,
     Route,
+    RouteAsked,
     Say,
     Seen,
     Suspend,
@@ -133,15 +137,18 @@ Step = tuple[State, tuple[FromLinkEnd, ...]]
 
 @dataclass(frozen=True)
 class UxasEnd:
-    """The service; what does not change: the projection of the mission frame."""
+    """The service; what does not change: the projection of the mission frame. live: ICAROUS may ask for ways back."""
 
     projection: Projection
+    live: bool = False
 
     def handle(self, state: State, message: ToLinkEnd) -> Step:
         """One step: the state afterwards, and what to send, in order."""
         match message:
             case Heard(_, now_ms, LinesMissing() as line) if state.peer(message.vehicle_id):
                 return self._again(state, message.vehicle_id, line, now_ms)
+            case Heard(vid, now_ms, RouteRequest() as line) if self.live and state.peer(vid):
+                return self._asked(state, vid, line, now_ms)
             case Connected(now_ms, vehicle_ids):
                 return self._connected(state, vehicle_ids, now_ms)
             case ZonesKnown(zones):
@@ -158,6 +165,16 @@ class UxasEnd:
         if (after.flies, after.steered) != (peer.flies, peer.steered):
             out = (*out, *_to_others(state, after, self.projection))
         return state, out
+
+    def _asked(self, state: State, vehicle_id: int, line: RouteRequest, now_ms: int) -> Step:
+        """A WPREQ: the executive knows where the vehicle is to go on. Without a number it cannot be answered."""
+        known = state.peer(vehicle_id)
+        assert known is not None
+        peer, out = _sign(replace(known, heard_ms=now_ms), HEARD, now_ms, "heard again")
+        if line.request is not None:
+            start, end = link_lines.asked_way(line, self.projection)
+            out = (*out, RouteAsked(vehicle_id, start, end, line.request))
+        return state.with_peer(peer), out
 
     def _again(self, state: State, vehicle_id: int, line: LinesMissing, now_ms: int) -> Step:
         """What an instance asks for again: those lines and the one that ends them, so often and no more."""
@@ -209,6 +226,10 @@ class UxasEnd:
                 return peer, _down(peer, [link_lines.reset_to(position, self.projection)])
             case Heard(_, now_ms, line):
                 return _heard(peer, line, now_ms)
+            case Proposed(_, number, way, speed_m_s):
+                return peer, _down(
+                    peer, link_lines.proposal(way, speed_m_s, number, self.projection)
+                )
             case GateIs(_, gate):
                 return replace(peer, gate=gate), ()
             case Unreadable(_, now_ms, text):
@@ -230,7 +251,9 @@ class UxasEnd:
             else:
                 state = replace(state, peers=(*state.peers, peer))
             others = _of_others(state, vid, self.projection)
-            out += _down(peer, [*self._fences(state.zones, 0), *_way_on(peer), *others])
+            plans = [UxasPlans()] if self.live else []
+            told = [*plans, *self._fences(state.zones, 0), *_way_on(peer), *others]
+            out += _down(peer, told)
             out.append(_status(peer, True, now_ms, "connected again" if old else "connected"))
         return state, tuple(out)
 
@@ -283,7 +306,7 @@ class UxasEnd:
         return replace(state, peers=tuple(peers)), tuple(out)
 
 
-ToOne = Route | Flown | Seen | Left | Heard | Unreadable | Lost | GateIs
+ToOne = Route | Flown | Seen | Left | Heard | Unreadable | Lost | GateIs | Proposed
 OfOne = tuple[Peer, tuple[FromLinkEnd, ...]]
 
 

@@ -10,6 +10,10 @@ from cratous.bridge.text_protocol import (
     FenceVertex,
     Message,
     OwnPosition,
+    RouteEnd,
+    RoutePoint,
+    RouteRequest,
+    RouteStart,
     SoftReset,
     StartMission,
     Traffic,
@@ -103,6 +107,27 @@ def way_of_another(vehicle_id: int, points: Flies, projection: Projection) -> li
         WayOfAnother(vehicle_id, len(points), float(lat), float(lon), p.alt_m, k)
         for k, (p, lat, lon) in enumerate(zip(points, lats, lons, strict=True))
     ]
+
+
+def asked_way(asked: RouteRequest, projection: Projection) -> tuple[AirState, Position]:
+    """From where, in which flight, and to where a WPREQ asks for a way."""
+    start = projection.to_local(asked.start_lat_deg, asked.start_long_deg)
+    end = projection.to_local(asked.end_lat_deg, asked.end_long_deg)
+    begins = Position(*start, asked.start_alt_m)
+    track = math.radians(asked.track_deg)
+    return AirState(begins, track, asked.horizontal_mps, 0.0), Position(*end, asked.end_alt_m)
+
+
+def proposal(
+    way: tuple[Position, ...], speed_m_s: float, number: int, projection: Projection
+) -> list[Message]:
+    """The RPRSP lines of a way; one without places says that there is none."""
+    norths, easts = [p.north_m for p in way], [p.east_m for p in way]
+    places = zip(*projection.to_geodetic_many(norths, easts), way, strict=True)
+    points = (
+        RoutePoint(float(lat), float(long), p.alt_m, speed_m_s, number) for lat, long, p in places
+    )
+    return [RouteStart(number), *points, RouteEnd(number)]
 
 
 def reset_to(p: Position, projection: Projection) -> SoftReset:

@@ -17,6 +17,7 @@ from cratous.services.icarous.return_to_path import (
     ways_back,
 )
 from cratous.services.icarous.state import Config, State
+from cratous.spec.mission import Position
 
 ON_PATH_M = 30.0
 """Nearer than this to its path a vehicle is taken to fly along it; else straight on [m]."""
@@ -63,11 +64,28 @@ def way_back_is_free(config: Config, state: State, sensed: Sensed, in_turn: froz
 
     in_turn: the intruders in a turn: of where they will be beyond the look-ahead a straight line says nothing.
     """
-    told, scene = state.told, scene_of(config, state, sensed)
-    if not told.waypoints:
+    if not state.told.waypoints:
+        scene = scene_of(config, state, sensed)
         return predicted(config, state, sensed, scene).first_of_all_s(scene.intruders) is None
+    return way_is_free(config, state, sensed, in_turn, points_back(state, sensed))
+
+
+def points_back(state: State, sensed: Sensed) -> tuple[Position, ...]:
+    """The points that UxAS flies by if it takes the vehicle back now, of a plan that has some."""
     tightest_m = sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
-    points, radius_m = way_on(told, sensed.motion, tightest_m), TURN_MARGIN * tightest_m
+    return way_on(state.told, sensed.motion, tightest_m)
+
+
+def way_is_free(
+    config: Config,
+    state: State,
+    sensed: Sensed,
+    in_turn: frozenset[int],
+    points: tuple[Position, ...],
+) -> bool:
+    """The same of the way from here by flyable turns onto points[0], and on by the others."""
+    scene = scene_of(config, state, sensed)
+    radius_m = TURN_MARGIN * sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
     now, horizon = sensed.motion, horizon_s(scene)
     met = state.avoided - in_turn
     avoided = [other for other in scene.intruders if other.id in met]

@@ -9,6 +9,7 @@ from cratous.core.authority.cycle import Cycle
 from cratous.core.avoidance.prediction import Intruder
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.permit.encounter import Encounter
+from cratous.services.icarous.asking import Asking
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.others import Ways
 from cratous.services.icarous.traffic_monitor import Threat, Tracks
@@ -61,7 +62,7 @@ class State:
     """cycle: who flies, as the kernels have it; told: what has come over the bridge; threats and
     courses: of the last heartbeat; held: the manoeuvre being flown; goal: index of the waypoint that
     it makes for; beats: heartbeats so far; met: the intruders because of which it has taken over; search: of the
-    manoeuvre that is over soonest; ways: of the other vehicles of ours."""
+    manoeuvre that is over soonest; ways: of the other vehicles of ours; asking: UxAS for a way back."""
 
     cycle: Cycle = START
     told: Told = field(default_factory=Told)
@@ -73,6 +74,7 @@ class State:
     met: tuple[Met, ...] = ()
     search: Search = IDLE
     ways: Ways = ()
+    asking: Asking = field(default_factory=Asking)
 
     @property
     def avoided(self) -> frozenset[int]:

@@ -183,3 +183,14 @@ def placed(state: State, vid: int, line: Message, dialect: Dialect) -> Message:
         return SoftReset(0.0, 0.0, 0.0)  # as the original's service has it before a mission
     lat, long = plane(state.frame).to_geodetic(air.position.north_m, air.position.east_m)
     return SoftReset(lat, long, air.position.alt_m)
+
+
+def led_back(state: State, vid: int, places: Iterable[tuple[float, float, float]]) -> State:
+    """The same with the way (latitude, longitude [deg], altitude [m]) onto which a vehicle that ICAROUS has is handed
+    back."""
+    craft = state.craft(vid)
+    if craft.away is None or state.frame is None:
+        return state
+    to_local = plane(state.frame).to_local
+    proposed = tuple(Position(*to_local(lat, long), alt_m) for lat, long, alt_m in places)
+    return state.put(vid, replace(craft, away=craft.away._replace(proposed=proposed)))

@@ -40,6 +40,8 @@ THESIS_LINES = [
     (RESET,
      "COMNDtypeRESET_SFT,lat45.306,long-120.988001,alt705,\n"),
     (tp.HardReset(), "COMNDtypeRESET_HRD,\n"),
+    (tp.UxasPlans(), "COMNDtypeUXAS_PLANS,\n"),
+    (tp.IcarousPlans(), "COMNDtypeICAROUS_PLANS,\n"),
     (tp.EpochTold("UXAS", 5), "EPOCHtype_UXAS_,epoch5,\n"),
     (tp.WayOfAnother(3, 7, 45.3, -121.0, 700.0, 2),
      "OTHERid3,total7,lat45.3,long-121,alt700,index2,\n"),

@@ -53,6 +53,8 @@ ORIGINAL_LINES = [
      "COMND,typeRESET_SFT,lat45.306000,long-120.988001,alt705.000000,\n"),
     (tp.SoftReset(), "COMND,typeRESET_SFT,\n"),
     (tp.HardReset(), "COMND,typeRESET_HRD,\n"),
+    (tp.UxasPlans(), "COMND,typeUXAS_PLANS,\n"),
+    (tp.IcarousPlans(), "COMND,typeICAROUS_PLANS,\n"),
     (OWN_POSITION,
      "POSTN,timegps12.500000,lat45.301234,long-120.998765,altabs700.250000,altrel700.250000,"
      "north21.213203,east-5.500000,down1.250000,hdop0.100000,vdop0.100000,numsats25.0,id1.0,\n"),
@@ -102,6 +104,8 @@ def test_our_dialect() -> None:
     assert (
         tp.encode(tp.SetMode("ACTIVE", 3), dialect=tp.Dialect.ORIGINAL) == b"SETMOD,type_ACTIVE_,\n"
     )
+    assert tp.encode(tp.SetMode("PASSIVE", 4, 7)) == b"SETMOD,type_PASSIVE_,epoch4.0,request7.0,\n"
+    assert parse("RPRSP,typeED,request7.0,\n", DOWN) == [tp.RouteEnd(7)], "UxAS answers too"
     assert parse("SETMOD,epoch3.0,type_ACTIVE_,\n", UP) == [tp.SetMode("ACTIVE", 3)]
     assert b"lat45.123456789,long-0.000000001" in tp.encode(
         tp.SetPosition(45.123456789, -0.000000001, 0.0)
