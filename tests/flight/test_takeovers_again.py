@@ -184,8 +184,8 @@ def test_takeovers_are_counted_by_what_did_not_last(steps: list[tuple[str, bool,
 
 
 def test_vehicles_that_avoid_each_other_do_so_once(tmp_path: Path) -> None:
-    """Four that meet turn as they avoid each other, and know each other's ways: nobody is avoided twice."""
-    data, _ = mission_of({"kind": "aimed", "intruders": 3, "cooperative": True}, "all", 10)
+    """Four that meet turn as they avoid each other, and know each other's ways: each of the three that give way does so once."""
+    data, _ = mission_of({"kind": "aimed", "intruders": 3, "cooperative": True}, "all", 9)
     file = tmp_path / "mission.yaml"
     file.write_text(yaml.safe_dump(data))
     result, log = flown(load(file))
@@ -195,5 +195,4 @@ def test_vehicles_that_avoid_each_other_do_so_once(tmp_path: Path) -> None:
         if taken.Owner.name == "ICAROUS":
             assert "again" not in taken.Reason
             pairs.append((taken.VehicleID, taken.IntruderID))
-    assert len(pairs) >= 3
-    assert len(set(pairs)) == len(pairs)
+    assert sorted(vehicle for vehicle, _ in pairs) == [2, 3, 4]
