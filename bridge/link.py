@@ -16,6 +16,7 @@ import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from cratous.bridge.unread import unread_by_peer
 from cratous.spec.errors import BadInput, CratousError
 
 _CHUNK = 65536
@@ -88,6 +89,11 @@ class Link:
     def waiting(self) -> int:
         """Bytes that the system has not taken yet."""
         return len(self._out)
+
+    @property
+    def unread(self) -> int | None:
+        """Bytes that have come to the peer and that its program has not read; None where that is not known."""
+        return unread_by_peer(self._sock)
 
     def send(self, data: bytes) -> bool:
         """Queue bytes, and hand to the system what it takes now; False if the link is dead."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from cratous.bridge.link import Link, LinkEvent, Listener, connect_pair, pump
-from cratous.bridge.text_protocol.format import direction_of, encode
+from cratous.bridge.text_protocol.format import direction_of, encode, may_go
 from cratous.bridge.text_protocol.handshake import (
     DEFAULT_SECRET,
     ClientHandshake,
@@ -197,7 +197,7 @@ class Bridge:
                 item=f"vehicle {vehicle_id}",
                 expected=" or ".join(map(str, ends)),
             )
-        if direction_of(message) is not direction:
+        if not may_go(message, direction):
             raise BadInput(
                 "message of the other direction",
                 item=type(message).__name__,

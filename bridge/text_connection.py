@@ -8,7 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from cratous.bridge.link import Link, LinkEvent
+from cratous.bridge.link import MAX_PENDING, Link, LinkEvent
+from cratous.bridge.outgoing import Outgoing
 from cratous.bridge.port import is_due
 from cratous.bridge.text_protocol.dialects import Dialect
 from cratous.bridge.text_protocol.handshake import Handshake
@@ -32,13 +33,18 @@ REFUSAL = "error,"
 """So begins the line that tells a peer why it is refused, as in the opening of v2."""
 PARTING_S = 2.0
 """So long a peer that was told why it is refused may take to read that before it is dropped [s]."""
-NOISE, SILENT, LATE, FAST, NOBODY, DEAF = (
+MOST_UNREAD = 32_768
+"""The original's client dies of a read of 65,535 bytes or more: where it has not read so many, no more goes to it."""
+AGAIN_S = 0.05
+"""So soon it is looked again whether it has read [s]."""
+NOISE, SILENT, LATE, FAST, NOBODY, DEAF, STOPPED = (
     "nothing but what cannot be read",
     "silent",
     "handshake not finished in time",
     "sends faster than it may",
     "nobody listens there",
     "does not acknowledge what it is sent",
+    "does not read",
 )
 
 
@@ -48,7 +54,8 @@ class Bounds:
 
     handshake_s: until it has shaken hands; silence_s: until it says something, None: for ever;
     bytes_per_s, burst_bytes: how fast it may send in the long run, and at once; bad_lines: how many
-    lines in a row may be unreadable; connections: how many peers at once.
+    lines in a row may be unreadable; connections: how many peers at once; stopped_s: how long an original's client
+    may read nothing while lines wait for it.
     """
 
     handshake_s: float = 10.0
@@ -57,6 +64,7 @@ class Bounds:
     burst_bytes: float = 8 << 20
     bad_lines: int = 1000
     connections: int = 64
+    stopped_s: float = 10.0
 
 
 class Opened(NamedTuple):
@@ -87,6 +95,7 @@ class Connection:
         self._until_s: float | None = now_s + bounds.handshake_s
         self.begun_s, self.opened = now_s, False
         self._room, self._at_s, self._bad = bounds.burst_bytes, now_s, 0
+        self._waiting, self._stopped_s, self._looked_s = Outgoing(), now_s, now_s
         self.link.send(handshake.start())
 
     @property
@@ -98,6 +107,8 @@ class Connection:
         """Queue a line; False if the peer is gone, or is refused."""
         if self._refused:
             return False
+        if self._dialect is Dialect.ORIGINAL:
+            return self._queue(line, now_s)
         if not isinstance(self._handshake, SealedHandshake):
             return self.link.send(line)
         seal = self.seal
@@ -110,11 +121,45 @@ class Connection:
 
     @property
     def due_s(self) -> float | None:
-        """When it is dropped unless something comes."""
-        return self._until_s
+        """When it is dropped unless something comes, or is looked at again because lines wait."""
+        if not self._waiting:
+            return self._until_s
+        again_s = self._looked_s + AGAIN_S
+        return again_s if self._until_s is None else min(again_s, self._until_s)
+
+    def _queue(self, line: bytes, now_s: float) -> bool:
+        """A line for the original's client, that waits as long as that does not read."""
+        if not self.link.alive:
+            return False
+        if self._waiting.waiting + len(line) > MAX_PENDING:
+            self.drop(STOPPED)
+            return False
+        if not self._waiting:
+            self._stopped_s = now_s + self._bounds.stopped_s
+        self._waiting.put(line)
+        self._pour(now_s)
+        return True
+
+    def _pour(self, now_s: float) -> None:
+        """Whole lines, as long as the peer has read enough of those before; it is dropped when none goes for too
+        long."""
+        self._looked_s = now_s
+        unread = self.link.unread
+        while self._waiting:
+            line = self._waiting.next()
+            if unread is not None and unread + self.link.waiting + len(line) > MOST_UNREAD:
+                break
+            self.link.send(bytes(line))
+            self._waiting.took(len(line))
+            self._stopped_s = now_s + self._bounds.stopped_s
+            unread = None if unread is None else unread + len(line)
+        if self._waiting and is_due(self._stopped_s, now_s):
+            self.drop(f"{STOPPED}: {unread} bytes, and {self._waiting.waiting} more are waiting")
 
     def step(self, now_s: float) -> list[Opened | Record | LinkEvent]:
         """Move bytes; what has come, in order."""
+        if self._waiting and self.link.alive:
+            self._pour(now_s)
         self.link.flush()
         self.link.drain(_READS)
         data = self.link.take()

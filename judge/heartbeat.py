@@ -9,6 +9,7 @@ have said. What goes down is logged when it is sent: where the bridge was made t
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterator
 from itertools import pairwise
 
@@ -43,7 +44,7 @@ def _row(mission: Mission, log: Log, key: tuple[int, str], name: str, unsafe: li
     if fault:
         return Row("G5", subject, item, VIOLATED, fault[1], fault[0], len(beats))
     downs = [s.time_ms for s in log.bridges.get(vehicle, []) if not s.alive]
-    silent = way == "Up" and ORIGINAL in str(log.meta.get("command", "")).split()
+    silent = way == "Up" and ORIGINAL in _words(str(log.meta.get("command", "")))
     if not beats and not downs and (silent or log.end_ms <= bound):
         why = ": its protocol has none" if silent else ""
         return Row("G5", subject, item, UNKNOWN, f"no heartbeat of it is in the log{why}")
@@ -98,3 +99,11 @@ def _fault(beats: list[Beat], bound: int) -> tuple[int, str] | None:
             return beat.time_ms, f"heartbeat {beat.number} came after heartbeat {last.number}"
         last = beat
     return None
+
+
+def _words(command: str) -> list[str]:
+    """The words of a command as a shell has them: a name with spaces in quotes is one."""
+    try:
+        return shlex.split(command)
+    except ValueError:  # no shell has written it: a quote stands open
+        return command.split()

@@ -37,6 +37,12 @@ def direction_of(message: Message) -> Direction:
     return LAYOUT_OF[type(message)].direction
 
 
+def may_go(message: Message, direction: Direction) -> bool:
+    """Whether a message may go that way."""
+    layout = LAYOUT_OF[type(message)]
+    return layout.both or layout.direction is direction
+
+
 def encode(
     message: Message, *, dialect: Dialect = Dialect.CRATOUS, limits: Limits = ORIGINAL_LIMITS
 ) -> bytes:

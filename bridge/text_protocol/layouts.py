@@ -47,6 +47,7 @@ class Layout:
     message: type[messages.Message]
     fields: tuple[FieldLayout, ...]
     form: str = ""
+    both: bool = False  # goes the other way as well, in our dialect
 
 
 @dataclass(frozen=True)
@@ -143,6 +144,8 @@ LAYOUTS: tuple[Layout, ...] = (
         "RESET_SFT",
     ),
     Layout("COMND", _DOWN, messages.HardReset, (), "RESET_HRD"),
+    Layout("COMND", _DOWN, messages.UxasPlans, (), "UXAS_PLANS"),
+    Layout("COMND", _DOWN, messages.IcarousPlans, (), "ICAROUS_PLANS"),
     Layout(
         "POSTN",
         _DOWN,
@@ -179,6 +182,19 @@ LAYOUTS: tuple[Layout, ...] = (
     ),
     Layout("WPRCH", _DOWN, messages.WaypointReached, (_count("id", "index", 0, "last_reached"),)),
     Layout(
+        "OTHER",
+        _DOWN,
+        messages.WayOfAnother,
+        (
+            _count("id", "vehicle_id", 0),
+            _count("total", "total", 0, "waypoints"),
+            *_PLACE,
+            _real("alt", "alt_m"),
+            _count("index", "index", 0, "waypoint_index"),
+        ),
+    ),
+    Layout("OVELO", _DOWN, messages.VelocityOfAnother, (_count("id", "vehicle_id", 0), *_VELOCITY)),
+    Layout(
         "WPREQ",
         _DOWN,
         messages.RouteRequest,
@@ -195,6 +211,7 @@ LAYOUTS: tuple[Layout, ...] = (
             _real("vv", "vertical_mps"),
             _REQUEST,
         ),
+        both=True,
     ),
     Layout(
         "EPOCH",
@@ -206,20 +223,25 @@ LAYOUTS: tuple[Layout, ...] = (
         "SETMOD",
         _UP,
         messages.SetMode,
-        (_word("mode", "_ACTIVE_", "_PASSIVE_"), _count("epoch", "epoch", 0, optional=True)),
+        (
+            _word("mode", "_ACTIVE_", "_PASSIVE_"),
+            _count("epoch", "epoch", 0, optional=True),
+            _REQUEST,
+        ),
     ),
     Layout("SETVEL", _UP, messages.SetVelocity, _VELOCITY),
     Layout("SETPOS", _UP, messages.SetPosition, (*_PLACE, _real("alt", "alt_m"))),
     Layout("GOTOWP", _UP, messages.GoToWaypoint, (_count("id", "index", kind=Kind.BARE),)),
-    Layout("RPRSP", _UP, messages.RouteStart, (_REQUEST,), "ST"),
+    Layout("RPRSP", _UP, messages.RouteStart, (_REQUEST,), "ST", both=True),
     Layout(
         "RPRSP",
         _UP,
         messages.RoutePoint,
         (*_PLACE, _real("alt", "alt_m"), _real("spd", "speed_mps"), _REQUEST),
         "WP",
+        both=True,
     ),
-    Layout("RPRSP", _UP, messages.RouteEnd, (_REQUEST,), "ED"),
+    Layout("RPRSP", _UP, messages.RouteEnd, (_REQUEST,), "ED", both=True),
     Layout(
         "HBEAT", _UP, messages.Heartbeat, (_count("seq", "sequence", 0), _real("time", "time_s"))
     ),

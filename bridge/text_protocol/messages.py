@@ -91,6 +91,20 @@ class HardReset(Message):
 
 
 @dataclass(frozen=True)
+class UxasPlans(Message):
+    """COMND UXAS_PLANS (our dialect): UxAS plans live: ICAROUS may ask it for ways by WPREQ."""
+
+    tag: ClassVar[str] = "COMND"
+
+
+@dataclass(frozen=True)
+class IcarousPlans(Message):
+    """COMND ICAROUS_PLANS (our dialect): live planning is ICAROUS's own again, as it is without a word."""
+
+    tag: ClassVar[str] = "COMND"
+
+
+@dataclass(frozen=True)
 class OwnPosition(Message):
     """POSTN: position and velocity of the vehicle itself; altitudes above mean sea level."""
 
@@ -143,9 +157,34 @@ class WaypointReached(Message):
 
 
 @dataclass(frozen=True)
+class WayOfAnother(Message):
+    """OTHER (our dialect): one waypoint of the way that another of UxAS's vehicles flies; `index` starts at 0.
+    `total`: the number of all of them; 0, with the index and the place 0 too: it flies no way that is known."""
+
+    tag: ClassVar[str] = "OTHER"
+    vehicle_id: int
+    total: int
+    lat_deg: float
+    long_deg: float
+    alt_m: float
+    index: int
+
+
+@dataclass(frozen=True)
+class VelocityOfAnother(Message):
+    """OVELO (our dialect): another of UxAS's vehicles is steered by its ICAROUS, to this velocity."""
+
+    tag: ClassVar[str] = "OVELO"
+    vehicle_id: int
+    north_mps: float
+    east_mps: float
+    down_mps: float
+
+
+@dataclass(frozen=True)
 class RouteRequest(Message):
     """WPREQ: plan a route with the planner GRID, ASTAR, RRT or SPLINE. request (our dialect): a number that the
-    lines of the answer bear too."""
+    lines of the answer bear too. In our dialect ICAROUS asks UxAS as well: then UxAS's own planner plans."""
 
     tag: ClassVar[str] = "WPREQ"
     planner: str
@@ -173,11 +212,13 @@ class EpochTold(Message):
 
 @dataclass(frozen=True)
 class SetMode(Message):
-    """SETMOD: ICAROUS takes over (ACTIVE) or hands back (PASSIVE)."""
+    """SETMOD: ICAROUS takes over (ACTIVE) or hands back (PASSIVE). request (our dialect): it hands back onto UxAS's
+    answer to its WPREQ of this number."""
 
     tag: ClassVar[str] = "SETMOD"
     mode: str
     epoch: int | None = None
+    request: int | None = None
 
 
 @dataclass(frozen=True)

@@ -110,7 +110,7 @@ class StreamParser:
         self._labels: dict[type[Message], list[tuple[str, str]]] = {}
         self._thesis = dialect is Dialect.THESIS
         for layout in LAYOUTS_OF[dialect]:
-            if layout.direction is direction:
+            if layout.both or layout.direction is direction:
                 self._layouts.setdefault(layout.tag, []).append(layout)
                 self._labels[layout.message] = _labels_of(layout, self._thesis)
         self._limits, self._max_line, self._original_peer = limits, max_line, original_peer

@@ -110,6 +110,8 @@ def monitor(
     from cratous.core import ledger
     from cratous.services.assumptions.said import GROUNDLESS
     from cratous.services.assumptions.said import lines as assumption_lines
+    from cratous.services.certify.blame import blame_rows
+    from cratous.services.certify.blame_said import lines as blame_lines
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory, summary
     from cratous.services.certify.rejudge import watch
@@ -126,9 +128,10 @@ def monitor(
         standing = ledger.require(allow_unproved=allow_unproved)
         wait.at("judging the messages of the log")
         with counted() as calls:
-            judged, assumptions = watch(log)
+            judged, assumptions, commands, end_ms = watch(log)
     evidence = inventory(standing, calls.data())
     rows = constraint_rows(judged, "flight")
+    blame = blame_rows(rows, commands, assumptions, end_ms)
     groundless = without_ground(str(read_meta(log).get("command", "")), assumptions)
     unproved = bool(standing.problems) or groundless
     code = exit_code([v.outcome for v in judged], unproved=unproved)
@@ -138,6 +141,7 @@ def monitor(
             "requirements": required,
             "constraints": rows,
             "assumptions": assumptions,
+            "blame": blame,
             "proofs": standing.line,
             "evidence": evidence,
             "exit_code": code,
@@ -152,7 +156,7 @@ def monitor(
             say(f"proofs: {standing.line}", err=True)
     else:
         requirement_table(required)
-        for line in assumption_lines(assumptions):
+        for line in (*blame_lines(blame), *assumption_lines(assumptions)):
             say(line)
         if groundless:
             say(GROUNDLESS)

@@ -123,6 +123,11 @@ def _ports(texts: Sequence[str]) -> dict[int, Address]:
     return found
 
 
+def _configures(body: Any) -> bool:
+    """Whether an object brings a vehicle."""
+    return type(body).__name__ == "AirVehicleConfiguration"
+
+
 def _tell_unheard(world: World) -> None:
     for kind, count in sorted(world.unheard.items()):
         click.echo(f"note: {count} x {kind} changes nothing in the simulator", err=True)
@@ -164,6 +169,11 @@ def _serve(make: Callable[[], World], plan: Scenario, listen: str, how: Mapping[
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, stop)
+    known = {event.body.ID for event in plan.events if _configures(event.body)}
+    for key in sorted(how["vehicles"].keys() - known):
+        there = ", ".join(map(str, sorted(known)[:20])) or "none"
+        text = f"note: --vehicle {key}: the scenario has no such vehicle (it has {there})"
+        click.echo(f"{text}; its port is silent unless a client adds it", err=True)
     host, port = server.port.bound
     click.echo(f"{plan.name}: listening on {host}:{port}")
     for key, its_own in server.vehicle_ports.items():

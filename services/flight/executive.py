@@ -34,6 +34,7 @@ from cratous.services.flight.messages import (
     Over,
     Planned,
     Report,
+    RouteAsked,
     Say,
     SetOut,
     Suspend,
@@ -88,6 +89,8 @@ class Executive:
                 state = interruption.suspend(state, message, out)
             case Because():
                 state = interruption.because(state, message)
+            case RouteAsked():
+                interruption.propose(self.config, state, message, out)
             case TakeBack():
                 state = interruption.take_back(self.config, state, message, out)
             case Report(now_ms):

@@ -75,7 +75,7 @@ class Ways:
         """A new way to the item from where the vehicle is; None if there is none."""
         item = chain.item
         assert item is not None
-        way = self._to(chain, state, chains.start_pose(item))
+        way = self.way_to(chain, state, chains.start_pose(item))
         return Track(way) if way else None
 
     def _there(self, state: AirState, place: Position) -> bool:
@@ -102,7 +102,7 @@ class Ways:
     def _onto(self, chain: Chain, state: AirState, join: float, flown_m: float) -> Back | None:
         rest = Track(chain.track.rest(join), chain.track.heading_rad(join))
         target = Pose(*rest.points[0], rest.heading_rad(0.0))
-        way = self._to(chain, state, target)
+        way = self.way_to(chain, state, target)
         if not way:
             return None
         track = Track((*way, *rest.points[1:]), target.heading_rad)
@@ -130,7 +130,7 @@ class Ways:
         """
         across: list[tuple[float, float, Track]] = []
         for place, lap in self._places(chain, pose):
-            way = self._to(chain, state, place)
+            way = self.way_to(chain, state, place)
             if way:
                 return Last(Track((*way, *lap)), True)
             direct = cut(dubins(state.pose, place, _radius_m(chain)), place)
@@ -155,7 +155,8 @@ class Ways:
                 if hold is not None:
                     yield at, tuple(chains.lap_points(hold, Position(*at[:3]))[1:])
 
-    def _to(self, chain: Chain, state: AirState, target: Pose) -> tuple[Position, ...]:
+    def way_to(self, chain: Chain, state: AirState, target: Pose) -> tuple[Position, ...]:
+        """A way from a state to a pose that keeps the zones; empty if none is found."""
         slope = chain.vehicle.max_climb_m_s / chain.speed_m_s
         return self._router.way_to(state, _radius_m(chain), target, slope)
 

@@ -9,12 +9,20 @@ from cratous.core.executive.steps import way_act
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.executive_outputs import command, route
 from cratous.services.flight.executive_state import Config, Out, State
-from cratous.services.flight.messages import Because, Left, Suspend, TakeBack
+from cratous.services.flight.messages import (
+    Because,
+    Left,
+    Proposed,
+    RouteAsked,
+    Suspend,
+    TakeBack,
+)
 from cratous.services.flight.remaining_path import leaving_m
 from cratous.services.flight.task_transitions import NO_WAY, circling, fail, progress
 from cratous.spec.authority.cycle import TAKE_OVER
 from cratous.spec.executive import FAIL_TASK
 from cratous.spec.mission import Position
+from cratous.spec.mission.plan import Pose
 
 NAME = "uxas/ics"
 """The sender of what the bridge has led to."""
@@ -54,6 +62,19 @@ def _resume_point(chain: Chain) -> Position | None:
     if chain.phase is Phase.TASK:
         return chain.track.at(leaving_m(chain))
     return chain.track.points[-1] if chain.item is not None else None
+
+
+def propose(config: Config, state: State, message: RouteAsked, out: Out) -> None:
+    """ICAROUS asks for a way back: where it has the vehicle, that of the router that leads it back as well, in the
+    direction in which its way goes on there; else none."""
+    vid, start, end, number = message
+    chain = state.find(vid)
+    way: tuple[Position, ...] = ()
+    if chain is not None and chain.suspended:
+        near = chain.track.nearest(end, 0.0, chain.track.length_m)
+        target = Pose(*end, chain.track.heading_rad(near.s_m))
+        way = config.ways(state.zones).way_to(chain, start, target)
+    out.append(Proposed(vid, number, way, start.speed_m_s))
 
 
 def take_back(config: Config, state: State, message: TakeBack, out: Out) -> State:

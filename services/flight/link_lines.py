@@ -10,15 +10,21 @@ from cratous.bridge.text_protocol import (
     FenceVertex,
     Message,
     OwnPosition,
+    RouteEnd,
+    RoutePoint,
+    RouteRequest,
+    RouteStart,
     SoftReset,
     StartMission,
     Traffic,
+    VelocityOfAnother,
+    WayOfAnother,
     Waypoint,
 )
 from cratous.core.authority.gate import UXAS, Gate
 from cratous.services.flight.dynamics import AirState
 from cratous.services.mission.frames import Projection
-from cratous.spec.mission import Position, Zone, ZoneKind
+from cratous.spec.mission import Position, Velocity, Zone, ZoneKind
 
 FAR_M = 1e6
 """Altitudes beyond this are sent as this [m]: no aircraft is there."""
@@ -82,6 +88,46 @@ def way(points: tuple[Position, ...], speed_m_s: float, projection: Projection) 
         for k, (p, lat, lon) in enumerate(zip(points, lats, lons, strict=True))
     ]
     return [SoftReset(), *waypoints, StartMission()]
+
+
+Flies = tuple[Position, ...] | Velocity
+"""The way that UxAS flies a vehicle by, or the velocity to which ICAROUS steers it."""
+
+
+def way_of_another(vehicle_id: int, points: Flies, projection: Projection) -> list[Message]:
+    """How another vehicle flies, as OTHER lines, or OVELO; without points one line, which says that it is not known."""
+    if isinstance(points, Velocity):
+        return [VelocityOfAnother(vehicle_id, *points)]
+    if not points:
+        return [WayOfAnother(vehicle_id, 0, 0.0, 0.0, 0.0, 0)]
+    lats, lons = projection.to_geodetic_many(
+        [p.north_m for p in points], [p.east_m for p in points]
+    )
+    return [
+        WayOfAnother(vehicle_id, len(points), float(lat), float(lon), p.alt_m, k)
+        for k, (p, lat, lon) in enumerate(zip(points, lats, lons, strict=True))
+    ]
+
+
+def asked_way(asked: RouteRequest, projection: Projection) -> tuple[AirState, Position]:
+    """From where, in which flight, and to where a WPREQ asks for a way."""
+    start = projection.to_local(asked.start_lat_deg, asked.start_long_deg)
+    end = projection.to_local(asked.end_lat_deg, asked.end_long_deg)
+    begins = Position(*start, asked.start_alt_m)
+    track = math.radians(asked.track_deg)
+    return AirState(begins, track, asked.horizontal_mps, 0.0), Position(*end, asked.end_alt_m)
+
+
+def proposal(
+    way: tuple[Position, ...], speed_m_s: float, number: int, projection: Projection
+) -> list[Message]:
+    """The RPRSP lines of a way; one without places says that there is none."""
+    norths, easts = [p.north_m for p in way], [p.east_m for p in way]
+    places = zip(*projection.to_geodetic_many(norths, easts), way, strict=True)
+    points = (
+        RoutePoint(float(lat), float(long), p.alt_m, speed_m_s, number) for lat, long, p in places
+    )
+    return [RouteStart(number), *points, RouteEnd(number)]
 
 
 def reset_to(p: Position, projection: Projection) -> SoftReset:

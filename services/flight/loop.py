@@ -47,6 +47,7 @@ from cratous.services.flight.messages import (
     Over,
     Planned,
     Report,
+    RouteAsked,
     Say,
     Sense,
     SetOut,
@@ -74,7 +75,7 @@ from cratous.services.icarous.messages import (
 )
 from cratous.services.mission.frames import Projection
 from cratous.spec.errors import NoPlan
-from cratous.spec.mission import FaultySimulation, Mission
+from cratous.spec.mission import FaultySimulation, LivePlanningMission, Mission
 from cratous.spec.mission.plan import Plan
 
 Segmenter = Callable[[bytes], Iterable[bytes]]
@@ -99,7 +100,7 @@ def fly(
     """
     instances = tuple(sorted(mission.instances)) if daa else ()
     with _bridge(mission, instances, segmenter) as bridge:
-        return _Flight(mission, plan, bus, bridge, instances).run(progress)
+        return Flight(mission, plan, bus, bridge, instances).run(progress)
 
 
 def _bridge(mission: Mission, instances: tuple[int, ...], segmenter: Segmenter | None) -> Bridge:
@@ -114,7 +115,7 @@ def _bridge(mission: Mission, instances: tuple[int, ...], segmenter: Segmenter |
 Answer = FromExecutive | FromLinkEnd | FromVehicle | FromInstance
 
 
-class _Flight:
+class Flight:
     """The actors of one flight, the states that they are in, and the present."""
 
     def __init__(
@@ -125,7 +126,8 @@ class _Flight:
         floor = floor_of(mission)
         self.executive = Executive(Config(mission, projection, instances))
         self.executive_state = executive_state.first_state(mission, plan)
-        self.link, self.link_state = UxasEnd(projection), link_end.State()
+        live = isinstance(mission, LivePlanningMission)
+        self.link, self.link_state = UxasEnd(projection, live), link_end.State()
         self.vehicles = {
             v.id: VehicleNode(v, projection, simulation.step_ms / 1000, floor)
             for v in sorted(mission.vehicles, key=lambda v: v.id)
@@ -251,7 +253,7 @@ class _Flight:
             match answer:
                 case Say(body, source):
                     self._publish(body, source)
-                case Suspend() | TakeBack():
+                case Suspend() | TakeBack() | RouteAsked():
                     self._executive(answer)
                 case LimitsAre(vid) | Look(vid):
                     self._vehicle(vid, answer)

@@ -224,6 +224,25 @@ class Over(NamedTuple):
     outcome: str
 
 
+class RouteAsked(NamedTuple):
+    """To the executive: the ICAROUS that has a vehicle asks for a way from there (start) to a place. number: of the
+    request."""
+
+    vehicle_id: int
+    start: AirState
+    end: Position
+    number: int
+
+
+class Proposed(NamedTuple):
+    """The answer to `RouteAsked`: the places of a way, none if there is none. speed_m_s: planned on it."""
+
+    vehicle_id: int
+    number: int
+    way: tuple[Position, ...]
+    speed_m_s: float
+
+
 ToLinkEnd = (
     Connected
     | ZonesKnown
@@ -237,8 +256,9 @@ ToLinkEnd = (
     | Lost
     | GateIs
     | Watch
+    | Proposed
 )
-FromLinkEnd = Say | Down | Suspend | TakeBack
+FromLinkEnd = Say | Down | Suspend | TakeBack | RouteAsked
 
 
 # to a vehicle -----------------------------------------------------------------------------------
@@ -303,6 +323,18 @@ ToVehicle = Commanded | Wished | LimitsAre | Look | Sense | Choose | Move
 FromVehicle = Say | GateIs | OnBoard
 
 ToExecutive = (
-    Begin | SetOut | Tick | Planned | NotPlanned | Report | Closing | Because | Suspend | TakeBack
+    Begin
+    | SetOut
+    | Tick
+    | Planned
+    | NotPlanned
+    | Report
+    | Closing
+    | Because
+    | Suspend
+    | TakeBack
+    | RouteAsked
 )
-FromExecutive = Say | ZonesKnown | Route | Flown | Left | Look | LimitsAre | AskPlan | Over
+FromExecutive = (
+    Proposed | Say | ZonesKnown | Route | Flown | Left | Look | LimitsAre | AskPlan | Over
+)

@@ -1,7 +1,7 @@
 """The ICAROUS instance of one vehicle: `handle(state, message) -> (state, messages)`.
 
 MONITOR: UxAS flies; the way ahead, up to the hold that ends it, is checked against traffic and zones. AVOID: ICAROUS has taken
-over and flies the manoeuvre that deviates least from the course. HANDBACK: the way back has been
+over and flies the turn after which the way back is free soonest, or the manoeuvre that deviates least from the course. HANDBACK: the way back has been
 free for a while, control is offered; ICAROUS steers on until UxAS takes it, and withdraws the
 offer when a conflict shows up. Own state and traffic come from the vehicle itself; the bridge
 brings zones and waypoints, and takes away SETMOD, SETVEL and HBEAT. Without the bridge there is no
@@ -19,13 +19,14 @@ from cratous.core.authority.cycle import cycle_begun, cycle_flown, cycle_watched
 from cratous.core.authority.gate import ICAROUS, gate_accepts
 from cratous.core.avoidance.manoeuvre import velocity_of
 from cratous.core.avoidance.resolution import Choice
-from cratous.services.icarous import permits
+from cratous.services.icarous import asking, permits
+from cratous.services.icarous.ending import TURN_MARGIN
 from cratous.services.icarous.foresight import (
-    describe,
-    manoeuvre,
+    points_back,
     predicted,
     scene_of,
     way_back_is_free,
+    way_is_free,
 )
 from cratous.services.icarous.geofence_monitor import zone_ahead_s
 from cratous.services.icarous.inbox import hear
@@ -39,8 +40,10 @@ from cratous.services.icarous.messages import (
     Up,
     Wish,
 )
-from cratous.services.icarous.return_to_path import PERSIST_MS, RELAPSE_MS
-from cratous.services.icarous.state import Config, State
+from cratous.services.icarous.others import with_ways
+from cratous.services.icarous.proposal import describe, manoeuvre
+from cratous.services.icarous.return_to_path import PERSIST_MS, RELAPSE_MS, onto
+from cratous.services.icarous.state import IDLE, Config, State
 from cratous.services.icarous.traffic_monitor import (
     courses,
     most_urgent,
@@ -49,6 +52,7 @@ from cratous.services.icarous.traffic_monitor import (
     turning,
 )
 from cratous.spec.authority.cycle import MONITOR, NOTHING, OFFER, WITHDRAW
+from cratous.spec.mission.plan import Pose
 
 LINK_LOST_MS = 2000
 """The bridge counts as lost when nothing was heard for this long [ms]: four heartbeats."""
@@ -56,6 +60,7 @@ REASONS = {
     OFFER: "the way back is free",
     WITHDRAW: "offer withdrawn: the way back is no longer free",
 }
+UXAS_WAY = "the way back that UxAS's planner has found is free"
 
 Step = tuple[State, tuple[FromInstance, ...]]
 
@@ -82,7 +87,8 @@ class Instance:
                 told = hear(state.told, line, config.projection, now_ms, config.original)
                 # an index into the waypoints of another way says nothing
                 goal = state.goal if told.waypoints is state.told.waypoints else 0
-                return replace(state, told=told, goal=goal), ()
+                asked = asking.heard(state.asking, line, config.projection)
+                return replace(state, told=told, goal=goal, asking=asked), ()
             case Sensed():
                 return self._beat(state, message)
 
@@ -91,12 +97,18 @@ class Instance:
         commands = gate_accepts(sensed.gate, ICAROUS, sensed.gate.epoch)
         cycle = cycle_begun(state.cycle, commands, sensed.now_ms)
         flew, watches = state.cycle.mode != MONITOR, cycle.mode == MONITOR
-        now = courses(sensed.intruders)
-        in_turn = turning(now, state.courses, self.config.heartbeat_ms / 1000)
+        now, beat_s = courses(sensed.intruders), self.config.heartbeat_ms / 1000
+        ways, others = with_ways(
+            state.ways, state.told, sensed, self.config.daa, beat_s, state.courses
+        )
+        sensed = sensed._replace(intruders=others)
+        # one whose way is known is where that leads, in a turn too
+        in_turn = turning(now, state.courses, beat_s) - {o.id for o in others if o.way}
         if flew and watches:
-            state = replace(state, held=None, threats=())
+            fresh = state.asking.idle()
+            state = replace(state, held=None, search=IDLE, threats=(), asking=fresh)
             state = permits.resumed(self.config, state, sensed, in_turn)
-        state = replace(state, cycle=cycle, courses=now, beats=state.beats + 1)
+        state = replace(state, cycle=cycle, courses=now, ways=ways, beats=state.beats + 1)
         if watches:
             state, out = self._watch(state, sensed, in_turn)
         else:
@@ -116,7 +128,7 @@ class Instance:
             reason += permits.told_why(state, conflict.intruder_id)
             state = permits.taken_over(state, conflict.intruder_id)
         state = replace(state, cycle=cycled.cycle, goal=state.told.next_index)
-        state, choice = manoeuvre(self.config, state, sensed)
+        state, choice = manoeuvre(self.config, state, sensed, in_turn, False)
         foresees = Foresees(vid, sensed.now_ms, conflict.intruder_id, first_s, describe(choice))
         wish = Wish(vid, cycled.act, reason, conflict.intruder_id)
         return state, (wish, foresees, *self._commands(sensed, choice, cycled.act))
@@ -143,24 +155,60 @@ class Instance:
     def _fly(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
         """AVOID and HANDBACK: fly the manoeuvre, and see whether the way back is free."""
         free = way_back_is_free(self.config, state, sensed, in_turn)
+        state, proposed, asked = self._proposed(state, sensed, in_turn, free)
         heard_ms, before = state.told.heard_ms, state.held
+        free = free or proposed is not None
         cycled = cycle_flown(state.cycle, free, heard_ms, sensed.now_ms, LINK_LOST_MS, PERSIST_MS)
-        state, choice = manoeuvre(self.config, replace(state, cycle=cycled.cycle), sensed)
+        state = replace(state, cycle=cycled.cycle)
+        state, choice = manoeuvre(self.config, state, sensed, in_turn, free)
         out: list[FromInstance] = []
         vid, text = self.config.vehicle_id, describe(choice)
         if cycled.act != NOTHING:
-            out.append(Wish(vid, cycled.act, REASONS[cycled.act], 0))
+            of_uxas = cycled.act == OFFER and proposed is not None
+            reason = f"{UXAS_WAY} (request {proposed})" if of_uxas else REASONS[cycled.act]
+            out.append(Wish(vid, cycled.act, reason, 0))
         changed = before is None or describe(before) != text
         said = f"offer withdrawn; {text}" if cycled.act == WITHDRAW else text
         if changed or cycled.act == WITHDRAW:
             out.append(Foresees(vid, sensed.now_ms, 0, -1.0, said))
-        return state, (*out, *self._commands(sensed, choice, cycled.act))
+        return state, (*out, *asked, *self._commands(sensed, choice, cycled.act, proposed))
 
-    def _commands(self, sensed: Sensed, choice: Choice, act: int) -> tuple[FromInstance, ...]:
+    def _proposed(
+        self, state: State, sensed: Sensed, in_turn: frozenset[int], free: bool
+    ) -> tuple[State, int | None, list[FromInstance]]:
+        """The number of the request whose answer is free, where the own way back is not; what UxAS is asked, if it plans
+        live, and what there is to say of it."""
+        now_ms, motion, before = sensed.now_ms, sensed.motion, state.asking
+        if free or not (before.allowed and state.told.waypoints):
+            return replace(state, asking=before._replace(proposal=())), None, []
+        points, found = points_back(state, sensed), asking.waited(before, now_ms)
+        number = None
+        if found.proposal:
+            radius_m = TURN_MARGIN * motion.speed_m_s / sensed.ability.turn_rate_rad_s
+            way = (*onto(found.proposal, motion, radius_m), *points[1:])
+            if way_is_free(self.config, state, sensed, in_turn, way):
+                number = found.answered
+        speed_m_s, start = (
+            state.told.speed_m_s or motion.speed_m_s,
+            Pose(*motion.position, motion.heading_rad),
+        )
+        found, line = asking.asks(
+            found, now_ms, start, speed_m_s, points[0], self.config.projection
+        )
+        vid, out = self.config.vehicle_id, list[FromInstance]()
+        out += [Foresees(vid, now_ms, 0, -1.0, text) for text in found.said]
+        out += [Up(vid, line)] if line is not None else []
+        return replace(state, asking=found._replace(said=())), number, out
+
+    def _commands(
+        self, sensed: Sensed, choice: Choice, act: int, proposed: int | None = None
+    ) -> tuple[FromInstance, ...]:
         """The velocity of a manoeuvre, to the autopilot and to UxAS, and the mode, which UxAS needs to
         hear once: a line that is lost is made good by the next one."""
         vid, gate = self.config.vehicle_id, gate_wished(sensed.gate, act)
         v = velocity_of(choice.heading_rad, choice.speed_m_s, choice.climb_m_s)
-        mode = SetMode("PASSIVE" if gate.offered else "ACTIVE", gate.epoch)
+        mode = SetMode("ACTIVE", gate.epoch)
+        if gate.offered:
+            mode = SetMode("PASSIVE", gate.epoch, proposed)
         told = SetVelocity(north_mps=v.north_m_s, east_mps=v.east_m_s, down_mps=v.down_m_s)
         return (Steer(vid, gate.epoch, v), Up(vid, mode), Up(vid, told))

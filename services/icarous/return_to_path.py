@@ -74,6 +74,18 @@ def way_on(told: Told, now: Motion, radius_m: float) -> tuple[Position, ...]:
     return (*track.points[goal:], *waypoints[last + 1 :])
 
 
+JOINS_AFTER = 3.0
+"""A way that was planned a moment ago is joined so many turn radii farther on: nearer, a turn may not reach it."""
+
+
+def onto(points: tuple[Position, ...], now: Motion, radius_m: float) -> tuple[Position, ...]:
+    """The points of a way of somebody else's, planned a moment ago from near here, that are flown by if it is taken now:
+    from JOINS_AFTER turn radii along it on, or its end alone."""
+    track = Track(points, now.heading_rad)
+    near = track.nearest(now.position, 0.0, track.length_m)
+    return tuple(track.rest(min(track.length_m, near.s_m + JOINS_AFTER * radius_m)))
+
+
 def _same(p: Position, q: Position) -> bool:
     return near_line(flat(p), flat(q), flat(q), SAME_M)
 

@@ -14,7 +14,7 @@ from cratous.core.avoidance.manoeuvre import Motion
 from cratous.core.avoidance.way_ahead import near_line
 from cratous.core.kernel import Vec2
 from cratous.core.routing.polylines import Track
-from cratous.services.icarous.return_to_path import rejoin
+from cratous.services.icarous.return_to_path import onto, rejoin
 from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Position
 
@@ -67,11 +67,13 @@ def next_part(plan: Plan, most: int, spare: int) -> Plan:
 
 class Away(NamedTuple):
     """ICAROUS commands a vehicle. left: where its way was left; tasks: that it was doing then; paused:
-    it is farther from its leg than is allowed, and these tasks are told to pause."""
+    it is farther from its leg than is allowed, and these tasks are told to pause; proposed: the way of UxAS's
+    planner onto which its ICAROUS hands back, none: the direct one."""
 
     left: Position
     tasks: tuple[int, ...]
     paused: bool = False
+    proposed: tuple[Position, ...] = ()
 
 
 def position_of(place: Any, projection: Projection) -> Position:
@@ -165,7 +167,8 @@ class Resumed(NamedTuple):
 def resumed(
     plan: Plan, away: Away, now: Motion, radius_m: float, projection: Projection, command_id: int
 ) -> Resumed:
-    """What sends a vehicle on: the shortest flyable way, which ICAROUS has found free, onto its own way.
+    """What sends a vehicle on: the shortest flyable way, or that of UxAS's planner, which ICAROUS has found free, onto
+    its own way.
 
     radius_m: of its turns.
     """
@@ -175,7 +178,12 @@ def resumed(
     onward = plan.positions[goal : goal + 2]
     if resume is not None:
         onward = (resume, *onward)
-    way = rejoin(now, radius_m, onward[0], onward[1] if len(onward) > 1 else None)[1:]
+    if away.proposed:
+        led = onto(away.proposed, now, radius_m)
+        beyond = led[1] if len(led) > 1 else onward[1] if len(onward) > 1 else None
+        way = (*rejoin(now, radius_m, led[0], beyond)[1:], *led[1:])
+    else:
+        way = rejoin(now, radius_m, onward[0], onward[1] if len(onward) > 1 else None)[1:]
     if resume is None:
         way = way[:-1]  # the last is the waypoint itself
     following, points = plan.waypoints[goal], list(plan.command.WaypointList)

@@ -14,12 +14,21 @@ from cratous.bridge.port import Report, Tally, is_due
 from cratous.bridge.redial import Redial
 from cratous.bridge.text_connection import PROGRAM_LIMITS, REFUSED, Bounds, Opened
 from cratous.bridge.text_port import Came, TextPort
-from cratous.bridge.text_protocol import Heartbeat, Hello, Message, Skipped
+from cratous.bridge.text_protocol import (
+    Heartbeat,
+    Hello,
+    Message,
+    RouteRequest,
+    SetMode,
+    Skipped,
+)
 from cratous.services.bus import Bus, Envelope, Wake
 from cratous.services.flight.messages import Down, Lost, Say
+from cratous.services.icarous_communication.proposals import Proposals
 from cratous.services.icarous_communication.routes import GROUP, REQUEST, RouteLine, Routes
 from cratous.services.icarous_communication.seats import Refusal, Seats
 from cratous.services.icarous_communication.settings import Settings
+from cratous.services.icarous_communication.state import led_back
 from cratous.services.icarous_communication.step import (
     Communication,
     Note,
@@ -28,6 +37,7 @@ from cratous.services.icarous_communication.step import (
     State,
     Step,
 )
+from cratous.services.pipeline.planner import OWN_PLANNER
 from cratous.spec.errors import CratousError
 
 MISSION, STATE = "afrl.cmasi.MissionCommand", "afrl.cmasi.AirVehicleState"
@@ -62,6 +72,7 @@ class IcarousCommunicationService:
         REMOVE_ZONES,
         REQUEST,
         GROUP,
+        OWN_PLANNER,
     )
 
     def __init__(
@@ -72,8 +83,10 @@ class IcarousCommunicationService:
         settings: Settings,
         secret: str,
         routes: Routes | None = None,
+        proposals: Proposals | None = None,
     ) -> None:
-        """BadInput if it cannot listen. report(severity, sentence): to the log; routes: ICAROUS plans them."""
+        """BadInput if it cannot listen. report(severity, sentence): to the log; routes: ICAROUS plans them; proposals:
+        ICAROUS may ask UxAS for ways."""
         self.name, self._bus, self._report, self._settings = name, bus, report, settings
         bounds = Bounds(silence_s=None, connections=4 * settings.instances)
         self.port = TextPort(
@@ -87,7 +100,7 @@ class IcarousCommunicationService:
         )
         self._step = Communication(name, settings.deviation_m, settings.dialect)
         self._seats = Seats(settings.instances, settings.ids)
-        self._routes = routes
+        self._routes, self._proposals = routes, proposals
         self._early: dict[int, list[Message]] = {}
         self._known: set[int] = set()
         self._tally = Tally(name, report)
@@ -122,6 +135,11 @@ class IcarousCommunicationService:
         body, topic = envelope.body, envelope.topic
         if topic == MISSION and envelope.source == self.name:
             return state, ()
+        if topic == OWN_PLANNER:
+            if self._proposals is None or envelope.source == self.name:
+                return state, ()
+            seated = self._seats.vehicles
+            return state, self._deliver(self._proposals.planner_says(body.Plans, seated))
         if topic == REQUEST:
             asked = [] if self._routes is None else self._routes.asked(envelope)
             return state, [*self._deliver(asked), *self._deliver(self._planned())]
@@ -213,7 +231,7 @@ class IcarousCommunicationService:
     def _line(self, key: int, line: Message) -> None:
         vid, now_ms = self._seats.vehicle(key), self._bus.now_ms
         if vid is not None:
-            self._stepped(lambda state: self._step.heard(state, vid, line, now_ms))
+            self._stepped(lambda state: self._heard_line(state, vid, line, now_ms))
             if self._routes is not None and isinstance(line, RouteLine):
                 self._publish(self._routes.heard(vid, line))
             return
@@ -223,6 +241,17 @@ class IcarousCommunicationService:
             self._tally.refuse("line before its vehicle is known", self.port.name(key))
         elif not isinstance(line, Heartbeat):
             early.append(line)
+
+    def _heard_line(self, state: State, vid: int, line: Message, now_ms: int) -> Step:
+        """A line of the instance of a vehicle; a way that it asks UxAS for, or onto which it hands back."""
+        if self._proposals is not None and isinstance(line, SetMode):
+            state = led_back(state, vid, self._proposals.chosen(vid, line))
+        state, out = self._step.heard(state, vid, line, now_ms)
+        if self._proposals is not None and isinstance(line, RouteRequest):
+            out += self._proposals.asked(state, vid, line)
+        elif isinstance(line, RouteRequest):
+            out.append(Refuse("WPREQ of an ICAROUS", f"vehicle {vid}: no UseUxasRoutePlanner"))
+        return state, out
 
     def _gone(self, key: int, event: LinkEvent) -> None:
         self._early.pop(key, None)
@@ -240,6 +269,7 @@ class IcarousCommunicationService:
         now_ms = self._bus.now_ms
         self._report("INFO", f"{self.name}: {self.port.name(key)} is the ICAROUS of vehicle {vid}")
         self._stepped(lambda state: self._step.connected(state, vid, now_ms))
+        self._publish([] if self._proposals is None else self._proposals.connected(vid))
         for line in self._early.pop(key, ()):
             self._line(key, line)
 

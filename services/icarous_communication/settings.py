@@ -27,6 +27,7 @@ ATTRIBUTES: Mapping[str, Attr] = {
     "Keys": Attr(),
     "PlainBeyondLoopback": flag(False),
     "RouteTimeout_s": number(2.0, 0.1, 600.0),
+    "UseUxasRoutePlanner": flag(False),
 }
 DEVIATION_M = 500.0
 """How far from its leg a vehicle that avoids may be before its tasks are paused [m]."""
@@ -42,7 +43,8 @@ class Settings(NamedTuple):
     """instances: how many to wait for; deviation_m: see DEVIATION_M; where: it listens; to: the addresses
     to connect to instead of that, one of each instance; keys: of the vehicles, then the dialect is v2; ids: of the
     vehicles, none for the lowest known; wait_s: for the instances; dialect: of the peers, that of the lines inside v2's packets too;
-    planner: RoutePlannerUsed, -1 for UxAS's own; answer_s: how long to wait for a route."""
+    planner: RoutePlannerUsed, -1 for UxAS's own; answer_s: how long to wait for a route; live: ICAROUS may ask
+    UxAS's planner for a way back in a takeover."""
 
     instances: int
     deviation_m: float = DEVIATION_M
@@ -54,6 +56,7 @@ class Settings(NamedTuple):
     keys: Keys | None = None
     planner: int = -1
     answer_s: float = 2.0
+    live: bool = False
 
 
 def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
@@ -82,7 +85,14 @@ def settings_of(entry: Entry, v: Mapping[str, Any]) -> Settings:
             got=f'Address="{v["Address"]}" Dialect="{v["Dialect"]}"',
         )
     keys = _keys(entry, v, ids, to or (where,))
-    routes = v["RoutePlannerUsed"], v["RouteTimeout_s"]
+    live = v["UseUxasRoutePlanner"]
+    if live and not dialect.ours:
+        item, expected = (
+            "UseUxasRoutePlanner",
+            'Dialect="cratous" or "v2": others have no such line',
+        )
+        raise entry.refusal("peers that cannot ask UxAS", item, expected, dialect.value)
+    routes = v["RoutePlannerUsed"], v["RouteTimeout_s"], live
     return Settings(count, deviation_m, where, ids, v["Timeout_s"], dialect, to, keys, *routes)
 
 

@@ -14,7 +14,7 @@ from cratous.core.authority.timeliness import in_time
 from cratous.services.flight import link_end
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.messages import Down, Say
-from cratous.services.icarous.foresight import TURN_MARGIN
+from cratous.services.icarous.ending import TURN_MARGIN
 from cratous.services.icarous_communication.plans import Away, Plan, position_of
 from cratous.services.mission.frames import Projection
 from cratous.services.uxas.daidalus.zones import surroundings
@@ -183,3 +183,14 @@ def placed(state: State, vid: int, line: Message, dialect: Dialect) -> Message:
         return SoftReset(0.0, 0.0, 0.0)  # as the original's service has it before a mission
     lat, long = plane(state.frame).to_geodetic(air.position.north_m, air.position.east_m)
     return SoftReset(lat, long, air.position.alt_m)
+
+
+def led_back(state: State, vid: int, places: Iterable[tuple[float, float, float]]) -> State:
+    """The same with the way (latitude, longitude [deg], altitude [m]) onto which a vehicle that ICAROUS has is handed
+    back."""
+    craft = state.craft(vid)
+    if craft.away is None or state.frame is None:
+        return state
+    to_local = plane(state.frame).to_local
+    proposed = tuple(Position(*to_local(lat, long), alt_m) for lat, long, alt_m in places)
+    return state.put(vid, replace(craft, away=craft.away._replace(proposed=proposed)))

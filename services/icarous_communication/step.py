@@ -292,7 +292,7 @@ class Communication:
                     out += more
                 case Down(vid, lines) if not self.dialect.ours:
                     out.append(Down(vid, tuple(placed(state, vid, x, self.dialect) for x in lines)))
-                case _:
+                case Say() | Down():
                     out.append(answer)
         return state, out
 

@@ -68,3 +68,9 @@ def _bad(name: str, expected: str, got: str | None, where: str) -> BadInput:
     item = f"AssignmentTreeBranchBoundService.{name}"
     what = "unknown cost function" if name == "CostFunction" else "not a value of this attribute"
     return BadInput(what, where=where, item=item, expected=expected, got=str(got))
+
+
+def plans_live(communication: tuple[Mapping[str, str], str] | None) -> bool:
+    """Whether ICAROUS may ask UxAS's planner for ways back, by the attributes of IcarousCommunicationService, if any."""
+    text = "" if communication is None else communication[0].get("UseUxasRoutePlanner", "")
+    return text.strip().lower() in ("true", "1")

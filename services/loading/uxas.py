@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from cratous.services.loading import uxas_parts as parts
-from cratous.services.loading.assignment_attributes import Settings, settings_of
+from cratous.services.loading.assignment_attributes import Settings, plans_live, settings_of
 from cratous.services.loading.checks import too_many_instances
 from cratous.services.loading.document import item_key
 from cratous.services.loading.places import Places
@@ -26,7 +26,17 @@ from cratous.services.loading.uxas_tasks import task as read_task
 from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR, finish
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import integer_of
-from cratous.spec.mission import Daa, Frame, Mission, Simulation, Task, Vehicle, Zone, ZoneKind
+from cratous.spec.mission import (
+    Daa,
+    Frame,
+    LivePlanningMission,
+    Mission,
+    Simulation,
+    Task,
+    Vehicle,
+    Zone,
+    ZoneKind,
+)
 
 LIMIT_MS = 86_400_000
 """UxAS knows no end of the simulation: a day."""
@@ -74,7 +84,8 @@ def mission_of(
     settings = _settings(cfg, notes)
     order = "order" if _compatible(cfg) else "time"
     folder = cfg.path.resolve().parent.name
-    mission = Mission(
+    live = plans_live(cfg.service("IcarousCommunicationService"))
+    mission = (LivePlanningMission if live else Mission)(
         name=parts.safe_name(folder or cfg.path.stem),
         source=source,
         frame=frame,

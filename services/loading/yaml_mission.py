@@ -35,6 +35,7 @@ from cratous.spec.mission import (
     Daa,
     FaultySimulation,
     Frame,
+    LivePlanningMission,
     Mission,
     Simulation,
     Traffic,
@@ -131,7 +132,9 @@ def _mission(document: Document, seed: int) -> Mission:
     )
     places = Places(frame)
     vehicles = tuple(_vehicle(entry, places) for entry in data["vehicles"])
-    return Mission(
+    live = bool(data.get("bridge", {}).get("uxas_route_planner", False))
+    kind = LivePlanningMission if live else Mission
+    return kind(
         name=data["name"],
         source=document.path,
         frame=frame,

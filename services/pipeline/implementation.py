@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from cratous.bridge import lmcp
+from cratous.core.authority.timeliness import lasted
 from cratous.services.mission.sensor import zoomed
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.outside import Outside
@@ -14,9 +15,14 @@ from cratous.services.pipeline.places import RequestPlaces
 from cratous.services.planning.flyers import camera_for
 from cratous.services.planning.options import Option
 from cratous.services.planning.stages import hold_of
+from cratous.services.planning.targets import Angles, flown_view
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Camera, Position, Task
 from cratous.spec.mission.plan import Hold
+
+ROUNDED_MS = 50
+"""A shorter wait than this [ms] is none: a way that ICAROUS has found comes by places of six decimals, and may be so
+much shorter than UxAS's own, by which the start was planned."""
 
 
 def offer(context: Context, task_id: int, options: Sequence[Option]) -> Any:
@@ -81,8 +87,9 @@ def implemented(
     path = places.spaced(option.path, option.flyer.radius_m, outside)
     mine = places.waypoints(path, first + len(points), speed, [task.id])
     wait = max(0, request.TimeThreshold - request.StartTime - plan.RouteCost)
-    hold = hold_of(option, wait, context.inputs.zones) if wait > 0 else None
-    if wait > 0 and hold is None:
+    holds = lasted(0, wait, ROUNDED_MS)
+    hold = hold_of(option, wait, context.inputs.zones) if holds else None
+    if holds and hold is None:
         raise NoPlan(
             (
                 f"vehicle {request.VehicleID} has to wait {wait / 1000:.3f} s before task "
@@ -113,11 +120,16 @@ def _views(task: Task, option: Option, terrain_m: float) -> list[Any]:
     if option.view_elevation_rad is None:
         return []
     camera = camera_for(task, option.flyer.cameras)
+    made_for = Angles(option.view_elevation_rad, option.view_azimuth_rad)
+    view = flown_view(task, made_for, option.flyer.cameras)
+    # the gimbal is told against the heading with which the task begins
+    north_rad = option.start.heading_rad if view is not None and view.inertial else 0.0
+    azimuth_rad = math.remainder(option.view_azimuth_rad - north_rad, 2 * math.pi)
     look = lmcp.new(
         "GimbalAngleAction",
         AssociatedTaskList=[task.id],
         PayloadID=camera.payload_id if camera else 0,
-        Azimuth=math.degrees(option.view_azimuth_rad),
+        Azimuth=math.degrees(azimuth_rad),
         Elevation=math.degrees(option.view_elevation_rad),
     )
     return [look, *_zoom(task, camera, option.flyer.alt_m - terrain_m)]

@@ -15,7 +15,8 @@ from cratous.services.exporting.uxas import (
     configuration_text,
     messages_text,
 )
-from cratous.spec.mission import Mission
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import LivePlanningMission, Mission
 
 SCENARIO = "scenario.xml"
 SETS_OUT_S = 0.45
@@ -76,6 +77,16 @@ def write_configuration(
     }
     if original:
         communication |= {"Dialect": "original", "Timeout_s": str(CLIENTS_S)}
+    if isinstance(mission, LivePlanningMission):
+        if original:
+            raise BadInput(
+                "the original's clients cannot ask UxAS",
+                where=mission.source,
+                item="bridge.uxas_route_planner",
+                expected="false, or no --original-clients",
+                got="true",
+            )
+        communication["UseUxasRoutePlanner"] = "true"
     bridges = (
         _bridge(ports.simulator, "FALSE", TO_SIMULATOR)
         # a recorder that does not read loses nothing in silence: its connection ends; nobody else says anything

@@ -13,6 +13,7 @@ from typing import Any
 from cratous.bridge.text_protocol.handshake import secret_of_environment
 from cratous.services.icarous_communication import service as icarous_communication
 from cratous.services.icarous_communication import settings as icarous_settings
+from cratous.services.icarous_communication.proposals import Proposals
 from cratous.services.icarous_communication.routes import GROUP, PLANNERS, Routes
 from cratous.services.loading.uxas_settings import Attr, Entry, choice, flag, number, whole
 from cratous.services.logs.message_logger import MessageLogger
@@ -206,7 +207,8 @@ def _leash(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) 
 
 
 def _detection(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
-    return detection.DaidalusDetection(name, _vehicle(host, v), daidalus.parameters_of(entry, v))
+    parameters, period_ms = daidalus.parameters_of(entry, v), round(1000 * v["Period_s"])
+    return detection.DaidalusDetection(name, _vehicle(host, v), parameters, period_ms)
 
 
 def _response(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
@@ -219,8 +221,9 @@ def _icarous(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int
     if given.planner in range(len(PLANNERS)):
         contexts = contexts_of(host)
         routes = Routes(name, contexts, given.planner, given.answer_s, given.dialect)
+    proposals = Proposals() if given.live else None
     return icarous_communication.IcarousCommunicationService(
-        name, host.bus, host.log, given, secret_of_environment(), routes
+        name, host.bus, host.log, given, secret_of_environment(), routes, proposals
     )
 
 
@@ -329,7 +332,9 @@ KINDS: dict[str, Kind] = {
     "IcarousCommunicationService": Kind(
         icarous_settings.ATTRIBUTES, _icarous, single=True, plans=True
     ),
-    "DAIDALUS_WCV_Detection": Kind(daidalus.ATTRIBUTES, _detection, plans=True),
+    "DAIDALUS_WCV_Detection": Kind(
+        {**daidalus.ATTRIBUTES, "Period_s": number(0.0, 0.0, 60.0)}, _detection, plans=True
+    ),
     "DAIDALUS_WCV_Response": Kind(
         {
             "VehicleID": whole(-1, -1),

@@ -313,3 +313,10 @@ class Mission:
             if task.id == task_id:
                 return task
         raise KeyError(task_id)
+
+
+@dataclass(frozen=True)
+class LivePlanningMission(Mission):
+    """The same where UxAS plans live: an ICAROUS that has its vehicle may ask it for a way back."""
+
+    uxas_route_planner: bool = True

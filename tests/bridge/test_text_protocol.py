@@ -53,6 +53,8 @@ ORIGINAL_LINES = [
      "COMND,typeRESET_SFT,lat45.306000,long-120.988001,alt705.000000,\n"),
     (tp.SoftReset(), "COMND,typeRESET_SFT,\n"),
     (tp.HardReset(), "COMND,typeRESET_HRD,\n"),
+    (tp.UxasPlans(), "COMND,typeUXAS_PLANS,\n"),
+    (tp.IcarousPlans(), "COMND,typeICAROUS_PLANS,\n"),
     (OWN_POSITION,
      "POSTN,timegps12.500000,lat45.301234,long-120.998765,altabs700.250000,altrel700.250000,"
      "north21.213203,east-5.500000,down1.250000,hdop0.100000,vdop0.100000,numsats25.0,id1.0,\n"),
@@ -65,6 +67,10 @@ ORIGINAL_LINES = [
      "WPREQ,typeASTAR,slat45.300000,slong-121.000000,salt700.000000,elat45.330000,"
      "elong-120.950000,ealt700.000000,track90.000000,vh22.000000,vv0.000000,\n"),
     (tp.EpochTold("ICAROUS", 5), "EPOCH,type_ICAROUS_,epoch5.0,\n"),
+    (tp.WayOfAnother(3, 7, 45.3, -121.0, 700.0, 2),
+     "OTHER,id3.0,total7.0,lat45.300000,long-121.000000,alt700.000000,index2.0,\n"),
+    (tp.VelocityOfAnother(3, 10.0, 20.0, 1.5),
+     "OVELO,id3.0,north10.000000,east20.000000,down1.500000,\n"),
     (tp.SetMode("ACTIVE"), "SETMOD,type_ACTIVE_,\n"),
     (tp.SetMode("PASSIVE"), "SETMOD,type_PASSIVE_,\n"),
     (tp.SetVelocity(10.0, 20.0, 1.5), "SETVEL,north10.000000,east20.000000,down1.500000,\n"),
@@ -98,6 +104,8 @@ def test_our_dialect() -> None:
     assert (
         tp.encode(tp.SetMode("ACTIVE", 3), dialect=tp.Dialect.ORIGINAL) == b"SETMOD,type_ACTIVE_,\n"
     )
+    assert tp.encode(tp.SetMode("PASSIVE", 4, 7)) == b"SETMOD,type_PASSIVE_,epoch4.0,request7.0,\n"
+    assert parse("RPRSP,typeED,request7.0,\n", DOWN) == [tp.RouteEnd(7)], "UxAS answers too"
     assert parse("SETMOD,epoch3.0,type_ACTIVE_,\n", UP) == [tp.SetMode("ACTIVE", 3)]
     assert b"lat45.123456789,long-0.000000001" in tp.encode(
         tp.SetPosition(45.123456789, -0.000000001, 0.0)

@@ -150,7 +150,8 @@ def test_an_instance_that_never_sends_one_is_silent_unless_its_protocol_has_none
 
     assert said() == {"to": "holds", "from": "unknown"}
     assert said((9000, True)) == {"to": "holds", "from": "unknown"}
-    for ours in ("run m.yaml --processes", ""):
+    named = "run 'flown --original-clients there/m.yaml' --processes"
+    for ours in ("run m.yaml --processes", "", named):
         assert said(command=ours) == {"to": "holds", "from": "violated"}
 
 

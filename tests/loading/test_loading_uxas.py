@@ -11,7 +11,7 @@ import pytest
 
 from cratous.services.loading import load
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Mission, TaskKind, ZoneKind
+from cratous.spec.mission import LivePlanningMission, Mission, TaskKind, ZoneKind
 
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "examples" / "openuxas"
 pytestmark = pytest.mark.skipif(
@@ -164,6 +164,13 @@ def test_fewer_instances_than_vehicles(tmp_path: Path) -> None:
     mission = load(folder)
     assert mission.instances == (1,)
     assert all(vehicle.protected for vehicle in mission.vehicles)
+    assert not isinstance(mission, LivePlanningMission)
+    cfg = folder / "cfg_run.xml"
+    asks = cfg.read_text().replace(
+        ' NumberOfUAVs="1"', ' NumberOfUAVs="1" UseUxasRoutePlanner="true"'
+    )
+    cfg.write_text(asks)
+    assert isinstance(load(folder), LivePlanningMission)
 
 
 def test_a_folder_without_a_configuration(tmp_path: Path) -> None:

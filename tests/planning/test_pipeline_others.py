@@ -13,6 +13,8 @@ from pipeline_tools import Rig, must_fly, place, request, vehicle
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope
+from cratous.services.pipeline import implementation as implementation_module
+from cratous.services.pipeline import planner
 from cratous.services.pipeline.unserved import OTHERS_MS
 from cratous.spec import algebra
 from cratous.spec.algebra import meaning as algebra_meaning
@@ -225,3 +227,22 @@ def _random_term(rng: random.Random, left: list[int]) -> str:
     cut = rng.randrange(1, len(left))
     parts = " ".join(_random_term(rng, part) for part in (left[:cut], left[cut:]))
     return f"{rng.choice('.|+')}({parts})"
+
+
+@pytest.mark.parametrize(("shorter_ms", "planned"), [(1, True), (49, True), (50, False)])
+def test_a_way_of_another_planner_that_is_shorter_by_its_rounding_needs_no_hold(
+    rig: Rig, monkeypatch: pytest.MonkeyPatch, shorter_ms: int, planned: bool
+) -> None:
+    """Where no circle fits, a wait of a millisecond ended the whole mission."""
+    own = planner.plans_of
+
+    def other(contexts: Any, asked: Any, constraints: Any) -> list[Any]:
+        plans = own(contexts, asked, constraints)
+        less = 0 if asked.IsCostOnlyRequest else shorter_ms
+        return [plan.copy(RouteCost=plan.RouteCost - less) for plan in plans]
+
+    monkeypatch.setattr(planner, "plans_of", other)
+    monkeypatch.setattr(implementation_module, "hold_of", lambda *_: None)
+    rig.tell(request(5))
+    assert bool(rig.got(INFO)[0].MissionCommandList) is planned
+    assert ("no hold circle there" in " ".join(rig.reasons())) is not planned

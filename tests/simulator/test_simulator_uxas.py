@@ -182,6 +182,20 @@ def test_a_port_of_a_vehicle_that_cannot_be(
     assert said in capsys.readouterr().err
 
 
+def test_a_port_of_a_vehicle_that_the_scenario_does_not_have_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("signal.signal", lambda *_: None)
+    monkeypatch.setattr(Server, "run", lambda self: self._close())
+    path = tmp_path / "s.xml"
+    path.write_text(scenario(FLIGHT))
+    ports = ["--vehicle", "1=127.0.0.1:0", "--vehicle", "7=127.0.0.1:0"]
+    assert main(["sim", str(path), "--listen", "127.0.0.1:0", *ports]) == 0
+    said = capsys.readouterr().err
+    assert "--vehicle 7: the scenario has no such vehicle (it has 1)" in said
+    assert "--vehicle 1" not in said
+
+
 def test_a_port_that_is_taken_leaves_none_open() -> None:
     with contextlib.closing(socket.create_server(("127.0.0.1", 0))) as free:
         mine = free.getsockname()

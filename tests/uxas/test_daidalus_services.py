@@ -296,3 +296,13 @@ def test_states_of_other_times_are_moved_to_the_ownships(tmp_path: Path) -> None
 
     assert first(6000, 6000.0) == pytest.approx(first(10_000, 5800.0), abs=0.01)
     assert first(12_000, 6000.0) == pytest.approx(first(10_001, 6100.0), abs=0.02)
+
+
+@pytest.mark.shows(DETECTION, "Period_s")
+def test_with_a_period_vehicles_look_by_turns(tmp_path: Path) -> None:
+    sky = Sky(tmp_path, *(f'Type="{DETECTION}" VehicleID="{n}" Period_s="1"' for n in (1, 2)))
+    for at_ms in range(0, 4000, 500):
+        sky.tell(*(state(n, 3000.0 * n, 0.0, 0.0, 50.0, at_ms) for n in (1, 2)))
+    looked = [(i.EntityId, i.CurrentTime) for i in sky.got("WellClearViolationIntervals")]
+    assert [at for n, at in looked if n == 1] == [0.5, 1.5, 2.5, 3.5]
+    assert [at for n, at in looked if n == 2] == [0.0, 1.0, 2.0, 3.0]

@@ -14,7 +14,7 @@ from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 from cratous.bridge import lmcp
-from cratous.core.authority.timeliness import in_time
+from cratous.core.authority.timeliness import in_time, lasted
 from cratous.core.daa.session import Instant, Session
 from cratous.core.daa.state import UNKNOWN, Guidance
 from cratous.services.bus import Envelope
@@ -26,6 +26,8 @@ from cratous.spec.errors import BadInput
 STATE, STARTED = "afrl.cmasi.AirVehicleState", "uxas.messages.uxnative.StartupComplete"
 REMOVED = "afrl.cmasi.RemoveEntities"
 DEGREES = 180 / math.pi
+TELL_MS = 500
+"""Aircraft tell their states so often [ms]: in two such turns half of the vehicles look at each."""
 
 SERIES = {
     "hdir": ("GroundHeadingInterval", "GroundHeadings", "WCVGroundHeadingIntervals",
@@ -45,13 +47,14 @@ Alitude is how the message spells it."""
 
 
 class Known(NamedTuple):
-    """The newest state of each vehicle, the history, whether the parameters were told, and what was
-    warned of."""
+    """The newest state of each vehicle, the history, whether the parameters were told, what was warned of, and at which
+    state of the vehicle it has looked last [ms]."""
 
     session: Session
     states: dict[int, Any]
     told: bool = False
     warned: frozenset[str] = frozenset()
+    looked_ms: int = 0
 
 
 Step = tuple[Known, Iterable[Any]]
@@ -106,16 +109,18 @@ def intervals_message(own: Any, wind: Wind, instant: Instant) -> Any:
 
 
 class DaidalusDetection:
-    """For one vehicle."""
+    """For one vehicle. period_ms: it looks no more often than this; vehicles by turns, so that not all do at once."""
 
     subscribes: tuple[str, ...] = (STATE, STARTED, REMOVED)
 
-    def __init__(self, name: str, vehicle: int, parameters: Parameters) -> None:
+    def __init__(self, name: str, vehicle: int, parameters: Parameters, period_ms: int = 0) -> None:
+        self._period_ms = period_ms
         self.name, self._vehicle, self._parameters = name, vehicle, parameters
         self._stale_ms = int(1000 * parameters.lookahead_time_s)
 
     def start(self) -> Known:
-        return Known(Session(self._parameters), {})
+        turn_ms = self._vehicle * TELL_MS % self._period_ms if self._period_ms else 0
+        return Known(Session(self._parameters), {}, looked_ms=turn_ms - self._period_ms)
 
     def handle(self, state: Known, envelope: Envelope, now_ms: int) -> Step:
         body, topic = envelope.body, envelope.topic
@@ -129,9 +134,10 @@ class DaidalusDetection:
         if topic == STARTED:
             return state, out
         state = state._replace(states={**state.states, body.ID: body})
-        if self._vehicle != body.ID:
+        early, late = sorted((state.looked_ms, int(body.Time)))
+        if self._vehicle != body.ID or not lasted(early, late, self._period_ms):
             return state, out
-        return self._look(state, body, out)
+        return self._look(state._replace(looked_ms=int(body.Time)), body, out)
 
     def _look(self, state: Known, own: Any, out: list[Any]) -> Step:
         wind = wind_of(own)
