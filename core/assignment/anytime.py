@@ -14,7 +14,7 @@ import numpy as np
 
 from cratous.core.assignment.annealing import anneal, leaf
 from cratous.core.assignment.by_sets import by_sets, is_sets
-from cratous.core.assignment.compiled import machine_for
+from cratous.core.assignment.compiled import machine_for, machine_for_pass
 from cratous.core.assignment.instance import FAR, TASKS_MAX, Instance
 from cratous.core.assignment.large_neighbourhoods import rebuild
 from cratous.core.assignment.layers import (
@@ -54,7 +54,7 @@ def greedy(instance: Instance) -> tuple[int, Moves | None]:
     """(nodes, the first leaf's moves, or None if it ends in a dead end)."""
     i, n = instance, instance.tasks
     order, who, how = np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(n, np.int64)
-    nodes = int(machine_for(i, leaf)(order, who, how, i))
+    nodes = int(machine_for_pass(i, leaf)(order, who, how, i))
     if nodes < 0:
         return n, None
     return nodes, tuple((int(who[j]), int(how[j])) for j in order)
@@ -135,13 +135,13 @@ def estimate(instance: Instance, ahead: Ahead | None = None) -> int:
     if i.tasks > TASKS_MAX:
         return rough_bound(i)
     ahead = look_ahead(i) if ahead is None else ahead
-    return int(machine_for(i, bound)(first_state(i), i, ahead))
+    return int(machine_for_pass(i, bound)(first_state(i), i, ahead))
 
 
 def rough_bound(instance: Instance) -> int:
     """The longest path through the rows, and the least work of all tasks shared by all vehicles."""
     i = instance
-    head, least, tail = machine_for(i, heads)(i, shortest(i, i.may))
+    head, least, tail = machine_for_pass(i, heads)(i, shortest(i, i.may))
     work, legs = machine_for(i, least_work)(i)
     last = int(machine_for(i, least_until)(int(work), i.ready))
     for j in range(i.tasks):

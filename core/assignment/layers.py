@@ -12,7 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cratous.core.assignment.compiled import machine_for
+from cratous.core.assignment.compiled import (
+    FIRST_NODES,
+    is_brief,
+    machine_after,
+    machine_for,
+    machine_for_pass,
+)
 from cratous.core.assignment.instance import FAR, TABLE_MAX_MS, Instance, horizon
 from cratous.core.assignment.lower_bounds import (
     heads,
@@ -61,7 +67,7 @@ def look_ahead(instance: Instance) -> Ahead:
     """Shortest ways, heads and tails, and which vehicles share a table."""
     i = instance
     reach = shortest(i, i.may)
-    head, least, tail = machine_for(i, heads)(i, reach)
+    head, least, tail = machine_for_pass(i, heads)(i, reach)
     able = np.zeros(i.vehicles, np.int64)
     for v in range(i.vehicles):
         for o in range(i.duration.size):
@@ -150,7 +156,7 @@ def refute(
     i = instance
     ahead = look_ahead(i) if ahead is None else ahead
     search = search_below(i, ahead, limit)
-    run, again = machine_for(i, expand), machine_for(i, rehash)
+    brief = is_brief(i)
     layer, ranks = first_state(i)[None, :], np.zeros(1, np.int64)
     counts, known = np.zeros(4, np.int64), limit
     origins: list[np.ndarray] = []
@@ -165,7 +171,8 @@ def refute(
         table = np.full(2048, -1, np.int64)
         while first < len(layer) and not halted:
             made = Layer(into, origin, rank, table, chain)
-            kept, first = run(
+            few = brief and counts[0] <= FIRST_NODES
+            kept, first = machine_after(few, i, expand)(
                 layer, first, min(len(layer), first + CHUNK), kept, made, limit, search, counts
             )
             halted = stop is not None and stop(int(counts[0]))
@@ -176,7 +183,7 @@ def refute(
                 into, origin = _longer(into, room), _longer(origin, room)
                 rank, chain = _longer(rank, room), np.empty(room, np.int64)
                 table = np.empty(1 << (2 * room - 1).bit_length(), np.int64)
-                again(into, kept, table, chain, i.vehicles)
+                machine_for(i, rehash)(into, kept, table, chain, i.vehicles)
         if first < len(layer) or halted:
             # children of the states from here on are lost
             known = min(known, int(ranks[min(first, len(layer) - 1) :].min()))

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cratous.core.assignment.compiled import machine_for
+from cratous.core.assignment.compiled import STATES_MOST, is_brief, machine_after
 from cratous.core.assignment.instance import Instance
 from cratous.core.assignment.layers import first_state, look_ahead, search_below
 from cratous.core.assignment.refutation import closed, cost_now
@@ -30,6 +30,7 @@ def least_cost(instance: Instance, limit: int, origins: Sequence[np.ndarray]) ->
     i = instance
     search = search_below(i, look_ahead(i), limit)
     layer = first_state(i)[None, :]
+    brief, listed = is_brief(i), 0
     for depth in range(i.tasks):
         if len(layer) == 0:
             return limit, ""
@@ -40,7 +41,8 @@ def least_cost(instance: Instance, limit: int, origins: Sequence[np.ndarray]) ->
         table = np.empty(1 << max(4, (2 * len(origin)).bit_length()), np.int64)
         if depth + 1 == i.tasks:
             search = search._replace(deals=0)
-        found = machine_for(i, closed)(
+        listed += len(origin)
+        found = machine_after(brief and listed <= STATES_MOST, i, closed)(
             layer, origin, into, table, np.empty(len(origin), np.int64), limit, search
         )
         if found >= 0:
