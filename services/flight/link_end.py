@@ -284,9 +284,12 @@ class UxasEnd:
     def _beat(self, state: State, beat: Beat) -> Step:
         """POSTN, ATTUD and OBJCT to every instance; what to publish of it."""
         places = link_lines.places_of(beat.aircraft, self.projection)
+        lines = link_lines.traffic(beat.aircraft, places)
         peers, out = list[Peer](), list[FromLinkEnd]()
         for peer in state.peers:
-            told = link_lines.states(peer.vehicle_id, beat.aircraft, places, beat.now_ms)
+            told = link_lines.states(
+                peer.vehicle_id, beat.aircraft, places, beat.now_ms, lines=lines
+            )
             count = peer.down + peer.open
             peers.append(replace(peer, down=count))
             out += _down(peer, told)

@@ -134,8 +134,11 @@ def states(
     places: Places,
     now_ms: int,
     attitude: Attitude | None = None,
+    lines: dict[int, Traffic] | None = None,
 ) -> list[Message]:
-    """POSTN and ATTUD of a vehicle, and an OBJCT of each other aircraft. attitude: None for `climbing`."""
+    """POSTN and ATTUD of a vehicle, and an OBJCT of each other aircraft. attitude: None for `climbing`; lines: of
+    `traffic`, where many are told."""
+    others = traffic(aircraft, places) if lines is None else lines
     out: list[Message] = []
     for vid, s in aircraft:
         v, (lat, lon) = s.velocity, places[vid]
@@ -153,16 +156,23 @@ def states(
             )
             out[:0] = [own, attitude or climbing(s)]
         else:
-            out.append(
-                Traffic(
-                    what="TRAFFIC",
-                    lat_deg=lat,
-                    long_deg=lon,
-                    alt_m=s.position.alt_m,
-                    north_mps=v.north_m_s,
-                    east_mps=v.east_m_s,
-                    down_mps=v.down_m_s,
-                    index=vid,
-                )
-            )
+            out.append(others[vid])
     return out
+
+
+def traffic(aircraft: Aircraft, places: Places) -> dict[int, Traffic]:
+    """An OBJCT of each aircraft, one object for all who are told of it."""
+    lines = {}
+    for vid, s in aircraft:
+        v, (lat, lon) = s.velocity, places[vid]
+        lines[vid] = Traffic(
+            what="TRAFFIC",
+            lat_deg=lat,
+            long_deg=lon,
+            alt_m=s.position.alt_m,
+            north_mps=v.north_m_s,
+            east_mps=v.east_m_s,
+            down_mps=v.down_m_s,
+            index=vid,
+        )
+    return lines
