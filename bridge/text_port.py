@@ -38,12 +38,24 @@ from cratous.bridge.text_protocol.messages import (
     Message,
     NotKnown,
     UxasPlans,
+    VelocityOfAnother,
+    WayOfAnother,
 )
 from cratous.bridge.text_protocol.parser import Record, WireError
 from cratous.bridge.text_protocol.sealed import SealedClient, SealedServer
 from cratous.spec.errors import BadInput
 
-OURS = (Hello, Heartbeat, LinesMissing, NotKnown, EpochTold, UxasPlans, IcarousPlans)
+OURS = (
+    Hello,
+    Heartbeat,
+    LinesMissing,
+    NotKnown,
+    EpochTold,
+    UxasPlans,
+    IcarousPlans,
+    WayOfAnother,
+    VelocityOfAnother,
+)
 """What a peer of another dialect than ours is not sent."""
 PATIENCE_S = 1.0
 """So long a connection that has not shaken hands keeps its place where others wait for one [s]."""

@@ -35,6 +35,8 @@ from cratous.bridge.text_protocol.messages import (
     StartMission,
     Traffic,
     UxasPlans,
+    VelocityOfAnother,
+    WayOfAnother,
     Waypoint,
     WaypointReached,
 )
@@ -73,6 +75,8 @@ __all__ = [
     "StreamParser",
     "Traffic",
     "UxasPlans",
+    "VelocityOfAnother",
+    "WayOfAnother",
     "Waypoint",
     "WaypointReached",
     "WireError",

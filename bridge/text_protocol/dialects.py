@@ -1,7 +1,7 @@
 """The dialects of the text protocol that need no keys, and how the thesis's lines are laid out.
 
 `cratous` is ours. `original` is that of the programs whose sources are public: ours without HELLO, HBEAT, AGAIN,
-NOCMD, epochs and the numbers of route requests. `thesis` is that of the thesis on CRATOUS: a line begins with a tag of exactly five letters, the
+NOCMD, OTHER, OVELO, epochs and the numbers of route requests. `thesis` is that of the thesis on CRATOUS: a line begins with a tag of exactly five letters, the
 first field follows at once, labels are read in capitals and in small letters, a whole number may stand without
 `.0`, and waypoints count from 1. The thesis gives the tags WAYPT, GEOFN, POSTN, ATTUD, OBJCT, COMND, WPRCH and
 WPREQ and the fields of WAYPT; other fields and words are here those of the original's programs, and tags of six
@@ -31,7 +31,7 @@ class Dialect(Enum):
 
     @property
     def ours(self) -> bool:
-        """True if the peer knows HELLO, HBEAT, AGAIN, NOCMD, EPOCH, epochs, and that ICAROUS asks UxAS for ways."""
+        """True if the peer knows HELLO, HBEAT, AGAIN, NOCMD, EPOCH, OTHER, OVELO, epochs, and is asked for ways."""
         return self is Dialect.CRATOUS
 
     @property

@@ -182,6 +182,19 @@ LAYOUTS: tuple[Layout, ...] = (
     ),
     Layout("WPRCH", _DOWN, messages.WaypointReached, (_count("id", "index", 0, "last_reached"),)),
     Layout(
+        "OTHER",
+        _DOWN,
+        messages.WayOfAnother,
+        (
+            _count("id", "vehicle_id", 0),
+            _count("total", "total", 0, "waypoints"),
+            *_PLACE,
+            _real("alt", "alt_m"),
+            _count("index", "index", 0, "waypoint_index"),
+        ),
+    ),
+    Layout("OVELO", _DOWN, messages.VelocityOfAnother, (_count("id", "vehicle_id", 0), *_VELOCITY)),
+    Layout(
         "WPREQ",
         _DOWN,
         messages.RouteRequest,

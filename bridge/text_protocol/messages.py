@@ -157,6 +157,31 @@ class WaypointReached(Message):
 
 
 @dataclass(frozen=True)
+class WayOfAnother(Message):
+    """OTHER (our dialect): one waypoint of the way that another of UxAS's vehicles flies; `index` starts at 0.
+    `total`: the number of all of them; 0, with the index and the place 0 too: it flies no way that is known."""
+
+    tag: ClassVar[str] = "OTHER"
+    vehicle_id: int
+    total: int
+    lat_deg: float
+    long_deg: float
+    alt_m: float
+    index: int
+
+
+@dataclass(frozen=True)
+class VelocityOfAnother(Message):
+    """OVELO (our dialect): another of UxAS's vehicles is steered by its ICAROUS, to this velocity."""
+
+    tag: ClassVar[str] = "OVELO"
+    vehicle_id: int
+    north_mps: float
+    east_mps: float
+    down_mps: float
+
+
+@dataclass(frozen=True)
 class RouteRequest(Message):
     """WPREQ: plan a route with the planner GRID, ASTAR, RRT or SPLINE. request (our dialect): a number that the
     lines of the answer bear too. In our dialect ICAROUS asks UxAS as well: then UxAS's own planner plans."""

@@ -9,12 +9,16 @@ the piece, and always rounded towards the earlier side.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 from cratous.core.kernel import Vec2, driver
 from cratous.core.well_clear import StandardThresholds, violation, violation_within
 from cratous.spec.mission import Position, Velocity, WellClear
+
+STANDING = Velocity(0.0, 0.0, 0.0)
+"""How the middle of a hold moves."""
 
 
 class Piece(NamedTuple):
@@ -27,12 +31,18 @@ class Piece(NamedTuple):
 
 
 class Intruder(NamedTuple):
-    """Another aircraft, as seen now; cooperates: it too is flown by one of our instances."""
+    """Another aircraft, as seen now; cooperates: it too is flown by one of our instances.
+
+    way: how it is taken to fly, from now on and without gaps; () is straight on. After it the intruder is within hold_m
+    [m] of where the way ends.
+    """
 
     id: int
     position: Position
     velocity: Velocity
     cooperates: bool = False
+    way: tuple[Piece, ...] = ()
+    hold_m: float = 0.0
 
 
 def buffered(volume: WellClear, buffer: float) -> WellClear:
@@ -56,6 +66,60 @@ def after(piece: Piece, t_s: float) -> Position:
     return Position(
         p.north_m + v.north_m_s * t_s, p.east_m + v.east_m_s * t_s, p.alt_m - v.down_m_s * t_s
     )
+
+
+def legs_of(other: Intruder) -> tuple[Piece, ...]:
+    """The straight flights that an intruder is taken to fly, the last one without an end: of a hold it stands."""
+    if not other.way:
+        return (Piece(0.0, math.inf, other.position, other.velocity),)
+    last = other.way[-1]
+    end_s = last.start_s + last.duration_s
+    return (*other.way, Piece(end_s, math.inf, after(last, last.duration_s), STANDING))
+
+
+def later(other: Intruder, t_s: float) -> Intruder:
+    """The intruder as it will be t_s [s] from now, if it flies as it is taken to."""
+    rest = [leg for leg in legs_of(other) if leg.start_s + leg.duration_s > t_s]
+    first = rest[0]
+    gone_s = t_s - first.start_s
+    begun = Piece(t_s, first.duration_s - gone_s, after(first, gone_s), first.velocity)
+    # straight flight and hold, the last leg, are no part of the way
+    left = (begun, *rest[1:-1]) if rest[1:] else ()
+    way = tuple(leg._replace(start_s=leg.start_s - t_s) for leg in left)
+    return other._replace(position=begun.position, velocity=begun.velocity, way=way)
+
+
+def meetings(
+    pieces: Sequence[Piece], other: Intruder
+) -> Iterator[tuple[tuple[Piece, ...], Intruder]]:
+    """The pieces cut where the intruder begins another leg: each run of them with the intruder as it flies then, as one
+    that has flown and will fly straight on. No instant of the pieces is left out, none comes twice but the cuts."""
+    if not other.way:
+        yield tuple(pieces), other
+        return
+    for leg in legs_of(other):
+        run = tuple(_within(piece, leg) for piece in pieces if _overlap(piece, leg))
+        if run:
+            begun = after(leg, -leg.start_s)
+            held_m = other.hold_m if leg.duration_s == math.inf else 0.0
+            yield run, other._replace(position=begun, velocity=leg.velocity, way=(), hold_m=held_m)
+
+
+def around(volume: WellClear, other: Intruder) -> WellClear:
+    """The volume of one that stands in a hold: as much wider as it may be from the middle."""
+    return volume if not other.hold_m else replace(volume, dthr_m=volume.dthr_m + other.hold_m)
+
+
+def _overlap(piece: Piece, leg: Piece) -> bool:
+    begins = piece.start_s < leg.start_s + leg.duration_s
+    return begins and piece.start_s + piece.duration_s > leg.start_s
+
+
+def _within(piece: Piece, leg: Piece) -> Piece:
+    """The part of a piece in the time of a leg."""
+    start = max(piece.start_s, leg.start_s)
+    end = min(piece.start_s + piece.duration_s, leg.start_s + leg.duration_s)
+    return Piece(start, end - start, after(piece, start - piece.start_s), piece.velocity)
 
 
 def _relative(piece: Piece, other: Intruder, t_s: float) -> tuple[Vec2, Vec2, float, float]:
@@ -99,6 +163,18 @@ def first_violation_s(
 
     The instant is early by at most the piece's duration / 2^halvings.
     """
+    for run, straight_on in meetings(pieces, other):
+        found = _first_of_straight(run, straight_on, volume, halvings)
+        if found is not None:
+            return found
+    return None
+
+
+def _first_of_straight(
+    pieces: Sequence[Piece], other: Intruder, volume: WellClear, halvings: int
+) -> float | None:
+    """The same against one that flies straight on."""
+    volume = around(volume, other)
     if not pieces or out_of_reach(pieces, other, volume):
         return None
     for piece in pieces:
@@ -122,11 +198,11 @@ def violated_s(
 ) -> float:
     """About how long well clear is lost [s]: only to rank manoeuvres that all lose it."""
     lost = 0.0
-    for piece in pieces:
+    for piece, straight_on in ((p, leg) for run, leg in meetings(pieces, other) for p in run):
         count = max(1, math.ceil(piece.duration_s / grid_s))
         for k in range(count):
-            s, v, sz, vz = _relative(piece, other, (k + 0.5) * piece.duration_s / count)
-            if violation(s, v, sz, vz, *_thresholds(volume)):
+            s, v, sz, vz = _relative(piece, straight_on, (k + 0.5) * piece.duration_s / count)
+            if violation(s, v, sz, vz, *_thresholds(around(volume, straight_on))):
                 lost += piece.duration_s / count
     return lost
 

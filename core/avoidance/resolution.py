@@ -83,6 +83,18 @@ def turn_back_s(now: Motion, ability: Ability) -> float:
 
 
 @driver(
+    checked_by=("violation_within", "keep_out_leg_ok", "keep_in_leg_ok", "locate", "comes_within")
+)
+def keeps_clear(now: Motion, ability: Ability, scene: Scene, choice: Choice) -> bool:
+    """True iff a manoeuvre is free of traffic and zones over the whole look-ahead, with the drift of its turn."""
+    pieces = _pieces(now, ability, choice, scene.lookahead_s)
+    if first_conflict_s(pieces, scene) is not None:
+        return False
+    drift = drift_of(now, ability, *choice[1:4])
+    return first_zone_s(pieces, scene.zones, turn_back_s(now, ability), drift) is None
+
+
+@driver(
     checked_by=(
         "violation_within", "violation", "keep_out_leg_ok", "keep_in_leg_ok", "locate", "comes_within",
     )

@@ -9,18 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from cratous.core.avoidance.prediction import Intruder, Piece
+from cratous.core.avoidance.prediction import STANDING, Intruder, Piece, around, later, meetings
 from cratous.core.geofence.distance import comes_within
 from cratous.core.geofence.planar import edges_of, keep_in_leg_ok, keep_out_leg_ok, locate
 from cratous.core.kernel import Vec2, driver
 from cratous.core.permit.pieces import Growth, Meeting, above_during, permitted
 from cratous.core.readings.exact import exact
-from cratous.spec.mission import Position, Velocity, WellClear, Zone, ZoneKind
+from cratous.spec.mission import Position, WellClear, Zone, ZoneKind
 
 STEADY = Growth(0, 0, 0)
 """The tube of an intruder that is taken to fly straight on."""
-STANDING = Velocity(0.0, 0.0, 0.0)
-"""How the middle of a hold moves."""
 
 Moving = tuple[Vec2, float, float, float]
 """Velocity [m/s], climb [m/s, up], duration [s] and rho [m], as in `core.permit.pieces.Piece`."""
@@ -33,7 +31,7 @@ def hold_at(place: Position, start_s: float, horizon_s: float) -> Piece:
 
 def meeting(start: Position, other: Intruder, volume: WellClear) -> Meeting:
     """An intruder as a trajectory begins at `start`, and the cylinder of a volume to keep clear."""
-    p, w = other.position, other.velocity
+    p, w, volume = other.position, other.velocity, around(volume, other)
     return Meeting(
         Vec2(start.north_m - p.north_m, start.east_m - p.east_m),
         start.alt_m - p.alt_m,
@@ -61,11 +59,18 @@ def hold_permits(
 
     hold_m, rise_m: how far the vehicle may be from the middle of the hold, and off its height [m], >= 0.
     """
-    p, w, t = other.position, other.velocity, hold.start_s
-    then = Position(
-        p.north_m + w.north_m_s * t, p.east_m + w.east_m_s * t, p.alt_m - w.down_m_s * t
+    return all(
+        _hold_permits(part, straight_on, volume, hold_m, rise_m)
+        for run, straight_on in meetings((hold,), other)
+        for part in run
     )
-    met = meeting(hold.position, other._replace(position=then), volume)
+
+
+def _hold_permits(
+    hold: Piece, other: Intruder, volume: WellClear, hold_m: float, rise_m: float
+) -> bool:
+    """The same against one that flies straight on."""
+    met = meeting(hold.position, later(other, hold.start_s), volume)
     layer = Growth(volume.zthr_m + rise_m, 0, 0)
     if exact(above_during, met.sz, -met.wz, layer, hold.duration_s):
         return True
@@ -84,6 +89,14 @@ def way_permits(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> 
     """
     if not pieces:
         return True
+    return all(
+        _run_permits(run, later(straight_on, run[0].start_s), volume)
+        for run, straight_on in meetings(pieces, other)
+    )
+
+
+def _run_permits(pieces: Sequence[Piece], other: Intruder, volume: WellClear) -> bool:
+    """The same against one that flies straight on, and is seen as the first piece begins."""
     met = meeting(pieces[0].position, other, volume)
     return bool(exact(permitted, [moving(piece, 0.0) for piece in pieces], met))
 

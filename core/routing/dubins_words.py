@@ -106,7 +106,7 @@ def arc_step(r: float, chord_error: float) -> float:
 
 
 def legs_length(kinds: np.ndarray, lengths: np.ndarray, r: float, chord_error: float) -> float:
-    """Length of the polyline that `legs` makes of a word, without making it [m]."""
+    """Length of the polyline that `legs` makes of a word, without making it, to NOTHING_M a piece [m]."""
     step, total = arc_step(r, chord_error), 0.0
     for j in range(3):
         length = lengths[j]

@@ -33,7 +33,7 @@ from cratous.spec.mission.plan import Pose
 
 
 class Route(NamedTuple):
-    """A flyable polyline and its length [m], or no points and the reason."""
+    """A flyable polyline and its length [m], to micrometres, or no points and the reason."""
 
     points: tuple[Position, ...]
     length_m: float

@@ -69,20 +69,48 @@ def swath(corners: Sequence[Corner], heading_rad: float, least_m: float) -> Swat
     c, s = math.cos(heading_rad), math.sin(heading_rad)
     own = [(n * c + e * s, e * c - n * s) for n, e in corners]
     low, high = min(p[1] for p in own), max(p[1] for p in own)
-    kept: list[tuple[float, float, float]] = []
-    for k in range(SLICES + 1):
-        y = low + (high - low) * k / SLICES
-        along = []
-        for (x1, y1), (x2, y2) in zip(own, own[1:] + own[:1], strict=True):
-            if min(y1, y2) <= y <= max(y1, y2):
-                t = (y - y1) / (y2 - y1) if y1 != y2 else 0.0
-                along += [x1 + t * (x2 - x1), x2 if y1 == y2 else x1 + t * (x2 - x1)]
-        if along and max(along) - min(along) >= least_m:
-            kept.append((y, min(along), max(along)))
-    if len(kept) < 2:
+    middle = max((low + (high - low) * k / SLICES for k in range(1, SLICES)), key=_length(own))
+    if _length(own)(middle) < least_m:
         return None
-    near, far = max(k[1] for k in kept), min(k[2] for k in kept)
-    return Swath(kept[0][0], kept[-1][0], near, far)
+    # a convex footprint is long enough between two places, which halving finds to a millimetre
+    left, right = (_edge_of(own, middle, end, least_m) for end in (low, high))
+    rows = [_row(own, left + (right - left) * k / SLICES) for k in range(SLICES + 1)]
+    return Swath(left, right, max(row[0] for row in rows), min(row[1] for row in rows))
+
+
+def _row(own: Sequence[Corner], y: float) -> tuple[float, float]:
+    """From where to where a convex polygon (ahead, right) reaches ahead at y to the right of the middle."""
+    along = []
+    for (x1, y1), (x2, y2) in zip(own, (*own[1:], own[0]), strict=True):
+        if min(y1, y2) <= y <= max(y1, y2):
+            t = (y - y1) / (y2 - y1) if y1 != y2 else 0.0
+            along += [x1 + t * (x2 - x1), x2 if y1 == y2 else x1 + t * (x2 - x1)]
+    return (min(along), max(along)) if along else (0.0, 0.0)
+
+
+def _length(own: Sequence[Corner]) -> Callable[[float], float]:
+    return lambda y: _row(own, y)[1] - _row(own, y)[0]
+
+
+def _edge_of(own: Sequence[Corner], inner: float, outer: float, least_m: float) -> float:
+    """The place nearest to `outer` at which the polygon is at least least_m long, as it is at `inner`."""
+    while abs(outer - inner) > 1e-3:
+        between = (inner + outer) / 2
+        if _length(own)(between) >= least_m:
+            inner = between
+        else:
+            outer = between
+    return inner
+
+
+def strips_needed(vertices: Sequence[Corner], heading_rad: float, width_m: float) -> int:
+    """How many parallel strips at most width_m wide cover the polygon; 0 if more than LANES_MOST."""
+    c, s = math.cos(heading_rad), math.sin(heading_rad)
+    across = [e * c - n * s for n, e in vertices]
+    extent = max(across) - min(across)
+    if extent > LANES_MOST * width_m * (1 + 1e-9):
+        return 0
+    return max(1, math.ceil(extent / width_m - 1e-9))
 
 
 def strips(vertices: Sequence[Corner], heading_rad: float, width_m: float) -> list[Strip]:
@@ -94,8 +122,8 @@ def strips(vertices: Sequence[Corner], heading_rad: float, width_m: float) -> li
     c, s = math.cos(heading_rad), math.sin(heading_rad)
     own = [(n * c + e * s, e * c - n * s) for n, e in vertices]
     low, high = min(p[1] for p in own), max(p[1] for p in own)
-    count = max(1, math.ceil((high - low) / width_m - 1e-9))
-    if count > LANES_MOST:
+    count = strips_needed(vertices, heading_rad, width_m)
+    if count == 0:
         return []
     step, found = (high - low) / count, []
     for k in range(count):

@@ -22,6 +22,18 @@ from cratous.spec.authority import cycle as instance
 from cratous.spec.authority import gate as authority
 from cratous.spec.authority.link_end import TAKE_BACK, End, believes_uxas
 from cratous.spec.system import authority as system
+from cratous.spec.system.trace import (
+    COMMAND,
+    HEARTBEAT,
+    MODE,
+    NOTHING,
+    REPORT,
+    RESTART,
+    TRACK,
+    Entry,
+    Event,
+    Standing,
+)
 
 NAMES = ("UxAS", "ICAROUS")
 
@@ -55,11 +67,27 @@ class State(NamedTuple):
 
 
 class Step(NamedTuple):
-    """What happens, as a user reads it; the state afterwards; and what is wrong with it, or nothing."""
+    """What happens, as a user reads it; the state afterwards; and what is wrong with it, or nothing.
+
+    event: the same as data; accepted: the command that arrives acts; sent: the epoch of a command that UxAS
+    sends, or NOTHING.
+    """
 
     text: str
     after: State
     wrong: str = ""
+    event: Event = Event("")
+    accepted: bool = False
+    sent: int = NOTHING
+
+    @property
+    def entry(self) -> Entry:
+        """The step as an entry of a trace."""
+        gate, end, mode = self.after.gate, self.after.end, self.after.cycle.mode
+        stands = Standing(
+            *gate, mode, end.active, end.epoch, self.after.suspended, self.accepted, self.sent
+        )
+        return Entry(self.text, self.event, stands)
 
 
 def taken_epoch(state: State) -> int:
@@ -86,21 +114,27 @@ class Design:
 
 def steps(design: Design, state: State) -> Iterator[Step]:
     """Everything that can happen next."""
-    yield _heartbeat(design, state, False)
-    yield _heartbeat(design, state, True)
+    for free in (False, True):
+        yield _heartbeat(design, state, free)._replace(event=Event(HEARTBEAT, free))
     for report in sorted(state.reports):
         if report != state.known:
-            yield Step(f"UxAS is told that {_gate(report)}", state._replace(known=report))
+            event = Event(REPORT, report.offered, report.owner, report.epoch)
+            text = f"UxAS is told that {_gate(report)}"
+            yield Step(text, state._replace(known=report), event=event)
     for active in (False, True):
         for epoch in range(state.gate.epoch + 2):
-            yield _mode(design, state, active, epoch)
+            yield _mode(design, state, active, epoch)._replace(event=Event(MODE, active, 0, epoch))
     if design.tells(state.suspended, True):
-        yield _uxas_commands(state, design.names(state), "UxAS commands a new track")
+        told = _uxas_commands(state, design.names(state), "UxAS commands a new track")
+        yield told._replace(event=Event(TRACK))
     for command in sorted(state.commands):
-        yield _arrives(design, state, command)
+        yield _arrives(design, state, command)._replace(
+            event=Event(COMMAND, False, *command),
+            accepted=design.accepts(state.gate, command.sender, command.epoch),
+        )
     if design.restarted is not None:
         after = _changed(state, design.restarted(state.gate))
-        yield _checked("the gate restarts", state, after)
+        yield _checked("the gate restarts", state, after)._replace(event=Event(RESTART))
 
 
 def _heartbeat(design: Design, state: State, free: bool) -> Step:
@@ -144,7 +178,7 @@ def _mode(design: Design, state: State, active: bool, epoch: int) -> Step:
         sent = _uxas_commands(after._replace(taken=epoch), epoch, text)
         if sent.wrong:
             return sent
-        after = sent.after
+        return _checked(text, state, sent.after)._replace(sent=epoch)
     return _checked(text, state, after)
 
 
@@ -152,8 +186,9 @@ def _uxas_commands(state: State, epoch: int, text: str) -> Step:
     sent = Command(UXAS, epoch, state.changes)
     after = state._replace(commands=state.commands | {sent})
     if not believes_uxas(_end_of(state.end)):
-        return Step(text, after, "UxAS commands a vehicle that it believes ICAROUS to command")
-    return Step(f"{text}, epoch {epoch}", after)
+        wrong = "UxAS commands a vehicle that it believes ICAROUS to command"
+        return Step(text, after, wrong, sent=epoch)
+    return Step(f"{text}, epoch {epoch}", after, sent=epoch)
 
 
 def _arrives(design: Design, state: State, command: Command) -> Step:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from cratous.proofs.system_search.authority import Design, State, steps
+from cratous.proofs.system_search.authority import Design, State, Step, steps
 from cratous.spec.errors import BadInput
+from cratous.spec.system.trace import Entry
 
 MOST_STATES = 2_000_000
 
@@ -13,15 +14,20 @@ MOST_STATES = 2_000_000
 class Found(NamedTuple):
     """trace: what happens up to the fault, or nothing; wrong: what is wrong then.
 
-    states: how many were seen; complete: every state within the bound was; returned: whether in one of
-    them UxAS flies again after ICAROUS has flown.
+    states: how many were seen; complete: every state within the bound was; back: the shortest way to a
+    state in which UxAS flies again after ICAROUS has flown, or nothing.
     """
 
-    trace: tuple[str, ...]
+    trace: tuple[Entry, ...]
     wrong: str
     states: int
     complete: bool
-    returned: bool
+    back: tuple[Entry, ...]
+
+    @property
+    def returned(self) -> bool:
+        """UxAS flies again after ICAROUS has flown, in one of the states."""
+        return bool(self.back)
 
 
 def search(design: Design, most_steps: int, most_states: int = 100_000) -> Found:
@@ -37,30 +43,31 @@ def search(design: Design, most_steps: int, most_states: int = 100_000) -> Found
             raise BadInput(
                 "the bound is out of range", item=name, expected=f"1 to {most}", got=str(value)
             )
-    came: dict[State, tuple[State, str] | None] = {State(): None}
-    edge, returned = [State()], False
+    came: dict[State, tuple[State, Step] | None] = {State(): None}
+    edge, back = [State()], tuple[Entry, ...]()
     for _ in range(most_steps):
         later: list[State] = []
         for state in edge:
             for step in steps(design, state):
                 if step.wrong:
-                    trace = (*_way(came, state), step.text)
-                    return Found(trace, step.wrong, len(came), False, returned)
+                    trace = (*_way(came, state), step.entry)
+                    return Found(trace, step.wrong, len(came), False, back)
                 if step.after not in came:
                     if len(came) >= most_states:
-                        return Found((), "", len(came), False, returned)
-                    came[step.after] = (state, step.text)
+                        return Found((), "", len(came), False, back)
+                    came[step.after] = (state, step)
                     later.append(step.after)
-                    returned = returned or step.after.returned
+                    if step.after.returned and not back:
+                        back = _way(came, step.after)
         edge = later
-    return Found((), "", len(came), True, returned)
+    return Found((), "", len(came), True, back)
 
 
-def _way(came: dict[State, tuple[State, str] | None], state: State) -> tuple[str, ...]:
+def _way(came: dict[State, tuple[State, Step] | None], state: State) -> tuple[Entry, ...]:
     """What happened on the way to a state, in order."""
-    texts: list[str] = []
+    found: list[Entry] = []
     at = came[state]
     while at is not None:
-        texts.append(at[1])
+        found.append(at[1].entry)
         at = came[at[0]]
-    return tuple(reversed(texts))
+    return tuple(reversed(found))

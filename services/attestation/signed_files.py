@@ -10,9 +10,7 @@ from cratous.services.attestation.findings import Data, Subject
 from cratous.services.attestation.junit import junit
 from cratous.services.attestation.names import (
     ALL_VIEWS,
-    ARGUMENT_NAME,
     CSV_NAME,
-    DRAWING_NAME,
     JUNIT_NAME,
 )
 from cratous.services.attestation.statement import RESULTS
@@ -89,16 +87,9 @@ def view_faults(place: Place, named: dict[str, str], subject: Subject) -> list[s
     return found
 
 
-def not_judged(named: dict[str, str], report: Data) -> list[str]:
+def not_judged(report: Data) -> list[str]:
     """What nobody looked into here, in words."""
-    again = {*MADE_AGAIN, ARGUMENT_NAME, DRAWING_NAME}
-    seen = [
-        HTML_NAME,
-        MAP_NAME,
-        *(name for name in ALL_VIEWS if name not in again and f"{MADE}/{name}" in named),
-    ]
     found = [
-        f"{', '.join(seen)}: that they are the files that were signed, not what stands in them",
         f"all else in {REPORT_NAME} but its verdicts: margins, times, notes, checks, kernels, tracks, counts of "
         "messages, error of the frame (cratous certify)",
     ]

@@ -16,10 +16,12 @@ from typing import Any
 
 from cratous.services.attestation.argued import argued
 from cratous.services.attestation.assumed import assumption_faults, assumptions_not_judged
+from cratous.services.attestation.blamed import blame_faults
 from cratous.services.attestation.dsse import ENVELOPE_BYTES, opened
 from cratous.services.attestation.findings import Data, Subject
 from cratous.services.attestation.judged import held
 from cratous.services.attestation.names import STATEMENT_NAME
+from cratous.services.attestation.pages_again import View, pages_again, sarif_faults
 from cratous.services.attestation.planned import plan_faults, plan_not_judged
 from cratous.services.attestation.recorded import not_recorded, recorded_faults
 from cratous.services.attestation.signed_files import Place, file_faults, not_judged, view_faults
@@ -58,10 +60,11 @@ class Verification:
     exit_code: int = 1
 
 
-def verify(place: Place, public: Any, judged: Any) -> Verification:
+def verify(place: Place, public: Any, judged: Any, view: View) -> Verification:
     """Hold results and views against their statement and against the judge.
 
-    public: of `dsse.public_key`; judged: gives the judgement of a results folder (`cratous.judge.judge`).
+    public: of `dsse.public_key`; judged: gives the judgement of a results folder (`cratous.judge.judge`);
+    view: makes the views for people (`full_report.views.view`).
     BadInput where there is nothing to verify: no statement, or no results.
     """
     envelope = text_of(place.views / STATEMENT_NAME, ENVELOPE_BYTES, "a signed statement")
@@ -81,20 +84,23 @@ def verify(place: Place, public: Any, judged: Any) -> Verification:
         return found
     subject = Subject(report, tuple(predicate["not_checked"]))
     argument = argued(place.views, named, subject)
-    found.refused = view_faults(place, named, subject) + argument.refused
+    pages = pages_again(place, named, subject, view)
+    found.refused = view_faults(place, named, subject) + argument.refused + pages.refused
+    found.refused += sarif_faults(place, named, subject)
     judgement = judged(place.results)
     answer = held(report, judgement)
     found.refused += [*recorded_faults(report, judgement.meta), *plan_faults(report)]
-    found.refused += [*assumption_faults(report, judgement.meta), *answer.refused]
+    found.refused += [*assumption_faults(report, judgement.meta), *blame_faults(report)]
+    found.refused += answer.refused
     found.undecided = answer.undecided + argument.undecided
     found.expected, found.recomputed = answer.expected, answer.confirmed
     found.not_checked = list(subject.unchecked)
     silent = not_recorded(judgement.meta, report)
     found.not_judged = [f"{name}: the log says nothing of it" for name in silent]
-    found.not_judged += [*argument.not_judged, *plan_not_judged(report)]
+    found.not_judged += [*argument.not_judged, *pages.not_judged, *plan_not_judged(report)]
     found.not_judged += [
         *assumptions_not_judged(report, judgement.meta),
-        *not_judged(named, report),
+        *not_judged(report),
     ]
     found.verdict = report["verdict"]
     if not found.refused:

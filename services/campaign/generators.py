@@ -35,6 +35,8 @@ CHANGES, MOST_CHANGES = "changes", 6
 """The kind of `services.campaign.changing`, which has no ranges; it draws so many changes at most."""
 BEND = 1000
 """Tasks where the way bends are numbered from here on."""
+SIDES = (-1, 1)
+"""Left and right."""
 MIRRORED = ("converging",)
 """Kinds whose angle may be to either side."""
 
@@ -42,11 +44,11 @@ MIRRORED = ("converging",)
 class Draw:
     """The parameters of one seed, and what was drawn; `given` are not drawn but taken.
 
-    bounds: between which each is drawn, before it is mirrored.
+    bounds: between which each is drawn, before it is mirrored; choices: of what each of the others is drawn.
     """
 
     def __init__(
-        self, data: dict[str, Any], seed: int, given: Mapping[str, float] | None = None
+        self, data: dict[str, Any], seed: int, given: Mapping[str, Any] | None = None
     ) -> None:
         self.kind: str = data["kind"]
         own = {name: tuple(bounds) for name, bounds in data.get("ranges", {}).items()}
@@ -54,6 +56,7 @@ class Draw:
         self._seed, self._given = seed, given or {}
         self.drawn: dict[str, float] = {}
         self.bounds: dict[str, tuple[float, float]] = {}
+        self.choices: dict[str, tuple[Any, ...]] = {}
 
     def __call__(self, name: str, number: int = 0) -> float:
         """A parameter; number: of which intruder or zone, from 1, 0 if there is one for all."""
@@ -68,11 +71,14 @@ class Draw:
 
     def side(self, key: str) -> int:
         """Left (-1) or right (1)."""
-        return Random(f"{self._seed} side {key}").choice((-1, 1))
+        name = f"side {key}"
+        self.choices[name] = SIDES
+        drawn = Random(f"{self._seed} {name}").choice(SIDES)
+        return int(self._given.get(name, drawn))
 
 
 def mission_of(
-    data: dict[str, Any], name: str, seed: int, given: Mapping[str, float] | None = None
+    data: dict[str, Any], name: str, seed: int, given: Mapping[str, Any] | None = None
 ) -> tuple[dict[str, Any], Draw]:
     """The mission file of a seed as data, and its parameters; those `given` are taken as they are."""
     draw = Draw(data, seed, given)

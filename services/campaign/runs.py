@@ -55,8 +55,8 @@ def runs_of(campaign: Campaign, version: str, allow_unproved: bool) -> Iterator[
 class Made:
     """The mission file of one seed under one option, and what was drawn for it.
 
-    given: values of numbers that would be drawn, by name, which are taken instead. bounds: between
-    which each number of `drawn` was drawn.
+    given: values that would be drawn, by name, which are taken instead. bounds: between which each
+    number of `drawn` was drawn; choices: of what that was drawn which has no bounds, sides too.
     """
 
     def __init__(
@@ -65,15 +65,17 @@ class Made:
         source: Source | None,
         option: Option,
         seed: int,
-        given: Mapping[str, float] | None = None,
+        given: Mapping[str, Any] | None = None,
     ) -> None:
         self._option, self._judge, self._seed = option, campaign.judge, seed
         self.drawn: dict[str, Any] = {}
         self.bounds: dict[str, tuple[float, float]] = {}
+        self.choices: dict[str, tuple[Any, ...]] = {}
         self._name, self._own_seed, self._text = campaign.name, 0, ""
         if source is None:
             self.data, draw = mission_of(campaign.generator or {}, campaign.name, seed, given)
             self.drawn, self.bounds = dict(draw.drawn), dict(draw.bounds)
+            self.choices = dict(draw.choices)
         else:
             self._name, self._own_seed = source.name, seed if source.varies else 0
             unchanged = not campaign.vary and not option.changes and campaign.kind == MISSIONS
@@ -84,6 +86,8 @@ class Made:
             self.drawn[variable.item] = value
             if variable.bounds is not None:
                 self.bounds[variable.item] = variable.bounds
+            else:
+                self.choices[variable.item] = variable.values
             put(self.data, variable.item, value)
         self._kind = campaign.kind
         if campaign.kind == ENCOUNTERS:

@@ -1,8 +1,9 @@
 """Towards small margins: which values of what is drawn make a requirement fail, and how small a mission does.
 
 Cross entropy: a batch of missions is drawn, the best of all so far (those with the least margins) say
-around which values the next batch is drawn, with a spread that is theirs. A batch is complete before
-the next begins, and its draws follow from its number, so that workers and losses change nothing.
+around which values the next batch is drawn, with a spread that is theirs; what is no number (sides, values of a
+list) is chosen as often as they have it. A batch is complete before the next begins, and its draws follow
+from its number, so that workers and losses change nothing.
 """
 
 from __future__ import annotations
@@ -20,11 +21,13 @@ from cratous.services.campaign.runs import Made, Run
 from cratous.spec.errors import BadInput
 from cratous.spec.mission.guarantees import Outcome
 
-BATCH, ELITE = 20, 4
+BATCH, ELITE = 10, 5
 LEAST_SPREAD = 0.03
 """Share of a range that the spread keeps at least, so that the search goes on."""
-UNIFORM = 4
+UNIFORM = 2
 """In each batch so many are drawn from the whole space, so that no part of it is given up."""
+OTHERWISE = 0.1
+"""How often a choice is made anew."""
 DIGITS = (-1, 0, 1, 2)
 PARTS = ("traffic", "zones", "changes")
 
@@ -61,10 +64,11 @@ class Search:
         self._campaign, self._requirement = campaign, requirement
         self._version, self._allow_unproved = version, allow_unproved
         self._first = campaign.seeds.start if campaign.seeds else 1
-        bounds = self._made(self._first, {}).bounds
+        made = self._made(self._first, {})
         self._space = {
-            name: (low, high) for name, (low, high) in sorted(bounds.items()) if low < high
+            name: (low, high) for name, (low, high) in sorted(made.bounds.items()) if low < high
         }
+        self._choices = dict(sorted(made.choices.items()))
         if not self._space:
             raise BadInput(
                 "nothing to search in",
@@ -72,7 +76,7 @@ class Search:
                 expected="a generator, or values with a range in `vary`",
             )
 
-    def _made(self, number: int, point: dict[str, float]) -> Made:
+    def _made(self, number: int, point: dict[str, Any]) -> Made:
         source = self._campaign.missions[0] if self._campaign.missions else None
         return Made(self._campaign, source, self._campaign.options[0], number, point)
 
@@ -97,24 +101,29 @@ class Search:
                 )
         return found
 
-    def _point(self, number: int, found: Found) -> dict[str, float]:
+    def _point(self, number: int, found: Found) -> dict[str, Any]:
         """The values of a point: of a batch, around the best so far."""
         batch, place = divmod(number - self._first, BATCH)
         told = [p for p in found.points[: batch * BATCH] if p["margin"] is not None]
-        elite = sorted(told, key=_rank)[:ELITE]
-        point = {}
+        best = sorted(told, key=_rank)[:ELITE]
+        drawn = place < UNIFORM or not best
+        point: dict[str, Any] = {}
         for name, (low, high) in self._space.items():
             random = Random(f"search {number} {name}")
             value = random.uniform(low, high)
-            if elite and place >= UNIFORM:
-                values = [p["values"][name] for p in elite]
+            if not drawn:
+                values = [p["values"][name] for p in best]
                 spread = max(pstdev(values), LEAST_SPREAD * (high - low))
                 value = min(high, max(low, random.gauss(fmean(values), spread)))
             point[name] = round(value, 3)
+        for name, choices in self._choices.items():
+            random = Random(f"search {number} {name}")
+            anew = drawn or random.random() < OTHERWISE
+            point[name] = random.choice(choices if anew else [p["values"][name] for p in best])
         return point
 
     def _small(
-        self, fly: Fly, made: Made, point: dict[str, float], number: int, budget: int
+        self, fly: Fly, made: Made, point: dict[str, Any], number: int, budget: int
     ) -> dict[str, Any]:
         """The failing mission with rounder values and less in it, as long as it fails."""
         left = [budget]

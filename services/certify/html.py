@@ -8,12 +8,13 @@ from typing import Any
 
 from cratous.core.kernel.names import short
 from cratous.services.assumptions.said import measured
+from cratous.services.certify.blame_said import sentence
 from cratous.services.certify.charts import altitude_view, separation_view
+from cratous.services.certify.command import flown_in_processes
 from cratous.services.certify.gantt import gantt, plan_bars, plan_rows, tree
 from cratous.services.certify.picture import map_view, time_view
 from cratous.services.certify.proofs import statuses
 from cratous.services.certify.trace import chains
-from cratous.services.certify.verdicts import flown_in_processes
 from cratous.spec.algebra import parse
 from cratous.spec.files.printable import printable
 from cratous.spec.mission.plan import cost_text, percent
@@ -42,6 +43,7 @@ def _environment() -> Any:
     environment.filters["margin"] = margin
     environment.filters["percent"] = percent
     environment.filters["measured"] = measured
+    environment.filters["blamed"] = sentence
     environment.filters["cost"] = lambda value, kind: cost_text(kind, value)
     return environment
 

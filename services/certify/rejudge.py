@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from cratous.services.certify.blame import Commands
+from cratous.services.certify.command import with_original_clients
 from cratous.services.certify.differences import differences
 from cratous.services.certify.flight_record import flown_of
 from cratous.services.certify.report import (
@@ -24,7 +26,6 @@ from cratous.services.certify.verdicts import (
     broken_of,
     constraint_rows,
     plan_rows,
-    with_original_clients,
 )
 from cratous.services.logs.log import read_envelopes, read_log, read_meta
 from cratous.services.logs.records import from_data
@@ -32,6 +33,7 @@ from cratous.services.logs.sqlite_log import SqliteLog
 from cratous.services.mission.wind import known_at
 from cratous.services.results.names import (
     ASSUMPTIONS,
+    BLAME,
     CERTIFICATE_NAME,
     FORMER,
     LOG_NAME,
@@ -65,10 +67,13 @@ def subject(log: Path) -> tuple[Mission, Plan]:
 
 
 class Watched(NamedTuple):
-    """What a monitor has seen: its verdicts, and a row for each assumption of the system theorems."""
+    """What a monitor has seen: its verdicts, a row for each assumption of the system theorems, and who commanded
+    when (`Monitor.commands`)."""
 
     verdicts: list[Verdict]
     assumptions: list[dict[str, Any]]
+    commands: Commands
+    end_ms: int
 
 
 def watch(log: Path) -> Watched:
@@ -80,7 +85,7 @@ def watch(log: Path) -> Watched:
     monitor = Monitor(*subject(log), says_beats=not original)
     for envelope in read_envelopes(log):
         monitor.tap(envelope)
-    return Watched(monitor.verdicts(), monitor.assumptions())
+    return Watched(monitor.verdicts(), monitor.assumptions(), monitor.commands(), monitor.end_ms)
 
 
 @dataclass(frozen=True)
@@ -176,7 +181,7 @@ def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[st
     rows = plan_rows(check_plan(known_at(mission, 0), plan))
     watched = watch(log)
     rows += constraint_rows(watched.verdicts, "flight")
-    judged = Judged(rows, watched.assumptions)
+    judged = Judged(rows, watched.assumptions, watched.commands)
     report = json.loads(report_text(build_report(mission, plan, judged, log, flown)))
     if wrong:  # one sentence says it; what differs in detail says no more
         report["proofs"] = written.get("proofs")
@@ -186,6 +191,8 @@ def rebuilt(log: Path, written: dict[str, Any]) -> tuple[dict[str, Any], dict[st
         wrong += differences(told, broken, f"{LOG_NAME}: meta.{ASSUMPTIONS}")
     elif "assumptions" not in written:
         silent["assumptions"] = "the report was made before they were watched"
+    if BLAME not in written:
+        silent[BLAME] = "the report was made before it was told"
     return report, silent, wrong
 
 

@@ -16,14 +16,15 @@ from typing import Any
 
 from cratous import __version__
 from cratous.core.files.whole_file import write_atomically
+from cratous.services.certify.blame import Commands, blame_rows
 from cratous.services.certify.limits import LIMITS
 from cratous.services.certify.running_code import running_code
-from cratous.services.certify.timeline import bars, read_flight
+from cratous.services.certify.timeline import Flight, bars, read_flight
 from cratous.services.certify.verdicts import requirement_rows, with_promised, without_ground
 from cratous.services.logs.log import read_digest, read_log
 from cratous.services.logs.records import fingerprint, to_data
 from cratous.services.monitor.required_rows import watched
-from cratous.services.results.names import FORMAT, HTML_NAME, LOG_NAME, MAP_NAME, REPORT_NAME
+from cratous.services.results.names import BLAME, FORMAT, HTML_NAME, LOG_NAME, MAP_NAME, REPORT_NAME
 from cratous.spec.mission import Mission
 from cratous.spec.mission.guarantees import Outcome, exit_code, worst
 from cratous.spec.mission.plan import Plan
@@ -56,10 +57,11 @@ class Flown:
 
 @dataclass(frozen=True)
 class Judged:
-    """What was found. rows: of `verdicts.constraint_rows`; assumptions: of `Monitor.assumptions`."""
+    """What was found. rows: of `verdicts.constraint_rows`; assumptions, commands: of `Monitor`."""
 
     rows: Iterable[dict[str, Any]]
     assumptions: list[dict[str, Any]]
+    commands: Commands
 
 
 def mission_hash(mission: Mission) -> str:
@@ -70,6 +72,12 @@ def mission_hash(mission: Mission) -> str:
 def plan_hash(plan: Plan) -> str:
     """Names a plan."""
     return fingerprint(to_data(plan))
+
+
+def ends_of(flight: Flight, asked: Mission) -> list[dict[str, Any]]:
+    """How each task ended that is asked for to the end: one that was withdrawn has not failed."""
+    wanted = {task.id for task in asked.tasks}
+    return [end for task, end in sorted(flight.served.items()) if task in wanted]
 
 
 def build_report(
@@ -109,6 +117,7 @@ def build_report(
         "requirements": requirements,
         "constraints": found,
         "assumptions": judged.assumptions,
+        BLAME: blame_rows(found, judged.commands, judged.assumptions, flight.end_ms),
         "plan": {**to_data(plan), "hash": plan_hash(plan)},
         "flight": {
             "outcome": flight.outcome,
@@ -121,7 +130,7 @@ def build_report(
             "events": flight.events,
             "changes": flight.changes,
             "footprints": _seen(flight.footprints, mission),
-            "served": [flight.served[task] for task in sorted(flight.served)],
+            "served": ends_of(flight, seen.asked),
             "unserved": [task for task in sorted(seen.tasks) if task not in flight.served],
         },
         "log": {

@@ -70,12 +70,18 @@ def against(files: dict[str, bytes], recorded: dict[str, str], version: str) -> 
 
 
 @cache
+def code_digest() -> str:
+    """SHA-256 of the files of services and bridge, as first asked."""
+    sha = hashlib.sha256()
+    for place, data in _files().items():
+        sha.update(f"{place} {len(data)}\n".encode() + data)
+    return sha.hexdigest()
+
+
+@cache
 def running_code() -> dict[str, str]:
     """Of services and bridge, as first asked: `digest` of the files, `running` and `release` in words."""
     files = _files()
-    sha = hashlib.sha256()
-    for place, data in files.items():
-        sha.update(f"{place} {len(data)}\n".encode() + data)
     try:
         installed = importlib.metadata.distribution("cratous")
         here = Path(str(installed.locate_file("cratous"))).resolve() == ROOT
@@ -84,4 +90,4 @@ def running_code() -> dict[str, str]:
         release = NO_RELEASE
     other = list(_other_code())
     running = f"not what its files say: {_listed(other)}" if other else "as its files say"
-    return {"digest": sha.hexdigest(), "running": running, "release": release}
+    return {"digest": code_digest(), "running": running, "release": release}

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Iterable
 from typing import Any
 
 from cratous.services.assumptions.listing import State
+from cratous.services.certify.command import flown_in_processes
 from cratous.services.monitor.plan_check import PART, WHOLE
 from cratous.services.monitor.required_rows import PLAN_ROWS, Row, Watched, missing, promised
 from cratous.spec.mission.guarantees import REQUIREMENTS, Outcome, Verdict, worst
@@ -42,24 +42,6 @@ def constraint_rows(verdicts: Iterable[Verdict], source: str) -> list[dict[str, 
 def broken_of(assumptions: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
     """The rows of the assumptions that are broken; rows: of `Monitor.assumptions`."""
     return [row for row in assumptions if row["state"] == State.BROKEN]
-
-
-def _words(command: str) -> list[str]:
-    """The words of a command as a shell has them: a name with spaces in quotes is one."""
-    try:
-        return shlex.split(command)
-    except ValueError:  # no shell has written it: a quote stands open
-        return command.split()
-
-
-def flown_in_processes(command: str) -> bool:
-    """Whether a command flies in processes: in real time, with the gates in UxAS."""
-    return "--processes" in _words(command)
-
-
-def with_original_clients(command: str) -> bool:
-    """Whether ICAROUS is behind clients of the original's, whose protocol has no heartbeats."""
-    return flown_in_processes(command) and "--original-clients" in _words(command)
 
 
 def without_ground(command: str, assumptions: Iterable[dict[str, Any]]) -> bool:

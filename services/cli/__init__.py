@@ -36,6 +36,7 @@ COMMANDS = {
     "plan": "Plan a mission and check the plan; nothing flies.",
     "prove": "Prove the kernels and write the ledger (in a checkout).",
     "search-faults": "Find how broken designs of authority go wrong.",
+    "replay-trace": "Play a trace of a broken design on the actors that fly.",
     "conform": "Run published vectors against the kernels and the wires.",
     "daa": "Alerts, bands and reasons for an encounter file.",
     "certify": "Judge a finished flight again from its log.",

@@ -55,10 +55,10 @@ def certify(folder: Path, rewrite: bool, trace: bool, as_json: bool, **views: An
 
     --pdf writes the report as PDF (the extra `pdf`), --full as full.html with all sections: requirements,
     margins, certificate, proofs, assumptions, coverage, argument; --pdf --full as full.pdf. The same report
-    and ledger give the same bytes.
+    and ledger give the same bytes. --mcap (the extra `wires`) writes the log's messages as run.mcap.
 
     --sign signs digests of results and views with the verdict; --verify checks signature and digests,
-    makes JUnit, CSV and argument again, and judges the log again by the judge, in a process without planner
+    makes every view again, and judges the log again by the judge, in a process without planner
     and pilot. It says what report and judge both say, and 3 where the report holds and the judge cannot tell.
 
     Example:  cratous certify out/crossing

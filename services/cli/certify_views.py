@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -17,13 +18,16 @@ from cratous.services.attestation.names import (
     FULL_NAME,
     FULL_PDF_NAME,
     JUNIT_NAME,
+    MCAP_NAME,
     PDF_NAME,
     SARIF_NAME,
     VIEWS,
 )
 from cratous.services.cli.show import say
+from cratous.services.results.names import LOG_NAME
 
 if TYPE_CHECKING:
+    from cratous.services.attestation.findings import Subject
     from cratous.services.attestation.writing import Written
 
 OPTIONS = (
@@ -37,6 +41,7 @@ OPTIONS = (
     click.option("--argument", is_flag=True, help="Write argument.yaml and .svg: the assurance argument (GSN)."),
     click.option("--pdf", is_flag=True, help="Write report.pdf, two pages; with --full full.pdf."),
     click.option("--full", is_flag=True, help="Write full.html: the report with all its sections."),
+    click.option("--mcap", is_flag=True, help="Write run.mcap: the messages of the log, for Foxglove."),
     click.option("--mission", type=click.Path(path_type=Path), help="Mission file, for lines in SARIF."),
     click.option("--sign", is_flag=True, help="Sign a statement over results and views (Ed25519)."),
     click.option(
@@ -69,6 +74,7 @@ class Asked(NamedTuple):
     argument: bool
     pdf: bool
     full: bool
+    mcap: bool
     mission: Path | None
     sign: bool
     verify: bool
@@ -84,7 +90,7 @@ class Asked(NamedTuple):
     def named(self) -> bool:
         """Whether a view is named."""
         tools = self.junit or self.sarif or self.csv or self.argument
-        return tools or self.pdf or self.full
+        return tools or self.pdf or self.full or self.mcap
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -93,6 +99,7 @@ class Asked(NamedTuple):
             (self.junit, JUNIT_NAME), (self.sarif, SARIF_NAME), (self.csv, CSV_NAME),
             (self.argument, ARGUMENT_NAME), (self.argument, DRAWING_NAME),
             (self.full, FULL_NAME), (self.pdf, FULL_PDF_NAME if self.full else PDF_NAME),
+            (self.mcap, MCAP_NAME),
         )  # fmt: skip
         return tuple(name for wanted, name in chosen if wanted) or VIEWS
 
@@ -113,6 +120,10 @@ def checked(asked: Asked) -> Any:
         from cratous.services.full_report.pdf_drawing import needed
 
         needed()
+    if asked.mcap and not asked.verify:
+        from cratous.services.logs import as_mcap
+
+        as_mcap.needed()
     if not asked.sign:
         return None
     from cratous.services.attestation.dsse import private_key
@@ -134,7 +145,7 @@ def verified(results: Path, asked: Asked, as_json: bool) -> int:
     if asked.public_key is None:
         raise click.UsageError("--verify needs --public-key")
     place = signed_folder(results, asked.out, FOLDER)
-    found = verify(place, public_key(asked.public_key), judgement)
+    found = verify(place, public_key(asked.public_key), judgement, _view_of(results))
     if as_json:
         click.echo(json.dumps({"verified": not found.refused, **asdict(found)}, indent=1))
         return found.exit_code
@@ -164,11 +175,26 @@ def write(done: Any, results: Path, asked: Asked, key: Any) -> Written:
     from cratous.services.attestation.findings import Subject
     from cratous.services.attestation.writing import Wanted, write_views
     from cratous.services.certify.result_files import no_result
-    from cratous.services.full_report.views import view
 
     target = asked.folder(results)
     inside = target.resolve().parent == results.resolve()
     # the views themselves are no part of what they are about
     unchecked = tuple(u for u in done.unchecked if not (inside and u == no_result(target.name)))
     subject = Subject(done.report, unchecked)
-    return write_views(subject, results, target, Wanted(asked.names, asked.mission, key, view))
+    wanted = Wanted(asked.names, asked.mission, key, _view_of(results))
+    return write_views(subject, results, target, wanted)
+
+
+def _view_of(results: Path) -> Callable[[Subject, str], bytes]:
+    """What makes the views that are none of the tools', by their names."""
+
+    def made(subject: Subject, name: str) -> bytes:
+        if name == MCAP_NAME:
+            from cratous.services.logs.as_mcap import as_mcap
+
+            return as_mcap(results / LOG_NAME)
+        from cratous.services.full_report.views import view
+
+        return view(subject, name)
+
+    return made

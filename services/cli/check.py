@@ -1,4 +1,4 @@
-"""`cratous check`: mission files and process-algebra texts, read as they would be flown; for hooks and CI."""
+"""`cratous check`: mission files, process-algebra texts and requirements, read as they would be; for hooks and CI."""
 
 from __future__ import annotations
 
@@ -11,28 +11,40 @@ import click
 from cratous.services.cli.show import say
 from cratous.spec.errors import BadInput
 
-ALGEBRA = ".algebra"
+ALGEBRA, REQUIREMENTS = ".algebra", ".req"
 
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option("--fretish", is_flag=True, help="Also say requirements in FRET's structured English.")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-def check(files: tuple[Path, ...], as_json: bool) -> int:
-    """Check FILES: mission files (.yaml, .xml, or folders) and process-algebra texts (.algebra).
+def check(files: tuple[Path, ...], fretish: bool, as_json: bool) -> int:
+    """Check FILES: mission files (.yaml, .xml, or folders), process-algebra texts (.algebra) and
+    requirements (.req).
 
     Each is read as `cratous run` and `cratous algebra check` read it, with all that they refuse; nothing
     is planned or flown, so a mission that is well formed may still have no plan.
 
     Example:  cratous check examples/crossing/mission.yaml
 
-    Exit codes: 0 all can be read, 2 one cannot (all that is wrong is printed).
+    With --fretish each requirement whose form FRETish has is printed as its sentence, and of the others
+    why it has none.
+
+    Exit codes: 0 all can be read, 2 one cannot (all that is wrong is printed), 3 with --fretish a
+    requirement has no sentence.
     """
     found = [_read(file) for file in files]
-    code = 2 if any(problems for _, problems in found) else 0
+    said = {str(file): _said(file) for file, bad in found if fretish and not bad}
+    missing = any(not one["sentence"] for rows in said.values() for one in rows)
+    code = 2 if any(problems for _, problems in found) else 3 if missing else 0
     if as_json:
         data = {
             "files": [
-                {"file": str(file), "problems": [_data(one) for one in problems]}
+                {
+                    "file": str(file),
+                    "problems": [_data(one) for one in problems],
+                    **({"fretish": said.get(str(file), [])} if fretish else {}),
+                }
                 for file, problems in found
             ],
             "exit_code": code,
@@ -44,6 +56,8 @@ def check(files: tuple[Path, ...], as_json: bool) -> int:
             say(f"cratous: {one}", err=True)
         if not problems:
             say(f"{file}: can be read")
+        for row in said.get(str(file), ()):
+            say(f"{row['requirement']}: {row['sentence'] or 'not in FRETish: ' + row['why']}")
     return code
 
 
@@ -56,6 +70,10 @@ def _read(file: Path) -> tuple[Path, list[BadInput]]:
             from cratous.spec.files.text_file import text_of
 
             algebra.parse(text_of(file, CONFIG_BYTES, "a UTF-8 text"), None, where=str(file))
+        elif file.suffix == REQUIREMENTS:
+            from cratous.services.cli.monitor_requirements import read
+
+            read(file)
         else:
             from cratous.services.loading import load
 
@@ -63,6 +81,27 @@ def _read(file: Path) -> tuple[Path, list[BadInput]]:
     except BadInput as error:
         return file, list(getattr(error, "problems", ())) or [error]
     return file, []
+
+
+def _said(file: Path) -> list[dict[str, str]]:
+    """The sentence of each requirement of a file, or why it has none; nothing of other files."""
+    if file.suffix != REQUIREMENTS:
+        return []
+    from cratous.services.cli.monitor_requirements import read
+    from cratous.services.requirements.fretish import NoForm, sentence
+    from cratous.services.requirements.specification import NotRead
+
+    spec, rows = read(file), []
+    for one in spec.requirements:
+        made, why = "", ""
+        try:
+            if isinstance(one.formula, NotRead):
+                raise one.formula
+            made = sentence(one.formula, spec)
+        except NoForm as no:
+            why = str(no)
+        rows.append({"requirement": one.name, "sentence": made, "why": why})
+    return rows
 
 
 def _data(problem: BadInput) -> dict[str, Any]:

@@ -184,7 +184,7 @@ def fly_mission(
         flown = noted(writer, flown, standing, calls.data(), assumptions)
     tell(f"evidence: {summary(flown.proofs)}")
     rows = plan_rows(checks) + constraint_rows(verdicts, "flight")
-    return build_report(mission, plan, Judged(rows, assumptions), log, flown)
+    return build_report(mission, plan, Judged(rows, assumptions, monitor.commands()), log, flown)
 
 
 def log_meta(mission: Mission, flown: Flown) -> dict[str, Any]:
@@ -231,15 +231,20 @@ def watching(mission: Mission, plan: Plan, tell: Tell, says_beats: bool = True) 
     says_beats: whether the protocol of ICAROUS has heartbeats.
     """
     from cratous.services.assumptions.said import sentence as assumed
+    from cratous.services.certify.blame import blame_rows
+    from cratous.services.certify.blame_said import sentence as blamed
+    from cratous.services.certify.verdicts import constraint_rows
     from cratous.services.monitor import Monitor
 
-    return Monitor(
-        mission,
-        plan,
-        lambda v: tell(f"VIOLATION {sentence(v)}"),
-        lambda row: tell(f"ASSUMPTION {assumed(row)}"),
-        says_beats,
+    def violated(verdict: Verdict) -> None:
+        rows = constraint_rows([verdict], "flight")
+        (one,) = blame_rows(rows, monitor.commands(), monitor.assumptions(), monitor.end_ms)
+        tell(f"VIOLATION {sentence(verdict)}; {blamed(one)}")
+
+    monitor = Monitor(
+        mission, plan, violated, lambda row: tell(f"ASSUMPTION {assumed(row)}"), says_beats
     )
+    return monitor
 
 
 def noted(

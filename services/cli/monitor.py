@@ -10,7 +10,7 @@ import click
 
 from cratous.services.cli.numbers import Number
 from cratous.spec.errors import BadInput
-from cratous.spec.mission.guarantees import exit_code
+from cratous.spec.mission.guarantees import Outcome, exit_code
 
 
 @click.command()
@@ -110,6 +110,8 @@ def monitor(
     from cratous.core import ledger
     from cratous.services.assumptions.said import GROUNDLESS
     from cratous.services.assumptions.said import lines as assumption_lines
+    from cratous.services.certify.blame import blame_rows
+    from cratous.services.certify.blame_said import lines as blame_lines
     from cratous.services.certify.evidence import counted
     from cratous.services.certify.proofs import inventory, summary
     from cratous.services.certify.rejudge import watch
@@ -126,25 +128,35 @@ def monitor(
         standing = ledger.require(allow_unproved=allow_unproved)
         wait.at("judging the messages of the log")
         with counted() as calls:
-            judged, assumptions = watch(log)
+            judged, assumptions, commands, end_ms = watch(log)
     evidence = inventory(standing, calls.data())
     rows = constraint_rows(judged, "flight")
+    blame = blame_rows(rows, commands, assumptions, end_ms)
     groundless = without_ground(str(read_meta(log).get("command", "")), assumptions)
     unproved = bool(standing.problems) or groundless
     code = exit_code([v.outcome for v in judged], unproved=unproved)
+    required = requirement_rows(rows)
     if as_json:
         data = {
-            "requirements": requirement_rows(rows),
+            "requirements": required,
             "constraints": rows,
             "assumptions": assumptions,
+            "blame": blame,
             "proofs": standing.line,
             "evidence": evidence,
             "exit_code": code,
         }
         click.echo(json.dumps(data, indent=1))
+        for row in required:
+            if row["verdict"] != Outcome.HOLDS:
+                say(f"{row['requirement']} {row['title']}: {row['verdict']}", err=True)
+        if groundless:
+            say(GROUNDLESS, err=True)
+        if standing.problems:
+            say(f"proofs: {standing.line}", err=True)
     else:
-        requirement_table(requirement_rows(rows))
-        for line in assumption_lines(assumptions):
+        requirement_table(required)
+        for line in (*blame_lines(blame), *assumption_lines(assumptions)):
             say(line)
         if groundless:
             say(GROUNDLESS)

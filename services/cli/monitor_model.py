@@ -8,6 +8,8 @@ import click
 
 from cratous.spec.files.printable import json_text
 
+UNASKED = "not known whether it fits the model: no vehicle was flown with an ICAROUS instance"
+
 
 def model(log: Path, as_json: bool, allow_unproved: bool) -> int:
     """Print whether each event of authority is a step of the model, or the first that is not; the exit code.
@@ -52,6 +54,10 @@ def model(log: Path, as_json: bool, allow_unproved: bool) -> int:
             "exit_code": code,
         }
         click.echo(json_text(data))
+        if found.finding is None and not asked:
+            say(UNASKED, err=True)
+        if standing.problems:
+            say(f"proofs: {standing.line}", err=True)
         return code
     events = ", ".join(f"{count} {kind}" for kind, count in sorted(found.events.items()))
     if found.finding is not None:
@@ -60,7 +66,7 @@ def model(log: Path, as_json: bool, allow_unproved: bool) -> int:
     elif asked:
         say(f"fits the model: each of {found.events.total()} events is a step of it")
     else:
-        say("not known whether it fits the model: no vehicle was flown with an ICAROUS instance")
+        say(UNASKED)
     say(f"events: {events or 'none'}; {found.vehicles} vehicles with ICAROUS")
     for line in coverage.lines(steps):
         say(line)

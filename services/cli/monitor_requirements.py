@@ -54,6 +54,11 @@ def print_result(
             "exit_code": code,
         }
         click.echo(json.dumps({**data, "verdicts": lines} if lines is not None else data, indent=1))
+        for one in watched.outcomes:
+            if one.verdict != "holds":
+                say(_line(one, timed), err=True)
+        if standing.problems:
+            say(f"proofs: {standing.line}", err=True)
         return code
     for line in lines or ():
         say(line)

@@ -75,7 +75,7 @@ def run_in_processes(
         flown = noted(writer, flown, standing, calls.data(), assumptions)
     tell(f"evidence: {summary(flown.proofs)}")
     rows = plan_rows(checks) + constraint_rows(verdicts, "flight")
-    report = build_report(mission, plan, Judged(rows, assumptions), log, flown)
+    report = build_report(mission, plan, Judged(rows, assumptions, monitor.commands()), log, flown)
     write_report(report, folder)
     return report
 

@@ -45,7 +45,7 @@ def _tell_ran(theorems: list[Any], verbose: bool) -> None:
     left = sorted({text for _, one in ran for text in one.left_out})
     click.echo(
         f"{len(held)} of {len(theorems)} theorems run as Python, at {sum(o.points for o in held)} points; "
-        f"{len(left)} readings could not be compared"
+        f"{len(left)} {'reading' if len(left) == 1 else 'readings'} could not be compared"
     )
     if verbose:
         for name, one in ran:
@@ -55,8 +55,8 @@ def _tell_ran(theorems: list[Any], verbose: bool) -> None:
                     or "no point was found at which its premises hold and all is rational"
                 )
                 click.echo(f"not run: {name}: {why}")
-        for text in left:
-            click.echo(f"not compared: {text}")
+    for text in left:
+        click.echo(f"not compared: {text}")
 
 
 def _statuses(said: dict[str, str]) -> dict[str, int]:

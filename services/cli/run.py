@@ -168,6 +168,7 @@ def summary(report: dict[str, Any], folder: Path | None) -> dict[str, Any]:
 
 def _show(report: dict[str, Any], folder: Path) -> None:
     from cratous.services.assumptions.said import GROUNDLESS, sentence
+    from cratous.services.certify.blame_said import lines
     from cratous.services.certify.verdicts import without_ground
 
     flight = report["flight"]
@@ -179,6 +180,8 @@ def _show(report: dict[str, Any], folder: Path) -> None:
             f"p{served['task']}: {served['phase'].lower()} by {who} "
             f"at {served['time_ms'] / 1000:.1f} s, {100 * served['served']:.1f} % served{note}"
         )
+    for line in lines([one for one in report["blame"] if one["verdict"] != "unknown"]):
+        say(line)
     for row in report["assumptions"]:
         if row["state"] == "broken":
             say(f"assumption {row['name']}: {sentence(row)}")

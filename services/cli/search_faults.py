@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from pathlib import Path
 from typing import Any
 
 import click
@@ -26,8 +27,15 @@ SAFE = "safe"
     type=click.IntRange(1, 2_000_000),
     help="Give up after this many.",
 )
+@click.option(
+    "--traces",
+    type=click.Path(path_type=Path, file_okay=False),
+    help="Write each trace into this folder, for `cratous replay-trace`.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print JSON, for machines.")
-def search_faults(names: tuple[str, ...], steps: int, states: int, as_json: bool) -> None:
+def search_faults(
+    names: tuple[str, ...], steps: int, states: int, traces: Path | None, as_json: bool
+) -> None:
     """Search broken designs of authority for the shortest trace to a fault.
 
     The steps are the kernels that run: the gate, ICAROUS, the UxAS end, over a link that loses, repeats,
@@ -43,6 +51,7 @@ def search_faults(names: tuple[str, ...], steps: int, states: int, as_json: bool
     from cratous.proofs.system_search.authority import Design
     from cratous.proofs.system_search.breadth_first import search
     from cratous.proofs.system_search.faults import FAULTS
+    from cratous.services.trace_replay.files import Trace, write
 
     known = [SAFE, *FAULTS]
     for name in names:
@@ -55,8 +64,14 @@ def search_faults(names: tuple[str, ...], steps: int, states: int, as_json: bool
         begun = time.monotonic()
         found = search(Design() if safe else FAULTS[name].design, steps, states)
         says = "the design as it runs" if safe else FAULTS[name].says
-        row = {"name": name, "says": says, **found._asdict(), "steps": steps}
-        rows.append({**row, "seconds": round(time.monotonic() - begun, 2)})
+        took = {"steps": steps, "seconds": round(time.monotonic() - begun, 2)}
+        texts = {"trace": [entry.text for entry in found.trace], "returned": found.returned}
+        counts = {"wrong": found.wrong, "states": found.states, "complete": found.complete}
+        rows.append({"name": name, "says": says, **texts, **counts, **took})
+        entries = found.trace or found.back
+        if traces is not None and entries:
+            traces.mkdir(parents=True, exist_ok=True)
+            write(traces / f"{name}.json", Trace(name, says, found.wrong, entries))
         if safe and (found.wrong or (found.complete and not found.returned)):
             code = 1
         elif bool(found.wrong) == safe or (safe and not found.complete):

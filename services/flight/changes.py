@@ -20,9 +20,9 @@ from cratous.services.flight.replan_triggers import (
     undone_by,
 )
 from cratous.services.flight.task_transitions import begin, give_up, progress
+from cratous.services.loading.polygons import hard_zones
 from cratous.services.mission.availability import absent
 from cratous.services.mission.wind import all_in_wind, in_wind, known_at, told, wind_at
-from cratous.services.planning.zones import hard_zones
 from cratous.spec.algebra.meaning import tasks
 from cratous.spec.executive import FOR_CHANGE
 from cratous.spec.mission import Change, ZoneKind
@@ -105,11 +105,13 @@ def ask(config: Config, state: State) -> AskPlan:
 
 def planned(config: Config, state: State, plan: Plan, asked_for: Asked, out: Out) -> State:
     """Fly another plan from here on. The change is known before anything is done about it."""
+    begun: Out = []
+    before, state = state, replace(state, plan=plan, replans=state.replans + 1)
+    after = begin(config, state, begun)
     if asked_for.kind == FOR_CHANGE:
-        moved = handed_over(left_by(state.by_vehicle()), plan)
-        why = "; ".join(filter(None, (asked_for.why, moved, _leaving(config, state))))
+        moved = handed_over(left_by(before.by_vehicle()), plan)
+        why = "; ".join(filter(None, (asked_for.why, moved, _leaving(config, before, after))))
         _tell(state, asked_for.what, f"planned anew: {why}", out)
-    state = replace(state, plan=plan, replans=state.replans + 1)
     accept(state, out)
     note = f"planned anew, because of {asked_for.what or asked_for.why}"
     gone = {one.task_id for one in left_out_of(plan)}
@@ -118,7 +120,8 @@ def planned(config: Config, state: State, plan: Plan, asked_for: Asked, out: Out
         for chain in state.chains
         if chain.item is not None and chain.item.task_id not in gone
     )
-    return begin(config, state, out)
+    out.extend(begun)
+    return after
 
 
 def unplanned(
@@ -127,16 +130,19 @@ def unplanned(
     """After a change nothing that is left can be done."""
     todo = _open(state)
     none = nobody_may(state.known, todo, absent(config.mission, state.now_ms))
-    why = "; ".join(filter(None, (asked_for.why, none, _leaving(config, state))))
-    _tell(state, asked_for.what, f"no plan for what is left ({no_plan.why}): {why}", out)
     of = dict(no_plan.of)
     told = [(task, of.get(task) or f"{asked_for.what}: {no_plan.why}") for task in todo]
-    state = give_up(config, state, told, out)
-    return command_all(config, state, out)
+    begun: Out = []
+    after = give_up(config, state, told, begun)
+    why = "; ".join(filter(None, (asked_for.why, none, _leaving(config, state, after))))
+    _tell(state, asked_for.what, f"no plan for what is left ({no_plan.why}): {why}", out)
+    out.extend(begun)
+    return command_all(config, after, out)
 
 
-def _leaving(config: Config, state: State) -> str:
-    """Which vehicles are in zones that bind now, and how each comes to keep them before all else."""
+def _leaving(config: Config, state: State, after: State) -> str:
+    """Which vehicles are in zones that bind now, and how each comes to keep them; after: on their way. The
+    length of a way out is told where it is flown: where it leads on to nowhere, another is."""
     ways, said = config.ways(state.zones), []
     for chain in state.chains:
         if chain.suspended:
@@ -146,7 +152,11 @@ def _leaving(config: Config, state: State) -> str:
             kept = [f"leaves {name_of(z)}" for z in inside if z.kind is ZoneKind.KEEP_OUT]
             kept += [f"enters {name_of(z)}" for z in inside if z.kind is ZoneKind.KEEP_IN]
             told = f"vehicle {chain.vehicle.id} first {' and '.join(kept)}, level, by the shortest way found"
-            said.append(f"{told}, {out.inside_m:.0f} m")
+            if after.chain(chain.vehicle.id).track.points[: len(out.points)] == out.points:
+                told += f", {out.inside_m:.0f} m"
+            else:
+                told = f"vehicle {chain.vehicle.id} {' and '.join(kept)} on its way"
+            said.append(told)
     return "; ".join(said)
 
 

@@ -13,7 +13,7 @@ from bisect import bisect_right
 from dataclasses import replace
 from typing import NamedTuple
 
-from cratous.bridge.text_protocol import SetMode
+from cratous.bridge.text_protocol import SetMode, SetVelocity
 from cratous.core.authority.gate import ICAROUS, UXAS, gate_accepts
 from cratous.core.authority.link_end import (
     LinkEnd,
@@ -28,6 +28,7 @@ from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.dynamics import AirState, floor_of, traffic_state
 from cratous.services.flight.executive_outputs import AHEAD_S
 from cratous.services.flight.inflight_routes import Ways
+from cratous.services.flight.link_lines import Flies
 from cratous.services.flight.messages import Choose, Move, Sense, Wished
 from cratous.services.flight.remaining_path import points_ahead, points_left
 from cratous.services.flight.vehicle import VehicleNode
@@ -38,7 +39,7 @@ from cratous.services.icarous.messages import Steer, Up, Wish
 from cratous.services.mission.frames import Projection
 from cratous.spec.authority.link_end import TAKE_BACK
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import FaultySimulation, Mission, Position, TaskKind, Vehicle
+from cratous.spec.mission import FaultySimulation, Mission, Position, TaskKind, Vehicle, Velocity
 from cratous.spec.mission.plan import PlanItem
 
 COMPLETE, LIMIT = "complete", "limit"
@@ -82,7 +83,8 @@ def fly_encounter(mission: Mission, *, daa: bool = True) -> Encounter:
         outcome = COMPLETE if any(over) else LIMIT
         if now_ms % mission.simulation.heartbeat_ms == 0:
             seen = _everyone(mission, ours, now_ms)
-            lines = [(one, one.beat(Sense(now_ms, seen, cooperating))) for one in ours]
+            told = tuple((one.id, one.flies) for one in ours if one.instance and one.flies)
+            lines = [(one, one.beat(Sense(now_ms, seen, cooperating), told)) for one in ours]
             for one, modes in lines:
                 one.hear(modes, now_ms)
         for one in ours:
@@ -153,7 +155,7 @@ class _Ours:
         self._chain = Chain(vehicle, _items(vehicle, way), 0, Phase.TRANSIT, here, speed)
         self._go_on(0)
         self._link, self._told = LinkEnd(False, 0, True), self._chain.track
-        self._told_from_m = 0.0
+        self._told_from_m, self._steered = 0.0, Velocity(0.0, 0.0, 0.0)
         if daa:
             config = icarous.Config(vehicle.id, mission.daa, projection, simulation.heartbeat_ms)
             self.instance = Instance(config)
@@ -183,11 +185,30 @@ class _Ours:
         self._chain = self._chain.enter(Phase.TRANSIT, track or straight, at_ms)
         self._command(self.state.gate.epoch)
 
-    def beat(self, sense: Sense) -> list[SetMode]:
-        """A heartbeat of its instance: what it wishes and steers; the modes that it tells UxAS."""
+    @property
+    def flies(self) -> Flies:
+        """The way that UxAS flies it by, as it was told, or to which velocity ICAROUS steers it."""
+        return self._steered if self._chain.suspended else self._told.points
+
+    def beat(self, sense: Sense, fly: tuple[tuple[int, Flies], ...]) -> list[SetMode]:
+        """A heartbeat of its instance: what it wishes and steers; the modes that it tells UxAS. fly: how everybody
+        flies that has an instance."""
         if self.instance is None:
             return []
-        told = replace(self._icarous.told, heard_ms=sense.now_ms)
+        ways, steered = list[tuple[int, tuple[Position, ...]]](), list[tuple[int, Velocity]]()
+        for vid, flies in fly:
+            if vid == self.id:
+                continue
+            if isinstance(flies, Velocity):
+                steered.append((vid, flies))
+            else:
+                ways.append((vid, flies))
+        told = replace(
+            self._icarous.told,
+            heard_ms=sense.now_ms,
+            others=tuple(ways),
+            steered=tuple(steered),
+        )
         self._icarous = replace(self._icarous, told=told)
         if track_is_told(
             self._chain.suspended, self._chain.route_version != self._chain.told_version
@@ -207,6 +228,8 @@ class _Ours:
                 case Steer(_, epoch, velocity):
                     if gate_accepts(self.state.gate, ICAROUS, epoch):
                         self.state = vehicles.commanded(self.state, ICAROUS, epoch, Fly(velocity))
+                case Up(_, SetVelocity(north, east, down)):
+                    self._steered = Velocity(north, east, down)
                 case Up(_, SetMode() as mode):
                     modes.append(mode)
         return modes

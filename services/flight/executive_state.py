@@ -10,9 +10,9 @@ from cratous.services.flight.chain import Chain
 from cratous.services.flight.dynamics import AirState
 from cratous.services.flight.inflight_routes import Ways
 from cratous.services.flight.messages import FromExecutive
+from cratous.services.loading.polygons import hard_zones
 from cratous.services.mission.frames import Projection
 from cratous.services.mission.wind import CALM, Wind, known_at
-from cratous.services.planning.zones import hard_zones
 from cratous.spec.constraint_rows import Row
 from cratous.spec.mission import Change, Mission, Zone
 from cratous.spec.mission.changes import split

@@ -6,7 +6,8 @@ ICAROUS's gate is in, at each heartbeat while ICAROUS flies), SETVEL, HBEAT. A S
 the vehicle's own report of its gate says the same; one of an epoch that was never given is refused and
 said. On a takeover the executive suspends the vehicle, and ICAROUS
 is told the resume point by RESET_SFT; on an offer the executive takes the vehicle back in the new
-epoch. Which mode is believed and who counts as alive is decided by the kernels of
+epoch. How a vehicle flies is told to the instances of the others too: by which way UxAS flies it (OTHER), to
+which velocity its ICAROUS steers it (OVELO). Which mode is believed and who counts as alive is decided by the kernels of
 `core.authority.link_end`.
 """
 
@@ -27,6 +28,7 @@ from cratous.bridge.text_protocol import (
     NotKnown,
     RouteRequest,
     SetMode,
+    SetVelocity,
     StartMission,
     UxasPlans,
     Waypoint,
@@ -74,7 +76,7 @@ from cratous.spec.authority.link_end import (
     SUSPEND,
     TAKE_BACK,
 )
-from cratous.spec.mission import Zone
+from cratous.spec.mission import Position, Velocity, Zone
 
 LINK_LOST_MS = 2000
 """A vehicle's ICAROUS counts as silent when nothing came up for this long [ms]."""
@@ -94,7 +96,8 @@ class Peer:
     marks_m: arc length of each waypoint told, from from_m of the vehicle's track on; reached: how
     many of them are told to be reached; down: heartbeats sent; heard_ms: when it was last heard; gate: as
     the vehicle has reported it last; way: the lines of the way told last; again: how often lines of the
-    plan and of which zone were sent again, ((tag, zone), times).
+    plan and of which zone were sent again, ((tag, zone), times); flies: the way by which UxAS flies it, steered: to which
+    velocity ICAROUS does, as the others' instances are told.
     """
 
     vehicle_id: int
@@ -108,6 +111,8 @@ class Peer:
     gate: Gate = UNTOUCHED
     way: tuple[Message, ...] = ()
     again: tuple[tuple[tuple[str, int], int], ...] = ()
+    flies: tuple[Position, ...] = ()
+    steered: Velocity | None = None
 
 
 @dataclass(frozen=True)
@@ -156,7 +161,10 @@ class UxasEnd:
         if peer is None:
             return state, ()
         after, out = self._of_one(peer, message)
-        return state.with_peer(after), out
+        state = state.with_peer(after)
+        if (after.flies, after.steered) != (peer.flies, peer.steered):
+            out = (*out, *_to_others(state, after, self.projection))
+        return state, out
 
     def _asked(self, state: State, vehicle_id: int, line: RouteRequest, now_ms: int) -> Step:
         """A WPREQ: the executive knows where the vehicle is to go on. Without a number it cannot be answered."""
@@ -242,8 +250,10 @@ class UxasEnd:
                 state = state.with_peer(peer)
             else:
                 state = replace(state, peers=(*state.peers, peer))
+            others = _of_others(state, vid, self.projection)
             plans = [UxasPlans()] if self.live else []
-            out += _down(peer, [*plans, *self._fences(state.zones, 0), *_way_on(peer)])
+            told = [*plans, *self._fences(state.zones, 0), *_way_on(peer), *others]
+            out += _down(peer, told)
             out.append(_status(peer, True, now_ms, "connected again" if old else "connected"))
         return state, tuple(out)
 
@@ -253,7 +263,9 @@ class UxasEnd:
         fences = self._fences(zones, known if more else 0)
         out: list[FromLinkEnd] = []
         for peer in state.peers:
-            out += _down(peer, fences if more else [HardReset(), *fences, *_way_on(peer)])
+            others = _of_others(state, peer.vehicle_id, self.projection)
+            anew = [HardReset(), *fences, *_way_on(peer), *others]
+            out += _down(peer, fences if more else anew)
             state = state.with_peer(replace(peer, again=()))
         return replace(state, zones=zones), tuple(out)
 
@@ -267,9 +279,8 @@ class UxasEnd:
     def _route(self, peer: Peer, route: Route) -> tuple[Peer, tuple[FromLinkEnd, ...]]:
         track = Track(route.points)
         told = link_lines.way(track.points, route.speed_m_s, self.projection)
-        after = replace(
-            peer, marks_m=track.s_m, from_m=route.from_m, reached=0, way=tuple(told), again=()
-        )
+        after = replace(peer, marks_m=track.s_m, from_m=route.from_m, reached=0, again=())
+        after = replace(after, way=tuple(told), flies=track.points, steered=None)
         return after, _down(peer, told)
 
     def _seen(self, peer: Peer, seen: Seen) -> OfOne:
@@ -302,6 +313,20 @@ ToOne = Route | Flown | Seen | Left | Heard | Unreadable | Lost | GateIs | Propo
 OfOne = tuple[Peer, tuple[FromLinkEnd, ...]]
 
 
+def _to_others(state: State, peer: Peer, projection: Projection) -> tuple[Down, ...]:
+    """How a vehicle flies, to the instances of the others."""
+    told = link_lines.way_of_another(peer.vehicle_id, peer.steered or peer.flies, projection)
+    others = (p for p in state.peers if p.vehicle_id != peer.vehicle_id)
+    return tuple(down for p in others for down in _down(p, told))
+
+
+def _of_others(state: State, vehicle_id: int, projection: Projection) -> list[Message]:
+    """How the others fly, to the instance of one vehicle."""
+    known = {p.vehicle_id: p.steered or p.flies for p in state.peers if p.vehicle_id != vehicle_id}
+    told = (link_lines.way_of_another(vid, how, projection) for vid, how in known.items() if how)
+    return [line for lines in told for line in lines]
+
+
 def _between(lines: Sequence[Message], asked: LinesMissing, number: str) -> list[Message]:
     """The lines from the first to the last that is asked for."""
     if len(lines) != asked.total:
@@ -329,6 +354,9 @@ def _heard(peer: Peer, line: Message, now_ms: int) -> OfOne:
     if isinstance(line, SetMode):
         peer, more = _mode(peer, line, now_ms)
         return peer, (*out, *more)
+    if isinstance(line, SetVelocity) and peer.end.active:
+        flies = Velocity(line.north_mps, line.east_mps, line.down_mps)
+        return replace(peer, steered=flies), out
     if isinstance(line, NotKnown):
         note = f"ICAROUS does not know the command {line.kind}"
         return peer, (*out, _status(peer, peer.end.alive, now_ms, note))
@@ -341,6 +369,7 @@ def _mode(peer: Peer, line: SetMode, now_ms: int) -> OfOne:
     linked = link_mode(peer.end, peer.gate, line.mode == "ACTIVE", epoch)
     after, vid = replace(peer, end=linked.end), peer.vehicle_id
     if linked.act == SUSPEND:
+        after = replace(after, flies=())
         return after, (Suspend(vid, now_ms, linked.act),)
     if linked.act == TAKE_BACK:
         return after, (TakeBack(vid, now_ms, linked.act, epoch),)

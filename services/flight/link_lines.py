@@ -17,12 +17,14 @@ from cratous.bridge.text_protocol import (
     SoftReset,
     StartMission,
     Traffic,
+    VelocityOfAnother,
+    WayOfAnother,
     Waypoint,
 )
 from cratous.core.authority.gate import UXAS, Gate
 from cratous.services.flight.dynamics import AirState
 from cratous.services.mission.frames import Projection
-from cratous.spec.mission import Position, Zone, ZoneKind
+from cratous.spec.mission import Position, Velocity, Zone, ZoneKind
 
 FAR_M = 1e6
 """Altitudes beyond this are sent as this [m]: no aircraft is there."""
@@ -86,6 +88,25 @@ def way(points: tuple[Position, ...], speed_m_s: float, projection: Projection) 
         for k, (p, lat, lon) in enumerate(zip(points, lats, lons, strict=True))
     ]
     return [SoftReset(), *waypoints, StartMission()]
+
+
+Flies = tuple[Position, ...] | Velocity
+"""The way that UxAS flies a vehicle by, or the velocity to which ICAROUS steers it."""
+
+
+def way_of_another(vehicle_id: int, points: Flies, projection: Projection) -> list[Message]:
+    """How another vehicle flies, as OTHER lines, or OVELO; without points one line, which says that it is not known."""
+    if isinstance(points, Velocity):
+        return [VelocityOfAnother(vehicle_id, *points)]
+    if not points:
+        return [WayOfAnother(vehicle_id, 0, 0.0, 0.0, 0.0, 0)]
+    lats, lons = projection.to_geodetic_many(
+        [p.north_m for p in points], [p.east_m for p in points]
+    )
+    return [
+        WayOfAnother(vehicle_id, len(points), float(lat), float(lon), p.alt_m, k)
+        for k, (p, lat, lon) in enumerate(zip(points, lats, lons, strict=True))
+    ]
 
 
 def asked_way(asked: RouteRequest, projection: Projection) -> tuple[AirState, Position]:

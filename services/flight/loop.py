@@ -100,7 +100,7 @@ def fly(
     """
     instances = tuple(sorted(mission.instances)) if daa else ()
     with _bridge(mission, instances, segmenter) as bridge:
-        return _Flight(mission, plan, bus, bridge, instances).run(progress)
+        return Flight(mission, plan, bus, bridge, instances).run(progress)
 
 
 def _bridge(mission: Mission, instances: tuple[int, ...], segmenter: Segmenter | None) -> Bridge:
@@ -115,7 +115,7 @@ def _bridge(mission: Mission, instances: tuple[int, ...], segmenter: Segmenter |
 Answer = FromExecutive | FromLinkEnd | FromVehicle | FromInstance
 
 
-class _Flight:
+class Flight:
     """The actors of one flight, the states that they are in, and the present."""
 
     def __init__(

@@ -8,7 +8,8 @@ from typing import Any
 from cratous.core import ledger
 from cratous.services.argument.build import argument
 from cratous.services.attestation.findings import Subject, doubt, unshown
-from cratous.services.certify.html import repeats
+from cratous.services.certify.blame_said import sentence
+from cratous.services.certify.html import repeats, seconds
 from cratous.services.certify.proofs import NOT_RECORDED, statuses
 from cratous.services.full_report import document
 from cratous.spec.errors import CratousError
@@ -118,6 +119,14 @@ def _discrepancies(subject: Subject) -> Iterator[document.Part]:
     ]
     yield document.Table(
         ("", "Constraint", "Verdict", "Note"), tuple(rows), (7, 38, 13, 42), empty="None."
+    )
+    yield document.Head("Who was in command then, and what had broken first")
+    rows = [
+        (one["requirement"], one["item"], seconds(one["time_ms"]), sentence(one))
+        for one in report["blame"]
+    ]
+    yield document.Table(
+        ("", "Constraint", "At", "Blame"), tuple(rows), (7, 38, 13, 42), (2,), empty="None."
     )
     yield document.Head("Not shown")
     yield document.Table(("What", "Why"), tuple(unshown(subject)), (50, 50), empty="Nothing was left unchecked.")  # fmt: skip

@@ -23,6 +23,8 @@ from cratous.core.permit.remainder import hold_at, hold_permits, zones_permit
 from cratous.services.icarous.messages import Sensed
 from cratous.spec.mission import Position, WellClear
 
+TURN_MARGIN = 1.1
+"""A way back, and a loiter, is made of turns this much wider than the tightest."""
 TRACKING_S = 1.0
 """A circle is flown to less than what the vehicle flies in this time [s]."""
 WIDEST = 1.5

@@ -1,21 +1,18 @@
-"""What an instance puts to the kernels of avoidance: its way ahead, its way back, and its manoeuvre."""
+"""What an instance puts to the kernels of avoidance: its way ahead, and its way back."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 from cratous.core.avoidance.manoeuvre import velocity_of, way_along
 from cratous.core.avoidance.prediction import Piece, buffered
-from cratous.core.avoidance.resolution import Choice, Scene, first_zone_s, resolve
+from cratous.core.avoidance.resolution import Scene, first_zone_s
 from cratous.core.avoidance.way_ahead import near_line, there_within
 from cratous.core.permit.remainder import way_permits
-from cratous.services.icarous.ending import Ahead, horizon_s, with_hold
+from cratous.services.icarous.ending import TURN_MARGIN, Ahead, horizon_s, with_hold
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.return_to_path import (
-    bearing_rad,
     flat,
-    goal_index,
     way_on,
     ways_back,
 )
@@ -28,8 +25,6 @@ REACHED_S = 0.5
 """A waypoint that is nearer than this [s of flight] is as good as reached."""
 PASSED_S = 2.0
 """The last waypoint has been passed just now if it is nearer than this [s of flight]."""
-TURN_MARGIN = 1.1
-"""The way back is made of turns this much wider than the tightest."""
 
 
 def scene_of(config: Config, state: State, sensed: Sensed) -> Scene:
@@ -105,37 +100,3 @@ def way_is_free(
         for whole in ways_back(now, radius_m, points, math.inf)
         for other in avoided
     )
-
-
-def manoeuvre(config: Config, state: State, sensed: Sensed) -> tuple[State, Choice]:
-    """The manoeuvre to fly now, remembered, with the waypoint that it makes for."""
-    state, goal = _with_goal(state, sensed)
-    motion = sensed.motion
-    course = bearing_rad(motion.position, goal) if goal is not None else motion.heading_rad
-    speed = state.told.speed_m_s or motion.speed_m_s
-    scene = scene_of(config, state, sensed)
-    choice = resolve(motion, sensed.ability, scene, course, speed, state.held)
-    return replace(state, held=choice), choice
-
-
-def _with_goal(state: State, sensed: Sensed) -> tuple[State, Position | None]:
-    """The waypoint to make for; none if no waypoints are known."""
-    waypoints = state.told.waypoints
-    if not waypoints:
-        return state, None
-    radius_m = sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
-    index = goal_index(sensed.motion, radius_m, waypoints, min(state.goal, len(waypoints) - 1))
-    return replace(state, goal=index), waypoints[index]
-
-
-def describe(choice: Choice) -> str:
-    """A manoeuvre in words, for the record; it says when none is free of conflict."""
-    heading = round(math.degrees(choice.heading_rad)) % 360
-    text = f"heading {heading:03d}"
-    if choice.kind == "altitude":
-        text += f", climb {choice.climb_m_s:+.1f} m/s"
-    if choice.kind == "speed":
-        text += f", speed {choice.speed_m_s:.1f} m/s"
-    if not choice.clear:
-        text += f"; no manoeuvre is free of conflict, this one is until {choice.first_violation_s:.1f} s"
-    return text

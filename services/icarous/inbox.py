@@ -11,11 +11,13 @@ from cratous.bridge.text_protocol import (
     Message,
     SoftReset,
     StartMission,
+    VelocityOfAnother,
+    WayOfAnother,
     Waypoint,
     WaypointReached,
 )
 from cratous.services.mission.frames import Projection
-from cratous.spec.mission import Position, Zone, ZoneKind
+from cratous.spec.mission import Position, Velocity, Zone, ZoneKind
 
 
 @dataclass(frozen=True)
@@ -24,7 +26,8 @@ class Told:
 
     waypoints: the plan in force; next_index: the one to fly to; resume: where the task's path was
     left, while ICAROUS has control; gathering and vertices: what is not yet complete.
-    heard_ms: when UxAS was last heard.
+    heard_ms: when UxAS was last heard; others: the ways that UxAS flies other vehicles by, and of_others: lines
+    of them that are not yet complete; steered: to which velocity its ICAROUS steers another vehicle.
     """
 
     zones: tuple[Zone, ...] = ()
@@ -36,6 +39,13 @@ class Told:
     vertices: tuple[FenceVertex, ...] = ()
     heard_ms: int = 0
     started: bool = False
+    others: tuple[tuple[int, tuple[Position, ...]], ...] = ()
+    of_others: tuple[WayOfAnother, ...] = ()
+    steered: tuple[tuple[int, Velocity], ...] = ()
+
+    def way_of(self, vehicle_id: int) -> tuple[Position, ...]:
+        """The way that UxAS flies another vehicle by; () if none is known."""
+        return dict(self.others).get(vehicle_id, ())
 
 
 def hear(
@@ -68,7 +78,36 @@ def _hear(told: Told, message: Message, projection: Projection, original: bool) 
         return replace(told, vertices=(*kept, message))
     if isinstance(message, FenceDone):
         return _close_fence(told, message, projection)
+    if isinstance(message, WayOfAnother):
+        steered = tuple(one for one in told.steered if one[0] != message.vehicle_id)
+        return _of_another(replace(told, steered=steered), message, projection)
+    if isinstance(message, VelocityOfAnother):
+        vid = message.vehicle_id
+        steered = tuple(one for one in told.steered if one[0] != vid)
+        to = Velocity(message.north_mps, message.east_mps, message.down_mps)
+        others = tuple(one for one in told.others if one[0] != vid)
+        return replace(told, others=others, steered=(*steered, (vid, to)))
     return told
+
+
+def _of_another(told: Told, line: WayOfAnother, projection: Projection) -> Told:
+    """The way of another is known once its lines have come, in order and all; until then none is."""
+    before = () if line.index == 0 else told.of_others
+    lines = (*before, line)
+    others = tuple(one for one in told.others if one[0] != line.vehicle_id)
+    alike = {(one.vehicle_id, one.total) for one in lines} == {(line.vehicle_id, line.total)}
+    if not alike or [one.index for one in lines] != list(range(len(lines))):
+        return replace(told, others=others, of_others=())
+    if len(lines) != line.total:
+        return replace(told, others=others, of_others=lines if line.total else ())
+    norths, easts = projection.to_local_many(
+        [one.lat_deg for one in lines], [one.long_deg for one in lines]
+    )
+    points = tuple(
+        Position(float(n), float(e), one.alt_m)
+        for n, e, one in zip(norths, easts, lines, strict=True)
+    )
+    return replace(told, others=(*others, (line.vehicle_id, points)), of_others=())
 
 
 def _start(told: Told, projection: Projection, original: bool) -> Told:

@@ -1,7 +1,7 @@
 """The ICAROUS instance of one vehicle: `handle(state, message) -> (state, messages)`.
 
 MONITOR: UxAS flies; the way ahead, up to the hold that ends it, is checked against traffic and zones. AVOID: ICAROUS has taken
-over and flies the manoeuvre that deviates least from the course. HANDBACK: the way back has been
+over and flies the turn after which the way back is free soonest, or the manoeuvre that deviates least from the course. HANDBACK: the way back has been
 free for a while, control is offered; ICAROUS steers on until UxAS takes it, and withdraws the
 offer when a conflict shows up. Own state and traffic come from the vehicle itself; the bridge
 brings zones and waypoints, and takes away SETMOD, SETVEL and HBEAT. Without the bridge there is no
@@ -20,10 +20,8 @@ from cratous.core.authority.gate import ICAROUS, gate_accepts
 from cratous.core.avoidance.manoeuvre import velocity_of
 from cratous.core.avoidance.resolution import Choice
 from cratous.services.icarous import asking, permits
+from cratous.services.icarous.ending import TURN_MARGIN
 from cratous.services.icarous.foresight import (
-    TURN_MARGIN,
-    describe,
-    manoeuvre,
     points_back,
     predicted,
     scene_of,
@@ -42,8 +40,10 @@ from cratous.services.icarous.messages import (
     Up,
     Wish,
 )
+from cratous.services.icarous.others import with_ways
+from cratous.services.icarous.proposal import describe, manoeuvre
 from cratous.services.icarous.return_to_path import PERSIST_MS, RELAPSE_MS, onto
-from cratous.services.icarous.state import Config, State
+from cratous.services.icarous.state import IDLE, Config, State
 from cratous.services.icarous.traffic_monitor import (
     courses,
     most_urgent,
@@ -99,12 +99,18 @@ class Instance:
         commands = gate_accepts(sensed.gate, ICAROUS, sensed.gate.epoch)
         cycle = cycle_begun(state.cycle, commands, sensed.now_ms)
         flew, watches = state.cycle.mode != MONITOR, cycle.mode == MONITOR
-        now = courses(sensed.intruders)
-        in_turn = turning(now, state.courses, self.config.heartbeat_ms / 1000)
+        now, beat_s = courses(sensed.intruders), self.config.heartbeat_ms / 1000
+        ways, others = with_ways(
+            state.ways, state.told, sensed, self.config.daa, beat_s, state.courses
+        )
+        sensed = sensed._replace(intruders=others)
+        # one whose way is known is where that leads, in a turn too
+        in_turn = turning(now, state.courses, beat_s) - {o.id for o in others if o.way}
         if flew and watches:
-            state = replace(state, held=None, threats=(), asking=state.asking.idle())
+            fresh = state.asking.idle()
+            state = replace(state, held=None, search=IDLE, threats=(), asking=fresh)
             state = permits.resumed(self.config, state, sensed, in_turn)
-        state = replace(state, cycle=cycle, courses=now, beats=state.beats + 1)
+        state = replace(state, cycle=cycle, courses=now, ways=ways, beats=state.beats + 1)
         if watches:
             state, out = self._watch(state, sensed, in_turn)
         else:
@@ -124,7 +130,7 @@ class Instance:
             reason += permits.told_why(state, conflict.intruder_id)
             state = permits.taken_over(state, conflict.intruder_id)
         state = replace(state, cycle=cycled.cycle, goal=state.told.next_index)
-        state, choice = manoeuvre(self.config, state, sensed)
+        state, choice = manoeuvre(self.config, state, sensed, in_turn, False)
         foresees = Foresees(vid, sensed.now_ms, conflict.intruder_id, first_s, describe(choice))
         wish = Wish(vid, cycled.act, reason, conflict.intruder_id)
         return state, (wish, foresees, *self._commands(sensed, choice, cycled.act))
@@ -155,7 +161,8 @@ class Instance:
         heard_ms, before = state.told.heard_ms, state.held
         free = free or proposed is not None
         cycled = cycle_flown(state.cycle, free, heard_ms, sensed.now_ms, LINK_LOST_MS, PERSIST_MS)
-        state, choice = manoeuvre(self.config, replace(state, cycle=cycled.cycle), sensed)
+        state = replace(state, cycle=cycled.cycle)
+        state, choice = manoeuvre(self.config, state, sensed, in_turn, free)
         out: list[FromInstance] = []
         vid, text = self.config.vehicle_id, describe(choice)
         if cycled.act != NOTHING:

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from cratous.core.avoidance.manoeuvre import way_along
-from cratous.core.avoidance.prediction import Intruder, Piece, buffered, first_violation_s
+from cratous.core.avoidance.prediction import Intruder, Piece, buffered, first_violation_s, later
 from cratous.core.kernel import Vec2
 from cratous.core.permit.encounter import (
     Encounter,
@@ -36,6 +36,7 @@ NONE = Encounter(0, 0, 0, False, False, 0)
 """An intruder because of which ICAROUS has never taken over."""
 OFF_LINE = "it does not fly as predicted"
 OTHER_WAY = "another way was told, which is not permitted"
+ITS_WAY = "it flies another way than was told, and the own way is not permitted against that"
 UNFORESEEN = "a loss is predicted that was not as control went back"
 NOT_FREE = "the way was not permitted as control went back"
 ENDED = "what was permitted had ended"
@@ -53,7 +54,7 @@ def resumed(config: Config, state: State, sensed: Sensed, in_turn: frozenset[int
         allowed = straight is not None and _permitted(pieces, straight, config.daa)
         one = encounter_resumed(met.encounter, allowed, until_ms)
         why = met.why if allowed or one == met.encounter else NOT_FREE
-        after.append(Met(met.intruder_id, one, straight, sensed.now_ms, state.told.waypoints, why))
+        after.append(_made(met.intruder_id, one, straight, state, sensed, why))
     return replace(state, met=tuple(after))
 
 
@@ -67,18 +68,32 @@ def looked(config: Config, state: State, sensed: Sensed, ahead: Ahead) -> State:
         now, allowed = met, True
         if other is not None:
             on_line = _on_line(met, other, sensed.now_ms, config.daa)
-            if not on_line or met.way != state.told.waypoints:
+            its_way = state.told.way_of(met.intruder_id)
+            same = met.way == state.told.waypoints
+            if not (on_line and same and met.its_way == its_way):
                 allowed = _permitted(_whole(state, sensed), other, config.daa)
-                why = OTHER_WAY if on_line else OFF_LINE
-                now = Met(
-                    met.intruder_id, met.encounter, other, sensed.now_ms, state.told.waypoints, why
-                )
+                why = OFF_LINE if not on_line else ITS_WAY if same else OTHER_WAY
+                now = _made(met.intruder_id, met.encounter, other, state, sensed, why)
             if allowed and own.first_s(other) is not None:
                 allowed, now = False, now._replace(why=UNFORESEEN)
         one = encounter_looked(met.encounter, allowed, sensed.now_ms)
         why = ENDED if one.ended > met.encounter.ended else now.why
         after.append(now._replace(encounter=one, why=met.why if one.permitted else why))
     return replace(state, met=tuple(after))
+
+
+def _made(
+    intruder_id: int,
+    encounter: Encounter,
+    other: Intruder | None,
+    state: State,
+    sensed: Sensed,
+    why: str,
+) -> Met:
+    """What is known of an intruder against which the way that is told now was held now."""
+    told = state.told
+    its_way = told.way_of(intruder_id)
+    return Met(intruder_id, encounter, other, sensed.now_ms, told.waypoints, why, its_way)
 
 
 def _whole(state: State, sensed: Sensed) -> tuple[Piece, ...]:
@@ -122,14 +137,10 @@ def _on_line(met: Met, other: Intruder, now_ms: int, daa: Daa) -> bool:
     """No farther from where it was predicted than half of what the buffer leaves."""
     if met.predicted is None:
         return False
-    (was, v), now = met.predicted[1:3], other.position
-    age_s = (now_ms - met.made_ms) / 1000
+    was, now = later(met.predicted, (now_ms - met.made_ms) / 1000).position, other.position
     share, volume = (daa.buffer - 1) / 2, daa.well_clear
-    beside = Vec2(
-        now.north_m - was.north_m - v.north_m_s * age_s,
-        now.east_m - was.east_m - v.east_m_s * age_s,
-    )
-    above = Vec2(now.alt_m - was.alt_m + v.down_m_s * age_s, 0.0)
+    beside = Vec2(now.north_m - was.north_m, now.east_m - was.east_m)
+    above = Vec2(now.alt_m - was.alt_m, 0.0)
     return bool(
         disc_within(beside, 0.0, share * volume.dthr_m)
         and disc_within(above, 0.0, share * volume.zthr_m)

@@ -11,6 +11,7 @@ from cratous.core.avoidance.resolution import Choice
 from cratous.core.permit.encounter import Encounter
 from cratous.services.icarous.asking import Asking
 from cratous.services.icarous.inbox import Told
+from cratous.services.icarous.others import Ways
 from cratous.services.icarous.traffic_monitor import Threat, Tracks
 from cratous.services.mission.frames import Projection
 from cratous.spec.authority.cycle import MONITOR
@@ -34,7 +35,7 @@ class Config(NamedTuple):
 
 class Met(NamedTuple):
     """An intruder because of which ICAROUS has taken over. predicted: as it was seen when the way was permitted
-    against it, at made_ms [ms]; why: the last permit did not last, "" while each has."""
+    against it, at made_ms [ms]; way, its_way: as UxAS had told them, its own and the other's; why: the last permit did not last, "" while each has."""
 
     intruder_id: int
     encounter: Encounter
@@ -42,13 +43,26 @@ class Met(NamedTuple):
     made_ms: int = 0
     way: tuple[Position, ...] = ()
     why: str = ""
+    its_way: tuple[Position, ...] = ()
+
+
+class Search(NamedTuple):
+    """The manoeuvre that is over soonest. at_ms: when it was last looked for; until_ms: for how long the one that is
+    held is flown as it is, 0 if it is none of these [ms]."""
+
+    at_ms: int
+    until_ms: int
+
+
+IDLE = Search(0, 0)
 
 
 @dataclass(frozen=True)
 class State:
     """cycle: who flies, as the kernels have it; told: what has come over the bridge; threats and
     courses: of the last heartbeat; held: the manoeuvre being flown; goal: index of the waypoint that
-    it makes for; beats: heartbeats so far; met: the intruders because of which it has taken over; asking: UxAS for a way back."""
+    it makes for; beats: heartbeats so far; met: the intruders because of which it has taken over; search: of the
+    manoeuvre that is over soonest; ways: of the other vehicles of ours; asking: UxAS for a way back."""
 
     cycle: Cycle = START
     told: Told = field(default_factory=Told)
@@ -58,6 +72,8 @@ class State:
     goal: int = 0
     beats: int = 0
     met: tuple[Met, ...] = ()
+    search: Search = IDLE
+    ways: Ways = ()
     asking: Asking = field(default_factory=Asking)
 
     @property

@@ -14,7 +14,7 @@ from cratous.core.authority.timeliness import in_time
 from cratous.services.flight import link_end
 from cratous.services.flight.dynamics import AirState, turn_radius_m
 from cratous.services.flight.messages import Down, Say
-from cratous.services.icarous.foresight import TURN_MARGIN
+from cratous.services.icarous.ending import TURN_MARGIN
 from cratous.services.icarous_communication.plans import Away, Plan, position_of
 from cratous.services.mission.frames import Projection
 from cratous.services.uxas.daidalus.zones import surroundings

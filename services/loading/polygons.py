@@ -64,6 +64,11 @@ def padded(zone: Zone, where: str, item: str) -> Zone:
     return replace(zone, vertices=corners, padding_m=0.0)
 
 
+def hard_zones(zones: Sequence[Zone]) -> tuple[Zone, ...]:
+    """The zones with their padding turned into vertices. BadInput if a zone falls apart."""
+    return tuple(padded(zone, "", f"zone {zone.id}") for zone in zones)
+
+
 def one_region(zones: Sequence[Zone], where: str, item: str) -> Zone:
     """Overlapping keep-in zones as the one region that they make: inside of any of them is inside.
 

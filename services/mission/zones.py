@@ -42,6 +42,11 @@ def deciding(zone: Zone) -> tuple[str, str]:
     return qualified(leg_ok), qualified(ends)
 
 
+def margin_m(distance: float, broken: bool) -> float:
+    """The margin of a zone [m], negative where it is broken; on the boundary 0, never -0."""
+    return 0.0 - distance if broken else distance
+
+
 def distance_m(path: Sequence[Position], zone: Zone) -> float:
     """Least horizontal distance from a path to the zone's boundary [m]; for display only."""
     from shapely import LineString, Point, Polygon

@@ -108,6 +108,15 @@ class Monitor:
         """
         return self._assumed.rows(self._last_ms, self._over)
 
+    @property
+    def end_ms(self) -> int:
+        """When the messages end, or the mission [ms]."""
+        return self._last_ms
+
+    def commands(self) -> dict[int, list[tuple[int, str]]]:
+        """By protected vehicle: since when [ms] who commands it, from 0 on, as its gate says."""
+        return {number: list(seen.had) for number, seen in self.authority.vehicles.items()}
+
     def details(self) -> list[Verdict]:
         """One verdict for each single constraint, pair, task, vehicle: every row that is promised."""
         done, accepted = self.completion.done(), self.completion.accepted

@@ -32,7 +32,7 @@ class Command:
     """What has been seen of the authority over one vehicle; `due`: what must be reported next; forged:
     dropped commands of epochs that were never given; refused: modes that could not be true; down: since when and
     why its link is down, as was said last, empty while it is not; unended: the takeover that a link that is
-    down has left open at the end, empty if there is none."""
+    down has left open at the end, empty if there is none; had: since when [ms] who commands, from 0 on."""
 
     gate: gates.Gate = field(default_factory=lambda: gates.Gate(gates.UXAS, 0, False))
     due: str = ""
@@ -46,6 +46,7 @@ class Command:
     refused: int = 0
     down: str = ""
     unended: str = ""
+    had: list[tuple[int, str]] = field(default_factory=lambda: [(0, NAMES[gates.UXAS])])
     faults: list[tuple[int, str]] = field(default_factory=list)
     kernels: set[str] = field(default_factory=set)
 
@@ -121,6 +122,8 @@ class AuthorityWatch:
             seen.faults.append((time_ms, text))
         seen.due, seen.gate = "", now
         seen.changes += 1
+        if before.owner != now.owner:
+            seen.had.append((time_ms, NAMES[now.owner]))
         if before.owner == gates.UXAS and now.owner == gates.ICAROUS:
             seen.takeovers += 1
             seen.open_ms = time_ms

@@ -10,7 +10,7 @@ from cratous.core.algebra.steps import Ran, in_order
 from cratous.core.kernel import qualified
 from cratous.core.schedule.choice import as_asked
 from cratous.core.schedule.rows import eligible, runs_forward
-from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok
+from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok, margin_m
 from cratous.services.monitor.observation import Ending, Presence
 from cratous.services.monitor.relations import branch_rows, by_term, is_choice
 from cratous.services.monitor.required_rows import (
@@ -140,7 +140,7 @@ class ConstraintWatch:
             note,
             time_ms=fence.broken_ms,
             vehicles=(vehicle,),
-            margin=-distance if broken else distance,
+            margin=margin_m(distance, broken),
             unit="m",
             checks=fence.checks,
             method="leg_ok: locate, meets_boundary",

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 from cratous.core.routing.visibility import name_of
 from cratous.core.tasks.coverage import outline
 from cratous.core.tasks.outside import area_outside, points_outside
+from cratous.services.loading.polygons import hard_zones
 from cratous.services.monitor.coverage import sample
-from cratous.services.planning.zones import hard_zones
 from cratous.spec.mission import AREAS, Mission, Task, TaskKind, Zone
 from cratous.spec.mission.changes import known_at
 from cratous.spec.mission.plan import percent

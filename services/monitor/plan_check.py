@@ -14,7 +14,7 @@ from cratous.core.kernel import qualified
 from cratous.core.schedule.choice import as_asked
 from cratous.core.schedule.rows import eligible, row_holds, schedule_holds
 from cratous.services.mission.times import all_hold
-from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok
+from cratous.services.mission.zones import deciding, distance_m, exact_leg_ok, margin_m
 from cratous.services.monitor.relations import branch_rows, by_term, is_choice, is_part
 from cratous.spec.algebra.meaning import branches, tasks
 from cratous.spec.constraint_rows import AFTER_END
@@ -222,7 +222,7 @@ def _zone_verdict(zone: Zone, vehicle_id: int, ways: list[Path]) -> Verdict:
         "leg_ok: locate, meets_boundary",
         checks=checks,
         vehicles=(vehicle_id,),
-        margin=-distance if bad else distance,
+        margin=margin_m(distance, bool(bad)),
         unit="m",
         kernels=deciding(zone),
     )

@@ -15,6 +15,7 @@ from cratous.services.pipeline.places import RequestPlaces
 from cratous.services.planning.flyers import camera_for
 from cratous.services.planning.options import Option
 from cratous.services.planning.stages import hold_of
+from cratous.services.planning.targets import Angles, flown_view
 from cratous.spec.errors import NoPlan
 from cratous.spec.mission import Camera, Position, Task
 from cratous.spec.mission.plan import Hold
@@ -119,11 +120,16 @@ def _views(task: Task, option: Option, terrain_m: float) -> list[Any]:
     if option.view_elevation_rad is None:
         return []
     camera = camera_for(task, option.flyer.cameras)
+    made_for = Angles(option.view_elevation_rad, option.view_azimuth_rad)
+    view = flown_view(task, made_for, option.flyer.cameras)
+    # the gimbal is told against the heading with which the task begins
+    north_rad = option.start.heading_rad if view is not None and view.inertial else 0.0
+    azimuth_rad = math.remainder(option.view_azimuth_rad - north_rad, 2 * math.pi)
     look = lmcp.new(
         "GimbalAngleAction",
         AssociatedTaskList=[task.id],
         PayloadID=camera.payload_id if camera else 0,
-        Azimuth=math.degrees(option.view_azimuth_rad),
+        Azimuth=math.degrees(azimuth_rad),
         Elevation=math.degrees(option.view_elevation_rad),
     )
     return [look, *_zoom(task, camera, option.flyer.alt_m - terrain_m)]

@@ -16,7 +16,7 @@ from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.places import read_pose
 from cratous.services.planning.flyers import camera_for
 from cratous.services.planning.options import Option
-from cratous.services.planning.targets import Angles, chosen_view, target_from
+from cratous.services.planning.targets import Angles, flown_view, target_from
 from cratous.spec.mission import AREAS, SEARCHES, Camera, Position, Task
 from cratous.spec.mission.plan import Pose
 
@@ -67,7 +67,7 @@ def _looking_from(steering: Steering, here: Pose, vehicle: int) -> Any:
 
 def _held(steering: Steering, made_for: Angles, elevation_rad: float, heading_rad: float) -> Any:
     """The angles of the option's view; from north they are turned against the heading."""
-    view = chosen_view(steering.task, made_for)
+    view = flown_view(steering.task, made_for, steering.option.flyer.cameras)
     north_rad = heading_rad if view is not None and view.inertial else 0.0
     azimuth_rad = math.remainder(made_for.azimuth_rad - north_rad, 2 * math.pi)
     return lmcp.new(

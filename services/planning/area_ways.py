@@ -10,7 +10,7 @@ import functools
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.routing.dubins import polyline_length_m
@@ -19,16 +19,12 @@ from cratous.core.tasks.coverage import (
     area_m2,
     disc,
     look,
-    outline,
     share_covered,
-    square_array,
-    square_side_m,
 )
 from cratous.core.tasks.sweep import (
     LANES_MOST,
     Piece,
     Strip,
-    Swath,
     SwathOf,
     along,
     edge_headings,
@@ -37,11 +33,18 @@ from cratous.core.tasks.sweep import (
     spiral,
     square_spiral,
     strips,
-    swath,
     sweep,
-    unjoined_m,
 )
 from cratous.services.mission.sensor import elevation_rad, footprints, looks_over, sample_line
+from cratous.services.planning.area_site import (
+    Candidate,
+    Site,
+    candidate_of,
+    lane_width_m,
+    site_of,
+    swaths_of,
+)
+from cratous.services.planning.area_views import best_view, open_view
 from cratous.services.planning.cut_ways import cut
 from cratous.services.planning.flyers import HEADING_STEP_DEG, Flyer, Way, flight_ms, no_way
 from cratous.services.planning.smoothing import MARGIN
@@ -51,12 +54,12 @@ from cratous.spec.mission.plan import Pose
 
 OPTIONS_MOST = 4
 """How many ways over an area are offered."""
+REFUSED_MOST = 8
+"""No more ways are tried when zones have forbidden so many."""
 DEARER = 1.5
 """A way that is longer than the shortest by more than this factor is not offered."""
 LEADS = (0.8, 0.0)
 """Room to settle before a lane, in turn radii; less where the zones leave no more."""
-GLANCE_S = 2.0
-"""Each part of a swath stays in view for so long, so that nothing is missed between frames."""
 VIEWS_MOST = 4
 MEASURED_MOST = 8_000
 """Coverage is measured in planning for ways with no more footprints than this."""
@@ -64,63 +67,64 @@ TURN_RESERVE = 1.15
 """The innermost turn of a spiral, in turn radii."""
 
 
-class Candidate(NamedTuple):
-    """A way over an area without its turns, and how long it is."""
-
-    label: str
-    pieces: tuple[Piece, ...]
-    length_m: float
-
-
-class _Site(NamedTuple):
-    """What is the same for all ways of one class of vehicles over one area."""
-
-    task: Task
-    flyer: Flyer
-    camera: Camera
-    height_m: float
-    vertices: tuple[tuple[float, float], ...]
-    side_m: float
-    squares: Callable[[], Any]
+Maker = Callable[..., list[Candidate] | str]
+"""Makes the candidates of a site with so much room before its lanes (`lead_m`), or says why there is none."""
 
 
 def area_ways(
     task: Task, flyer: Flyer, camera: Camera, zones: Sequence[Zone], terrain_m: float
 ) -> Iterator[Way]:
     """A few ways over the area for each wanted view, shortest first, and those not offered."""
-    site = _site(task, flyer, camera, terrain_m)
+    site = site_of(task, flyer, camera, terrain_m)
     maps = roadmaps(zones, flyer.radius_m)
     views = (task.view, *task.views)
+    if open_view(task) and any(one.view for one in _along_lanes(site, 0.0)):
+        found = list(_offered(site, _along_lanes, zones, maps))
+        yield from found
+        # straight down lanes lie over the area itself, where zones may leave room that they do not leave beside it
+        if any(not way.reason for way in found):
+            return
     for view in views[:VIEWS_MOST]:
-        made = _candidates(site, view, LEADS[0] * flyer.radius_m)
-        if isinstance(made, str):
-            yield no_way("", made)
-            continue
-        found = sorted(made, key=lambda c: c.length_m)
-        best_m = found[0].length_m
-        for rank, candidate in enumerate(found):
-            if candidate.length_m > DEARER * best_m:
-                times = candidate.length_m / best_m
-                yield no_way(candidate.label, f"it is {times:.2f} times as long as the shortest")
-            elif rank >= OPTIONS_MOST:
-                yield no_way(candidate.label, f"{OPTIONS_MOST} that are no longer are offered")
-            else:
-                way = _way(site, view, candidate, zones, maps)
-                if way.reason:
-                    # less room before the lanes may do where the zones are near
-                    way = _tighter(site, view, way, zones, maps)
-                yield way
+        yield from _offered(site, functools.partial(_candidates, view=view), zones, maps)
     if len(views) > VIEWS_MOST:
         yield no_way("", f"only the first {VIEWS_MOST} directions of view are offered")
+
+
+def _offered(
+    site: Site, make: Maker, zones: Sequence[Zone], maps: Sequence[Roadmap]
+) -> Iterator[Way]:
+    """The shortest of the ways that are made, and those not offered."""
+    made = make(site, lead_m=LEADS[0] * site.flyer.radius_m)
+    if isinstance(made, str):
+        yield no_way("", made)
+        return
+    found = sorted(made, key=lambda c: c.length_m)
+    best_m, offered, refused = found[0].length_m, 0, 0
+    for candidate in found:
+        if candidate.length_m > DEARER * best_m:
+            times = candidate.length_m / best_m
+            yield no_way(candidate.label, f"it is {times:.2f} times as long as the shortest")
+        elif offered >= OPTIONS_MOST:
+            yield no_way(candidate.label, f"{OPTIONS_MOST} that are no longer are offered")
+        elif refused >= REFUSED_MOST:
+            yield no_way(candidate.label, f"{REFUSED_MOST} that are no longer are not possible")
+        else:
+            way = _way(site, candidate, zones, maps)
+            if way.reason:
+                # less room before the lanes may do where the zones are near
+                way = _tighter(site, make, way, zones, maps)
+            refused += bool(way.reason)
+            offered += not way.reason
+            yield way
 
 
 def area_parts(
     task: Task, flyer: Flyer, camera: Camera, maps: Sequence[Roadmap], terrain_m: float
 ) -> Iterator[Way]:
     """For each wanted view the shortest ways over an area, without what the zones forbid of them."""
-    site = _site(task, flyer, camera, terrain_m)
+    site = site_of(task, flyer, camera, terrain_m)
     for view in (task.view, *task.views)[:VIEWS_MOST]:
-        made = _candidates(site, view, LEADS[1] * flyer.radius_m)
+        made = _candidates(site, LEADS[1] * flyer.radius_m, view)
         if isinstance(made, str):
             yield no_way("", made)
             continue
@@ -145,30 +149,17 @@ def area_parts(
             )
 
 
-def _site(task: Task, flyer: Flyer, camera: Camera, terrain_m: float) -> _Site:
-    vertices = outline(task)
-    side_m = square_side_m(vertices)
-    squares = functools.cache(functools.partial(square_array, vertices, side_m))
-    return _Site(task, flyer, camera, flyer.alt_m - terrain_m, vertices, side_m, squares)
-
-
 def _tighter(
-    site: _Site, view: View | None, way: Way, zones: Sequence[Zone], maps: Sequence[Roadmap]
+    site: Site, make: Maker, way: Way, zones: Sequence[Zone], maps: Sequence[Roadmap]
 ) -> Way:
     """The way of the same name with less room to settle, if that helps; else what was refused."""
-    made = _candidates(site, view, LEADS[1] * site.flyer.radius_m)
+    made = make(site, lead_m=LEADS[1] * site.flyer.radius_m)
     same = [c for c in made if isinstance(c, Candidate) and c.label == way.label]
-    tight = _way(site, view, same[0], zones, maps) if same else way
+    tight = _way(site, same[0], zones, maps) if same else way
     return way if tight.reason else tight
 
 
-def _way(
-    site: _Site,
-    view: View | None,
-    candidate: Candidate,
-    zones: Sequence[Zone],
-    maps: Sequence[Roadmap],
-) -> Way:
+def _way(site: Site, candidate: Candidate, zones: Sequence[Zone], maps: Sequence[Roadmap]) -> Way:
     """A candidate with its turns and its coverage, or the reason why the zones forbid it."""
     bad = _broken_lane(candidate, zones)
     if bad:
@@ -176,6 +167,7 @@ def _way(
     path = joined(candidate.pieces, site.flyer.radius_m, maps)
     if not path.points:
         return no_way(candidate.label, path.reason)
+    view = candidate.view
     return Way(
         candidate.label,
         candidate.pieces[0].start,
@@ -198,7 +190,7 @@ def _broken_lane(candidate: Candidate, zones: Sequence[Zone]) -> str:
 
 
 def _share(
-    site: _Site,
+    site: Site,
     view: View | None,
     points: tuple[Position, ...],
     most: int | None = MEASURED_MOST,
@@ -221,41 +213,25 @@ def _share(
     return share_covered(int((~seen).sum()), site.side_m, area_m2(site.vertices))
 
 
-def _corners(array: Any) -> list[tuple[float, float]]:
-    return [(float(north), float(east)) for north, east in array]
+def _along_lanes(site: Site, lead_m: float) -> list[Candidate]:
+    """Lanes, each with the view along them that needs the fewest."""
+    swaths = functools.cache(functools.partial(swaths_of, site))
+    found = []
+    for heading in _headings(site):
+
+        def width_of(view: View, heading: float = heading) -> float:
+            return lane_width_m(swaths(view), heading)
+
+        view = best_view(site.task, site.camera, site.height_m, heading, width_of, site.vertices)
+        swath_of = swaths(view)
+        if lane_width_m(swath_of, heading) > 0:
+            found += _lanes_along(site, heading, swath_of, lead_m, view)
+    return [_from_start(site, one) for one in found]
 
 
-def _swaths(site: _Site, view: View | None) -> SwathOf:
-    """The swath by heading, narrowed by a square on each side so that seams are seen whole."""
-    import numpy as np
-
-    known: dict[float, Swath | None] = {}
-
-    def of(heading_rad: float) -> Swath | None:
-        if heading_rad not in known:
-            step = np.array([[math.cos(heading_rad), math.sin(heading_rad)]])
-            looks = looks_over(np.vstack([0 * step, step]), view, site.height_m)
-            corners = footprints(looks, site.height_m, site.camera, MARGIN)[0]
-            known[heading_rad] = None
-            if not np.isnan(corners[0, 0]):
-                least = GLANCE_S * site.flyer.speed_m_s + site.side_m
-                found = swath(_corners(corners), heading_rad, least)
-                if found is not None:
-                    half = site.side_m / 2
-                    known[heading_rad] = Swath(
-                        found.left_m + half,
-                        found.right_m - half,
-                        found.near_m + site.side_m,
-                        found.far_m - site.side_m,
-                    )
-        return known[heading_rad]
-
-    return of
-
-
-def _candidates(site: _Site, view: View | None, lead_m: float) -> list[Candidate] | str:
+def _candidates(site: Site, lead_m: float, view: View | None) -> list[Candidate] | str:
     """The ways without turns, or why there is none."""
-    swath_of = _swaths(site, view)
+    swath_of = swaths_of(site, view)
     width = math.inf
     for degrees in range(0, 360, HEADING_STEP_DEG // 2):
         seen = swath_of(math.radians(degrees))
@@ -265,7 +241,7 @@ def _candidates(site: _Site, view: View | None, lead_m: float) -> list[Candidate
                 f"that covers squares of {site.side_m:.0f} m"
             )
         width = min(width, seen.width_m)
-    ways: dict[Pattern | None, Callable[[_Site, SwathOf, float, float], list[Candidate]]] = {
+    ways: dict[Pattern | None, Callable[[Site, SwathOf, float, float], list[Candidate]]] = {
         None: _lanes,
         Pattern.SWEEP: _lanes,
         Pattern.SQUARE: _Figure("square", square_spiral, 90),
@@ -275,14 +251,10 @@ def _candidates(site: _Site, view: View | None, lead_m: float) -> list[Candidate
     made = ways[site.task.pattern](site, swath_of, width, lead_m)
     if not made:
         return f"more than {LANES_MOST} lanes of {width:.0f} m would be needed"
-    return [_from_start(site, candidate) for candidate in made]
+    return [_from_start(site, candidate._replace(view=view)) for candidate in made]
 
 
-def _candidate(site: _Site, label: str, pieces: Sequence[Piece]) -> Candidate:
-    return Candidate(label, tuple(pieces), unjoined_m(pieces, site.flyer.radius_m))
-
-
-def _from_start(site: _Site, candidate: Candidate) -> Candidate:
+def _from_start(site: Site, candidate: Candidate) -> Candidate:
     """The way with the point before it where the search has to begin, if the task names one."""
     point, first = site.task.start_point, candidate.pieces[0].start
     if point is None:
@@ -290,11 +262,11 @@ def _from_start(site: _Site, candidate: Candidate) -> Candidate:
     bearing = math.atan2(first.east_m - point.east_m, first.north_m - point.north_m)
     at = Pose(point.north_m, point.east_m, site.flyer.alt_m, bearing)
     piece = Piece(at, at, (Position(*at[:3]),))
-    return _candidate(site, candidate.label, (piece, *candidate.pieces))
+    return candidate_of(site, candidate.label, (piece, *candidate.pieces), candidate.view)
 
 
 def _over(
-    site: _Site, parts: Sequence[Strip], heading: float, swath_of: SwathOf, lead_m: float
+    site: Site, parts: Sequence[Strip], heading: float, swath_of: SwathOf, lead_m: float
 ) -> Iterator[tuple[str, list[Piece]]]:
     """Lanes over strips from both sides."""
     for from_right in (False, True):
@@ -314,20 +286,29 @@ def _over(
         )
 
 
-def _lanes(site: _Site, swath_of: SwathOf, width: float, lead_m: float) -> list[Candidate]:
-    task = site.task
-    headings = [task.sweep_rad] if task.sweep_rad is not None else []
-    headings = headings or edge_headings(site.vertices, math.radians(HEADING_STEP_DEG))
+def _headings(site: Site) -> list[float]:
+    """Directions of lanes, there and back."""
+    swept, step = site.task.sweep_rad, math.radians(HEADING_STEP_DEG)
+    ones = edge_headings(site.vertices, step) if swept is None else [swept]
+    return [heading for one in ones for heading in (one, one + math.pi)]
+
+
+def _lanes(site: Site, swath_of: SwathOf, width: float, lead_m: float) -> list[Candidate]:
     found = []
-    for one in headings:
-        for heading in (one, one + math.pi):
-            seen = [swath_of(h) for h in (heading, heading + math.pi)]
-            narrow = min(s.width_m for s in seen if s is not None)
-            parts = strips(site.vertices, heading, narrow)
-            if parts:
-                ways = _over(site, parts, heading, swath_of, lead_m)
-                found += [_candidate(site, *way) for way in ways]
+    for heading in _headings(site):
+        found += _lanes_along(site, heading, swath_of, lead_m, None)
     return found
+
+
+def _lanes_along(
+    site: Site, heading: float, swath_of: SwathOf, lead_m: float, view: View | None
+) -> list[Candidate]:
+    parts = strips(site.vertices, heading, lane_width_m(swath_of, heading))
+    tilt = f", {round(-math.degrees(view.elevation_rad))} deg down" if view is not None else ""
+    return [
+        candidate_of(site, label + tilt, pieces, view)
+        for label, pieces in (_over(site, parts, heading, swath_of, lead_m) if parts else ())
+    ]
 
 
 @dataclass(frozen=True)
@@ -339,18 +320,18 @@ class _Figure:
     apart_deg: int
 
     def __call__(
-        self, site: _Site, swath_of: SwathOf, width: float, lead_m: float
+        self, site: Site, swath_of: SwathOf, width: float, lead_m: float
     ) -> list[Candidate]:
         centre, found = site.task.points[0][:2], []
         for degrees in range(0, 360, self.apart_deg):
             parts = self.legs(centre, site.task.extent_m, width, math.radians(degrees))
             if parts:
                 pieces = along(parts, swath_of, site.flyer.alt_m, lead_m)
-                found.append(_candidate(site, f"{self.name} from heading {degrees} deg", pieces))
+                found.append(candidate_of(site, f"{self.name} from heading {degrees} deg", pieces))
         return found
 
 
-def _spiral(site: _Site, swath_of: SwathOf, width: float, lead_m: float) -> list[Candidate]:
+def _spiral(site: Site, swath_of: SwathOf, width: float, lead_m: float) -> list[Candidate]:
     """Lanes over the middle, which is too tight to circle, then rounds outwards."""
     centre, alt_m = site.task.points[0][:2], site.flyer.alt_m
     sides = [swath_of(math.radians(degrees)) for degrees in range(0, 360, 90)]
@@ -372,5 +353,5 @@ def _spiral(site: _Site, swath_of: SwathOf, width: float, lead_m: float) -> list
             turn = "right" if clockwise else "left"
             out = spiral(centre, first, last, 1.9 * half, heading, clockwise, alt_m)
             label = f"spiral to the {turn} from {degrees} deg"
-            found.append(_candidate(site, label, (*inner, out)))
+            found.append(candidate_of(site, label, (*inner, out)))
     return found

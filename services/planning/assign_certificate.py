@@ -30,7 +30,6 @@ from cratous.core.files.whole_file import write_atomically
 from cratous.services.logs.records import from_data
 from cratous.services.planning.assign_problem import Part, arrays, check, parts, settler
 from cratous.services.planning.assign_replay import replayed
-from cratous.services.planning.assign_solvers import none_below, schedule_holds
 from cratous.services.planning.assign_vectors import rows_of
 from cratous.spec.assignment.search import AssignmentProblem, Solution, Step
 from cratous.spec.errors import BadInput
@@ -73,7 +72,7 @@ def certified(
     if solvers and found.cost is not None and low < found.cost <= found.bound:
         few = len(problem.tasks) <= SOLVER_TASKS
         ends_only = not (problem.cost.distance or problem.cost.energy)
-        if few and ends_only and none_below(problem, found.cost)[0]:
+        if few and ends_only and _none_below(problem, found.cost)[0]:
             written, low = [{"kind": "solvers", "bound": found.cost}], found.cost
     if found.cost is None:
         status, low = found.status, found.bound
@@ -99,6 +98,13 @@ def certified(
         text = json.dumps(body, sort_keys=True)
     body["sha256"] = hashlib.sha256(text.encode()).hexdigest()  # as `_digest` has it
     return replace(found, status=status, bound=low), body
+
+
+def _none_below(problem: AssignmentProblem, cost: int) -> tuple[bool, str]:
+    """Whether z3, and cvc5 where it is, find nothing cheaper; they are loaded only when they are asked."""
+    from cratous.services.planning.assign_solvers import none_below
+
+    return none_below(problem, cost)
 
 
 def _written(problem: AssignmentProblem) -> dict[str, Any]:
@@ -154,6 +160,8 @@ def verify(body: dict[str, Any]) -> Verdict:
             got = replayed(problem, steps)
             if got != cost:
                 return Verdict(status, cost, bound, f"the schedule costs {got}, not {cost}")
+            from cratous.services.planning.assign_solvers import schedule_holds
+
             right, text = schedule_holds(problem, steps)
             if not right:
                 return Verdict(status, cost, bound, f"z3 finds that it does not hold: {text}")
@@ -223,7 +231,7 @@ def _bounds(
     if any(p["kind"] == "solvers" for p in proofs):
         if len(proofs) != 1 or cost is None:
             return 0, "solvers' evidence is for the whole problem"
-        agreed, said = none_below(problem, cost)
+        agreed, said = _none_below(problem, cost)
         return (cost, "") if agreed else (0, f"the solvers do not agree: {said}")
     if not proofs:
         return 0, ""

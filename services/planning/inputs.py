@@ -10,11 +10,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from cratous.core.assignment.problem import Branch, Fixed
+from cratous.services.loading.polygons import hard_zones
 from cratous.services.planning import stages
 from cratous.services.planning.mission_assign import problem_of
 from cratous.services.planning.options import Dropped, Option, expand
 from cratous.services.planning.routes import Routes
-from cratous.services.planning.zones import hard_zones
 from cratous.spec.algebra import Term
 from cratous.spec.algebra.meaning import tasks
 from cratous.spec.assignment.search import AssignmentProblem

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from cratous.services.mission.sensor import aim, look_on_line
+from cratous.services.planning.area_views import brought_view, open_view
 from cratous.services.planning.flyers import camera_for
 from cratous.services.planning.point_ways import tilted
 from cratous.spec.mission import AREAS, Camera, Position, Task, TaskKind, View
@@ -29,6 +30,8 @@ def chosen_view(task: Task, made_for: Angles) -> View | None:
 def flown_view(task: Task, made_for: Angles, cameras: Sequence[Camera]) -> View | None:
     """As `chosen_view`; where the task asks for none, the one that the option has brought itself."""
     asked = chosen_view(task, made_for)
+    if open_view(task):
+        return brought_view(task, *made_for)
     brought = tilted(task, camera_for(task, cameras))
     if asked is not None or made_for.elevation_rad is None or not brought:
         return asked
@@ -66,7 +69,7 @@ def target_from(
     if task.kind is TaskKind.POINT_SEARCH:
         return task.points[0]
     if task.kind in AREAS:
-        view = chosen_view(task, made_for)
+        view = flown_view(task, made_for, cameras)
         n, e = aim(here.north_m, here.east_m, heading_rad, view, height_m)
         return Position(float(n), float(e), terrain_m)
     return None

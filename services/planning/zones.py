@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from cratous.core.routing.visibility import Roadmap
-from cratous.services.loading.polygons import padded
+from cratous.services.loading.polygons import hard_zones, padded
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Zone, ZoneKind
 
@@ -14,11 +14,6 @@ MARGIN_M = 20.0
 """Distance that routes keep from zones where there is room, so that a wobble stays outside."""
 RINGS = (0.15, 0.6, 1.2, 2.5)
 """Distances of the rings of via points from the zones, in turn radii."""
-
-
-def hard_zones(zones: Sequence[Zone]) -> tuple[Zone, ...]:
-    """The zones with their padding turned into vertices. BadInput if a zone falls apart."""
-    return tuple(padded(zone, "", f"zone {zone.id}") for zone in zones)
 
 
 def roadmaps(zones: Sequence[Zone], radius_m: float) -> tuple[Roadmap, ...]:

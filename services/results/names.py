@@ -15,6 +15,8 @@ BESIDE_LOG = tuple(LOG_NAME + end for end in ("-journal", "-wal", "-shm"))
 """SQLite would take these for part of a new log."""
 ASSUMPTIONS = "assumptions"
 """Where a log's meta has the assumptions of the system theorems that broke while it was flown."""
+BLAME = "blame"
+"""Where a report says who was in command where something does not hold."""
 OF_PROCESSES = re.compile(
     r"(cfg|messages|scenario)\.xml|(simulator|uxas|icarous_[1-9][0-9]{0,18})\.txt"
 )

@@ -15,7 +15,7 @@ from cratous.bridge import lmcp
 from cratous.core.contracts.checklists import free_after, list_complete, owns
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.services.bus import Envelope
-from cratous.services.planning.zones import hard_zones
+from cratous.services.loading.polygons import hard_zones
 from cratous.services.uxas.message_source import MessageSource
 from cratous.spec.errors import CratousError
 from cratous.spec.mission import Position, ZoneKind

@@ -16,9 +16,9 @@ from cratous.bridge import lmcp
 from cratous.core.routing.loiter_discs import broken_by
 from cratous.core.routing.visibility import name_of
 from cratous.services.bus import Envelope
+from cratous.services.loading.polygons import hard_zones
 from cratous.services.pipeline.contexts import Contexts, reasons_of
 from cratous.services.pipeline.status import status
-from cratous.services.planning.zones import hard_zones
 from cratous.spec.errors import CratousError
 from cratous.spec.mission import Position
 

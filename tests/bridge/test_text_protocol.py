@@ -67,6 +67,10 @@ ORIGINAL_LINES = [
      "WPREQ,typeASTAR,slat45.300000,slong-121.000000,salt700.000000,elat45.330000,"
      "elong-120.950000,ealt700.000000,track90.000000,vh22.000000,vv0.000000,\n"),
     (tp.EpochTold("ICAROUS", 5), "EPOCH,type_ICAROUS_,epoch5.0,\n"),
+    (tp.WayOfAnother(3, 7, 45.3, -121.0, 700.0, 2),
+     "OTHER,id3.0,total7.0,lat45.300000,long-121.000000,alt700.000000,index2.0,\n"),
+    (tp.VelocityOfAnother(3, 10.0, 20.0, 1.5),
+     "OVELO,id3.0,north10.000000,east20.000000,down1.500000,\n"),
     (tp.SetMode("ACTIVE"), "SETMOD,type_ACTIVE_,\n"),
     (tp.SetMode("PASSIVE"), "SETMOD,type_PASSIVE_,\n"),
     (tp.SetVelocity(10.0, 20.0, 1.5), "SETVEL,north10.000000,east20.000000,down1.500000,\n"),

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from math import atan2, degrees, hypot
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 import campaign_child
@@ -46,6 +48,53 @@ def test_it_finds_what_sampling_seldom_does(tmp_path: Path) -> None:
     assert (again.points, again.small) == (found.points, found.small)
 
 
+def to_the_right(task: dict[str, Any]) -> dict[str, Any]:
+    """Fails where an intruder goes to the right, at about 60 degrees and 34 m/s, and a zone lies to the right,
+    from 300 m on: one draw in 1,120."""
+    import yaml
+
+    mission = yaml.safe_load(task["mission"])
+    traffic, zones = mission.get("traffic"), mission.get("zones")
+    if not traffic or not zones:
+        return campaign_child.flown({"G2": 2.0})
+    north, east = traffic[0]["velocity"]["north_m_s"], traffic[0]["velocity"]["east_m_s"]
+    off = abs(degrees(atan2(east, north)) - 60) / 60 + abs(hypot(north, east) - 34) / 20
+    off += abs(zones[0]["vertices"][0][1] - 300) / 1000
+    return campaign_child.flown({"G2": off - 0.15})
+
+
+def test_sides_are_searched_as_numbers_are() -> None:
+    counts, generator = [], {"kind": "converging", "zones_beside": 1}
+    for start in range(5):
+        seeds = range(1 + 1000 * start, 2 + 1000 * start)
+        campaign = Campaign("made", generator=generator, seeds=seeds)
+        found = Search(campaign, "G2", "v", False).run(Flights(to_the_right), 200)
+        counts.append(len(found.points))
+        assert {p["values"]["side angle_deg[1]"] for p in found.points} == {-1, 1}
+        assert found.small is not None
+        assert found.failing is not None
+    # sampling needs 776 in the median, as 1 of 1,120 draws fails
+    assert median(counts) <= 776 / 8, counts
+
+
+def test_values_of_a_list_are_searched_too(tmp_path: Path) -> None:
+    more = "vary: [{item: 'vehicles[0].max_climb_m_s', values: [1, 2, 3, 4, 5, 6, 7, 8, 9]},\n"
+    more += "       {item: 'vehicles[0].speed_m_s', range: [1, 25]}]\nseeds: [1, 1]\n"
+    campaign = load_campaign(written(tmp_path, {"plain": ""}, more), None, ())
+    found = Search(campaign, "G2", "v", False).run(Flights(best_at_seven), 60)
+    told = [p["values"]["vehicles[0].max_climb_m_s"] for p in found.points]
+    assert found.failing is None
+    near = [sum(value in (6, 7, 8) for value in part) for part in (told[:10], told[-10:])]
+    assert near[0] < 7 <= near[1]
+
+
+def best_at_seven(task: dict[str, Any]) -> dict[str, Any]:
+    import yaml
+
+    climb = yaml.safe_load(task["mission"])["vehicles"][0]["max_climb_m_s"]
+    return campaign_child.flown({"G2": 1.0 + abs(climb - 7)})
+
+
 def test_what_fails_is_made_small_and_fails(tmp_path: Path) -> None:
     generator = {"kind": "converging", "intruders": 3, "zones_beside": 2}
     campaign = Campaign("made", generator=generator, seeds=range(1, 2))
@@ -71,7 +120,8 @@ def test_another_first_seed_is_another_search(tmp_path: Path) -> None:
     other = replace(first, seeds=range(1001, 1002))
     one, two = (Search(c, "G2", "v", False).run(Flights(), 45).points for c in (first, other))
     assert len(one) == len(two) == 45, "in whole batches, and a part of one"
-    assert {str(p["values"]) for p in one}.isdisjoint(str(p["values"]) for p in two)
+    drawn = [{str(p["values"]) for p in points[:10]} for points in (one, two)]
+    assert drawn[0].isdisjoint(drawn[1])
     assert [p["run"] for p in two] == [f"plain-as-written-seed{n}" for n in range(1001, 1046)]
 
 

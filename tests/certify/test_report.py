@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,8 +16,10 @@ from cratous.services.certify.charts import FEW, altitude_view, separation_view
 from cratous.services.certify.differences import differences, text_difference
 from cratous.services.certify.html import margin, render, seconds
 from cratous.services.certify.picture import map_view, time_view
+from cratous.services.certify.report import ends_of
 from cratous.services.certify.timeline import bars, read_flight
 from cratous.services.certify.verdicts import constraint_rows, requirement_rows
+from cratous.services.loading import load
 from cratous.services.logs.log import Row
 from cratous.spec.mission.guarantees import REQUIREMENTS, Kind, Outcome, Verdict
 
@@ -103,6 +107,15 @@ def test_an_open_takeover_stays_open() -> None:
 
 def test_a_log_without_an_end_says_so() -> None:
     assert "no end" in read_flight(LOG[:5], [1]).outcome
+
+
+def test_a_task_that_was_withdrawn_has_not_failed() -> None:
+    flight = read_flight([*LOG[:-1], phase(50, 5000, "Failed"), LOG[-1]], [1])
+    assert flight.served[5]["phase"] == "Failed"
+    mission = load(Path(__file__).resolve().parents[2] / "examples/popup/mission.yaml")
+    kept = replace(mission, tasks=(replace(mission.tasks[0], id=5),))
+    assert [end["phase"] for end in ends_of(flight, kept)] == ["Failed"]
+    assert ends_of(flight, replace(mission, tasks=mission.tasks[:1])) == []
 
 
 def report() -> dict[str, Any]:

@@ -50,7 +50,7 @@ def test_the_report_of_one_says_so(
     written = json.loads((folder / "report.json").read_text())
     proofs = {**written["proofs"], "problems": []}
     flown = Flown(command, True, proofs, written["environment"])
-    judged = Judged(written["constraints"], assumptions)
+    judged = Judged(written["constraints"], assumptions, {})
     report = build_report(mission, plan, judged, folder / "log.sqlite", flown)
     assert {row["verdict"] for row in report["requirements"]} == {"holds"}
     assert (report["exit_code"], report["verdict"]) == (code, "unknown" if code else "holds")
@@ -63,7 +63,7 @@ def test_so_does_the_monitor_of_its_log(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], more: str
 ) -> None:
     held = rejudge.watch(folder / "log.sqlite").verdicts
-    monkeypatch.setattr(rejudge, "watch", lambda _log: rejudge.Watched(held, [BROKEN]))
+    monkeypatch.setattr(rejudge, "watch", lambda _log: rejudge.Watched(held, [BROKEN], {}, 0))
     meta = {**logs.read_meta(folder / "log.sqlite"), "command": f"cratous run x.yaml{more}"}
     monkeypatch.setattr(logs, "read_meta", lambda _log: meta)
     code = main(["monitor", str(folder), "--allow-unproved"])

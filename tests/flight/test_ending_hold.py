@@ -14,9 +14,9 @@ from mission_tools import must_fly
 
 from cratous.core.authority.gate import Gate
 from cratous.core.avoidance.manoeuvre import way_along
-from cratous.core.avoidance.prediction import Intruder, first_violation_s
+from cratous.core.avoidance.prediction import STANDING, Intruder, first_violation_s
 from cratous.core.avoidance.resolution import Scene
-from cratous.core.permit.remainder import STANDING, hold_at, hold_permits, zones_permit
+from cratous.core.permit.remainder import hold_at, hold_permits, zones_permit
 from cratous.core.routing.polylines import Track
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.remaining_path import points_ahead

@@ -17,10 +17,11 @@ from cratous.core.avoidance.prediction import Intruder, Piece, after, first_viol
 from cratous.core.avoidance.resolution import Scene, first_conflict_s, resolve
 from cratous.core.geofence.mission_legs import leg_ok
 from cratous.services.icarous.ending import Ahead
-from cratous.services.icarous.foresight import describe, predicted, way_back_is_free
+from cratous.services.icarous.foresight import predicted, way_back_is_free
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.permits import NONE
+from cratous.services.icarous.proposal import describe
 from cratous.services.icarous.return_to_path import PERSIST_MS as FREE_MS
 from cratous.services.icarous.return_to_path import goal_index
 from cratous.services.icarous.state import Config, Met, State

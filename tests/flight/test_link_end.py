@@ -19,8 +19,11 @@ from cratous.bridge.text_protocol import (
     Heartbeat,
     Message,
     SetMode,
+    SetVelocity,
     SoftReset,
     StartMission,
+    VelocityOfAnother,
+    WayOfAnother,
     WaypointReached,
 )
 from cratous.core.authority.gate import ICAROUS, UXAS, Gate
@@ -160,7 +163,8 @@ def test_a_mode_that_cannot_be_true_is_refused(mode: str, epoch: int | None, rea
 
 def test_waypoints_are_told_and_reached_once() -> None:
     state, out = after(*ALL[:3])
-    (down,) = out
+    down, to_other = out
+    assert [type(line) for line in to_other.lines] == [WayOfAnother] * len(WAY)
     assert isinstance(down.lines[0], SoftReset)
     assert isinstance(down.lines[-1], StartMission)
     state, out = after(messages.Flown(1, 110.0), state=state)
@@ -168,6 +172,32 @@ def test_waypoints_are_told_and_reached_once() -> None:
     assert after(messages.Flown(1, 110.0), state=state) == (state, [])
     # a place before those that are told to be reached takes nothing back
     assert after(messages.Flown(1, 20.0), state=state) == (state, [])
+
+
+def test_how_a_vehicle_flies_is_told_to_the_others() -> None:
+    """Its way; that it is over, as ICAROUS takes it; to which velocity it is steered then; its way again."""
+    steers = messages.Heard(1, 500, SetVelocity(20.0, -5.0, 0.0))
+    state, _ = after(*ALL[:2])
+    heard = list[Message]()
+    for message in (*ALL[2:7], steers, steers, *ALL[9:11], ALL[2]):
+        state, out = END.handle(state, message)
+        heard += [
+            x for m in out if isinstance(m, messages.Down) and m.vehicle_id == 2 for x in m.lines
+        ]
+    others = [line for line in heard if isinstance(line, WayOfAnother | VelocityOfAnother)]
+    assert {line.vehicle_id for line in others} == {1}
+    told = [line.total if isinstance(line, WayOfAnother) else line for line in others]
+    assert told == [3, 3, 3, 0, VelocityOfAnother(1, 20.0, -5.0, 0.0), 3, 3, 3]
+    _, out = END.handle(state, messages.Connected(900, (2,)))
+    assert (
+        sum(
+            isinstance(x, WayOfAnother)
+            for m in out
+            if isinstance(m, messages.Down)
+            for x in m.lines
+        )
+        == 3
+    )
 
 
 def test_nothing_goes_down_an_ended_connection() -> None:

@@ -12,6 +12,7 @@ from flight_tools import meeting, of_type
 
 from cratous.bridge import lmcp
 from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.routing.polylines import Track
 from cratous.services.flight import changes, interruption, remaining_path, task_transitions
 from cratous.services.flight.autopilot import Follow
 from cratous.services.flight.chain import Phase
@@ -70,6 +71,31 @@ def test_a_zone_that_was_entered_is_left_at_once() -> None:
     assert out is not None
     way = Router((over,)).way_to(HERE, RADIUS_M, Pose(-2000.0, 0.0, 300.0, math.pi))
     assert way[: len(out.points)] == out.points
+
+
+@pytest.mark.parametrize("shut", [False, True])
+def test_the_length_of_a_way_out_is_told_where_it_is_flown(shut: bool) -> None:
+    """Out to the north is nearest; with walls there it leads on to nowhere, and another way is flown."""
+    over = box(ZoneKind.KEEP_OUT, 1000.0, 2200.0, 900.0)
+    walls = (
+        box(ZoneKind.KEEP_OUT, 2700.0, 2800.0, 1000.0, 5),
+        Zone(6, ZoneKind.KEEP_OUT, ((2150.0, 900.0), (2150.0, 1000.0), (2800.0, 1000.0), (2800.0, 900.0)), 0.0, 1000.0),
+        Zone(7, ZoneKind.KEEP_OUT, ((2150.0, -1000.0), (2150.0, -900.0), (2800.0, -900.0), (2800.0, -1000.0)), 0.0, 1000.0),
+    )  # fmt: skip
+    zones = (over, *walls) if shut else (over,)
+    mission = replace(meeting(), traffic=())
+    config = Config(mission, Projection(mission.frame), (1,))
+    begun = replace(first_state(mission, make_plan(mission)), aircraft=((1, HERE),))
+    state = replace(task_transitions.begin(config, begun, []), zones=zones)
+    way = Router(zones).way_to(HERE, RADIUS_M, Pose(-2000.0, 0.0, 300.0, math.pi))
+    after = state.put(state.chain(1).enter(Phase.TRANSIT, Track(way), 0))
+    told = changes._leaving(config, state, after)
+    if shut:
+        assert told == "vehicle 1 leaves keep-out zone 4 on its way"
+    else:
+        assert told.startswith(
+            "vehicle 1 first leaves keep-out zone 4, level, by the shortest way found, "
+        )
 
 
 def handed_back(zones: tuple[Zone, ...], phase: Phase = Phase.TRANSIT) -> tuple[State, list[Any]]:
@@ -206,7 +232,7 @@ def test_what_is_left_and_what_is_entered_is_told_apart() -> None:
     beside = box(ZoneKind.KEEP_IN, 2100.0, 9000.0, 900.0, 5)
     state, _ = ended_at_here((beside, over))
     mission = replace(meeting(), traffic=())
-    said = changes._leaving(Config(mission, Projection(mission.frame), (1,)), state)
+    said = changes._leaving(Config(mission, Projection(mission.frame), (1,)), state, state)
     assert said.startswith(
         "vehicle 1 first leaves keep-out zone 9 and enters keep-in zone 5, level, by"
     )

@@ -7,6 +7,8 @@ import json
 import re
 import shutil
 import sqlite3
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -117,3 +119,35 @@ def test_monitor_says_them_in_words_and_as_data(
     assert "assumption way back free: not observed (what an instance foresees" in printed
     main(["monitor", str(turning), "--allow-unproved", "--json"])
     assert json.loads(capsys.readouterr().out)["assumptions"] == report["assumptions"]
+
+
+def test_monitor_loads_no_planner_and_no_pilot(turning: Path) -> None:
+    code = (
+        "import sys\n"
+        "from cratous.services.cli import main\n"
+        f"main(['monitor', {str(turning)!r}, '--allow-unproved'])\n"
+        "print(*sorted(m for m in sys.modules if m.startswith('cratous.services.') or '.' not in m))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=900
+    )
+    loaded = set(done.stdout.splitlines()[-1].split())
+    assert "cratous.services.monitor" in loaded
+    assert not loaded & {
+        f"cratous.services.{part}" for part in ("planning", "pipeline", "flight", "icarous")
+    }
+    assert not loaded & {"z3", "numba", "matplotlib"}
+
+
+def test_monitor_as_data_says_on_stderr_why_its_exit_code_is_no_0(
+    tmp_path: Path, turning: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log = Path(shutil.copy(turning / "log.sqlite", tmp_path))
+    database = sqlite3.connect(log)
+    with database:
+        database.execute("DELETE FROM messages WHERE topic = 'cratous.MissionEnd'")
+    database.close()
+    assert main(["monitor", str(log), "--allow-unproved", "--json"]) == 3
+    words = capsys.readouterr()
+    assert json.loads(words.out)["exit_code"] == 3
+    assert "G3 Completion: unknown" in words.err

@@ -105,8 +105,9 @@ def test_missing_and_repeated_tasks_are_caught():
 
 def test_a_leg_that_only_touches_a_keep_out_is_caught():
     touching = replace(ZONE, vertices=((500.0, 0.0), (600.0, 50.0), (600.0, 90.0)))
-    found = bad(PLAN, replace(MISSION, zones=(touching,)))
-    assert [item for item in found if item.startswith("zone")]
+    found = check_plan(replace(MISSION, zones=(touching,)), PLAN)
+    zones = [v for v in found if v.item.startswith("zone") and v.outcome is Outcome.VIOLATED]
+    assert {str(v.margin) for v in zones} == {"0.0"}, "not -0.0"
 
 
 def test_the_circle_of_a_wait_is_checked_too():

@@ -10,20 +10,13 @@ import sys
 from pathlib import Path
 
 import pytest
-
-PARTS = ("spec", "core", "proofs", "bridge", "services")
+from ledger_tools import copied
 
 
 @pytest.fixture(scope="module")
 def edited(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the product in which one kernel differs from what was proved."""
-    home = tmp_path_factory.mktemp("edited")
-    for part in PARTS:
-        shutil.copytree(
-            root / part, home / "cratous" / part, ignore=shutil.ignore_patterns("__pycache__")
-        )
-    for file in ("__init__.py", "__main__.py"):
-        shutil.copy(root / "src" / "cratous" / file, home / "cratous")
+    home = copied(root, tmp_path_factory.mktemp("edited"))
     kernel = home / "cratous" / "core" / "well_clear" / "now.py"
     text = kernel.read_text()
     assert "return abs(sz) <= tcoa_s" in text

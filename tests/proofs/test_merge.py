@@ -40,6 +40,7 @@ def branches(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """
     folder = copied(root, tmp_path_factory.mktemp("clone"))
     assert _git(folder, "init", "-q", "-b", "main").returncode == 0
+    (folder / ".gitignore").write_text("__pycache__/\n")
     _git(folder, "add", "-A")
     assert _git(folder, "commit", "-qm", "main").returncode == 0
     for name, (place, old, new) in CHANGES.items():

@@ -7,6 +7,7 @@ import resource
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -14,9 +15,10 @@ from cratous.core import ledger as gate
 from cratous.core.ledger import records
 from cratous.proofs import ledger, recheck
 from cratous.proofs.engine import prover
+from cratous.proofs.engine.outcomes import Ran
 from cratous.proofs.mutation import mutate
 from cratous.proofs.mutation import record as mutation_record
-from cratous.services.cli import main
+from cratous.services.cli import main, prove
 
 FEW = "*its_definition"
 ONE = "geofence_straddles_is_its_definition"
@@ -254,3 +256,11 @@ def test_a_pattern_that_names_nothing_is_told_what_names_there_are(
     said = capsys.readouterr().err
     assert "no theorem matches" in said
     assert "such as well_clear_" in said
+
+
+def test_what_could_not_be_compared_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    ran = Ran(3, left_out=("f: the lifted term: why",))
+    prove._tell_ran([SimpleNamespace(name="t", ran=ran)], verbose=False)
+    out = capsys.readouterr().out
+    assert "1 reading could not be compared" in out
+    assert "not compared: f: the lifted term: why" in out

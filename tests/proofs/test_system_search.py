@@ -36,19 +36,19 @@ def test_each_fault_is_found_by_a_trace_that_the_design_can_do(name: str) -> Non
     found = search(design, 8)
     assert found.wrong
     reached = {State()}
-    for text in found.trace[:-1]:
+    for entry in found.trace[:-1]:
         reached = {
             one.after
             for state in reached
             for one in steps(design, state)
-            if one.text == text and not one.wrong
+            if one.entry == entry and not one.wrong
         }
         assert reached
     last = [
         one
         for state in reached
         for one in steps(design, state)
-        if one.text == found.trace[-1] and one.wrong == found.wrong
+        if one.entry == found.trace[-1] and one.wrong == found.wrong
     ]
     assert last
 

@@ -128,8 +128,9 @@ def test_a_connection_that_is_lost_is_made_again_and_nothing_holds_then(
     assert {r["verdict"] for r in said["requirements"]} == {"unknown"}
     assert said["requirements"][0]["holds"] >= 3
     assert main(["monitor", str(log), "--requirements", str(requirements), "--json"]) == 3
-    again = json.loads(capsys.readouterr().out)
-    assert {r["verdict"] for r in again["requirements"]} == {"unknown"}
+    words = capsys.readouterr()
+    assert {r["verdict"] for r in json.loads(words.out)["requirements"]} == {"unknown"}
+    assert "SOON: unknown" in words.err, "who reads only the exit code is told why it is no 0"
 
 
 def test_of_a_peer_that_falls_silent_nothing_holds(peers, requirements, tmp_path, capsys):

@@ -70,7 +70,8 @@ def test_turns_go_around_zones_beside_the_area() -> None:
 
 
 def test_a_turn_that_would_lead_through_a_zone_is_routed_around_it() -> None:
-    lanes, zone = area(sweep_rad=0.0), keep_out(1150.0, 200.0, 1250.0, 300.0)
+    down = View(0.0, -math.pi / 2, True)
+    lanes, zone = area(sweep_rad=0.0, view=down), keep_out(1150.0, 200.0, 1250.0, 300.0)
     free, _ = options(lanes)
     through = {o.label: o for o in free if first_bad_leg(o.path, (zone,)) is not None}
     assert 0 < len(through) < len(free)

@@ -34,11 +34,14 @@ records.write(records.texts(data), folder)
 
 
 def copied(root: Path, home: Path) -> Path:
-    """A copy of the product as it would be installed, with its ledger."""
+    """A copy of the product as it would be installed, with its ledger.
+
+    Byte code comes along: it serves each file until that is changed, and is not written anew.
+    """
     for part in PARTS:
-        shutil.copytree(
-            root / part, home / "cratous" / part, ignore=shutil.ignore_patterns("__pycache__")
-        )
+        # what another process is writing just now has a number at its end
+        half_written = shutil.ignore_patterns("*.pyc.*")
+        shutil.copytree(root / part, home / "cratous" / part, ignore=half_written)
     for name in ("__init__.py", "__main__.py"):
         shutil.copy(root / "src" / "cratous" / name, home / "cratous")
     return home

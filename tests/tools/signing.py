@@ -19,6 +19,7 @@ from cryptography.hazmat.primitives.serialization import (
     PublicFormat,
 )
 
+from cratous.services.attestation.blamed import blame_of
 from cratous.services.attestation.dsse import signed
 from cratous.services.attestation.findings import Subject
 from cratous.services.attestation.names import VIEWS
@@ -112,6 +113,7 @@ def retell(home: Path, edit: Callable[[dict[str, Any]], None]) -> None:
     verdicts = [row["verdict"] for row in report["constraints"]]
     report["counts"] = {str(outcome): verdicts.count(str(outcome)) for outcome in Outcome}
     report["verdict"], report["exit_code"] = str(worst(outcomes)), exit_code(outcomes)
+    report["blame"] = blame_of(report)
     sign_whole(home, report)
 
 

@@ -1,0 +1,78 @@
+"""Blame: of what does not hold, who was in command then, and which watched assumption had broken first.
+
+Which change of command and which break count at an instant, the kernels of `core.authority.blame` decide.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from cratous.core.authority.blame import broke_first, stood_at
+from cratous.services.assumptions.listing import State
+from cratous.services.certify.verdicts import broken_of
+from cratous.spec.mission.guarantees import Outcome
+
+Commands = Mapping[int, Sequence[tuple[int, str]]]
+"""By vehicle that has a gate: since when [ms] who commands it, from 0 on (`Monitor.commands`)."""
+Data = dict[str, Any]
+
+
+def blame_rows(
+    rows: Iterable[Data], commands: Commands, assumptions: list[Data], end_ms: int
+) -> list[Data]:
+    """One row for each constraint on the flight that is not shown to hold, as plain data.
+
+    rows: of `verdicts.constraint_rows`; assumptions: of `Monitor.assumptions`; end_ms: when the messages end,
+    which is the instant asked about where a constraint names none.
+    """
+    bad = [r for r in rows if r["source"] == "flight" and r["verdict"] != Outcome.HOLDS]
+    return [_row(one, commands, assumptions, end_ms) for one in bad]
+
+
+def _row(row: Data, commands: Commands, assumptions: list[Data], end_ms: int) -> Data:
+    at_ms = end_ms if row["time_ms"] is None else row["time_ms"]
+    asked = [n for n in sorted(row["vehicles"] or commands) if n in commands]
+    unseen = [
+        one["name"]
+        for one in assumptions
+        if one["state"] == State.NOT_OBSERVED and row["requirement"] in one["guarantees"]
+    ]
+    return {
+        "requirement": row["requirement"],
+        "item": row["item"],
+        "verdict": row["verdict"],
+        "time_ms": row["time_ms"],
+        "why": row["note"],
+        "command": [_command(number, commands, at_ms) for number in asked],
+        "ways_out": list(_ways_out(row, commands)),
+        "broken_first": _first(row["requirement"], assumptions, at_ms),
+        "not_observed": unseen,
+    }
+
+
+def _command(number: int, commands: Commands, at_ms: int) -> Data:
+    """Who commanded a vehicle at an instant; who commands first does so from the beginning."""
+    changes = commands[number]
+    place = stood_at(((ms, k) for k, (ms, _) in enumerate(changes)), at_ms).place
+    since_ms, side = changes[max(place, 0)]
+    return {"vehicle": number, "side": side, "since_ms": since_ms}
+
+
+def _ways_out(row: Data, commands: Commands) -> Iterator[Data]:
+    """Of a loss that could have been avoided: from when, how, and who had the vehicle at that instant."""
+    for loss in (row.get("evidence") or {}).get("losses", ()):
+        if (way := loss.get("way_out")) and loss["own"] in commands:
+            there = _command(loss["own"], commands, way["time_ms"])
+            yield {**there, "at_ms": way["time_ms"], "manoeuvre": way["manoeuvre"]}
+
+
+def _first(requirement: str, assumptions: list[Data], at_ms: int) -> Data | None:
+    """The assumption that had broken first by then, and whether a theorem on the requirement rests on it."""
+    broken = broken_of(assumptions)
+    place = broke_first(((one["since_ms"], k) for k, one in enumerate(broken)), at_ms).place
+    if place < 0:
+        return None
+    first = broken[place]
+    bears = requirement in first["guarantees"]
+    return {**{key: first[key] for key in ("name", "since_ms", "vehicle")}, "bears": bears}

@@ -1,0 +1,139 @@
+"""How other vehicles of ours are taken to fly: along the way that UxAS flies them by, while they keep to it.
+
+UxAS tells each instance the ways of the other vehicles, and that one is over as ICAROUS takes the other vehicle. One
+that is farther off the way that was told than what the permits allow for is taken to fly straight on, like an intruder
+of which nothing was told.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from typing import NamedTuple
+
+from cratous.core.avoidance.manoeuvre import Motion, fly_to, smallest_turn
+from cratous.core.avoidance.prediction import Intruder, Piece, after
+from cratous.core.avoidance.way_ahead import turns
+from cratous.core.kernel import Vec2
+from cratous.core.permit.tubes import disc_within
+from cratous.core.routing.polylines import Track
+from cratous.services.icarous.ending import TRACKING_S, TURN_MARGIN
+from cratous.services.icarous.inbox import Told
+from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.traffic_monitor import TURNING_RAD_S, Tracks
+from cratous.spec.mission import Daa, Position, Velocity
+
+WINDOW_BEATS = 4
+"""Where a vehicle is on its way is looked for as far ahead of where it was as it flies in so many heartbeats."""
+
+
+ALWAYS_S = 3600.0
+"""One that ICAROUS steers is taken to fly on straight for this long [s]."""
+
+
+class Followed(NamedTuple):
+    """A way as it was told, and where on it the vehicle was at the last heartbeat [m of arc length]."""
+
+    vehicle_id: int
+    points: tuple[Position, ...]
+    track: Track
+    at_m: float
+
+
+Ways = tuple[Followed, ...]
+
+
+def with_ways(
+    before: Ways, told: Told, sensed: Sensed, daa: Daa, beat_s: float, courses: Tracks = ()
+) -> tuple[Ways, tuple[Intruder, ...]]:
+    """The ways that were told, and everybody as is to be reckoned with: by the way that was told while it is kept to.
+    before, courses: what this and everybody's course were at the last heartbeat; beat_s: from one to the next [s]."""
+    steered, was = dict(told.steered), dict(courses)
+    known = {one.vehicle_id: one for one in before}
+    ways, others = list[Followed](), list[Intruder]()
+    for other in sensed.intruders:
+        points = told.way_of(other.id)
+        if other.id in steered:
+            others.append(_steered(other, steered[other.id], was.get(other.id), sensed, beat_s))
+            continue
+        if not points:
+            others.append(other)
+            continue
+        old = known.get(other.id)
+        window_m = WINDOW_BEATS * beat_s * _speed_m_s(other)
+        if old is None or old.points is not points:
+            # on a new connection it may be anywhere on it
+            old = Followed(other.id, points, Track(points), 0.0)
+            window_m = old.track.length_m
+        at_m = old.track.nearest(other.position, old.at_m, window_m).s_m
+        ways.append(old._replace(at_m=at_m))
+        kept = _keeps(old.track.at(at_m), other.position, daa)
+        way = _along(old.track, at_m, other) if kept else ()
+        hold_m = _hold_m(other, sensed) if way else 0.0
+        others.append(other._replace(way=way, hold_m=hold_m))
+    return tuple(ways), tuple(others)
+
+
+def _speed_m_s(other: Intruder) -> float:
+    return math.hypot(other.velocity.north_m_s, other.velocity.east_m_s)
+
+
+def _hold_m(other: Intruder, sensed: Sensed) -> float:
+    """How far from the end of its way a vehicle is that circles there, if it banks like this one [m]."""
+    speed = _speed_m_s(other)
+    tightest_m = speed**2 / (sensed.motion.speed_m_s * sensed.ability.turn_rate_rad_s)
+    return 2 * TURN_MARGIN * tightest_m + TRACKING_S * speed
+
+
+def _steered(
+    other: Intruder, to: Velocity, was_rad: float | None, sensed: Sensed, beat_s: float
+) -> Intruder:
+    """One that turns to a velocity and then flies straight on, if it banks like this one and turns there; was_rad:
+    its course a heartbeat ago."""
+    speed, v = _speed_m_s(other), other.velocity
+    course, goal = _course_rad(v), _course_rad(to)
+    if not speed:
+        return other
+    if was_rad is not None:
+        detour = abs(smallest_turn(was_rad, course)) + abs(smallest_turn(course, goal))
+        if turns(detour - abs(smallest_turn(was_rad, goal)), TURNING_RAD_S, beat_s):
+            return other
+    motion, own = sensed.motion, sensed.ability
+    rate = own.turn_rate_rad_s * motion.speed_m_s / speed
+    ability = own._replace(turn_rate_rad_s=rate)
+    now = Motion(other.position, course, speed, -v.down_m_s)
+    way = fly_to(now, ability, goal, math.hypot(*to[:2]), -to.down_m_s, ALWAYS_S, ALWAYS_S)
+    return other._replace(way=way)
+
+
+def _course_rad(v: Velocity) -> float:
+    return math.atan2(v.east_m_s, v.north_m_s)
+
+
+def _keeps(told: Position, now: Position, daa: Daa) -> bool:
+    """No farther from the way than half of what the buffer leaves, as in `permits`."""
+    share, volume = (daa.buffer - 1) / 2, daa.well_clear
+    beside = Vec2(now.north_m - told.north_m, now.east_m - told.east_m)
+    above = Vec2(now.alt_m - told.alt_m, 0.0)
+    return bool(
+        disc_within(beside, 0.0, share * volume.dthr_m)
+        and disc_within(above, 0.0, share * volume.zthr_m)
+    )
+
+
+def _along(track: Track, at_m: float, other: Intruder) -> tuple[Piece, ...]:
+    """Flight along a track from at_m on at the present speed, as far beside it as the vehicle is now."""
+    speed, pieces = _speed_m_s(other), list[Piece]()
+    if not speed:
+        return ()
+    place, t_s, first = other.position, 0.0, bisect_right(track.s_m, at_m)
+    ahead = track.points[first - 1 :], track.points[first:], track.s_m[first:]
+    for a, b, end_m, (north, east) in zip(*ahead, track.directions[first - 1 :], strict=False):
+        left_m = end_m - at_m
+        leg_s = math.hypot(b.north_m - a.north_m, b.east_m - a.east_m) / speed
+        down = (a.alt_m - b.alt_m) / leg_s
+        v = Velocity(north * speed, east * speed, down)
+        piece = Piece(t_s, left_m / speed, place, v)
+        pieces.append(piece)
+        place, t_s, at_m = after(piece, piece.duration_s), t_s + piece.duration_s, end_m
+    return tuple(pieces)

@@ -1,0 +1,110 @@
+"""The manoeuvre that an instance flies: the turn after which the way back is free soonest, if there is one.
+
+A turn that keeps clear over the whole look-ahead, off the course by up to 60 degrees, is flown on until the way back is
+free, at one of the instants that are looked at. Where there is none, the manoeuvre that deviates least from the course
+is flown (`core.avoidance.resolution`). What is proposed here decides nothing: control goes back only on a way that is
+free when it is flown.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from cratous.core.authority.cycle import patience
+from cratous.core.authority.timeliness import lasted
+from cratous.core.avoidance.manoeuvre import Motion, fly_to
+from cratous.core.avoidance.prediction import after, later
+from cratous.core.avoidance.resolution import Choice, keeps_clear, resolve
+from cratous.services.icarous.foresight import scene_of, way_back_is_free
+from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.return_to_path import PERSIST_MS, bearing_rad, goal_index
+from cratous.services.icarous.state import Config, Search, State
+from cratous.spec.mission import Position
+
+STEPS = 15
+"""The instants at which the way back may be free are so many in the look-ahead; the last third is left out."""
+TURNS_DEG = (10, 20, 30, 40, 50, 60)
+"""The headings that are looked at, off the course to the right and to the left."""
+AGAIN_MS = 5000
+"""Where there is no such manoeuvre one is looked for again so much later [ms]."""
+
+
+def manoeuvre(
+    config: Config, state: State, sensed: Sensed, in_turn: frozenset[int], free: bool
+) -> tuple[State, Choice]:
+    """The manoeuvre to fly now, remembered, with the waypoint that it makes for. free: the way back is, now."""
+    state, goal = _with_goal(state, sensed)
+    motion, now_ms, search = sensed.motion, sensed.now_ms, state.search
+    course = bearing_rad(motion.position, goal) if goal is not None else motion.heading_rad
+    speed = state.told.speed_m_s or motion.speed_m_s
+    scene = scene_of(config, state, sensed)
+    held = state.held
+    lasts = held is not None and not lasted(search.until_ms, now_ms, 0)
+    if held is not None and lasts and keeps_clear(motion, sensed.ability, scene, held):
+        return state, held
+    if not free and (held is None or search.until_ms or lasted(search.at_ms, now_ms, AGAIN_MS)):
+        found = _soonest(config, state, sensed, in_turn, (course, speed))
+        state = replace(state, search=Search(now_ms, 0))
+        if found is not None:
+            choice, at_s = found
+            waits_ms = patience(state.cycle.relapses, PERSIST_MS) + 2 * config.heartbeat_ms
+            search = Search(now_ms, now_ms + math.ceil(1000 * at_s) + waits_ms)
+            return replace(state, held=choice, search=search), choice
+    choice = resolve(motion, sensed.ability, scene, course, speed, held)
+    return replace(state, held=choice, search=state.search._replace(until_ms=0)), choice
+
+
+def _soonest(
+    config: Config,
+    state: State,
+    sensed: Sensed,
+    in_turn: frozenset[int],
+    flying: tuple[float, float],
+) -> tuple[Choice, float] | None:
+    """The turn after which the way back is free soonest, and when [s]: the smallest of those. flying: course [rad],
+    speed [m/s]."""
+    course, speed = flying
+    scene = scene_of(config, state, sensed)
+    turns = [0.0, *(side * math.radians(k) for k in TURNS_DEG for side in (1, -1))]
+    level = Choice("heading", course, speed, 0.0, 0.0, True, None)
+    choices = [level._replace(heading_rad=course + turn) for turn in turns]
+    clear = [one for one in choices if keeps_clear(sensed.motion, sensed.ability, scene, one)]
+    for k in range(1, 2 * STEPS // 3 + 1):
+        t_s = k * scene.lookahead_s / STEPS
+        for choice in clear:
+            if way_back_is_free(config, state, _later(sensed, choice, t_s), in_turn):
+                return choice, t_s
+    return None
+
+
+def _later(sensed: Sensed, choice: Choice, t_s: float) -> Sensed:
+    """What is sensed t_s [s] from now, if the manoeuvre is flown, and everybody else flies as is foreseen."""
+    last = fly_to(sensed.motion, sensed.ability, *choice[1:5], t_s)[-1]
+    place, v = after(last, last.duration_s), last.velocity
+    heading, speed = math.atan2(v.east_m_s, v.north_m_s), math.hypot(v.north_m_s, v.east_m_s)
+    others = tuple(later(other, t_s) for other in sensed.intruders)
+    return sensed._replace(motion=Motion(place, heading, speed, -v.down_m_s), intruders=others)
+
+
+def _with_goal(state: State, sensed: Sensed) -> tuple[State, Position | None]:
+    """The waypoint to make for; none if no waypoints are known."""
+    waypoints = state.told.waypoints
+    if not waypoints:
+        return state, None
+    radius_m = sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
+    index = goal_index(sensed.motion, radius_m, waypoints, min(state.goal, len(waypoints) - 1))
+    return replace(state, goal=index), waypoints[index]
+
+
+def describe(choice: Choice) -> str:
+    """A manoeuvre in words, for the record; it says when none is free of conflict."""
+    heading = round(math.degrees(choice.heading_rad)) % 360
+    text = f"heading {heading:03d}"
+    if choice.kind == "altitude":
+        text += f", climb {choice.climb_m_s:+.1f} m/s"
+    if choice.kind == "speed":
+        text += f", speed {choice.speed_m_s:.1f} m/s"
+    if not choice.clear:
+        text += f"; no manoeuvre is free of conflict, this one is until {choice.first_violation_s:.1f} s"
+    return text

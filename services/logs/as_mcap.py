@@ -1,0 +1,24 @@
+"""A log as the bytes of an MCAP file: the same log and versions of `mcap` and `zstandard` give the same."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from cratous.services.logs.export import export
+from cratous.services.logs.source import open_log
+
+
+def needed() -> None:
+    """Raise ModuleNotFoundError where mcap or zstandard is not installed."""
+    import mcap.writer  # noqa: F401
+    import zstandard  # noqa: F401
+
+
+def as_mcap(log: Path) -> bytes:
+    """All messages of a log, with what Foxglove draws; BadInput for one that is damaged."""
+    needed()
+    with TemporaryDirectory() as folder, open_log(log) as source:
+        target = Path(folder) / "run.mcap"
+        export(source, target, "mcap")
+        return target.read_bytes()

@@ -1,0 +1,92 @@
+"""What the ways over one area have in common: the area, who flies over it, and what a pass sees."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+from cratous.core.tasks.coverage import outline, square_array, square_side_m
+from cratous.core.tasks.sweep import Piece, Swath, SwathOf, swath, unjoined_m
+from cratous.services.mission.sensor import footprints, looks_over
+from cratous.services.planning.flyers import Flyer
+from cratous.services.planning.smoothing import MARGIN
+from cratous.spec.mission import Camera, Task, View
+
+GLANCE_S = 2.0
+"""Each part of a swath stays in view for so long, so that nothing is missed between frames."""
+
+
+class Candidate(NamedTuple):
+    """A way over an area without its turns, and how long it is."""
+
+    label: str
+    pieces: tuple[Piece, ...]
+    length_m: float
+    view: View | None
+
+
+class Site(NamedTuple):
+    """What is the same for all ways of one class of vehicles over one area."""
+
+    task: Task
+    flyer: Flyer
+    camera: Camera
+    height_m: float
+    vertices: tuple[tuple[float, float], ...]
+    side_m: float
+    squares: Callable[[], Any]
+
+
+def site_of(task: Task, flyer: Flyer, camera: Camera, terrain_m: float) -> Site:
+    """The site of a task for a class of vehicles with a camera, above flat terrain [m MSL]."""
+    vertices = outline(task)
+    side_m = square_side_m(vertices)
+    squares = functools.cache(functools.partial(square_array, vertices, side_m))
+    return Site(task, flyer, camera, flyer.alt_m - terrain_m, vertices, side_m, squares)
+
+
+def candidate_of(
+    site: Site, label: str, pieces: Sequence[Piece], view: View | None = None
+) -> Candidate:
+    """A way of these pieces, as long as it is where no zone is in the way of its turns."""
+    return Candidate(label, tuple(pieces), unjoined_m(pieces, site.flyer.radius_m), view)
+
+
+def lane_width_m(swath_of: SwathOf, heading_rad: float) -> float:
+    """How wide the lanes of a heading may be, there and back [m]; 0: none covers anything."""
+    seen = [swath_of(h) for h in (heading_rad, heading_rad + math.pi)]
+    return max(0.0, min((s.width_m if s is not None else 0.0) for s in seen))
+
+
+def swaths_of(site: Site, view: View | None) -> SwathOf:
+    """The swath by heading, narrowed by a square on each side so that seams are seen whole."""
+    import numpy as np
+
+    known: dict[float, Swath | None] = {}
+
+    def of(heading_rad: float) -> Swath | None:
+        if heading_rad not in known:
+            step = np.array([[math.cos(heading_rad), math.sin(heading_rad)]])
+            looks = looks_over(np.vstack([0 * step, step]), view, site.height_m)
+            corners = footprints(looks, site.height_m, site.camera, MARGIN)[0]
+            known[heading_rad] = None
+            if not np.isnan(corners[0, 0]):
+                least = GLANCE_S * site.flyer.speed_m_s + site.side_m
+                found = swath(_corners(corners), heading_rad, least)
+                if found is not None:
+                    half = site.side_m / 2
+                    known[heading_rad] = Swath(
+                        found.left_m + half,
+                        found.right_m - half,
+                        found.near_m + site.side_m,
+                        found.far_m - site.side_m,
+                    )
+        return known[heading_rad]
+
+    return of
+
+
+def _corners(array: Any) -> list[tuple[float, float]]:
+    return [(float(north), float(east)) for north, east in array]

@@ -1,0 +1,86 @@
+"""Requirements in FRETish, the structured English of FRET (NASA): those whose form it has.
+
+A requirement is asked of every sample. So `c implies eventually within 5 s r` is `Whenever c the system shall within 5
+seconds satisfy r`: FRET's `whenever` asks at each instant at which c holds (`when`, of each beginning), `within` means by
+then at the latest, `for` all the time until then. FRETish has no units and nothing that is unknown: numbers are
+in the units of their signals.
+"""
+
+from __future__ import annotations
+
+from cratous.services.requirements.formula import TRUE, Always, Bounded, Formula, Join, Not, Reaches
+from cratous.services.requirements.specification import Specification
+
+SYSTEM = "the system"
+UNITS = ((3_600_000_000_000, "hours"), (60_000_000_000, "minutes"), (1_000_000_000, "seconds"),
+         (1_000_000, "milliseconds"), (1000, "microseconds"))  # fmt: skip
+"""The greatest is taken of which there is a whole number; FRETish counts in no finer one."""
+
+
+class NoForm(Exception):
+    """A formula that FRETish cannot say, or this module does not; the reason in words."""
+
+
+def sentence(formula: Formula, spec: Specification) -> str:
+    """The sentence of a requirement; NoForm with the reason where there is none."""
+    if isinstance(formula, Join) and not formula.is_and and isinstance(formula.phi, Not):
+        condition, asked = _said(formula.phi.phi, spec, False), formula.psi
+        when, plain = f"Whenever {condition} {SYSTEM}", "immediately"
+    else:
+        when, asked, plain = SYSTEM.capitalize(), formula, "always"
+    if isinstance(asked, Bounded) and asked.phi == TRUE and not asked.past:
+        timing, response = f"within {_time(asked)}", asked.psi
+    elif (
+        isinstance(asked, Not)
+        and isinstance(asked.phi, Bounded)
+        and asked.phi.phi == TRUE
+        and isinstance(asked.phi.psi, Not)
+        and not asked.phi.past
+    ):
+        timing, response = f"for {_time(asked.phi)}", asked.phi.psi.phi
+    else:
+        timing, response = plain, asked
+    if plain == "always" and timing != plain:
+        # FRETish without a condition asks once, at the beginning
+        when = f"Whenever true {SYSTEM}"
+    return f"{when} shall {timing} satisfy {_said(response, spec, False)}"
+
+
+def _time(timed: Bounded) -> str:
+    if timed.low:
+        raise NoForm("a time that begins later has no form")
+    for size, unit in UNITS:
+        if timed.high and timed.high % size == 0:
+            return f"{timed.high // size} {unit}"
+    raise NoForm("its time is no whole number of microseconds above 0")
+
+
+def _said(formula: Formula, spec: Specification, inside: bool) -> str:
+    """A condition without time; inside: it stands within another one."""
+    if isinstance(formula, Always):
+        return "true" if formula == TRUE else "false"
+    if isinstance(formula, Reaches):
+        return _compared(formula.left, ">=", formula.right, spec)
+    if isinstance(formula, Not):
+        one = formula.phi
+        if isinstance(one, Reaches) and not _is_truth(one.left, spec):
+            return _compared(one.left, "<", one.right, spec)
+        return f"!{_said(one, spec, True)}"
+    if isinstance(formula, Join):
+        sign = " & " if formula.is_and else " | "
+        text = _said(formula.phi, spec, True) + sign + _said(formula.psi, spec, True)
+        return f"({text})" if inside else text
+    raise NoForm("a time within a condition or a response has no form")
+
+
+def _compared(left: str | float, relation: str, right: str | float, spec: Specification) -> str:
+    if _is_truth(left, spec):
+        return str(left)
+    if isinstance(left, float):  # FRETish has the signal first, as people do
+        turned = {">=": "<=", "<": ">"}[relation]
+        return f"{right} {turned} {left!r}"
+    return f"{left} {relation} {right if isinstance(right, str) else repr(right)}"
+
+
+def _is_truth(side: str | float, spec: Specification) -> bool:
+    return isinstance(side, str) and spec.signals[side].kind == "bool"

@@ -1,0 +1,1 @@
+"""Traces of authority played on the actors that fly: gate, ICAROUS, UxAS's end and executive, over real sockets."""

@@ -1,0 +1,107 @@
+"""Traces in files: what `cratous search-faults --traces` writes, and `cratous replay-trace` reads."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, NamedTuple, get_type_hints
+
+from cratous.core.files.whole_file import write_atomically
+from cratous.spec.errors import BadInput
+from cratous.spec.files.text_file import text_of
+from cratous.spec.system.trace import KINDS, Entry, Event, Standing
+
+FORMAT = "cratous authority trace 1"
+MOST_BYTES = 1_000_000
+MOST_ENTRIES = 100
+MOST = 1000
+"""Epochs and counts of changes go so far."""
+WORDS = 500
+"""A text of a trace has at most so many characters."""
+
+
+class Trace(NamedTuple):
+    """design: by name; says: what is wrong in it; wrong: what is wrong at the end, empty if nothing is."""
+
+    design: str
+    says: str
+    wrong: str
+    entries: tuple[Entry, ...]
+
+
+def write(file: Path, trace: Trace) -> None:
+    """The trace as JSON, whole or not at all."""
+    rows = [
+        {"text": e.text, "event": e.event._asdict(), "after": e.after._asdict()}
+        for e in trace.entries
+    ]
+    data = {"format": FORMAT, **trace._asdict(), "entries": rows}
+    write_atomically(file, json.dumps(data, indent=1) + "\n", "the trace")
+
+
+def read(file: Path) -> Trace:
+    """A trace; BadInput with the place where the file is none."""
+    text = text_of(file, MOST_BYTES, "a trace of `cratous search-faults --traces`")
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        why = str(error).splitlines()[0]
+        raise BadInput("not a trace", where=str(file), expected="JSON", got=why) from None
+    reader = _Reader(str(file))
+    top = reader.table(data, ("format", *Trace._fields), "")
+    if top["format"] != FORMAT:
+        raise reader.wrong("format", FORMAT, top["format"])
+    rows = top["entries"]
+    if not isinstance(rows, list) or len(rows) not in range(1, MOST_ENTRIES + 1):
+        raise reader.wrong("entries", f"a list of 1 to {MOST_ENTRIES}", rows)
+    texts = {name: reader.text(top[name], name) for name in ("design", "says", "wrong")}
+    return Trace(**texts, entries=tuple(_entries(reader, rows)))
+
+
+def _entries(reader: _Reader, rows: list[Any]) -> Iterable[Entry]:
+    for number, one in enumerate(rows):
+        item = f"entries[{number}]"
+        row = reader.table(one, Entry._fields, item)
+        event = reader.fields(row["event"], Event, f"{item}.event")
+        after = reader.fields(row["after"], Standing, f"{item}.after")
+        if event["kind"] not in KINDS:
+            raise reader.wrong(f"{item}.event.kind", " or ".join(KINDS), event["kind"])
+        text = reader.text(row["text"], f"{item}.text")
+        yield Entry(text, Event(**event), Standing(**after))
+
+
+class _Reader:
+    """Holds each part of the data against what it has to be."""
+
+    def __init__(self, where: str) -> None:
+        self._where = where
+
+    def wrong(self, item: str, expected: str, got: object) -> BadInput:
+        return BadInput(
+            "not a trace", where=self._where, item=item, expected=expected, got=repr(got)[:80]
+        )
+
+    def table(self, data: object, names: Iterable[str], item: str) -> dict[str, Any]:
+        if not isinstance(data, dict) or set(data) != set(names):
+            got = sorted(data) if isinstance(data, dict) else data
+            raise self.wrong(item or "file", f"the names {', '.join(names)}", got)
+        return data
+
+    def text(self, data: object, item: str) -> str:
+        if not isinstance(data, str) or len(data) not in range(WORDS + 1):
+            raise self.wrong(item, f"a text of at most {WORDS} characters", data)
+        return data
+
+    def fields(self, data: object, of: type[Any], item: str) -> dict[str, Any]:
+        """The fields of a named tuple of texts, truth values and whole numbers."""
+        row = self.table(data, of._fields, item)
+        for name, kind in get_type_hints(of).items():
+            value, place = row[name], f"{item}.{name}"
+            if kind is str:
+                self.text(value, place)
+            elif kind is bool and not isinstance(value, bool):
+                raise self.wrong(place, "true or false", value)
+            elif kind is int and (type(value) is not int or value not in range(-1, MOST + 1)):
+                raise self.wrong(place, f"a whole number from -1 to {MOST}", value)
+        return row

@@ -1,0 +1,70 @@
+"""Play a trace on the actors that fly, until they do otherwise than it says."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from cratous.services.trace_replay.actors import Actors, NeverSent
+from cratous.spec.system.trace import NOTHING, Entry, Standing
+
+NAMES = ("UxAS", "ICAROUS")
+MODES = ("watching", "avoiding", "offering control")
+
+
+class Played(NamedTuple):
+    """followed: so many entries went as the trace says; why: how the next one did not, empty at the end."""
+
+    followed: int
+    why: str
+
+
+def play(entries: Sequence[Entry]) -> Played:
+    """Play a trace from the start of a flight."""
+    with Actors() as actors:
+        for number, entry in enumerate(entries):
+            try:
+                stands = actors.happen(entry.event)
+            except NeverSent as error:
+                return Played(number, str(error))
+            if why := differs(entry.after, stands):
+                return Played(number, why)
+    return Played(len(entries), "")
+
+
+def differs(told: Standing, flown: Standing) -> str:
+    """In what a trace and the flight differ, in words; empty if in nothing."""
+    rows = [
+        ("the gate", _gate(told), _gate(flown)),
+        ("ICAROUS is", _of(MODES, told.mode), _of(MODES, flown.mode)),
+        ("UxAS believes that", _belief(told), _belief(flown)),
+        ("UxAS's flying is", _flies(told.suspended), _flies(flown.suspended)),
+        ("the command is", _acts(told.accepted), _acts(flown.accepted)),
+        ("UxAS sends", _sends(told.sent), _sends(flown.sent)),
+    ]
+    return "; ".join(f"{what} {b}, in the trace {a}" for what, a, b in rows if a != b)
+
+
+def _gate(stands: Standing) -> str:
+    offers = ", offers control" if stands.offered else ""
+    return f"is {_of(NAMES, stands.owner)}'s{offers} in epoch {stands.epoch}"
+
+
+def _belief(stands: Standing) -> str:
+    return f"{NAMES[stands.active]} commands since epoch {stands.heard}"
+
+
+def _flies(suspended: bool) -> str:
+    return "suspended" if suspended else "not suspended"
+
+
+def _acts(accepted: bool) -> str:
+    return "flown" if accepted else "not flown"
+
+
+def _sends(epoch: int) -> str:
+    return {NOTHING: "no command"}.get(epoch, f"a command of epoch {epoch}")
+
+
+def _of(names: Sequence[str], code: int) -> str:
+    return dict(enumerate(names)).get(code, f"unknown code {code}")

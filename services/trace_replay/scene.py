@@ -1,0 +1,60 @@
+"""The flight on which traces are played: one vehicle on a long way north, and an aircraft that meets it at will."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+
+from cratous.services.flight.dynamics import AirState
+from cratous.spec.mission import (
+    Change,
+    Daa,
+    Frame,
+    Mission,
+    Position,
+    Task,
+    TaskKind,
+    Vehicle,
+    WellClear,
+)
+from cratous.spec.mission.changes import WIND, WindChange
+
+VEHICLE = 1
+INTRUDER = 2
+NEAR_M = 400.0
+"""So far ahead comes who is met: within the volume as predicted, and too near for any waiting."""
+BREEZE_M_S = 0.1
+
+
+@cache
+def mission() -> Mission:
+    """One protected vehicle, at its greatest speed, so that every breeze counts; its only task is 100 km ahead."""
+    start = Position(0.0, 0.0, 300.0)
+    bank = math.radians(30)
+    vehicle = Vehicle(VEHICLE, "own", start, 0.0, 22.0, 15.0, 22.0, bank, 5.0, True)
+    far = Position(100_000.0, 0.0, 300.0)
+    task = Task(1, TaskKind.MUST_FLY, "far", (far,), eligible=(VEHICLE,))
+    daa = Daa(WellClear(150.0, 30.0, 15.0, 0.0))
+    frame = Frame(37.1, -76.4)
+    return Mission(
+        "trace", "the scene of a trace", frame, (vehicle,), (task,), daa, instances=(VEHICLE,)
+    )
+
+
+def with_breeze(known: Mission, now_ms: int) -> tuple[Mission, Change]:
+    """The mission with a breeze that begins now, another one than before: UxAS plans anew for it."""
+    strength = BREEZE_M_S * (1 + len(known.changes) % 2)
+    change = WindChange(now_ms, WIND, north_m_s=strength)
+    return replace(known, changes=(*known.changes, change)), change
+
+
+def met(air: AirState) -> AirState:
+    """An aircraft that comes towards this one, head on, at its height and speed."""
+    north_m = air.position.north_m + NEAR_M * math.cos(air.heading_rad)
+    east_m = air.position.east_m + NEAR_M * math.sin(air.heading_rad)
+    return air._replace(
+        position=Position(north_m, east_m, air.position.alt_m),
+        heading_rad=math.remainder(air.heading_rad + math.pi, 2 * math.pi),
+        climb_m_s=0.0,
+    )

@@ -1,0 +1,153 @@
+"""Vehicles of ours know each other's ways: what is told of them, and how they are predicted along it."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import pytest
+from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME
+
+from cratous.bridge.text_protocol import (
+    HardReset,
+    Message,
+    SoftReset,
+    VelocityOfAnother,
+    WayOfAnother,
+)
+from cratous.core.authority.gate import Gate
+from cratous.core.avoidance.manoeuvre import way_along
+from cratous.core.avoidance.prediction import Intruder, Piece, first_violation_s, later, meetings
+from cratous.core.permit.remainder import hold_at, hold_permits, way_permits
+from cratous.services.flight.link_lines import way_of_another
+from cratous.services.icarous.ending import cylinder
+from cratous.services.icarous.inbox import Told, hear
+from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.others import with_ways
+from cratous.spec.mission import Daa, Position, Velocity
+
+DAA = Daa(VOLUME, buffer=1.25)
+CORNER = tuple(Position(n, e, 300.0) for n, e in ((2000.0, -600.0), (2000.0, 0.0), (5000.0, 0.0)))
+"""East, and at 0 to the north."""
+EAST = Intruder(2, Position(2000.0, -500.0, 300.0), Velocity(0.0, 20.0, 0.0), True)
+
+
+def heard(lines: list[Message], told: Told | None = None) -> Told:
+    told = told or Told()
+    for line in lines:
+        told = hear(told, line, PROJECTION, 0)
+    return told
+
+
+def reckoned(other: Intruder, told: Told) -> Intruder:
+    sensed = Sensed(0, NORTH, ABILITY, (other,), Gate(0, 0, False))
+    _, (one,) = with_ways((), told, sensed, DAA, 0.5)
+    return one
+
+
+TOLD = Told(others=((2, CORNER),))
+
+
+def test_a_way_that_is_told_is_known_once_it_is_whole() -> None:
+    lines = way_of_another(2, CORNER, PROJECTION)
+    told = heard(lines)
+    for place, meant in zip(told.way_of(2), CORNER, strict=True):
+        assert math.dist(place, meant) < 0.01
+    assert told.way_of(3) == ()
+    assert heard(lines[:2], told).way_of(2) == ()
+    assert heard([lines[0], lines[2]], told).way_of(2) == ()
+    assert heard(way_of_another(2, (), PROJECTION), told).way_of(2) == ()
+    assert heard(way_of_another(3, (), PROJECTION), told) == told
+    assert heard([HardReset()], told).way_of(2) == ()
+    assert heard([SoftReset()], told).way_of(2) == told.way_of(2)
+
+
+def test_lines_of_two_vehicles_do_not_mix() -> None:
+    lines = way_of_another(2, CORNER, PROJECTION)
+    other = WayOfAnother(3, 3, 45.0, -120.0, 300.0, 1)
+    assert heard([lines[0], other, *lines[1:]]).others == ()
+
+
+def test_one_that_keeps_to_its_way_is_predicted_round_the_corner() -> None:
+    one = reckoned(EAST, TOLD)
+    assert [piece.velocity for piece in one.way] == [(0, 20, 0), (20, 0, 0)]
+    assert later(one, 25.0).position == Position(2000.0, 0.0, 300.0)
+    assert later(one, 35.0).position == Position(2200.0, 0.0, 300.0)
+    assert later(one, 35.0).way[0].start_s == 0.0
+
+
+@pytest.mark.parametrize(
+    ("off", "kept"), [((18.7, 0), True), ((18.8, 0), False), ((0, 3.7), True), ((0, 3.8), False)]
+)
+def test_one_that_leaves_its_way_is_predicted_straight_on(
+    off: tuple[float, float], kept: bool
+) -> None:
+    """Half of what the buffer leaves: 18.75 m aside, 3.75 m in height."""
+    place = EAST.position._replace(north_m=2000.0 + off[0], alt_m=300.0 + off[1])
+    assert bool(reckoned(EAST._replace(position=place), TOLD).way) is kept
+
+
+def test_where_it_is_on_its_way_is_not_looked_for_far_ahead() -> None:
+    """The way comes by the same place again: it is there the first time."""
+    loop = (
+        *CORNER[:2],
+        Position(2500.0, -300.0, 300.0),
+        CORNER[0],
+        Position(2000.0, -100.0, 300.0),
+    )
+    one = reckoned(EAST, Told(others=((2, loop),)))
+    assert len(one.way) == 4
+
+
+def test_what_is_told_decides_whether_a_loss_is_predicted() -> None:
+    """It would cross the own way north, and turns north before it."""
+    ahead = way_along(NORTH, (Position(5000.0, 300.0, 300.0),), 300.0).pieces
+    places = ((2000.0, -1800.0), (2000.0, -600.0), (5000.0, -600.0))
+    way = tuple(Position(*place, 300.0) for place in places)
+    straight = Intruder(2, way[0], Velocity(0.0, 20.0, 0.0))
+    told = reckoned(straight, Told(others=((2, way),)))
+    assert first_violation_s(ahead, straight, VOLUME) is not None
+    assert not way_permits(ahead, straight, VOLUME)
+    assert first_violation_s(ahead, told, VOLUME) is None
+    assert way_permits(ahead, told, VOLUME)
+
+
+def test_after_its_way_it_is_within_a_circle_about_the_end() -> None:
+    end = Position(2000.0, 0.0, 300.0)
+    one = reckoned(EAST, Told(others=((2, (CORNER[0], end)),)))
+    assert later(one, 100.0) == one._replace(position=end, velocity=Velocity(0, 0, 0), way=())
+    small = cylinder(50.0, 30.0)
+    for off_m, clear in ((60.0 + one.hold_m, True), (40.0 + one.hold_m, False)):
+        hold = hold_at(end._replace(north_m=2000.0 + off_m), 30.0, 90.0)
+        assert hold_permits(hold, one, small, 0.0, 0.0) is clear
+        assert (first_violation_s((hold,), one, small) is None) is clear
+
+
+def test_no_instant_is_left_out_where_ways_are_cut() -> None:
+    one = reckoned(EAST, TOLD)
+    own = tuple(
+        Piece(7.0 * k, 7.0, Position(150.0 * k, 0, 300), Velocity(21, 0, 0)) for k in range(40)
+    )
+    runs = list(meetings(own, one))
+    parts = [piece for run, _ in runs for piece in run]
+    assert (parts[0].start_s, parts[-1].start_s + parts[-1].duration_s) == (0.0, 280.0)
+    for before, behind in pairwise(parts):
+        assert before.start_s + before.duration_s == pytest.approx(behind.start_s, abs=1e-9)
+    for run, straight_on in runs:
+        middle = run[0].start_s + run[0].duration_s / 2
+        assert later(straight_on, middle).position == pytest.approx(later(one, middle).position)
+
+
+@pytest.mark.parametrize(("was_deg", "turns"), [(85, True), (90, True), (95, False), (None, True)])
+def test_one_that_is_steered_is_predicted_to_turn_there(was_deg: float | None, turns: bool) -> None:
+    """To the south, from the east. From where it would have turned away the last time it is taken to fly straight on."""
+    told = heard([*way_of_another(2, CORNER, PROJECTION), VelocityOfAnother(2, -20.0, 0.0, 0.0)])
+    assert told.way_of(2) == ()
+    sensed = Sensed(0, NORTH, ABILITY, (EAST,), Gate(0, 0, False))
+    before = () if was_deg is None else ((2, math.radians(was_deg)),)
+    _, (one,) = with_ways((), told, sensed, DAA, 0.5, before)
+    assert bool(one.way) is turns
+    if turns:
+        assert one.way[-1].velocity == pytest.approx((-20.0, 0.0, 0.0))
+        assert one.way[0].velocity.east_m_s > 19.0
+    assert heard(way_of_another(2, CORNER, PROJECTION), told).steered == ()

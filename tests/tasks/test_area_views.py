@@ -1,0 +1,134 @@
+"""From where an area is seen whose task leaves that open: tilted along the lanes, as far as is sharp enough."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+from task_tools import FIELD, area, keep_out, options, vehicle
+
+from cratous.core.tasks.sweep import swath
+from cratous.services.mission.sensor import sample_distance_m
+from cratous.services.planning.area_views import best_view, brought_view
+from cratous.services.planning.targets import Angles, flown_view, target_from
+from cratous.spec.mission import Camera, Position, View
+
+DOWN = -math.pi / 2
+AROUND = Camera(hfov_rad=math.radians(45), pixels=1024)
+
+
+@pytest.mark.parametrize("degrees", [0, 7, 78, 120, 200, 258, 323])
+def test_a_swath_is_as_wide_and_deep_for_every_heading(degrees: int) -> None:
+    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    box = ((-80.0, -200.0), (120.0, -200.0), (120.0, 100.0), (-80.0, 100.0))
+    found = swath([(x * c - y * s, x * s + y * c) for x, y in box], math.radians(degrees), 50.0)
+    assert found == pytest.approx((-200.0, 100.0, -80.0, 120.0), abs=0.01)
+
+
+def test_a_swath_ends_where_the_footprint_is_too_short() -> None:
+    """A trapezoid, wide ahead: at its slanted sides it is 30 m long where it is wider by 30 m in 200."""
+    footprint = ((100.0, -150.0), (100.0, 150.0), (-100.0, 120.0), (-100.0, -120.0))
+    found = swath(footprint, 0.0, 30.0)
+    assert found == pytest.approx((-145.5, 145.5, 70.0, 100.0), abs=0.01)
+    assert swath(footprint, 0.0, 200.5) is None
+
+
+def test_lanes_are_fewer_with_a_view_along_them_there_and_back() -> None:
+    who = vehicle((AROUND,))
+    free, _ = options(area(), who)
+    down, _ = options(area(view=View(0.0, DOWN, True)), who)
+    assert min(o.duration_ms for o in free) < 0.8 * min(o.duration_ms for o in down)
+    for option in free:
+        assert option.coverage is not None
+        assert option.coverage >= 0.99
+        view = flown_view(area(), Angles(option.view_elevation_rad, option.view_azimuth_rad), ())
+        assert view is not None
+        assert view.inertial
+        assert math.radians(-75.01) < view.elevation_rad < math.radians(-44.99)
+        lane_rad = option.start.heading_rad
+        assert math.remainder(view.azimuth_rad - lane_rad, math.pi) == pytest.approx(0, abs=1e-6)
+
+
+@pytest.mark.parametrize("wanted_m", [0.3, 0.36, 0.45, 0.6])
+def test_a_tilted_view_is_as_sharp_as_the_task_asks(wanted_m: float) -> None:
+    """At 400 m above ground it is 0.32 m a pixel straight down: too coarse for the first without zooming."""
+    task, who = area(gsd_m=wanted_m), vehicle((replace(AROUND, zoom_rad=(math.radians(22),)),))
+    found, _ = options(task, who)
+    assert found
+    for option in found:
+        view = brought_view(task, option.view_elevation_rad, option.view_azimuth_rad)
+        field = math.radians(22) if wanted_m < 0.32 else AROUND.hfov_rad
+        seen_m = sample_distance_m(replace(AROUND, hfov_rad=field), view, 400.0)
+        assert seen_m <= wanted_m + 1e-9
+
+
+def _best(task_view_m: dict[float, float], camera: Camera = AROUND) -> float:
+    """The tilt that is taken if a pass is so wide with each [deg, m]; a square of 1000 m."""
+    square = ((0.0, 0.0), (1000.0, 0.0), (1000.0, 1000.0), (0.0, 1000.0))
+
+    def width_of(view: View) -> float:
+        return task_view_m.get(round(math.degrees(view.elevation_rad)), 0.0)
+
+    view = best_view(area(), camera, 400.0, 0.5, width_of, square)
+    return -90.0 if view is None else round(math.degrees(view.elevation_rad))
+
+
+def test_of_views_that_need_as_few_lanes_the_steepest_is_taken() -> None:
+    assert _best({-90: 300.0, -75: 340.0, -60: 480.0, -55: 500.0, -45: 520.0}) == -60
+    assert _best({-90: 1500.0, -60: 2000.0}) == -90
+    assert _best({-60: 300.0, -45: 700.0}) == -45, "straight down covers nothing"
+    assert _best({-90: 300.0, -30: 5000.0}) == -90, (
+        "shallower than 45 degrees only for a sample distance"
+    )
+
+
+def test_a_camera_that_cannot_look_back_or_up_is_not_tilted() -> None:
+    widths = {-90: 300.0, -60: 2000.0}
+    assert _best(widths, replace(AROUND, min_azimuth_rad=-1.0, max_azimuth_rad=1.0)) == -90
+    assert _best(widths, replace(AROUND, max_elevation_rad=math.radians(-70))) == -90
+
+
+def test_a_camera_that_cannot_look_straight_down_looks_along_the_lanes_there_and_back() -> None:
+    """Ahead of the aircraft alone each turn would be longer by how far it looks."""
+    shy = replace(AROUND, min_elevation_rad=math.radians(-45), max_elevation_rad=0.0)
+    assert _best({-90: 400.0, -45: 400.0}, shy) == -45
+    found, _ = options(area(), vehicle((shy,)))
+    ahead, _ = options(area(), vehicle((replace(shy, max_azimuth_rad=2.0),)))
+    assert min(o.duration_ms for o in found) < 0.9 * min(o.duration_ms for o in ahead)
+
+
+def test_ways_that_zones_forbid_are_not_counted_among_those_offered() -> None:
+    free, _ = options(area(), vehicle((AROUND,)))
+    first, second = free[0].path[:2]
+    n, e = (first.north_m + second.north_m) / 2, (first.east_m + second.east_m) / 2
+    found, dropped = options(
+        area(), vehicle((AROUND,)), zones=(keep_out(n - 40, e - 40, n + 40, e + 40),)
+    )
+    assert free[0].label in {one.label for one in dropped if "breaks" in one.reason}
+    assert len(found) == len(free) == 4
+
+
+def test_where_zones_leave_no_room_beside_the_area_it_is_seen_from_above() -> None:
+    north, east = (max(corner[k] for corner in FIELD) for k in (0, 1))
+    walls = (
+        keep_out(north + 300.0, -3000.0, north + 5000.0, 6000.0),
+        replace(keep_out(-5000.0, -3000.0, -300.0, 6000.0), id=2),
+        replace(keep_out(-5000.0, east + 300.0, 9000.0, east + 5000.0), id=3),
+        replace(keep_out(-5000.0, -6000.0, 9000.0, -300.0), id=4),
+    )
+    found, dropped = options(area(), vehicle((AROUND,)), zones=walls)
+    assert found
+    assert any("deg down" in one.label for one in dropped)
+
+
+def test_the_camera_looks_where_the_option_was_planned() -> None:
+    made_for, here = Angles(math.radians(-45), math.radians(90)), Position(100.0, 200.0, 400.0)
+    for heading in (0.0, 1.0, 4.0):
+        there = target_from(here, heading, area(), made_for, (AROUND,), 0.0)
+        assert there == pytest.approx((100.0, 600.0, 0.0)), "from north, whatever the heading"
+    below = target_from(here, 0.0, area(), Angles(DOWN, 0.0), (AROUND,), 0.0)
+    assert below == pytest.approx((100.0, 200.0, 0.0))
+    asked = area(view=View(0.0, math.radians(-45), True))
+    there = target_from(here, 1.0, asked, made_for, (AROUND,), 0.0)
+    assert there == pytest.approx((500.0, 200.0, 0.0)), "the task's view, where it asks for one"
