@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from cratous.bridge.text_protocol import (
     Attitude,
     FenceDone,
     FenceVertex,
+    LinesMissing,
     Message,
     OwnPosition,
     RouteEnd,
@@ -20,6 +22,7 @@ from cratous.bridge.text_protocol import (
     VelocityOfAnother,
     WayOfAnother,
     Waypoint,
+    WaypointReached,
 )
 from cratous.core.authority.gate import UXAS, Gate
 from cratous.services.flight.dynamics import AirState
@@ -197,3 +200,15 @@ def traffic(aircraft: Aircraft, places: Places) -> dict[int, Traffic]:
             index=vid,
         )
     return lines
+
+
+def between(lines: Sequence[Message], asked: LinesMissing, number: str) -> list[Message]:
+    """The lines from the first to the last that is asked for."""
+    if len(lines) != asked.total:
+        return list(lines)
+    return [m for m in lines if getattr(m, number) in range(asked.first, asked.last + 1)]
+
+
+def onward(way: Sequence[Message], reached: int) -> list[Message]:
+    """The way told last, and the waypoints of it that are reached."""
+    return [*way, *(WaypointReached(k) for k in range(reached))]
