@@ -116,6 +116,7 @@ class Bridge:
         self._uxas: dict[int, _End] = {}
         self._icarous: dict[int, _End] = {}
         self._links: list[Link] = []
+        self._encoded: dict[int, tuple[Message, bytes]] = {}
         self._listener = Listener(host, port)
         try:
             self._open(sorted(vehicle_ids))
@@ -139,6 +140,7 @@ class Bridge:
     def exchange(self) -> list[Delivered]:
         """All that was queued, delivered; sorted by vehicle, direction (down first), sequence."""
         pump(self._links, self._watchdog_s)
+        self._encoded.clear()
         delivered = []
         for vehicle_id in self._icarous:
             for direction, ends in (
@@ -204,7 +206,11 @@ class Bridge:
                 expected=direction.value,
                 got=direction_of(message).value,
             )
-        data = encode(message, limits=self._limits)
+        # what many are told is one object, encoded once
+        before, data = self._encoded.get(id(message), (None, b""))
+        if before is not message:
+            data = encode(message, limits=self._limits)
+            self._encoded[id(message)] = message, data
         if not self._hand_over(vehicle_id, direction, data):
             return False
         count = self.counters[direction]

@@ -18,7 +18,6 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from cratous.bridge import lmcp
 from cratous.bridge.text_protocol import (
     Attitude,
     HardReset,
@@ -61,7 +60,7 @@ from cratous.services.flight.messages import (
     Watch,
     ZonesKnown,
 )
-from cratous.services.flight.notices import mode_refused
+from cratous.services.flight.notices import bridge_status, heartbeat, mode_refused
 from cratous.services.mission.frames import Projection
 from cratous.services.pipeline.status import status
 from cratous.spec.authority.link_end import (
@@ -193,10 +192,8 @@ class UxasEnd:
             peer = replace(peer, again=tuple({**dict(peer.again), key: times + 1}.items()))
         else:
             note = f"{text} are missing after they were sent again {times} times: not in force"
-            out = (
-                *out,
-                Say(status(0, "Error", [("reason", f"vehicle {vehicle_id}: {note}")]), NAME),
-            )
+            error = status(0, "Error", [("reason", f"vehicle {vehicle_id}: {note}")])
+            out = (*out, Say(error, NAME))
         return state.with_peer(peer), (*out, _status(peer, peer.end.alive, now_ms, note))
 
     def _again_lines(self, state: State, peer: Peer, line: LinesMissing) -> list[Message]:
@@ -206,12 +203,12 @@ class UxasEnd:
                 return []
             zone = state.zones[line.number - 1]
             *corners, done = link_lines.fence(zone, line.number, self.projection)
-            return [*_between(corners, line, "vertex"), done]
+            return [*link_lines.between(corners, line, "vertex"), done]
         points: list[Message] = [m for m in peer.way if isinstance(m, Waypoint)]
         if len(points) != line.total:
-            return _way_on(peer)
+            return link_lines.onward(peer.way, peer.reached)
         reached = [WaypointReached(k) for k in range(peer.reached)]
-        return [*_between(points, line, "index"), StartMission(), *reached]
+        return [*link_lines.between(points, line, "index"), StartMission(), *reached]
 
     def _of_one(self, peer: Peer, message: ToOne) -> tuple[Peer, tuple[FromLinkEnd, ...]]:
         """A message about one vehicle: nothing else is touched."""
@@ -226,10 +223,8 @@ class UxasEnd:
                 return peer, _down(peer, [link_lines.reset_to(position, self.projection)])
             case Heard(_, now_ms, line):
                 return _heard(peer, line, now_ms)
-            case Proposed(_, number, way, speed_m_s):
-                return peer, _down(
-                    peer, link_lines.proposal(way, speed_m_s, number, self.projection)
-                )
+            case Proposed(_, number, way, speed):
+                return peer, _down(peer, link_lines.proposal(way, speed, number, self.projection))
             case GateIs(_, gate):
                 return replace(peer, gate=gate), ()
             case Unreadable(_, now_ms, text):
@@ -252,7 +247,12 @@ class UxasEnd:
                 state = replace(state, peers=(*state.peers, peer))
             others = _of_others(state, vid, self.projection)
             plans = [UxasPlans()] if self.live else []
-            told = [*plans, *self._fences(state.zones, 0), *_way_on(peer), *others]
+            told = [
+                *plans,
+                *self._fences(state.zones, 0),
+                *link_lines.onward(peer.way, peer.reached),
+                *others,
+            ]
             out += _down(peer, told)
             out.append(_status(peer, True, now_ms, "connected again" if old else "connected"))
         return state, tuple(out)
@@ -264,7 +264,7 @@ class UxasEnd:
         out: list[FromLinkEnd] = []
         for peer in state.peers:
             others = _of_others(state, peer.vehicle_id, self.projection)
-            anew = [HardReset(), *fences, *_way_on(peer), *others]
+            anew = [HardReset(), *fences, *link_lines.onward(peer.way, peer.reached), *others]
             out += _down(peer, fences if more else anew)
             state = state.with_peer(replace(peer, again=()))
         return replace(state, zones=zones), tuple(out)
@@ -294,10 +294,11 @@ class UxasEnd:
 
     def _beat(self, state: State, beat: Beat) -> Step:
         """POSTN, ATTUD and OBJCT to every instance; what to publish of it."""
-        places = link_lines.places_of(beat.aircraft, self.projection)
+        places, aircraft = link_lines.places_of(beat.aircraft, self.projection), beat.aircraft
+        lines = link_lines.traffic(aircraft, places)
         peers, out = list[Peer](), list[FromLinkEnd]()
         for peer in state.peers:
-            told = link_lines.states(peer.vehicle_id, beat.aircraft, places, beat.now_ms)
+            told = link_lines.states(peer.vehicle_id, aircraft, places, beat.now_ms, lines=lines)
             count = peer.down + peer.open
             peers.append(replace(peer, down=count))
             out += _down(peer, told)
@@ -322,18 +323,6 @@ def _of_others(state: State, vehicle_id: int, projection: Projection) -> list[Me
     known = {p.vehicle_id: p.steered or p.flies for p in state.peers if p.vehicle_id != vehicle_id}
     told = (link_lines.way_of_another(vid, how, projection) for vid, how in known.items() if how)
     return [line for lines in told for line in lines]
-
-
-def _between(lines: Sequence[Message], asked: LinesMissing, number: str) -> list[Message]:
-    """The lines from the first to the last that is asked for."""
-    if len(lines) != asked.total:
-        return list(lines)
-    return [m for m in lines if getattr(m, number) in range(asked.first, asked.last + 1)]
-
-
-def _way_on(peer: Peer) -> list[Message]:
-    """The way told last, and the waypoints of it that are reached."""
-    return [*peer.way, *(WaypointReached(k) for k in range(peer.reached))]
 
 
 def _flown(peer: Peer, s_m: float) -> OfOne:
@@ -403,16 +392,8 @@ def _down(peer: Peer, told: Sequence[Message]) -> tuple[Down, ...]:
 
 
 def _status(peer: Peer, alive: bool, now_ms: int, note: str) -> Say:
-    body = lmcp.new("BridgeStatus", VehicleID=peer.vehicle_id, Time=now_ms, Alive=alive, Note=note)
-    return Say(body, NAME)
+    return Say(bridge_status(peer.vehicle_id, alive, now_ms, note), NAME)
 
 
 def _heartbeat(peer: Peer, now_ms: int, direction: str, sequence: int) -> Say:
-    body = lmcp.new(
-        "Heartbeat",
-        VehicleID=peer.vehicle_id,
-        Time=now_ms,
-        Direction=direction,
-        Sequence=sequence,
-    )
-    return Say(body, NAME)
+    return Say(heartbeat(peer.vehicle_id, now_ms, direction, sequence), NAME)

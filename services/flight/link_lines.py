@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from cratous.bridge.text_protocol import (
     Attitude,
     FenceDone,
     FenceVertex,
+    LinesMissing,
     Message,
     OwnPosition,
     RouteEnd,
@@ -20,6 +22,7 @@ from cratous.bridge.text_protocol import (
     VelocityOfAnother,
     WayOfAnother,
     Waypoint,
+    WaypointReached,
 )
 from cratous.core.authority.gate import UXAS, Gate
 from cratous.services.flight.dynamics import AirState
@@ -155,8 +158,11 @@ def states(
     places: Places,
     now_ms: int,
     attitude: Attitude | None = None,
+    lines: dict[int, Traffic] | None = None,
 ) -> list[Message]:
-    """POSTN and ATTUD of a vehicle, and an OBJCT of each other aircraft. attitude: None for `climbing`."""
+    """POSTN and ATTUD of a vehicle, and an OBJCT of each other aircraft. attitude: None for `climbing`; lines: of
+    `traffic`, where many are told."""
+    others = traffic(aircraft, places) if lines is None else lines
     out: list[Message] = []
     for vid, s in aircraft:
         v, (lat, lon) = s.velocity, places[vid]
@@ -174,16 +180,35 @@ def states(
             )
             out[:0] = [own, attitude or climbing(s)]
         else:
-            out.append(
-                Traffic(
-                    what="TRAFFIC",
-                    lat_deg=lat,
-                    long_deg=lon,
-                    alt_m=s.position.alt_m,
-                    north_mps=v.north_m_s,
-                    east_mps=v.east_m_s,
-                    down_mps=v.down_m_s,
-                    index=vid,
-                )
-            )
+            out.append(others[vid])
     return out
+
+
+def traffic(aircraft: Aircraft, places: Places) -> dict[int, Traffic]:
+    """An OBJCT of each aircraft, one object for all who are told of it."""
+    lines = {}
+    for vid, s in aircraft:
+        v, (lat, lon) = s.velocity, places[vid]
+        lines[vid] = Traffic(
+            what="TRAFFIC",
+            lat_deg=lat,
+            long_deg=lon,
+            alt_m=s.position.alt_m,
+            north_mps=v.north_m_s,
+            east_mps=v.east_m_s,
+            down_mps=v.down_m_s,
+            index=vid,
+        )
+    return lines
+
+
+def between(lines: Sequence[Message], asked: LinesMissing, number: str) -> list[Message]:
+    """The lines from the first to the last that is asked for."""
+    if len(lines) != asked.total:
+        return list(lines)
+    return [m for m in lines if getattr(m, number) in range(asked.first, asked.last + 1)]
+
+
+def onward(way: Sequence[Message], reached: int) -> list[Message]:
+    """The way told last, and the waypoints of it that are reached."""
+    return [*way, *(WaypointReached(k) for k in range(reached))]

@@ -116,3 +116,15 @@ def mission_change(now_ms: int, what: str, answer: str) -> Any:
 def mission_end(now_ms: int, outcome: str) -> Any:
     """That the flight has ended and how, as a `MissionEnd`."""
     return lmcp.new("MissionEnd", Time=now_ms, Outcome=outcome)
+
+
+def heartbeat(vehicle_id: int, now_ms: int, direction: str, sequence: int) -> Any:
+    """A heartbeat of the bridge, Down to ICAROUS or Up from it."""
+    return lmcp.new(
+        "Heartbeat", VehicleID=vehicle_id, Time=now_ms, Direction=direction, Sequence=sequence
+    )
+
+
+def bridge_status(vehicle_id: int, alive: bool, now_ms: int, note: str) -> Any:
+    """Whether the instance of a vehicle is heard, and why that is told."""
+    return lmcp.new("BridgeStatus", VehicleID=vehicle_id, Time=now_ms, Alive=alive, Note=note)

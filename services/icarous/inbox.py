@@ -52,7 +52,10 @@ def hear(
     told: Told, message: Message, projection: Projection, now_ms: int, original: bool = False
 ) -> Told:
     """The same after one more line, which has come now [ms]. original: from a UxAS of the original's."""
-    return replace(_hear(told, message, projection, original), heard_ms=now_ms)
+    after = _hear(told, message, projection, original)
+    if after is told and told.heard_ms == now_ms:  # most lines: other aircraft, at one heartbeat
+        return told
+    return replace(after, heard_ms=now_ms)
 
 
 def _hear(told: Told, message: Message, projection: Projection, original: bool) -> Told:

@@ -85,9 +85,11 @@ class Instance:
             case Line(now_ms, line):
                 config = self.config
                 told = hear(state.told, line, config.projection, now_ms, config.original)
+                asked = asking.heard(state.asking, line, config.projection)
+                if told is state.told and asked is state.asking:
+                    return state, ()
                 # an index into the waypoints of another way says nothing
                 goal = state.goal if told.waypoints is state.told.waypoints else 0
-                asked = asking.heard(state.asking, line, config.projection)
                 return replace(state, told=told, goal=goal, asking=asked), ()
             case Sensed():
                 return self._beat(state, message)
