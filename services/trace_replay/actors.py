@@ -88,7 +88,7 @@ class Actors(Flight):
         bus = Bus(lmcp.full_names)
         self.sent: list[Held] = []
         self.reports = {UNTOUCHED}
-        self.changes, self.told_epoch = 0, UNTOUCHED.epoch
+        self.begun: set[int] = set()  # epochs after the first
         self.last_of_uxas, self.dropped, self.is_met = NOTHING, False, False
         plan, bridge = make_plan(mission), _HoldingBridge((VEHICLE,))
         super().__init__(mission, plan, bus, bridge, (VEHICLE,))
@@ -111,7 +111,7 @@ class Actors(Flight):
         self.bus.publish(body, source)
         if isinstance(body, self.gated):
             sender = ICAROUS if body.Sender.name == SENDERS[ICAROUS] else UXAS
-            self.sent.append(Held(sender, body.Epoch, self.changes, body))
+            self.sent.append(Held(sender, body.Epoch, len(self.begun), body))
             if sender == UXAS:
                 self.last_of_uxas = body.Epoch
         elif type(body).__name__ == "CommandDropped":
@@ -120,8 +120,7 @@ class Actors(Flight):
     def _link(self, message: ToLinkEnd) -> None:
         if isinstance(message, GateIs):
             self.reports.add(message.gate)
-            self.changes += message.gate.epoch != self.told_epoch
-            self.told_epoch = message.gate.epoch
+            self.begun.add(message.gate.epoch)
         else:
             super()._link(message)
 
