@@ -16,6 +16,7 @@ from cratous.bridge.text_protocol import (
     Waypoint,
     WaypointReached,
 )
+from cratous.core.authority.timeliness import lasted
 from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Position, Velocity, Zone, ZoneKind
 
@@ -53,8 +54,8 @@ def hear(
 ) -> Told:
     """The same after one more line, which has come now [ms]. original: from a UxAS of the original's."""
     after = _hear(told, message, projection, original)
-    if after is told and told.heard_ms == now_ms:  # most lines: other aircraft, at one heartbeat
-        return told
+    if after is told and not lasted(told.heard_ms, now_ms, 1):
+        return told  # most lines: other aircraft, at one heartbeat
     return replace(after, heard_ms=now_ms)
 
 
