@@ -37,10 +37,11 @@ from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Steer, Up, Wish
 from cratous.services.mission.frames import Projection
+from cratous.services.planning.flyers import MOMENT_MS, straight
 from cratous.spec.authority.link_end import TAKE_BACK
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import FaultySimulation, Mission, Position, TaskKind, Vehicle, Velocity
-from cratous.spec.mission.plan import PlanItem
+from cratous.spec.mission.plan import PlanItem, Pose
 
 COMPLETE, LIMIT = "complete", "limit"
 """How it ended: one of ours has passed the end of its way, or the time was over."""
@@ -169,10 +170,14 @@ class _Ours:
 
     def settle(self, now_ms: int) -> bool:
         """Go on to the next point if one is passed; whether the last one has been."""
-        while not self._chain.suspended and self._chain.item is not None:
+        while not self._chain.suspended and (item := self._chain.item) is not None:
             self._chain, at_ms = self._chain.measure(self.state.air, now_ms, self.node.dt_s)
             if at_ms is None:
                 break
+            if self._chain.phase is Phase.TRANSIT:
+                self._chain = self._chain.enter(Phase.TASK, Track(item.path), at_ms)
+                self._command(self.state.gate.epoch)
+                continue
             self._chain = replace(self._chain, k=self._chain.k + 1)
             if self._chain.item is not None:
                 self._go_on(at_ms)
@@ -257,7 +262,7 @@ class _Ours:
         back = self._routes.back(self._chain, self.state.air)
         if back is None:
             return False
-        self._chain = self._chain.enter(Phase.TRANSIT, back.track, now_ms)
+        self._chain = self._chain.enter(self._chain.phase, back.track, now_ms)
         self._tell_way()
         self._command(epoch)
         return True
@@ -282,12 +287,17 @@ class _Ours:
 
 
 def _items(vehicle: Vehicle, way: tuple[Position, ...]) -> tuple[PlanItem, ...]:
-    """The points of a way, each as a task that is done as soon as it is passed, in the direction from the point
-    before to the one after."""
+    """The points of a way, each as a task: straight through it, in the direction from the point before to the one
+    after."""
+    headings = [
+        math.atan2(beyond.east_m - here.east_m, beyond.north_m - here.north_m)
+        for here, beyond in zip(way, (*way[2:], way[-1]), strict=False)
+    ]
+    paths = [
+        straight("", Pose(*there, heading), MOMENT_MS, vehicle.speed_m_s).points
+        for there, heading in zip(way[1:], headings, strict=False)
+    ]
     return tuple(
-        PlanItem(
-            0, 0, vehicle.id, (), (there,), None, vehicle.speed_m_s, 0, 0, 0, 0, 0,
-            math.atan2(beyond.east_m - here.east_m, beyond.north_m - here.north_m),
-        )
-        for here, there, beyond in zip(way, way[1:], (*way[2:], way[-1]), strict=False)
-    )  # fmt: skip
+        PlanItem(0, 0, vehicle.id, (), path, None, vehicle.speed_m_s, 0, 0, 0, 0, 0, heading)
+        for path, heading in zip(paths, headings, strict=True)
+    )

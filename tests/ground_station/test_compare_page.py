@@ -42,20 +42,21 @@ def test_takeover_and_verdict_are_marked_and_a_click_moves_the_clock(page: Page)
     assert page.text("overall-b") == "violated"
     what, a, b = _cells(page, "G2 Well clear")
     assert what.endswith("different")
-    assert a == "95.0 s holds, 38.08 m"
+    assert a == "99.3 s holds, 70.54 m"
     assert b == "83.5 s violated, -148.9 m"
     what, a, b = _cells(page, "takeover of vehicle 2")
     assert what.endswith("only A")
-    assert a.startswith("21.5 s traffic: loss predicted in 57.2 s")
+    assert a.startswith("21.5 s traffic: loss predicted in 57.9 s")
     assert b == "–"
     for name, cell in (("takeover of vehicle 2", 1), ("G2 Well clear", 2)):
         button = f"{_row(page, name)}.children[{cell}].querySelector('button')"
         page.value(f"{button}.id = 'wanted-{cell}'")
         page.click(f"#wanted-{cell}")
         at = "00:00:21.5" if cell == 1 else "00:01:23.5"
-        assert page.text("clock") == f"{at} of 00:03:35.7"
+        assert page.text("clock") == f"{at} of 00:03:40.7"
         assert page.value(f"{_row(page, name)}.className") == "near"
-        assert "2 Merlin: ICAROUS since 21.5 s" in page.text("now-a")
+        under = "ICAROUS since 21.5 s" if cell == 1 else "UxAS"
+        assert f"2 Merlin: {under}" in page.text("now-a")
         assert page.text("now-b").endswith("2 Merlin: UxAS")
     assert page.value("location.hash").startswith("#t=83.5&rate=1")
 
@@ -74,8 +75,8 @@ def _orange(page: Page, name: str) -> int:
 
 
 def test_one_clock_moves_both_maps_and_says_which_flight_has_ended(page: Page) -> None:
-    page.value("location.hash = '#t=60&theme=light'")
-    page.until("document.getElementById('clock').textContent.startsWith('00:01:00.0')")
+    page.value("location.hash = '#t=34&theme=light'")
+    page.until("document.getElementById('clock').textContent.startsWith('00:00:34.0')")
     assert _orange(page, "map-a") > 100
     assert _orange(page, "map-b") == 0
     page.key("+")
@@ -86,7 +87,7 @@ def test_one_clock_moves_both_maps_and_says_which_flight_has_ended(page: Page) -
     page.key(" ")
     assert page.text("play") == "Pause"
     page.until("document.getElementById('play').textContent === 'Play'")
-    assert page.text("clock") == "00:03:35.7 of 00:03:35.7"
+    assert page.text("clock") == "00:03:40.7 of 00:03:40.7"
     assert page.text("now-b").endswith("the flight ended at 214.3 s")
     assert "ended" not in page.text("now-a")
     page.click("#altitude-b")

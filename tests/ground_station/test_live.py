@@ -84,7 +84,7 @@ def test_verdicts_so_far_say_when_and_are_unknown_unless_broken(live: Served) ->
     rows = {row["requirement"]: row for row in said["requirements"]}
     assert said["overall"] == "unknown"
     assert {row["verdict"] for row in rows.values()} == {"unknown"}
-    assert 38 < rows["G2"]["margin"] < 39  # the least distance was at 95 s
+    assert 70 < rows["G2"]["margin"] < 71  # the least distance was at 99.3 s
     assert any(row["item"] and row["verdict"] == "holds" for row in said["details"])  # of the plan
 
 

@@ -37,23 +37,23 @@ def test_an_address_opens_the_run_at_its_instant(crossing: Path, tmp_path: Path)
     """In the takeover, before it and after it."""
     with serving(crossing) as (_, port):
         url = f"http://127.0.0.1:{port}/"
-        during = dom(f"{url}#t=60&aircraft=2&units=aviation&theme=dark", tmp_path)
+        during = dom(f"{url}#t=30&aircraft=2&units=aviation&theme=dark", tmp_path)
         before = dom(f"{url}#t=21", tmp_path)
         after = dom(f"{url}#t=100", tmp_path)
     told = _authority(during, 2)
-    assert told.startswith("authority ICAROUS since 21.5 s: traffic: loss predicted in 57.2 s")
+    assert told.startswith("authority ICAROUS since 21.5 s: traffic: loss predicted in 57.9 s")
     assert "link alive" in told
     assert _authority(during, 1).startswith("authority UxAS")
     assert '<html lang="en" class="dark">' in during
-    assert re.search(r'<output id="clock">00:01:00\.0 of 00:03:35\.7</output>', during)
+    assert re.search(r'<output id="clock">00:00:30\.0 of 00:03:40\.7</output>', during)
     assert "984 ft" in _table(during, "aircraft")  # 300 m
     assert 'class="picked"' in _table(during, "aircraft")
     assert _authority(before, 2).startswith("authority UxAS")
     assert _authority(after, 2).startswith("authority UxAS")
     assert "300 m" in _table(after, "aircraft")
     (now,) = re.findall(r'<li class="now">(.*?)</li>', _table(during, "events"), re.DOTALL)
-    assert "task 1: active" in _text(now)
-    assert "38.08 m" in _table(during, "verdicts")
+    assert "ICAROUS takes over because of 1" in _text(now)
+    assert "70.54 m" in _table(during, "verdicts")
     assert '<span id="overall" class="holds">holds</span>' in during
 
 
