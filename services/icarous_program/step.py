@@ -150,9 +150,10 @@ class IcarousEnd:
         """A connection is open: what was seen on another one is forgotten, UxAS hears who commands.
 
         The waypoints and zones told before stay until UxAS tells them again, as it does on each
-        connection; epochs go on where they stand.
+        connection; epochs go on where they stand. Ways of others do not stay: it tells only those that it knows.
         """
-        state = replace(state, seen={}, now_ms=None, lost={})
+        instance = replace(state.instance, told=state.instance.told.alone())
+        state = replace(state, seen={}, now_ms=None, lost={}, instance=instance)
         return state, (Tell(mode_of(state.gate)),)
 
     def handle(self, state: State, line: Message) -> Step:

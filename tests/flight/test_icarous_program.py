@@ -205,3 +205,15 @@ def test_a_command_that_is_not_known_is_answered_over_the_wire(opened: list[Any]
                 uxas.sendall(b"COMND,typeDIVE,\n")
                 got += parser.feed(handshake.rest)
     assert got == [tp.Hello(1), tp.SetMode("PASSIVE", 0), tp.NotKnown("DIVE")]
+
+
+def test_how_others_fly_is_forgotten_on_a_new_connection() -> None:
+    """UxAS tells again what it knows; what it knows no more it does not tell."""
+    lat, lon = PROJECTION.to_geodetic(2000.0, 0.0)
+    told = [tp.WayOfAnother(2, 1, lat, lon, 300.0, 0), tp.VelocityOfAnother(3, 20.0, 0.0, 0.0)]
+    state, _ = tell(State(), *way(0, 1, total=2), *told)
+    assert state.instance.told.way_of(2)
+    assert state.instance.told.steered
+    state, _ = END.connected(state)
+    assert (state.instance.told.others, state.instance.told.steered) == ((), ())
+    assert state.instance.told.waypoints
