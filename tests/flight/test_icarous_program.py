@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import socket
 import time
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -18,10 +19,11 @@ from cratous.bridge.text_port import TextPort
 from cratous.bridge.text_protocol.handshake import ServerHandshake
 from cratous.core.authority.gate import ICAROUS, UXAS, Gate
 from cratous.services.flight.dynamics import Limits
+from cratous.services.icarous.asking import Asking
 from cratous.services.icarous.state import Config
 from cratous.services.icarous_program.program import Program
 from cratous.services.icarous_program.step import Craft, IcarousEnd, Note, Refuse, State, Tell
-from cratous.spec.mission import Daa
+from cratous.spec.mission import Daa, Position
 
 CRAFT = Craft(Config(1, Daa(VOLUME), PROJECTION, 500), Limits(15.0, 33.0, 0.52, 5.0), 60.0)
 END = IcarousEnd(CRAFT)
@@ -217,3 +219,16 @@ def test_how_others_fly_is_forgotten_on_a_new_connection() -> None:
     state, _ = END.connected(state)
     assert (state.instance.told.others, state.instance.told.steered) == ((), ())
     assert state.instance.told.waypoints
+
+
+def test_an_answer_of_a_former_connection_is_not_handed_back_onto() -> None:
+    """UxAS keeps its answers as long as the connection: after that their numbers mean the direct way."""
+    state, _ = tell(State(), tp.UxasPlans())
+    asking = state.instance.asking._replace(
+        number=7, answered=7, asked_ms=0, proposal=(Position(2000.0, 0.0, 300.0),)
+    )
+    state = replace(state, instance=replace(state.instance, asking=asking))
+    state, _ = END.connected(state)
+    assert state.instance.asking == Asking(number=7)
+    state, _ = tell(state, tp.UxasPlans(), tp.RouteStart(7), tp.RouteEnd(7))
+    assert (state.instance.asking.allowed, state.instance.asking.proposal) == (True, ())
