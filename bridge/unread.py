@@ -5,8 +5,10 @@ The system is asked (sock_diag(7), which Linux has): what a window tells of it i
 
 from __future__ import annotations
 
+import fcntl
 import socket
 import struct
+import termios
 from contextlib import suppress
 
 _NETLINK_SOCK_DIAG = 4
@@ -21,13 +23,15 @@ _QUEUE = _HEADER.size + 4 + _ADDRESSES.size + len(_ANY) + 4  # where the answer 
 
 
 def unread_by_peer(link: socket.socket) -> int | None:
-    """Bytes that have come to the other end of a connection and that its program has not read; None where the system
+    """Bytes sent to the other end of a connection, arrived or not, that its program has not read; None where the system
     does not tell: another machine, another system than Linux, IPv6, or an end that is gone."""
     with suppress(OSError, ValueError):
         here, there = link.getsockname(), link.getpeername()
         if link.family != socket.AF_INET:
             return None
         ends = (socket.inet_aton(there[0]), socket.inet_aton(here[0]))
+        # first, since what arrives in between may count twice but must not be missed
+        on_its_way = struct.unpack("=i", fcntl.ioctl(link, termios.TIOCOUTQ, bytes(4)))[0]
         body = _ASKED.pack(socket.AF_INET, socket.IPPROTO_TCP, 0, _ALL_STATES)
         body += _ADDRESSES.pack(there[1], here[1], *ends) + _ANY
         header = _HEADER.pack(_HEADER.size + len(body), _BY_FAMILY, _REQUEST, 1, 0)
@@ -38,5 +42,5 @@ def unread_by_peer(link: socket.socket) -> int | None:
             diag.send(header + body)
             answer = diag.recv(4096)
         if _HEADER.unpack_from(answer)[1] == _BY_FAMILY:
-            return int(struct.unpack_from("=I", answer, _QUEUE)[0])
+            return int(struct.unpack_from("=I", answer, _QUEUE)[0]) + int(on_its_way)
     return None

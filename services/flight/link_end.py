@@ -155,15 +155,28 @@ class UxasEnd:
             case Beat():
                 return self._beat(state, message)
             case Watch(now_ms):
-                return _watch(state, now_ms)
+                return self._watch(state, now_ms)
         peer = state.peer(message.vehicle_id)
         if peer is None:
             return state, ()
-        after, out = self._of_one(peer, message)
+        return self._stepped(state, peer, self._of_one(peer, message))
+
+    def _stepped(self, state: State, peer: Peer, step: OfOne) -> Step:
+        """The state after a step of one peer. That it flies otherwise comes first: answers may change it again."""
+        after, out = step
         state = state.with_peer(after)
         if (after.flies, after.steered) != (peer.flies, peer.steered):
-            out = (*out, *_to_others(state, after, self.projection))
+            out = (*_to_others(state, after, self.projection), *out)
         return state, out
+
+    def _watch(self, state: State, now_ms: int) -> Step:
+        """Say so when an instance has fallen silent."""
+        out: list[FromLinkEnd] = []
+        for peer in state.peers:
+            note = f"silent since {peer.heard_ms} ms"
+            state, said = self._stepped(state, peer, _sign(peer, PASSED, now_ms, note))
+            out += said
+        return state, tuple(out)
 
     def _asked(self, state: State, vehicle_id: int, line: RouteRequest, now_ms: int) -> Step:
         """A WPREQ: the executive knows where the vehicle is to go on. Without a number it cannot be answered."""
@@ -245,15 +258,9 @@ class UxasEnd:
                 state = state.with_peer(peer)
             else:
                 state = replace(state, peers=(*state.peers, peer))
-            others = _of_others(state, vid, self.projection)
-            plans = [UxasPlans()] if self.live else []
-            told = [
-                *plans,
-                *self._fences(state.zones, 0),
-                *link_lines.onward(peer.way, peer.reached),
-                *others,
-            ]
-            out += _down(peer, told)
+            told: list[Message] = [UxasPlans()] if self.live else []
+            told += [*self._fences(state.zones, 0), *link_lines.onward(peer.way, peer.reached)]
+            out += _down(peer, told + _of_others(state, vid, self.projection))
             out.append(_status(peer, True, now_ms, "connected again" if old else "connected"))
         return state, tuple(out)
 
@@ -358,6 +365,7 @@ def _mode(peer: Peer, line: SetMode, now_ms: int) -> OfOne:
         after = replace(after, flies=())
         return after, (Suspend(vid, now_ms, linked.act),)
     if linked.act == TAKE_BACK:
+        after = replace(after, steered=None)
         return after, (TakeBack(vid, now_ms, linked.act, epoch),)
     if linked.act == OVERTAKEN:
         note = f"a mode of epoch {epoch} is overtaken by one of epoch {peer.gate.epoch}"
@@ -367,20 +375,12 @@ def _mode(peer: Peer, line: SetMode, now_ms: int) -> OfOne:
     return after, ()
 
 
-def _watch(state: State, now_ms: int) -> Step:
-    """Say so when an instance has fallen silent."""
-    peers, out = list[Peer](), list[FromLinkEnd]()
-    for peer in state.peers:
-        after, said = _sign(peer, PASSED, now_ms, f"silent since {peer.heard_ms} ms")
-        peers.append(after)
-        out += said
-    return replace(state, peers=tuple(peers)), tuple(out)
-
-
 def _sign(peer: Peer, event: int, now_ms: int, note: str) -> OfOne:
     """A sign of life or none, and the note that tells of a change."""
     linked = link_sign(peer.end, event, peer.heard_ms, now_ms, LINK_LOST_MS)
     after = replace(peer, end=linked.end)
+    if after.end.active and not after.end.alive:
+        after = replace(after, steered=None)  # it may not be steered there any more
     if linked.act in (SAY_HEARD, SAY_LOST, SAY_SILENT):
         return after, (_status(after, after.end.alive, now_ms, note),)
     return after, ()

@@ -20,6 +20,9 @@ from cratous.core.authority.timeliness import lasted
 from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Position, Velocity, Zone, ZoneKind
 
+MOST_OTHERS = 1000
+"""Of so many other vehicles it is known how they fly; of others told before it is forgotten."""
+
 
 @dataclass(frozen=True)
 class Told:
@@ -43,6 +46,10 @@ class Told:
     others: tuple[tuple[int, tuple[Position, ...]], ...] = ()
     of_others: tuple[WayOfAnother, ...] = ()
     steered: tuple[tuple[int, Velocity], ...] = ()
+
+    def alone(self) -> Told:
+        """The same without what was told of other vehicles."""
+        return replace(self, others=(), of_others=(), steered=())
 
     def way_of(self, vehicle_id: int) -> tuple[Position, ...]:
         """The way that UxAS flies another vehicle by; () if none is known."""
@@ -87,8 +94,13 @@ def _hear(told: Told, message: Message, projection: Projection, original: bool) 
         steered = tuple(one for one in told.steered if one[0] != vid)
         to = Velocity(message.north_mps, message.east_mps, message.down_mps)
         others = tuple(one for one in told.others if one[0] != vid)
-        return replace(told, others=others, steered=(*steered, (vid, to)))
+        return replace(told, others=others, steered=(*steered, (vid, to))[-MOST_OTHERS:])
     return told
+
+
+def beaten(told: Told) -> Told:
+    """The same at a heartbeat, between two of which UxAS tells each way to its end: lines of a part are none of the next."""
+    return replace(told, of_others=()) if told.of_others else told
 
 
 def _of_another(told: Told, line: WayOfAnother, projection: Projection) -> Told:
@@ -96,8 +108,9 @@ def _of_another(told: Told, line: WayOfAnother, projection: Projection) -> Told:
     before = () if line.index == 0 else told.of_others
     lines = (*before, line)
     others = tuple(one for one in told.others if one[0] != line.vehicle_id)
-    alike = {(one.vehicle_id, one.total) for one in lines} == {(line.vehicle_id, line.total)}
-    if not alike or [one.index for one in lines] != list(range(len(lines))):
+    first = lines[0]
+    alike = (first.vehicle_id, first.total) == (line.vehicle_id, line.total)
+    if not alike or line.index != len(before):
         return replace(told, others=others, of_others=())
     if len(lines) != line.total:
         return replace(told, others=others, of_others=lines if line.total else ())
@@ -108,7 +121,8 @@ def _of_another(told: Told, line: WayOfAnother, projection: Projection) -> Told:
         Position(float(n), float(e), one.alt_m)
         for n, e, one in zip(norths, easts, lines, strict=True)
     )
-    return replace(told, others=(*others, (line.vehicle_id, points)), of_others=())
+    others = (*others, (line.vehicle_id, points))[-MOST_OTHERS:]
+    return replace(told, others=others, of_others=())
 
 
 def _start(told: Told, projection: Projection, original: bool) -> Told:

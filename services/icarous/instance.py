@@ -29,7 +29,7 @@ from cratous.services.icarous.foresight import (
     way_is_free,
 )
 from cratous.services.icarous.geofence_monitor import zone_ahead_s
-from cratous.services.icarous.inbox import hear
+from cratous.services.icarous.inbox import beaten, hear
 from cratous.services.icarous.messages import (
     Foresees,
     FromInstance,
@@ -103,7 +103,7 @@ class Instance:
         ways, others = with_ways(
             state.ways, state.told, sensed, self.config.daa, beat_s, state.courses
         )
-        sensed = sensed._replace(intruders=others)
+        state, sensed = replace(state, told=beaten(state.told)), sensed._replace(intruders=others)
         # one whose way is known is where that leads, in a turn too
         in_turn = turning(now, state.courses, beat_s) - {o.id for o in others if o.way}
         if flew and watches:

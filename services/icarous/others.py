@@ -2,7 +2,7 @@
 
 UxAS tells each instance the ways of the other vehicles, and that one is over as ICAROUS takes the other vehicle. One
 that is farther off the way that was told than what the permits allow for is taken to fly straight on, like an intruder
-of which nothing was told.
+of which nothing was told; so is everybody while UxAS is not heard, and one that flies in another direction than its way.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import math
 from bisect import bisect_right
 from typing import NamedTuple
 
+from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.manoeuvre import Motion, fly_to, smallest_turn
 from cratous.core.avoidance.prediction import Intruder, Piece, after
 from cratous.core.avoidance.way_ahead import turns
@@ -25,8 +26,10 @@ from cratous.spec.mission import Daa, Position, Velocity
 
 WINDOW_BEATS = 4
 """Where a vehicle is on its way is looked for as far ahead of where it was as it flies in so many heartbeats."""
-
-
+LINK_LOST_MS = 2000
+"""What was told counts for so long after UxAS was last heard [ms]: four heartbeats."""
+ASTRAY_S = 2.0
+"""One whose course is farther off its way than it turns in this time does not fly along it [s]."""
 ALWAYS_S = 3600.0
 """One that ICAROUS steers is taken to fly on straight for this long [s]."""
 
@@ -48,6 +51,8 @@ def with_ways(
 ) -> tuple[Ways, tuple[Intruder, ...]]:
     """The ways that were told, and everybody as is to be reckoned with: by the way that was told while it is kept to.
     before, courses: what this and everybody's course were at the last heartbeat; beat_s: from one to the next [s]."""
+    if not in_time(told.heard_ms, sensed.now_ms, LINK_LOST_MS):
+        return (), sensed.intruders
     steered, was = dict(told.steered), dict(courses)
     known = {one.vehicle_id: one for one in before}
     ways, others = list[Followed](), list[Intruder]()
@@ -56,7 +61,7 @@ def with_ways(
         if other.id in steered:
             others.append(_steered(other, steered[other.id], was.get(other.id), sensed, beat_s))
             continue
-        if not points:
+        if not points or not _speed_m_s(other):
             others.append(other)
             continue
         old = known.get(other.id)
@@ -68,6 +73,8 @@ def with_ways(
         at_m = old.track.nearest(other.position, old.at_m, window_m).s_m
         ways.append(old._replace(at_m=at_m))
         kept = _keeps(old.track.at(at_m), other.position, daa)
+        off_rad = smallest_turn(old.track.heading_rad(at_m), _course_rad(other.velocity))
+        kept = kept and not turns(off_rad, _turn_rate(other, sensed), ASTRAY_S)
         way = _along(old.track, at_m, other) if kept else ()
         hold_m = _hold_m(other, sensed) if way else 0.0
         others.append(other._replace(way=way, hold_m=hold_m))
@@ -81,8 +88,13 @@ def _speed_m_s(other: Intruder) -> float:
 def _hold_m(other: Intruder, sensed: Sensed) -> float:
     """How far from the end of its way a vehicle is that circles there, if it banks like this one [m]."""
     speed = _speed_m_s(other)
-    tightest_m = speed**2 / (sensed.motion.speed_m_s * sensed.ability.turn_rate_rad_s)
+    tightest_m = speed / _turn_rate(other, sensed)
     return 2 * TURN_MARGIN * tightest_m + TRACKING_S * speed
+
+
+def _turn_rate(other: Intruder, sensed: Sensed) -> float:
+    """How fast a vehicle that flies turns, if it banks like this one [rad/s]."""
+    return sensed.ability.turn_rate_rad_s * sensed.motion.speed_m_s / _speed_m_s(other)
 
 
 def _steered(
@@ -98,11 +110,14 @@ def _steered(
         detour = abs(smallest_turn(was_rad, course)) + abs(smallest_turn(course, goal))
         if turns(detour - abs(smallest_turn(was_rad, goal)), TURNING_RAD_S, beat_s):
             return other
-    motion, own = sensed.motion, sensed.ability
-    rate = own.turn_rate_rad_s * motion.speed_m_s / speed
-    ability = own._replace(turn_rate_rad_s=rate)
+    own = sensed.ability
+    ability = own._replace(turn_rate_rad_s=_turn_rate(other, sensed))
     now = Motion(other.position, course, speed, -v.down_m_s)
-    way = fly_to(now, ability, goal, math.hypot(*to[:2]), -to.down_m_s, ALWAYS_S, ALWAYS_S)
+    # no faster, slower or steeper than it or this one flies, whatever is told
+    low, high = min(own.min_speed_m_s, speed), max(own.max_speed_m_s, speed)
+    most = max(own.max_climb_m_s, abs(v.down_m_s))
+    speed, climb = min(max(math.hypot(*to[:2]), low), high), min(max(-to.down_m_s, -most), most)
+    way = fly_to(now, ability, goal, speed, climb, ALWAYS_S, ALWAYS_S)
     return other._replace(way=way)
 
 

@@ -245,7 +245,11 @@ class IcarousCommunicationService:
     def _heard_line(self, state: State, vid: int, line: Message, now_ms: int) -> Step:
         """A line of the instance of a vehicle; a way that it asks UxAS for, or onto which it hands back."""
         if self._proposals is not None and isinstance(line, SetMode):
-            state = led_back(state, vid, self._proposals.chosen(vid, line))
+            places, away = self._proposals.chosen(vid, line), state.craft(vid).away is not None
+            if away and line.request is not None and not places:
+                why = f"request {line.request} has no answer: it is led back by the direct way"
+                self._report("WARN", f"{self.name}: vehicle {vid}: {why}")
+            state = led_back(state, vid, places)
         state, out = self._step.heard(state, vid, line, now_ms)
         if self._proposals is not None and isinstance(line, RouteRequest):
             out += self._proposals.asked(state, vid, line)

@@ -37,6 +37,7 @@ from cratous.core.avoidance.prediction import Intruder
 from cratous.services.flight.dynamics import MAX_ACCELERATION_M_S2, Limits, turn_rate_rad_s
 from cratous.services.flight.link_lines import MOST_TOLD
 from cratous.services.icarous import state as icarous
+from cratous.services.icarous.asking import Asking
 from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Foresees, Line, Sensed, Up, Wish
 from cratous.services.icarous_program.recovery import (
@@ -147,12 +148,15 @@ class IcarousEnd:
         self._planner = Planner(craft.config.projection, craft.limits)
 
     def connected(self, state: State) -> Step:
-        """A connection is open: what was seen on another one is forgotten, UxAS hears who commands.
+        """A connection is open: what was seen and answered on another one is forgotten, UxAS hears who commands.
 
         The waypoints and zones told before stay until UxAS tells them again, as it does on each
-        connection; epochs go on where they stand.
+        connection; epochs go on where they stand. Ways of others do not stay: it tells only those that it knows.
         """
-        state = replace(state, seen={}, now_ms=None, lost={})
+        former = state.instance
+        asking = Asking(number=former.asking.number)  # UxAS says again whether it plans live
+        instance = replace(former, told=former.told.alone(), asking=asking)
+        state = replace(state, seen={}, now_ms=None, lost={}, instance=instance)
         return state, (Tell(mode_of(state.gate)),)
 
     def handle(self, state: State, line: Message) -> Step:

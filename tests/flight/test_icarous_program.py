@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import socket
 import time
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -18,10 +19,11 @@ from cratous.bridge.text_port import TextPort
 from cratous.bridge.text_protocol.handshake import ServerHandshake
 from cratous.core.authority.gate import ICAROUS, UXAS, Gate
 from cratous.services.flight.dynamics import Limits
+from cratous.services.icarous.asking import Asking
 from cratous.services.icarous.state import Config
 from cratous.services.icarous_program.program import Program
 from cratous.services.icarous_program.step import Craft, IcarousEnd, Note, Refuse, State, Tell
-from cratous.spec.mission import Daa
+from cratous.spec.mission import Daa, Position
 
 CRAFT = Craft(Config(1, Daa(VOLUME), PROJECTION, 500), Limits(15.0, 33.0, 0.52, 5.0), 60.0)
 END = IcarousEnd(CRAFT)
@@ -205,3 +207,28 @@ def test_a_command_that_is_not_known_is_answered_over_the_wire(opened: list[Any]
                 uxas.sendall(b"COMND,typeDIVE,\n")
                 got += parser.feed(handshake.rest)
     assert got == [tp.Hello(1), tp.SetMode("PASSIVE", 0), tp.NotKnown("DIVE")]
+
+
+def test_how_others_fly_is_forgotten_on_a_new_connection() -> None:
+    """UxAS tells again what it knows; what it knows no more it does not tell."""
+    lat, lon = PROJECTION.to_geodetic(2000.0, 0.0)
+    told = [tp.WayOfAnother(2, 1, lat, lon, 300.0, 0), tp.VelocityOfAnother(3, 20.0, 0.0, 0.0)]
+    state, _ = tell(State(), *way(0, 1, total=2), *told)
+    assert state.instance.told.way_of(2)
+    assert state.instance.told.steered
+    state, _ = END.connected(state)
+    assert (state.instance.told.others, state.instance.told.steered) == ((), ())
+    assert state.instance.told.waypoints
+
+
+def test_an_answer_of_a_former_connection_is_not_handed_back_onto() -> None:
+    """UxAS keeps its answers as long as the connection: after that their numbers mean the direct way."""
+    state, _ = tell(State(), tp.UxasPlans())
+    asking = state.instance.asking._replace(
+        number=7, answered=7, asked_ms=0, proposal=(Position(2000.0, 0.0, 300.0),)
+    )
+    state = replace(state, instance=replace(state.instance, asking=asking))
+    state, _ = END.connected(state)
+    assert state.instance.asking == Asking(number=7)
+    state, _ = tell(state, tp.UxasPlans(), tp.RouteStart(7), tp.RouteEnd(7))
+    assert (state.instance.asking.allowed, state.instance.asking.proposal) == (True, ())

@@ -163,7 +163,7 @@ def test_a_mode_that_cannot_be_true_is_refused(mode: str, epoch: int | None, rea
 
 def test_waypoints_are_told_and_reached_once() -> None:
     state, out = after(*ALL[:3])
-    down, to_other = out
+    to_other, down = out
     assert [type(line) for line in to_other.lines] == [WayOfAnother] * len(WAY)
     assert isinstance(down.lines[0], SoftReset)
     assert isinstance(down.lines[-1], StartMission)
@@ -175,7 +175,7 @@ def test_waypoints_are_told_and_reached_once() -> None:
 
 
 def test_how_a_vehicle_flies_is_told_to_the_others() -> None:
-    """Its way; that it is over, as ICAROUS takes it; to which velocity it is steered then; its way again."""
+    """Its way; that it is over, as ICAROUS takes it; to which velocity it is steered; that this is over; its way again."""
     steers = messages.Heard(1, 500, SetVelocity(20.0, -5.0, 0.0))
     state, _ = after(*ALL[:2])
     heard = list[Message]()
@@ -187,7 +187,7 @@ def test_how_a_vehicle_flies_is_told_to_the_others() -> None:
     others = [line for line in heard if isinstance(line, WayOfAnother | VelocityOfAnother)]
     assert {line.vehicle_id for line in others} == {1}
     told = [line.total if isinstance(line, WayOfAnother) else line for line in others]
-    assert told == [3, 3, 3, 0, VelocityOfAnother(1, 20.0, -5.0, 0.0), 3, 3, 3]
+    assert told == [3, 3, 3, 0, VelocityOfAnother(1, 20.0, -5.0, 0.0), 0, 3, 3, 3]
     _, out = END.handle(state, messages.Connected(900, (2,)))
     assert (
         sum(
@@ -342,3 +342,20 @@ def test_a_zone_that_is_known_from_the_start_binds_everybody(
 def test_a_state_survives_a_restart() -> None:
     state, _ = after(*ALL)
     assert pickle.loads(pickle.dumps(state)) == state
+
+
+@pytest.mark.parametrize(
+    "event", [messages.Lost(1, 900, LinkEvent("closed", "")), messages.Watch(9000)]
+)
+def test_that_a_vehicle_is_steered_is_over_for_the_others_as_its_icarous_is_not_heard(
+    event: messages.ToLinkEnd,
+) -> None:
+    """Nobody steers it there any more, or nobody knows."""
+    steers = messages.Heard(1, 500, SetVelocity(20.0, -5.0, 0.0))
+    state, _ = after(*ALL[:2], *ALL[2:7], steers)
+    state, out = END.handle(state, event)
+    told = [x for m in out if isinstance(m, messages.Down) and m.vehicle_id == 2 for x in m.lines]
+    assert told == [WayOfAnother(1, 0, 0.0, 0.0, 0.0, 0)]
+    again = END.handle(state, messages.Connected(9500, (2,)))[1]
+    lines = [x for m in again if isinstance(m, messages.Down) for x in m.lines]
+    assert not [x for x in lines if isinstance(x, VelocityOfAnother | WayOfAnother)]

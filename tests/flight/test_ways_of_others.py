@@ -6,6 +6,8 @@ import math
 from itertools import pairwise
 
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME
 
 from cratous.bridge.text_protocol import (
@@ -21,9 +23,11 @@ from cratous.core.avoidance.prediction import Intruder, Piece, first_violation_s
 from cratous.core.permit.remainder import hold_at, hold_permits, way_permits
 from cratous.services.flight.link_lines import way_of_another
 from cratous.services.icarous.ending import cylinder
-from cratous.services.icarous.inbox import Told, hear
+from cratous.services.icarous.inbox import MOST_OTHERS, Told, hear
+from cratous.services.icarous.instance import Instance
 from cratous.services.icarous.messages import Sensed
-from cratous.services.icarous.others import with_ways
+from cratous.services.icarous.others import LINK_LOST_MS, with_ways
+from cratous.services.icarous.state import Config, State
 from cratous.spec.mission import Daa, Position, Velocity
 
 DAA = Daa(VOLUME, buffer=1.25)
@@ -66,6 +70,83 @@ def test_lines_of_two_vehicles_do_not_mix() -> None:
     lines = way_of_another(2, CORNER, PROJECTION)
     other = WayOfAnother(3, 3, 45.0, -120.0, 300.0, 1)
     assert heard([lines[0], other, *lines[1:]]).others == ()
+
+
+BENT = (CORNER[0], CORNER[2], CORNER[1])
+
+
+@example([True, True, False, False, False, True, False, False, False], False, 0)
+@example([False, False, False, True, False, True, False, False, True], True, 1)
+@given(st.lists(st.booleans(), min_size=9, max_size=9), st.booleans(), st.integers(0, 3))
+def test_of_lines_that_are_lost_or_mixed_no_way_is_known(
+    kept: list[bool], mixed: bool, at: int
+) -> None:
+    """A way of 2, a heartbeat, another one of 2, and one of 3 among its lines: each as it was told, or not at all."""
+    old, new = (way_of_another(2, way, PROJECTION) for way in (CORNER, BENT))
+    third = way_of_another(3, CORNER, PROJECTION)
+    whole = [heard(lines).way_of(vid) for lines, vid in ((old, 2), (new, 2), (third, 3))]
+    later_lines = [*new[:at], *third, *new[at:]] if mixed else [*new, *third]
+    sent = [line for line, one in zip(later_lines, kept[3:], strict=True) if one]
+    first = [line for line, one in zip(old, kept[:3], strict=True) if one]
+    end = Instance(Config(1, DAA, PROJECTION, 500))
+    state, _ = end.handle(
+        State(told=heard(first)), Sensed(0, NORTH, ABILITY, (), Gate(0, 0, False))
+    )
+    told = heard(sent, state.told)
+    assert told.way_of(2) in ((), *whole[:2])
+    assert told.way_of(3) in ((), whole[2])
+    if any(line in sent for line in new[1:]):
+        assert told.way_of(2) in ((), whole[1]), "the former way is over with any line of the next"
+
+
+def test_of_more_vehicles_than_there_can_be_the_last_are_known() -> None:
+    told = Told()
+    for vid in range(10, MOST_OTHERS + 12):
+        place = way_of_another(vid, CORNER[:1], PROJECTION)
+        told = heard([*place, VelocityOfAnother(vid + 5000, 20.0, 0.0, 0.0)], told)
+    assert (len(told.others), len(told.steered)) == (MOST_OTHERS, MOST_OTHERS)
+    assert (told.way_of(11), len(told.way_of(12))) == ((), 1)
+
+
+def test_what_was_told_counts_no_more_while_uxas_is_not_heard() -> None:
+    steered = Told(steered=((2, Velocity(-20.0, 0.0, 0.0)),))
+    for told in (TOLD, steered):
+        for silent_ms, known in ((LINK_LOST_MS, True), (LINK_LOST_MS + 1, False)):
+            sensed = Sensed(silent_ms, NORTH, ABILITY, (EAST,), Gate(0, 0, False))
+            _, (one,) = with_ways((), told, sensed, DAA, 0.5)
+            assert bool(one.way) is known
+            assert known or one == EAST
+
+
+@pytest.mark.parametrize(
+    ("course_deg", "along"), [(90, True), (110, True), (130, False), (180, False), (270, False)]
+)
+def test_one_that_flies_in_another_direction_than_its_way_is_predicted_straight_on(
+    course_deg: float, along: bool
+) -> None:
+    """It crosses a way that is over, or flies it backwards."""
+    course = math.radians(course_deg)
+    v = Velocity(20.0 * math.cos(course), 20.0 * math.sin(course), 0.0)
+    assert bool(reckoned(EAST._replace(velocity=v), TOLD).way) is along
+
+
+def test_one_that_stands_is_taken_to_stand() -> None:
+    still = EAST._replace(velocity=Velocity(0.0, 0.0, 0.0))
+    for told in (TOLD, Told(steered=((2, Velocity(-20.0, 0.0, 0.0)),))):
+        assert reckoned(still, told) == still
+
+
+@pytest.mark.parametrize("speed", [0.0, 1e9])
+@pytest.mark.parametrize("down", [-1e9, 0.0, 1e9])
+def test_one_that_is_told_to_be_steered_as_nothing_flies_is_predicted_as_it_can(
+    speed: float, down: float
+) -> None:
+    """No faster, slower or steeper than the airframe: it neither stops nor is gone at once."""
+    one = reckoned(EAST, Told(steered=((2, Velocity(0.0, speed, down)),)))
+    north, east, sinks = one.way[-1].velocity
+    assert ABILITY.min_speed_m_s <= math.hypot(north, east) <= ABILITY.max_speed_m_s + 1e-9
+    assert abs(sinks) <= ABILITY.max_climb_m_s
+    assert len(one.way) < 200
 
 
 def test_one_that_keeps_to_its_way_is_predicted_round_the_corner() -> None:

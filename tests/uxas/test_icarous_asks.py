@@ -89,6 +89,7 @@ def test_without_its_number_it_is_the_direct_way(tmp_path: Path, opened: list[An
     (command,) = rig.got("MissionCommand", SERVICE)
     east = [PLANE.to_local(w.Latitude, w.Longitude)[1] for w in command.WaypointList]
     assert max(map(abs, east)) < 1.0
+    assert rig.said.has("request 7 has no answer: it is led back by the direct way")
 
 
 def test_what_cannot_be_answered_is_answered_without_a_way(
