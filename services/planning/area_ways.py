@@ -63,8 +63,8 @@ LEADS = (0.8, 0.0)
 VIEWS_MOST = 4
 MEASURED_MOST = 8_000
 """Coverage is measured in planning for ways with no more footprints than this."""
-FEWER = 8
-"""One footprint in so many is looked at first."""
+FEW, FEWER = 2_000, 8
+"""Of more footprints than FEW, one in FEWER is looked at first."""
 TURN_RESERVE = 1.15
 """The innermost turn of a spiral, in turn radii."""
 
@@ -211,7 +211,7 @@ def _share(
     centres = site.squares()
     seen = np.zeros(len(centres), np.bool_)
     quads = footprints(looks, site.height_m, site.camera, (1 + MARGIN) / 2)
-    for some in (quads[::FEWER], quads):
+    for some in (quads[::FEWER], quads) if len(quads) > FEW else (quads,):
         # where some of them see all of it, all of them do
         if not seen.all():
             look(centres, site.side_m, some, seen)

@@ -149,8 +149,8 @@ def test_what_few_footprints_see_all_of_is_not_measured_with_all(
 
     monkeypatch.setattr(area_ways, "look", counted)
     who, box = vehicle((AROUND,)), ((0.0, 0.0), (1000.0, 0.0), (1000.0, 800.0), (0.0, 800.0))
-    fewer = [one.coverage for one in options(area(box), who)[0]]
+    whole = [one.coverage for one in options(area(box), who)[0]]
     asked.append(0)
-    monkeypatch.setattr(area_ways, "FEWER", 1)
-    assert [one.coverage for one in options(area(box), who)[0]] == fewer
-    assert 2 * asked[0] < asked[1]
+    monkeypatch.setattr(area_ways, "FEW", 0)
+    assert [one.coverage for one in options(area(box), who)[0]] == whole
+    assert 2 * asked[1] < asked[0]
