@@ -143,8 +143,10 @@ def _cameras(configuration: Any, state: Any) -> tuple[Camera, ...]:
             discrete = camera.DiscreteHorizontalFieldOfViewList
             stepped = camera.FieldOfViewMode.name == "Discrete" and discrete
             widest = max(discrete) if stepped else camera.MaxHorizontalFieldOfView
-            view = max(widest, views.get(camera.PayloadID, 0))
-            fields = {camera.MinHorizontalFieldOfView, *discrete}
+            present = views.get(camera.PayloadID, 0)
+            view = max(widest, present)
+            # the present one counts as one to choose, so that a camera that has it is told another
+            fields = {camera.MinHorizontalFieldOfView, present, *discrete}
             narrower = tuple(sorted(radians(field) for field in fields if 0 < field < view))
             found.append(
                 Camera(

@@ -12,6 +12,7 @@ from cratous.services.mission.sensor import zoomed
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.outside import Outside
 from cratous.services.pipeline.places import RequestPlaces
+from cratous.services.pipeline.status import status
 from cratous.services.planning.flyers import camera_for
 from cratous.services.planning.options import Option
 from cratous.services.planning.stages import hold_of
@@ -22,7 +23,7 @@ from cratous.spec.mission.plan import Hold
 
 ROUNDED_MS = 50
 """A shorter wait than this [ms] is none: a way that ICAROUS has found comes by places of six decimals, and may be so
-much shorter than UxAS's own, by which the start was planned."""
+much shorter than UxAS's own, by which the start was planned. The task then begins so much earlier, which is said."""
 
 
 def offer(context: Context, task_id: int, options: Sequence[Option]) -> Any:
@@ -72,8 +73,9 @@ def way_asked(context: Context, option: Option, request: Any, number: int) -> An
 
 def implemented(
     context: Context, task: Task, option: Option, request: Any, plan: Any, outside: Outside | None
-) -> Any:
-    """The waypoints of the way there (a RoutePlan), the hold if there is a wait, and the task.
+) -> list[Any]:
+    """The waypoints of the way there (a RoutePlan), the hold if there is a wait, and the task; a warning as well
+    if a short wait is left out.
 
     NoPlan if there is no room to hold.
     """
@@ -101,7 +103,7 @@ def implemented(
         actions.append(loiter_action(places, task.id, hold, wait, speed))
     mine[0].VehicleActionList = actions
     end, heading_deg = places.sent(option.end)
-    return lmcp.new(
+    made = lmcp.new(
         "TaskImplementationResponse",
         ResponseID=request.RequestID,
         CorrespondingAutomationRequestID=request.CorrespondingAutomationRequestID,
@@ -113,6 +115,13 @@ def implemented(
         FinalHeading=heading_deg,
         FinalTime=request.StartTime + plan.RouteCost + wait + option.duration_ms,
     )
+    if holds or wait == 0:
+        return [made]
+    early = (
+        f"vehicle {request.VehicleID} begins task {task.id} {wait / 1000:.3f} s earlier than "
+        "planned: its way is so much shorter, and no wait that short is held"
+    )
+    return [made, status(context.request.RequestID, "Warning", [("reason", early)])]
 
 
 def _views(task: Task, option: Option, terrain_m: float) -> list[Any]:

@@ -283,7 +283,7 @@ class TaskService:
             out.append(way_asked(self._context, self._option(body), body, _route_id(body)))
             return state._replace(chosen=body, vehicle=body.VehicleID), 0
         elif act == PUBLISH_PLAN:
-            out.append(self._plan(state.chosen, body))
+            out += self._plan(state.chosen, body)
             return state._replace(steering=self._steering(state.chosen)), 0
         elif act == STEER:
             out.append(
@@ -349,7 +349,7 @@ class TaskService:
             got=str(request.OptionID),
         )
 
-    def _plan(self, request: Any, response: Any) -> Any:
+    def _plan(self, request: Any, response: Any) -> list[Any]:
         plan = response.RouteResponses[0] if response.RouteResponses else None
         if plan is None or plan.RouteCost < 0 or not plan.Waypoints:
             why = [pair.Value for pair in plan.RouteError] if plan else ["no route came"]

@@ -62,30 +62,34 @@ def lane_width_m(swath_of: SwathOf, heading_rad: float) -> float:
 
 def swaths_of(site: Site, view: View | None) -> SwathOf:
     """The swath by heading, narrowed by a square on each side so that seams are seen whole."""
+    least_m = GLANCE_S * site.flyer.speed_m_s + site.side_m
+    return functools.partial(_swath, site.camera, view, site.height_m, site.side_m, least_m)
+
+
+@functools.lru_cache(maxsize=4096)
+def _swath(
+    camera: Camera,
+    view: View | None,
+    height_m: float,
+    side_m: float,
+    least_m: float,
+    heading_rad: float,
+) -> Swath | None:
+    """Kept, since classes of vehicles and plans one after the other ask for the same."""
     import numpy as np
 
-    known: dict[float, Swath | None] = {}
-
-    def of(heading_rad: float) -> Swath | None:
-        if heading_rad not in known:
-            step = np.array([[math.cos(heading_rad), math.sin(heading_rad)]])
-            looks = looks_over(np.vstack([0 * step, step]), view, site.height_m)
-            corners = footprints(looks, site.height_m, site.camera, MARGIN)[0]
-            known[heading_rad] = None
-            if not np.isnan(corners[0, 0]):
-                least = GLANCE_S * site.flyer.speed_m_s + site.side_m
-                found = swath(_corners(corners), heading_rad, least)
-                if found is not None:
-                    half = site.side_m / 2
-                    known[heading_rad] = Swath(
-                        found.left_m + half,
-                        found.right_m - half,
-                        found.near_m + site.side_m,
-                        found.far_m - site.side_m,
-                    )
-        return known[heading_rad]
-
-    return of
+    step = np.array([[math.cos(heading_rad), math.sin(heading_rad)]])
+    looks = looks_over(np.vstack([0 * step, step]), view, height_m)
+    corners = footprints(looks, height_m, camera, MARGIN)[0]
+    if np.isnan(corners[0, 0]):
+        return None
+    found = swath(_corners(corners), heading_rad, least_m)
+    if found is None:
+        return None
+    half = side_m / 2
+    return Swath(
+        found.left_m + half, found.right_m - half, found.near_m + side_m, found.far_m - side_m
+    )
 
 
 def _corners(array: Any) -> list[tuple[float, float]]:

@@ -63,6 +63,8 @@ LEADS = (0.8, 0.0)
 VIEWS_MOST = 4
 MEASURED_MOST = 8_000
 """Coverage is measured in planning for ways with no more footprints than this."""
+FEW, FEWER = 2_000, 8
+"""Of more footprints than FEW, one in FEWER is looked at first."""
 TURN_RESERVE = 1.15
 """The innermost turn of a spiral, in turn radii."""
 
@@ -209,21 +211,23 @@ def _share(
     centres = site.squares()
     seen = np.zeros(len(centres), np.bool_)
     quads = footprints(looks, site.height_m, site.camera, (1 + MARGIN) / 2)
-    look(centres, site.side_m, quads, seen)
+    for some in (quads[::FEWER], quads) if len(quads) > FEW else (quads,):
+        # where some of them see all of it, all of them do
+        if not seen.all():
+            look(centres, site.side_m, some, seen)
     return share_covered(int((~seen).sum()), site.side_m, area_m2(site.vertices))
 
 
 def _along_lanes(site: Site, lead_m: float) -> list[Candidate]:
     """Lanes, each with the view along them that needs the fewest."""
-    swaths = functools.cache(functools.partial(swaths_of, site))
     found = []
     for heading in _headings(site):
 
         def width_of(view: View, heading: float = heading) -> float:
-            return lane_width_m(swaths(view), heading)
+            return lane_width_m(swaths_of(site, view), heading)
 
         view = best_view(site.task, site.camera, site.height_m, heading, width_of, site.vertices)
-        swath_of = swaths(view)
+        swath_of = swaths_of(site, view)
         if lane_width_m(swath_of, heading) > 0:
             found += _lanes_along(site, heading, swath_of, lead_m, view)
     return [_from_start(site, one) for one in found]

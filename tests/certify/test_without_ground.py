@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +12,12 @@ import pytest
 
 from cratous.services.assumptions.said import GROUNDLESS
 from cratous.services.certify import rejudge
+from cratous.services.certify import report as report_module
 from cratous.services.certify.report import Flown, Judged, build_report
 from cratous.services.cli import main
 from cratous.services.cli.run import _show
 from cratous.services.logs import log as logs
+from cratous.spec.mission.changes import TASK_REMOVED, Change
 
 BROKEN = {
     "name": "commands by the gate alone", "state": "broken", "since_ms": 0, "vehicle": 1,
@@ -56,6 +59,29 @@ def test_the_report_of_one_says_so(
     assert (report["exit_code"], report["verdict"]) == (code, "unknown" if code else "holds")
     _show(report, folder)
     assert (GROUNDLESS in capsys.readouterr().out) is bool(code)
+
+
+def test_the_report_lists_no_task_that_was_withdrawn(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nobody asks for it any more, so that it ended undone is no failure."""
+    mission, plan = rejudge.subject(folder / "log.sqlite")
+    written = json.loads((folder / "report.json").read_text())
+    flown = Flown("", True, written["proofs"], written["environment"])
+    gone = min(end["task"] for end in written["flight"]["served"])
+    without = replace(mission, changes=(Change(1, TASK_REMOVED, task=gone),))
+    judged = Judged(written["constraints"], [], {})
+    own = report_module.read_flight
+
+    def undone(*given: Any) -> Any:
+        flight = own(*given)
+        flight.served[gone]["phase"] = "Failed"
+        return flight
+
+    monkeypatch.setattr(report_module, "read_flight", undone)
+    report = build_report(without, plan, judged, folder / "log.sqlite", flown)
+    listed = {end["task"] for end in written["flight"]["served"]}
+    assert {end["task"] for end in report["flight"]["served"]} == listed - {gone}
 
 
 @pytest.mark.parametrize("more", ["", " --processes"])

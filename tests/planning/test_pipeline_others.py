@@ -246,3 +246,5 @@ def test_a_way_of_another_planner_that_is_shorter_by_its_rounding_needs_no_hold(
     rig.tell(request(5))
     assert bool(rig.got(INFO)[0].MissionCommandList) is planned
     assert ("no hold circle there" in " ".join(rig.reasons())) is not planned
+    early = f"begins task 5 {shorter_ms / 1000:.3f} s earlier than planned"
+    assert (early in " ".join(rig.reasons("Warning"))) is planned

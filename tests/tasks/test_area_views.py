@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from task_tools import FIELD, area, keep_out, options, vehicle
 
+from cratous.core.tasks.coverage import look
 from cratous.core.tasks.sweep import swath
 from cratous.services.mission.sensor import sample_distance_m
+from cratous.services.planning import area_ways
 from cratous.services.planning.area_views import best_view, brought_view
 from cratous.services.planning.targets import Angles, flown_view, target_from
 from cratous.spec.mission import Camera, Position, View
@@ -132,3 +135,22 @@ def test_the_camera_looks_where_the_option_was_planned() -> None:
     asked = area(view=View(0.0, math.radians(-45), True))
     there = target_from(here, 1.0, asked, made_for, (AROUND,), 0.0)
     assert there == pytest.approx((500.0, 200.0, 0.0)), "the task's view, where it asks for one"
+
+
+def test_what_few_footprints_see_all_of_is_not_measured_with_all(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The share is the same; measuring it took most of the time of a request with large areas."""
+    asked = [0]
+
+    def counted(centres: Any, side_m: float, quads: Any, seen: Any) -> None:
+        asked[-1] += len(quads)
+        look(centres, side_m, quads, seen)
+
+    monkeypatch.setattr(area_ways, "look", counted)
+    who, box = vehicle((AROUND,)), ((0.0, 0.0), (1000.0, 0.0), (1000.0, 800.0), (0.0, 800.0))
+    whole = [one.coverage for one in options(area(box), who)[0]]
+    asked.append(0)
+    monkeypatch.setattr(area_ways, "FEW", 0)
+    assert [one.coverage for one in options(area(box), who)[0]] == whole
+    assert 2 * asked[1] < asked[0]
