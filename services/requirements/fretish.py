@@ -18,7 +18,7 @@ UNITS = ((3_600_000_000_000, "hours"), (60_000_000_000, "minutes"), (1_000_000_0
          (1_000_000, "milliseconds"), (1000, "microseconds"))  # fmt: skip
 """The greatest is taken of which there is a whole number; FRETish counts in no finer one."""
 WORDS = re.compile(
-    r"after|always|and|at|before|during|eventually|except|false|for|hours?|if|immediately|in|is|(micro|milli)?sec(ond)?s?|"
+    r"after|always|and|at|before|during|eventually|except|false|for|hours?|if|immediately|in|is|(micro|milli)?(sec|second)s?|"
     r"minutes?|mode?|never|next|not|only|or|satisfy|shall|the|then|ticks?|timepoint|true|unless|until|upon|when|whenever|"
     r"where|while|within|xor",
     re.IGNORECASE,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -104,6 +105,8 @@ def test_sarif_that_says_less_is_refused_whatever_its_lines(place: Place, subjec
         assert old in text
         file.write_text(text.replace(old, new))
         assert sarif_faults(place, named(place), subject), (old[:20], new)
+    file.write_text(re.sub(r'"startLine": \d+', '"startLine": true', text))
+    assert sarif_faults(place, named(place), subject), "true is no line"
 
 
 def test_without_reportlab_a_pdf_is_not_judged(place: Place, subject: Subject, made: Any) -> None:
