@@ -134,7 +134,7 @@ def _lines(text: bytes) -> dict[str, int | None]:
             place = one["locations"][0]
             name = place["logicalLocations"][0]["fullyQualifiedName"]
             line = place["physicalLocation"].get("region", {}).get("startLine")
-            found[name] = line if isinstance(line, int) and line > 0 else None
+            found[name] = line if type(line) is int and line > 0 else None
     except (BadInput, json.JSONDecodeError, KeyError, IndexError, TypeError, AttributeError):
         return {}
     return found

@@ -21,7 +21,7 @@ from cratous.services.attestation.dsse import ENVELOPE_BYTES, opened
 from cratous.services.attestation.findings import Data, Subject
 from cratous.services.attestation.judged import held
 from cratous.services.attestation.names import STATEMENT_NAME
-from cratous.services.attestation.pages_again import View, pages_again, sarif_faults
+from cratous.services.attestation.pages_again import Again, View, pages_again, sarif_faults
 from cratous.services.attestation.planned import plan_faults, plan_not_judged
 from cratous.services.attestation.recorded import not_recorded, recorded_faults
 from cratous.services.attestation.signed_files import Place, file_faults, not_judged, view_faults
@@ -84,12 +84,13 @@ def verify(place: Place, public: Any, judged: Any, view: View) -> Verification:
         return found
     subject = Subject(report, tuple(predicate["not_checked"]))
     argument = argued(place.views, named, subject)
-    pages = pages_again(place, named, subject, view)
-    found.refused = view_faults(place, named, subject) + argument.refused + pages.refused
-    found.refused += sarif_faults(place, named, subject)
     judgement = judged(place.results)
     answer = held(report, judgement)
-    found.refused += [*recorded_faults(report, judgement.meta), *plan_faults(report)]
+    recorded = [*recorded_faults(report, judgement.meta), *plan_faults(report)]
+    # of a plan or mission that was never flown no page needs to be made, nor can be of any
+    pages = Again([], []) if recorded else pages_again(place, named, subject, view)
+    found.refused = view_faults(place, named, subject) + argument.refused + pages.refused
+    found.refused += [*sarif_faults(place, named, subject), *recorded]
     found.refused += [*assumption_faults(report, judgement.meta), *blame_faults(report)]
     found.refused += answer.refused
     found.undecided = answer.undecided + argument.undecided

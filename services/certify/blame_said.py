@@ -12,8 +12,11 @@ SHOWN = 10
 """So many rows are said at the end of a command; the report has all."""
 
 
-def sentence(one: Data) -> str:
-    """Who was in command, and what had broken by then, for people."""
+def sentence(one: Data, over: bool = True) -> str:
+    """Who was in command, and what had broken by then, for people.
+
+    over: the messages have ended; only then it is known what had not broken, and what was not observed.
+    """
     said = [
         f"{c['side']} had vehicle {c['vehicle']} since {_s(c['since_ms'])}" for c in one["command"]
     ]
@@ -25,9 +28,9 @@ def sentence(one: Data) -> str:
     if first is not None:
         on = "" if first["bears"] else f", on which no theorem on {one['requirement']} rests"
         said.append(f"first broken assumption: {first['name']} at {_s(first['since_ms'])}{on}")
-    else:
+    elif over:
         said.append("no watched assumption had broken by then")
-    if unseen:
+    if unseen and over:
         said.append(f"not observed: {', '.join(unseen)}")
     return "; ".join(said)
 

@@ -50,7 +50,7 @@ COMMANDS = {
     "icarous": "Avoid for one vehicle, over the CRATOUS bridge to UxAS.",
     "sim": "Simulate the aircraft of an AMASE scenario, and be its AMASE on the network.",
     "export": "Write a mission as AMASE scenario, UxAS messages, GeoJSON or KML.",
-    "check": "Check mission files and algebra texts; nothing is planned.",
+    "check": "Check mission files, algebra texts and requirements.",
     "serve": "Fly a mission, or replay one or two runs or a message log, in the browser.",
     "algebra": "Check, draw or enumerate a process-algebra text.",
     "warm": "Compile ahead what commands would compile when they need it.",

@@ -239,7 +239,8 @@ def watching(mission: Mission, plan: Plan, tell: Tell, says_beats: bool = True) 
     def violated(verdict: Verdict) -> None:
         rows = constraint_rows([verdict], "flight")
         (one,) = blame_rows(rows, monitor.commands(), monitor.assumptions(), monitor.end_ms)
-        tell(f"VIOLATION {sentence(verdict)}; {blamed(one)}")
+        who = blamed(one, over=False)
+        tell(f"VIOLATION {sentence(verdict)}" + (f"; {who}" if who else ""))
 
     monitor = Monitor(
         mission, plan, violated, lambda row: tell(f"ASSUMPTION {assumed(row)}"), says_beats

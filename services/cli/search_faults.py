@@ -51,12 +51,13 @@ def search_faults(
     from cratous.proofs.system_search.authority import Design
     from cratous.proofs.system_search.breadth_first import search
     from cratous.proofs.system_search.faults import FAULTS
-    from cratous.services.trace_replay.files import Trace, write
+    from cratous.services.trace_replay.files import Trace, place, write
 
     known = [SAFE, *FAULTS]
     for name in names:
         if name not in known:
             raise BadInput("no such design", item="NAME", expected=", ".join(known), got=name)
+    files = {} if traces is None else place(traces, names or known)
     rows: list[dict[str, Any]] = []
     code = 0
     for name in names or known:
@@ -69,9 +70,8 @@ def search_faults(
         counts = {"wrong": found.wrong, "states": found.states, "complete": found.complete}
         rows.append({"name": name, "says": says, **texts, **counts, **took})
         entries = found.trace or found.back
-        if traces is not None and entries:
-            traces.mkdir(parents=True, exist_ok=True)
-            write(traces / f"{name}.json", Trace(name, says, found.wrong, entries))
+        if name in files and entries:
+            write(files[name], Trace(name, says, found.wrong, entries))
         if safe and (found.wrong or (found.complete and not found.returned)):
             code = 1
         elif bool(found.wrong) == safe or (safe and not found.complete):

@@ -8,6 +8,8 @@ in the units of their signals.
 
 from __future__ import annotations
 
+import re
+
 from cratous.services.requirements.formula import TRUE, Always, Bounded, Formula, Join, Not, Reaches
 from cratous.services.requirements.specification import Specification
 
@@ -15,6 +17,15 @@ SYSTEM = "the system"
 UNITS = ((3_600_000_000_000, "hours"), (60_000_000_000, "minutes"), (1_000_000_000, "seconds"),
          (1_000_000, "milliseconds"), (1000, "microseconds"))  # fmt: skip
 """The greatest is taken of which there is a whole number; FRETish counts in no finer one."""
+WORDS = re.compile(
+    r"after|always|and|at|before|during|eventually|except|false|for|hours?|if|immediately|in|is|(micro|milli)?(sec|second)s?|"
+    r"minutes?|mode?|never|next|not|only|or|satisfy|shall|the|then|ticks?|timepoint|true|unless|until|upon|when|whenever|"
+    r"where|while|within|xor",
+    re.IGNORECASE,
+)
+"""FRETish's own: no signal can be called so."""
+DEEPEST, LONGEST = 200, 10_000
+"""Levels and characters of a condition or a response, so that no formula makes one without end."""
 
 
 class NoForm(Exception):
@@ -24,7 +35,7 @@ class NoForm(Exception):
 def sentence(formula: Formula, spec: Specification) -> str:
     """The sentence of a requirement; NoForm with the reason where there is none."""
     if isinstance(formula, Join) and not formula.is_and and isinstance(formula.phi, Not):
-        condition, asked = _said(formula.phi.phi, spec, False), formula.psi
+        condition, asked = _said(formula.phi.phi, spec), formula.psi
         when, plain = f"Whenever {condition} {SYSTEM}", "immediately"
     else:
         when, asked, plain = SYSTEM.capitalize(), formula, "always"
@@ -43,7 +54,7 @@ def sentence(formula: Formula, spec: Specification) -> str:
     if plain == "always" and timing != plain:
         # FRETish without a condition asks once, at the beginning
         when = f"Whenever true {SYSTEM}"
-    return f"{when} shall {timing} satisfy {_said(response, spec, False)}"
+    return f"{when} shall {timing} satisfy {_said(response, spec)}"
 
 
 def _time(timed: Bounded) -> str:
@@ -55,8 +66,13 @@ def _time(timed: Bounded) -> str:
     raise NoForm("its time is no whole number of microseconds above 0")
 
 
-def _said(formula: Formula, spec: Specification, inside: bool) -> str:
-    """A condition without time; inside: it stands within another one."""
+def _said(formula: Formula, spec: Specification, level: int = 0) -> str:
+    """A condition without time; level: it stands within so many others."""
+    if level > DEEPEST:
+        raise NoForm(f"it is nested more than {DEEPEST} levels deep")
+    # of `!x > 3` nobody knows what is negated
+    while isinstance(formula, Not) and isinstance(formula.phi, Not):
+        formula = formula.phi.phi
     if isinstance(formula, Always):
         return "true" if formula == TRUE else "false"
     if isinstance(formula, Reaches):
@@ -65,21 +81,32 @@ def _said(formula: Formula, spec: Specification, inside: bool) -> str:
         one = formula.phi
         if isinstance(one, Reaches) and not _is_truth(one.left, spec):
             return _compared(one.left, "<", one.right, spec)
-        return f"!{_said(one, spec, True)}"
+        return f"!{_said(one, spec, level + 1)}"
     if isinstance(formula, Join):
         sign = " & " if formula.is_and else " | "
-        text = _said(formula.phi, spec, True) + sign + _said(formula.psi, spec, True)
-        return f"({text})" if inside else text
+        text = _said(formula.phi, spec, level + 1) + sign + _said(formula.psi, spec, level + 1)
+        if len(text) > LONGEST:
+            raise NoForm(f"its sentence is longer than {LONGEST} characters")
+        return f"({text})" if level else text
     raise NoForm("a time within a condition or a response has no form")
 
 
 def _compared(left: str | float, relation: str, right: str | float, spec: Specification) -> str:
     if _is_truth(left, spec):
-        return str(left)
+        return _side(left)
     if isinstance(left, float):  # FRETish has the signal first, as people do
         turned = {">=": "<=", "<": ">"}[relation]
-        return f"{right} {turned} {left!r}"
-    return f"{left} {relation} {right if isinstance(right, str) else repr(right)}"
+        return f"{_side(right)} {turned} {_side(left)}"
+    return f"{_side(left)} {relation} {_side(right)}"
+
+
+def _side(side: str | float) -> str:
+    """A signal, or a number, whose exponent has no leading zeros."""
+    if not isinstance(side, str):
+        return re.sub(r"e([-+])0+", r"e\1", repr(side))
+    if WORDS.fullmatch(side) or side.startswith("_"):
+        raise NoForm(f"FRETish has no signal of the name {side}")
+    return side
 
 
 def _is_truth(side: str | float, spec: Specification) -> bool:

@@ -7,10 +7,10 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple, get_type_hints
 
-from cratous.core.files.whole_file import write_atomically
+from cratous.core.files.whole_file import cannot_write, write_atomically
 from cratous.spec.errors import BadInput
 from cratous.spec.files.text_file import text_of
-from cratous.spec.system.trace import KINDS, Entry, Event, Standing
+from cratous.spec.system.trace import KINDS, NOTHING, Entry, Event, Standing
 
 FORMAT = "cratous authority trace 1"
 MOST_BYTES = 1_000_000
@@ -28,6 +28,19 @@ class Trace(NamedTuple):
     says: str
     wrong: str
     entries: tuple[Entry, ...]
+
+
+def place(folder: Path, designs: Iterable[str]) -> dict[str, Path]:
+    """By design, the file of its trace in a folder, which is made; BadInput if a file of that name is no trace."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise cannot_write(folder, error, "the folder of traces") from None
+    files = {name: folder / f"{name}.json" for name in designs}
+    for file in files.values():
+        if file.exists():
+            read(file)
+    return files
 
 
 def write(file: Path, trace: Trace) -> None:
@@ -102,6 +115,8 @@ class _Reader:
                 self.text(value, place)
             elif kind is bool and not isinstance(value, bool):
                 raise self.wrong(place, "true or false", value)
-            elif kind is int and (type(value) is not int or value not in range(-1, MOST + 1)):
-                raise self.wrong(place, f"a whole number from -1 to {MOST}", value)
+            elif kind is int:
+                least = NOTHING if name == "sent" else 0
+                if type(value) is not int or value not in range(least, MOST + 1):
+                    raise self.wrong(place, f"a whole number from {least} to {MOST}", value)
         return row

@@ -160,7 +160,7 @@ def test_what_was_signed_is_verified(run: Run, home: Path, flown: Path) -> None:
     assert f"{flight} of {flight} verdicts on the flight by the judge" in out
     assert "the report says HOLDS; verified: HOLDS; exit code 0" in out
     for what in (
-        "report.html, map.svg, report.sarif: that they are", "margins, times, notes",
+        "report.sarif: whether its lines of the mission file are right", "margins, times, notes",
         "verdicts on the plan (cratous certify", "certificate.json (cratous certify-plan",
         "proofs of the kernels",
     ):  # fmt: skip

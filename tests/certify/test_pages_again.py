@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -13,7 +14,7 @@ from certify_tools import ROOT, Run, read
 pytest.importorskip("cryptography", reason="the extra `sign` is not installed")
 pytest.importorskip("reportlab", reason="the extra `pdf` is not installed")
 
-from signing import sign_again, verify
+from signing import edit_report, sign_again, verify
 
 from cratous.services.attestation import pages_again as module
 from cratous.services.attestation.findings import Subject
@@ -23,6 +24,7 @@ from cratous.services.attestation.signed_files import Place
 from cratous.services.attestation.writing import Wanted, write_views
 from cratous.services.full_report.views import view
 from cratous.services.results.names import HTML_NAME, MAP_NAME
+from cratous.services.results.ownership import digest_of
 
 MADE = (FULL_NAME, PDF_NAME, FULL_PDF_NAME)
 MISSION = ROOT / "examples" / "crossing" / "mission.yaml"
@@ -104,6 +106,8 @@ def test_sarif_that_says_less_is_refused_whatever_its_lines(place: Place, subjec
         assert old in text
         file.write_text(text.replace(old, new))
         assert sarif_faults(place, named(place), subject), (old[:20], new)
+    file.write_text(re.sub(r'"startLine": \d+', '"startLine": true', text))
+    assert sarif_faults(place, named(place), subject), "true is no line"
 
 
 def test_without_reportlab_a_pdf_is_not_judged(place: Place, subject: Subject, made: Any) -> None:
@@ -124,3 +128,14 @@ def test_a_page_that_its_signer_has_changed_is_refused_by_the_command(run: Run, 
     sign_again(home, lambda _statement: None)
     code, _, err = verify(run, home)
     assert (code, err) == (1, f"refused: results/{HTML_NAME}: it is not what report.json gives\n")
+
+
+def test_of_a_plan_that_was_not_flown_no_page_is_made(run: Run, home: Path) -> None:
+    page = home / "views" / FULL_NAME
+    page.write_text("as it was")
+    edit_report(home, plan={**read(home / "run")["plan"], "cost": "of no kind"})
+    one = {"name": f"views/{FULL_NAME}", "digest": {"sha256": digest_of(page)}}
+    sign_again(home, lambda statement: statement["subject"].append(one))
+    code, _, err = verify(run, home)
+    assert code == 1
+    assert "refused: report.json: plan is not what the log recorded" in err

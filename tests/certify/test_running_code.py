@@ -18,8 +18,10 @@ from cratous.services.logs import records
 @pytest.fixture(autouse=True)
 def _anew():
     running_code.cache_clear()
+    module.code_digest.cache_clear()
     yield
     running_code.cache_clear()
+    module.code_digest.cache_clear()
 
 
 def _recorded(files: dict[str, bytes]) -> dict[str, str]:
@@ -47,6 +49,7 @@ def test_another_text_is_another_code(monkeypatch):
     files = module._files()
     assert "services/certify/report.py" in files
     running_code.cache_clear()
+    module.code_digest.cache_clear()
     monkeypatch.setattr(
         module, "_files", lambda: {**files, "services/certify/report.py": b"pass\n"}
     )
@@ -60,6 +63,7 @@ def _other(*parts: object) -> str:
 def test_a_function_that_was_changed_while_it_runs_is_named(monkeypatch):
     assert running_code()["running"] == "as its files say"
     running_code.cache_clear()
+    module.code_digest.cache_clear()
     code: CodeType = _other.__code__
     monkeypatch.setattr(records.fingerprint, "__code__", code)
     assert running_code()["running"] == "not what its files say: services.logs.records.fingerprint"

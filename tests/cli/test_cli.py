@@ -244,7 +244,9 @@ def test_without_avoidance_well_clear_is_lost(run: Run, tmp_path: Path) -> None:
     assert code == 1
     line = next(line for line in out.splitlines() if line.startswith("G2"))
     assert "violated" in line
-    assert "VIOLATION G2" in err
+    (told,) = (line for line in err.splitlines() if line.startswith("VIOLATION G2"))
+    assert told.endswith("UxAS had vehicle 1 since 0.00 s; UxAS had vehicle 2 since 0.00 s")
+    assert "not observed: ICAROUS at each heartbeat" in out, "which is known at the end alone"
 
 
 def test_same_seed_same_digest(run: Run, flown: Path, tmp_path: Path) -> None:

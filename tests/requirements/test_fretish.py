@@ -11,7 +11,7 @@ from cratous.services.requirements.fretish import NoForm, sentence
 from cratous.services.requirements.language import read
 from cratous.services.requirements.specification import NotRead
 
-HEAD = "signal req, resp: bool\nsignal x, y: m\n"
+HEAD = "signal req, resp, Mode, _own: bool\nsignal x, y: m\n"
 FORMS = {
     "x >= 90 m and y >= 90 m": "The system shall always satisfy x >= 90.0 & y >= 90.0",
     "x > 1 km": "The system shall always satisfy x > 1000.0",
@@ -25,6 +25,9 @@ FORMS = {
         "Whenever req the system shall for 2 minutes satisfy x >= 1.0 | (resp & y >= 2.0)",
     "eventually within 1500 us resp":
         "Whenever true the system shall within 1500 microseconds satisfy resp",
+    "not (x > 3 m) and not not resp": "The system shall always satisfy x <= 3.0 & resp",
+    "not (x < y) implies resp": "Whenever x >= y the system shall immediately satisfy resp",
+    "x >= 1e-7 m or " + "not " * 3000 + "resp": "The system shall always satisfy x >= 1e-7 | resp",
 }  # fmt: skip
 WITHOUT = {
     "req implies eventually from 1 s to 5 s resp": "begins later",
@@ -32,6 +35,10 @@ WITHOUT = {
     "req implies (resp and eventually within 5 s resp)": "time within",
     "once within 5 s req": "time within",
     "(once within 5 s req) implies resp": "time within",
+    "req implies Mode": "no signal of the name Mode",
+    "_own": "no signal of the name _own",
+    " or ".join(["req"] * 3000): "more than 200 levels",
+    "(" * 40 + "req" + " iff resp)" * 40: "longer than 10000 characters",
 }
 
 
