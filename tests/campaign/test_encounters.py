@@ -248,7 +248,9 @@ def test_a_skipped_point_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     file.write_text(yaml.safe_dump(data))
     flown = fly_encounter(load(file))
     assert judge_encounter(file, states_of(flown), flown.reached)[-1].verdict == "holds"
-    monkeypatch.setattr(seeded_faults, "is_skipped", lambda path: path[len(path) // 2].east_m == -50.0)
+    monkeypatch.setattr(
+        seeded_faults, "is_skipped", lambda path: path[len(path) // 2].east_m == -50.0
+    )
     with seeded("waypoint"):
         flown = fly_encounter(load(file))
     assert flown.reached[1] >= 4
