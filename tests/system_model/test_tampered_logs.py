@@ -81,29 +81,29 @@ TAMPERED: dict[str, tuple[Callable[[Log], None], str, int]] = {
         21_500,
     ),
     "a command of ICAROUS removed": (
-        remove("GatedCommand", 40_000, **BY_ICAROUS),
+        remove("GatedCommand", 30_000, **BY_ICAROUS),
         "a heartbeat of ICAROUS",
-        40_000,
+        30_000,
     ),
     "a command of ICAROUS twice": (
-        copy_to(40_000, {}, "GatedCommand", **BY_ICAROUS),
+        copy_to(30_000, {}, "GatedCommand", **BY_ICAROUS),
         "a second heartbeat of ICAROUS",
-        40_000,
+        30_000,
     ),
     "forged epoch": (
-        alter({"Epoch": 9}, "GatedCommand", 40_000, **BY_ICAROUS),
+        alter({"Epoch": 9}, "GatedCommand", 30_000, **BY_ICAROUS),
         "a command of ICAROUS",
-        40_000,
+        30_000,
     ),
     "former epoch of ICAROUS": (
-        alter({"Epoch": 0}, "GatedCommand", 40_000, **BY_ICAROUS),
+        alter({"Epoch": 0}, "GatedCommand", 30_000, **BY_ICAROUS),
         "a command of ICAROUS",
-        40_000,
+        30_000,
     ),
     "another instance commands": (
-        send_as("icarous/1", "GatedCommand", 40_000, **BY_ICAROUS),
+        send_as("icarous/1", "GatedCommand", 30_000, **BY_ICAROUS),
         "a command in the name of ICAROUS",
-        40_000,
+        30_000,
     ),
     "ICAROUS commands before it has taken over": (
         copy_to(10_000, {"Epoch": 0}, "GatedCommand", **BY_ICAROUS),
@@ -111,14 +111,14 @@ TAMPERED: dict[str, tuple[Callable[[Log], None], str, int]] = {
         10_000,
     ),
     "second commander": (
-        copy_to(40_000, {"Epoch": 1}, "GatedCommand", **BY_UXAS),
+        copy_to(30_000, {"Epoch": 1}, "GatedCommand", **BY_UXAS),
         COMMAND,
-        40_000,
+        30_000,
     ),
     "late command of UxAS not dropped": (
-        copy_to(40_000, {"Epoch": 0}, "GatedCommand", **BY_UXAS),
+        copy_to(30_000, {"Epoch": 0}, "GatedCommand", **BY_UXAS),
         GATE,
-        40_000,
+        30_000,
     ),
     "command of UxAS from elsewhere": (
         send_as("radio", "GatedCommand", **BY_UXAS),
@@ -131,40 +131,40 @@ TAMPERED: dict[str, tuple[Callable[[Log], None], str, int]] = {
         21_500,
     ),
     "a heartbeat from elsewhere": (
-        send_as("vehicle/1", "Heartbeat", 40_000, **UP),
+        send_as("vehicle/1", "Heartbeat", 30_000, **UP),
         "the sender of a Heartbeat",
-        40_000,
+        30_000,
     ),
-    "offer removed": (remove("GateState", **OFFER), "a command of ICAROUS", 96_500),
+    "offer removed": (remove("GateState", **OFFER), "a command of ICAROUS", 34_500),
     "handback without an offer": (
-        copy_to(40_000, {"Epoch": 1}, "GatedCommand", "uxas/ics", **BY_UXAS),
+        copy_to(30_000, {"Epoch": 1}, "GatedCommand", "uxas/ics", **BY_UXAS),
         "a handback",
-        40_000,
+        30_000,
     ),
     "handback in a former epoch": (
-        alter({"Epoch": 1}, "GatedCommand", 96_500, **BY_UXAS),
+        alter({"Epoch": 1}, "GatedCommand", 34_500, **BY_UXAS),
         "a handback",
-        96_500,
+        34_500,
     ),
     "handback command removed": (
-        remove("GatedCommand", 96_500, **BY_UXAS),
+        remove("GatedCommand", 34_500, **BY_UXAS),
         "a second heartbeat of ICAROUS",
-        96_500,
+        34_500,
     ),
     "command of the offer before it": (
-        swap("GateState", "GatedCommand", 96_500, **OFFER),
+        swap("GateState", "GatedCommand", 34_500, **OFFER),
         "a command of ICAROUS",
-        96_500,
+        34_500,
     ),
     "offer that is a handback": (
         alter({"Owner": "UxAS", "Offered": False}, "GateState", **OFFER),
         "a heartbeat of ICAROUS",
-        96_500,
+        34_500,
     ),
     "handback leaves the offer open": (
         alter({"Offered": True}, "GateState", **BACK),
         GATE,
-        96_500,
+        34_500,
     ),
     "offer as soon as taken over": (
         copy_to(22_000, {}, "GateState", **OFFER),
@@ -187,33 +187,33 @@ TAMPERED: dict[str, tuple[Callable[[Log], None], str, int]] = {
         21_500,
     ),
     "taken over a second time": (
-        copy_to(40_000, {"Epoch": 2}, "GateState", **TAKEOVER),
+        copy_to(30_000, {"Epoch": 2}, "GateState", **TAKEOVER),
         "a heartbeat of ICAROUS",
-        40_000,
+        30_000,
     ),
     "a drop that nothing led to": (
-        make(40_000, "vehicle/2", **{
+        make(30_000, "vehicle/2", **{
             "$type": "CommandDropped", "VehicleID": 2, "Sender": "UxAS", "Epoch": 0,
             "GateEpoch": 1, "Reason": "of another epoch",
         }),
         GATE,
-        40_000,
+        30_000,
     ),
     "a true mode refused": (
-        make(40_000, "uxas/ics", **{
+        make(30_000, "uxas/ics", **{
             "$type": "ModeRefused", "VehicleID": 2, "Owner": "ICAROUS", "Epoch": 1,
             "GateEpoch": 1, "Reason": "forged",
         }),
         "a mode refused",
-        40_000,
+        30_000,
     ),
     "the present mode overtaken": (
-        make(40_000, "uxas/ics", **{
+        make(30_000, "uxas/ics", **{
             "$type": "BridgeStatus", "VehicleID": 2, "Alive": True,
             "Note": "a mode of epoch 1 is overtaken by one of epoch 1",
         }),
         "a mode that is overtaken",
-        40_000,
+        30_000,
     ),
     "a task suspended without a takeover": (
         make(10_000, "uxas/ics", **{
@@ -224,26 +224,26 @@ TAMPERED: dict[str, tuple[Callable[[Log], None], str, int]] = {
         10_000,
     ),
     "silence that was none": (
-        make(40_000, "uxas/ics", **{
+        make(30_000, "uxas/ics", **{
             "$type": "BridgeStatus", "VehicleID": 1, "Alive": False, "Note": "silent since 1000 ms",
         }),
         "a report of silence",
-        40_000,
+        30_000,
     ),
     "heard again without silence": (
-        make(40_000, "uxas/ics", **{
+        make(30_000, "uxas/ics", **{
             "$type": "BridgeStatus", "VehicleID": 1, "Alive": True, "Note": "heard again",
         }),
         "a sign of life",
-        40_000,
+        30_000,
     ),
     "silence that is not reported": (deaf, "the link", 12_000),
     "lost and alive": (
-        make(40_000, "uxas/ics", **{
+        make(30_000, "uxas/ics", **{
             "$type": "BridgeStatus", "VehicleID": 1, "Alive": True, "Note": "link lost: closed",
         }),
         "a status of the link",
-        40_000,
+        30_000,
     ),
     "connection removed": (
         remove("BridgeStatus", VehicleID=1),
@@ -260,19 +260,19 @@ TAMPERED: dict[str, tuple[Callable[[Log], None], str, int]] = {
         0,
     ),
     "heartbeat to ICAROUS removed": (
-        remove("Heartbeat", 40_000, **DOWN),
+        remove("Heartbeat", 30_000, **DOWN),
         "a heartbeat to ICAROUS",
-        40_000,
+        30_000,
     ),
     "heartbeat to ICAROUS with a former number": (
-        alter({"Sequence": 3}, "Heartbeat", 40_000, **DOWN),
+        alter({"Sequence": 3}, "Heartbeat", 30_000, **DOWN),
         "a heartbeat to ICAROUS",
-        40_000,
+        30_000,
     ),
     "heartbeat of ICAROUS that was never sent": (
-        alter({"Sequence": 9999}, "Heartbeat", 40_000, **UP),
+        alter({"Sequence": 9999}, "Heartbeat", 30_000, **UP),
         "a heartbeat from ICAROUS",
-        40_000,
+        30_000,
     ),
     "another time in the message": (
         alter({"Time": 1}, "GateState", **TAKEOVER),
@@ -284,10 +284,10 @@ TAMPERED: dict[str, tuple[Callable[[Log], None], str, int]] = {
         "GateState",
         21_500,
     ),
-    "the end removed": (cut_short, "the end of the log", 215_750),
-    "a command after the end": (after_the_end, "GatedCommand", 215_750),
+    "the end removed": (cut_short, "the end of the log", 220_750),
+    "a command after the end": (after_the_end, "GatedCommand", 220_750),
     "time goes back": (time_goes_back, "the time of a message", 30_000),
-    "the end days later": (days_later, "the time of a message", 215_750),
+    "the end days later": (days_later, "the time of a message", 220_750),
 }  # fmt: skip
 
 
