@@ -168,7 +168,9 @@ def test_the_summary_of_a_run_shows_no_hidden_characters(
     broken |= {"guarantees": ["G5"], "lost": "l", "stands": "s"}
     report = {"requirements": [], "flight": flight, "verdict": "violated", "exit_code": 1}
     report["command"] = "cratous run --processes"
-    report |= {"log": {"digest": "0"}, "assumptions": [broken]}
+    blamed = {"requirement": "G5", "item": BAD, "verdict": "violated", "time_ms": 0}
+    blamed |= {"command": [], "ways_out": [], "broken_first": None, "not_observed": [BAD]}
+    report |= {"log": {"digest": "0"}, "assumptions": [broken], "blame": [blamed]}
     _show(report, tmp_path / "a\x1b[2J")
     shown = capsys.readouterr().out
     assert "forged" in shown
