@@ -25,7 +25,7 @@ _QUEUE = _HEADER.size + 4 + _ADDRESSES.size + len(_ANY) + 4  # where the answer 
 def unread_by_peer(link: socket.socket) -> int | None:
     """Bytes sent to the other end of a connection, arrived or not, that its program has not read; None where the system
     does not tell: another machine, another system than Linux, IPv6, or an end that is gone."""
-    with suppress(OSError, ValueError):
+    with suppress(OSError, ValueError, struct.error):
         here, there = link.getsockname(), link.getpeername()
         if link.family != socket.AF_INET:
             return None

@@ -15,9 +15,8 @@ from cratous.core.authority.timeliness import in_time
 from cratous.core.avoidance.manoeuvre import Motion, fly_to, smallest_turn
 from cratous.core.avoidance.prediction import Intruder, Piece, after
 from cratous.core.avoidance.way_ahead import turns
-from cratous.core.kernel import Vec2
-from cratous.core.permit.tubes import disc_within
 from cratous.core.routing.polylines import Track
+from cratous.services.icarous.deviation import keeps_to
 from cratous.services.icarous.ending import TRACKING_S, TURN_MARGIN
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.messages import Sensed
@@ -72,7 +71,7 @@ def with_ways(
             window_m = old.track.length_m
         at_m = old.track.nearest(other.position, old.at_m, window_m).s_m
         ways.append(old._replace(at_m=at_m))
-        kept = _keeps(old.track.at(at_m), other.position, daa)
+        kept = keeps_to(old.track.at(at_m), other.position, daa)
         off_rad = smallest_turn(old.track.heading_rad(at_m), _course_rad(other.velocity))
         kept = kept and not turns(off_rad, _turn_rate(other, sensed), ASTRAY_S)
         way = _along(old.track, at_m, other) if kept else ()
@@ -107,8 +106,10 @@ def _steered(
     if not speed:
         return other
     if was_rad is not None:
-        detour = abs(smallest_turn(was_rad, course)) + abs(smallest_turn(course, goal))
-        if turns(detour - abs(smallest_turn(was_rad, goal)), TURNING_RAD_S, beat_s):
+        left = abs(smallest_turn(course, goal))
+        nearer = max(0.0, abs(smallest_turn(was_rad, goal)) - left)
+        # neither there nor turning there: what was told is not what it flies
+        if turns(left, TURNING_RAD_S, beat_s) and not turns(nearer, TURNING_RAD_S, beat_s):
             return other
     own = sensed.ability
     ability = own._replace(turn_rate_rad_s=_turn_rate(other, sensed))
@@ -123,17 +124,6 @@ def _steered(
 
 def _course_rad(v: Velocity) -> float:
     return math.atan2(v.east_m_s, v.north_m_s)
-
-
-def _keeps(told: Position, now: Position, daa: Daa) -> bool:
-    """No farther from the way than half of what the buffer leaves, as in `permits`."""
-    share, volume = (daa.buffer - 1) / 2, daa.well_clear
-    beside = Vec2(now.north_m - told.north_m, now.east_m - told.east_m)
-    above = Vec2(now.alt_m - told.alt_m, 0.0)
-    return bool(
-        disc_within(beside, 0.0, share * volume.dthr_m)
-        and disc_within(above, 0.0, share * volume.zthr_m)
-    )
 
 
 def _along(track: Track, at_m: float, other: Intruder) -> tuple[Piece, ...]:

@@ -17,7 +17,6 @@ from dataclasses import replace
 
 from cratous.core.avoidance.manoeuvre import way_along
 from cratous.core.avoidance.prediction import Intruder, Piece, buffered, first_violation_s, later
-from cratous.core.kernel import Vec2
 from cratous.core.permit.encounter import (
     Encounter,
     encounter_looked,
@@ -25,7 +24,7 @@ from cratous.core.permit.encounter import (
     encounter_watched,
 )
 from cratous.core.permit.remainder import way_permits
-from cratous.core.permit.tubes import disc_within
+from cratous.services.icarous.deviation import keeps_to
 from cratous.services.icarous.ending import Ahead
 from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.state import Config, Met, State
@@ -137,11 +136,5 @@ def _on_line(met: Met, other: Intruder, now_ms: int, daa: Daa) -> bool:
     """No farther from where it was predicted than half of what the buffer leaves."""
     if met.predicted is None:
         return False
-    was, now = later(met.predicted, (now_ms - met.made_ms) / 1000).position, other.position
-    share, volume = (daa.buffer - 1) / 2, daa.well_clear
-    beside = Vec2(now.north_m - was.north_m, now.east_m - was.east_m)
-    above = Vec2(now.alt_m - was.alt_m, 0.0)
-    return bool(
-        disc_within(beside, 0.0, share * volume.dthr_m)
-        and disc_within(above, 0.0, share * volume.zthr_m)
-    )
+    told = later(met.predicted, (now_ms - met.made_ms) / 1000).position
+    return keeps_to(told, other.position, daa)
