@@ -3,6 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.ready
+# byte code of these is kept: where PYTHONDONTWRITEBYTECODE is set, each command would compile hundreds of them again
 MODULES := $(addprefix src/cratous/,spec core proofs services bridge judge)
 
 .PHONY: help venv demo test test-fast test-long test-web lint types prove recheck mutate crosshair fuzz daa-fuzz bench docs dist changelog lock clean
@@ -32,7 +33,6 @@ $(STAMP): requirements.lock pyproject.toml
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement requirements.lock
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
-	# where PYTHONDONTWRITEBYTECODE is set, every command would compile its hundreds of modules again
 	$(BIN)/python -m compileall -q -j 0 $(MODULES)
 	$(BIN)/cratous warm
 	@touch $(STAMP)
