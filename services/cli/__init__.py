@@ -15,13 +15,14 @@ import io
 import json
 import sys
 import traceback
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
 import click
 
 from cratous import __version__
-from cratous.services.cli.stopping import Stopped, stoppable
+from cratous.services.cli.stopping import Stopped, handlers_as_before, stoppable
 from cratous.spec.errors import BadInput, CratousError, NoPlan
 from cratous.spec.files.extras import told
 from cratous.spec.files.printable import json_text, printable
@@ -101,7 +102,7 @@ def main(argv: list[str] | None = None) -> int:
         # the process ends with the command: what is still there needs no last collection
         atexit.register(gc.freeze)
     try:
-        with stoppable(), told():
+        with handlers_as_before() if argv is not None else nullcontext(), stoppable(), told():
             result = cli.main(args=arguments, prog_name="cratous", standalone_mode=False)
         return result if isinstance(result, int) else 0
     except click.exceptions.Exit as done:

@@ -22,6 +22,21 @@ class Stopped(SystemExit):
 
 
 @contextmanager
+def handlers_as_before() -> Iterator[None]:
+    """What a command of this process does about Ctrl-C and the like ends with the command, for who has called it."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, *STOPS)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            if handler is not None:  # None: not made by Python, and not to be made again by it
+                signal.signal(number, handler)
+
+
+@contextmanager
 def stoppable() -> Iterator[None]:
     """In here these signals raise `Stopped`; those that the caller ignores (nohup) stay ignored."""
     if threading.current_thread() is not threading.main_thread():

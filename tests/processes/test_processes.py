@@ -116,8 +116,12 @@ def test_a_second_request_to_end_waits_until_all_have_ended(tmp_path: Path) -> N
 
     children = Slow(tmp_path, tmp_path)
     pid = simulator(children, tmp_path, "simulator")
-    with pytest.raises(KeyboardInterrupt):
-        children.__exit__(None, None, None)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            children.__exit__(None, None, None)
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert not stands(pid)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import socket
 import sqlite3
 import time
@@ -129,7 +130,9 @@ def test_the_command_refuses_checks_and_prints(
     assert main(["uxas", "--check"]) == 0
     assert "1 services and bridges" in capsys.readouterr().out
     assert not (tmp_path / "log").exists()
+    ctrl_c = signal.getsignal(signal.SIGINT)
     assert main(["uxas", "-version", "--virtual-time", "-runUntil", "3"]) == 0
+    assert signal.getsignal(signal.SIGINT) is ctrl_c, "who called it in a process ends as before"
     assert "CMASI: 3" in capsys.readouterr().out
     assert (tmp_path / "datawork").is_dir()
     logs = list((tmp_path / "log").iterdir())
