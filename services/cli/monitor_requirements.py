@@ -77,12 +77,17 @@ def print_result(
 
 def read(requirements: Path) -> Specification:
     """The requirements of a file, in the language that its name tells; BadInput for what is none."""
-    from cratous.services.requirements import c2po, language
-    from cratous.spec.files.limits import CONFIG_BYTES
+    from cratous.services.requirements import c2po, fret, language
+    from cratous.spec.files.limits import CONFIG_BYTES, DOCUMENT_BYTES
     from cratous.spec.files.text_file import text_of
 
-    reader = language if requirements.suffix == ".req" else c2po
-    return reader.read(text_of(requirements, CONFIG_BYTES, "requirements"), str(requirements))
+    if requirements.suffix == ".json":
+        text = text_of(requirements, DOCUMENT_BYTES, "an export of FRET")
+        return fret.read(text, str(requirements))
+    text = text_of(requirements, CONFIG_BYTES, "requirements")
+    if requirements.suffix == ".req":
+        return language.read(text, str(requirements), requirements.parent)
+    return c2po.read(text, str(requirements))
 
 
 def _data(one: Outcome, timed: bool) -> dict[str, Any]:
