@@ -48,9 +48,8 @@ def asked_step(asked: Asked, time: int, place: int, at: int) -> Asked:
     latest = stood_step(asked.latest, time, place, at)
     if time == asked.time and place == asked.place:
         return Asked(asked.time, asked.place, True, asked.later, False, latest)
-    told = time <= at
-    later = asked.later or (told and time > asked.time)
-    after = asked.after or (told and asked.there and time == asked.time)
+    later = asked.later or (time <= at and time > asked.time)
+    after = asked.after or time == asked.time
     return Asked(asked.time, asked.place, asked.there, later, after, latest)
 
 
@@ -79,15 +78,14 @@ def broke_step(earliest: Earliest, since: int, place: int, at: int) -> Earliest:
 class Blamed(NamedTuple):
     """Is one entry the one that came first? Asked of any entry, whatever the list.
 
-    since, place: of the entry; there: it is in the list; sooner: another one is sooner; before: one that is as
-    soon stands before it; earliest: what came first by the definition above.
+    since, place: of the entry; there: it is in the list; beaten: another one is sooner, or as soon and stands before
+    it; earliest: what came first by the definition above.
     """
 
     since: int
     place: int
     there: bool
-    sooner: bool
-    before: bool
+    beaten: bool
     earliest: Earliest
 
 
@@ -95,13 +93,11 @@ def blamed_step(blamed: Blamed, since: int, place: int, at: int) -> Blamed:
     """An entry more of the list: the entry itself, or a rival of it."""
     earliest = broke_step(blamed.earliest, since, place, at)
     if since == blamed.since and place == blamed.place:
-        return Blamed(blamed.since, blamed.place, True, blamed.sooner, blamed.before, earliest)
-    told = since <= at
-    sooner = blamed.sooner or (told and since < blamed.since)
-    before = blamed.before or (told and not blamed.there and since == blamed.since)
-    return Blamed(blamed.since, blamed.place, blamed.there, sooner, before, earliest)
+        return Blamed(blamed.since, blamed.place, True, blamed.beaten, earliest)
+    beats = since < blamed.since if blamed.there else since <= blamed.since
+    return Blamed(blamed.since, blamed.place, blamed.there, blamed.beaten or beats, earliest)
 
 
 def came_first(blamed: Blamed, at: int) -> bool:
     """It is in the list, is by the instant, and of all NONE is sooner and NONE as soon and before it."""
-    return blamed.there and blamed.since <= at and not blamed.sooner and not blamed.before
+    return blamed.there and blamed.since <= at and not blamed.beaten

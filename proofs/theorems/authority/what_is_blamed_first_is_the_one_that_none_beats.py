@@ -24,25 +24,21 @@ def claim(c: Claim) -> None:
             c.same(blamed.earliest, Earliest(*broke)),
         )
         is_it = c.all_of(broke.since == of, broke.place == number)
-        sooner = c.same(blamed.sooner, broke.since < of)
-        met = c.any_of(blamed.before, c.all_of(blamed.there, of <= at))
-        as_soon = c.implies(met, broke.since <= of)
-        other = c.all_of(broke.since == of, c.negation(blamed.there))
-        known = c.all_of(as_soon, c.implies(other, blamed.before))
-        return c.all_of(
-            ranged, same, sooner, known, c.same(is_it, c.define(came_first, blamed, at))
-        )
+        absent = c.implies(c.negation(blamed.there), c.same(blamed.beaten, broke.since <= of))
+        present = c.implies(blamed.there, broke.since <= of)
+        by = c.implies(of <= at, c.all_of(absent, present))
+        return c.all_of(ranged, same, by, c.same(is_it, c.define(came_first, blamed, at)))
 
     c.fold(
         broke_first,
         acc=Broke(c.whole("first"), c.whole("told")),
         model=Blamed(
-            c.whole("asked_since"), c.whole("asked_place"), c.boolean("there"), c.boolean("sooner"),
-            c.boolean("before"), Earliest(c.whole("meant_first"), c.whole("meant_number")),
+            c.whole("asked_since"), c.whole("asked_place"), c.boolean("there"), c.boolean("beaten"),
+            Earliest(c.whole("meant_first"), c.whole("meant_number")),
         ),
         item=(since, place),
         context=(at,),
-        model_start=Blamed(of, number, False, False, False, Earliest(AFTER, -1)),
+        model_start=Blamed(of, number, False, False, Earliest(AFTER, -1)),
         model_step=blamed_step,
         model_finish=lambda blamed: blamed.earliest,
         relation=related,
