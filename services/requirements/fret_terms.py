@@ -89,7 +89,7 @@ class Names:
         if len(set(units)) > 1:
             raise Wrong("signals of two units are compared", at, units[0] or "no unit", units[1])
         values = [
-            side if isinstance(side, str) else _value(side, units[0], at) for side in (left, right)
+            side if isinstance(side, str) else value_in(side, units[0], at) for side in (left, right)
         ]
         relation = {"=": "=="}.get(str(relation), str(relation))
         return formulas.compared(values[0], relation, values[1])
@@ -104,13 +104,14 @@ def _truth(side: str | bool) -> formulas.Formula:
     return formulas.TRUE if side else formulas.FALSE
 
 
-def _value(number: Quantity, unit: str, at: int) -> float:
-    """A number in a unit; one without a unit is in it already."""
-    if not number.unit:
-        return float(number.value)
-    if not unit or dimension(number.unit) != dimension(unit):
+def value_in(number: Quantity, unit: str, at: int) -> float:
+    """A number in a unit, in which one without a unit is already; Wrong, with the place, where it is none."""
+    if number.unit and (not unit or dimension(number.unit) != dimension(unit)):
         raise Wrong("units that do not fit", at, unit or "no unit", number.unit)
-    return float(in_unit(number, unit))
+    try:
+        return float(in_unit(number, unit) if number.unit else number.value)
+    except OverflowError:
+        raise Wrong("the number is too large", at, "a double", number.text) from None
 
 
 def number(text: str, at: int = 0) -> Quantity:
@@ -118,10 +119,7 @@ def number(text: str, at: int = 0) -> Quantity:
     mantissa, _, exponent = text.lower().partition("e")
     if len(mantissa) > DIGITS or len(exponent) > 4 or abs(int(exponent or "0")) > DIGITS:
         raise Wrong("the number is too long", at, f"up to {DIGITS} digits")
-    value = Fraction(text)
-    if abs(value) >= 2**1023:
-        raise Wrong("the number is too large", at, "a double", text)
-    return Quantity(value, "", text)
+    return Quantity(Fraction(text), "", text)
 
 
 def term(kind: str, got: list[Any], names: Names) -> Any:

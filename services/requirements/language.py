@@ -31,7 +31,7 @@ from cratous.services.requirements.formula import (
     once,
 )
 from cratous.services.requirements.fret_import import imported, of_sentence, quantity
-from cratous.services.requirements.fret_terms import Wrong
+from cratous.services.requirements.fret_terms import Wrong, value_in
 from cratous.services.requirements.specification import (
     NotRead,
     Requirement,
@@ -258,7 +258,7 @@ class _Reader:
                 raise Wrong("units that do not fit", relation.start_pos, expected, other)
             if k in units and other != unit:
                 raise Wrong("signals of two units are compared", relation.start_pos, unit, other)
-            values.append(str(side) if k in units else float(in_unit(side, unit)))
+            values.append(str(side) if k in units else value_in(side, unit, relation.start_pos))
         return compared(values[0], str(relation), values[1])
 
 
