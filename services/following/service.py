@@ -73,7 +73,7 @@ class Following(NamedTuple):
 Step = tuple[Following, list[Any]]
 
 
-def _kept(state: Following, needed: int, now_ms: int, least_ms: int) -> Kept:
+def kept_at(state: Following, needed: int, now_ms: int, least_ms: int) -> Kept:
     """How long as many as are needed have done what is asked, counted now; least_ms: 0 ends nothing."""
     count = sum(p.there and in_time(p.seen_ms, now_ms, SILENT_MS) for p in state.parts)
     return kept_step(state.kept, count, needed, now_ms, least_ms)
@@ -257,7 +257,7 @@ class FollowingTaskService(TaskService):
         now_ms = max(state.now_ms, body.Time, 0)
         asked = self._asked(part.context)
         # who was silent until now was there until then, not since
-        state = state._replace(now_ms=now_ms, kept=_kept(state, asked.needed, now_ms, 0))
+        state = state._replace(now_ms=now_ms, kept=kept_at(state, asked.needed, now_ms, 0))
         waits = not follows and (body.Mode.name != "Waypoint" or body.CurrentWaypoint < part.begins)
         if waits:
             return state.with_part(part), out
@@ -281,7 +281,7 @@ class FollowingTaskService(TaskService):
         elif part.held is not None and not part.blocked:
             out.append(parts_of.circling(part, self._task_id, number, asked, motion))
         state = state.with_part(part)
-        kept = _kept(state, asked.needed, now_ms, asked.least_ms)
+        kept = kept_at(state, asked.needed, now_ms, asked.least_ms)
         state = state._replace(kept=kept)
         return self._over(state, body, out) if kept.done else (state, out)
 
@@ -291,7 +291,7 @@ class FollowingTaskService(TaskService):
         if part.blocked != LOST:
             out.append(self._warning(f"vehicle {part.vehicle} does not follow: {error}"))
         state = state.with_part(part._replace(there=False, seen_ms=state.now_ms, blocked=LOST))
-        return state._replace(kept=_kept(state, asked.needed, state.now_ms, asked.least_ms)), out
+        return state._replace(kept=kept_at(state, asked.needed, state.now_ms, asked.least_ms)), out
 
     def _over(self, state: Following, body: Any, out: list[Any]) -> Step:
         """Complete: the vehicles are sent on to what comes next in their plans."""
