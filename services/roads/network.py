@@ -1,7 +1,7 @@
 """Ways along roads: from anywhere near a road to anywhere near one, and where roads cross a circle.
 
-A place beside a road counts from the nearest point of the nearest leg. Whether a leg meets a circle and an end
-of it lies inside, the kernels `edge_against` and `in_ring` say. Plane and units: north and east [m] of a frame
+A place beside a road counts from the nearest point of the nearest leg. How often a leg crosses a circle the kernel
+`crossings` says, proved to miss none. Plane and units: north and east [m] of a frame
 in the middle of the map.
 """
 
@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cratous.core.geofence.distance import AT, FARTHER, edge_against
 from cratous.core.kernel import Vec2
+from cratous.core.tasks.cordon import crossings
 from cratous.core.tasks.stations import in_ring
 from cratous.services.mission.frames import Projection
 from cratous.services.roads.osm import RoadMap
@@ -180,9 +180,9 @@ def _bearing(middle: Vec2, at: Vec2) -> float:
 
 
 def _crossed(middle: Vec2, radius_m: float, a: Vec2, b: Vec2) -> Iterator[Crossing]:
-    """Where a leg crosses a circle: once with one end inside, twice or not at all with none."""
-    inside = [in_ring(middle, p, 0.0, radius_m) for p in (a, b)]
-    if all(inside) or (not any(inside) and edge_against(middle, a, b, radius_m) in (AT, FARTHER)):
+    """Where a leg crosses a circle, as often as the kernel says."""
+    count = crossings(middle, a, b, radius_m)
+    if not count:
         return
     north, east = b.x - a.x, b.y - a.y
     square = north * north + east * east
@@ -190,11 +190,9 @@ def _crossed(middle: Vec2, radius_m: float, a: Vec2, b: Vec2) -> Iterator[Crossi
     ahead = ((a.x - middle.x) ** 2 + (a.y - middle.y) ** 2 - radius_m**2) / square
     spread = math.sqrt(max(half * half - ahead, 0.0))
     heading = math.atan2(east, north)
-    shares = []
-    if not inside[0]:
-        shares.append((-half - spread, heading + math.pi))
-    if not inside[1]:
-        shares.append((-half + spread, heading))
-    for share, outwards in shares:
+    ways = [(-half - spread, heading + math.pi), (-half + spread, heading)]
+    if count == 1:  # out, if it begins inside
+        ways = ways[1:] if in_ring(middle, a, 0.0, radius_m) else ways[:1]
+    for share, outwards in ways:
         t = min(max(share, 0.0), 1.0)
         yield Crossing(Vec2(a.x + t * north, a.y + t * east), outwards)
