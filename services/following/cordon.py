@@ -53,6 +53,8 @@ from cratous.spec.mission import Position, Task
 from cratous.spec.mission.plan import Pose
 
 EGRESS = "uxas.messages.route.EgressRouteResponse"
+ROADS_MOST = 32
+"""So many places the response has at most, by its definition."""
 PLACE_M = 20.0
 """Who is no farther from its place blocks the road there."""
 
@@ -115,9 +117,12 @@ class CordonTaskService(FollowingTaskService):
         body, lead = envelope.body, state.lead
         if body.ResponseID != self._task_id or lead.task.state != AWAITS_PLACES:
             return state, ()
-        headings = [*body.Headings, *[0.0] * len(body.NodeLocations)]
-        context = self._contexts.of(lead.number(lead.task.request))
-        self._roads = Told(context, tuple(zip(body.NodeLocations, headings, strict=False)))
+        context, count = self._contexts.of(lead.number(lead.task.request)), len(body.NodeLocations)
+        headings = [*body.Headings, *[0.0] * count]
+        told = Told(context, tuple(zip(body.NodeLocations, headings, strict=False)))
+        if count > ROADS_MOST:
+            told = Told(context, (), f"{count} roads cross the circle, more than {ROADS_MOST}")
+        self._roads = told
         lead, out = self._advance(lead, ROUTES_KNOWN, lead.task.request, body)
         return state._replace(lead=lead), out
 

@@ -158,6 +158,41 @@ def test_without_a_planner_on_roads_nobody_waits(tmp_path: Path) -> None:
     assert "no OsmPlannerService is here, which knows the roads" in "\n".join(rig.reasons())
 
 
+@pytest.mark.parametrize(
+    ("places", "headings", "reason"),
+    [
+        ([at(*MIDDLE)] * 33, [], "33 roads cross the circle, more than 32"),
+        ([at(math.nan, 0.0)], [], "NodeLocations[0]: not a place"),
+        ([at(*MIDDLE)], [math.nan], "not a heading"),
+    ],
+)
+def test_rubbish_of_who_tells_the_roads_is_answered(
+    tmp_path: Path, places: Any, headings: Any, reason: str
+) -> None:
+    rig = driven(tmp_path)
+    rig.bus.remove("OsmPlannerService")
+    rig.bus.add(Other(lmcp.new("EgressRouteResponse", NodeLocations=places, Headings=headings)))
+    rig.tell(*cars(1), cordon(), request(100))
+    assert rig.got("AutomationResponse")[-1].MissionCommandList == []
+    assert reason in "\n".join(rig.reasons())
+
+
+class Other:
+    """A planner on roads that is another's, and answers the same whatever it is asked."""
+
+    name = "OsmPlannerService"
+    subscribes = ("uxas.messages.route.EgressRouteRequest",)
+
+    def __init__(self, answer: Any) -> None:
+        self.answer = answer
+
+    def start(self) -> None:
+        return None
+
+    def handle(self, state: None, envelope: Any, now_ms: int) -> Any:
+        return None, [self.answer.copy(ResponseID=envelope.body.RequestID)]
+
+
 def test_what_flies_blocks_no_road_and_what_drives_flies_no_task(tmp_path: Path) -> None:
     aircraft = vehicle(9)[0], vehicle(9)[1].copy(Location=at(*MIDDLE).copy(Altitude=300.0))
     fly = must_fly(5, MIDDLE[0] + 0.02, MIDDLE[1])
