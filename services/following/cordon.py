@@ -7,16 +7,12 @@ and stands. Complete: all of them stand at their places at one time for as long 
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Sequence
-from itertools import permutations
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable
+from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.core.authority.timeliness import lasted
-from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.kernel import Vec2
-from cratous.core.routing.visibility import name_of
 from cratous.core.tasks.stations import Kept, in_ring
 from cratous.services.bus import Envelope
 from cratous.services.following.asked import (
@@ -26,7 +22,8 @@ from cratous.services.following.asked import (
     milliseconds,
     within,
 )
-from cratous.services.following.offering import WAYS_MOST, choice
+from cratous.services.following.blocking import Told, options_of
+from cratous.services.following.offering import choice
 from cratous.services.following.part import Part
 from cratous.services.following.service import (
     SELECTED,
@@ -35,7 +32,6 @@ from cratous.services.following.service import (
     Step,
     kept_at,
 )
-from cratous.services.loading.ground import drives
 from cratous.services.pipeline.contexts import Context, Contexts
 from cratous.services.pipeline.ground import ROADS
 from cratous.services.pipeline.implementation import ROUNDED_MS
@@ -46,29 +42,17 @@ from cratous.services.pipeline.tasks import (
     UNLISTED,
     State,
 )
-from cratous.services.planning.flyers import MOMENT_MS, flyer_of
+from cratous.services.planning.flyers import MOMENT_MS
 from cratous.services.planning.options import Dropped, Option
 from cratous.spec.errors import BadInput, NoPlan
-from cratous.spec.mission import Position, Task
-from cratous.spec.mission.plan import Pose
 
 EGRESS = "uxas.messages.route.EgressRouteResponse"
-ROADS_MOST = 32
-"""So many places the response has at most, by its definition."""
 PLACE_M = 20.0
 """Who is no farther from its place blocks the road there."""
 
 
 AWAITS_PLACES = 3
 """The task's state (OptionRoutes of `spec.contracts.tasks`) in which it waits for where roads cross the circle."""
-
-
-class Told(NamedTuple):
-    """Where roads cross the circle, for one request: places and headings outwards [deg]; why: nobody has said."""
-
-    context: Context
-    crossings: tuple[tuple[Any, float], ...]
-    why: str = ""
 
 
 class CordonTaskService(FollowingTaskService):
@@ -119,10 +103,7 @@ class CordonTaskService(FollowingTaskService):
             return state, ()
         context, count = self._contexts.of(lead.number(lead.task.request)), len(body.NodeLocations)
         headings = [*body.Headings, *[0.0] * count]
-        told = Told(context, tuple(zip(body.NodeLocations, headings, strict=False)))
-        if count > ROADS_MOST:
-            told = Told(context, (), f"{count} roads cross the circle, more than {ROADS_MOST}")
-        self._roads = told
+        self._roads = Told(context, tuple(zip(body.NodeLocations, headings, strict=False)))
         lead, out = self._advance(lead, ROUTES_KNOWN, lead.task.request, body)
         return state._replace(lead=lead), out
 
@@ -198,59 +179,3 @@ class CordonTaskService(FollowingTaskService):
             _, more = self._advance(part.state, UNLISTED, 0, body)
             out += [one for one in more if type(one).__name__ != "TaskComplete"]
         return state._replace(parts=(), kept=Kept(-1, False)), out
-
-
-def options_of(
-    context: Context, task: Task, told: Told, radius_m: float, least_ms: int
-) -> tuple[list[Option], list[list[int]], list[Dropped]]:
-    """An option for each vehicle and place, all ways to give each place a vehicle, and what is not offered."""
-    vehicles, count = context.inputs.mission.vehicles, len(told.crossings)
-    may = [v for v in vehicles if not task.eligible or v.id in task.eligible]
-    able = [v for v in may if drives(v)]
-    flying = tuple(v.id for v in may if not drives(v))
-    reason = "it does not drive, and blocks no road"
-    dropped = [Dropped(task.id, flying, "", reason)] if flying else []
-    places = [_pose(context, task, k, told.crossings[k]) for k in range(count)]
-    why = told.why or _why_none(context, places, len(able), radius_m)
-    if why:
-        who = tuple(v.id for v in able or may)
-        return [], [], [*dropped, Dropped(task.id, who, "a cordon", why)]
-    made, numbers = list[Option](), dict[tuple[int, int], int]()
-    for vehicle in able:
-        flyer = flyer_of(vehicle)
-        for k, pose in enumerate(places):
-            number = numbers[vehicle.id, k] = len(made) + 1
-            pose = pose._replace(alt_m=flyer.alt_m)
-            ids, path = (task.id, number, (vehicle.id,)), (Position(*pose[:3]),)
-            label = f"road {k + 1} of {count}"
-            made.append(Option(*ids, flyer, pose, pose, path, least_ms, (), label))
-    ways = [
-        [numbers[vehicle, k] for k, vehicle in enumerate(chosen)]
-        for chosen in permutations([v.id for v in able], count)
-    ]
-    return made, ways, dropped
-
-
-def _pose(context: Context, task: Task, k: int, crossing: tuple[Any, float]) -> Pose:
-    return context.places.pose(*crossing, f"task {task.id}", f"NodeLocations[{k}]")
-
-
-def _why_none(context: Context, places: Sequence[Pose], able: int, radius_m: float) -> str:
-    """Why roads cannot all be blocked, nothing if they can."""
-    count = len(places)
-    if not count:
-        return f"{ROADS} knows no road that crosses the circle of {radius_m:g} m"
-    if able < count:
-        return (
-            f"{count} roads cross the circle of {radius_m:g} m, and {able} vehicles may block one"
-        )
-    if math.perm(able, count) > WAYS_MOST:
-        return (
-            f"{able} vehicles may block {count} roads in more than {WAYS_MOST} ways: "
-            "name fewer as EligibleEntities"
-        )
-    for k, pose in enumerate(places):
-        bad = first_bad_leg((Position(*pose[:3]),), context.inputs.zones)
-        if bad is not None:
-            return f"road {k + 1} of {count} would be blocked in breach of {name_of(bad[1])}"
-    return ""

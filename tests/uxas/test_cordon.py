@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
+import random
 import shutil
 from pathlib import Path
 from typing import Any
@@ -13,6 +15,8 @@ from road_tools import EXAMPLE, MIDDLE, at, car, driven
 from uxas_tools import process
 
 from cratous.bridge import lmcp
+from cratous.services.following import blocking
+from cratous.services.following.blocking import soonest
 from cratous.services.loading.uxas import load_uxas
 from cratous.services.mission.frames import Projection
 from cratous.spec.errors import BadInput
@@ -74,6 +78,30 @@ def test_with_more_vehicles_than_roads_the_last_is_there_as_soon_as_can_be(tmp_p
     assert sorted(ends(rig)) == [1, 2, 3, 4], "the farthest has nothing to do"
 
 
+def test_of_too_many_ways_those_are_offered_of_which_the_last_is_there_soonest(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(blocking, "WAYS_MOST", 20)
+    rig = asked(tmp_path, cordon(), count=5)
+    assert rig.got("TaskPlanOptions")[0].Composition.count("|(") == 20
+    assert sorted(ends(rig)) == [1, 2, 3, 4], "who are nearest"
+    assert "any way but 20 of 120" in rig.reasons("Warning")[0]
+
+
+def test_ways_come_in_their_order_and_there_is_always_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = random.Random(3)
+    for _ in range(20):
+        places, count = rng.randint(1, 4), rng.randint(4, 5)
+        times = [[rng.uniform(0, 100) for _ in range(count)] for _ in range(places)]
+        every = {w: [row[v] for row, v in zip(times, w, strict=True)]
+                 for w in itertools.permutations(range(count), places)}  # fmt: skip
+        found = soonest(times, 720)
+        assert found == sorted(every, key=lambda w: (max(every[w]), sum(every[w])))
+        assert soonest(times, 2) == found[:2]
+    monkeypatch.setattr(blocking, "LOOKED_MOST", 1)
+    assert soonest([[3.0, 1.0, 2.0], [9.0, 1.0, 8.0], [1.0, 1.0, 1.0]], 720) == [(1, 2, 0)]
+
+
 @pytest.mark.shows(TASKS, "TaskActive", "TaskComplete")
 def test_it_is_complete_when_all_stand_at_one_time_for_as_long_as_is_asked(tmp_path: Path) -> None:
     pair = lmcp.new("KeyValuePair", Key="Duration_ms", Value="3000")
@@ -123,7 +151,6 @@ def test_another_request_with_it_and_a_plan_without_it_end_it(tmp_path: Path) ->
     [
         ({}, 3, "4 roads cross the circle of 100 m, and 3 vehicles may block one"),
         ({"EligibleEntities": [1, 2, 3]}, 4, "4 roads cross the circle of 100 m, and 3 vehicles"),
-        ({}, 6, "6 vehicles may block 4 roads in more than 336 ways"),
         ({"CordonLocation": at(MIDDLE[0] + 0.003, MIDDLE[1] + 0.0025)}, 4,
          "OsmPlannerService knows no road that crosses the circle of 100 m"),
         ({"StandoffDistance": 0.0}, 4, "StandoffDistance: out of range"),
@@ -161,7 +188,7 @@ def test_without_a_planner_on_roads_nobody_waits(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("places", "headings", "reason"),
     [
-        ([at(*MIDDLE)] * 33, [], "33 roads cross the circle, more than 32"),
+        ([at(*MIDDLE)] * 9, [], "9 roads cross the circle of 100 m, and at most 8 are blocked"),
         ([at(math.nan, 0.0)], [], "NodeLocations[0]: not a place"),
         ([at(*MIDDLE)], [math.nan], "not a heading"),
     ],
