@@ -30,6 +30,7 @@ from cratous.services.pipeline.tasks import (
     HANDED_BACK,
     LISTED,
     PUBLISH_OPTIONS,
+    REMOVE,
     UNLISTED,
     WITH_UXAS,
     WITHDRAWN,
@@ -176,6 +177,8 @@ class FollowingTaskService(TaskService):
             return self._chosen(state, body)
         if topic == RESPONSE:
             return self._planned(state, body)
+        if topic == REMOVE and self._task_id in body.TaskList:
+            return self._removed(state, body)
         if hasattr(body, "AssociatedTasks"):
             return self._told(state, body)
         out = list[Any]()
@@ -309,6 +312,16 @@ class FollowingTaskService(TaskService):
             out += [one for one in more if type(one).__name__ != "TaskComplete"]
             out.append(self._sent_on(state, part))
         return state._replace(parts=(), kept=Kept(-1, False)), out
+
+    def _removed(self, state: Following, body: Any) -> Step:
+        """The task is no more: who does it ends it undone, and is sent on in its plan."""
+        out = [one for p in state.parts for one in self._advance(p.state, WITHDRAWN, 0, body)[1]]
+        out += self._sent(state)
+        return state._replace(parts=(), kept=Kept(-1, False), meeting=None), out
+
+    def _sent(self, state: Following) -> list[Any]:
+        """Who was told to circle is sent on."""
+        return [self._sent_on(state, part) for part in state.parts if part.held is not None]
 
     def _sent_on(self, state: Following, part: Part) -> Any:
         """The command that sends a vehicle on in its plan, or a Warning why it stays on its circle."""

@@ -211,6 +211,14 @@ def test_a_request_for_the_group_of_ground_planners_is_answered(tmp_path: Path) 
     assert [plan.RouteCost for plan in answer.RouteResponses] == [0]
 
 
+def test_without_a_planner_on_roads_there_is_no_way_for_what_drives(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, "RoutePlannerVisibilityService")
+    rig.tell(*car(1, *MIDDLE))
+    (plan,) = planned(rig, (MIDDLE, MIDDLE))
+    assert plan.RouteCost == -1
+    assert plan.RouteError[0].Value == "vehicle 1 drives, and no OsmPlannerService is here"
+
+
 def test_a_way_keeps_the_zones_and_what_there_is_no_way_to_says_why(tmp_path: Path) -> None:
     apart = map_text(
         {1: (0, 0), 2: (0, 0.01), 3: (0.01, 0.01), 4: (0.01, 0), 5: (0.02, 0), 6: (0.02, 0.01)},
