@@ -102,6 +102,9 @@ class Contexts:
             inputs, places = known.inputs, known.places
         else:
             places = RequestPlaces(inputs.mission, inputs.finder)
+            for found in reversed(self._found.values()):
+                if isinstance(found, Context):
+                    inputs.take_over(found.inputs)
         inputs.check_starts()
         if not inputs.wanted:
             raise NoPlan(("no branch of the relations has a task",))
