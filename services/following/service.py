@@ -18,7 +18,14 @@ from cratous.core.kernel import Vec2
 from cratous.core.tasks.stations import Kept, kept_step
 from cratous.services.bus import Envelope
 from cratous.services.following import part as parts_of
-from cratous.services.following.asked import Asked, Tower, asked_of, tower_of, unused_of
+from cratous.services.following.asked import (
+    Asked,
+    Tower,
+    asked_of,
+    route_named,
+    tower_of,
+    unused_of,
+)
 from cratous.services.following.motion import STALE_MS, Motion, motion_of
 from cratous.services.following.offering import offered, options_of
 from cratous.services.following.part import Part
@@ -89,6 +96,7 @@ class FollowingTaskService(TaskService):
         self._body = body
         self._made: tuple[Context, list[Option], list[Dropped]] | None = None
         self._stood: tuple[Context, Tower] | None = None
+        self._routed: tuple[Context, Any, tuple[Vec2, ...]] | None = None
 
     def start(self) -> Any:
         return Following()
@@ -123,7 +131,7 @@ class FollowingTaskService(TaskService):
 
     def _do(self, state: State, act: int, body: Any, out: list[Any]) -> tuple[State, int]:
         if act == PUBLISH_OPTIONS and not self._still(self._context):
-            told = unused_of(self._body)
+            told = unused_of(self._body, self._contexts.world)
             self._context.withheld[self._task_id] = tuple(self._found(self._context)[1])
             for no in self._found(self._context)[1]:
                 who = ", ".join(map(str, no.vehicles))
@@ -162,7 +170,19 @@ class FollowingTaskService(TaskService):
                 expected="one of " + (", ".join(map(str, sorted(known.ids("state")))) or "none"),
                 got=str(asked.entity),
             )
-        return motion_of(state, context.places, f"state of entity {asked.entity}", asked.route)
+        route = self._route(context) or asked.route
+        return motion_of(state, context.places, f"state of entity {asked.entity}", route)
+
+    def _route(self, context: Context) -> tuple[Vec2, ...]:
+        """The places that the entity goes along by the message that the task names; none: it names none."""
+        told, along = route_named(self._body, self._contexts.world)
+        if self._routed is None or self._routed[0] is not context or self._routed[1] is not told:
+            where, found = f"route of task {self._task_id}", []
+            for k, place in enumerate(along):
+                pose = context.places.pose(place, 0.0, where, f"[{k}]")
+                found.append(Vec2(pose.north_m, pose.east_m))
+            self._routed = (context, told, tuple(found))
+        return self._routed[2]
 
     # messages
 

@@ -21,6 +21,7 @@ from cratous.services.loading.polygons import one_region
 from cratous.services.loading.request_kinds import WRAPPED, is_request
 from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.uxas_cfg import Configuration, Sent, read_all, scenario_states
+from cratous.services.loading.uxas_frame import frame_of
 from cratous.services.loading.uxas_requests import request_of
 from cratous.services.loading.uxas_tasks import Interests, other
 from cratous.services.loading.uxas_tasks import task as read_task
@@ -60,17 +61,21 @@ def load_uxas(path: Path, number: int = 1) -> Mission:
 
 
 def mission_of(
-    cfg: Configuration, source: str, spoken_for: Collection[int] | None = None
+    cfg: Configuration,
+    source: str,
+    spoken_for: Collection[int] | None = None,
+    earlier: Frame | None = None,
 ) -> Mission:
     """The mission that a configuration and its messages make, from a file or as they came in.
 
     spoken_for: tasks that may be of a kind that is not covered, as their own services say how they are flown;
     None: nobody plans but the mission, so that no vehicle may drive.
+    earlier: the frame of an earlier mission, which is kept where it still lies well enough.
     """
     cast = _Cast(cfg, spoken_for or (), spoken_for is not None)
     request = cast.request()
     notes = [*cfg.notes, *cast.notes]
-    frame = _frame(cast)
+    frame = frame_of(cfg, earlier)
     notes.append(f"terrain is taken as flat at {frame.terrain_m:g} m MSL")
     places = Places(frame)
     sources: dict[str, str] = {"relations": request.where}
@@ -122,7 +127,7 @@ def surroundings_of(cfg: Configuration, source: str) -> Mission:
     cast = _Cast(cfg, (), True)
     request = cast.request()
     notes: list[str] = []
-    frame = _frame(cast)
+    frame = frame_of(cfg)
     places = Places(frame)
     return Mission(
         name="surroundings",
@@ -206,21 +211,6 @@ class _Cast:
                 got="none",
             )
         return self.requests[0]
-
-
-def _frame(cast: _Cast) -> Frame:
-    """A frame in the middle of everything that has a place, so that errors stay small."""
-    places = [place for sent in cast.cfg.messages for place in parts.locations(sent.body)]
-    if not places:
-        raise BadInput("no message has a place", where=str(cast.cfg.path), expected="vehicles")
-    # what is no place is refused where it is needed
-    found = [place for place in places if parts.is_place(*place)] or [(0.0, 0.0)]
-    # places that nobody has filled in lie at 0, 0; where the frame lies changes no meaning
-    latitudes, longitudes = zip(*([p for p in found if p != (0.0, 0.0)] or found), strict=True)
-    return Frame(
-        round((min(latitudes) + max(latitudes)) / 2, 6),
-        round((min(longitudes) + max(longitudes)) / 2, 6),
-    )
 
 
 def _vehicles(

@@ -277,6 +277,8 @@ def hold_rooms(pose: Pose, radius_m: float, zones: Sequence[Zone]) -> tuple[Hold
 
     The circle that is flown in the end is narrower and is checked again (`stages.hold_of`).
     """
+    if not zones:  # no circles to draw, and no machine code to load for them
+        return tuple(HoldRoom(clockwise, HOLD_FACTORS[0] * radius_m) for clockwise in (True, False))
     rooms = []
     for clockwise in (True, False):
         for factor in HOLD_FACTORS:

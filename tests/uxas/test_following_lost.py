@@ -82,7 +82,8 @@ def test_nobody_keeps_to_himself(tmp_path: Path) -> None:
 
 def test_what_is_not_used_of_an_escort_is_said(tmp_path: Path) -> None:
     assert refused(tmp_path / "a", escort(RouteID=7), *moving()) == [
-        "RouteID 7 of task 5 is not used: where the entity goes is PrescribedWaypoints, or straight on"
+        "RouteID 7 of task 5 is not used: no such line was told of; the entity goes along PrescribedWaypoints, "
+        "or straight on"
     ]
     assert refused(tmp_path / "b", escort(), *moving()) == []
 
