@@ -89,7 +89,8 @@ class Names:
         if len(set(units)) > 1:
             raise Wrong("signals of two units are compared", at, units[0] or "no unit", units[1])
         values = [
-            side if isinstance(side, str) else value_in(side, units[0], at) for side in (left, right)
+            side if isinstance(side, str) else value_in(side, units[0], at)
+            for side in (left, right)
         ]
         relation = {"=": "=="}.get(str(relation), str(relation))
         return formulas.compared(values[0], relation, values[1])
