@@ -28,6 +28,7 @@ from cratous.services.following.stations import (
     station,
     towards,
 )
+from cratous.services.loading.ground import drives
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.implementation import offer
 from cratous.services.planning.flyers import MOMENT_MS, Flyer, Way, flyer_of, straight
@@ -51,7 +52,7 @@ def options_of(
 ) -> tuple[list[Option], list[Dropped]]:
     """The options of a task, slots in the order of their numbers, and what is not offered, with the reason."""
     mission, made, dropped = context.inputs.mission, list[Option](), list[Dropped]()
-    able = [v for v in mission.vehicles if not task.eligible or v.id in task.eligible]
+    able = flying(mission.vehicles, task, dropped)
     if asked.entity in [v.id for v in able]:
         able = [v for v in able if v.id != asked.entity]
         dropped.append(Dropped(task.id, (asked.entity,), "", "the task keeps to this very one"))
@@ -71,6 +72,15 @@ def options_of(
             elif slot == 0 or "region" in found.label:
                 dropped.append(found._replace(vehicles=(vehicle.id,)))
     return made, dropped
+
+
+def flying(vehicles: Sequence[Vehicle], task: Task, dropped: list[Dropped]) -> list[Vehicle]:
+    """The vehicles that may do a task that is flown; who drives is dropped with the reason."""
+    able = [v for v in vehicles if not task.eligible or v.id in task.eligible]
+    driving = tuple(v.id for v in able if drives(v))
+    if driving:
+        dropped.append(Dropped(task.id, driving, "", "it drives, and the task is flown"))
+    return [v for v in able if not drives(v)]
 
 
 def named(option: Option, number: int, vehicle: int) -> Option:

@@ -37,6 +37,7 @@ from cratous.services.pipeline.tasks import (
     HANDED_BACK,
     LISTED,
     PUBLISH_OPTIONS,
+    REMOVE,
     UNLISTED,
     WITH_UXAS,
     WITHDRAWN,
@@ -80,7 +81,7 @@ class Following(NamedTuple):
 Step = tuple[Following, list[Any]]
 
 
-def _kept(state: Following, needed: int, now_ms: int, least_ms: int) -> Kept:
+def kept_at(state: Following, needed: int, now_ms: int, least_ms: int) -> Kept:
     """How long as many as are needed have done what is asked, counted now; least_ms: 0 ends nothing."""
     count = sum(p.there and in_time(p.seen_ms, now_ms, SILENT_MS) for p in state.parts)
     return kept_step(state.kept, count, needed, now_ms, least_ms)
@@ -196,6 +197,8 @@ class FollowingTaskService(TaskService):
             return self._chosen(state, body)
         if topic == RESPONSE:
             return self._planned(state, body)
+        if topic == REMOVE and self._task_id in body.TaskList:
+            return self._removed(state, body)
         if hasattr(body, "AssociatedTasks"):
             return self._told(state, body)
         out = list[Any]()
@@ -277,7 +280,7 @@ class FollowingTaskService(TaskService):
         now_ms = max(state.now_ms, body.Time, 0)
         asked = self._asked(part.context)
         # who was silent until now was there until then, not since
-        state = state._replace(now_ms=now_ms, kept=_kept(state, asked.needed, now_ms, 0))
+        state = state._replace(now_ms=now_ms, kept=kept_at(state, asked.needed, now_ms, 0))
         waits = not follows and (body.Mode.name != "Waypoint" or body.CurrentWaypoint < part.begins)
         if waits:
             return state.with_part(part), out
@@ -301,7 +304,7 @@ class FollowingTaskService(TaskService):
         elif part.held is not None and not part.blocked:
             out.append(parts_of.circling(part, self._task_id, number, asked, motion))
         state = state.with_part(part)
-        kept = _kept(state, asked.needed, now_ms, asked.least_ms)
+        kept = kept_at(state, asked.needed, now_ms, asked.least_ms)
         state = state._replace(kept=kept)
         return self._over(state, body, out) if kept.done else (state, out)
 
@@ -311,7 +314,7 @@ class FollowingTaskService(TaskService):
         if part.blocked != LOST:
             out.append(self._warning(f"vehicle {part.vehicle} does not follow: {error}"))
         state = state.with_part(part._replace(there=False, seen_ms=state.now_ms, blocked=LOST))
-        return state._replace(kept=_kept(state, asked.needed, state.now_ms, asked.least_ms)), out
+        return state._replace(kept=kept_at(state, asked.needed, state.now_ms, asked.least_ms)), out
 
     def _over(self, state: Following, body: Any, out: list[Any]) -> Step:
         """Complete: the vehicles are sent on to what comes next in their plans."""
@@ -329,6 +332,16 @@ class FollowingTaskService(TaskService):
             out += [one for one in more if type(one).__name__ != "TaskComplete"]
             out.append(self._sent_on(state, part))
         return state._replace(parts=(), kept=Kept(-1, False)), out
+
+    def _removed(self, state: Following, body: Any) -> Step:
+        """The task is no more: who does it ends it undone, and is sent on in its plan."""
+        out = [one for p in state.parts for one in self._advance(p.state, WITHDRAWN, 0, body)[1]]
+        out += self._sent(state)
+        return state._replace(parts=(), kept=Kept(-1, False), meeting=None), out
+
+    def _sent(self, state: Following) -> list[Any]:
+        """Who was told to circle is sent on."""
+        return [self._sent_on(state, part) for part in state.parts if part.held is not None]
 
     def _sent_on(self, state: Following, part: Part) -> Any:
         """The command that sends a vehicle on in its plan, or a Warning why it stays on its circle."""
