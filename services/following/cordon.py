@@ -86,7 +86,7 @@ class CordonTaskService(FollowingTaskService):
         context.places.pose(middle, 0.0, where, "CordonLocation")
         radius = self._radius_m
         if not self._contexts.source.asks(ROADS):
-            self._roads = Told(context, (), f"no {ROADS} is here, which knows the roads")
+            self._hear(Told(context, (), f"no {ROADS} is here, which knows the roads"))
             return state, ROUTES_KNOWN
         out.append(
             lmcp.new(
@@ -103,9 +103,13 @@ class CordonTaskService(FollowingTaskService):
             return state, ()
         context, count = self._contexts.of(lead.number(lead.task.request)), len(body.NodeLocations)
         headings = [*body.Headings, *[0.0] * count]
-        self._roads = Told(context, tuple(zip(body.NodeLocations, headings, strict=False)))
+        self._hear(Told(context, tuple(zip(body.NodeLocations, headings, strict=False))))
         lead, out = self._advance(lead, ROUTES_KNOWN, lead.task.request, body)
         return state._replace(lead=lead), out
+
+    def _hear(self, told: Told) -> None:
+        """What was made of what was told before holds no longer."""
+        self._roads, self._made = told, None
 
     def _found(self, context: Context) -> tuple[list[Option], list[Dropped]]:
         told = self._roads
@@ -130,7 +134,21 @@ class CordonTaskService(FollowingTaskService):
             if lasted(0, wait, ROUNDED_MS):
                 text = f"vehicle {request.VehicleID} would have to wait {wait / 1000:.3f} s before task"
                 raise NoPlan((f"{text} {self._task_id}, and what drives is not told to",))
-        return super()._plan(request, response)
+        return [self._standing(one) for one in super()._plan(request, response)]
+
+    def _standing(self, said: Any) -> Any:
+        """With the action to stand at the place for as long as is asked, before the plan goes on from there."""
+        if type(said).__name__ != "TaskImplementationResponse":
+            return said
+        *way, last = said.TaskWaypoints
+        stand = lmcp.new(
+            "LoiterAction",
+            AssociatedTaskList=[self._task_id],
+            LoiterType="Hover",
+            Duration=self._least_ms,
+            Location=said.FinalLocation,
+        )
+        return said.copy(TaskWaypoints=[*way, last.copy(VehicleActionList=[stand])])
 
     # what is driven
 

@@ -106,6 +106,8 @@ def test_ways_come_in_their_order_and_there_is_always_one(monkeypatch: pytest.Mo
 def test_it_is_complete_when_all_stand_at_one_time_for_as_long_as_is_asked(tmp_path: Path) -> None:
     pair = lmcp.new("KeyValuePair", Key="Duration_ms", Value="3000")
     rig = asked(tmp_path, cordon(Parameters=[pair]))
+    (stand,) = ends(rig)[1].VehicleActionList
+    assert (stand.LoiterType.name, stand.Duration) == ("Hover", 3000)
     rig.tell(*(standing(rig, n, 1000, 0.01) for n in range(1, 5)))
     assert not rig.got("TaskActive"), "they are on their ways"
     rig.tell(standing(rig, 1, 2000, 0.001, AssociatedTasks=[100]))
