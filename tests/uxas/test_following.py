@@ -31,6 +31,7 @@ def flown(
     *others: Any,
     vehicles: tuple[int, ...] = (1,),
     seconds: float,
+    entity: Any = None,
     **more: Any,
 ) -> Flight:
     """The vehicles do the task, and then others, by a whole UxAS."""
@@ -41,7 +42,10 @@ def flown(
         else f'<Service Type="{kind}"/>\n'
         for kind in kinds
     )
-    bodies = [*moving(), *(b for k, v in enumerate(vehicles) for b in aircraft(v, 0.001 * k))]
+    bodies = [
+        *(entity or moving()),
+        *(b for k, v in enumerate(vehicles) for b in aircraft(v, 0.001 * k)),
+    ]
     events = [Event(0.1 * k, body, "") for k, body in enumerate(bodies)]
     numbers = [one.TaskID for one in (task, *others)]
     more = more or {"TaskRelationships": ".(" + " ".join(f"p{n}" for n in numbers) + ")"}
@@ -192,6 +196,17 @@ def test_who_usually_flies_slower_than_what_it_escorts_flies_faster_if_it_can(
     (circle,) = [c.VehicleActionList[0] for c in rig.got("VehicleActionCommand")]
     assert circle.Airspeed == pytest.approx(1.25 * 22)
     assert circle.Radius == pytest.approx(RADIUS_M * (1.25 * 22 / 20) ** 2, abs=0.1)
+
+
+def test_one_who_flies_faster_for_it_stays_with_what_is_faster_than_he_usually_flies(
+    tmp_path: Path,
+) -> None:
+    task = escort(Parameters=[lmcp.new("KeyValuePair", Key="Duration_ms", Value="60000")])
+    flight = flown(tmp_path, task, entity=moving(21.0, 180.0), seconds=260.0)
+    (complete,) = flight.of("TaskComplete")
+    end_s = complete.TimeTaskCompleted / 1000
+    wide_m = RADIUS_M * (1.25 * 21 / 20) ** 2
+    assert max(apart_m(flight, 1, end_s - 60, end_s)) <= 100 + 2 * wide_m + 1
 
 
 def test_who_chases_is_planned_to_its_circle_as_it_is_when_he_gets_there(tmp_path: Path) -> None:

@@ -137,6 +137,16 @@ def test_the_middle_moves_half_as_fast_as_what_is_supported(tmp_path: Path) -> N
     assert any("and the tower moves at 30.5 m/s" in text for text in rig.reasons("Warning"))
 
 
+def test_a_relay_is_planned_to_where_it_is_in_reach_of_both_and_no_farther(tmp_path: Path) -> None:
+    """Tower and entity are 3 km apart, 3.3 km north of it."""
+    rig = told(tmp_path, relay(), tower(Position=place(0.03, 0.03)), *moving(0.0))
+    (option,) = rig.got("TaskPlanOptions")[0].Options
+    places = (option.EndLocation, place(0.03, 0.03), place(0.03, 0.002))
+    here, *both = local(list(places), place(0.0))
+    spare_m = 1.1 * 20**2 / (9.80665 * math.tan(math.radians(30)))
+    assert max(math.dist(here, one) for one in both) == pytest.approx(RANGE_M - spare_m, abs=5)
+
+
 def test_what_gets_out_of_reach_is_said_and_the_time_does_not_count(tmp_path: Path) -> None:
     rig = told(tmp_path, relay(Parameters=minute(), DestinationLocation=place(0.1)), tower())
     assert any("DestinationLocation of task 5 is not used" in t for t in rig.reasons("Warning"))
