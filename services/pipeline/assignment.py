@@ -19,6 +19,7 @@ from cratous.services.pipeline.endings import ENDINGS, newest, request_ended
 from cratous.services.pipeline.offers import OPTIONS, Read, Told, read, travel_of
 from cratous.services.pipeline.status import status
 from cratous.services.planning import mission_assign, without_vehicles
+from cratous.services.planning.assign_problem import not_all_of
 from cratous.services.planning.inputs import Inputs
 from cratous.services.planning.left_out import NothingDone, assign_part
 from cratous.services.planning.options import Option
@@ -108,6 +109,7 @@ class AssignmentTreeBranchBoundService:
         )
         out += [
             status(key, "Information", facts(result, inputs.mission.cost)),
+            *_not_all(key, inputs),
             *_left_out(key, context.assigned),
             *_in_part(key, inputs.options, result),
             summary,
@@ -169,6 +171,13 @@ def _nothing(
     others += [f"the costs have no way to task {task}" for task in unreached if task not in named]
     doubt = () if part.sure else ("whether some of it could be done is not certain",)
     return (*without_vehicles.why_none(inputs), *others, *doubt)
+
+
+def _not_all(key: int, inputs: Inputs) -> list[Any]:
+    """A warning where there are more ways to choose among alternatives than were looked at."""
+    cut = not_all_of(inputs.term)
+    text = f"{cut}: there may be a better plan"
+    return [status(key, "Warning", [("reason", text)])] if cut else []
 
 
 def _left_out(key: int, found: mission_assign.Found) -> list[Any]:

@@ -171,7 +171,10 @@ def _searched(
         _anneal(run, made, firsts)
         _prove(run, made, proofs)
     _list_chains(run, proofs)
-    run.bound = min((p.bound for p in proofs), default=NONE) if complete else 0
+    if not complete:  # of what was not looked at nothing is shown
+        run.bound, proofs = 0, []
+    else:
+        run.bound = min((p.bound for p in proofs), default=NONE)
     return run, proofs
 
 

@@ -33,6 +33,7 @@ from cratous.spec.assignment.search import ORDER, TIME, AssignmentProblem, Rows
 from cratous.spec.errors import BadInput
 
 BRANCHES_MAX = 4096
+"""So many ways to choose among alternatives are looked at, the first ones."""
 
 
 @dataclass(frozen=True)
@@ -183,11 +184,24 @@ def parts(problem: AssignmentProblem) -> tuple[tuple[Part, ...], bool]:
         choices = tuple(k for k, c in enumerate(problem.choices) if c.task_id in tasks)
         plain = free and is_plain(rows)
         made.append(Part(resolved, tasks, rows, orders, choices, plain, problem.done))
+    cut = not_all_of(term)
     for task in sorted(unable or ()):
         _refuse(
-            not made, f"no vehicle is eligible for task {task}", "choices", "one or more", "none"
+            not (made or cut),
+            f"no vehicle is eligible for task {task}",
+            "choices",
+            "one or more",
+            "none",
         )
-    return tuple(made), algebra_meaning.count_branches(term) <= BRANCHES_MAX
+    return tuple(made), not cut
+
+
+def not_all_of(term: algebra.Term) -> str:
+    """What is said where not all branches of a term are looked at, nothing where they are."""
+    count = algebra_meaning.count_branches(term)
+    if count <= BRANCHES_MAX:
+        return ""
+    return f"of {count} ways to choose among alternatives the first {BRANCHES_MAX} were looked at"
 
 
 def _rows(

@@ -16,7 +16,7 @@ from itertools import islice
 
 from cratous.core.assignment.anytime import NONE
 from cratous.services.planning.assign import Limits, search
-from cratous.services.planning.assign_problem import BRANCHES_MAX, parts, term_of
+from cratous.services.planning.assign_problem import BRANCHES_MAX, not_all_of, parts, term_of
 from cratous.spec.algebra import ALTERNATIVE, Op, Term, format_term
 from cratous.spec.algebra.meaning import branches, rows, tasks
 from cratous.spec.algebra.partial import largest_part, may_be_done, only
@@ -59,6 +59,7 @@ class Parts:
 
     def __post_init__(self) -> None:
         self.flown = frozenset(task for task, _, _ in self.problem.done)
+        self.sure = not not_all_of(term_of(self.problem))
         # what has been flown is done, whatever became of that which it followed
         self.begun |= self.flown
         able = {choice.task_id for choice in self.problem.choices if choice.vehicles}

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from cratous.core.assignment.anytime import NONE
 from cratous.services.planning.assign import Limits, search
-from cratous.services.planning.assign_problem import Part, parts
+from cratous.services.planning.assign_problem import Part, not_all_of, parts, term_of
 from cratous.spec.assignment.search import MINMAX, AssignmentProblem, Solution
 from cratous.spec.constraint_rows import NOT_AFTER, NOT_BEFORE, WITHIN_END, WITHIN_START, Row
 
@@ -95,7 +95,9 @@ def timing_reasons(problem: AssignmentProblem, found: Solution) -> tuple[str, ..
     """Which rows clash, and what is left open if that is not certain."""
     questions = _Rows(problem)
     certain = found.status == "infeasible"
-    open_end = () if certain else (f"no schedule was found in {found.nodes} search nodes",)
+    none = f"no schedule was found in {found.nodes} search nodes"
+    cut = not_all_of(term_of(problem))
+    open_end = () if certain else (f"{none}; {cut}" if cut else none,)
     keep = [row for row in questions.rows if row.kind in UPPER]
     lower = [row for row in questions.rows if row.kind not in UPPER]
     few = len(questions.rows) <= ROWS_MAX

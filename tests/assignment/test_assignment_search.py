@@ -16,11 +16,14 @@ from cratous.core.assignment.layers import first_state, look_ahead, refute, shor
 from cratous.core.assignment.refutation import bound, place
 from cratous.services.cli import main
 from cratous.services.planning import assign_certificate as certificates
+from cratous.services.planning import assign_problem
 from cratous.services.planning.assign import Limits, solve
 from cratous.services.planning.assign_problem import arrays, parts
 from cratous.services.planning.assign_replay import replayed
 from cratous.services.planning.assign_solvers import none_below, schedule_holds, why_infeasible
 from cratous.services.planning.assign_vectors import read
+from cratous.services.planning.partial import Parts
+from cratous.services.planning.reasons import timing_reasons
 from cratous.spec import algebra
 from cratous.spec.algebra import runs as algebra_runs
 from cratous.spec.assignment.search import ORDER, AssignmentProblem, Choice, Cost
@@ -73,6 +76,22 @@ def test_a_recorded_cost_that_is_wrong_fails(shared: Path, tmp_path: Path) -> No
         row["cost_ms"] = row.get("cost_ms", 0) - 1
     (tmp_path / "a.json").write_text(json.dumps(data))
     assert main(["conform", "assignment", str(tmp_path / "a.json")]) == 1
+
+
+def test_of_too_many_alternatives_nothing_is_said_of_those_not_looked_at(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(assign_problem, "BRANCHES_MAX", 3)
+    found, body = checked(line(4, "+(p4 p3 p2 p1)", name="four"))
+    assert (found.status, found.cost, found.bound, body["proofs"]) == ("feasible", 25, 0, [])
+    late = line(4, "+(p4_[0-1] p3_[0-1] p2_[0-1] p1)", name="late")
+    found = solve(late)
+    assert found.status == "unknown"
+    cut = "of 4 ways to choose among alternatives the first 3 were looked at"
+    assert cut in timing_reasons(late, found)[-1]
+    assert not Parts(late, {}).sure
+    able = tuple(replace(c, vehicles=(1,) if c.task_id == 1 else ()) for c in late.choices)
+    assert solve(replace(late, choices=able)).status == "unknown", "another way might do"
 
 
 # ---- meaning ----------------------------------------------------------------------------------

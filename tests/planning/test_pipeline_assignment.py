@@ -12,6 +12,7 @@ from pipeline_messages import cost, ended, matrix, option, options, unique
 from pipeline_tools import Rig, alone, must_fly, vehicle
 
 from cratous.bridge import lmcp
+from cratous.services.planning import assign_problem
 from cratous.spec import algebra
 from cratous.spec.algebra import meaning as algebra_meaning
 
@@ -228,6 +229,21 @@ def test_what_the_original_was_asked_is_answered_once_each(shared: Path, tmp_pat
             assert set(assigned) == {1, 2, 3}
         assert len(set(assigned)) == len(assigned)
     assert not rig.said.has("fails at")
+
+
+def test_more_ways_to_choose_than_are_looked_at_are_told(
+    assigner: Rig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(assign_problem, "BRANCHES_MAX", 2)
+    made = [option(5, number, 1) for number in (1, 2, 3)]
+    told = options(2, 5, *made, composition="+(.(p1 p2) .(p2 p3) .(p3 p1))")
+    ways = [cost(1, 5, b, 1_000, (5, a)) for a in (1, 2, 3) for b in (1, 2, 3) if a != b]
+    ways += [cost(1, 5, b, 1_000) for b in (1, 2, 3)]
+    assigner.tell(unique(2, 5), told, matrix(2, *ways))
+    assert len(assigner.got("TaskAssignmentSummary")) == 1
+    assert (
+        "of 3 ways to choose among alternatives the first 2 were" in assigner.reasons("Warning")[0]
+    )
 
 
 def test_large_option_ids_are_kept_apart(assigner: Rig) -> None:
