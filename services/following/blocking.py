@@ -45,8 +45,9 @@ def options_of(
     dropped = [Dropped(task.id, flying, "", reason)] if flying else []
     why = told.why or _why_none(count, len(able), radius_m)
     where = f"task {task.id}"
+    alt_m = context.inputs.mission.frame.terrain_m
     places = [] if why else [
-        context.places.pose(*one, where, f"NodeLocations[{k}]")
+        context.places.pose(*one, where, f"NodeLocations[{k}]")._replace(alt_m=alt_m)
         for k, one in enumerate(told.crossings)
     ]  # fmt: skip
     why = why or _zone(context, places)
@@ -72,8 +73,7 @@ def options_of(
 def _option(
     task: Task, vehicle: Vehicle, k: int, places: Sequence[Pose], least_ms: int, number: int
 ) -> Option:
-    flyer = flyer_of(vehicle)
-    pose = places[k]._replace(alt_m=flyer.alt_m)
+    flyer, pose = flyer_of(vehicle), places[k]
     ids, path = (task.id, number, (vehicle.id,)), (Position(*pose[:3]),)
     return Option(*ids, flyer, pose, pose, path, least_ms, (), f"road {k + 1} of {len(places)}")
 
@@ -116,7 +116,7 @@ def _greedy(times: Sequence[Sequence[float]]) -> tuple[int, ...]:
 def _why_none(count: int, able: int, radius_m: float) -> str:
     """Why so many roads cannot be blocked by so many vehicles, nothing if they can."""
     if not count:
-        return f"{ROADS} knows no road that crosses the circle of {radius_m:g} m"
+        return f"{ROADS} has told of no road that crosses the circle of {radius_m:g} m"
     crossed = f"{count} roads cross the circle of {radius_m:g} m"
     if count > BLOCKED_MOST:
         return f"{crossed}, and at most {BLOCKED_MOST} are blocked at one time"

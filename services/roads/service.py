@@ -8,7 +8,6 @@ against them by proved kernels before it is driven. Its map does not change, so 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -96,9 +95,7 @@ class OsmPlannerService:
 
     def _crossings(self, body: Any) -> Sequence[tuple[Vec2, float]]:
         middle, radius = self._place(body.StartLocation, "StartLocation"), float(body.Radius)
-        if not (
-            math.isfinite(radius) and in_ring(Vec2(0.0, 0.0), Vec2(radius, 0.0), 1.0, RADIUS_MOST_M)
-        ):
+        if not 1.0 <= radius <= RADIUS_MOST_M:
             raise BadInput(
                 "out of range", where=EGRESS, item="Radius",
                 expected=f"1 to {RADIUS_MOST_M:g} m", got=f"{radius:g}",

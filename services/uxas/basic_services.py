@@ -70,16 +70,14 @@ def send_messages(host: Host, entry: Entry, values: dict[str, Any], name: str) -
     """
     problems: list[BadInput] = []
     planned: list[Planned] = []
-    declared = values["PathToMessageFiles"] or "."
-    beside = host.config.parent
-    bases = (Path(declared), beside / declared, beside / "rundir" / declared, beside / "inputs")
+    folder = values["PathToMessageFiles"] or "."
     for element in entry.children:
         where = entry.place(element)
         found = values_of(MESSAGE_ATTRIBUTES, element.attrib, where, "Message", problems)
         if not found["MessageFileName"]:
             continue
         try:
-            bodies = _bodies(host, bases, found["MessageFileName"], where)
+            bodies = _bodies(host, folder, found["MessageFileName"], where)
         except BadInput as error:
             problems.append(error)
             continue
@@ -100,19 +98,30 @@ def send_messages(host: Host, entry: Entry, values: dict[str, Any], name: str) -
     return SendMessagesService(name, tuple(planned))
 
 
-def _bodies(host: Host, bases: tuple[Path, ...], name: str, where: str) -> list[Any]:
+def looked_for(host: Host, name: str, where: str, folder: str = ".") -> tuple[Path | None, str]:
+    """Where a file is that a configuration names, None: nowhere; and in words where it was looked for.
+
+    folder: of the name; relative to the present folder, else to those that `send_messages` says.
+    """
+    beside = host.config.parent
+    bases = (Path(folder), beside / folder, beside / "rundir" / folder, beside / "inputs")
     paths = [Path(os.path.normpath(base / name)) for base in bases]
     path = next((p for p in paths if p.is_file()), None)
+    if path not in (None, paths[0]):
+        host.log("INFO", f"{where}: {name} is read from {path}")
+    return path, " or ".join(dict.fromkeys(map(str, paths)))
+
+
+def _bodies(host: Host, folder: str, name: str, where: str) -> list[Any]:
+    path, expected = looked_for(host, name, where, folder)
     if path is None:
         raise BadInput(
             "a message file is missing",
             where=where,
             item="MessageFileName",
-            expected=" or ".join(dict.fromkeys(str(p) for p in paths)),
+            expected=expected,
             got=name,
         )
-    if path != paths[0]:
-        host.log("INFO", f"{where}: {name} is read from {path}")
     notes: list[str] = []
     bodies = lmcp.xml.read_messages(path, notes)
     if notes and host.root.get("strict"):

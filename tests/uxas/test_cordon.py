@@ -154,7 +154,7 @@ def test_another_request_with_it_and_a_plan_without_it_end_it(tmp_path: Path) ->
         ({}, 3, "4 roads cross the circle of 100 m, and 3 vehicles may block one"),
         ({"EligibleEntities": [1, 2, 3]}, 4, "4 roads cross the circle of 100 m, and 3 vehicles"),
         ({"CordonLocation": at(MIDDLE[0] + 0.003, MIDDLE[1] + 0.0025)}, 4,
-         "OsmPlannerService knows no road that crosses the circle of 100 m"),
+         "OsmPlannerService has told of no road that crosses the circle of 100 m"),
         ({"StandoffDistance": 0.0}, 4, "StandoffDistance: out of range"),
         ({"StandoffDistance": 1e6}, 4, "StandoffDistance: out of range"),
         ({"CordonLocation": at(95.0, 0.0)}, 4, "CordonLocation: not a place"),
@@ -170,15 +170,23 @@ def test_what_cannot_be_cordoned_is_answered_with_the_reason(
     assert reason in "\n".join(rig.reasons())
 
 
-def test_a_place_within_a_zone_is_not_blocked(tmp_path: Path) -> None:
+@pytest.mark.parametrize("alt_m", [None, 1000.0])
+def test_a_place_within_a_zone_is_not_blocked(tmp_path: Path, alt_m: float | None) -> None:
+    """A road is on the ground, at whatever altitude another tells of it."""
+    place = at(MIDDLE[0] - 0.0009, MIDDLE[1])
     zone = lmcp.new(
         "KeepOutZone", ZoneID=7, MinAltitude=-10.0, MaxAltitude=500.0,
-        Boundary=lmcp.new("Circle", CenterPoint=at(MIDDLE[0] - 0.0009, MIDDLE[1]), Radius=20.0),
+        Boundary=lmcp.new("Circle", CenterPoint=place, Radius=20.0),
     )  # fmt: skip
     rig = driven(tmp_path)
+    if alt_m is not None:
+        places = [place.copy(Altitude=alt_m)]
+        rig.bus.remove("OsmPlannerService")
+        rig.bus.add(Other(lmcp.new("EgressRouteResponse", NodeLocations=places, Headings=[0.0])))
     rig.tell(*cars(4), zone, lmcp.new("OperatingRegion", ID=9, KeepOutAreas=[7]), cordon())
     rig.tell(request(100, vehicles=(1, 2, 3, 4), OperatingRegion=9))
-    assert "road 3 of 4 would be blocked in breach of" in "\n".join(rig.reasons())
+    which = "3 of 4" if alt_m is None else "1 of 1"
+    assert f"road {which} would be blocked in breach of" in "\n".join(rig.reasons())
 
 
 def test_without_a_planner_on_roads_nobody_waits(tmp_path: Path) -> None:

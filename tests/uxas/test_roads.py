@@ -249,13 +249,16 @@ def test_a_way_keeps_the_zones_and_what_there_is_no_way_to_says_why(tmp_path: Pa
 def test_roads_that_cross_a_circle_are_told(tmp_path: Path) -> None:
     rig = driven(tmp_path, ROADS)
     asked = lmcp.new("EgressRouteRequest", RequestID=4, StartLocation=at(*MIDDLE), Radius=100.0)
-    rig.tell(asked, asked.copy(Radius=0.5), asked.copy(StartLocation=at(95.0, 0.0)))
+    wrong = asked.copy(Radius=0.5), asked.copy(Radius=-100.0), asked.copy(Radius=math.nan)
+    rig.tell(asked, *wrong, asked.copy(StartLocation=at(95.0, 0.0)))
     found, *none = rig.got("EgressRouteResponse")
     assert found.ResponseID == 4
     assert [round(h) % 360 for h in found.Headings] == [0, 90, 180, 270]
-    assert [len(one.NodeLocations) for one in (found, *none)] == [4, 0, 0]
-    assert "Radius" in rig.reasons("Warning")[0]
-    assert "not a place" in rig.reasons("Warning")[1]
+    assert [len(one.NodeLocations) for one in (found, *none)] == [4, 0, 0, 0, 0]
+    *radius, place = rig.reasons("Warning")
+    assert all("Radius: out of range" in text for text in radius)
+    assert len(radius) == 3
+    assert "not a place" in place
 
 
 def test_more_crossings_than_a_message_has_room_for_are_not_told(tmp_path: Path) -> None:
