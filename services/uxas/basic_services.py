@@ -106,7 +106,8 @@ def looked_for(host: Host, name: str, where: str, folder: str = ".") -> tuple[Pa
     beside = host.config.parent
     bases = (Path(folder), beside / folder, beside / "rundir" / folder, beside / "inputs")
     paths = [Path(os.path.normpath(base / name)) for base in bases]
-    path = next((p for p in paths if p.is_file()), None)
+    # a name that no file may have is that of none
+    path = next((p for p in paths if os.path.isfile(p)), None)
     if path not in (None, paths[0]):
         host.log("INFO", f"{where}: {name} is read from {path}")
     return path, " or ".join(dict.fromkeys(map(str, paths)))

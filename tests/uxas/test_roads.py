@@ -289,6 +289,9 @@ def test_the_places_along_a_road_are_told(tmp_path: Path) -> None:
 
 
 def test_a_map_that_is_missing_is_said_and_one_that_is_none_is_refused(tmp_path: Path) -> None:
+    for name, said in (("", "it names no map"), ("x" * 5000, "xxx is missing: no road is known")):
+        rig = Rig(tmp_path, ROADS, OsmPlannerService=f'OsmFile="{name}"')
+        assert rig.said.has(said)
     rig = Rig(tmp_path, ROADS, OsmPlannerService='OsmFile="nowhere.osm"')
     assert rig.said.has("its map nowhere.osm is missing: no road is known")
     rig.tell(*car(1, *MIDDLE))
