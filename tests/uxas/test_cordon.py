@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 from pipeline_tools import Rig, must_fly, request, vehicle
-from road_tools import EXAMPLE, MIDDLE, at, car, driven
+from road_tools import EXAMPLE, MIDDLE, at, car, driven, map_text
 from uxas_tools import process
 
 from cratous.bridge import lmcp
@@ -86,6 +86,8 @@ def test_of_too_many_ways_those_are_offered_of_which_the_last_is_there_soonest(
     assert rig.got("TaskPlanOptions")[0].Composition.count("|(") == 20
     assert sorted(ends(rig)) == [1, 2, 3, 4], "who are nearest"
     assert "any way but 20 of 120" in rig.reasons("Warning")[0]
+    rig.tell(*car(1, *MIDDLE, speed=0.5), request(100, vehicles=(1, 2, 3, 4, 5)))
+    assert sorted(ends(rig)) == [2, 3, 4, 5], "one that is near and slow is there last"
 
 
 def test_ways_come_in_their_order_and_there_is_always_one(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -136,6 +138,17 @@ def test_who_is_silent_or_tells_no_place_is_not_there(tmp_path: Path) -> None:
     assert not rig.got("TaskComplete")
     assert len(rig.reasons("Warning")) == 1
     assert "vehicle 4 is not at its place: " in rig.reasons("Warning")[0]
+
+
+def test_one_alone_does_not_count_while_it_is_silent(tmp_path: Path) -> None:
+    out = map_text({1: MIDDLE, 2: (MIDDLE[0] + 0.01, MIDDLE[1])}, [1, 2])
+    rig = driven(tmp_path, roads=out)
+    pair = lmcp.new("KeyValuePair", Key="Duration_ms", Value="3000")
+    rig.tell(*cars(1), cordon(Parameters=[pair]), request(100))
+    rig.tell(*(standing(rig, 1, time_ms) for time_ms in (1000, 9000, 11_000)))
+    assert not rig.got("TaskComplete")
+    rig.tell(standing(rig, 1, 12_000))
+    assert len(rig.got("TaskComplete")) == 1
 
 
 def test_another_request_with_it_and_a_plan_without_it_end_it(tmp_path: Path) -> None:
@@ -238,8 +251,11 @@ def test_what_flies_blocks_no_road_and_what_drives_flies_no_task(tmp_path: Path)
     assert sorted(ends(rig)) == [1, 2, 3, 4, 9]
     assert ends(rig)[9].AssociatedTasks == [5]
     assert "vehicle 9 is not offered for task 100: it does not drive" in rig.reasons("Warning")[0]
-    rig.tell(request(5, vehicles=(1, 2)))
-    assert "it drives, and the task is flown" in "\n".join(rig.reasons())
+    blockade = lmcp.new("BlockadeTask", TaskID=6, BlockedEntityID=9)
+    for number in (5, 6):
+        rig.all.clear()
+        rig.tell(blockade, request(number, vehicles=(1, 2)))
+        assert "it drives, and the task is flown" in "\n".join(rig.reasons())
 
 
 def test_a_wait_before_it_is_refused(tmp_path: Path) -> None:

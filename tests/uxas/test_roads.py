@@ -37,7 +37,7 @@ def test_the_example_is_read() -> None:
 
 
 def test_a_road_is_a_way_with_a_tag_highway_cut_where_the_map_ends() -> None:
-    text = map_text({**ORIGIN, 3: (0.0, 0.002), 4: (0.0, 0.003)}, [1, 2, 77, 3, 4], [77, 4])
+    text = map_text({**ORIGIN, 3: (0.0, 0.002), 4: (0.0, 0.003)}, [1, 1, 2, 77, 3, 4], [77, 4])
     text = text.replace("</osm>", '<way id="9"><nd ref="1"/><nd ref="4"/></way></osm>')
     roads = osm.map_of(text, "roads.osm")
     assert roads.roads == ((1, 2), (3, 4))
@@ -229,20 +229,23 @@ def test_a_way_keeps_the_zones_and_what_there_is_no_way_to_says_why(tmp_path: Pa
     rig.tell(*car(1, 0.0, 0.0))
     assert len(planned(rig, there, IsCostOnlyRequest=False)[0].Waypoints) == 2
     circle = lmcp.new("Circle", CenterPoint=at(0.0, 0.005), Radius=100.0)
+    beside = lmcp.new("Circle", CenterPoint=at(0.004, 0.0015), Radius=50.0)
     rig.tell(
         lmcp.new("KeepOutZone", ZoneID=7, Boundary=circle, MinAltitude=0.0, MaxAltitude=500.0),
-        lmcp.new("OperatingRegion", ID=9, KeepOutAreas=[7]),
+        lmcp.new("KeepOutZone", ZoneID=8, Boundary=beside, MinAltitude=0.0, MaxAltitude=500.0),
+        lmcp.new("OperatingRegion", ID=9, KeepOutAreas=[7, 8]),
     )
     ends = (there, ((0.0, 0.0), (0.02, 0.005)), (there[0], (0.5, 0.0)), (there[0], (200.0, 0.0)),
-            (there[0], (0.0006, 0.005)))  # fmt: skip
+            (there[0], (0.0006, 0.005)), (there[0], (0.004, 0.003)))  # fmt: skip
     plans = planned(rig, *ends, OperatingRegion=9, IsCostOnlyRequest=False)
     assert len(plans[0].Waypoints) == 4, "around the zone"
-    assert [plan.RouteCost for plan in plans[1:]] == [-1] * 4
+    assert [plan.RouteCost for plan in plans[1:]] == [-1] * 5
     reasons = [plan.RouteError[0].Value for plan in plans[1:]]
     assert "no road leads there" in reasons[0]
     assert "no road is within 1000 m of EndLocation" in reasons[1]
     assert "not a place" in reasons[2]
     assert "no road leads there that keeps the zones" in reasons[3]
+    assert "its way to the road, or from it, breaks" in reasons[4]
 
 
 @pytest.mark.shows(ROADS, "EgressRouteRequest", "EgressRouteResponse", "ServiceStatus")
