@@ -21,7 +21,7 @@ BLOCKED_MOST = 8
 """More roads at one time are refused, as are tasks of more vehicles of any kind."""
 WAYS_MOST = 720
 """So many ways to give places vehicles are offered at most: all of six vehicles at six places."""
-LOOKED_MOST = 20_000
+LOOKED_MOST = 30_000
 """So many beginnings of ways are looked at, at most."""
 
 
@@ -59,13 +59,20 @@ def options_of(
         for v, vehicle in enumerate(able)
         for k in range(count)
     ]
-    chosen = soonest([[_soon_s(context, v, place) for v in able] for place in places], WAYS_MOST)
+    times = [[_soon_s(context, v, place) for v in able] for place in places]
+    found = soonest(times, WAYS_MOST)
+    chosen = found or [in_turn(times)]
     ways, all_ways = (
         [[v * count + k + 1 for k, v in enumerate(way)] for way in chosen],
         math.perm(len(able), count),
     )
     if len(ways) != all_ways:
-        label = f"any way but {len(ways)} of {all_ways}, of which the last is there soonest as the crow flies,"
+        how = (
+            "of which the last is there"
+            if found
+            else "by which each road in turn gets who is there"
+        )
+        label = f"any way but {len(ways)} of {all_ways}, {how} soonest as the crow flies,"
         dropped.append(Dropped(task.id, (), label, "there are too many"))
     return made, ways, dropped
 
@@ -86,26 +93,31 @@ def _soon_s(context: Context, vehicle: Vehicle, place: Pose) -> float:
 def soonest(times: Sequence[Sequence[float]], most: int) -> list[tuple[int, ...]]:
     """Ways to give each place a vehicle of its own, those first of which the last is there soonest.
 
-    times: for each place those of the vehicles. At most `most`; all, if these are no more and there are few
-    beginnings to look at; at least one.
+    times: for each place those of the vehicles. At most `most`; all, if these are no more; fewer, or none, where
+    there are too many beginnings to look at.
     """
     found: list[tuple[int, ...]] = []
-    # the last so far, the sum of all so far, and who is at the first places
-    todo: list[tuple[float, float, tuple[int, ...]]] = [(0.0, 0.0, ())]
+    least = [min(row) for row in times]
+    # the last at least and the sum of all at least, both so far, and who is at the first places
+    todo: list[tuple[float, float, float, float, tuple[int, ...]]] = [(0.0, 0.0, 0.0, 0.0, ())]
     looked = 0
     while todo and len(found) != most and looked != LOOKED_MOST:
-        last, total, way = heapq.heappop(todo)
+        *_, last, total, way = heapq.heappop(todo)
         if len(way) == len(times):
             found.append(way)
             continue
         looked += 1
+        left = least[len(way) + 1 :]
+        last_left, sum_left = max(left, default=0.0), sum(left)
         for v, time in enumerate(times[len(way)]):
             if v not in way:
-                heapq.heappush(todo, (max(last, time), total + time, (*way, v)))
-    return found or [_greedy(times)]
+                far, long = max(last, time), total + time
+                bounds = max(far, last_left), long + sum_left
+                heapq.heappush(todo, (*bounds, far, long, (*way, v)))
+    return found
 
 
-def _greedy(times: Sequence[Sequence[float]]) -> tuple[int, ...]:
+def in_turn(times: Sequence[Sequence[float]]) -> tuple[int, ...]:
     """Each place is given the vehicle of those left that is there soonest."""
     way: list[int] = []
     for row in times:

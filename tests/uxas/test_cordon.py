@@ -16,7 +16,7 @@ from uxas_tools import process
 
 from cratous.bridge import lmcp
 from cratous.services.following import blocking
-from cratous.services.following.blocking import soonest
+from cratous.services.following.blocking import in_turn, soonest
 from cratous.services.loading.uxas import load_uxas
 from cratous.services.mission.frames import Projection
 from cratous.spec.errors import BadInput
@@ -90,7 +90,7 @@ def test_of_too_many_ways_those_are_offered_of_which_the_last_is_there_soonest(
     assert sorted(ends(rig)) == [2, 3, 4, 5], "one that is near and slow is there last"
 
 
-def test_ways_come_in_their_order_and_there_is_always_one(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ways_come_in_their_order_or_there_is_none() -> None:
     rng = random.Random(3)
     for _ in range(20):
         places, count = rng.randint(1, 4), rng.randint(4, 5)
@@ -100,8 +100,19 @@ def test_ways_come_in_their_order_and_there_is_always_one(monkeypatch: pytest.Mo
         found = soonest(times, 720)
         assert found == sorted(every, key=lambda w: (max(every[w]), sum(every[w])))
         assert soonest(times, 2) == found[:2]
+    eight = [[rng.uniform(0, 100) for _ in range(8)] for _ in range(8)]
+    assert len(soonest(eight, 720)) == 720, "eight vehicles at eight roads"
+
+
+def test_where_the_soonest_ways_are_not_found_one_is_offered_and_not_called_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(blocking, "LOOKED_MOST", 1)
-    assert soonest([[3.0, 1.0, 2.0], [9.0, 1.0, 8.0], [1.0, 1.0, 1.0]], 720) == [(1, 2, 0)]
+    assert soonest([[3.0, 1.0, 2.0], [9.0, 1.0, 8.0], [1.0, 1.0, 1.0]], 720) == []
+    assert in_turn([[3.0, 1.0, 2.0], [9.0, 1.0, 8.0], [1.0, 1.0, 1.0]]) == (1, 2, 0)
+    rig = asked(tmp_path, cordon())
+    assert len(ends(rig)) == 4
+    assert "any way but 1 of 24, by which each road in turn" in rig.reasons("Warning")[0]
 
 
 @pytest.mark.shows(TASKS, "TaskActive", "TaskComplete")
