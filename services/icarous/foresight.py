@@ -10,7 +10,7 @@ from cratous.core.avoidance.resolution import Scene, first_zone_s
 from cratous.core.avoidance.way_ahead import near_line, there_within
 from cratous.services.icarous.ending import TURN_MARGIN, Ahead, horizon_s, with_hold
 from cratous.services.icarous.messages import Sensed
-from cratous.services.icarous.permits import permitted, way_is_clear
+from cratous.services.icarous.permits import keeps_volume, way_is_clear
 from cratous.services.icarous.return_to_path import (
     flat,
     way_on,
@@ -99,11 +99,11 @@ def way_is_free(
             return False
         if first_zone_s(ahead.pieces, scene.zones, 5.0) is not None:
             return False
-    permits = permitted if lasting else way_is_clear
-    for whole in ways_back(now, radius_m, points, math.inf):
-        if not all(permits(whole.pieces, other, config.daa) for other in asked):
-            return False
+    whole = [one.pieces for one in ways_back(now, radius_m, points, math.inf)]
+    if lasting:
         # where a zone lies across it UxAS flies another way than this
-        if lasting and first_zone_s(whole.pieces, scene.zones, 5.0) is not None:
+        if any(first_zone_s(pieces, scene.zones, 5.0) is not None for pieces in whole):
             return False
-    return True
+        if not all(keeps_volume(pieces, o, config.daa) for pieces in whole for o in asked):
+            return False
+    return all(way_is_clear(pieces, o, config.daa) for pieces in whole for o in asked)

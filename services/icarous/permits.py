@@ -127,8 +127,11 @@ def told_why(state: State, intruder_id: int) -> str:
 
 def permitted(pieces: Sequence[Piece], other: Intruder, daa: Daa) -> bool:
     """The way keeps the buffered cylinder and the mission's own volume clear of one that flies straight on."""
-    if not way_is_clear(pieces, other, daa):
-        return False
+    return keeps_volume(pieces, other, daa) and way_is_clear(pieces, other, daa)
+
+
+def keeps_volume(pieces: Sequence[Piece], other: Intruder, daa: Daa) -> bool:
+    """The way keeps the mission's own volume clear of one that flies straight on, which is soon said."""
     return first_violation_s(pieces, other, daa.well_clear) is None
 
 

@@ -93,11 +93,10 @@ def _soonest(
         for k in range(1, until + 1):
             for choice in clear:
                 then = _later(sensed, choice, k * scene.lookahead_s / STEPS)
-                if not way_back_is_free(config, state, then, in_turn):
-                    continue
                 if way_back_is_free(config, state, then, in_turn, True):
                     return Found(choice, k, True)
-                found = found or Found(choice, k, False)
+                if found is None and way_back_is_free(config, state, then, in_turn):
+                    found = Found(choice, k, False)
         return found
 
     last = 2 * STEPS // 3

@@ -100,7 +100,7 @@ def test_where_no_way_back_is_free_in_time_the_least_deviation_is_flown(
     least = resolve(NORTH, ABILITY, scene_of(CONFIG, state, sensed(0, *CONVOY)), 0.0, 22.0, None)
     state, choice = manoeuvre(CONFIG, state, sensed(0, *CONVOY), frozenset(), False)
     assert (choice, state.search.until_ms) == (least, 0)
-    # each turn at each instant, and once more where it is free
+    # each turn at each instant: whether it is free for good, or for the look-ahead
     most = 2 * (1 + 2 * len(TURNS_DEG + WIDE_DEG)) * (2 * STEPS // 3)
     assert 0 < looks.count <= most
     for now_ms, looked in ((500, False), (AGAIN_MS - 500, False), (AGAIN_MS, True)):
