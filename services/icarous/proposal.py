@@ -30,9 +30,9 @@ STEPS = 15
 TURNS_DEG = (10, 20, 30, 40, 50, 60)
 """The headings that are looked at, off the course to the right and to the left."""
 WIDE_DEG = (75, 90)
-"""Those that are looked at besides: they lead farther away,"""
+"""Those that are looked at besides: they lead farther away, so they are flown only for a way back for good,"""
 SOONER = 4
-"""so they are flown only where the way back is free so many of the instants sooner."""
+"""and only so many of the instants sooner than after a smaller turn, where one leads to such a way."""
 AGAIN_MS = 5000
 """Where there is no such manoeuvre one is looked for again so much later [ms]."""
 
@@ -103,7 +103,7 @@ def _soonest(
     found = first((0.0, *_either_side(TURNS_DEG)), last)
     until = found.step - SOONER if found is not None and found.lasting else last
     wide = first(_either_side(WIDE_DEG), until)
-    return wide if wide is not None and (found is None or wide.lasting) else found
+    return wide if wide is not None and wide.lasting else found
 
 
 def _either_side(turns_deg: Sequence[int]) -> list[float]:
