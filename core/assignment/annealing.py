@@ -15,6 +15,15 @@ from cratous.core.assignment.search_records import Times
 from cratous.core.assignment.steps import earliest_start, weighted
 
 
+def put_all(to: np.ndarray, values: np.ndarray) -> None:
+    """Fill an array with the values of another one of its size.
+
+    No slices: what their compiled form says when sizes differ takes the compiler seconds.
+    """
+    for k in range(to.size):
+        to[k] = values[k]
+
+
 def decode(
     order: np.ndarray, who: np.ndarray, how: np.ndarray, times: Times, at: np.ndarray,
     i: Instance, stop: int,
@@ -165,7 +174,8 @@ def anneal(
     times = Times(np.zeros(n, np.int64), np.zeros(n, np.int64), free)
     trial, trial_who, trial_how = order.copy(), who.copy(), how.copy()
     best_order, best_who, best_how = order.copy(), who.copy(), how.copy()
-    now = decode(order, who, how, times, at, i, 1 << 60)
+    # no literal: for one the compiler would make `decode` once more
+    now = decode(order, who, how, times, at, i, int(1 << 60))  # noqa: RUF046
     best = now
     share = 6 * vehicles
     smooth = now + free[vehicles] // share
@@ -178,9 +188,9 @@ def anneal(
         b = ((x >> 16) & 0xFFFF) % n
         pick = (x >> 32) & 0xFF
         other = ((x >> 40) & 0x3FFFFF) % options
-        trial[:] = order
-        trial_who[:] = who
-        trial_how[:] = how
+        put_all(trial, order)
+        put_all(trial_who, who)
+        put_all(trial_how, how)
         if pick < 40:
             # exchange the vehicles of two tasks, and their places or not
             ja, jb = trial[a], trial[b]
@@ -221,16 +231,16 @@ def anneal(
             continue
         if cost < best:
             best = cost
-            best_order[:] = trial
-            best_who[:] = trial_who
-            best_how[:] = trial_how
+            put_all(best_order, trial)
+            put_all(best_who, trial_who)
+            put_all(best_how, trial_how)
         if cost + free[vehicles] // share <= stop:
             now = cost
             smooth = cost + free[vehicles] // share
-            order[:] = trial
-            who[:] = trial_who
-            how[:] = trial_how
-    order[:] = best_order
-    who[:] = best_who
-    how[:] = best_how
+            put_all(order, trial)
+            put_all(who, trial_who)
+            put_all(how, trial_how)
+    put_all(order, best_order)
+    put_all(who, best_who)
+    put_all(how, best_how)
     return best

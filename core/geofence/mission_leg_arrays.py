@@ -62,7 +62,8 @@ def leg_zone(
     west, east = min(pe, qe), max(pe, qe)
     p, q = Vec2(pn, pe), Vec2(qn, qe)
     for z in range(len(keep_out)):
-        seen, met = Seen(False, False), False
+        # no literal: for one the compiler makes `contact_step`, with all that it calls, once more
+        seen, met = Seen(False, False), bool(0)
         apart = north < boxes[z, 0] or south > boxes[z, 1]
         if not (apart or east < boxes[z, 2] or west > boxes[z, 3]):
             for k in range(first[z], first[z + 1]):

@@ -13,11 +13,19 @@ from cratous.core.avoidance.prediction import STANDING, Intruder, Piece, around,
 from cratous.core.geofence.distance import comes_within
 from cratous.core.geofence.planar import edges_of, keep_in_leg_ok, keep_out_leg_ok, locate
 from cratous.core.kernel import Vec2, driver
-from cratous.core.permit.pieces import Growth, Meeting, above_during, permitted
+from cratous.core.permit.pieces import (
+    Growth,
+    Margins,
+    Meeting,
+    Tube,
+    above_during,
+    permitted,
+    piece_clear,
+)
 from cratous.core.readings.exact import exact
 from cratous.spec.mission import Position, WellClear, Zone, ZoneKind
 
-STEADY = Growth(0, 0, 0)
+STEADY = Growth(0.0, 0.0, 0.0)
 """The tube of an intruder that is taken to fly straight on."""
 
 Moving = tuple[Vec2, float, float, float]
@@ -50,15 +58,17 @@ def moving(piece: Piece, rho_m: float) -> Moving:
     return Vec2(v.north_m_s, v.east_m_s), -v.down_m_s, piece.duration_s, rho_m
 
 
-@driver(checked_by=("above_during", "permitted"))
+@driver(checked_by=("piece_clear", "above_during"))
 def hold_permits(
     hold: Piece, other: Intruder, volume: WellClear, hold_m: float, rise_m: float
 ) -> bool:
     """True only if a hold, from its start on for its duration, keeps the closed cylinder of a volume clear of an
-    intruder that flies straight on.
+    intruder that flies straight on. ValueError if it does not stand.
 
     hold_m, rise_m: how far the vehicle may be from the middle of the hold, and off its height [m], >= 0.
     """
+    if hold.velocity != STANDING:
+        raise ValueError("a hold does not stand")
     return all(
         _hold_permits(part, straight_on, volume, hold_m, rise_m)
         for run, straight_on in meetings((hold,), other)
@@ -71,12 +81,17 @@ def _hold_permits(
 ) -> bool:
     """The same against one that flies straight on."""
     met = meeting(hold.position, later(other, hold.start_s), volume)
-    layer = Growth(volume.zthr_m + rise_m, 0, 0)
+    # it stands: 0 less the other's velocity, which no rounding touches
+    v = Vec2(0.0 - met.w.x, 0.0 - met.w.y)
+    margins = Margins(met.radius_m, met.half_height_m, hold_m)
+    if exact(
+        piece_clear, met.s, v, met.sz, -met.wz, Tube(STEADY, STEADY), margins, hold.duration_s
+    ):
+        return True
+    layer = Growth(volume.zthr_m + rise_m, 0.0, 0.0)
     if exact(above_during, met.sz, -met.wz, layer, hold.duration_s):
         return True
-    if exact(above_during, -met.sz, met.wz, layer, hold.duration_s):
-        return True
-    return bool(exact(permitted, [moving(hold, hold_m)], met))
+    return bool(exact(above_during, -met.sz, met.wz, layer, hold.duration_s))
 
 
 @driver(checked_by=("permitted",))

@@ -19,7 +19,7 @@ from cratous.core.routing.dubins_words import WORDS_MOST, legs, legs_length, wor
 CHAINS_MOST = 12  # how many chains of via points are tried per ring before the next ring
 LINKS_MOST = 60
 GAINS_LITTLE = 1.2  # a word that is no longer than this, in shortest words and one radius, is taken
-FOUND, BAD_START, BAD_END, NO_WAY = 0, 1, 2, 3
+FOUND, BAD_START, BAD_END, NO_WAY, NOT_DIRECT = 0, 1, 2, 3, 4
 UNKNOWN, FREE, BLOCKED = 0, 1, 2
 
 
@@ -109,6 +109,13 @@ def piece(
     return False, 0.0, blocked
 
 
+def gains_little(start: np.ndarray, end: np.ndarray, r: float, flown: float, word: Word) -> bool:
+    """Whether a way of length `flown` is not much longer than the unobstructed word; `word` is worked in."""
+    words(end[0] - start[0], end[1] - start[1], start[3], end[3], r, word.kinds, word.lengths)
+    least = word.lengths[0, 0] + word.lengths[0, 1] + word.lengths[0, 2]
+    return bool(flown <= GAINS_LITTLE * least + r)
+
+
 def free(
     an: float,
     ae: float,
@@ -142,7 +149,8 @@ def chain(
     m = len(ring)
     here, there = m, m + 1
     place = np.empty((m + 2, 2))
-    place[:m] = ring
+    for k in range(m):  # no slices: that two of them fit takes the compiler seconds
+        place[k, 0], place[k, 1] = ring[k, 0], ring[k, 1]
     place[here, 0], place[here, 1] = start[0], start[1]
     place[there, 0], place[there, 1] = end[0], end[1]
     ahead = np.empty(m + 2)
@@ -269,19 +277,12 @@ def one_route(
     poses: np.ndarray,
 ) -> tuple[int, float, int, int]:
     """One route: (FOUND, length, links, 0) with the poses between links; or why not, and the zone."""
-    r, kinds, lengths = turning.r, np.empty((WORDS_MOST, 3), np.int64), np.empty((WORDS_MOST, 3))
-    word = Word(kinds, lengths)
+    word = Word(np.empty((WORDS_MOST, 3), np.int64), np.empty((WORDS_MOST, 3)))
     allowed, flown, blocked = piece(start, end, turning, zones, word)
     for j in range(4):
         poses[0, j], poses[1, j] = start[j], end[j]
-    if allowed:
-        if blocked < 0:
-            return FOUND, flown, 1, 0
-        words(end[0] - start[0], end[1] - start[1], start[3], end[3], r, kinds, lengths)
-        least = lengths[0, 0] + lengths[0, 1] + lengths[0, 2]
-        # with a word that is not much longer than the unobstructed one there is little to gain
-        if flown <= GAINS_LITTLE * least + r:
-            return FOUND, flown, 1, 0
+    if allowed and (blocked < 0 or gains_little(start, end, turning.r, flown, word)):
+        return FOUND, flown, 1, 0
     for name, point in ((BAD_START, start), (BAD_END, end)):
         zone = leg_zone(point[0], point[1], point[2], point[0], point[1], point[2], zones)
         if zone >= 0:
@@ -302,12 +303,39 @@ def one_route(
             if bad == 0:
                 if length < best:
                     best, links = length, count - 1
-                    poses[:count] = tried[:count]
+                    for to in range(count):
+                        for j in range(4):
+                            poses[to, j] = tried[to, j]
                 break
             struck[k, 0], struck[k, 1] = nodes[bad - 1], nodes[bad]
         if links > 0:
             return FOUND, best, links, 0
     return NO_WAY, 0.0, 0, blocked
+
+
+@driver(checked_by=("keep_out_leg_ok", "keep_in_leg_ok", "location_step", "contact_step"))
+def direct_many(
+    starts: np.ndarray,
+    ends: np.ndarray,
+    turning: Turning,
+    zones: tuple[np.ndarray, ...],
+    found: Routed,
+) -> None:
+    """`route_many` where that takes the direct word, as it does nearly always; code NOT_DIRECT elsewhere.
+
+    So what goes around zones has to be compiled only where many routes do.
+    """
+    word = Word(np.empty((WORDS_MOST, 3), np.int64), np.empty((WORDS_MOST, 3)))
+    for i in range(len(starts)):
+        start, end = starts[i], ends[i]
+        allowed, flown, blocked = piece(start, end, turning, zones, word)
+        if allowed and blocked >= 0:
+            allowed = gains_little(start, end, turning.r, flown, word)
+        poses = found.poses[min(i, len(found.poses) - 1)]
+        for j in range(4):
+            poses[0, j], poses[1, j] = start[j], end[j]
+        found.codes[i] = FOUND if allowed else NOT_DIRECT
+        found.metres[i], found.links[i] = flown, 1
 
 
 @driver(checked_by=("keep_out_leg_ok", "keep_in_leg_ok", "location_step", "contact_step"))

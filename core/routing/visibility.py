@@ -21,15 +21,20 @@ from cratous.core.routing.bulk import (
     FOUND,
     LINKS_MOST,
     NO_WAY,
+    NOT_DIRECT,
     Rings,
     Routed,
     Turning,
+    direct_many,
     route_many,
     route_points,
 )
 from cratous.core.routing.dubins import RIGHT, pose_after
 from cratous.spec.mission import Position, Zone
 from cratous.spec.mission.plan import Pose
+
+DIRECT_WORK, AROUND_WORK = 4, 30
+"""What CPython does for a direct route beside zones, and for one around them, as `swift` counts it."""
 
 
 class Route(NamedTuple):
@@ -84,12 +89,17 @@ def routes(
         np.empty(n, np.int64), np.empty(n), np.empty(n, np.int64),
         np.empty((n if ways else 1, LINKS_MOST + 2, 4)),
     )  # fmt: skip
-    run = swift(route_many, n * (1 + 20 * bool(roadmap.zones)))
     turning = Turning(float(radius_m), float(max_slope), float(roadmap.chord_error_m))
     zones = table(roadmap.zones)
-    altitudes = np.unique(starts[:, 2])
-    for alt in altitudes:
-        at = np.arange(n) if len(altitudes) == 1 else np.flatnonzero(starts[:, 2] == alt)
+    direct = swift(direct_many, n * (DIRECT_WORK if roadmap.zones else 1))
+    direct(np.ascontiguousarray(starts), np.ascontiguousarray(ends), turning, zones, found)
+    others = np.flatnonzero(found.codes == NOT_DIRECT)
+    if not len(others):
+        return found
+    run = swift(route_many, len(others) * AROUND_WORK)
+    altitudes = starts[others, 2]
+    for alt in np.unique(altitudes):
+        at = others[altitudes == alt]
         some = Routed(*(part[at] if len(part) == n else part for part in found))
         run(
             np.ascontiguousarray(starts[at]), np.ascontiguousarray(ends[at]), turning, zones,

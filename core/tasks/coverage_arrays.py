@@ -58,7 +58,7 @@ def grid_squares(
                     known, inside = True, place_of(edges, x, y) >= 0
                 shares = inside
             else:
-                known, met = False, False
+                known, met = False, bool(0)  # no literal, as in `leg_zone`
                 for s in range(4):
                     # corners in turn: south-west, south-east, north-east, north-west
                     p = Vec2(x + (half if s == 2 or s == 3 else -half),
@@ -90,8 +90,11 @@ def mark_seen(centres: np.ndarray, half: float, quads: np.ndarray, seen: np.ndar
     total = len(centres)
     for f in range(len(quads)):
         quad = quads[f]
-        south, north = np.min(quad[:, 0]) + half, np.max(quad[:, 0]) - half
-        west, east = np.min(quad[:, 1]) + half, np.max(quad[:, 1]) - half
+        low_n, high_n, low_e, high_e = quad[0, 0], quad[0, 0], quad[0, 1], quad[0, 1]
+        for j in range(1, len(quad)):
+            low_n, high_n = min(low_n, quad[j, 0]), max(high_n, quad[j, 0])
+            low_e, high_e = min(low_e, quad[j, 1]), max(high_e, quad[j, 1])
+        south, north, west, east = low_n + half, high_n - half, low_e + half, high_e - half
         low, high = 0, total
         while low < high:
             middle = (low + high) // 2
@@ -103,7 +106,7 @@ def mark_seen(centres: np.ndarray, half: float, quads: np.ndarray, seen: np.ndar
         while k < total and centres[k, 0] <= north:
             n, e = centres[k, 0], centres[k, 1]
             if not seen[k] and west <= e and e <= east:
-                within, centre = True, Vec2(n, e)
+                within, centre = bool(1), Vec2(n, e)
                 for j in range(len(quad)):
                     b = j + 1 if j + 1 < len(quad) else 0
                     p, q = Vec2(quad[j, 0], quad[j, 1]), Vec2(quad[b, 0], quad[b, 1])

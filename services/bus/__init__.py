@@ -20,8 +20,10 @@ from __future__ import annotations
 import heapq
 from collections import deque
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
+
+from cratous.spec.records import replace
 
 
 @dataclass(frozen=True)

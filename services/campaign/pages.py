@@ -8,7 +8,7 @@ from math import ceil
 from typing import Any
 
 from cratous.services.campaign.outcomes import MEANING
-from cratous.spec.files.printable import printable
+from cratous.services.certify import templates
 
 WIDTH, HEIGHT, EDGE = 520, 170, 44
 BARS = 24
@@ -18,22 +18,15 @@ MOST_PICTURES = 12
 
 @cache
 def _template() -> Any:
-    from jinja2 import Environment, FunctionLoader, StrictUndefined
-
     folders = {
         "campaign.html": "cratous.services.campaign",
         "report.css": "cratous.services.certify",
     }
-    environment = Environment(
-        autoescape=True, finalize=_shown, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
-        loader=FunctionLoader(lambda name: files(folders[name]).joinpath(name).read_text("utf-8")),
-    )  # fmt: skip
+    environment = templates.environment(
+        lambda name: files(folders[name]).joinpath(name).read_text("utf-8")
+    )
     environment.filters["share"] = share
     return environment.get_template("campaign.html")
-
-
-def _shown(value: Any) -> Any:
-    return printable(value, keep="\n\t") if type(value) is str else value
 
 
 def share(rate: dict[str, Any]) -> str:

@@ -44,14 +44,14 @@ def _row(row: Data, commands: Commands, assumptions: list[Data], end_ms: int) ->
         "verdict": row["verdict"],
         "time_ms": row["time_ms"],
         "why": row["note"],
-        "command": [_command(number, commands, at_ms) for number in asked],
+        "command": [command_at(number, commands, at_ms) for number in asked],
         "ways_out": list(_ways_out(row, commands)),
-        "broken_first": _first(row["requirement"], assumptions, at_ms),
+        "broken_first": first_broken(row["requirement"], assumptions, at_ms),
         "not_observed": unseen,
     }
 
 
-def _command(number: int, commands: Commands, at_ms: int) -> Data:
+def command_at(number: int, commands: Commands, at_ms: int) -> Data:
     """Who commanded a vehicle at an instant; who commands first does so from the beginning."""
     changes = commands[number]
     place = stood_at(((ms, k) for k, (ms, _) in enumerate(changes)), at_ms).place
@@ -63,11 +63,11 @@ def _ways_out(row: Data, commands: Commands) -> Iterator[Data]:
     """Of a loss that could have been avoided: from when, how, and who had the vehicle at that instant."""
     for loss in (row.get("evidence") or {}).get("losses", ()):
         if (way := loss.get("way_out")) and loss["own"] in commands:
-            there = _command(loss["own"], commands, way["time_ms"])
+            there = command_at(loss["own"], commands, way["time_ms"])
             yield {**there, "at_ms": way["time_ms"], "manoeuvre": way["manoeuvre"]}
 
 
-def _first(requirement: str, assumptions: list[Data], at_ms: int) -> Data | None:
+def first_broken(requirement: str, assumptions: list[Data], at_ms: int) -> Data | None:
     """The assumption that had broken first by then, and whether a theorem on the requirement rests on it."""
     broken = broken_of(assumptions)
     place = broke_first(((one["since_ms"], k) for k, one in enumerate(broken)), at_ms).place

@@ -8,6 +8,7 @@ from typing import Any
 
 from cratous.core.kernel.names import short
 from cratous.services.assumptions.said import measured
+from cratous.services.certify import templates
 from cratous.services.certify.blame_said import sentence
 from cratous.services.certify.charts import altitude_view, separation_view
 from cratous.services.certify.command import flown_in_processes
@@ -16,7 +17,6 @@ from cratous.services.certify.picture import map_view, time_view
 from cratous.services.certify.proofs import statuses
 from cratous.services.certify.trace import chains
 from cratous.spec.algebra import parse
-from cratous.spec.files.printable import printable
 from cratous.spec.mission.plan import cost_text, percent
 
 MAP = """<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {{ map.width }} {{ map.height }}" \
@@ -28,17 +28,15 @@ svg { background: var(--panel); }
 {% include 'map.svg' %}
 </svg>
 """
+MAP_PAGE = "the map alone"
 
 
 @cache
 def _environment() -> Any:
-    from jinja2 import Environment, FunctionLoader, StrictUndefined
-
     folder = files("cratous.services.certify")
-    environment = Environment(
-        autoescape=True, finalize=_shown, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
-        loader=FunctionLoader(lambda name: folder.joinpath(name).read_text("utf-8")),
-    )  # fmt: skip
+    environment = templates.environment(
+        lambda name: MAP if name == MAP_PAGE else folder.joinpath(name).read_text("utf-8")
+    )
     environment.filters["seconds"] = seconds
     environment.filters["margin"] = margin
     environment.filters["percent"] = percent
@@ -46,11 +44,6 @@ def _environment() -> Any:
     environment.filters["blamed"] = sentence
     environment.filters["cost"] = lambda value, kind: cost_text(kind, value)
     return environment
-
-
-def _shown(value: Any) -> Any:
-    """What a page shows of a value; what is a page already stays as it is."""
-    return printable(value, keep="\n\t") if type(value) is str else value
 
 
 def seconds(time_ms: float | None) -> str:
@@ -100,7 +93,7 @@ def _rows_of(report: dict[str, Any]) -> dict[str, int]:
 
 def map_svg(report: dict[str, Any]) -> str:
     """The map of the flight as a picture of its own, with its style."""
-    text: str = _environment().from_string(MAP).render(map=map_view(report))
+    text: str = _environment().get_template(MAP_PAGE).render(map=map_view(report))
     return text
 
 

@@ -214,9 +214,12 @@ def report_text(report: dict[str, Any]) -> str:
 
 def pages(report: dict[str, Any]) -> dict[str, str]:
     """The files that are made from report.json alone, by name."""
+    return _pages(json.loads(report_text(report)))
+
+
+def _pages(written: Any) -> dict[str, str]:
     from cratous.services.certify.html import map_svg, render
 
-    written = json.loads(report_text(report))
     return {HTML_NAME: render(written), MAP_NAME: map_svg(written)}
 
 
@@ -228,8 +231,10 @@ def write_report(report: dict[str, Any], folder: Path) -> None:
     """
     from cratous.services.certify.report_schema import departures
 
-    wrong = departures(json.loads(report_text(report)))
+    text = report_text(report)
+    written = json.loads(text)
+    wrong = departures(written)
     if wrong:
         raise RuntimeError(f"the report is not as its schema says: {wrong[0]}")
-    for name, text in {REPORT_NAME: report_text(report), **pages(report)}.items():
-        write_atomically(folder / name, text, "the report")
+    for name, content in {REPORT_NAME: text, **_pages(written)}.items():
+        write_atomically(folder / name, content, "the report")

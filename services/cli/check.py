@@ -11,7 +11,7 @@ import click
 from cratous.services.cli.show import say
 from cratous.spec.errors import BadInput
 
-ALGEBRA, REQUIREMENTS = ".algebra", ".req"
+ALGEBRA, REQUIREMENTS = ".algebra", (".req", ".json")
 
 
 @click.command()
@@ -20,7 +20,7 @@ ALGEBRA, REQUIREMENTS = ".algebra", ".req"
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def check(files: tuple[Path, ...], fretish: bool, as_json: bool) -> int:
     """Check FILES: mission files (.yaml, .xml, or folders), process-algebra texts (.algebra) and
-    requirements (.req).
+    requirements (.req, or an export of FRET, .json).
 
     Each is read as `cratous run` and `cratous algebra check` read it, with all that they refuse; nothing
     is planned or flown, so a mission that is well formed may still have no plan.
@@ -70,10 +70,12 @@ def _read(file: Path) -> tuple[Path, list[BadInput]]:
             from cratous.spec.files.text_file import text_of
 
             algebra.parse(text_of(file, CONFIG_BYTES, "a UTF-8 text"), None, where=str(file))
-        elif file.suffix == REQUIREMENTS:
+        elif file.suffix in REQUIREMENTS:
             from cratous.services.cli.monitor_requirements import read
+            from cratous.services.requirements.specification import NotRead
 
-            read(file)
+            asked = [one.formula for one in read(file).requirements]
+            return file, [one for one in asked if isinstance(one, NotRead)]
         else:
             from cratous.services.loading import load
 
@@ -85,7 +87,7 @@ def _read(file: Path) -> tuple[Path, list[BadInput]]:
 
 def _said(file: Path) -> list[dict[str, str]]:
     """The sentence of each requirement of a file, or why it has none; nothing of other files."""
-    if file.suffix != REQUIREMENTS:
+    if file.suffix not in REQUIREMENTS:
         return []
     from cratous.services.cli.monitor_requirements import read
     from cratous.services.requirements.fretish import NoForm, sentence

@@ -18,7 +18,7 @@ from cratous.spec.mission.guarantees import Outcome, exit_code
 @click.option(
     "--requirements",
     type=click.Path(path_type=Path),
-    help="Requirements of your own: a file *.req, or C2PO; LOG may be a CSV file then.",
+    help="Requirements of your own: a file *.req, FRET's export *.json, or C2PO; LOG may be CSV then.",
 )
 @click.option(
     "--model", is_flag=True, help="Is each event of authority a step of the proved system?"

@@ -43,7 +43,8 @@ def attach(
     from cratous.bridge.port import address as read_address
     from cratous.bridge.port import is_due
     from cratous.core import ledger
-    from cratous.services.cli.monitor_requirements import print_result, read
+    from cratous.services.certify.blame_own import own_blame
+    from cratous.services.cli.monitor_requirements import Judged, print_result, read
     from cratous.services.logs.store import Gap, LogStore
     from cratous.services.requirements.attached import Attached
     from cratous.services.requirements.lint import lint
@@ -100,7 +101,9 @@ def attach(
                     _run(words, one)
         if watch.sampling.is_late(attached.now_ms() * 10**6):
             find("silent", watch.sampling.last)
-    return print_result(watch.result(), remarks, standing, True, None, as_json)
+    found = watch.result()
+    blame = own_blame(found.outcomes, spec, None)
+    return print_result(Judged(True, found, remarks, blame), standing, as_json)
 
 
 def _recorded(messages: Iterator[Entry], store: LogStore) -> Iterator[Entry]:

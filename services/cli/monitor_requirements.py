@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
@@ -16,73 +16,105 @@ if TYPE_CHECKING:
     from cratous.services.requirements.watch import Margin, Outcome, Watched
 
 
+class Judged(NamedTuple):
+    """A trace held against requirements. lines: a line for each verdict, None where they were not asked for."""
+
+    timed: bool
+    watched: Watched
+    remarks: Sequence[Remark]
+    blame: list[dict[str, Any]]
+    lines: list[str] | None = None
+
+    @property
+    def code(self) -> int:
+        """The exit code, where the kernels are proved."""
+        words = {outcome.verdict for outcome in self.watched.outcomes}
+        return 1 if "violated" in words else 0 if words == {"holds"} else 3
+
+
 def trace(
     trace: Path, requirements: Path, verdicts: bool, as_json: bool, allow_unproved: bool
 ) -> int:
     """Print what each requirement says of the trace; the exit code."""
     from cratous.core import ledger
-    from cratous.services.requirements.lint import lint
-    from cratous.services.requirements.watch import watch
 
     spec = read(requirements)
     standing = ledger.require(allow_unproved=allow_unproved)
+    return print_result(judged(spec, trace, verdicts), standing, as_json)
+
+
+def judged(spec: Specification, trace: Path, verdicts: bool = False) -> Judged:
+    """A trace held against requirements; verdicts: with a line for each."""
+    from cratous.services.certify.blame_own import own_blame
+    from cratous.services.requirements.lint import lint
+    from cratous.services.requirements.watch import watch
+
     remarks = lint(spec)
     lines: list[str] | None = [] if verdicts else None
     watched = watch(spec, trace, lines)
-    return print_result(watched, remarks, standing, spec.timed, lines, as_json)
+    return Judged(spec.timed, watched, remarks, own_blame(watched.outcomes, spec, trace), lines)
 
 
-def print_result(
-    watched: Watched,
-    remarks: Sequence[Remark],
-    standing: Standing,
-    timed: bool,
-    lines: list[str] | None,
-    as_json: bool,
-) -> int:
-    """Print verdicts, margins and what is wrong with samples and requirements; the exit code."""
+def print_result(found: Judged, standing: Standing, as_json: bool) -> int:
+    """Print verdicts, margins, blame, and what is wrong with samples and requirements; the exit code."""
     from cratous.services.cli.show import say
 
-    words = {outcome.verdict for outcome in watched.outcomes}
-    code = 1 if "violated" in words else (0 if words == {"holds"} and not standing.problems else 3)
+    code = found.code or (3 if standing.problems else 0)
     if as_json:
-        data: dict[str, Any] = {
-            "requirements": [_data(one, timed) for one in watched.outcomes],
-            "findings": [vars(one) for one in watched.findings],
-            "lint": [vars(one) for one in remarks],
-            "proofs": standing.line,
-            "exit_code": code,
-        }
-        click.echo(json.dumps({**data, "verdicts": lines} if lines is not None else data, indent=1))
-        for one in watched.outcomes:
+        data = {**result(found), "proofs": standing.line, "exit_code": code}
+        click.echo(
+            json.dumps(data if found.lines is None else {**data, "verdicts": found.lines}, indent=1)
+        )
+        for one in found.watched.outcomes:
             if one.verdict != "holds":
-                say(_line(one, timed), err=True)
+                say(_line(one, found.timed), err=True)
         if standing.problems:
             say(f"proofs: {standing.line}", err=True)
         return code
-    for line in lines or ():
+    for line in (*(found.lines or ()), *told(found)):
         say(line)
-    for remark in remarks:
-        say(f"lint: {remark.text}")
-    for finding in watched.findings:
-        say(f"finding: {finding.text}")
-    for one in watched.outcomes:
-        say(_line(one, timed))
-        if timed:
-            for margin in one.margins:
-                say(f"  {_margin(margin)}")
     click.echo(f"proofs: {standing.line}")
     return code
 
 
+def result(found: Judged) -> dict[str, Any]:
+    """Verdicts, findings, lint and blame as data."""
+    return {
+        "requirements": [_data(one, found.timed) for one in found.watched.outcomes],
+        "findings": [vars(one) for one in found.watched.findings],
+        "lint": [vars(one) for one in found.remarks],
+        "blame": found.blame,
+    }
+
+
+def told(found: Judged) -> Iterator[str]:
+    """The same for people."""
+    from cratous.services.certify.blame_own import lines
+
+    for remark in found.remarks:
+        yield f"lint: {remark.text}"
+    for finding in found.watched.findings:
+        yield f"finding: {finding.text}"
+    for one in found.watched.outcomes:
+        yield _line(one, found.timed)
+        for margin in one.margins if found.timed else ():
+            yield f"  {_margin(margin)}"
+    yield from lines(found.blame)
+
+
 def read(requirements: Path) -> Specification:
     """The requirements of a file, in the language that its name tells; BadInput for what is none."""
-    from cratous.services.requirements import c2po, language
-    from cratous.spec.files.limits import CONFIG_BYTES
+    from cratous.services.requirements import c2po, fret, language
+    from cratous.spec.files.limits import CONFIG_BYTES, DOCUMENT_BYTES
     from cratous.spec.files.text_file import text_of
 
-    reader = language if requirements.suffix == ".req" else c2po
-    return reader.read(text_of(requirements, CONFIG_BYTES, "requirements"), str(requirements))
+    if requirements.suffix == ".json":
+        text = text_of(requirements, DOCUMENT_BYTES, "an export of FRET")
+        return fret.read(text, str(requirements))
+    text = text_of(requirements, CONFIG_BYTES, "requirements")
+    if requirements.suffix == ".req":
+        return language.read(text, str(requirements), requirements.parent)
+    return c2po.read(text, str(requirements))
 
 
 def _data(one: Outcome, timed: bool) -> dict[str, Any]:

@@ -7,7 +7,7 @@ import shlex
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -17,6 +17,10 @@ from cratous.services.cli.job import silent as untold
 from cratous.services.cli.numbers import Number
 from cratous.services.cli.progress import waiting
 from cratous.services.cli.show import requirement_table, say
+from cratous.spec.errors import BadInput
+
+if TYPE_CHECKING:
+    from cratous.services.requirements.specification import Specification
 
 Tell = Callable[[str], None]
 
@@ -42,6 +46,10 @@ Tell = Callable[[str], None]
     "--original-clients", is_flag=True,
     help="With --processes: wait for the original's clients, which you start, in place of `cratous icarous`.",
 )  # fmt: skip
+@click.option(
+    "--requirements", type=click.Path(path_type=Path), metavar="FILE.req",
+    help="Also hold the log of the flight against requirements of your own.",
+)  # fmt: skip
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="No progress, only the result.")
 def run(
@@ -63,6 +71,9 @@ def run(
     With --processes a mission file is flown by processes that `ps` shows, over sockets of loopback and
     against the clock: `cratous sim`, `cratous uxas` and a `cratous icarous` for each protected vehicle.
 
+    With --requirements, the log is then held against requirements of your own, as `cratous monitor
+    --requirements` does, with who was in command where one is violated; the exit code is that of all.
+
     Example:  cratous run examples/crossing/mission.yaml
 
     Exit codes: 0 all requirements hold, 1 something is violated or no plan exists, 2 bad input,
@@ -71,6 +82,7 @@ def run(
     command = ["cratous", "run", shown_path(mission)]
     command += ["--no-daa"] * no_daa + ["--allow-unproved"] * allow_unproved
     daa, quiet, rate = not no_daa, bool(how["quiet"]), how["rate"]
+    own = _own(how["requirements"], seeds)
     if rate is not None and not how["processes"]:
         raise click.UsageError("--rate is of --processes")
     if how["original_clients"] and not how["processes"]:
@@ -84,14 +96,28 @@ def run(
         command += ["--original-clients"] * how["original_clients"]
         settings = Settings(daa, allow_unproved, shlex.join(command))
         processes = InProcesses(rate or 1.0, how["original_clients"])
-        return fly_and_show(mission, seed, out, settings, as_json, quiet, processes)
+        return fly_and_show(mission, seed, out, settings, as_json, quiet, processes, own)
     if seeds is not None:
         if seed:
             raise click.UsageError("--seed and --seeds exclude each other")
         return _many(mission, seeds, out, Settings(daa, allow_unproved), as_json, quiet)
     command += ["--seed", str(seed)] if seed else []
     settings = Settings(daa, allow_unproved, shlex.join(command))
-    return fly_and_show(mission, seed, out, settings, as_json, quiet)
+    return fly_and_show(mission, seed, out, settings, as_json, quiet, own=own)
+
+
+def _own(file: Path | None, seeds: range | None) -> Specification | None:
+    """The requirements of the user's own, read before anything is flown."""
+    from cratous.services.cli.monitor_requirements import read
+
+    if file is None:
+        return None
+    if seeds is not None:
+        raise click.UsageError("--requirements is of one flight: no --seeds")
+    found = read(file)
+    if not found.timed:
+        raise BadInput("these requirements count samples", where=str(file), expected="a file *.req")
+    return found
 
 
 def fly_and_show(
@@ -102,18 +128,30 @@ def fly_and_show(
     as_json: bool,
     quiet: bool,
     processes: InProcesses | None = None,
+    own: Specification | None = None,
 ) -> int:
     """Run one mission and print what came of it; returns the exit code. processes: it is flown in; None: in
-    this process, in virtual time."""
+    this process, in virtual time; own: requirements of the user's, which the flight's log is held against too."""
+    from cratous.services.cli.monitor_requirements import judged, result, told
+
     silent = quiet or as_json
     with waiting("loading the mission", silent) as wait:
         tell = untold if silent else wait.tell
         report, folder = run_one(mission, seed, out or Path("out"), settings, tell, processes)
+    found = None if own is None else judged(own, folder)
+    code = int(report["exit_code"])
+    if found is not None:
+        code = 1 if 1 in (code, found.code) else code or found.code
     if as_json:
-        click.echo(json.dumps(summary(report, folder), indent=1))
+        more = {} if found is None else {"own": result(found), "exit_code": code}
+        click.echo(json.dumps({**summary(report, folder), **more}, indent=1))
     else:
         _show(report, folder)
-    return int(report["exit_code"])
+        for line in () if found is None else told(found):
+            say(line)
+        if found is not None:
+            say(f"with requirements of your own: exit code {code}")
+    return code
 
 
 def shown_path(path: Path) -> str:

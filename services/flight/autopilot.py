@@ -10,7 +10,7 @@ aircraft arrives along the track instead of across it.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from cratous.core.routing.polylines import Track
 from cratous.services.flight.dynamics import (
@@ -23,6 +23,7 @@ from cratous.services.flight.dynamics import (
 )
 from cratous.spec.mission import Velocity
 from cratous.spec.mission.plan import Hold
+from cratous.spec.records import replace
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Container
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -21,6 +21,7 @@ from cratous.services.flight.dynamics import AirState
 from cratous.spec import executive
 from cratous.spec.mission import Position, Vehicle, Zone
 from cratous.spec.mission.plan import Hold, PlanItem, Pose
+from cratous.spec.records import replace
 
 ROUTE_MARGIN = 1.1
 """Ways made in flight turn with the tightest radius times this."""

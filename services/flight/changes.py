@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from cratous.core.routing.visibility import name_of
 from cratous.services.flight.dynamics import limits_of
@@ -29,6 +28,7 @@ from cratous.spec.mission import Change, ZoneKind
 from cratous.spec.mission.asked import asked, term_of
 from cratous.spec.mission.changes import ZONE_ENDS, ZoneEnd, split, with_choices, words
 from cratous.spec.mission.plan import Plan, left_out_of
+from cratous.spec.records import replace
 
 NAME = "uxas"
 """The sender of what is said of mission and plan."""

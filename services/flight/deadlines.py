@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from cratous.core.executive.steps import late_act
 from cratous.services.flight.chain import Chain, Phase
 from cratous.services.flight.executive_state import Asked, Config, Out, State
@@ -14,6 +12,7 @@ from cratous.services.flight.timing import opens_ms
 from cratous.spec.constraint_rows import Row
 from cratous.spec.executive import FOR_DEADLINE, PLAN_ANEW, STANDS_BY
 from cratous.spec.mission.plan import PlanItem
+from cratous.spec.records import replace
 
 OPEN_MARGIN_MS = 60
 """Aim this much later than the predicted opening, so that rounding never costs a lap."""

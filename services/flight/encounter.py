@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from dataclasses import replace
 from typing import NamedTuple
 
 from cratous.bridge.text_protocol import SetMode, SetVelocity
@@ -42,6 +41,7 @@ from cratous.spec.authority.link_end import TAKE_BACK
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import FaultySimulation, Mission, Position, TaskKind, Vehicle, Velocity
 from cratous.spec.mission.plan import PlanItem, Pose
+from cratous.spec.records import replace
 
 COMPLETE, LIMIT = "complete", "limit"
 """How it ended: one of ours has passed the end of its way, or the time was over."""

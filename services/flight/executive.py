@@ -10,7 +10,7 @@ for the tasks that are left; the step goes on with the answer. If there is no pl
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from cratous.core.authority.gate import UXAS
 from cratous.core.authority.link_end import track_is_told
@@ -56,6 +56,7 @@ from cratous.spec.executive import (
     LIMIT,
 )
 from cratous.spec.mission.changes import TASK_ADDED, VEHICLE_JOINS, WIND, ZONE_ENDS, split
+from cratous.spec.records import replace
 
 OUTCOMES = {GOES_ON: "", COMPLETE: "complete", FAILED_FLIGHT: "failed", LIMIT: "limit"}
 BRINGS_WORK = (TASK_ADDED, VEHICLE_JOINS)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from cratous.core.authority.gate import UXAS
 from cratous.core.authority.link_end import track_is_told
 from cratous.services.flight.chain import Phase
@@ -14,6 +12,7 @@ from cratous.services.flight.messages import Flown, Look, Route, Say
 from cratous.services.flight.remaining_path import points_ahead, points_left
 from cratous.services.flight.sensing import looks
 from cratous.services.flight.task_transitions import NAME
+from cratous.spec.records import replace
 
 AHEAD_S = 30
 """Waypoints are told at least this much farther than the look-ahead [s]."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import NamedTuple, TypeVar
 
 from cratous.services.flight.chain import Chain
@@ -17,6 +17,7 @@ from cratous.spec.constraint_rows import Row
 from cratous.spec.mission import Change, Mission, Zone
 from cratous.spec.mission.changes import split
 from cratous.spec.mission.plan import Plan
+from cratous.spec.records import replace
 
 Out = list[FromExecutive]
 """What a step has to send so far; it lives for one step."""

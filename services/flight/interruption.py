@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from cratous.core.authority.link_end import suspended_after
 from cratous.core.executive.steps import way_act
 from cratous.services.flight.chain import Chain, Phase
@@ -23,6 +21,7 @@ from cratous.spec.authority.cycle import TAKE_OVER
 from cratous.spec.executive import FAIL_TASK
 from cratous.spec.mission import Position
 from cratous.spec.mission.plan import Pose
+from cratous.spec.records import replace
 
 NAME = "uxas/ics"
 """The sender of what the bridge has led to."""

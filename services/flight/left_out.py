@@ -7,13 +7,13 @@ good, as one that ended undone is.
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping
-from dataclasses import replace
 from typing import Any
 
 from cratous.services.flight.chain import Chain
 from cratous.services.flight.commands import task_progress
 from cratous.services.flight.task_states import fails
 from cratous.spec.mission.plan import LeftOut, PartialPlan, Plan, left_out_of, partial
+from cratous.spec.records import replace
 
 LEFT_OUT, AT_FIRST = "left out: ", "; when it was first left out: "
 NOBODY = 0

@@ -8,13 +8,12 @@ has none left circles where it is, so that it can be handed back wherever that i
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from cratous.core.executive.steps import leg_given_up
 from cratous.services.flight.chain import Chain
 from cratous.services.flight.executive_outputs import route
 from cratous.services.flight.executive_state import Config, Out, State
 from cratous.services.flight.task_transitions import circling, fail
+from cratous.spec.records import replace
 
 MOST_TAKEOVERS = 12
 """On one leg ICAROUS may take over this often: it is given up at the takeover after that."""

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from cratous.bridge.text_protocol import (
     Attitude,
@@ -76,6 +76,7 @@ from cratous.spec.authority.link_end import (
     TAKE_BACK,
 )
 from cratous.spec.mission import Position, Velocity, Zone
+from cratous.spec.records import replace
 
 LINK_LOST_MS = 2000
 """A vehicle's ICAROUS counts as silent when nothing came up for this long [ms]."""

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import replace
 
 from cratous.core.authority.timeliness import too_early
 from cratous.core.executive.steps import end_passed, falls_with, may_begin, way_act
@@ -28,6 +27,7 @@ from cratous.spec.constraint_rows import Row
 from cratous.spec.executive import FAIL_TASK, GO_ON, LAP, LAST_LAP, START
 from cratous.spec.mission import Vehicle
 from cratous.spec.mission.plan import PlanItem, in_part_of
+from cratous.spec.records import replace
 
 EARLY_MS = 500
 """A planned wait may end this much early; the rows themselves are never bent."""

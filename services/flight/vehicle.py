@@ -8,7 +8,7 @@ about authority are those of the gate kernels.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from cratous.bridge import lmcp
@@ -54,6 +54,7 @@ from cratous.services.icarous.messages import Sensed
 from cratous.services.mission.frames import Projection, compass
 from cratous.spec.mission import Vehicle
 from cratous.spec.mission.plan import Hold
+from cratous.spec.records import replace
 
 OVERRUN_S = 5.0
 """Flying on past the end of a path for this long [s] without a new command starts a loiter."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from cratous.core.kernel import Vec2
@@ -66,7 +67,9 @@ def asked_of(body: Any, places: RequestPlaces, tower: Tower | None = None) -> As
     needed = getattr(body, "NumberVehicles", 1)
     within(needed, 1, VEHICLES_MOST, where, "NumberVehicles")
     standoff = float(getattr(body, "StandoffDistance", 0.0))
-    within(standoff, 0, STANDOFF_MOST_M, where, "StandoffDistance")
+    # an escort may be behind
+    least_m = -STANDOFF_MOST_M if kind == "EscortTask" else 0
+    within(standoff, least_m, STANDOFF_MOST_M, where, "StandoffDistance")
     dwell = getattr(body, "DwellTime", 0)
     within(dwell, 0, DURATION_MOST_MS, where, "DwellTime")
     least = milliseconds(body, DURATION, DURATION_MOST_MS, 0)
@@ -123,12 +126,27 @@ def tower_of(body: Any, places: RequestPlaces, world: Known) -> Tower:
     return Tower(Vec2(pose.north_m, pose.east_m), range_m)
 
 
-def unused_of(body: Any) -> list[str]:
+def route_named(body: Any, world: Known) -> tuple[Any, Sequence[Any]]:
+    """The message that says along which places the entity of an escort goes, and these; None: none does.
+
+    RouteID names a line; where it is 0, the entity's own plan is its route.
+    """
+    number = getattr(body, "RouteID", 0)
+    if number:
+        line = world.get("line", number)
+        return line, () if line is None else line.Line
+    if type(body).__name__ != "EscortTask":
+        return None, ()
+    plan = world.get("mission", body.SupportedEntityID)
+    return plan, () if plan is None else plan.WaypointList
+
+
+def unused_of(body: Any, world: Known) -> list[str]:
     """What a task's message asks for and gets not, in words."""
     said, of = [], f"of task {body.TaskID} is not used"
     route = getattr(body, "RouteID", 0)
-    if route:
-        text = "where the entity goes is PrescribedWaypoints, or straight on"
+    if route and route_named(body, world)[0] is None:
+        text = "no such line was told of; the entity goes along PrescribedWaypoints, or straight on"
         said.append(f"RouteID {route} {of}: {text}")
     if getattr(body, "DestinationLocation", None) is not None and body.SupportedEntityID:
         text = f"entity {body.SupportedEntityID} is supported where its states say that it is"

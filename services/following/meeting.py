@@ -18,7 +18,7 @@ from cratous.core.routing.dubins import pose_after
 from cratous.core.routing.visibility import name_of
 from cratous.core.tasks.rendezvous import spares_a_lap
 from cratous.services.following.asked import milliseconds, within
-from cratous.services.following.offering import WAYS_MOST, choice, named
+from cratous.services.following.offering import WAYS_MOST, choice, flying, named
 from cratous.services.following.stations import Station
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.places import RequestPlaces
@@ -120,8 +120,7 @@ def options_of(
 ) -> tuple[list[tuple[Option, int]], list[Dropped], list[str]]:
     """The options with the numbers of their states; what is not offered, with the reason; what is not done."""
     made, dropped, notes = list[tuple[Option, int]](), list[Dropped](), list[str]()
-    vehicles = context.inputs.mission.vehicles
-    able = [v for v in vehicles if not task.eligible or v.id in task.eligible]
+    able = flying(context.inputs.mission.vehicles, task, dropped)
     known = [v.id for v in able]
     for k, (entity, _) in enumerate(met.states):
         if entity and entity not in known:

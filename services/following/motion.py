@@ -15,8 +15,6 @@ STALE_MS = 5_000
 """Of an entity whose newest state is older nobody knows where it is."""
 SPEED_MOST_M_S = 1_000.0
 """Of an entity that is said to be faster nobody knows where it will be."""
-ROUNDS = 30
-"""Steps to where a vehicle meets an entity; each halves the error at least where it flies twice as fast."""
 
 
 class Motion(NamedTuple):
@@ -29,18 +27,29 @@ class Motion(NamedTuple):
 
     def after(self, seconds: float) -> Vec2:
         """Where it is so much later [s]: along its route, which it enters where it is nearest; else straight on."""
-        way_m = math.hypot(*self.velocity) * seconds
-        if not self.route:
-            v = self.velocity
-            return Vec2(self.at.x + v.x * seconds, self.at.y + v.y * seconds)
-        here = self.at
-        for corner in _rest(self.at, self.route):
-            leg_m = math.dist(here, corner)
-            step_m = min(way_m, leg_m)
-            share = step_m / (leg_m or 1.0)
-            here = Vec2(here.x + share * (corner.x - here.x), here.y + share * (corner.y - here.y))
-            way_m -= step_m
-        return here
+        return self._along(math.hypot(*self.velocity) * seconds)
+
+    def ahead(self, far_m: float) -> Vec2:
+        """The place so far before it on its way [m]; behind it, where that is negative: back along its route, no farther
+        than that begins, or from where it comes if it has still to enter that."""
+        back_m = max(-far_m, 0.0)
+        if not (back_m and self.route):
+            return self._along(far_m)
+        route = self.route if len(self.route) > 1 else (*self.route, *self.route)
+        k, t = _nearest(self.at, route)
+        if (k, t) == (0, 0.0):
+            return self._replace(route=())._along(far_m)
+        a, b = route[k], route[k + 1]
+        entered = Vec2(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y))
+        return _walked(entered, route[k::-1], back_m)
+
+    def _along(self, far_m: float) -> Vec2:
+        """Where it has come after so much of its way [m]; before that, where it is negative: straight back."""
+        if self.route:
+            return _walked(self.at, _rest(self.at, self.route), far_m)
+        speed = math.hypot(*self.velocity)
+        share = far_m / speed if speed else 0.0
+        return Vec2(self.at.x + share * self.velocity.x, self.at.y + share * self.velocity.y)
 
     def halfway_to(self, place: Vec2) -> Motion:
         """The motion of the middle between it and a place that stands."""
@@ -51,25 +60,36 @@ class Motion(NamedTuple):
         slow = Vec2(self.velocity.x / 2, self.velocity.y / 2)
         return Motion(middle(self.at), slow, self.time_ms, tuple(map(middle, self.route)))
 
-    def met_from(self, start: Vec2, speed_m_s: float) -> tuple[Vec2, float]:
-        """Where and in how many seconds one who flies straight at this speed, the greater one, meets it."""
-        seconds = 0.0
-        for _ in range(ROUNDS):
-            seconds = math.dist(start, self.after(seconds)) / speed_m_s
-        return self.after(seconds), seconds
+
+def _walked(here: Vec2, corners: Sequence[Vec2], far_m: float) -> Vec2:
+    """The place so far from here [m] on the way along corners; the last one if that is nearer."""
+    for corner in corners:
+        leg_m = math.dist(here, corner)
+        step_m = min(far_m, leg_m)
+        share = step_m / (leg_m or 1.0)
+        here = Vec2(here.x + share * (corner.x - here.x), here.y + share * (corner.y - here.y))
+        far_m -= step_m
+    return here
 
 
 def _rest(at: Vec2, route: Sequence[Vec2]) -> Sequence[Vec2]:
     """The corners of a route that are still to come, seen from a place."""
     if len(route) == 1:
         return route
+    k, t = _nearest(at, route)
+    return route if (k, t) == (0, 0.0) else route[k + 1 :]
+
+
+def _nearest(at: Vec2, route: Sequence[Vec2]) -> tuple[int, float]:
+    """Where a route of two corners or more is nearest to a place: on which leg, and what share of it is behind."""
     gaps = []
     for k, (a, b) in enumerate(pairwise(route)):
         n, e = b.x - a.x, b.y - a.y
         t = ((at.x - a.x) * n + (at.y - a.y) * e) / (n * n + e * e or 1.0)
         t = min(max(t, 0.0), 1.0)
-        gaps.append((math.dist(at, (a.x + t * n, a.y + t * e)), k))
-    return route[min(gaps)[1] + 1 :]
+        gaps.append((math.dist(at, (a.x + t * n, a.y + t * e)), k, t))
+    _, k, t = min(gaps)
+    return k, t
 
 
 def motion_of(

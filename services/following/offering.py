@@ -14,22 +14,35 @@ from typing import Any
 from cratous.bridge import lmcp
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.kernel import Vec2
+from cratous.core.routing.dubins import pose_after
 from cratous.core.routing.loiter_discs import broken_by
 from cratous.core.routing.visibility import name_of
-from cratous.core.tasks.stations import outruns
+from cratous.core.tasks.stations import in_ring, outruns
 from cratous.services.following.asked import Asked
 from cratous.services.following.motion import Motion
-from cratous.services.following.stations import camera_of, relays, station
+from cratous.services.following.stations import (
+    Station,
+    camera_of,
+    reached_from,
+    relays,
+    station,
+    towards,
+)
+from cratous.services.loading.ground import drives
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.implementation import offer
-from cratous.services.planning.flyers import MOMENT_MS, Flyer, flyer_of, straight
+from cratous.services.planning.flyers import MOMENT_MS, Flyer, Way, flyer_of, straight
 from cratous.services.planning.options import Dropped, Option, hold_rooms, unfit
-from cratous.spec.mission import Position, Task
+from cratous.spec.mission import Position, Task, Vehicle, Zone
 from cratous.spec.mission.plan import Pose
 
 APPROACH = 3.0
 """The way by which a vehicle comes to its circle is so many turn radii long where zones allow it: a waypoint counts
 as reached two radii ahead, and a shorter way might be passed between two states, so that nobody hears of it."""
+FAR = 4.0
+"""Who is farther from the rim than so many turn radii has his whole approach before it."""
+CATCH_UP = 1.25
+"""Who keeps to what is faster than he usually flies flies so many times as fast as that, if he can."""
 WAYS_MOST = 336
 """More ways to give vehicles to slots (three of eight) are not offered."""
 
@@ -39,7 +52,7 @@ def options_of(
 ) -> tuple[list[Option], list[Dropped]]:
     """The options of a task, slots in the order of their numbers, and what is not offered, with the reason."""
     mission, made, dropped = context.inputs.mission, list[Option](), list[Dropped]()
-    able = [v for v in mission.vehicles if not task.eligible or v.id in task.eligible]
+    able = flying(mission.vehicles, task, dropped)
     if asked.entity in [v.id for v in able]:
         able = [v for v in able if v.id != asked.entity]
         dropped.append(Dropped(task.id, (asked.entity,), "", "the task keeps to this very one"))
@@ -52,14 +65,22 @@ def options_of(
     for slot in range(asked.needed):
         for k, vehicle in enumerate(able):
             number = slot * len(able) + k + 1
-            flyer = flyer_of(vehicle)
             start = context.inputs.starts[vehicle.id]
-            found = _option(context, task, asked, motion, slot, flyer, start)
+            found = _option(context, task, asked, motion, slot, vehicle, start)
             if isinstance(found, Option):
                 made.append(named(found, number, vehicle.id))
             elif slot == 0 or "region" in found.label:
                 dropped.append(found._replace(vehicles=(vehicle.id,)))
     return made, dropped
+
+
+def flying(vehicles: Sequence[Vehicle], task: Task, dropped: list[Dropped]) -> list[Vehicle]:
+    """The vehicles that may do a task that is flown; who drives is dropped with the reason."""
+    able = [v for v in vehicles if not task.eligible or v.id in task.eligible]
+    driving = tuple(v.id for v in able if drives(v))
+    if driving:
+        dropped.append(Dropped(task.id, driving, "", "it drives, and the task is flown"))
+    return [v for v in able if not drives(v)]
 
 
 def named(option: Option, number: int, vehicle: int) -> Option:
@@ -70,9 +91,11 @@ def named(option: Option, number: int, vehicle: int) -> Option:
 
 
 def _option(
-    context: Context, task: Task, asked: Asked, motion: Motion, slot: int, flyer: Flyer, start: Pose
-) -> Option | Dropped:
+    context: Context, task: Task, asked: Asked, motion: Motion, slot: int, vehicle: Vehicle,
+    start: Pose,
+) -> Option | Dropped:  # fmt: skip
     terrain_m, zones = context.inputs.mission.frame.terrain_m, context.inputs.zones
+    flyer = _fast_enough(motion, flyer_of(vehicle), vehicle)
     reason = ""
     if asked.looks is not None:
         camera = camera_of(asked, flyer)
@@ -88,12 +111,41 @@ def _option(
     if reason:
         return Dropped(task.id, (), "", reason)
     here = Vec2(start.north_m, start.east_m)
-    at, _ = motion.met_from(here, flyer.speed_m_s)
-    met = motion._replace(at=at)
+    # where it comes at a usual speed that is too slow, it catches up from there
+    found = reached_from(here, asked, slot, flyer, motion, terrain_m)
+    if found is None:
+        return Dropped(task.id, (), "", f"it would not come up with entity {asked.entity}")
+    met, far_m = found
     goal = station(asked, slot, flyer, met, terrain_m)
-    if asked.tower is not None and not relays(asked.tower, met, at, goal.radius_m):
+    if asked.tower is not None and not relays(asked.tower, met, met.at, goal.radius_m):
         text = f"halfway it is not in reach of both, of {asked.tower.range_m:g} m, all around its circle"
         return Dropped(task.id, (), "", text)
+    way, zone = _way_in(f"slot {slot + 1}", here, goal, far_m, flyer, zones)
+    if zone is not None:
+        text = f"its circle about entity {asked.entity} breaks {name_of(zone)}"
+        return Dropped(task.id, (), f"region, {way.label}", text)
+    rooms = hold_rooms(way.start, flyer.radius_m, zones)
+    lasts = max(asked.least_ms, way.duration_ms)
+    return Option(task.id, 0, (), flyer, way.start, way.end, way.points, lasts, rooms, way.label)
+
+
+def _fast_enough(motion: Motion, usual: Flyer, vehicle: Vehicle) -> Flyer:
+    """How a vehicle flies while it keeps to what moves: as usual, or faster, as far as it can, where that is needed."""
+    if outruns(motion.velocity, usual.speed_m_s):
+        return usual
+    most = max(vehicle.max_speed_m_s, usual.speed_m_s)
+    speed = min(CATCH_UP * math.hypot(*motion.velocity), most)
+    wider = (speed / usual.speed_m_s) ** 2  # the radius of a turn
+    return usual._replace(speed_m_s=speed, radius_m=wider * usual.radius_m)
+
+
+def _way_in(
+    label: str, here: Vec2, goal: Station, far_m: float, flyer: Flyer, zones: Sequence[Zone]
+) -> tuple[Way, Zone | None]:
+    """The straight way by which one who comes from here gets to a circle, and a zone that forbids it.
+
+    far_m: how far from here, on the way to its middle, his place begins.
+    """
     heading = math.atan2(goal.at.y - here.y, goal.at.x - here.x)
     bad = broken_by(Position(*goal.at, flyer.alt_m), goal.radius_m, zones)
     # it comes to the rim of its circle, and makes for the middle
@@ -103,21 +155,20 @@ def _option(
         flyer.alt_m,
         heading,
     )
-    label = f"slot {slot + 1}"
-    long_ms = round(1000 * APPROACH * flyer.radius_m / flyer.speed_m_s)
-    for way_ms in (max(long_ms, MOMENT_MS), MOMENT_MS):
-        way = straight(label, rim, way_ms, flyer.speed_m_s)
+    long_ms = max(round(1000 * APPROACH * flyer.radius_m / flyer.speed_m_s), MOMENT_MS)
+    tries = [(rim, long_ms), (rim, MOMENT_MS)]
+    begins = towards(here, goal.at, far_m)
+    if not in_ring(
+        here, begins, 0, FAR * flyer.radius_m
+    ):  # there is room for all of it before that
+        end = Pose(*begins, flyer.alt_m, heading)
+        tries.insert(0, (pose_after(end, 0, -flyer.speed_m_s * long_ms / 2000, 1.0), long_ms))
+    for middle, way_ms in tries:
+        way = straight(label, middle, way_ms, flyer.speed_m_s)
         leg = first_bad_leg(way.points, zones)
         if leg is None:
             break
-    if bad is not None or leg is not None:
-        zone = bad if bad is not None else leg[1] if leg is not None else None
-        assert zone is not None
-        text = f"its circle about entity {asked.entity} breaks {name_of(zone)}"
-        return Dropped(task.id, (), f"region, {label}", text)
-    rooms = hold_rooms(way.start, flyer.radius_m, zones)
-    lasts = max(asked.least_ms, way.duration_ms)
-    return Option(task.id, 0, (), flyer, way.start, way.end, way.points, lasts, rooms, label)
+    return way, bad if bad is not None or leg is None else leg[1]
 
 
 def slot_of(option: Option) -> int:

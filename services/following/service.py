@@ -18,7 +18,14 @@ from cratous.core.kernel import Vec2
 from cratous.core.tasks.stations import Kept, kept_step
 from cratous.services.bus import Envelope
 from cratous.services.following import part as parts_of
-from cratous.services.following.asked import Asked, Tower, asked_of, tower_of, unused_of
+from cratous.services.following.asked import (
+    Asked,
+    Tower,
+    asked_of,
+    route_named,
+    tower_of,
+    unused_of,
+)
 from cratous.services.following.motion import STALE_MS, Motion, motion_of
 from cratous.services.following.offering import offered, options_of
 from cratous.services.following.part import Part
@@ -30,6 +37,7 @@ from cratous.services.pipeline.tasks import (
     HANDED_BACK,
     LISTED,
     PUBLISH_OPTIONS,
+    REMOVE,
     UNLISTED,
     WITH_UXAS,
     WITHDRAWN,
@@ -73,7 +81,7 @@ class Following(NamedTuple):
 Step = tuple[Following, list[Any]]
 
 
-def _kept(state: Following, needed: int, now_ms: int, least_ms: int) -> Kept:
+def kept_at(state: Following, needed: int, now_ms: int, least_ms: int) -> Kept:
     """How long as many as are needed have done what is asked, counted now; least_ms: 0 ends nothing."""
     count = sum(p.there and in_time(p.seen_ms, now_ms, SILENT_MS) for p in state.parts)
     return kept_step(state.kept, count, needed, now_ms, least_ms)
@@ -88,6 +96,7 @@ class FollowingTaskService(TaskService):
         self._body = body
         self._made: tuple[Context, list[Option], list[Dropped]] | None = None
         self._stood: tuple[Context, Tower] | None = None
+        self._routed: tuple[Context, Any, tuple[Vec2, ...]] | None = None
 
     def start(self) -> Any:
         return Following()
@@ -122,7 +131,7 @@ class FollowingTaskService(TaskService):
 
     def _do(self, state: State, act: int, body: Any, out: list[Any]) -> tuple[State, int]:
         if act == PUBLISH_OPTIONS and not self._still(self._context):
-            told = unused_of(self._body)
+            told = unused_of(self._body, self._contexts.world)
             self._context.withheld[self._task_id] = tuple(self._found(self._context)[1])
             for no in self._found(self._context)[1]:
                 who = ", ".join(map(str, no.vehicles))
@@ -161,7 +170,19 @@ class FollowingTaskService(TaskService):
                 expected="one of " + (", ".join(map(str, sorted(known.ids("state")))) or "none"),
                 got=str(asked.entity),
             )
-        return motion_of(state, context.places, f"state of entity {asked.entity}", asked.route)
+        route = self._route(context) or asked.route
+        return motion_of(state, context.places, f"state of entity {asked.entity}", route)
+
+    def _route(self, context: Context) -> tuple[Vec2, ...]:
+        """The places that the entity goes along by the message that the task names; none: it names none."""
+        told, along = route_named(self._body, self._contexts.world)
+        if self._routed is None or self._routed[0] is not context or self._routed[1] is not told:
+            where, found = f"route of task {self._task_id}", []
+            for k, place in enumerate(along):
+                pose = context.places.pose(place, 0.0, where, f"[{k}]")
+                found.append(Vec2(pose.north_m, pose.east_m))
+            self._routed = (context, told, tuple(found))
+        return self._routed[2]
 
     # messages
 
@@ -176,6 +197,8 @@ class FollowingTaskService(TaskService):
             return self._chosen(state, body)
         if topic == RESPONSE:
             return self._planned(state, body)
+        if topic == REMOVE and self._task_id in body.TaskList:
+            return self._removed(state, body)
         if hasattr(body, "AssociatedTasks"):
             return self._told(state, body)
         out = list[Any]()
@@ -257,7 +280,7 @@ class FollowingTaskService(TaskService):
         now_ms = max(state.now_ms, body.Time, 0)
         asked = self._asked(part.context)
         # who was silent until now was there until then, not since
-        state = state._replace(now_ms=now_ms, kept=_kept(state, asked.needed, now_ms, 0))
+        state = state._replace(now_ms=now_ms, kept=kept_at(state, asked.needed, now_ms, 0))
         waits = not follows and (body.Mode.name != "Waypoint" or body.CurrentWaypoint < part.begins)
         if waits:
             return state.with_part(part), out
@@ -281,7 +304,7 @@ class FollowingTaskService(TaskService):
         elif part.held is not None and not part.blocked:
             out.append(parts_of.circling(part, self._task_id, number, asked, motion))
         state = state.with_part(part)
-        kept = _kept(state, asked.needed, now_ms, asked.least_ms)
+        kept = kept_at(state, asked.needed, now_ms, asked.least_ms)
         state = state._replace(kept=kept)
         return self._over(state, body, out) if kept.done else (state, out)
 
@@ -291,7 +314,7 @@ class FollowingTaskService(TaskService):
         if part.blocked != LOST:
             out.append(self._warning(f"vehicle {part.vehicle} does not follow: {error}"))
         state = state.with_part(part._replace(there=False, seen_ms=state.now_ms, blocked=LOST))
-        return state._replace(kept=_kept(state, asked.needed, state.now_ms, asked.least_ms)), out
+        return state._replace(kept=kept_at(state, asked.needed, state.now_ms, asked.least_ms)), out
 
     def _over(self, state: Following, body: Any, out: list[Any]) -> Step:
         """Complete: the vehicles are sent on to what comes next in their plans."""
@@ -309,6 +332,16 @@ class FollowingTaskService(TaskService):
             out += [one for one in more if type(one).__name__ != "TaskComplete"]
             out.append(self._sent_on(state, part))
         return state._replace(parts=(), kept=Kept(-1, False)), out
+
+    def _removed(self, state: Following, body: Any) -> Step:
+        """The task is no more: who does it ends it undone, and is sent on in its plan."""
+        out = [one for p in state.parts for one in self._advance(p.state, WITHDRAWN, 0, body)[1]]
+        out += self._sent(state)
+        return state._replace(parts=(), kept=Kept(-1, False), meeting=None), out
+
+    def _sent(self, state: Following) -> list[Any]:
+        """Who was told to circle is sent on."""
+        return [self._sent_on(state, part) for part in state.parts if part.held is not None]
 
     def _sent_on(self, state: Following, part: Part) -> Any:
         """The command that sends a vehicle on in its plan, or a Warning why it stays on its circle."""

@@ -10,6 +10,7 @@ import math
 from typing import Any, NamedTuple
 
 from cratous.core.kernel import Vec2
+from cratous.core.tasks.rendezvous import pace
 from cratous.core.tasks.stations import beside, in_ring
 from cratous.services.following.asked import Asked, Tower
 from cratous.services.following.motion import Motion
@@ -21,6 +22,12 @@ from cratous.spec.mission import Camera
 
 RING_M = 150.0
 """How far the circles of two vehicles of one task are apart at least."""
+
+DOUBLINGS = 16
+"""Who does not come to a station in so many times doubled the time that its place now is away does not come to it."""
+HALVINGS = 40
+TOO_LATE = 2
+"""What `pace` says of who is."""
 
 LEAST_TILT_RAD = 0.01
 """A camera that looks down by less is taken to look down by this much."""
@@ -46,13 +53,63 @@ def station(asked: Asked, slot: int, flyer: Flyer, there: Motion, terrain_m: flo
     if asked.tower is not None:
         return Station(there.at, radius)  # halfway already
     if asked.kind == "EscortTask":
-        return Station(there.at, max(radius, asked.standoff_m))
+        return Station(there.ahead(asked.standoff_m), radius)
     assert asked.looks is not None
     for view in tilted(asked.looks, camera_of(asked, flyer)):
         # a camera that cannot look down sees the middle of a wide circle only
         tilt = max(-view.elevation_rad, LEAST_TILT_RAD)
         radius = max(radius, (flyer.alt_m - terrain_m) / math.tan(tilt))
     return Station(there.at, radius + slot * RING_M)
+
+
+def reached_from(
+    start: Vec2, asked: Asked, slot: int, flyer: Flyer, motion: Motion, terrain_m: float
+) -> tuple[Motion, float] | None:
+    """The entity as it is when one who flies straight to the middle of a slot's circle gets to its place, and how far
+    he has come then [m]; None: he does not get there."""
+
+    def at_time(seconds: float) -> tuple[Motion, float]:
+        there = motion._replace(at=motion.after(seconds))
+        return there, _way_m(asked, start, there, station(asked, slot, flyer, there, terrain_m))
+
+    def late(seconds: float) -> bool:
+        left_m = at_time(seconds)[1]
+        said = pace(left_m, seconds, flyer.speed_m_s, flyer.speed_m_s, 0.0)
+        return bool(said.act == TOO_LATE)
+
+    early_s, late_s = 0.0, at_time(0.0)[1] / flyer.speed_m_s
+    for _ in range(DOUBLINGS):
+        if not late(late_s):
+            break
+        early_s, late_s = late_s, 2 * late_s + 1.0
+    else:
+        return None
+    for _ in range(HALVINGS):
+        middle_s = (early_s + late_s) / 2
+        early_s, late_s = (middle_s, late_s) if late(middle_s) else (early_s, middle_s)
+    return at_time(late_s)
+
+
+def _way_m(asked: Asked, start: Vec2, there: Motion, goal: Station) -> float:
+    """How far it is to a circle's rim, or for a relay to where it is in reach of both, by a turn at least [m]."""
+    far_m = max(math.dist(start, goal.at) - goal.radius_m, 0.0)
+    if asked.tower is None:
+        return far_m
+    near_m, spare_m = 0.0, goal.radius_m
+    for _ in range(HALVINGS):
+        middle_m = (near_m + far_m) / 2
+        here = towards(start, goal.at, middle_m)
+        if relays(asked.tower, there, here, spare_m):
+            far_m = middle_m
+        else:
+            near_m = middle_m
+    return far_m
+
+
+def towards(start: Vec2, goal: Vec2, far_m: float) -> Vec2:
+    """The place so far [m] from a start on the straight way to a goal."""
+    share = far_m / (math.dist(start, goal) or 1.0)
+    return Vec2(start.x + share * (goal.x - start.x), start.y + share * (goal.y - start.y))
 
 
 def _between(asked: Asked, slot: int, radius_m: float, there: Motion) -> Vec2:
@@ -77,8 +134,9 @@ def at_station(
     """Whether a vehicle, by its state, does at this moment what its task asks of it.
 
     A watch: a footprint of its camera contains the entity's place, and it is no farther from that than two
-    radii of its circle. An escort: no farther from the entity than that. A blockade: no farther than two radii from the way between the entity and
-    what is protected, on its side of it; without one, no farther from its own circle's middle.
+    radii of its circle. An escort: no farther from its circle's middle than that. A blockade: no farther than two radii
+    from the way between the entity and what is protected, on its side of it; without one, no farther from its own
+    circle's middle.
     A relay: no farther than the tower reaches from the tower and from what is supported.
     """
     if asked.tower is not None:
@@ -86,7 +144,7 @@ def at_station(
     reach_m = 2 * goal.radius_m
     if asked.watches and (camera is None or not _seen(state, camera, there.at, places)):
         return False
-    if asked.kind != "BlockadeTask":
+    if asked.watches:
         return in_ring(there.at, here, 0, reach_m)
     if asked.protected is None:
         return in_ring(goal.at, here, 0, reach_m)

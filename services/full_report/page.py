@@ -6,6 +6,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
+from cratous.services.certify import templates
 from cratous.services.full_report.document import (
     VERDICTS,
     Beside,
@@ -25,30 +26,20 @@ from cratous.services.full_report.shapes import (
     Label,
     Line,
 )
-from cratous.spec.files.printable import printable
 
 
 @cache
 def _template() -> Any:
-    from jinja2 import Environment, FunctionLoader, StrictUndefined
-
     def source(name: str) -> str:
         folder = "certify" if name == "report.css" else "full_report"
         return files(f"cratous.services.{folder}").joinpath(name).read_text("utf-8")
 
-    environment = Environment(
-        autoescape=True, finalize=_shown, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
-        loader=FunctionLoader(source),
-    )  # fmt: skip
+    environment = templates.environment(source)
     kinds = {Words: "words", Head: "head", Table: "table", Picture: "picture", Beside: "beside",
              Line: "line", Disc: "disc", Label: "label"}  # fmt: skip
     environment.filters["kind"] = lambda part: kinds[type(part)]
     environment.filters["ink"] = _ink
     return environment.get_template("full.html")
-
-
-def _shown(value: Any) -> Any:
-    return printable(value, keep="\n\t") if type(value) is str else value
 
 
 def _ink(style: str) -> str:

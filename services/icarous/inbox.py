@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from cratous.bridge.text_protocol import (
     FenceDone,
@@ -19,6 +19,7 @@ from cratous.bridge.text_protocol import (
 from cratous.core.authority.timeliness import lasted
 from cratous.services.mission.frames import Projection
 from cratous.spec.mission import Position, Velocity, Zone, ZoneKind
+from cratous.spec.records import replace
 
 MOST_OTHERS = 1000
 """Of so many other vehicles it is known how they fly; of others told before it is forgotten."""

@@ -11,7 +11,7 @@ is decided by the kernels of `core.authority.cycle`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from cratous.bridge.text_protocol import Heartbeat, SetMode, SetVelocity
@@ -53,6 +53,7 @@ from cratous.services.icarous.traffic_monitor import (
 )
 from cratous.spec.authority.cycle import MONITOR, NOTHING, OFFER, WITHDRAW
 from cratous.spec.mission.plan import Pose
+from cratous.spec.records import replace
 
 LINK_LOST_MS = 2000
 """The bridge counts as lost when nothing was heard for this long [ms]: four heartbeats."""

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 from cratous.core.avoidance.manoeuvre import way_along
 from cratous.core.avoidance.prediction import Intruder, Piece, buffered, first_violation_s, later
@@ -30,6 +29,7 @@ from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.state import Config, Met, State
 from cratous.services.icarous.traffic_monitor import Threat
 from cratous.spec.mission import Daa
+from cratous.spec.records import replace
 
 NONE = Encounter(0, 0, 0, False, False, 0)
 """An intruder because of which ICAROUS has never taken over."""

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 from cratous.core.authority.cycle import patience
@@ -24,6 +23,7 @@ from cratous.services.icarous.messages import Sensed
 from cratous.services.icarous.return_to_path import PERSIST_MS, bearing_rad, goal_index
 from cratous.services.icarous.state import Config, Search, State
 from cratous.spec.mission import Position
+from cratous.spec.records import replace
 
 STEPS = 15
 """The instants at which the way back may be free are so many in the look-ahead; the last third is left out."""

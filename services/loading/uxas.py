@@ -15,11 +15,13 @@ from cratous.services.loading import uxas_parts as parts
 from cratous.services.loading.assignment_attributes import Settings, plans_live, settings_of
 from cratous.services.loading.checks import too_many_instances
 from cratous.services.loading.document import item_key
+from cratous.services.loading.ground import CONFIGURATION, STATE, vehicle_of
 from cratous.services.loading.places import Places
 from cratous.services.loading.polygons import one_region
 from cratous.services.loading.request_kinds import WRAPPED, is_request
 from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.uxas_cfg import Configuration, Sent, read_all, scenario_states
+from cratous.services.loading.uxas_frame import frame_of
 from cratous.services.loading.uxas_requests import request_of
 from cratous.services.loading.uxas_tasks import Interests, other
 from cratous.services.loading.uxas_tasks import task as read_task
@@ -59,16 +61,21 @@ def load_uxas(path: Path, number: int = 1) -> Mission:
 
 
 def mission_of(
-    cfg: Configuration, source: str, spoken_for: Collection[int] = frozenset()
+    cfg: Configuration,
+    source: str,
+    spoken_for: Collection[int] | None = None,
+    earlier: Frame | None = None,
 ) -> Mission:
     """The mission that a configuration and its messages make, from a file or as they came in.
 
-    spoken_for: tasks that may be of a kind that is not covered, as their own services say how they are flown.
+    spoken_for: tasks that may be of a kind that is not covered, as their own services say how they are flown;
+    None: nobody plans but the mission, so that no vehicle may drive.
+    earlier: the frame of an earlier mission, which is kept where it still lies well enough.
     """
-    cast = _Cast(cfg, spoken_for)
+    cast = _Cast(cfg, spoken_for or (), spoken_for is not None)
     request = cast.request()
     notes = [*cfg.notes, *cast.notes]
-    frame = _frame(cast)
+    frame = frame_of(cfg, earlier)
     notes.append(f"terrain is taken as flat at {frame.terrain_m:g} m MSL")
     places = Places(frame)
     sources: dict[str, str] = {"relations": request.where}
@@ -117,10 +124,10 @@ def mission_of(
 
 def surroundings_of(cfg: Configuration, source: str) -> Mission:
     """A mission without tasks: frame, the request's vehicles, and its operating region's zones."""
-    cast = _Cast(cfg)
+    cast = _Cast(cfg, (), True)
     request = cast.request()
     notes: list[str] = []
-    frame = _frame(cast)
+    frame = frame_of(cfg)
     places = Places(frame)
     return Mission(
         name="surroundings",
@@ -139,7 +146,8 @@ def surroundings_of(cfg: Configuration, source: str) -> Mission:
 class _Cast:
     """The messages sorted by what they are; later ones replace earlier ones of the same id."""
 
-    def __init__(self, cfg: Configuration, spoken_for: Collection[int] = frozenset()) -> None:
+    def __init__(self, cfg: Configuration, spoken_for: Collection[int], may_drive: bool) -> None:
+        """may_drive: vehicles that drive count as vehicles."""
         self.cfg, self.spoken_for = cfg, spoken_for
         self.notes: list[str] = []
         self.configurations: dict[int, Sent] = {}
@@ -149,12 +157,13 @@ class _Cast:
         self.regions: dict[int, Sent] = {}
         self.requests: list[Sent] = []
         self.interests = Interests()
+        self.driving: list[int] = []  # that nobody plans for here
         other: list[str] = []
         for sent in cfg.messages:
             body, kind = sent.body, type(sent.body).__name__
-            if kind == "AirVehicleConfiguration":
+            if kind == "AirVehicleConfiguration" or (may_drive and kind == CONFIGURATION):
                 self.configurations[body.ID] = sent
-            elif kind == "AirVehicleState":
+            elif kind == "AirVehicleState" or (may_drive and kind == STATE):
                 self.states[body.ID] = self.interests.entities[body.ID] = sent
             elif kind in ("KeepInZone", "KeepOutZone"):
                 self.zones[body.ZoneID] = sent
@@ -167,6 +176,8 @@ class _Cast:
             elif hasattr(body, "TaskID") and hasattr(body, "EligibleEntities"):
                 self.tasks[body.TaskID] = sent
             else:
+                if kind == CONFIGURATION:
+                    self.driving.append(body.ID)
                 other.append(kind)
         if any(number not in self.states for number in self.configurations):
             self._ask_scenario()
@@ -202,21 +213,6 @@ class _Cast:
         return self.requests[0]
 
 
-def _frame(cast: _Cast) -> Frame:
-    """A frame in the middle of everything that has a place, so that errors stay small."""
-    places = [place for sent in cast.cfg.messages for place in parts.locations(sent.body)]
-    if not places:
-        raise BadInput("no message has a place", where=str(cast.cfg.path), expected="vehicles")
-    # what is no place is refused where it is needed
-    found = [place for place in places if parts.is_place(*place)] or [(0.0, 0.0)]
-    # places that nobody has filled in lie at 0, 0; where the frame lies changes no meaning
-    latitudes, longitudes = zip(*([p for p in found if p != (0.0, 0.0)] or found), strict=True)
-    return Frame(
-        round((min(latitudes) + max(latitudes)) / 2, 6),
-        round((min(longitudes) + max(longitudes)) / 2, 6),
-    )
-
-
 def _vehicles(
     cast: _Cast, request: Sent, places: Places, sources: dict[str, str], notes: list[str]
 ) -> tuple[Vehicle, ...]:
@@ -225,16 +221,13 @@ def _vehicles(
     for k, number in enumerate(wanted):
         for kind, known in (("Configuration", cast.configurations), ("State", cast.states)):
             if number not in known:
-                raise BadInput(
-                    f"vehicle {number} has no AirVehicle{kind}",
-                    where=request.where,
-                    item=f"EntityList[{k}]",
-                    expected="one of " + (", ".join(map(str, sorted(known))) or "none"),
-                    got=str(number),
-                )
+                why = f"vehicle {number} has no AirVehicle{kind}"
+                if number in cast.driving:
+                    why = f"vehicle {number} drives, and only `cratous uxas` plans for what drives"
+                raise _unknown(why, request.where, f"EntityList[{k}]", known, number)
         sources[f"vehicles[{k}]"] = cast.configurations[number].where
         sources[f"vehicles[{k}]position"] = cast.states[number].where
-        found.append(parts.vehicle(cast.configurations[number], cast.states[number], places, notes))
+        found.append(vehicle_of(cast.configurations[number], cast.states[number], places, notes))
     return tuple(found)
 
 
@@ -258,13 +251,8 @@ def _tasks(
     found: list[Task] = []
     for k, number in enumerate(wanted):
         if number not in cast.tasks:
-            raise BadInput(
-                f"task {number} does not exist",
-                where=request.where,
-                item=f"TaskList[{k}]",
-                expected="one of " + (", ".join(map(str, sorted(cast.tasks))) or "none"),
-                got=str(number),
-            )
+            what = f"task {number} does not exist"
+            raise _unknown(what, request.where, f"TaskList[{k}]", cast.tasks, number)
         sources[f"tasks[{k}]"] = cast.tasks[number].where
         task = other(cast.tasks[number], cast.interests) if number in cast.spoken_for else None
         if task is None:

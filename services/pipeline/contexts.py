@@ -50,6 +50,10 @@ class Context:
         """The operating region, 0 for none."""
         return int(self.request.OriginalRequest.OperatingRegion)
 
+    def usual_speed_m_s(self, vehicle: int) -> float:
+        """How fast a vehicle flies where no task asks for more [m/s]."""
+        return next(v.speed_m_s for v in self.inputs.mission.vehicles if v.id == vehicle)
+
 
 class Contexts:
     """A service without a part of its own: hears the world, and each request as it is published."""
@@ -102,6 +106,9 @@ class Contexts:
             inputs, places = known.inputs, known.places
         else:
             places = RequestPlaces(inputs.mission, inputs.finder)
+            for found in reversed(self._found.values()):
+                if isinstance(found, Context):
+                    inputs.take_over(found.inputs)
         inputs.check_starts()
         if not inputs.wanted:
             raise NoPlan(("no branch of the relations has a task",))

@@ -1,4 +1,5 @@
-"""Kinds of tasks that keep to what moves, or to each other. They follow messages, so `cratous uxas` alone does them."""
+"""Kinds of tasks that keep to what moves, to each other, or to roads. They follow messages, so `cratous uxas` alone
+does them."""
 
 from __future__ import annotations
 
@@ -8,12 +9,14 @@ ESCORT = "afrl.impact.EscortTask"
 BLOCKADE = "afrl.impact.BlockadeTask"
 RELAY = "afrl.impact.CommRelayTask"
 RENDEZVOUS = "uxas.messages.task.RendezvousTask"
+CORDON = "afrl.impact.CordonTask"
 FOLLOWED = {
     MANY: "MultiVehicleWatchTaskService",
     ESCORT: "EscortTaskService",
     BLOCKADE: "BlockadeTaskService",
     RELAY: "CommRelayTaskService",
     RENDEZVOUS: "RendezvousTaskService",
+    CORDON: "CordonTaskService",
 }
 """Full names of types, and those of their services; a WatchTask is one of them where what it watches moves."""
 WATCH_SERVICE = "WatchTaskService"

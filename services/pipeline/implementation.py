@@ -102,6 +102,7 @@ def implemented(
     if hold is not None:
         actions.append(loiter_action(places, task.id, hold, wait, speed))
     mine[0].VehicleActionList = actions
+    mine[0].Speed = context.usual_speed_m_s(request.VehicleID)  # it ends the way there
     end, heading_deg = places.sent(option.end)
     made = lmcp.new(
         "TaskImplementationResponse",

@@ -17,7 +17,7 @@ from cratous.services.mission.frames import Projection, compass
 from cratous.services.pipeline.outside import Outside
 from cratous.services.planning.routes import Routes
 from cratous.services.planning.spacing import TOLERANCE, spaced
-from cratous.spec.mission import Mission, Position
+from cratous.spec.mission import Mission, Position, Zone
 from cratous.spec.mission.plan import Pose
 
 _Spot = tuple[float, float, float, str]
@@ -57,6 +57,11 @@ class RequestPlaces:
     def routes_of(self, ways: Sequence[Way]) -> Routes:
         """Routes of the mission's vehicles: way k is that from k to k."""
         return self._finder.between(ways)
+
+    @property
+    def zones(self) -> tuple[Zone, ...]:
+        """The zones that bind, as routes are held against them."""
+        return self._finder.zones
 
     def location(self, point: Position | Pose) -> Any:
         """A point as Location3D (degrees, metres MSL)."""

@@ -16,6 +16,7 @@ from typing import Any
 from cratous.bridge import lmcp
 from cratous.services.bus import Envelope, Send, unicast
 from cratous.services.pipeline.contexts import Contexts, reasons_of
+from cratous.services.pipeline.ground import ROADS, is_ground
 from cratous.services.pipeline.places import RequestPlaces, Way
 from cratous.services.planning.flyers import flyer_of
 from cratous.services.planning.options import flight_ms
@@ -50,8 +51,17 @@ class RoutePlannerVisibilityService:
             return body.Plans, ()
         if not (used or body.IsCostOnlyRequest):
             return used, ()
+        if is_ground(self._contexts.world, body.VehicleID):
+            return used, self._driven(envelope)
         plans = plans_of(self._contexts, body, body.RouteRequests)
         return used, [answered(envelope, plans)]
+
+    def _driven(self, asked: Envelope) -> list[Any]:
+        """What drives is planned for along roads, by a service of its own; without that there is no way."""
+        if self._contexts.source.asks(ROADS):
+            return []
+        why = f"vehicle {asked.body.VehicleID} drives, and no {ROADS} is here"
+        return [answered(asked, [refused(c.RouteID, (why,)) for c in asked.body.RouteRequests])]
 
 
 def answered(asked: Envelope, plans: list[Any]) -> Any:
@@ -65,6 +75,11 @@ def answered(asked: Envelope, plans: list[Any]) -> Any:
         OperatingRegion=body.OperatingRegion,
         RouteResponses=plans,
     )
+    return back(asked, answer)
+
+
+def back(asked: Envelope, answer: Any) -> Any:
+    """An answer for the service that has asked; for all if it has not said which it is."""
     if not asked.service_id:
         return answer
     return Send(answer, unicast(asked.entity_id, asked.service_id))

@@ -15,7 +15,7 @@ from cratous.services.planning.inputs import Inputs
 
 
 class Known(Protocol):
-    """What is known by id: sorts are configuration, state, task, zone, region, point, line, area."""
+    """What is known by id: sorts are configuration, state, task, zone, region, point, line, area, mission."""
 
     def has(self, sort: str, number: int) -> bool:
         """True if there is an object of a sort with this id."""

@@ -48,7 +48,7 @@ NAMES = {
     TaskKind.AREA_SEARCH: "CmasiAreaSearchTaskService",
     TaskKind.PATTERN_SEARCH: "PatternSearchTaskService",
 }
-AUTHORITY = "cratous.AuthorityChange"
+AUTHORITY, REMOVE = "cratous.AuthorityChange", "afrl.cmasi.RemoveTasks"
 WITH_UXAS, WITH_ICAROUS, HANDED_BACK = 0, 1, 2
 AWAY = {"ICAROUS": WITH_ICAROUS, "UxAS": HANDED_BACK}
 ROUTES_FROM = 2**60
@@ -119,6 +119,7 @@ class TaskService:
         "afrl.cmasi.AutomationResponse",
         "afrl.cmasi.ServiceStatus",
         "afrl.cmasi.EntityState",
+        REMOVE,
         AUTHORITY,
     )
 
@@ -168,10 +169,9 @@ class TaskService:
         if topic == "afrl.cmasi.ServiceStatus":
             ended = request_ended(topic, body)
             return self._advance(state, ENDED, state.ticket(ended), body) if ended else (state, ())
-        if topic == "afrl.cmasi.AutomationResponse":
-            if self._withdrawn(state, body):
-                return self._advance(state, WITHDRAWN, 0, body)
-            return state, ()
+        if topic in ("afrl.cmasi.AutomationResponse", REMOVE):
+            gone = self._withdrawn(state, body)
+            return self._advance(state, WITHDRAWN, 0, body) if gone else (state, ())
         if topic == AUTHORITY:
             return self._taken(state, body), ()
         if not hasattr(body, "AssociatedTasks"):
@@ -209,9 +209,11 @@ class TaskService:
             return state, [*out, look_command(steering, body)]
         return state, out
 
-    def _withdrawn(self, state: State, response: Any) -> bool:
-        """A new plan for the vehicle that does not have this task."""
-        for command in response.MissionCommandList:
+    def _withdrawn(self, state: State, body: Any) -> bool:
+        """The task is removed, or there is a new plan for the vehicle that does not have it."""
+        if hasattr(body, "TaskList"):
+            return self._task_id in body.TaskList
+        for command in body.MissionCommandList:
             if command.VehicleID == state.vehicle:
                 flown = {t for w in command.WaypointList for t in w.AssociatedTasks}
                 return self._task_id not in flown
@@ -379,7 +381,9 @@ class TaskService:
                 EntitiesInvolved=[state.vehicle],
                 TimeTaskCompleted=body.Time,
             )
-        text = f"task {self._task_id} ends undone: its plan was withdrawn or overridden"
+        removed = hasattr(body, "TaskList")
+        why = "it was removed" if removed else "its plan was withdrawn or overridden"
+        text = f"task {self._task_id} ends undone: {why}"
         return status(0, "Warning", [("TaskID", str(self._task_id)), ("reason", text)])
 
     def stop(self, state: State) -> None:

@@ -30,6 +30,7 @@ class World:
         "afrl.cmasi.RemoveTasks",
         "afrl.cmasi.RemoveZones",
         "afrl.cmasi.RemoveEntities",
+        "afrl.cmasi.AutomationResponse",
     )
 
     def __init__(self, name: str = "WorldState") -> None:
@@ -51,11 +52,17 @@ class World:
         if kind.startswith("Remove"):
             self._remove(kind, body)
             return
-        sort, number = _key(body)
+        if kind == "AutomationResponse":
+            for command in body.MissionCommandList:
+                self._keep("mission", command.VehicleID, Sent(command, where, time_ms))
+            return
+        self._keep(*_key(body), Sent(body, where, time_ms))
+
+    def _keep(self, sort: str, number: int, sent: Sent) -> None:
         kept = self._kept.setdefault(sort, {})
         if number not in kept and len(kept) >= MOST:
             kept.pop(next(iter(kept)))
-        kept[number] = Sent(body, where, time_ms)
+        kept[number] = sent
 
     def task(self, number: int) -> Sent | None:
         """The newest task with an id."""
@@ -84,21 +91,23 @@ class World:
         return list(self._kept.get(sort, {}))
 
     def of(self, sort: str) -> list[Any]:
-        """All objects of a sort: configuration, state, task, zone, region, point, line, area."""
+        """All objects of a sort: configuration, state, task, zone, region, point, line, area; mission: the newest
+        command of a vehicle's plan."""
         return [sent.body for sent in self._kept.get(sort, {}).values()]
 
     def configuration(
         self, path: Path, root: dict[str, str], services: Any, request: Sent
     ) -> Configuration:
         """Everything so far and a request, as the loader takes it."""
-        kept = [sent for sort in sorted(self._kept) for sent in self._kept[sort].values()]
+        sorts = sorted(sort for sort in self._kept if sort != "mission")
+        kept = [sent for sort in sorts for sent in self._kept[sort].values()]
         return Configuration(path, root, services, (*kept, request), ())
 
     def _remove(self, kind: str, body: Any) -> None:
         sorts, numbers = {
             "RemoveTasks": (("task",), "TaskList"),
             "RemoveZones": (("zone",), "ZoneList"),
-            "RemoveEntities": (("configuration", "state"), "EntityList"),
+            "RemoveEntities": (("configuration", "state", "mission"), "EntityList"),
         }[kind]
         for sort in sorts:
             for number in getattr(body, numbers):

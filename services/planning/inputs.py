@@ -13,7 +13,7 @@ from cratous.core.assignment.problem import Branch, Fixed
 from cratous.services.loading.polygons import hard_zones
 from cratous.services.planning import stages
 from cratous.services.planning.mission_assign import problem_of
-from cratous.services.planning.options import Dropped, Option, expand
+from cratous.services.planning.options import Dropped, Flyer, Option, expand, flyer_of
 from cratous.services.planning.routes import Routes
 from cratous.spec.algebra import Term
 from cratous.spec.algebra.meaning import tasks
@@ -21,6 +21,9 @@ from cratous.spec.assignment.search import AssignmentProblem
 from cratous.spec.constraint_rows import AFTER_END
 from cratous.spec.mission import Mission, Zone
 from cratous.spec.mission.plan import Pose
+
+Offers = tuple[tuple[Option, ...], tuple[Dropped, ...]]
+"""The options of a task, and what is not offered of it."""
 
 
 @dataclass
@@ -40,6 +43,23 @@ class Inputs:
     absent: Mapping[int, str] = field(default_factory=dict)
     undone: Mapping[int, str] = field(default_factory=dict)
     begun: frozenset[int] = frozenset()
+    _taken: dict[int, Offers] = field(default_factory=dict, compare=False, repr=False)
+
+    def take_over(self, earlier: Inputs) -> None:
+        """Options that were made for an earlier request are not made anew, where all that they depend on is the same:
+        task, vehicles' ways to fly, zones, terrain. Where the vehicles are does not count."""
+        made: Mapping[int, Offers] = earlier.__dict__.get("_by_task", {})
+        if made and earlier._surroundings != self._surroundings:
+            return
+        for task in self.mission.tasks:
+            if task.id in made and earlier.mission.task(task.id) == task:
+                self._taken.setdefault(task.id, made[task.id])
+
+    @property
+    def _surroundings(self) -> tuple[tuple[tuple[int, Flyer], ...], tuple[Zone, ...], float]:
+        """What options depend on beside their task."""
+        flyers = tuple((vehicle.id, flyer_of(vehicle)) for vehicle in self.mission.vehicles)
+        return flyers, self.zones, self.mission.frame.terrain_m
 
     def check_starts(self) -> None:
         """BadInput if a user has put a vehicle where it may not be."""
@@ -78,11 +98,12 @@ class Inputs:
         return tuple(sorted({t for branch in self.branches for t in branch.tasks} - done))
 
     @cached_property
-    def _by_task(self) -> dict[int, tuple[tuple[Option, ...], tuple[Dropped, ...]]]:
-        return {
-            task: expand(self.mission, [self.mission.task(task)], self.zones)
-            for task in self.wanted
-        }
+    def _by_task(self) -> dict[int, Offers]:
+        made = {}
+        for task in self.wanted:
+            known = self._taken.get(task)
+            made[task] = known or expand(self.mission, [self.mission.task(task)], self.zones)
+        return made
 
     def options_of(self, task_id: int) -> tuple[Option, ...]:
         """The options of one task."""

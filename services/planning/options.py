@@ -16,6 +16,7 @@ from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.routing.visibility import circle, name_of
 from cratous.core.tasks.coverage import outline
 from cratous.core.tasks.outside import area_outside, points_outside
+from cratous.services.loading.ground import drives
 from cratous.services.mission.sensor import sample_distance_m, sample_line, zoomed
 from cratous.services.planning.area_ways import area_parts, area_ways
 from cratous.services.planning.flyers import Flyer as Flyer
@@ -117,11 +118,15 @@ def expand(
     in_part: also options over a part of a task, where there is none over all of it.
     """
     classes: dict[Flyer, list[int]] = {}
+    driving = tuple(vehicle.id for vehicle in mission.vehicles if drives(vehicle))
     for vehicle in mission.vehicles:
-        classes.setdefault(flyer_of(vehicle), []).append(vehicle.id)
+        if not drives(vehicle):
+            classes.setdefault(flyer_of(vehicle), []).append(vehicle.id)
     options: list[Option] = []
     dropped: list[Dropped] = []
     for task in tasks:
+        if driving and task.kind is not TaskKind.OTHER:
+            dropped.append(Dropped(task.id, driving, "", "it drives, and the task is flown"))
         may: dict[Flyer, tuple[int, ...]] = {}
         for flyer, ids in classes.items():
             able = tuple(v for v in ids if not task.eligible or v in task.eligible)
@@ -272,6 +277,8 @@ def hold_rooms(pose: Pose, radius_m: float, zones: Sequence[Zone]) -> tuple[Hold
 
     The circle that is flown in the end is narrower and is checked again (`stages.hold_of`).
     """
+    if not zones:  # no circles to draw, and no machine code to load for them
+        return tuple(HoldRoom(clockwise, HOLD_FACTORS[0] * radius_m) for clockwise in (True, False))
     rooms = []
     for clockwise in (True, False):
         for factor in HOLD_FACTORS:

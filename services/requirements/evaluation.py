@@ -25,6 +25,7 @@ from cratous.services.requirements.formula import (
     Reaches,
     parts,
 )
+from cratous.services.requirements.to_blame import Part, Parts
 from cratous.spec.errors import BadInput
 
 Decided = list[tuple[int, int]]
@@ -176,10 +177,11 @@ class _Since(_Paired):
 class Evaluation:
     """One formula over one trace.
 
-    most: how many samples may wait in any one queue; a sample that makes it more raises TooManyWait.
+    most: how many samples may wait in any one queue; a sample that makes it more raises TooManyWait. blames:
+    whether it is kept which parts are to blame for the first violation (`blamed`).
     """
 
-    def __init__(self, formula: Formula, most: int = 1_000_000) -> None:
+    def __init__(self, formula: Formula, most: int = 1_000_000, blames: bool = False) -> None:
         self.formula, self.most = formula, most
         self.last = -MAX_TIME - 1
         self.nodes: list[_Leaf | _Not | _Join | _Until | _Since] = []
@@ -202,6 +204,8 @@ class Evaluation:
                 self.nodes.append(_Since(part) if part.past else _Until(part))
             self.parents[places[id(part.phi)]].append((mine, 0))
             self.parents[places[id(part.psi)]].append((mine, 1))
+        self.parts = Parts(formula, places) if blames else None
+        self._kept = self.parts.kept if self.parts else None
         self.leaves = [n for n, node in enumerate(self.nodes) if isinstance(node, _Leaf)]
 
     def sample(self, time: int, values: Mapping[str, float | None]) -> Decided:
@@ -235,6 +239,15 @@ class Evaluation:
                     )
             if place == len(self.nodes) - 1:
                 out = got
+            if self._kept is not None and (known := self._kept[place]) is not None:
+                known.update(got)
             for parent, side in self.parents[place] if got else ():
                 pending[parent].append((side, got))
+        if self._kept is not None and self.parts and not self.parts.decided(out):
+            self._kept = None
         return out
+
+    @property
+    def blamed(self) -> tuple[Part, ...]:
+        """The parts that are to blame for the first violation; none if there is none, or `blames` is not set."""
+        return self.parts.found if self.parts else ()

@@ -141,6 +141,27 @@ def children(formula: Formula) -> tuple[Formula, ...]:
     return ()
 
 
+def same(one: Formula, other: Formula) -> bool:
+    """Are two formulas written alike? Without recursion, and each pair of parts is looked at once."""
+    done: set[tuple[int, int]] = set()
+    todo = [(one, other)]
+    while todo:
+        a, b = todo.pop()
+        if (id(a), id(b)) in done:
+            continue
+        done.add((id(a), id(b)))
+        if _head(a) != _head(b):
+            return False
+        todo += zip(children(a), children(b), strict=True)
+    return True
+
+
+def _head(formula: Formula) -> tuple[object, ...]:
+    """All of a formula but its parts."""
+    of = {k: v for k, v in vars(formula).items() if k not in ("phi", "psi")}
+    return type(formula), *sorted(of.items())
+
+
 def horizon(formula: Formula) -> int:
     """How long after a sample the formula is decided there at the latest, in time units."""
     longest: dict[int, int] = {}

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from fractions import Fraction
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -31,6 +30,8 @@ from cratous.services.requirements.formula import (
     implies,
     once,
 )
+from cratous.services.requirements.fret_import import imported, of_sentence, quantity
+from cratous.services.requirements.fret_terms import Wrong, value_in
 from cratous.services.requirements.specification import (
     NotRead,
     Requirement,
@@ -39,7 +40,7 @@ from cratous.services.requirements.specification import (
     caret_of,
 )
 from cratous.services.requirements.units import Quantity, dimension, in_unit
-from cratous.spec.files.limits import CONFIG_BYTES, DIGITS, at_most
+from cratous.spec.files.limits import CONFIG_BYTES, at_most
 
 if TYPE_CHECKING:
     from lark import Lark
@@ -53,18 +54,17 @@ ONE_SIDED: dict[str, Callable[[Formula, int, int], Formula]] = {
 }
 
 
-class _Wrong(Exception):
-    def __init__(self, what: str, offset: int, expected: str = "", got: str = "") -> None:
-        self.what, self.offset, self.expected, self.got = what, offset, expected, got[:60]
+def read(text: str, where: str = "requirements", folder: Path | None = None) -> Specification:
+    """The requirements of a text. Raises NotRead, with a caret, for what is outside of the language.
 
-
-def read(text: str, where: str = "requirements") -> Specification:
-    """The requirements of a text. Raises NotRead, with a caret, for what is outside of the language."""
+    folder: where files that it imports lie; None: it may import none. Of these a requirement that is not read
+    stands among the others, and says why.
+    """
     at_most(len(text.encode()), CONFIG_BYTES, "the requirements are too long", where)
     try:
         _refuse_deep(text)
-        return _Reader(text).specification(_parsed(text))
-    except _Wrong as no:
+        return _Reader(text, folder).specification(_parsed(text))
+    except Wrong as no:
         line, column, caret = caret_of(text, no.offset)
         place = f"{where}, line {line}, column {column}"
         raise NotRead(no.what, place, caret, expected=no.expected, got=no.got) from None
@@ -75,7 +75,7 @@ def _refuse_deep(text: str) -> None:
     for found in re.finditer(r'"[^"\n]*"|#[^\n]*|[()]', text):
         depth += {"(": 1, ")": -1}.get(found.group(), 0)
         if depth > NESTED:
-            raise _Wrong("the formula is nested too deeply", found.start(), f"{NESTED} levels")
+            raise Wrong("the formula is nested too deeply", found.start(), f"{NESTED} levels")
 
 
 def _parsed(text: str) -> Any:
@@ -90,7 +90,7 @@ def _parsed(text: str) -> Any:
             offset, token = len(text.rstrip()), None
         got = str(token or text[offset : offset + 1]) or "the end of the file"
         known = sorted(getattr(error, "expected", None) or getattr(error, "allowed", None) or ())
-        raise _Wrong("this cannot stand here", offset, _in_words(known), got) from None
+        raise Wrong("this cannot stand here", offset, _in_words(known), got) from None
 
 
 WORDS = {
@@ -107,8 +107,8 @@ def _in_words(known: list[str]) -> str:
 
 
 class _Reader:
-    def __init__(self, text: str) -> None:
-        self.text = text
+    def __init__(self, text: str, folder: Path | None) -> None:
+        self.text, self.folder = text, folder
         self.signals: dict[str, Signal] = {}
         self.requirements: list[Requirement] = []
         self.period_ns = self.gap_ns = 0
@@ -123,8 +123,11 @@ class _Reader:
         for item in tree.children:
             if item.data == "requirement":
                 self._requirement(item)
+            elif item.data == "import":
+                for one in imported(item, self.signals, self.folder):
+                    self._add(one, item.children[1])
         if not self.requirements:
-            raise _Wrong("there is no requirement", len(self.text.rstrip()), "requirement ID: ...")
+            raise Wrong("there is no requirement", len(self.text.rstrip()), "requirement ID: ...")
         return Specification(
             self.signals, tuple(self.requirements), True, self.gap_ns, self.period_ns
         )
@@ -132,11 +135,11 @@ class _Reader:
     def _trace(self, item: Any) -> None:
         at = _offset(item)
         if self.period_ns:
-            raise _Wrong("the trace is described twice", at)
+            raise Wrong("the trace is described twice", at)
         times = [self._duration(one) for one in item.children]
         self.period_ns, self.gap_ns = times[0], times[-1] if len(times) > 1 else 0
         if not self.period_ns or (self.gap_ns and self.gap_ns < self.period_ns):
-            raise _Wrong("these are no times between samples", at, "0 < every <= gap")
+            raise Wrong("these are no times between samples", at, "0 < every <= gap")
 
     def _signal(self, item: Any) -> None:
         names = [t for t in item.children if getattr(t, "type", "") == "NAME"]
@@ -148,23 +151,30 @@ class _Reader:
         hold = self._duration(subs["hold"].children[0]) if "hold" in subs else 0
         for name in names:
             if str(name) in self.signals:
-                raise _Wrong("a signal is declared twice", name.start_pos, got=str(name))
+                raise Wrong("a signal is declared twice", name.start_pos, got=str(name))
             of, unit = ("bool", "") if kind.type == "BOOL" else ("float", str(kind))
             self.signals[str(name)] = Signal(of, unit, *origin, hold_ns=hold)
 
     def _requirement(self, item: Any) -> None:
         name = item.children[0]
-        if any(one.name == str(name) for one in self.requirements):
-            raise _Wrong("a requirement's id is given twice", name.start_pos, got=str(name))
         said = {str(t.data): str(t.children[0]).strip('"') for t in item.children[1:-1]}
-        formula = self._formula(item.children[-1])
+        asked = item.children[-1]
+        formula = (
+            of_sentence(asked.children[1], self.signals)
+            if asked.data == "fretish"
+            else self._formula(asked)
+        )
         text = " ".join(self.text[item.meta.start_pos : item.meta.end_pos].split())
-        self.requirements.append(
-            Requirement(
-                str(name), text, formula, said.get("title", ""), said.get("severity", ""),
-                said.get("source", ""),
-            )
+        made = Requirement(
+            str(name), text, formula, said.get("title", ""), said.get("severity", ""),
+            said.get("source", ""),
         )  # fmt: skip
+        self._add(made, name)
+
+    def _add(self, made: Requirement, at: Any) -> None:
+        if any(one.name == made.name for one in self.requirements):
+            raise Wrong("a requirement's id is given twice", at.start_pos, got=made.name)
+        self.requirements.append(made)
 
     def _formula(self, tree: Any) -> Formula:
         made: Formula = FALSE
@@ -182,7 +192,7 @@ class _Reader:
         if kind == "name":
             return got[0]
         if kind == "quantity":
-            return _quantity(*got)
+            return quantity(*got)
         if kind == "truth":
             return self._truth(got[0])
         if kind == "constant":
@@ -202,19 +212,19 @@ class _Reader:
 
     def _duration(self, node: Any) -> int:
         number, unit = node.children
-        one = _quantity(number, unit)
+        one = quantity(number, unit)
         if dimension(one.unit) != "time":
-            raise _Wrong("this is no time", unit.start_pos, "ns, us, ms, s, min or h", str(unit))
+            raise Wrong("this is no time", unit.start_pos, "ns, us, ms, s, min or h", str(unit))
         value = in_unit(one, "ns")
         if value.denominator != 1 or not 0 <= value <= MAX_TIME:
             expected = f"whole nanoseconds from 0 to {MAX_TIME}"
-            raise _Wrong("this time cannot be taken exactly", number.start_pos, expected, one.text)
+            raise Wrong("this time cannot be taken exactly", number.start_pos, expected, one.text)
         return int(value)
 
     def _window(self, got: list[int], at: int) -> tuple[int, int]:
         low, high = got if len(got) > 1 else (0, got[0])
         if low > high:
-            raise _Wrong("these bounds are empty", at, "from the earlier to the later")
+            raise Wrong("these bounds are empty", at, "from the earlier to the later")
         return low, high
 
     def _known(self, token: Any, wanted: str) -> Signal:
@@ -224,7 +234,7 @@ class _Reader:
                 n for n, s in self.signals.items() if (s.kind == "bool") == (wanted == "bool")
             )
             expected = f"a signal declared as {wanted}: {', '.join(known[:8]) or 'there is none'}"
-            raise _Wrong("this is no such signal", token.start_pos, expected, str(token))
+            raise Wrong("this is no such signal", token.start_pos, expected, str(token))
         return found
 
     def _truth(self, token: Any) -> Formula:
@@ -238,29 +248,22 @@ class _Reader:
             if not isinstance(side, Quantity):
                 units[k] = self._known(side, "a unit").unit
         if not units:
-            raise _Wrong("no signal is compared", relation.start_pos, "a signal on one side")
+            raise Wrong("no signal is compared", relation.start_pos, "a signal on one side")
         unit = units[min(units)]
         values: list[str | float] = []
         for k, side in enumerate(sides):
             other = units.get(k) or side.unit
             if dimension(other) != dimension(unit):
                 expected = f"{dimension(unit)}, as {unit}"
-                raise _Wrong("units that do not fit", relation.start_pos, expected, other)
+                raise Wrong("units that do not fit", relation.start_pos, expected, other)
             if k in units and other != unit:
-                raise _Wrong("signals of two units are compared", relation.start_pos, unit, other)
-            values.append(str(side) if k in units else float(in_unit(side, unit)))
+                raise Wrong("signals of two units are compared", relation.start_pos, unit, other)
+            values.append(str(side) if k in units else value_in(side, unit, relation.start_pos))
         return compared(values[0], str(relation), values[1])
 
 
 def _offset(node: Any) -> int:
     return int(node.meta.start_pos)
-
-
-def _quantity(number: Any, unit: Any = "1") -> Quantity:
-    mantissa, _, exponent = str(number).lower().partition("e")
-    if len(mantissa) > DIGITS or len(exponent) > 4 or abs(int(exponent or "0")) > DIGITS:
-        raise _Wrong("the number is too long", number.start_pos, f"up to {DIGITS} digits")
-    return Quantity(Fraction(str(number)), str(unit), f"{number} {unit}")
 
 
 def _origin(token: Any) -> tuple[str, tuple[tuple[str, str], ...], str]:
@@ -271,7 +274,7 @@ def _origin(token: Any) -> tuple[str, tuple[tuple[str, str], ...], str]:
     for part in filter(None, (piece.strip() for piece in inside.split(","))):
         name, is_given, value = (piece.strip() for piece in part.partition("="))
         if not (name and is_given and value):
-            raise _Wrong("this chooses no message", token.start_pos, "FIELD=VALUE", part)
+            raise Wrong("this chooses no message", token.start_pos, "FIELD=VALUE", part)
         chosen.append((name, value))
     return message, tuple(chosen), field
 

@@ -15,6 +15,7 @@ from cratous.services.requirements.evaluation import FALSE, TRUE, Evaluation
 from cratous.services.requirements.formula import Formula, Reaches, horizon, parts, signals
 from cratous.services.requirements.sampling import Finding, Row, Sample, Sampling
 from cratous.services.requirements.specification import NotRead, Requirement, Specification
+from cratous.services.requirements.to_blame import Part
 from cratous.services.requirements.traces import doubts
 from cratous.services.requirements.traces import rows as timed_rows
 from cratous.spec.errors import BadInput
@@ -25,7 +26,8 @@ class Outcome:
     """One requirement over a trace. Instants: numbers of samples, or times [ns]; -1 where there is none.
 
     undecided: samples whose verdict needs more than the trace has; decided_at: when the first violation was
-    known; whole: nothing of the trace is known to be missing; margins: of each comparison.
+    known; whole: nothing of the trace is known to be missing; margins: of each comparison; blamed: the parts of the
+    formula that are to blame for the first violation.
     """
 
     requirement: Requirement
@@ -39,6 +41,7 @@ class Outcome:
     first_unknown: int = -1
     whole: bool = True
     margins: list[Margin] = field(default_factory=list)
+    blamed: tuple[Part, ...] = ()
 
     @property
     def name(self) -> str:
@@ -119,7 +122,7 @@ class Watch:
                 raise one.formula
             self.needed |= set(signals(one.formula))
             outcome = Outcome(one, horizon(one.formula), margins=_margins(one.formula, spec))
-            self._watched.append((outcome, Evaluation(one.formula)))
+            self._watched.append((outcome, Evaluation(one.formula, blames=True)))
         self.sampling = Sampling(spec, self.needed)
 
     @property
@@ -143,6 +146,7 @@ class Watch:
                 if self.verdicts is not None:
                     at = f"{sample / 1e9:.9g}" if self.spec.timed else str(sample)
                     self.verdicts.append(f"{outcome.name}:{at},{'F?T'[verdict]}")
+            outcome.blamed = outcome.blamed or evaluation.blamed
         self.count += 1
 
     def result(self) -> Watched:

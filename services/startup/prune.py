@@ -14,19 +14,24 @@ from pathlib import Path
 from cratous.core.files.private_cache import private_cache
 from cratous.core.ledger.kept_keys import KEPT
 from cratous.core.readings.machine.compiled import PREFIX, folder_name
+from cratous.services.certify import templates
 
 DAY_S = 86_400.0
 
 
 def prune(days: float) -> tuple[int, int]:
-    """Remove compiled kernels, and keys of the gate, unused for so many days; (how many, bytes)."""
+    """Remove compiled kernels and keys of the gate unused for so many days, and templates compiled so long ago.
+
+    How many, and their bytes.
+    """
     before_s = time.time() - days * DAY_S
     cache = private_cache()
     old = [f for f in cache.glob(f"{PREFIX}*") if _is_ours(f) and f.lstat().st_mtime < before_s]
     freed = sum(_size(folder) for folder in old)
     for folder in old:
         shutil.rmtree(folder)
-    files = [f for f in (cache / KEPT).glob("*") if _is_old_file(f, before_s)]
+    kept = [*(cache / KEPT).glob("*"), *(cache / templates.KEPT).glob("*/*")]
+    files = [f for f in kept if _is_old_file(f, before_s)]
     freed += sum(file.stat().st_size for file in files)
     for file in files:
         file.unlink()

@@ -16,6 +16,7 @@ from typing import Any
 
 from cratous.bridge import lmcp
 from cratous.services.bus import Bus, Envelope
+from cratous.services.following.cordon import CordonTaskService
 from cratous.services.following.rendezvous import RendezvousTaskService
 from cratous.services.following.service import FollowingTaskService
 from cratous.services.loading.problems import refuse
@@ -28,7 +29,13 @@ from cratous.services.loading.uxas_settings import (
     values_of,
 )
 from cratous.services.pipeline import coordinator
-from cratous.services.pipeline.followed import FOLLOWED, RENDEZVOUS, WATCH, WATCH_SERVICE
+from cratous.services.pipeline.followed import (
+    CORDON,
+    FOLLOWED,
+    RENDEZVOUS,
+    WATCH,
+    WATCH_SERVICE,
+)
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import TASKS, TaskService
 from cratous.services.pipeline.world import World
@@ -228,7 +235,7 @@ class ServiceManager:
                         world.add(part, where)
             self._add(self._task_service(item.type, task, partial(_forget, world, task)), number)
             return []
-        if item.type in not_covered.TASKS and task is not None:
+        if task is not None and item.type == task.all_names[0]:
             # no error: another's service may do it, and a request says if nobody does
             text = f"task {task.TaskID} is a {item.type}: no service here does this kind"
             self._host.log("WARN", text)
@@ -247,8 +254,8 @@ class ServiceManager:
         contexts = registry.contexts_of(self._host)
         if kind == WATCH or kind in FOLLOWED:
             name = FOLLOWED.get(kind, WATCH_SERVICE)
-            made = RendezvousTaskService if kind == RENDEZVOUS else FollowingTaskService
-            return made(contexts, task, name, ended)
+            own = {RENDEZVOUS: RendezvousTaskService, CORDON: CordonTaskService}
+            return own.get(kind, FollowingTaskService)(contexts, task, name, ended)
         return TaskService(contexts, task.TaskID, TASKS[kind], ended)
 
 
@@ -361,14 +368,6 @@ def _nobody_has(kind: str) -> bool:
 
 
 def _unknown(item: Entry, known: Any) -> BadInput:
-    if item.type in not_covered.TASKS:
-        return BadInput(
-            f"tasks of type {item.type} are not covered yet",
-            where=item.where,
-            item=f"{item.kind}.Type",
-            expected=", ".join((*TASKS, *FOLLOWED)),
-            got=item.type,
-        )
     if item.type in not_covered.SERVICES:  # and not in KINDS
         return BadInput(
             f"{item.type} of UxAS is not covered yet",

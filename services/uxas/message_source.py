@@ -21,6 +21,7 @@ from cratous.services.planning import stages
 from cratous.services.planning.inputs import Inputs
 from cratous.services.uxas.frame import Host
 from cratous.spec.errors import BadInput
+from cratous.spec.mission import Frame
 
 IMPACT = "afrl.impact.ImpactAutomationRequest"
 INITIALISED = "uxas.messages.task.TaskInitialized"
@@ -38,6 +39,7 @@ class MessageSource:
         self.world = World()
         self._host = host
         self._spoken: dict[int, None] = {}  # tasks whose services have said that they are there
+        self._frame: Frame | None = None  # of the newest request
         self._overridden: dict[int, Any] = {}  # requests with conditions of their own, unanswered
 
     @property
@@ -78,7 +80,8 @@ class MessageSource:
                 expected="speeds and altitudes in the configurations",
             )
         cfg = self._configuration(Sent(request.OriginalRequest, where, 0))
-        mission = mission_of(cfg, str(self._host.config), self._spoken)
+        mission = mission_of(cfg, str(self._host.config), self._spoken, self._frame)
+        self._frame = mission.frame
         for note in mission.notes:
             self._host.log("INFO", f"request {request.RequestID}: {note}")
         frame = Places(mission.frame)

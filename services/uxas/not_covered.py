@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 SERVICES = (
-    "OsmPlannerService",
     "RoutePlannerService",
     "SerialAutomationRequestTestService",
     "SteeringService",
 )
 """Services of UxAS that we do not have; a configuration that names one is warned, or refused if strict."""
-
-TASKS = ("afrl.impact.CordonTask",)

@@ -28,7 +28,16 @@ from cratous.services.pipeline import (
 )
 from cratous.services.pipeline.contexts import Contexts
 from cratous.services.pipeline.validator import AutomationRequestValidatorService
-from cratous.services.uxas import basic_services, batch, diagram, leash, regions, tracker, waypoints
+from cratous.services.uxas import (
+    basic_services,
+    batch,
+    diagram,
+    leash,
+    regions,
+    roads,
+    tracker,
+    waypoints,
+)
 from cratous.services.uxas.daidalus import detection, response
 from cratous.services.uxas.daidalus import parameters as daidalus
 from cratous.services.uxas.frame import Host
@@ -104,6 +113,10 @@ def _aggregator(host: Host, entry: Entry, v: dict[str, Any], name: str, number: 
 
 def _assignment(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
     return assignment.AssignmentTreeBranchBoundService(contexts_of(host))
+
+
+def _roads(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
+    return roads.made(host, entry, contexts_of(host), v["OsmFile"])
 
 
 def _loiter(host: Host, entry: Entry, v: dict[str, Any], name: str, number: int) -> Any:
@@ -243,6 +256,8 @@ def _pipeline_kind(
 
 _NOT_USED = "it is accepted and not used: routes and plans follow the mission and the vehicle"
 
+_DRAWN = ("MapEdgesFile", "ShortestPathFile", "MetricsFile")
+
 KINDS: dict[str, Kind] = {
     VALIDATOR: Kind({"MaxResponseTime_ms": whole(5000, 1)}, _validator, single=True, plans=True),
     "TaskManagerService": Kind({}, _task_manager, single=True, plans=True),
@@ -262,6 +277,13 @@ KINDS: dict[str, Kind] = {
                 "OsmFileName",
             ),
             _NOT_USED,
+        ),
+    ),
+    "OsmPlannerService": _pipeline_kind(
+        _roads,
+        dict.fromkeys(("OsmFile", *_DRAWN), Attr()),
+        ignored=dict.fromkeys(
+            _DRAWN, "it is accepted and not used: no file of a search is written"
         ),
     ),
     "RouteAggregatorService": _pipeline_kind(

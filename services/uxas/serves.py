@@ -15,6 +15,7 @@ from cratous.services.pipeline import (
     tasks,
 )
 from cratous.services.pipeline.validator import AutomationRequestValidatorService
+from cratous.services.roads.service import ROADS, OsmPlannerService
 from cratous.services.uxas import basic_services, batch, diagram, leash, regions, tracker, waypoints
 from cratous.services.uxas.daidalus import detection, response
 from cratous.services.uxas.registry import VALIDATOR
@@ -36,6 +37,10 @@ SERVES: dict[str, tuple[type, tuple[str, ...]]] = {
     ),
     "RoutePlannerVisibilityService": (
         planner.RoutePlannerVisibilityService, ("RoutePlanResponse",)
+    ),
+    ROADS: (
+        OsmPlannerService,
+        ("RoutePlanResponse", "EgressRouteResponse", "RoadPointsResponse", "ServiceStatus"),
     ),
     "RouteAggregatorService": (
         aggregator.RouteAggregatorService,

@@ -165,6 +165,12 @@ def test_it_is_decided_on_the_very_numbers(start_s: float) -> None:
     assert hold_permits(hold, above, VOLUME, 64.0, 3.0)
 
 
+def test_a_hold_that_moves_is_refused() -> None:
+    moving = hold_at(GOAL, 0.0, 60.0)._replace(velocity=Velocity(1.0, 0.0, 0.0))
+    with pytest.raises(ValueError, match="does not stand"):
+        hold_permits(moving, standing(5000.0), VOLUME, 64.0, 3.0)
+
+
 def test_who_flies_through_before_the_hold_begins_is_in_nobodys_way() -> None:
     other = Intruder(9, Position(1000.0, 0.0, 300.0), Velocity(-40.0, 0.0, 0.0))
     assert not hold_permits(hold_at(GOAL, 0.0, 60.0), other, VOLUME, 64.0, 3.0)

@@ -19,12 +19,12 @@ from cratous.services.pipeline.unserved import OTHERS_MS
 from cratous.spec import algebra
 from cratous.spec.algebra import meaning as algebra_meaning
 
-KIND = "afrl.impact.CordonTask"
+KIND = "afrl.impact.PayloadDropTask"
 INFO = "AutomationResponse"
 
 
 def relay(number: int, **more: Any) -> Any:
-    return lmcp.new("CordonTask", TaskID=number, CordonLocation=place(0.03), **more)
+    return lmcp.new("PayloadDropTask", TaskID=number, DropLocation=place(0.03), **more)
 
 
 class OtherTask:
@@ -141,7 +141,7 @@ def test_a_planner_s_process_without_a_validator_refuses_what_nobody_speaks_for(
 ) -> None:
     rig = Rig(tmp_path, "RouteAggregatorService")
     rig.tell(*vehicle(1), relay(9), unique(3, 9))
-    assert "tasks of type CordonTask are not covered" in rig.reasons()[0]
+    assert "tasks of type PayloadDropTask are not covered" in rig.reasons()[0]
     rig.tell(lmcp.new("TaskInitialized", TaskID=9), unique(4, 9))
     assert len(rig.reasons()) == 1, "it waits for the options of the one who spoke"
     rig.tell(relay(9), unique(5, 9))

@@ -336,7 +336,7 @@ def test_a_watch_of_what_stands_still_is_planned_and_of_what_is_as_fast_refused(
     rig.tell(*vehicle(1), still, watch, request(5))
     (command,) = rig.got("AutomationResponse")[0].MissionCommandList
     assert {t for w in command.WaypointList for t in w.AssociatedTasks} == {5}
-    rig.tell(still.copy(Groundspeed=20.0), request(5))
+    rig.tell(still.copy(Groundspeed=30.0), request(5))
     assert not rig.got("AutomationResponse")[1].MissionCommandList
-    said = "entity 2 moves at 20.0 m/s, and it flies 20 m/s"
+    said = "entity 2 moves at 30.0 m/s, and it flies 30 m/s"
     assert any(said in text for text in rig.reasons("Warning")), rig.reasons("Warning")

@@ -78,6 +78,7 @@ def test_bounds_are_nanoseconds_and_open_only_where_they_say_so():
         ("a always b", "this cannot stand here", 18),
         ("x >= 1" + "0" * 400 + " m", "the number is too long", 21),
         ("x >= 1e999 m", "the number is too long", 21),
+        ("x >= " + "9" * 300 + "e9 m", "the number is too large", 18),
         ("(" * 300 + "a" + ")" * 300, "the formula is nested too deeply", 216),
         ("a &", "this cannot stand here", 18),
     ],

@@ -65,6 +65,21 @@ def test_compiled_routes_are_those_of_cpython_bit_by_bit():
     assert (plain[2][plain[0] == FOUND] > 1).any(), "some routes go around it"
 
 
+def test_direct_routes_are_those_of_the_whole_search_and_no_others():
+    starts, ends = poses(80, 3)
+    starts[:, 2] = 400.0
+    roadmap = roadmaps(ZONES, 100.0)[0]
+    given, whole = arguments(roadmap, starts, ends)
+    routing.route_many(*given, whole)
+    given, direct = arguments(roadmap, starts, ends)
+    routing.direct_many(*given[:4], direct)
+    taken = direct.codes == FOUND
+    assert set(direct.codes) == {FOUND, routing.NOT_DIRECT}
+    assert np.array_equal(taken, (whole.codes == FOUND) & (whole.links == 1))
+    for one, other in zip(direct, whole, strict=True):
+        assert np.array_equal(one[taken], other[taken])
+
+
 def test_routes_in_bulk_are_the_routes_one_by_one_and_obey_the_kernels():
     starts, ends = poses(150, 2)
     roadmap = roadmaps(ZONES, 100.0)[0]

@@ -164,6 +164,8 @@ def test_a_task_that_is_removed_ends_in_every_state(tmp_path: Path, at: int) -> 
     rig.bring(at)
     rig.tell(lmcp.new("RemoveTasks", TaskList=[5]))
     assert NAME not in rig.bus.names()
+    undone = ["task 5 ends undone: it was removed"]
+    assert rig.reasons("Warning") == (undone if at in (table.OPTION_SELECTED, table.ACTIVE) else [])
     rig.tell(unique(8))
     assert len(rig.got("KillService")) == 1
     assert not [b for b in rig.got("TaskPlanOptions") if b.CorrespondingAutomationRequestID == 8]

@@ -31,6 +31,7 @@ def flown(
     *others: Any,
     vehicles: tuple[int, ...] = (1,),
     seconds: float,
+    entity: Any = None,
     **more: Any,
 ) -> Flight:
     """The vehicles do the task, and then others, by a whole UxAS."""
@@ -41,7 +42,10 @@ def flown(
         else f'<Service Type="{kind}"/>\n'
         for kind in kinds
     )
-    bodies = [*moving(), *(b for k, v in enumerate(vehicles) for b in aircraft(v, 0.001 * k))]
+    bodies = [
+        *(entity or moving()),
+        *(b for k, v in enumerate(vehicles) for b in aircraft(v, 0.001 * k)),
+    ]
     events = [Event(0.1 * k, body, "") for k, body in enumerate(bodies)]
     numbers = [one.TaskID for one in (task, *others)]
     more = more or {"TaskRelationships": ".(" + " ".join(f"p{n}" for n in numbers) + ")"}
@@ -133,9 +137,87 @@ def test_an_escort_stays_about_an_entity_that_turns_where_its_route_does(tmp_pat
     )  # fmt: skip
     flight = flown(tmp_path, task, seconds=400.0)
     (complete,) = flight.of("TaskComplete")
+    end_ms = complete.TimeTaskCompleted
+    assert max(apart_m(flight, 1, end_ms / 1000 - 60, end_ms / 1000)) <= 150 + 2 * RADIUS_M + 1
+    where = {body.Time: body.Location for body in flight.states(ENTITY)}
+    east_m = [
+        local([body.Location], where[body.Time])[0].y
+        for body in flight.states(1)
+        if body.Time in where and end_ms - 60_000 <= body.Time <= end_ms
+    ]
+    assert 100 < sum(east_m) / len(east_m) < 200, "StandoffDistance ahead, on its way"
+
+
+@pytest.mark.parametrize(("standoff_m", "north_m"), [(200.0, 200.0), (-200.0, -200.0)])
+def test_an_escort_is_ahead_or_behind_on_the_line_that_it_names(
+    tmp_path: Path, standoff_m: float, north_m: float
+) -> None:
+    """The entity heads east and goes north along the line: its first place is where it stands."""
+    rig = Rig(tmp_path)
+    line = lmcp.new(
+        "LineOfInterest", LineID=7, Line=[place(0.02, 0.002), place(0.03, 0.002), place(0.1, 0.002)]
+    )
+    task = escort(RouteID=7, StandoffDistance=standoff_m)
+    rig.tell(*aircraft(1, 0.0), *moving(1.0, course=90.0), line, task, request(5))
+    assert not rig.reasons("Warning")
+    rig.tell(aircraft(1, 0.03)[1].copy(AssociatedTasks=[5], CurrentWaypoint=99, Mode="Waypoint"))
+    (command,) = rig.got("VehicleActionCommand")
+    circle = command.VehicleActionList[0]
+    (centre,) = local([circle.Location], place(0.03, 0.002))
+    assert centre.x == pytest.approx(north_m, abs=10)
+    assert centre.y == pytest.approx(0, abs=1)
+    assert circle.Radius == pytest.approx(RADIUS_M, abs=0.1)
+
+
+def test_an_escort_goes_by_the_plan_of_what_it_escorts_where_no_line_is_named(
+    tmp_path: Path,
+) -> None:
+    rig = Rig(tmp_path)
+    ways = [lmcp.new("Waypoint", Number=k, Latitude=0.03 + k, Longitude=0.002) for k in (0, 1)]
+    plan = lmcp.new("MissionCommand", VehicleID=ENTITY, WaypointList=ways)
+    rig.tell(*aircraft(1, 0.0), *moving(1.0, course=90.0))
+    rig.tell(lmcp.new("AutomationResponse", MissionCommandList=[plan]))
+    rig.tell(escort(StandoffDistance=300.0), request(5))
+    (option,) = rig.got("TaskPlanOptions")[0].Options
+    (end,) = local([option.EndLocation], place(0.03, 0.002))
+    assert end.y == pytest.approx(0, abs=5), "north of it, from the south"
+
+
+def test_who_usually_flies_slower_than_what_it_escorts_flies_faster_if_it_can(
+    tmp_path: Path,
+) -> None:
+    rig = Rig(tmp_path)
+    rig.tell(*aircraft(1, 0.0), *moving(22.0), escort(), request(5))
+    (command,) = rig.got("AutomationResponse")[0].MissionCommandList
+    speeds = [w.Speed for w in command.WaypointList]
+    assert speeds[0] == 20, "the way there is flown as usual"
+    assert speeds[-1] == pytest.approx(1.25 * 22)
+    rig.tell(aircraft(1, 0.03)[1].copy(AssociatedTasks=[5], CurrentWaypoint=99, Mode="Waypoint"))
+    (circle,) = [c.VehicleActionList[0] for c in rig.got("VehicleActionCommand")]
+    assert circle.Airspeed == pytest.approx(1.25 * 22)
+    assert circle.Radius == pytest.approx(RADIUS_M * (1.25 * 22 / 20) ** 2, abs=0.1)
+
+
+def test_one_who_flies_faster_for_it_stays_with_what_is_faster_than_he_usually_flies(
+    tmp_path: Path,
+) -> None:
+    task = escort(Parameters=[lmcp.new("KeyValuePair", Key="Duration_ms", Value="60000")])
+    flight = flown(tmp_path, task, entity=moving(21.0, 180.0), seconds=260.0)
+    (complete,) = flight.of("TaskComplete")
     end_s = complete.TimeTaskCompleted / 1000
-    assert max(apart_m(flight, 1, end_s - 60, end_s)) <= 300, "two radii of its circle"
-    assert min(apart_m(flight, 1, 0, end_s - 61)) > 300
+    wide_m = RADIUS_M * (1.25 * 21 / 20) ** 2
+    assert max(apart_m(flight, 1, end_s - 60, end_s)) <= 100 + 2 * wide_m + 1
+
+
+def test_who_chases_is_planned_to_its_circle_as_it_is_when_he_gets_there(tmp_path: Path) -> None:
+    """One who flies 20 m/s, 3 km behind what flies 15 m/s away, is a turn behind it after so much less."""
+    rig = Rig(tmp_path)
+    task = lmcp.new("WatchTask", TaskID=5, WatchedEntityID=ENTITY)
+    rig.tell(*aircraft(1, 0.0), *moving(15.0), task, request(5))
+    (option,) = rig.got("TaskPlanOptions")[0].Options
+    (end, entity) = local([option.EndLocation, moving()[1].Location], place(0.0))
+    seconds = (math.hypot(*entity) - RADIUS_M) / (20 - 15)
+    assert math.hypot(*end) == pytest.approx(20 * seconds, rel=0.02)
 
 
 def test_one_vehicle_does_two_tasks_on_one_entity_one_after_the_other(tmp_path: Path) -> None:
@@ -170,7 +252,7 @@ def test_a_blockade_is_between_the_entity_and_what_is_protected_and_ends_with_an
 @pytest.mark.parametrize(
     ("task", "reason"),
     [
-        (escort(StandoffDistance=-1.0), "out of range"),
+        (escort(StandoffDistance=-1e6), "out of range"),
         (escort(StandoffDistance=math.nan), "StandoffDistance: wrong value; expected a number"),
         (escort(DwellTime=-5), "DwellTime"),
         (
@@ -200,8 +282,8 @@ def test_what_cannot_be_asked_for_is_refused_with_what_and_where(
 
 
 def test_who_cannot_keep_up_or_see_is_not_offered_and_why_is_said(tmp_path: Path) -> None:
-    fast = refused(tmp_path / "fast", escort(), *moving(21.0))
-    assert any("moves at 21.0 m/s, and it flies 20 m/s" in text for text in fast), fast
+    fast = refused(tmp_path / "fast", escort(), *moving(31.0))
+    assert any("moves at 31.0 m/s, and it flies 30 m/s" in text for text in fast), fast
     task = lmcp.new("WatchTask", TaskID=5, WatchedEntityID=ENTITY, DesiredWavelengthBands=["LWIR"])
     blind = refused(tmp_path / "blind", task, *moving())
     assert any("no camera" in text for text in blind), blind

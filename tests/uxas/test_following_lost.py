@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from following_tools import ENTITY, escort, escorted, moving, refused
 from pipeline_tools import Rig, place, request, vehicle
+from rendezvous_tools import coming, sent_on, waiting
 
 from cratous.bridge import lmcp
 from cratous.services.following.asked import ROUTE_MOST
@@ -81,7 +82,8 @@ def test_nobody_keeps_to_himself(tmp_path: Path) -> None:
 
 def test_what_is_not_used_of_an_escort_is_said(tmp_path: Path) -> None:
     assert refused(tmp_path / "a", escort(RouteID=7), *moving()) == [
-        "RouteID 7 of task 5 is not used: where the entity goes is PrescribedWaypoints, or straight on"
+        "RouteID 7 of task 5 is not used: no such line was told of; the entity goes along PrescribedWaypoints, "
+        "or straight on"
     ]
     assert refused(tmp_path / "b", escort(), *moving()) == []
 
@@ -92,3 +94,17 @@ def test_a_way_of_too_many_places_is_refused_and_not_cut(tmp_path: Path) -> None
     assert "number of PrescribedWaypoints" in said
     assert f"expected 0 to {ROUTE_MOST}; got {ROUTE_MOST + 1}" in said
     assert refused(tmp_path / "b", escort(PrescribedWaypoints=way[1:]), *moving()) == []
+
+
+@pytest.mark.shows("Task services", "RemoveTasks")
+def test_who_circles_for_a_task_that_is_removed_is_sent_on(tmp_path: Path) -> None:
+    rig, state = escorted(tmp_path)
+    rig.tell(state.copy(Time=2000), lmcp.new("RemoveTasks", TaskList=[5, 6]))
+    assert rig.reasons("Warning") == ["task 5 ends undone: it was removed"]
+    assert sent_on(rig) == 1
+    rig, states = coming(tmp_path)
+    waiting(rig, states[0])
+    assert sent_on(rig) == 0
+    rig.tell(lmcp.new("RemoveTasks", TaskList=[5]))
+    assert sent_on(rig) == 1
+    assert "task 5 ends undone: it was removed" in rig.reasons("Warning")

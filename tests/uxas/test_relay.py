@@ -129,12 +129,22 @@ def test_a_place_is_supported_where_no_entity_is(tmp_path: Path) -> None:
 
 
 def test_the_middle_moves_half_as_fast_as_what_is_supported(tmp_path: Path) -> None:
-    """An entity at 30 m/s is relayed by a vehicle that flies 20 m/s, one at 41 m/s is not."""
+    """An entity at 30 m/s is relayed by a vehicle that flies 20 m/s, 30 m/s at most; one at 61 m/s is not."""
     rig = Rig(tmp_path)
     rig.tell(*aircraft(1, 0.029), *moving(30.0), tower(Range=50_000.0), relay(), request(5))
     assert rig.got("AutomationResponse")[-1].MissionCommandList, rig.reasons()
-    rig.tell(*moving(41.0), request(5))
-    assert any("and the tower moves at 20.5 m/s" in text for text in rig.reasons("Warning"))
+    rig.tell(*moving(61.0), request(5))
+    assert any("and the tower moves at 30.5 m/s" in text for text in rig.reasons("Warning"))
+
+
+def test_a_relay_is_planned_to_where_it_is_in_reach_of_both_and_no_farther(tmp_path: Path) -> None:
+    """Tower and entity are 3 km apart, 3.3 km north of it."""
+    rig = told(tmp_path, relay(), tower(Position=place(0.03, 0.03)), *moving(0.0))
+    (option,) = rig.got("TaskPlanOptions")[0].Options
+    places = (option.EndLocation, place(0.03, 0.03), place(0.03, 0.002))
+    here, *both = local(list(places), place(0.0))
+    spare_m = 1.1 * 20**2 / (9.80665 * math.tan(math.radians(30)))
+    assert max(math.dist(here, one) for one in both) == pytest.approx(RANGE_M - spare_m, abs=5)
 
 
 def test_what_gets_out_of_reach_is_said_and_the_time_does_not_count(tmp_path: Path) -> None:

@@ -93,7 +93,7 @@ def test_each_request_gets_one_response_in_order_with_reasons(
         request,
     ):
         client.send(body)
-    client.send(lmcp.new("CordonTask", TaskID=5))
+    client.send(lmcp.new("PayloadDropTask", TaskID=5))
     client.send(request.copy(TaskList=[5]))
     until(lambda: client.kinds().count("AutomationResponse") == 6, one)
     client.send(lmcp.new("RemoveTasks", TaskList=[1000]))
@@ -113,8 +113,8 @@ def test_each_request_gets_one_response_in_order_with_reasons(
         (6, "task 1000"),
     ):
         assert re.search(text, reasons[k]), reasons[k]
-    assert "task 5 is a afrl.impact.CordonTask: no service here does this kind" in reasons[5]
-    assert said.has("task 5 is a afrl.impact.CordonTask")
+    assert "task 5 is a afrl.impact.PayloadDropTask: no service here does this kind" in reasons[5]
+    assert said.has("task 5 is a afrl.impact.PayloadDropTask")
     assert not said.has("fails at")
     names = one.bus.names()
     assert not any("1000" in name for name in names), "the task's service has ended"
@@ -198,7 +198,7 @@ def test_a_client_s_task_service_takes_part_over_a_bridge(
 ) -> None:
     """A kind of task that nobody here does, done by a client that says how it is flown."""
     one, _, client = joined(tmp_path, opened)
-    for body in (*vehicle(1), lmcp.new("CordonTask", TaskID=9)):
+    for body in (*vehicle(1), lmcp.new("PayloadDropTask", TaskID=9)):
         client.send(body)
     client.send(lmcp.new("TaskInitialized", TaskID=9))
     client.send(request(9))

@@ -20,7 +20,6 @@ CONFIGURATIONS = [
     if path.name != "SendMessagesService_cfg.xml"  # a part of one
 ]
 LACKING = {
-    "cfg_CordonTask.xml": "no service OsmPlannerService here",
     "cfg_MultiVehicleWatchTask.xml": "a comment has -- inside",
     "08_ExampleSparkService/cfg_ada.xml": "no service ExampleSparkService here",
 }

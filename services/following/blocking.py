@@ -1,0 +1,132 @@
+"""The options of a cordon: one for each vehicle that drives and each place, and the ways to give places vehicles."""
+
+from __future__ import annotations
+
+import heapq
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from cratous.core.geofence.mission_legs import first_bad_leg
+from cratous.core.routing.visibility import name_of
+from cratous.services.loading.ground import drives
+from cratous.services.pipeline.contexts import Context
+from cratous.services.pipeline.ground import ROADS
+from cratous.services.planning.flyers import flyer_of
+from cratous.services.planning.options import Dropped, Option
+from cratous.spec.mission import Position, Task, Vehicle
+from cratous.spec.mission.plan import Pose
+
+BLOCKED_MOST = 8
+"""More roads at one time are refused, as are tasks of more vehicles of any kind."""
+WAYS_MOST = 720
+"""So many ways to give places vehicles are offered at most: all of six vehicles at six places."""
+LOOKED_MOST = 20_000
+"""So many beginnings of ways are looked at, at most."""
+
+
+class Told(NamedTuple):
+    """Where roads cross the circle, for one request: places and headings outwards [deg]; why: nobody has said."""
+
+    context: Context
+    crossings: tuple[tuple[Any, float], ...]
+    why: str = ""
+
+
+def options_of(
+    context: Context, task: Task, told: Told, radius_m: float, least_ms: int
+) -> tuple[list[Option], list[list[int]], list[Dropped]]:
+    """The options, the ways to give each place a vehicle (in numbers of options), and what is not offered."""
+    vehicles, count = context.inputs.mission.vehicles, len(told.crossings)
+    may = [v for v in vehicles if not task.eligible or v.id in task.eligible]
+    able = [v for v in may if drives(v)]
+    flying = tuple(v.id for v in may if not drives(v))
+    reason = "it does not drive, and blocks no road"
+    dropped = [Dropped(task.id, flying, "", reason)] if flying else []
+    why = told.why or _why_none(count, len(able), radius_m)
+    where = f"task {task.id}"
+    places = [] if why else [
+        context.places.pose(*one, where, f"NodeLocations[{k}]")
+        for k, one in enumerate(told.crossings)
+    ]  # fmt: skip
+    why = why or _zone(context, places)
+    if why:
+        who = tuple(v.id for v in able or may)
+        return [], [], [*dropped, Dropped(task.id, who, "a cordon", why)]
+    made = [
+        _option(task, vehicle, k, places, least_ms, v * count + k + 1)
+        for v, vehicle in enumerate(able)
+        for k in range(count)
+    ]
+    chosen = soonest([[_soon_s(context, v, place) for v in able] for place in places], WAYS_MOST)
+    ways, all_ways = (
+        [[v * count + k + 1 for k, v in enumerate(way)] for way in chosen],
+        math.perm(len(able), count),
+    )
+    if len(ways) != all_ways:
+        label = f"any way but {len(ways)} of {all_ways}, of which the last is there soonest as the crow flies,"
+        dropped.append(Dropped(task.id, (), label, "there are too many"))
+    return made, ways, dropped
+
+
+def _option(
+    task: Task, vehicle: Vehicle, k: int, places: Sequence[Pose], least_ms: int, number: int
+) -> Option:
+    flyer = flyer_of(vehicle)
+    pose = places[k]._replace(alt_m=flyer.alt_m)
+    ids, path = (task.id, number, (vehicle.id,)), (Position(*pose[:3]),)
+    return Option(*ids, flyer, pose, pose, path, least_ms, (), f"road {k + 1} of {len(places)}")
+
+
+def _soon_s(context: Context, vehicle: Vehicle, place: Pose) -> float:
+    """How long a vehicle takes to a place as the crow flies [s]."""
+    return math.dist(context.inputs.starts[vehicle.id][:2], place[:2]) / vehicle.speed_m_s
+
+
+def soonest(times: Sequence[Sequence[float]], most: int) -> list[tuple[int, ...]]:
+    """Ways to give each place a vehicle of its own, those first of which the last is there soonest.
+
+    times: for each place those of the vehicles. At most `most`; all, if these are no more and there are few
+    beginnings to look at; at least one.
+    """
+    found: list[tuple[int, ...]] = []
+    # the last so far, the sum of all so far, and who is at the first places
+    todo: list[tuple[float, float, tuple[int, ...]]] = [(0.0, 0.0, ())]
+    looked = 0
+    while todo and len(found) != most and looked != LOOKED_MOST:
+        last, total, way = heapq.heappop(todo)
+        if len(way) == len(times):
+            found.append(way)
+            continue
+        looked += 1
+        for v, time in enumerate(times[len(way)]):
+            if v not in way:
+                heapq.heappush(todo, (max(last, time), total + time, (*way, v)))
+    return found or [_greedy(times)]
+
+
+def _greedy(times: Sequence[Sequence[float]]) -> tuple[int, ...]:
+    """Each place is given the vehicle of those left that is there soonest."""
+    way: list[int] = []
+    for row in times:
+        way.append(min((v for v in range(len(row)) if v not in way), key=row.__getitem__))
+    return tuple(way)
+
+
+def _why_none(count: int, able: int, radius_m: float) -> str:
+    """Why so many roads cannot be blocked by so many vehicles, nothing if they can."""
+    if not count:
+        return f"{ROADS} knows no road that crosses the circle of {radius_m:g} m"
+    crossed = f"{count} roads cross the circle of {radius_m:g} m"
+    if count > BLOCKED_MOST:
+        return f"{crossed}, and at most {BLOCKED_MOST} are blocked at one time"
+    return f"{crossed}, and {able} vehicles may block one" if able < count else ""
+
+
+def _zone(context: Context, places: Sequence[Pose]) -> str:
+    """The zone in which a place to block lies, nothing if in none."""
+    for k, pose in enumerate(places):
+        bad = first_bad_leg((Position(*pose[:3]),), context.inputs.zones)
+        if bad is not None:
+            return f"road {k + 1} of {len(places)} would be blocked in breach of {name_of(bad[1])}"
+    return ""

@@ -1,0 +1,69 @@
+"""Vehicles that drive: GroundVehicleConfiguration and GroundVehicleState as a vehicle of a mission.
+
+`cratous uxas` alone plans them, along roads. Everything that flies leaves them out.
+"""
+
+from __future__ import annotations
+
+from math import isfinite, radians
+
+from cratous.services.loading.places import Places
+from cratous.services.loading.uxas_cfg import Sent
+from cratous.services.loading.uxas_parts import heading, point, vehicle
+from cratous.spec.errors import BadInput
+from cratous.spec.mission import Vehicle
+
+CONFIGURATION, STATE = "GroundVehicleConfiguration", "GroundVehicleState"
+TURNS_RAD = radians(80.0)
+"""It turns where it stands, nearly: as narrow as what banks by so much."""
+
+
+class GroundVehicle(Vehicle):
+    """A vehicle that drives on roads, at the altitude of the terrain."""
+
+
+def drives(one: Vehicle) -> bool:
+    """Whether a vehicle is one that drives."""
+    return isinstance(one, GroundVehicle)
+
+
+def vehicle_of(configuration: Sent, state: Sent, places: Places, notes: list[str]) -> Vehicle:
+    """The vehicle of a configuration and a state of one kind, that flies or drives; BadInput for what is none."""
+    ground = type(configuration.body).__name__ == CONFIGURATION
+    if (type(state.body).__name__ == STATE) != ground:
+        raise BadInput(
+            f"the state of vehicle {state.body.ID} is of another kind of vehicle",
+            where=state.where,
+            item=f"entity {state.body.ID}",
+            expected=STATE if ground else "AirVehicleState",
+            got=type(state.body).__name__,
+        )
+    if ground:
+        return _ground_vehicle(configuration, state, places)
+    return vehicle(configuration, state, places, notes)
+
+
+def _ground_vehicle(configuration: Sent, state: Sent, places: Places) -> GroundVehicle:
+    body = configuration.body
+    speed = float(body.NominalSpeed)
+    if not isfinite(speed) or speed <= 0:
+        raise BadInput(
+            f"vehicle {body.ID} does not drive",
+            where=configuration.where,
+            item="NominalSpeed",
+            expected="more than 0 m/s",
+            got=f"{speed:g}",
+        )
+    position = point(state.body.Location, places, state, "Location")
+    return GroundVehicle(
+        id=body.ID,
+        label=body.Label or f"vehicle {body.ID}",
+        position=position._replace(alt_m=places.terrain_m),
+        heading_rad=heading(state.body.Heading, state.where, "Heading"),
+        speed_m_s=speed,
+        min_speed_m_s=float(body.MinimumSpeed),
+        max_speed_m_s=float(body.MaximumSpeed),
+        max_bank_rad=TURNS_RAD,
+        max_climb_m_s=0.0,
+        protected=False,
+    )

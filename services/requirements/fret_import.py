@@ -1,0 +1,85 @@
+"""What a file of requirements takes from FRET: its export, with what its variables are here, and its sentences.
+
+    fret "export.json" only ALT-1, ALT-2 with alt is altitude_1, floor is 90 m
+    requirement ALT-3: fretish "Whenever armed the system shall within 5 seconds satisfy alt >= 90.0"
+
+A variable that `with` does not name is the signal of its name; a number that the export gives it stays one, in the
+unit of what it is compared with.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from cratous.services.requirements import fret, fretish_read
+from cratous.services.requirements.formula import Formula
+from cratous.services.requirements.fret_terms import Meaning, Names, Wrong
+from cratous.services.requirements.specification import Requirement, Signal
+from cratous.services.requirements.units import Quantity
+from cratous.spec.files.limits import DIGITS, DOCUMENT_BYTES
+from cratous.spec.files.text_file import text_of
+
+
+def of_sentence(token: Any, signals: Mapping[str, Signal]) -> Formula:
+    """The requirement of a sentence in quotes; Wrong, with the place in the file, for what is not read."""
+    try:
+        return fretish_read.asked(_text(token), Names(signals, {}), timed=True)
+    except Wrong as no:
+        raise Wrong(no.what, token.start_pos + 1 + no.offset, no.expected, no.got) from None
+
+
+def imported(
+    item: Any, signals: Mapping[str, Signal], folder: Path | None
+) -> Iterator[Requirement]:
+    """The requirements that an import names, or all of the export; one that is not read says why.
+
+    Raises Wrong for what is not in the export, BadInput for a file that is none.
+    """
+    token = item.children[1]
+    if folder is None:
+        raise Wrong("a text that lies in no folder imports nothing", token.start_pos)
+    parts = {str(one.data): one.children for one in item.children[2:]}
+    file = folder / _text(token)
+    export = fret.read_export(text_of(file, DOCUMENT_BYTES, "an export of FRET"), str(file))
+    names = Names(signals, {**export.defined, **_bound(parts.get("variables", ()), signals)})
+    rows = {str(one["reqid"]): one for one in export.requirements}
+    wanted = [(_text(one), one.start_pos) for one in parts.get("only", ())]
+    for name, at in wanted or [(name, token.start_pos) for name in rows]:
+        if name not in rows:
+            known = ", ".join(list(rows)[:8]) or "it has none"
+            raise Wrong("the export has no such requirement", at, known, name)
+        yield fret.requirement(rows[name], names, export.where, timed=True)
+
+
+def _bound(variables: Any, signals: Mapping[str, Signal]) -> dict[str, Meaning]:
+    found: dict[str, Meaning] = {}
+    for one in variables:
+        token, what = one.children
+        name = _text(token)
+        if name in found:
+            raise Wrong("a variable is given twice", token.start_pos, got=name)
+        if getattr(what, "data", "") == "quantity":
+            found[name] = quantity(*what.children)
+        elif what.type == "CONSTANT":
+            found[name] = str(what) == "true"
+        elif str(what) in signals:
+            found[name] = str(what)
+        else:
+            known = ", ".join(sorted(signals)[:8]) or "there is none"
+            raise Wrong("this is no signal", what.start_pos, known, str(what))
+    return found
+
+
+def _text(token: Any) -> str:
+    return str(token).strip('"')
+
+
+def quantity(number: Any, unit: Any = "1") -> Quantity:
+    """A number with its unit, as it is written; Wrong for one that is too long."""
+    mantissa, _, exponent = str(number).lower().partition("e")
+    if len(mantissa) > DIGITS or len(exponent) > 4 or abs(int(exponent or "0")) > DIGITS:
+        raise Wrong("the number is too long", number.start_pos, f"up to {DIGITS} digits")
+    return Quantity(Fraction(str(number)), str(unit), f"{number} {unit}")

@@ -1,0 +1,184 @@
+"""What FRET's formulas and its structured English share: variables, comparisons, and what joins them.
+
+FRET has no units: a number is in the unit of the signal that it is compared with. What a variable of FRET's is
+here, `Names` says; one that it does not have is refused.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cratous.services.requirements import formula as formulas
+from cratous.services.requirements.specification import Signal
+from cratous.services.requirements.units import Quantity, dimension, in_unit
+from cratous.spec.files.limits import DIGITS
+
+if TYPE_CHECKING:
+    from lark import Lark
+
+NESTED = 200
+ARITHMETIC = ("+", "-", "*", "/", "^", "(", "mod")
+EVER = formulas.MAX_TIME
+"""The bound of what has none: no two samples are so far apart."""
+
+
+class Wrong(Exception):
+    """What cannot be read, and where in its text: an offset."""
+
+    def __init__(self, what: str, offset: int, expected: str = "", got: str = "") -> None:
+        self.what, self.offset, self.expected, self.got = what, offset, expected, got[:60]
+        super().__init__(what)
+
+
+@dataclass(frozen=True)
+class Unread:
+    """A variable that its author defines by what is not read; why: in words."""
+
+    why: str
+
+
+Meaning = str | Quantity | bool | Unread
+"""What a variable is: a signal of this name, a number with its unit (none: that of the other side), a constant."""
+
+
+@dataclass(frozen=True)
+class Names:
+    """Signals by name, and what else a variable is; a variable that is called as a signal is this signal."""
+
+    signals: Mapping[str, Signal]
+    bound: Mapping[str, Meaning]
+
+    def of(self, token: Any) -> Meaning:
+        """What a variable is; Wrong for one that nobody has declared."""
+        name = str(token)
+        found = self.bound.get(name, name)
+        if isinstance(found, Unread):
+            raise Wrong(found.why, token.start_pos, got=name)
+        if isinstance(found, str) and found not in self.signals:
+            known = ", ".join(sorted({*self.signals, *self.bound})[:8]) or "there is none"
+            raise Wrong("nothing says which signal this variable is", token.start_pos, known, name)
+        return found
+
+    def truth(self, token: Any) -> formulas.Formula:
+        """A variable that stands for itself."""
+        found = self.of(token)
+        if isinstance(found, bool):
+            return formulas.TRUE if found else formulas.FALSE
+        if isinstance(found, str) and self.signals[found].kind == "bool":
+            return formulas.Reaches(found, 1.0)
+        raise Wrong("this variable is no truth value", token.start_pos, "a bool", str(token))
+
+    def compared(self, left: Any, relation: Any, right: Any) -> formulas.Formula:
+        """A comparison of two sides: of truth values whether they are equal, else of numbers."""
+        at = relation.start_pos
+        truths = [isinstance(s, bool) or self._kind(s) == "bool" for s in (left, right)]
+        if any(truths):
+            if not all(truths) or relation not in ("=", "!="):
+                raise Wrong("a truth value is compared", at, "= or != with another", str(relation))
+            one, other = (_truth(side) for side in (left, right))
+            same = formulas.iff(one, other)
+            return same if relation == "=" else formulas.Not(same)
+        units = [self.signals[side].unit for side in (left, right) if isinstance(side, str)]
+        if not units:
+            raise Wrong("no signal is compared", at, "a signal on one side")
+        if len(set(units)) > 1:
+            raise Wrong("signals of two units are compared", at, units[0] or "no unit", units[1])
+        values = [
+            side if isinstance(side, str) else value_in(side, units[0], at)
+            for side in (left, right)
+        ]
+        relation = {"=": "=="}.get(str(relation), str(relation))
+        return formulas.compared(values[0], relation, values[1])
+
+    def _kind(self, side: Any) -> str:
+        return self.signals[side].kind if isinstance(side, str) else ""
+
+
+def _truth(side: str | bool) -> formulas.Formula:
+    if isinstance(side, str):
+        return formulas.Reaches(side, 1.0)
+    return formulas.TRUE if side else formulas.FALSE
+
+
+def value_in(number: Quantity, unit: str, at: int) -> float:
+    """A number in a unit, in which one without a unit is already; Wrong, with the place, where it is none."""
+    if number.unit and (not unit or dimension(number.unit) != dimension(unit)):
+        raise Wrong("units that do not fit", at, unit or "no unit", number.unit)
+    try:
+        return float(in_unit(number, unit) if number.unit else number.value)
+    except OverflowError:
+        raise Wrong("the number is too large", at, "a double", number.text) from None
+
+
+def number(text: str, at: int = 0) -> Quantity:
+    """A number as FRET writes it; Wrong for one that is too long or too large."""
+    mantissa, _, exponent = text.lower().partition("e")
+    if len(mantissa) > DIGITS or len(exponent) > 4 or abs(int(exponent or "0")) > DIGITS:
+        raise Wrong("the number is too long", at, f"up to {DIGITS} digits")
+    return Quantity(Fraction(text), "", text)
+
+
+def term(kind: str, got: list[Any], names: Names) -> Any:
+    """What a node without time is made of its children; None for a kind that has time."""
+    if kind in JOINED:
+        return JOINED[kind](*got)
+    if kind == "truth":
+        return names.truth(got[0])
+    if kind == "constant":
+        return formulas.TRUE if got[0].lower() == "true" else formulas.FALSE
+    if kind == "name":
+        return names.of(got[0])
+    if kind == "word":
+        return bool(got[0].lower() == "true")
+    if kind in ("number", "negative"):
+        sign = "-" if kind == "negative" and not got[0].startswith("-") else ""
+        text = got[0][1:] if kind == "negative" and not sign else sign + got[0]
+        return number(text, got[0].start_pos)
+    return names.compared(*got) if kind == "compare" else None
+
+
+JOINED: dict[str, Callable[..., formulas.Formula]] = {
+    "negation": formulas.Not,
+    "both": lambda a, b: formulas.Join(a, b, True),
+    "either": lambda a, b: formulas.Join(a, b, False),
+    "differ": lambda a, b: formulas.Not(formulas.iff(a, b)),
+    "implies": formulas.implies,
+    "iff": formulas.iff,
+    "if_then": lambda _, a, b: formulas.implies(a, b),
+}
+
+
+def parsed(parser: Lark, text: str, language: str) -> Any:
+    """The tree of a text; Wrong, with the place, for what is outside of its grammar."""
+    from lark.exceptions import UnexpectedCharacters, UnexpectedInput
+
+    depth = 0
+    for found in re.finditer(r"[()!~]", text):
+        depth = depth + {"(": 1, ")": -1}.get(found.group(), 0)
+        if depth > NESTED:
+            raise Wrong("the formula is nested too deeply", found.start(), f"{NESTED} levels")
+    try:
+        return parser.parse(text)
+    except UnexpectedInput as error:
+        offset = error.pos_in_stream if error.pos_in_stream is not None else len(text)
+        token = None if isinstance(error, UnexpectedCharacters) else getattr(error, "token", None)
+        if offset < 0 or (token is not None and token.type == "$END"):
+            offset, token = len(text.rstrip()), None
+        got = str(token or text[offset : offset + 1]) or "the end of it"
+        what = f"this is outside of the part of {language} that is read"
+        if got in ARITHMETIC:
+            what = "arithmetic, functions and numbers in parentheses are not read"
+        raise Wrong(what, offset, got=got) from None
+
+
+def grammar(name: str) -> Lark:
+    """The parser of a grammar beside this module."""
+    from lark import Lark
+
+    text = Path(__file__).with_name(name).read_text(encoding="utf-8")
+    return Lark(text, parser="lalr", propagate_positions=True, maybe_placeholders=False)

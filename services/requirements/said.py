@@ -1,0 +1,102 @@
+"""A part of a formula in the words of the language of requirements, for people."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cratous.services.requirements.formula import (
+    TRUE,
+    Always,
+    Bounded,
+    Formula,
+    Join,
+    Not,
+    Reaches,
+)
+from cratous.services.requirements.specification import Specification
+from cratous.services.requirements.to_blame import Part
+
+DEEPEST, LONGEST, HELD = 5, 300, 2
+LOOSE = ("and", "or", "implies", "until", "since", "within", "from")
+"""In a part that has one of these, one may doubt how strongly it binds."""
+UNITS = ((60 * 10**9, "min"), (10**9, "s"), (10**6, "ms"), (1000, "us"), (1, "ns"))
+
+
+def said(formula: Formula, spec: Specification, level: int = 0) -> str:
+    """The text of a formula; what is too deep or too long is `...`."""
+    if level > DEEPEST:
+        return "..."
+    text = _said(formula, spec, level)
+    return text if len(text) <= LONGEST else "..."
+
+
+def facts(parts: Sequence[Part], spec: Specification) -> list[str]:
+    """What was so of the parts that are to blame, each as a formula that held."""
+    texts = (said(part if verdict == HELD else Not(part), spec) for part, verdict in parts)
+    return list(dict.fromkeys(texts))
+
+
+def _said(formula: Formula, spec: Specification, level: int) -> str:
+    if isinstance(formula, Always):
+        return "true" if formula == TRUE else "false"
+    if isinstance(formula, Reaches):
+        return _compared(formula, ">=", spec)
+    if isinstance(formula, Bounded):
+        return _timed(formula, spec, level, always=False)
+    if isinstance(formula, Join):
+        left, word = formula.phi, "and" if formula.is_and else "or"
+        if not formula.is_and and isinstance(left, Not):
+            left, word = left.phi, "implies"
+        return f"{_inner(left, spec, level)} {word} {_inner(formula.psi, spec, level)}"
+    one = formula.phi
+    if isinstance(one, Reaches) and not _is_truth(one, spec):
+        return _compared(one, "<", spec)
+    if isinstance(one, Not):
+        return said(one.phi, spec, level)
+    if isinstance(one, Bounded) and one.phi == TRUE and isinstance(one.psi, Not):
+        return _timed(one, spec, level, always=True)
+    return f"not {_inner(one, spec, level)}"
+
+
+def _inner(formula: Formula, spec: Specification, level: int) -> str:
+    text = said(formula, spec, level + 1)
+    return f"({text})" if any(f" {word} " in text for word in LOOSE) else text
+
+
+def _timed(one: Bounded, spec: Specification, level: int, always: bool) -> str:
+    if always and isinstance(one.psi, Not):
+        word = "historically" if one.past else "always"
+        return f"{word} {_window(one, spec)} {_inner(one.psi.phi, spec, level)}"
+    psi = _inner(one.psi, spec, level)
+    if one.phi == TRUE:
+        return f"{'once' if one.past else 'eventually'} {_window(one, spec)} {psi}"
+    word = "since" if one.past else "until"
+    return f"{_inner(one.phi, spec, level)} {word} {_window(one, spec)} {psi}"
+
+
+def _window(one: Bounded, spec: Specification) -> str:
+    high = _time(one.high, spec)
+    return f"from {_time(one.low, spec)} to {high}" if one.low else f"within {high}"
+
+
+def _time(time: int, spec: Specification) -> str:
+    if not spec.timed:
+        return f"{time} samples"
+    size, unit = next(((s, u) for s, u in UNITS if time and time % s == 0), UNITS[1])
+    return f"{time // size} {unit}"
+
+
+def _compared(one: Reaches, relation: str, spec: Specification) -> str:
+    if _is_truth(one, spec):
+        return str(one.left)
+    left, right = one.left, one.right
+    if not isinstance(left, str):  # the signal first, as people do
+        left, right, relation = right, left, {">=": "<=", "<": ">"}[relation]
+    unit = spec.signals[str(left)].unit
+    number = "" if isinstance(right, str) or unit in ("", "1") else f" {unit}"
+    side = right if isinstance(right, str) else f"{right:.9g}"
+    return f"{left} {relation} {side}{number}"
+
+
+def _is_truth(one: Reaches, spec: Specification) -> bool:
+    return isinstance(one.left, str) and spec.signals[one.left].kind == "bool"

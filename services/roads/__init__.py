@@ -1,0 +1,1 @@
+"""Roads of OpenStreetMap for vehicles that drive: the map, ways along it, and the service that answers."""

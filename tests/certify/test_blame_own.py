@@ -1,0 +1,189 @@
+"""Blame of requirements of one's own: what of the formula, who was in command, what had broken by then."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from certify_tools import ROOT, Run
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cratous.core.requirements.verdict import both, either, negated
+from cratous.services.certify.blame_own import lines, own_blame, own_rows
+from cratous.services.cli import run as command
+from cratous.services.requirements import language
+from cratous.services.requirements.evaluation import FALSE, UNKNOWN, Evaluation
+from cratous.services.requirements.formula import Bounded, Formula, Join, Not, Reaches
+from cratous.services.requirements.said import facts, said
+from cratous.services.requirements.specification import Specification
+from cratous.services.requirements.watch import Outcome, Watch, watch
+
+HEAD = """trace every 1 s
+signal x, y: m from AirVehicleState[ID=1].Location.Altitude hold 1 s
+signal on: bool from GateState[VehicleID=2].Offered hold 1 s
+"""
+HAD = {1: [(0, "UxAS"), (1000, "ICAROUS"), (3000, "UxAS")], 2: [(0, "UxAS")]}
+
+
+def seen(formula: str, rows: list[tuple[int, int, int]]) -> tuple[Specification, Outcome]:
+    spec = language.read(f"{HEAD}requirement OWN: {formula}")
+    watching = Watch(spec)
+    for n, row in enumerate(rows):
+        watching.sample(n * 10**9, dict(zip(("x", "y", "on"), row, strict=True)))
+    return spec, watching.result().outcomes[0]
+
+
+@pytest.mark.parametrize(
+    ("formula", "wanted", "known_s"),
+    [
+        ("x >= 3 m and y >= 1 m", ["x < 3 m"], 1),
+        ("on implies eventually within 2 s y >= 2 m", ["on", "not (eventually within 2 s y >= 2 m)"], 3),
+        ("on implies always within 2 s x >= 1 m", ["on", "eventually within 2 s x < 1 m"], 2),
+        ("x >= 3 m and not (on and x < y)", ["x < 3 m"], 1),
+        ("not (on and x <= 2 m and y < 5 m)", ["on", "x <= 2 m", "y < 5 m"], 1),
+        ("x > 2 m or (on iff x > 2 m)", ["x <= 2 m", "on"], 1),
+        ("on implies (x > y or x > 8 m until within 1 s y > 1 m)",
+         ["on", "y >= x", "not (x > 8 m until within 1 s y > 1 m)"], 1),
+        ("x >= 3 m or historically from 0 s to 1 s y > 0 m and x > 2 m", ["x < 3 m", "x <= 2 m"], 1),
+    ],
+)  # fmt: skip
+def test_the_parts_that_are_to_blame(formula: str, wanted: list[str], known_s: int) -> None:
+    spec, one = seen(
+        formula, [(3, 1, 0), (1 if "x > y" in formula else 2, 1, 1), (0, 1, 0), (0, 1, 0)]
+    )
+    assert (one.first_violated, one.decided_at) == (10**9, known_s * 10**9)
+    assert facts(one.blamed, spec) == wanted
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["x >= 3 m and (on or not on)", "on implies (x < y and y <= 2.5 m)", "once within 1500 us on",
+     "always within 2 min (on until from 1 s to 3 s x >= 1 m)", "historically within 0 s not on",
+     "not (eventually within 5 ns on)", "on since within 1 s (eventually within 1 s on)"],
+)  # fmt: skip
+def test_a_part_is_said_as_it_is_written(text: str) -> None:
+    spec = language.read(f"{HEAD}requirement OWN: {text}")
+    formula = spec.requirements[0].formula
+    assert not isinstance(formula, Exception)
+    assert said(formula, spec) == text
+
+
+LEAVES = st.builds(Reaches, st.sampled_from("xy"), st.sampled_from([1.0, 2.0]))
+FORMULAS = st.recursive(
+    LEAVES,
+    lambda inner: st.one_of(
+        st.builds(Not, inner),
+        st.builds(Join, inner, inner, st.booleans()),
+        st.builds(lambda p, q, h, past: Bounded(p, q, 0, h, past), LEAVES, inner,
+                  st.integers(0, 2), st.booleans()),
+    ),
+    max_leaves=6,
+)  # fmt: skip
+
+
+def _with(formula: Formula, known: dict[Formula, int]) -> int:
+    """The verdict where of the parts with a time and the comparisons only some are known."""
+    if isinstance(formula, Not):
+        return negated(_with(formula.phi, known))
+    if isinstance(formula, Join):
+        sides = [_with(side, known) for side in (formula.phi, formula.psi)]
+        return (both if formula.is_and else either)(*sides)
+    return known.get(formula, UNKNOWN)
+
+
+@settings(max_examples=80, deadline=None)
+@given(
+    formula=FORMULAS,
+    rows=st.lists(st.tuples(*[st.sampled_from((0.0, 1.0, 2.0, None))] * 2), min_size=1, max_size=5),
+)
+def test_they_are_as_said_and_violate_the_whole_alone(formula: Formula, rows: Any) -> None:
+    evaluation, found = Evaluation(formula, blames=True), {}
+    trace = [dict(zip("xy", row, strict=True)) for row in rows]
+    for n, row in enumerate(trace):
+        for time, verdict in evaluation.sample(n, row):
+            found[time] = verdict
+    first = min((time for time, verdict in found.items() if verdict == FALSE), default=None)
+    assert bool(evaluation.blamed) == (first is not None)
+    if first is None:
+        return
+    for part, verdict in evaluation.blamed:
+        alone, told = Evaluation(part), {}
+        for n, row in enumerate(trace):
+            told.update(alone.sample(n, row))
+        assert told[first] == verdict
+    assert _with(formula, dict(evaluation.blamed)) == FALSE
+
+
+def test_who_had_the_vehicle_that_a_signal_names_and_what_broke_by_then() -> None:
+    spec, one = seen(
+        "x >= 1 m implies always within 2 s x >= 1 m", [(2, 1, 0), (2, 1, 0), (0, 1, 0)]
+    )
+    broken = {
+        "name": "tracking",
+        "state": "broken",
+        "since_ms": 1500,
+        "vehicle": 1,
+        "guarantees": [],
+    }
+    late = {**broken, "name": "late", "since_ms": 2001}
+    unseen = {**broken, "name": "dark", "state": "not observed", "since_ms": None}
+    (row,) = own_rows([one], spec, HAD, [late, broken, unseen])
+    assert row["command"] == [{"vehicle": 1, "side": "UxAS", "since_ms": 0}]
+    assert row["command_known"] == [{"vehicle": 1, "side": "ICAROUS", "since_ms": 1000}]
+    assert (row["at_s"], row["known_s"]) == (0, 2)
+    assert (row["broken_first"]["name"], row["not_observed"]) == ("tracking", ["dark"])
+    assert list(lines([row])) == [
+        "blame, OWN at 0 s: x >= 1 m and eventually within 2 s x < 1 m; UxAS had vehicle 1, since 0.00 s; "
+        "ICAROUS had vehicle 1 when it was known, since 1.00 s; first broken assumption: tracking at 1.50 s; "
+        "not observed: dark"
+    ]
+
+
+def test_of_a_trace_that_is_no_mission_it_is_said_that_nobody_knows(tmp_path: Path) -> None:
+    spec, one = seen("x >= 3 m", [(2, 1, 0)])
+    (tmp_path / "t.csv").write_text("time_s,x\n0,2\n")
+    for trace, why in ((tmp_path / "t.csv", "no log of a mission"), (None, "running system")):
+        (row,) = own_blame([one], spec, trace)
+        assert (row["command"], row["broken_first"]) == ([], None)
+        assert why in row["why_unknown"]
+        assert "who was in command is not told" in next(lines([row]))
+    assert own_blame([], spec, tmp_path / "none") == []
+
+
+@pytest.fixture(scope="module")
+def crossing(fly_once: Callable[[Path], Path]) -> Path:
+    return fly_once(ROOT / "examples" / "crossing" / "mission.yaml")
+
+
+def test_over_a_flight_the_gate_tells_who_had_it(
+    crossing: Path, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    report = json.loads((crossing / "report.json").read_text())
+    takeover = next(one for one in report["flight"]["authority"] if one["owner"] == "ICAROUS")
+    file = tmp_path / "own.req"
+    of = f"AirVehicleState[ID={takeover['vehicle']}]"
+    file.write_text(
+        f"trace every 500 ms\nsignal z: m from {of}.Location.Altitude hold 1 s\n"
+        f"signal heading: deg from {of}.Heading hold 1 s\nrequirement Z: z >= 0 m\n"
+        "requirement TURN: historically within 2 s heading <= 90.5 deg\n"
+    )
+    spec = language.read(file.read_text())
+    found = watch(spec, crossing).outcomes
+    rows = own_blame(found, spec, crossing)
+    for row in rows:
+        at_ms = row["at_s"] * 1000
+        had = [
+            one for one in report["flight"]["authority"] if one["vehicle"] == takeover["vehicle"]
+        ]
+        owner = [one["owner"] for one in had if one["time_ms"] <= at_ms][-1:] or ["UxAS"]
+        assert [one["side"] for one in row["command"]] == owner
+    monkeypatch.setattr(command, "run_one", lambda *_: (report, crossing))
+    code, out, _ = run("run", crossing, "--requirements", file, "--quiet", "--json")
+    told = json.loads(out)
+    assert told["own"]["blame"] == json.loads(json.dumps(rows))
+    assert told["exit_code"] == code == (1 if rows else told["exit_code"])
+    assert rows
