@@ -12,6 +12,7 @@ from pipeline_tools import Rig, place, request, vehicle
 from rendezvous_tools import coming, sent_on, waiting
 
 from cratous.bridge import lmcp
+from cratous.services.following import service
 from cratous.services.following.asked import ROUTE_MOST
 
 
@@ -94,6 +95,21 @@ def test_a_way_of_too_many_places_is_refused_and_not_cut(tmp_path: Path) -> None
     assert "number of PrescribedWaypoints" in said
     assert f"expected 0 to {ROUTE_MOST}; got {ROUTE_MOST + 1}" in said
     assert refused(tmp_path / "b", escort(PrescribedWaypoints=way[1:]), *moving()) == []
+
+
+@pytest.mark.parametrize("of", [7, 0], ids=["line", "plan"])
+def test_a_line_or_a_plan_of_too_many_places_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, of: int
+) -> None:
+    monkeypatch.setattr(service, "TOLD_MOST", 2)
+    way = [lmcp.new("Waypoint", Number=k, Latitude=0.03 + k) for k in range(3)]
+    plan = lmcp.new("MissionCommand", VehicleID=ENTITY, WaypointList=way)
+    told = (
+        lmcp.new("LineOfInterest", LineID=7, Line=[place(0.02), place(0.03), place(0.1)]),
+        lmcp.new("AutomationResponse", MissionCommandList=[plan]),
+    )
+    (said,) = refused(tmp_path, escort(RouteID=of), *moving(), *told)
+    assert "route of task 5: number of its places: out of range; expected 0 to 2; got 3" in said
 
 
 @pytest.mark.shows("Task services", "RemoveTasks")
