@@ -19,9 +19,8 @@ STANDOFF_MOST_M = 100_000.0
 DURATION_MOST_MS = 86_400_000
 DURATION = "Duration_ms"
 """The task parameter that says for how long an escort or a blockade is kept."""
-ROUTE_MOST = 1024
-
-
+ROUTE_MOST, TOLD_MOST = 1024, 4096
+"""A task with more PrescribedWaypoints is refused, and one of an entity along a line or a plan of more places."""
 RANGE_MOST_M = 1_000_000.0
 
 

@@ -133,8 +133,7 @@ def _fast_enough(motion: Motion, usual: Flyer, vehicle: Vehicle) -> Flyer:
     """How a vehicle flies while it keeps to what moves: as usual, or faster, as far as it can, where that is needed."""
     if outruns(motion.velocity, usual.speed_m_s):
         return usual
-    most = max(vehicle.max_speed_m_s, usual.speed_m_s)
-    speed = min(CATCH_UP * math.hypot(*motion.velocity), most)
+    speed = min(CATCH_UP * math.hypot(*motion.velocity), vehicle.max_speed_m_s)
     wider = (speed / usual.speed_m_s) ** 2  # the radius of a turn
     return usual._replace(speed_m_s=speed, radius_m=wider * usual.radius_m)
 

@@ -49,6 +49,7 @@ from cratous.services.following.service import (
     FollowingTaskService,
     Step,
 )
+from cratous.services.following.stations import EARLY, FLY, LATE
 from cratous.services.pipeline.contexts import Context
 from cratous.services.pipeline.status import status
 from cratous.services.pipeline.tasks import (
@@ -64,8 +65,6 @@ from cratous.services.pipeline.tasks import (
 from cratous.services.planning.options import Dropped, Option
 from cratous.spec.errors import BadInput
 
-FLY, EARLY, LATE = 0, 1, 2
-"""What `pace` says."""
 NO_END = -1
 """No end of waiting, as the kernels have it."""
 VANISHED_MS = 30_000

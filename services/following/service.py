@@ -19,12 +19,14 @@ from cratous.core.tasks.stations import Kept, kept_step
 from cratous.services.bus import Envelope
 from cratous.services.following import part as parts_of
 from cratous.services.following.asked import (
+    TOLD_MOST,
     Asked,
     Tower,
     asked_of,
     route_named,
     tower_of,
     unused_of,
+    within,
 )
 from cratous.services.following.motion import STALE_MS, Motion, motion_of
 from cratous.services.following.offering import offered, options_of
@@ -178,6 +180,7 @@ class FollowingTaskService(TaskService):
         told, along = route_named(self._body, self._contexts.world)
         if self._routed is None or self._routed[0] is not context or self._routed[1] is not told:
             where, found = f"route of task {self._task_id}", []
+            within(len(along), 0, TOLD_MOST, where, "number of its places")
             for k, place in enumerate(along):
                 pose = context.places.pose(place, 0.0, where, f"[{k}]")
                 found.append(Vec2(pose.north_m, pose.east_m))

@@ -26,8 +26,8 @@ RING_M = 150.0
 DOUBLINGS = 16
 """Who does not come to a station in so many times doubled the time that its place now is away does not come to it."""
 HALVINGS = 40
-TOO_LATE = 2
-"""What `pace` says of who is."""
+FLY, EARLY, LATE = 0, 1, 2
+"""What `pace` says."""
 
 LEAST_TILT_RAD = 0.01
 """A camera that looks down by less is taken to look down by this much."""
@@ -75,7 +75,7 @@ def reached_from(
     def late(seconds: float) -> bool:
         left_m = at_time(seconds)[1]
         said = pace(left_m, seconds, flyer.speed_m_s, flyer.speed_m_s, 0.0)
-        return bool(said.act == TOO_LATE)
+        return bool(said.act == LATE)
 
     early_s, late_s = 0.0, at_time(0.0)[1] / flyer.speed_m_s
     for _ in range(DOUBLINGS):

@@ -52,7 +52,7 @@ class Context:
 
     def usual_speed_m_s(self, vehicle: int) -> float:
         """How fast a vehicle flies where no task asks for more [m/s]."""
-        return next(v.speed_m_s for v in self.inputs.mission.vehicles if v.id == vehicle)
+        return self.inputs.mission.vehicle(vehicle).speed_m_s
 
 
 class Contexts:

@@ -337,17 +337,17 @@ class TaskService:
         return offer(context, self._task_id, options)
 
     def _option(self, request: Any) -> Option:
-        """The option that an implementation request names."""
-        context = self._context
-        mine = self._options(context) if self._task_id in context.inputs.wanted else ()
+        """The option that an implementation request names, of those for its vehicle."""
+        context, who = self._context, request.VehicleID
+        made = self._options(context) if self._task_id in context.inputs.wanted else ()
+        mine = [option for option in made if who in option.vehicles]
         for option in mine:
             if option.option_id == request.OptionID:
                 return option
-        known = [option.option_id for option in mine]
         raise BadInput(
-            f"task {self._task_id} has no such option",
+            f"task {self._task_id} has no such option for vehicle {who}",
             item="TaskImplementationRequest.OptionID",
-            expected=", ".join(map(str, known)) or "none",
+            expected=", ".join(str(option.option_id) for option in mine) or "none",
             got=str(request.OptionID),
         )
 

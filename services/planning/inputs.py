@@ -10,10 +10,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from cratous.core.assignment.problem import Branch, Fixed
+from cratous.services.loading.ground import drives
 from cratous.services.loading.polygons import hard_zones
 from cratous.services.planning import stages
 from cratous.services.planning.mission_assign import problem_of
-from cratous.services.planning.options import Dropped, Flyer, Option, expand, flyer_of
+from cratous.services.planning.options import Dropped, Option, expand, flyer_of
 from cratous.services.planning.routes import Routes
 from cratous.spec.algebra import Term
 from cratous.spec.algebra.meaning import tasks
@@ -47,7 +48,7 @@ class Inputs:
 
     def take_over(self, earlier: Inputs) -> None:
         """Options that were made for an earlier request are not made anew, where all that they depend on is the same:
-        task, vehicles' ways to fly, zones, terrain. Where the vehicles are does not count."""
+        task, who flies and who drives, and how, zones, terrain. Where the vehicles are does not count."""
         made: Mapping[int, Offers] = earlier.__dict__.get("_by_task", {})
         if made and earlier._surroundings != self._surroundings:
             return
@@ -56,9 +57,9 @@ class Inputs:
                 self._taken.setdefault(task.id, made[task.id])
 
     @property
-    def _surroundings(self) -> tuple[tuple[tuple[int, Flyer], ...], tuple[Zone, ...], float]:
+    def _surroundings(self) -> tuple[object, tuple[Zone, ...], float]:
         """What options depend on beside their task."""
-        flyers = tuple((vehicle.id, flyer_of(vehicle)) for vehicle in self.mission.vehicles)
+        flyers = [(one.id, drives(one), flyer_of(one)) for one in self.mission.vehicles]
         return flyers, self.zones, self.mission.frame.terrain_m
 
     def check_starts(self) -> None:

@@ -1,7 +1,8 @@
-"""Old machine code leaves the cache: folders of compiled kernels that nothing has used for days.
+"""Old machine code leaves the cache: folders of compiled kernels that nothing has used for days, and compiled templates.
 
 Only what is surely ours is removed: a folder of the private cache whose name is the hash of the text
-in it. What is removed is compiled anew when it is needed.
+in it, files of the gate's keys, and files named as jinja2 names what it has compiled, none by way of a link.
+What is removed is made anew when it is needed.
 """
 
 from __future__ import annotations
@@ -30,7 +31,8 @@ def prune(days: float) -> tuple[int, int]:
     freed = sum(_size(folder) for folder in old)
     for folder in old:
         shutil.rmtree(folder)
-    kept = [*(cache / KEPT).glob("*"), *(cache / templates.KEPT).glob("*/*")]
+    pages = (cache / templates.KEPT).glob("*/__jinja2_*")
+    kept = [*(cache / KEPT).glob("*"), *(page for page in pages if not page.parent.is_symlink())]
     files = [f for f in kept if _is_old_file(f, before_s)]
     freed += sum(file.stat().st_size for file in files)
     for file in files:

@@ -42,3 +42,10 @@ def test_what_cannot_be_read_or_kept_is_compiled(cache: Path) -> None:
     (cache / KEPT).rmdir()
     (cache / KEPT).write_text("no folder", encoding="utf-8")
     assert page("a {{ value }}", "e") == "a e"
+
+
+def test_a_folder_that_is_gone_when_a_template_is_to_be_kept_is_no_error(cache: Path) -> None:
+    made = environment(lambda _: "a {{ value }}")
+    (folder,) = (cache / KEPT).iterdir()
+    folder.rmdir()
+    assert made.get_template("page").render(value="c") == "a c"

@@ -29,6 +29,15 @@ def _aged(path: Path, days: float) -> None:
     os.utime(path, (then_s, then_s))
 
 
+def _page(cache: Path, name: str, days: float) -> Path:
+    """A file, last written so many days ago."""
+    file = cache / name
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_bytes(b"12345")
+    _aged(file, days)
+    return file
+
+
 def test_old_machine_code_goes_and_nothing_else(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -46,12 +55,19 @@ def test_old_machine_code_goes_and_nothing_else(
     for file, days in zip(keys, (8, 6), strict=True):
         file.write_text("{}", encoding="utf-8")
         _aged(file, days)
+    pages = [_page(tmp_path, f"pages/{name}", 8) for name in ("a/__jinja2_1.cache", "a/notes.txt")]
+    pages += [
+        _page(tmp_path, "pages/a/__jinja2_2.cache", 6),
+        _page(tmp_path, "b/__jinja2_3.cache", 8),
+    ]
+    (tmp_path / "pages/b").symlink_to(tmp_path / "b")
     for folder in (edited, noted):
         _aged(folder, 8)
     assert main(["warm", "--planning", "--prune"]) == 0
-    assert "2 old parts of the cache removed" in capsys.readouterr().out
+    assert "3 old parts of the cache removed" in capsys.readouterr().out
     assert not old.exists()
     assert [file.exists() for file in keys] == [False, True]
+    assert [file.exists() for file in pages] == [False, True, True, True]
     for kept in (fresh, edited, noted, elsewhere, link):
         assert kept.exists(), kept
     assert main(["warm", "--planning", "--prune", "--days", "0"]) == 0

@@ -10,8 +10,10 @@ import pytest
 from pipeline_tools import Rig, loiter, must_fly, place, request, vehicle
 
 from cratous.bridge import lmcp
+from cratous.services.loading.ground import GroundVehicle
 from cratous.services.loading.uxas_frame import BESIDE_DEG
 from cratous.services.planning import inputs, options
+from cratous.spec.mission import Daa, Frame, Mission, Position, Task, TaskKind, Vehicle, WellClear
 from cratous.spec.mission.plan import Pose
 
 
@@ -102,3 +104,19 @@ def test_where_there_are_no_zones_no_circle_is_held_against_them(
     rooms = options.hold_rooms(Pose(0.0, 0.0, 300.0, 0.0), 100.0, ())
     assert [(room.clockwise, room.radius_m) for room in rooms] == [(True, 200.0), (False, 200.0)]
     assert not drawn
+
+
+def test_options_of_who_flew_are_not_those_of_one_who_drives() -> None:
+    task = Task(5, TaskKind.MUST_FLY, "pass", points=(Position(0.0, 500.0, 100.0),))
+    place = Pose(0.0, 0.0, 100.0, 0.0)
+    volume, offered, before = WellClear(150.0, 30.0, 15.0, 0.0), [], None
+    for kind in (Vehicle, GroundVehicle):
+        who = kind(1, "one", Position(*place[:3]), 0.0, 20.0, 15.0, 30.0, 0.5, 0.0, False)
+        mission = Mission("m", "m", Frame(0.0, 0.0), (who,), (task,), Daa(volume), relations="p5")
+        now = inputs.Inputs(mission, {1: place})
+        if before is not None:
+            now.take_over(before)
+        offered.append(len(now.options_of(5)))
+        before = now
+    assert offered[0] > 0
+    assert offered[1] == 0

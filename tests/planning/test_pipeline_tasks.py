@@ -161,6 +161,17 @@ def test_a_task_lets_a_request_go_that_has_ended(tmp_path: Path, end: str) -> No
     assert "task 5 has no such option" in rig.reasons()[0]
 
 
+def test_an_option_is_flown_by_nobody_for_whom_it_is_not(tmp_path: Path) -> None:
+    rig = Rig(tmp_path, "TaskManagerService")
+    rig.tell(*vehicle(1), *vehicle(2), loiter(5))
+    rig.tell(unique(1, 5), to_be_implemented(1).copy(VehicleID=2))
+    (said,) = rig.reasons()
+    assert "task 5 has no such option for vehicle 2" in said
+    assert not rig.got("RoutePlanRequest")
+    rig.tell(unique(2, 5))
+    assert len(rig.got("TaskPlanOptions")) == 2, "the task's service goes on"
+
+
 def test_a_route_that_is_not_there_is_an_error_with_its_reason(tmp_path: Path) -> None:
     rig = Rig(tmp_path, "TaskManagerService")
     rig.tell(*vehicle(1), loiter(5))

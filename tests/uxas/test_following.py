@@ -190,8 +190,9 @@ def test_who_usually_flies_slower_than_what_it_escorts_flies_faster_if_it_can(
     rig.tell(*aircraft(1, 0.0), *moving(22.0), escort(), request(5))
     (command,) = rig.got("AutomationResponse")[0].MissionCommandList
     speeds = [w.Speed for w in command.WaypointList]
-    assert speeds[0] == 20, "the way there is flown as usual"
-    assert speeds[-1] == pytest.approx(1.25 * 22)
+    begins = next(k for k, w in enumerate(command.WaypointList) if w.AssociatedTasks)
+    assert set(speeds[: begins + 1]) == {20}, "the way there is flown as usual, to its end"
+    assert speeds[begins + 1 :] == pytest.approx([1.25 * 22] * (len(speeds) - begins - 1))
     rig.tell(aircraft(1, 0.03)[1].copy(AssociatedTasks=[5], CurrentWaypoint=99, Mode="Waypoint"))
     (circle,) = [c.VehicleActionList[0] for c in rig.got("VehicleActionCommand")]
     assert circle.Airspeed == pytest.approx(1.25 * 22)
@@ -292,8 +293,8 @@ def test_who_cannot_keep_up_or_see_is_not_offered_and_why_is_said(tmp_path: Path
     assert any("task 5" in text for text in alone), alone
 
 
-def zone_around(latitude: float, longitude: float) -> Any:
-    area = lmcp.new("Circle", CenterPoint=place(latitude, longitude), Radius=300.0)
+def zone_around(latitude: float, longitude: float, radius_m: float = 300.0) -> Any:
+    area = lmcp.new("Circle", CenterPoint=place(latitude, longitude), Radius=radius_m)
     return lmcp.new("KeepOutZone", ZoneID=3, Boundary=area, MaxAltitude=1000.0)
 
 
@@ -323,6 +324,28 @@ def test_no_circle_about_an_entity_in_a_zone_is_offered_or_flown(tmp_path: Path)
     rig.tell(moving(5.0)[1].copy(Location=place(0.05, 0.002), Time=2), circling)
     assert len(rig.got("VehicleActionCommand")) == told
     assert any("does not follow: " in text for text in rig.reasons("Warning"))
+
+
+@pytest.mark.parametrize(
+    ("south_m", "zone_m", "begins_m", "ends_m"),
+    [(3000, 0, 3 * RADIUS_M, 0), (250, 0, 1.5 * RADIUS_M, -1.5 * RADIUS_M), (3000, 20, 10, -10)],
+    ids=["far", "near", "no room"],
+)
+def test_the_way_in_ends_at_the_rim_or_goes_through_it_where_there_is_no_room_before(
+    tmp_path: Path, south_m: float, zone_m: float, begins_m: float, ends_m: float
+) -> None:
+    """begins_m, ends_m: outside of the rim; zone_m: about a place one radius outside of it."""
+    degree_m = local([place(1.0)], place(0.0))[0].x
+    at = place(0.03 - south_m / degree_m, 0.002)
+    zone = zone_around(0.03 - 2 * RADIUS_M / degree_m, 0.002, zone_m or 1.0)
+    region = lmcp.new("OperatingRegion", ID=4, KeepOutAreas=[3] if zone_m else [])
+    rig = Rig(tmp_path)
+    rig.tell(aircraft(1, 0.0)[0], aircraft(1, 0.0)[1].copy(Location=at), *moving(0.0))
+    rig.tell(zone, region, escort(), request(5, OperatingRegion=4))
+    (option,) = rig.got("TaskPlanOptions")[0].Options
+    for end, out_m in ((option.StartLocation, begins_m), (option.EndLocation, ends_m)):
+        (found,) = local([end], place(0.03, 0.002))
+        assert found == pytest.approx((-RADIUS_M - out_m, 0), abs=5)
 
 
 def test_who_flies_by_another_s_command_ends_the_task_undone(tmp_path: Path) -> None:

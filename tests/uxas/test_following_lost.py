@@ -7,12 +7,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from following_tools import ENTITY, escort, escorted, moving, refused
+from following_tools import ENTITY, aircraft, escort, escorted, moving, refused
 from pipeline_tools import Rig, place, request, vehicle
 from rendezvous_tools import coming, sent_on, waiting
 
 from cratous.bridge import lmcp
+from cratous.core.kernel import Vec2
+from cratous.services.following import service
 from cratous.services.following.asked import ROUTE_MOST
+from cratous.services.following.motion import Motion
 
 
 def test_what_nobody_told_of_for_a_while_was_not_kept_to(tmp_path: Path) -> None:
@@ -94,6 +97,60 @@ def test_a_way_of_too_many_places_is_refused_and_not_cut(tmp_path: Path) -> None
     assert "number of PrescribedWaypoints" in said
     assert f"expected 0 to {ROUTE_MOST}; got {ROUTE_MOST + 1}" in said
     assert refused(tmp_path / "b", escort(PrescribedWaypoints=way[1:]), *moving()) == []
+
+
+@pytest.mark.parametrize("of", [7, 0], ids=["line", "plan"])
+def test_a_line_or_a_plan_of_too_many_places_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, of: int
+) -> None:
+    monkeypatch.setattr(service, "TOLD_MOST", 2)
+    way = [lmcp.new("Waypoint", Number=k, Latitude=0.03 + k) for k in range(3)]
+    plan = lmcp.new("MissionCommand", VehicleID=ENTITY, WaypointList=way)
+    told = (
+        lmcp.new("LineOfInterest", LineID=7, Line=[place(0.02), place(0.03), place(0.1)]),
+        lmcp.new("AutomationResponse", MissionCommandList=[plan]),
+    )
+    (said,) = refused(tmp_path, escort(RouteID=of), *moving(), *told)
+    assert "route of task 5: number of its places: out of range; expected 0 to 2; got 3" in said
+
+
+def test_who_has_still_to_enter_his_route_is_escorted_behind_from_where_he_comes() -> None:
+    """He flies north at 10 m/s, 100 m short of a route that leads on to the north and then east."""
+    route = (Vec2(0.0, 0.0), Vec2(100.0, 0.0), Vec2(100.0, 100.0))
+    comes = Motion(Vec2(-100.0, 0.0), Vec2(10.0, 0.0), 0, route)
+    assert comes.ahead(-50.0) == Vec2(-150.0, 0.0)
+    assert comes.ahead(250.0) == Vec2(100.0, 50.0)
+    on_it = comes._replace(at=Vec2(100.0, 20.0))
+    assert [on_it.ahead(far_m) for far_m in (-70.0, -500.0, 500.0)] == [
+        Vec2(50.0, 0.0),
+        route[0],
+        route[-1],
+    ]
+    assert comes._replace(route=route[1:2]).ahead(-50.0) == Vec2(-150.0, 0.0)
+
+
+def test_the_plan_of_an_entity_that_is_removed_is_not_its_route_when_it_is_told_of_again(
+    tmp_path: Path,
+) -> None:
+    ends = []
+    for gone in ([], [ENTITY]):
+        folder = tmp_path / str(len(gone))
+        folder.mkdir()
+        rig = Rig(folder)
+        ways = [lmcp.new("Waypoint", Number=k, Latitude=0.03 + k, Longitude=0.002) for k in (0, 1)]
+        plan = lmcp.new("MissionCommand", VehicleID=ENTITY, WaypointList=ways)
+        rig.tell(*aircraft(1, 0.0), *moving(5.0, course=90.0))
+        rig.tell(lmcp.new("AutomationResponse", MissionCommandList=[plan]))
+        rig.tell(lmcp.new("RemoveEntities", EntityList=gone), *moving(5.0, course=90.0))
+        rig.tell(escort(), request(5))
+        ends.append(rig.got("TaskPlanOptions")[0].Options[0].EndLocation)
+    assert ends[1].Longitude > ends[0].Longitude + 0.005
+    assert ends[1].Latitude < ends[0].Latitude - 0.005
+
+
+def test_who_is_hardly_faster_and_does_not_come_up_is_not_offered(tmp_path: Path) -> None:
+    said = refused(tmp_path, escort(), *moving(19.9999))[-1]
+    assert said.endswith(f"it would not come up with entity {ENTITY}")
 
 
 @pytest.mark.shows("Task services", "RemoveTasks")
