@@ -118,6 +118,17 @@ def test_they_are_as_said_and_violate_the_whole_alone(formula: Formula, rows: An
     assert _with(formula, dict(evaluation.blamed)) == FALSE
 
 
+def test_what_is_known_of_parts_is_kept_until_the_whole_is_decided() -> None:
+    spec = language.read(f"{HEAD}requirement OWN: on implies eventually within 3 s y >= 2 m")
+    formula = spec.requirements[0].formula
+    assert not isinstance(formula, Exception)
+    evaluation = Evaluation(formula, blames=True)
+    for n in range(100):  # decided at once, and its second part 3 s later
+        evaluation.sample(n * 10**9, {"on": 0.0, "y": 1.0})
+    assert evaluation.parts
+    assert max(len(known) for known in evaluation.parts.kept if known is not None) < 5
+
+
 def test_who_had_the_vehicle_that_a_signal_names_and_what_broke_by_then() -> None:
     spec, one = seen(
         "x >= 1 m implies always within 2 s x >= 1 m", [(2, 1, 0), (2, 1, 0), (0, 1, 0)]
