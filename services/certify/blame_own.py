@@ -68,7 +68,8 @@ def _row(
     instants: Data = {"at": one.first_violated, "known_at": one.decided_at}
     if spec.timed:
         instants = {"at_s": one.first_violated / 1e9, "known_s": one.decided_at / 1e9}
-    asked = [n for n in _vehicles(one.requirement, spec) or sorted(commands) if n in commands]
+    named = _vehicles(one.requirement, spec)
+    asked = [n for n in named or sorted(commands) if n in commands]
     there = [command_at(number, commands, at_ms) for number in asked]
     later = [command_at(number, commands, known_ms) for number in asked]
     return {
@@ -77,7 +78,8 @@ def _row(
         **instants,
         "command": there,
         "command_known": [now for now, before in zip(later, there, strict=True) if now != before],
-        "broken_first": None if why else first_broken(one.name, assumptions, known_ms),
+        "no_gate": [] if why else [n for n in named if n not in commands],
+        "broken_first": None if why else first_broken(assumptions, known_ms),
         "not_observed": [a["name"] for a in assumptions if a["state"] == State.NOT_OBSERVED],
         "why_unknown": why,
     }
@@ -99,6 +101,7 @@ def lines(rows: Iterable[Data]) -> Iterator[str]:
         said = [" and ".join(one["facts"])]
         said += [_had(c, "") for c in one["command"]]
         said += [_had(c, " when it was known") for c in one["command_known"]]
+        said += [f"vehicle {n} has no gate, which would tell who had it" for n in one["no_gate"]]
         if one["why_unknown"]:
             said.append(f"who was in command is not told: {one['why_unknown']}")
         elif (first := one["broken_first"]) is not None:

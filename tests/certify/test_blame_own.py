@@ -154,6 +154,18 @@ def test_who_had_the_vehicle_that_a_signal_names_and_what_broke_by_then() -> Non
     ]
 
 
+def test_of_a_vehicle_without_a_gate_that_is_said_and_no_theorem_is_on_ones_own() -> None:
+    text = f"{HEAD}signal z: m from AirVehicleState[ID=3].Location.Altitude\nrequirement G1: z >= x"
+    spec = language.read(text)
+    watching = Watch(spec)
+    watching.sample(0, {"x": 2.0, "z": 1.0})
+    broken = {"name": "tracking", "state": "broken", "since_ms": 0, "vehicle": 1}
+    (row,) = own_rows(watching.result().outcomes, spec, HAD, [{**broken, "guarantees": ["G1"]}])
+    assert [one["vehicle"] for one in row["command"]] == [1]
+    assert "; vehicle 3 has no gate, which would tell who had it; " in next(lines([row]))
+    assert "bears" not in row["broken_first"], "G1 is here the name of a requirement of one's own"
+
+
 def test_of_a_trace_that_is_no_mission_it_is_said_that_nobody_knows(tmp_path: Path) -> None:
     spec, one = seen("x >= 3 m", [(2, 1, 0)])
     (tmp_path / "t.csv").write_text("time_s,x\n0,2\n")
@@ -168,6 +180,26 @@ def test_of_a_trace_that_is_no_mission_it_is_said_that_nobody_knows(tmp_path: Pa
 @pytest.fixture(scope="module")
 def crossing(fly_once: Callable[[Path], Path]) -> Path:
     return fly_once(ROOT / "examples" / "crossing" / "mission.yaml")
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("signal r: bool\nrequirement A: r", "nothing says where a log has this signal"),
+        ('signal r: bool\nfret "e.json"', "by when"),
+    ],
+)
+def test_what_no_log_can_be_held_against_is_refused_before_the_flight(
+    text: str, why: str, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = {"reqid": "A", "fulltext": "the a shall eventually satisfy r"}
+    (tmp_path / "e.json").write_text(json.dumps([asked]))
+    (tmp_path / "own.req").write_text(text)
+    flown: list[object] = []
+    monkeypatch.setattr(command, "run_one", lambda *_: flown.append(1))
+    code, _, err = run("run", "mission.yaml", "--requirements", tmp_path / "own.req")
+    assert (code, flown) == (2, [])
+    assert why in err
 
 
 def test_over_a_flight_the_gate_tells_who_had_it(
