@@ -137,6 +137,13 @@ def test_our_own_sentences_read_back_give_the_same_verdicts(form, rows) -> None:
     )
 
 
+@pytest.mark.parametrize("timing", ["within 2000 ticks", "for 1 ticks", "immediately"])
+def test_a_sentence_of_an_export_is_said_with_its_ticks(timing) -> None:
+    text = f"Whenever c the system shall {timing} satisfy r"
+    spec = fret.read(_export(fulltext=text))
+    assert sentence(_formula(spec.requirements[0]), spec) == text
+
+
 @pytest.mark.parametrize(
     ("text", "why", "place"),
     [
