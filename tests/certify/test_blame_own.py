@@ -60,6 +60,21 @@ def test_the_parts_that_are_to_blame(formula: str, wanted: list[str], known_s: i
 
 
 @pytest.mark.parametrize(
+    ("sentence", "wanted"),
+    [
+        ("the a shall immediately satisfy x >= 3.0", ["this is the first sample", "x < 3 m"]),
+        (
+            "the a shall until on satisfy x >= 3.0",
+            ["historically within all time not on", "x < 3 m"],
+        ),
+    ],
+)
+def test_what_has_no_bound_in_fret_is_said_without_one(sentence: str, wanted: list[str]) -> None:
+    spec, one = seen(f'fretish "{sentence}"', [(2, 1, 0)])
+    assert facts(one.blamed, spec) == wanted
+
+
+@pytest.mark.parametrize(
     "text",
     ["x >= 3 m and (on or not on)", "on implies (x < y and y <= 2.5 m)", "once within 1500 us on",
      "always within 2 min (on until from 1 s to 3 s x >= 1 m)", "historically within 0 s not on",
