@@ -29,6 +29,8 @@ def said(formula: Formula, spec: Specification, level: int = 0) -> str:
     """The text of a formula; what is too deep or too long is `...`."""
     if level > DEEPEST:
         return "..."
+    while isinstance(formula, Not) and isinstance(formula.phi, Not):
+        formula = formula.phi.phi
     text = _said(formula, spec, level)
     return text if len(text) <= LONGEST else "..."
 
@@ -56,8 +58,6 @@ def _said(formula: Formula, spec: Specification, level: int) -> str:
     one = formula.phi
     if isinstance(one, Reaches) and not _is_truth(one, spec):
         return _compared(one, "<", spec)
-    if isinstance(one, Not):
-        return said(one.phi, spec, level)
     if _is_earlier(one):
         return "this is the first sample"
     if isinstance(one, Bounded) and one.phi == TRUE and isinstance(one.psi, Not):

@@ -87,6 +87,11 @@ def test_a_part_is_said_as_it_is_written(text: str) -> None:
     assert said(formula, spec) == text
 
 
+def test_any_number_of_negations_is_said() -> None:
+    spec, one = seen(f"once within 1 s {'not ' * 5001}x >= 0 m", [(2, 1, 0)])
+    assert facts(one.blamed, spec) == ["historically within 1 s x >= 0 m"]
+
+
 LEAVES = st.builds(Reaches, st.sampled_from("xy"), st.sampled_from([1.0, 2.0]))
 FORMULAS = st.recursive(
     LEAVES,
