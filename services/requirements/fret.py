@@ -35,6 +35,8 @@ CLOCK = re.compile(
     re.IGNORECASE,
 )
 """A duration that is no number of ticks."""
+DEFINED = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][-+]?[0-9]+)?")
+"""A definition that is a number; `1/3` is for its author's tool to divide."""
 PROBABLY = re.compile(r"\bwith\s+probability\b", re.IGNORECASE)
 BOOLS = ("boolean", "bool")
 WHOLE = ("integer", "int", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
@@ -139,10 +141,12 @@ def _definition(one: Mapping[str, Any]) -> Meaning | None:
     text = str(text).strip()
     if text.lower() in ("true", "false"):
         return text.lower() == "true"
+    if DEFINED.fullmatch(text) is None:
+        return Unread("this variable is defined by a formula")
     try:
         return number(text)
-    except (Wrong, ValueError):
-        return Unread("this variable is defined by a formula")
+    except Wrong as no:
+        return Unread(no.what)
 
 
 def requirement(row: Mapping[str, Any], names: Names, where: str, *, timed: bool) -> Requirement:

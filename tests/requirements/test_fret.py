@@ -15,7 +15,7 @@ from cratous.services.cli.monitor_requirements import read as monitored
 from cratous.services.requirements import fret, language
 from cratous.services.requirements.evaluation import Evaluation
 from cratous.services.requirements.formula import Formula
-from cratous.services.requirements.fret_terms import Names
+from cratous.services.requirements.fret_terms import Names, Unread
 from cratous.services.requirements.fretish import sentence
 from cratous.services.requirements.specification import NotRead, Requirement, Signal
 from cratous.services.requirements.watch import watch
@@ -233,6 +233,13 @@ def test_an_input_is_not_what_it_was_defined_as_before() -> None:
     row = {"variable_name": "alt", "idType": "Input", "dataType": "double", "assignment": "90.0"}
     export = fret.read_export(json.dumps({"requirements": [], "variables": [row]}), "e.json")
     assert (set(export.variables), export.defined) == ({"alt"}, {})
+
+
+@pytest.mark.parametrize("text", ["1/0", "1/3", "1_0", "a + 1", "1" * 301])
+def test_what_is_no_number_defines_none(text) -> None:
+    row = {"variable_name": "k", "idType": "Internal", "dataType": "double", "assignment": text}
+    export = fret.read_export(json.dumps({"requirements": [], "variables": [row]}), "e.json")
+    assert isinstance(export.defined["k"], Unread)
 
 
 def test_a_variable_that_is_declared_in_two_ways_is_refused() -> None:
