@@ -8,9 +8,9 @@ from cratous.core.avoidance.manoeuvre import velocity_of, way_along
 from cratous.core.avoidance.prediction import Piece, buffered
 from cratous.core.avoidance.resolution import Scene, first_zone_s
 from cratous.core.avoidance.way_ahead import near_line, there_within
-from cratous.core.permit.remainder import way_permits
 from cratous.services.icarous.ending import TURN_MARGIN, Ahead, horizon_s, with_hold
 from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.permits import keeps_volume, way_is_clear
 from cratous.services.icarous.return_to_path import (
     flat,
     way_on,
@@ -57,17 +57,20 @@ def predicted(config: Config, state: State, sensed: Sensed, scene: Scene) -> Ahe
     return Ahead((Piece(0.0, lookahead_s, motion.position, v),), (scene.volume,))
 
 
-def way_back_is_free(config: Config, state: State, sensed: Sensed, in_turn: frozenset[int]) -> bool:
+def way_back_is_free(
+    config: Config, state: State, sensed: Sensed, in_turn: frozenset[int], lasting: bool = False
+) -> bool:
     """The way onto the path and along it, up to the hold at its end, is free of predicted conflict over the
     look-ahead. Against the intruders that were avoided it is permitted to the end of what was told: one that flies
     straight on is not met again.
 
     in_turn: the intruders in a turn: of where they will be beyond the look-ahead a straight line says nothing.
+    lasting: it is to be permitted so against every intruder that is seen, avoided or not, and to meet no zone.
     """
     if not state.told.waypoints:
         scene = scene_of(config, state, sensed)
         return predicted(config, state, sensed, scene).first_of_all_s(scene.intruders) is None
-    return way_is_free(config, state, sensed, in_turn, points_back(state, sensed))
+    return way_is_free(config, state, sensed, in_turn, points_back(state, sensed), lasting)
 
 
 def points_back(state: State, sensed: Sensed) -> tuple[Position, ...]:
@@ -82,21 +85,25 @@ def way_is_free(
     sensed: Sensed,
     in_turn: frozenset[int],
     points: tuple[Position, ...],
+    lasting: bool = False,
 ) -> bool:
     """The same of the way from here by flyable turns onto points[0], and on by the others."""
     scene = scene_of(config, state, sensed)
     radius_m = TURN_MARGIN * sensed.motion.speed_m_s / sensed.ability.turn_rate_rad_s
     now, horizon = sensed.motion, horizon_s(scene)
     met = state.avoided - in_turn
-    avoided = [other for other in scene.intruders if other.id in met]
+    asked = [o for o in scene.intruders if o.id in met or (lasting and o.id not in in_turn)]
     for way in ways_back(now, radius_m, points, horizon):
         ahead = with_hold(way, sensed, scene, config.daa.well_clear, TURN_MARGIN)
         if ahead.first_of_all_s(scene.intruders) is not None:
             return False
         if first_zone_s(ahead.pieces, scene.zones, 5.0) is not None:
             return False
-    return all(
-        way_permits(whole.pieces, other, scene.volume)
-        for whole in ways_back(now, radius_m, points, math.inf)
-        for other in avoided
-    )
+    whole = [one.pieces for one in ways_back(now, radius_m, points, math.inf)]
+    if lasting:
+        # where a zone lies across it UxAS flies another way than this
+        if any(first_zone_s(pieces, scene.zones, 5.0) is not None for pieces in whole):
+            return False
+        if not all(keeps_volume(pieces, o, config.daa) for pieces in whole for o in asked):
+            return False
+    return all(way_is_clear(pieces, o, config.daa) for pieces in whole for o in asked)

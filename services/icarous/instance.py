@@ -157,7 +157,8 @@ class Instance:
 
     def _fly(self, state: State, sensed: Sensed, in_turn: frozenset[int]) -> Step:
         """AVOID and HANDBACK: fly the manoeuvre, and see whether the way back is free."""
-        free = way_back_is_free(self.config, state, sensed, in_turn)
+        lasting = state.search.waits(sensed.now_ms)
+        free = way_back_is_free(self.config, state, sensed, in_turn, lasting)
         state, proposed, asked = self._proposed(state, sensed, in_turn, free)
         heard_ms, before = state.told.heard_ms, state.held
         free = free or proposed is not None
@@ -189,7 +190,8 @@ class Instance:
         if found.proposal:
             radius_m = TURN_MARGIN * motion.speed_m_s / sensed.ability.turn_rate_rad_s
             way = (*onto(found.proposal, motion, radius_m), *points[1:])
-            if way_is_free(self.config, state, sensed, in_turn, way):
+            lasting = state.search.waits(now_ms)
+            if way_is_free(self.config, state, sensed, in_turn, way, lasting):
                 number = found.answered
         speed_m_s, start = (
             state.told.speed_m_s or motion.speed_m_s,

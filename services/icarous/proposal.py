@@ -1,14 +1,17 @@
 """The manoeuvre that an instance flies: the turn after which the way back is free soonest, if there is one.
 
-A turn that keeps clear over the whole look-ahead, off the course by up to 60 degrees, is flown on until the way back is
-free, at one of the instants that are looked at. Where there is none, the manoeuvre that deviates least from the course
-is flown (`core.avoidance.resolution`). What is proposed here decides nothing: control goes back only on a way that is
-free when it is flown.
+A turn that keeps clear over the whole look-ahead, off the course by up to 60 degrees, or by up to 90 where that is over
+much sooner, is flown on until the way back is free, at one of the instants that are looked at: for good (permitted to
+its end against everybody, no zone across it) if that can be had, else for the look-ahead. Where there is none, the
+manoeuvre that deviates least from the course is flown (`core.avoidance.resolution`). What is proposed here decides
+nothing: control goes back only on a way that is free when it is flown.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import NamedTuple
 
 from cratous.core.authority.cycle import patience
 from cratous.core.authority.timeliness import lasted
@@ -26,8 +29,21 @@ STEPS = 15
 """The instants at which the way back may be free are so many in the look-ahead; the last third is left out."""
 TURNS_DEG = (10, 20, 30, 40, 50, 60)
 """The headings that are looked at, off the course to the right and to the left."""
+WIDE_DEG = (75, 90)
+"""Those that are looked at besides: they lead farther away, so they are flown only for a way back for good,"""
+SOONER = 4
+"""and only so many of the instants sooner than after a smaller turn, where one leads to such a way."""
 AGAIN_MS = 5000
 """Where there is no such manoeuvre one is looked for again so much later [ms]."""
+
+
+class Found(NamedTuple):
+    """A turn, the instant at which the way back is free after it, of those that are looked at, and whether it is then
+    permitted to its end against everybody."""
+
+    choice: Choice
+    step: int
+    lasting: bool
 
 
 def manoeuvre(
@@ -47,12 +63,14 @@ def manoeuvre(
         found = _soonest(config, state, sensed, in_turn, (course, speed))
         state = replace(state, search=Search(now_ms, 0))
         if found is not None:
-            choice, at_s = found
+            at_s = found.step * scene.lookahead_s / STEPS
             waits_ms = patience(state.cycle.relapses, PERSIST_MS) + 2 * config.heartbeat_ms
-            search = Search(now_ms, now_ms + math.ceil(1000 * at_s) + waits_ms)
-            return replace(state, held=choice, search=search), choice
+            search = Search(now_ms, now_ms + math.ceil(1000 * at_s) + waits_ms, found.lasting)
+            return replace(state, held=found.choice, search=search), found.choice
     choice = resolve(motion, sensed.ability, scene, course, speed, held)
-    return replace(state, held=choice, search=state.search._replace(until_ms=0)), choice
+    return replace(
+        state, held=choice, search=state.search._replace(until_ms=0, lasting=False)
+    ), choice
 
 
 def _soonest(
@@ -61,21 +79,36 @@ def _soonest(
     sensed: Sensed,
     in_turn: frozenset[int],
     flying: tuple[float, float],
-) -> tuple[Choice, float] | None:
-    """The turn after which the way back is free soonest, and when [s]: the smallest of those. flying: course [rad],
-    speed [m/s]."""
+) -> Found | None:
+    """The turn after which the way back is free soonest: the smallest of those. One after which it is so for good
+    goes before one after which it is for the look-ahead. flying: course [rad], speed [m/s]."""
     course, speed = flying
     scene = scene_of(config, state, sensed)
-    turns = [0.0, *(side * math.radians(k) for k in TURNS_DEG for side in (1, -1))]
     level = Choice("heading", course, speed, 0.0, 0.0, True, None)
-    choices = [level._replace(heading_rad=course + turn) for turn in turns]
-    clear = [one for one in choices if keeps_clear(sensed.motion, sensed.ability, scene, one)]
-    for k in range(1, 2 * STEPS // 3 + 1):
-        t_s = k * scene.lookahead_s / STEPS
-        for choice in clear:
-            if way_back_is_free(config, state, _later(sensed, choice, t_s), in_turn):
-                return choice, t_s
-    return None
+
+    def first(turns: Sequence[float], until: int) -> Found | None:
+        choices = [level._replace(heading_rad=course + turn) for turn in turns]
+        clear = [one for one in choices if keeps_clear(sensed.motion, sensed.ability, scene, one)]
+        found = None
+        for k in range(1, until + 1):
+            for choice in clear:
+                then = _later(sensed, choice, k * scene.lookahead_s / STEPS)
+                if way_back_is_free(config, state, then, in_turn, True):
+                    return Found(choice, k, True)
+                if found is None and way_back_is_free(config, state, then, in_turn):
+                    found = Found(choice, k, False)
+        return found
+
+    last = 2 * STEPS // 3
+    found = first((0.0, *_either_side(TURNS_DEG)), last)
+    until = found.step - SOONER if found is not None and found.lasting else last
+    wide = first(_either_side(WIDE_DEG), until)
+    return wide if wide is not None and wide.lasting else found
+
+
+def _either_side(turns_deg: Sequence[int]) -> list[float]:
+    """Turns to the right and to the left [rad]."""
+    return [side * math.radians(k) for k in turns_deg for side in (1, -1)]
 
 
 def _later(sensed: Sensed, choice: Choice, t_s: float) -> Sensed:

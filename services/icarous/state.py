@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from cratous.core.authority.cycle import Cycle
+from cratous.core.authority.timeliness import lasted
 from cratous.core.avoidance.prediction import Intruder
 from cratous.core.avoidance.resolution import Choice
 from cratous.core.permit.encounter import Encounter
@@ -48,10 +49,16 @@ class Met(NamedTuple):
 
 class Search(NamedTuple):
     """The manoeuvre that is over soonest. at_ms: when it was last looked for; until_ms: for how long the one that is
-    held is flown as it is, 0 if it is none of these [ms]."""
+    held is flown as it is, 0 if it is none of these [ms]; lasting: until then control goes back only on a way that is
+    permitted to its end against everybody."""
 
     at_ms: int
     until_ms: int
+    lasting: bool = False
+
+    def waits(self, now_ms: int) -> bool:
+        """Whether a way back that is free for the look-ahead alone is not taken yet."""
+        return self.lasting and not lasted(self.until_ms, now_ms, 0)
 
 
 IDLE = Search(0, 0)

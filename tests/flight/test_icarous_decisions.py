@@ -328,20 +328,25 @@ LONG = (Position(-1000.0, 0.0, 300.0), Position(6000.0, 0.0, 300.0))
 
 
 @pytest.mark.parametrize(
-    ("avoided", "in_turn", "late_s", "free"),
+    ("avoided", "in_turn", "late_s", "free", "lasting"),
     [
-        ((9,), (), 0.0, False),  # met again in two minutes, twice the look-ahead
-        ((), (), 0.0, True),  # it has not taken over for that one: there is time
-        ((8,), (), 0.0, True),
-        ((9,), (9,), 0.0, True),  # a straight line says nothing of one that turns
-        ((9,), (), 30.0, True),  # passes behind
-        ((9,), (), 12.1, True),
-        ((9,), (), 12.0, False),  # nearest 186.7 m, where 187.5 m are kept
+        ((9,), (), 0.0, False, False),  # met again in two minutes, twice the look-ahead
+        ((), (), 0.0, True, False),  # it has not taken over for that one: there is time
+        ((8,), (), 0.0, True, False),
+        ((9,), (9,), 0.0, True, True),  # a straight line says nothing of one that turns
+        ((), (9,), 0.0, True, True),
+        ((), (), 30.0, True, True),  # passes behind
+        ((9,), (), 30.0, True, True),
+        ((9,), (), 12.1, True, True),
+        ((), (), 12.1, True, True),
+        ((), (), 12.0, True, False),
+        ((9,), (), 12.0, False, False),  # nearest 186.7 m, where 187.5 m are kept
     ],
 )
 def test_who_was_avoided_is_not_met_again(
-    avoided: tuple[int, ...], in_turn: tuple[int, ...], late_s: float, free: bool
+    avoided: tuple[int, ...], in_turn: tuple[int, ...], late_s: float, free: bool, lasting: bool
 ) -> None:
+    """A way that is free for good meets nobody again, avoided or not."""
     meets_s = 120.0
     other = Intruder(
         9,
@@ -352,3 +357,16 @@ def test_who_was_avoided_is_not_met_again(
     state = State(told=Told(waypoints=LONG, next_index=1), goal=1, met=met)
     sensed = Sensed(0, NORTH, ABILITY, (other,), Gate(0, 0, False))
     assert way_back_is_free(CONFIG, state, sensed, frozenset(in_turn)) is free
+    assert way_back_is_free(CONFIG, state, sensed, frozenset(in_turn), True) is lasting
+
+
+def test_a_way_that_meets_a_zone_beyond_the_look_ahead_is_not_free_for_good() -> None:
+    """UxAS goes around it: it flies another way than the one that was looked at."""
+    corners = ((2e3, -100.0), (2e3, 100.0), (22e2, 100.0), (22e2, -100.0))
+    zone = Zone(1, ZoneKind.KEEP_OUT, corners, 0.0, 1000.0)
+    sensed = Sensed(0, NORTH, ABILITY, (), Gate(0, 0, False))
+    for zones in ((), (zone,)):
+        told = Told(waypoints=LONG, next_index=1, zones=zones)
+        state = State(told=told, goal=1)
+        assert way_back_is_free(CONFIG, state, sensed, frozenset())
+        assert way_back_is_free(CONFIG, state, sensed, frozenset(), True) is (zones == ())

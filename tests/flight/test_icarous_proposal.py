@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from typing import Any
 
 import pytest
 from icarous_tools import ABILITY, NORTH, PROJECTION, VOLUME
 
+from cratous.core.authority.cycle import Cycle
 from cratous.core.authority.gate import ICAROUS, Gate
 from cratous.core.avoidance.prediction import Intruder
 from cratous.core.avoidance.resolution import Choice, resolve
-from cratous.services.icarous import proposal
+from cratous.services.icarous import instance, proposal
 from cratous.services.icarous.foresight import scene_of, way_back_is_free
 from cratous.services.icarous.inbox import Told
-from cratous.services.icarous.messages import Sensed
+from cratous.services.icarous.instance import Instance
+from cratous.services.icarous.messages import Sensed, Wish
 from cratous.services.icarous.permits import NONE
-from cratous.services.icarous.proposal import AGAIN_MS, STEPS, TURNS_DEG, manoeuvre
-from cratous.services.icarous.state import Config, Met, State
+from cratous.services.icarous.proposal import AGAIN_MS, STEPS, TURNS_DEG, WIDE_DEG, manoeuvre
+from cratous.services.icarous.state import Config, Met, Search, State
+from cratous.spec.authority.cycle import AVOID, OFFER
 from cratous.spec.mission import Daa, Position, Velocity
 
 CONFIG = Config(1, Daa(VOLUME, buffer=1.25), PROJECTION, 500)
@@ -95,12 +100,50 @@ def test_where_no_way_back_is_free_in_time_the_least_deviation_is_flown(
     least = resolve(NORTH, ABILITY, scene_of(CONFIG, state, sensed(0, *CONVOY)), 0.0, 22.0, None)
     state, choice = manoeuvre(CONFIG, state, sensed(0, *CONVOY), frozenset(), False)
     assert (choice, state.search.until_ms) == (least, 0)
-    most = (1 + 2 * len(TURNS_DEG)) * (2 * STEPS // 3)
+    # each turn at each instant: whether it is free for good, or for the look-ahead
+    most = 2 * (1 + 2 * len(TURNS_DEG + WIDE_DEG)) * (2 * STEPS // 3)
     assert 0 < looks.count <= most
     for now_ms, looked in ((500, False), (AGAIN_MS - 500, False), (AGAIN_MS, True)):
         before = looks.count
         state, _ = manoeuvre(CONFIG, state, sensed(now_ms, *CONVOY), frozenset(), False)
         assert (looks.count > before) is looked
+
+
+def test_the_turn_after_which_nobody_else_is_met_goes_before_a_sooner_one() -> None:
+    """After the turn that one alone asks for, the second would be met on the way back, beyond the look-ahead."""
+    second = Intruder(8, Position(3000.0, 3000.0, 300.0), Velocity(0.0, -22.0, 0.0))
+    state, alone, both = flying(CROSSES), sensed(0, CROSSES), sensed(0, CROSSES, second)
+    for now, turn_deg, free_ms in ((alone, 60, 12_000), (both, 50, 16_000)):
+        after, choice = manoeuvre(CONFIG, state, now, frozenset(), False)
+        assert round(math.degrees(choice.heading_rad)) == turn_deg
+        assert after.search == Search(0, free_ms + 2500, True)
+        assert later_free(state, now, turn_deg, free_ms // 4000, True)
+    # the sooner one leads back for the look-ahead alone
+    assert later_free(state, both, 60, 3, False)
+    assert not later_free(state, both, 60, 3, True)
+
+
+def later_free(state: State, now: Sensed, turn_deg: float, step: int, lasting: bool) -> bool:
+    """Whether the way back is free after a turn, at one of the instants that are looked at."""
+    turn = Choice("heading", math.radians(turn_deg), 22.0, 0.0, 0.0, True, None)
+    then = proposal._later(now, turn, step * CONFIG.daa.lookahead_s / STEPS)
+    return way_back_is_free(CONFIG, state, then, frozenset(), lasting)
+
+
+@pytest.mark.parametrize("lasting", [True, False])
+def test_control_waits_for_the_way_that_was_looked_for_and_no_longer(
+    monkeypatch: pytest.MonkeyPatch, lasting: bool
+) -> None:
+    """Until its instant has come a way that is free for the look-ahead alone is not taken."""
+    monkeypatch.setattr(instance, "way_back_is_free", lambda *args: not args[4])
+    turn = Choice("heading", 1.0, 22.0, 0.0, 0.0, True, None)
+    cycle = Cycle(AVOID, 0, False, 0, True, 0)
+    for now_ms in (4500, 5000):
+        told = replace(flying().told, heard_ms=now_ms)
+        state = State(told=told, cycle=cycle, held=turn, search=Search(0, 5000, lasting))
+        _, said = Instance(CONFIG).handle(state, sensed(now_ms))
+        offers = [one.act for one in said if isinstance(one, Wish)]
+        assert offers == [OFFER] * (not lasting or now_ms == 5000)
 
 
 def test_nothing_is_looked_for_while_the_way_back_is_free(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -34,7 +34,17 @@ bridge: {uxas_route_planner: true}
 def test_each_request_is_answered_and_the_mission_ends(tmp_path: Path) -> None:
     mission, out = tmp_path / "mission.yaml", tmp_path / "out"
     mission.write_text(MISSION)
-    words = ["run", str(mission), "--processes", "--allow-unproved", "--quiet", "--out", str(out)]
+    words = [
+        "run",
+        str(mission),
+        "--processes",
+        "--rate",
+        "4",
+        "--allow-unproved",
+        "--quiet",
+        "--out",
+        str(out),
+    ]
     # a loaded machine may be late with heartbeats, and theorems of a gate on board say nothing here
     assert main(words) in (1, 3)
     report = json.loads((out / "barred/report.json").read_text())
