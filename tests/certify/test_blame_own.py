@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import shutil
+import sqlite3
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -220,6 +223,26 @@ def test_what_no_log_can_be_held_against_is_refused_before_the_flight(
     code, _, err = run("run", "mission.yaml", "--requirements", tmp_path / "own.req")
     assert (code, flown) == (2, [])
     assert why in err
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ("insert into meta values ('selected', 'true')", "not have all messages"),
+        ("delete from messages where seq = 9; delete from closing", "not have all messages"),
+        ("update meta set value = '{}' where key = 'plan'", "mission of the log is not read"),
+    ],
+)
+def test_of_what_is_no_whole_log_nobody_is_said_to_be_in_command(
+    crossing: Path, tmp_path: Path, change: str, why: str
+) -> None:
+    file = Path(shutil.copy(crossing / "log.sqlite", tmp_path))
+    with closing(sqlite3.connect(file)) as log:
+        log.executescript(change)
+    spec, one = seen("x >= 3 m", [(2, 1, 0)])
+    (row,) = own_blame([one], spec, file)
+    assert (row["command"], row["broken_first"]) == ([], None)
+    assert why in row["why_unknown"]
 
 
 def test_over_a_flight_the_gate_tells_who_had_it(
