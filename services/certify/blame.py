@@ -46,7 +46,7 @@ def _row(row: Data, commands: Commands, assumptions: list[Data], end_ms: int) ->
         "why": row["note"],
         "command": [command_at(number, commands, at_ms) for number in asked],
         "ways_out": list(_ways_out(row, commands)),
-        "broken_first": first_broken(row["requirement"], assumptions, at_ms),
+        "broken_first": _bearing(row["requirement"], first_broken(assumptions, at_ms)),
         "not_observed": unseen,
     }
 
@@ -67,12 +67,18 @@ def _ways_out(row: Data, commands: Commands) -> Iterator[Data]:
             yield {**there, "at_ms": way["time_ms"], "manoeuvre": way["manoeuvre"]}
 
 
-def first_broken(requirement: str, assumptions: list[Data], at_ms: int) -> Data | None:
-    """The assumption that had broken first by then, and whether a theorem on the requirement rests on it."""
+def first_broken(assumptions: list[Data], at_ms: int) -> Data | None:
+    """The assumption that had broken first by then, and the requirements that theorems which rest on it are on."""
     broken = broken_of(assumptions)
     place = broke_first(((one["since_ms"], k) for k, one in enumerate(broken)), at_ms).place
     if place < 0:
         return None
-    first = broken[place]
-    bears = requirement in first["guarantees"]
-    return {**{key: first[key] for key in ("name", "since_ms", "vehicle")}, "bears": bears}
+    return {key: broken[place][key] for key in ("name", "since_ms", "vehicle", "guarantees")}
+
+
+def _bearing(requirement: str, first: Data | None) -> Data | None:
+    """The same, and whether a theorem on the requirement rests on it."""
+    if first is None:
+        return None
+    told = {key: value for key, value in first.items() if key != "guarantees"}
+    return {**told, "bears": requirement in first["guarantees"]}

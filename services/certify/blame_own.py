@@ -18,6 +18,7 @@ from cratous.services.logs.log import read_meta
 from cratous.services.requirements.formula import signals
 from cratous.services.requirements.said import facts
 from cratous.services.requirements.specification import NotRead, Requirement, Specification
+from cratous.services.requirements.traces import doubts
 from cratous.services.requirements.watch import Outcome
 from cratous.services.results.names import LOG_NAME
 from cratous.spec.errors import BadInput
@@ -29,18 +30,33 @@ MS = 10**6
 def own_blame(outcomes: Iterable[Outcome], spec: Specification, trace: Path | None) -> list[Data]:
     """One row for each requirement that is violated, as plain data. trace: None for a running system.
 
-    why_unknown: where the trace is no log of a mission, why nobody's command and no assumption is told.
+    why_unknown: where the trace is no whole log of a mission, why nobody's command and no assumption is told.
     """
     bad = [one for one in outcomes if one.violated]
     if not bad:
         return []
-    commands: Commands = {}
-    assumptions: list[Data] = []
-    why = "a running system is watched" if trace is None else "the trace is no log of a mission"
-    if trace is not None and _is_of_mission(log := trace / LOG_NAME if trace.is_dir() else trace):
+    return own_rows(bad, spec, *_told(trace))
+
+
+def _told(trace: Path | None) -> tuple[Commands, list[Data], str]:
+    """Who commanded and which assumptions broke, by all messages of a mission; else nothing of both, and why."""
+    if trace is None:
+        return {}, [], "a running system is watched"
+    log = trace / LOG_NAME if trace.is_dir() else trace
+    try:
+        meta = read_meta(log)
+    except BadInput:  # of another format
+        meta = {}
+    if not {"mission", "plan"} <= set(meta):
+        return {}, [], "the trace is no log of a mission"
+    # of who is in command the messages that are missing may have told
+    if "selected" in meta or "lost" in doubts(log):
+        return {}, [], "the log does not have all messages of the mission"
+    try:
         seen = watch(log)
-        commands, assumptions, why = seen.commands, seen.assumptions, ""
-    return own_rows(bad, spec, commands, assumptions, why)
+    except BadInput as error:
+        return {}, [], f"the mission of the log is not read: {error}"
+    return seen.commands, seen.assumptions, ""
 
 
 def own_rows(
@@ -54,13 +70,6 @@ def own_rows(
     return [_row(one, spec, commands, assumptions, why) for one in violated]
 
 
-def _is_of_mission(log: Path) -> bool:
-    try:
-        return {"mission", "plan"} <= set(read_meta(log))
-    except BadInput:  # of another format
-        return False
-
-
 def _row(
     one: Outcome, spec: Specification, commands: Commands, assumptions: list[Data], why: str
 ) -> Data:
@@ -68,7 +77,8 @@ def _row(
     instants: Data = {"at": one.first_violated, "known_at": one.decided_at}
     if spec.timed:
         instants = {"at_s": one.first_violated / 1e9, "known_s": one.decided_at / 1e9}
-    asked = [n for n in _vehicles(one.requirement, spec) or sorted(commands) if n in commands]
+    named = _vehicles(one.requirement, spec)
+    asked = [n for n in named or sorted(commands) if n in commands]
     there = [command_at(number, commands, at_ms) for number in asked]
     later = [command_at(number, commands, known_ms) for number in asked]
     return {
@@ -77,7 +87,8 @@ def _row(
         **instants,
         "command": there,
         "command_known": [now for now, before in zip(later, there, strict=True) if now != before],
-        "broken_first": None if why else first_broken(one.name, assumptions, known_ms),
+        "no_gate": [] if why else [n for n in named if n not in commands],
+        "broken_first": None if why else first_broken(assumptions, known_ms),
         "not_observed": [a["name"] for a in assumptions if a["state"] == State.NOT_OBSERVED],
         "why_unknown": why,
     }
@@ -99,6 +110,7 @@ def lines(rows: Iterable[Data]) -> Iterator[str]:
         said = [" and ".join(one["facts"])]
         said += [_had(c, "") for c in one["command"]]
         said += [_had(c, " when it was known") for c in one["command_known"]]
+        said += [f"vehicle {n} has no gate, which would tell who had it" for n in one["no_gate"]]
         if one["why_unknown"]:
             said.append(f"who was in command is not told: {one['why_unknown']}")
         elif (first := one["broken_first"]) is not None:

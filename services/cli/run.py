@@ -107,8 +107,10 @@ def run(
 
 
 def _own(file: Path | None, seeds: range | None) -> Specification | None:
-    """The requirements of the user's own, read before anything is flown."""
+    """The requirements of the user's own, refused before anything is flown if no log can be held against them."""
     from cratous.services.cli.monitor_requirements import read
+    from cratous.services.requirements.traces import wanted_of
+    from cratous.services.requirements.watch import Watch
 
     if file is None:
         return None
@@ -117,6 +119,7 @@ def _own(file: Path | None, seeds: range | None) -> Specification | None:
     found = read(file)
     if not found.timed:
         raise BadInput("these requirements count samples", where=str(file), expected="a file *.req")
+    wanted_of(found, Watch(found).needed)
     return found
 
 
@@ -138,6 +141,8 @@ def fly_and_show(
     with waiting("loading the mission", silent) as wait:
         tell = untold if silent else wait.tell
         report, folder = run_one(mission, seed, out or Path("out"), settings, tell, processes)
+    if not as_json:
+        _show(report, folder)
     found = None if own is None else judged(own, folder)
     code = int(report["exit_code"])
     if found is not None:
@@ -145,12 +150,10 @@ def fly_and_show(
     if as_json:
         more = {} if found is None else {"own": result(found), "exit_code": code}
         click.echo(json.dumps({**summary(report, folder), **more}, indent=1))
-    else:
-        _show(report, folder)
-        for line in () if found is None else told(found):
+    elif found is not None:
+        for line in told(found):
             say(line)
-        if found is not None:
-            say(f"with requirements of your own: exit code {code}")
+        say(f"with requirements of your own: exit code {code}")
     return code
 
 

@@ -50,7 +50,7 @@ def resumed(config: Config, state: State, sensed: Sensed, in_turn: frozenset[int
     for met in state.met:
         other = seen.get(met.intruder_id)
         straight = None if met.intruder_id in in_turn else other
-        allowed = straight is not None and permitted(pieces, straight, config.daa)
+        allowed = straight is not None and _permitted(pieces, straight, config.daa)
         one = encounter_resumed(met.encounter, allowed, until_ms)
         why = met.why if allowed or one == met.encounter else NOT_FREE
         after.append(_made(met.intruder_id, one, straight, state, sensed, why))
@@ -70,7 +70,7 @@ def looked(config: Config, state: State, sensed: Sensed, ahead: Ahead) -> State:
             its_way = state.told.way_of(met.intruder_id)
             same = met.way == state.told.waypoints
             if not (on_line and same and met.its_way == its_way):
-                allowed = permitted(_whole(state, sensed), other, config.daa)
+                allowed = _permitted(_whole(state, sensed), other, config.daa)
                 why = OFF_LINE if not on_line else ITS_WAY if same else OTHER_WAY
                 now = _made(met.intruder_id, met.encounter, other, state, sensed, why)
             if allowed and own.first_s(other) is not None:
@@ -125,7 +125,7 @@ def told_why(state: State, intruder_id: int) -> str:
     return f"; again, since {met.why}" if met is not None and met.why else ""
 
 
-def permitted(pieces: Sequence[Piece], other: Intruder, daa: Daa) -> bool:
+def _permitted(pieces: Sequence[Piece], other: Intruder, daa: Daa) -> bool:
     """The way keeps the buffered cylinder and the mission's own volume clear of one that flies straight on."""
     return keeps_volume(pieces, other, daa) and way_is_clear(pieces, other, daa)
 

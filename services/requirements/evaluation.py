@@ -205,7 +205,7 @@ class Evaluation:
             self.parents[places[id(part.phi)]].append((mine, 0))
             self.parents[places[id(part.psi)]].append((mine, 1))
         self.parts = Parts(formula, places) if blames else None
-        self._kept = self.parts.kept if self.parts else None
+        self._blaming = self.parts
         self.leaves = [n for n, node in enumerate(self.nodes) if isinstance(node, _Leaf)]
 
     def sample(self, time: int, values: Mapping[str, float | None]) -> Decided:
@@ -239,12 +239,12 @@ class Evaluation:
                     )
             if place == len(self.nodes) - 1:
                 out = got
-            if self._kept is not None and (known := self._kept[place]) is not None:
-                known.update(got)
+            if self._blaming is not None:
+                self._blaming.take(place, got)
             for parent, side in self.parents[place] if got else ():
                 pending[parent].append((side, got))
-        if self._kept is not None and self.parts and not self.parts.decided(out):
-            self._kept = None
+        if self._blaming is not None and not self._blaming.decided(out):
+            self._blaming = None
         return out
 
     @property

@@ -31,10 +31,13 @@ AHEAD = ("ftInfAUExpanded", "ftInfAU", "ftExpanded", "ft")
 BACK = ("ptExpanded", "pt")
 SENTENCE = "fulltext"
 CLOCK = re.compile(
-    r"\b(?:within|for|after)\s+([0-9.eE+-]+\s+(?:(?:micro|milli)?(?:sec|second)s?|minutes?|hours?))\b",
+    r"\b(?:within|for|after)\s+([0-9.eE+-]+\s*(?:(?:micro|milli)?(?:sec|second)s?|minutes?|hours?))\b",
     re.IGNORECASE,
 )
 """A duration that is no number of ticks."""
+DEFINED = re.compile(r"-?[0-9]+(\.[0-9]+)?([eE][-+]?[0-9]+)?")
+"""A definition that is a number; `1/3` is for its author's tool to divide."""
+PROBABLY = re.compile(r"\bwith\s+probability\b", re.IGNORECASE)
 BOOLS = ("boolean", "bool")
 WHOLE = ("integer", "int", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
 REALS = ("double", "single", "float", "real")
@@ -126,6 +129,8 @@ def _kind(of: Any) -> str | None:
 
 def _definition(one: Mapping[str, Any]) -> Meaning | None:
     """What a variable is by its author's definition; None where it has none."""
+    if one.get("idType") in ("Input", "Output"):  # FRET keeps what it was defined as before, unused
+        return None
     if one.get("idType") == "Function":
         return Unread("this is a function")
     if one.get("modeRequirement"):
@@ -136,10 +141,12 @@ def _definition(one: Mapping[str, Any]) -> Meaning | None:
     text = str(text).strip()
     if text.lower() in ("true", "false"):
         return text.lower() == "true"
+    if DEFINED.fullmatch(text) is None:
+        return Unread("this variable is defined by a formula")
     try:
         return number(text)
-    except (Wrong, ValueError):
-        return Unread("this variable is defined by a formula")
+    except Wrong as no:
+        return Unread(no.what)
 
 
 def requirement(row: Mapping[str, Any], names: Names, where: str, *, timed: bool) -> Requirement:
@@ -147,16 +154,9 @@ def requirement(row: Mapping[str, Any], names: Names, where: str, *, timed: bool
     name, sentence = str(row["reqid"]), " ".join(str(row.get(SENTENCE) or "").split())
     said = row.get("semantics")
     formulas = {k: str(v) for k, v in said.items() if v} if isinstance(said, dict) else {}
-    first: tuple[Wrong, str, str] | None = None
-    if not timed and (clock := CLOCK.search(sentence)):
-        # the formulas have the number alone
-        what = "samples are counted, so a time has no meaning"
-        first = (
-            Wrong(what, clock.start(1), "ticks, or a file *.req", clock[1]),
-            SENTENCE,
-            sentence,
-        )
-    for key, kind in _ways(timed) if first is None else ():
+    left_out = _left_out(sentence, formulas, timed)
+    first = None if left_out is None else (left_out, SENTENCE, sentence)
+    for key, kind in _ways(timed) if left_out is None else ():
         text = sentence if key == SENTENCE else formulas.get(key, "")
         if not text:
             continue
@@ -175,6 +175,16 @@ def requirement(row: Mapping[str, Any], names: Names, where: str, *, timed: bool
     where = f"{place}, {key}, column {column}"
     refused = NotRead(wrong.what, where, caret, expected=wrong.expected, got=wrong.got)
     return Requirement(name, sentence or text, refused)
+
+
+def _left_out(sentence: str, formulas: Mapping[str, str], timed: bool) -> Wrong | None:
+    """What the formulas of a requirement do not say of it, so that they may not be read for it."""
+    if (found := PROBABLY.search(sentence)) or formulas.get("probability") == "bound":
+        return Wrong("probabilities are not read", found.start() if found else 0)
+    if not timed and (clock := CLOCK.search(sentence)):
+        what = "samples are counted, so a time has no meaning"
+        return Wrong(what, clock.start(1), "ticks, or a file *.req", clock[1])
+    return None
 
 
 def _ways(timed: bool) -> list[tuple[str, Kind | None]]:

@@ -158,8 +158,8 @@ def parsed(parser: Lark, text: str, language: str) -> Any:
     from lark.exceptions import UnexpectedCharacters, UnexpectedInput
 
     depth = 0
-    for found in re.finditer(r"[()!~]", text):
-        depth = depth + {"(": 1, ")": -1}.get(found.group(), 0)
+    for found in re.finditer(r"[()]", text):
+        depth += {"(": 1, ")": -1}[found.group()]
         if depth > NESTED:
             raise Wrong("the formula is nested too deeply", found.start(), f"{NESTED} levels")
     try:

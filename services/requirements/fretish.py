@@ -40,7 +40,7 @@ def sentence(formula: Formula, spec: Specification) -> str:
     else:
         when, asked, plain = SYSTEM.capitalize(), formula, "always"
     if isinstance(asked, Bounded) and asked.phi == TRUE and not asked.past:
-        timing, response = f"within {_time(asked)}", asked.psi
+        timing, response = f"within {_time(asked, spec)}", asked.psi
     elif (
         isinstance(asked, Not)
         and isinstance(asked.phi, Bounded)
@@ -48,7 +48,7 @@ def sentence(formula: Formula, spec: Specification) -> str:
         and isinstance(asked.phi.psi, Not)
         and not asked.phi.past
     ):
-        timing, response = f"for {_time(asked.phi)}", asked.phi.psi.phi
+        timing, response = f"for {_time(asked.phi, spec)}", asked.phi.psi.phi
     else:
         timing, response = plain, asked
     if plain == "always" and timing != plain:
@@ -57,9 +57,11 @@ def sentence(formula: Formula, spec: Specification) -> str:
     return f"{when} shall {timing} satisfy {_said(response, spec)}"
 
 
-def _time(timed: Bounded) -> str:
+def _time(timed: Bounded, spec: Specification) -> str:
     if timed.low:
         raise NoForm("a time that begins later has no form")
+    if not spec.timed:
+        return f"{timed.high} ticks"
     for size, unit in UNITS:
         if timed.high and timed.high % size == 0:
             return f"{timed.high // size} {unit}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from cratous.services.requirements.formula import (
+    MAX_TIME,
     TRUE,
     Always,
     Bounded,
@@ -12,6 +13,8 @@ from cratous.services.requirements.formula import (
     Join,
     Not,
     Reaches,
+    once,
+    same,
 )
 from cratous.services.requirements.specification import Specification
 from cratous.services.requirements.to_blame import Part
@@ -26,6 +29,8 @@ def said(formula: Formula, spec: Specification, level: int = 0) -> str:
     """The text of a formula; what is too deep or too long is `...`."""
     if level > DEEPEST:
         return "..."
+    while isinstance(formula, Not) and isinstance(formula.phi, Not):
+        formula = formula.phi.phi
     text = _said(formula, spec, level)
     return text if len(text) <= LONGEST else "..."
 
@@ -41,6 +46,8 @@ def _said(formula: Formula, spec: Specification, level: int) -> str:
         return "true" if formula == TRUE else "false"
     if isinstance(formula, Reaches):
         return _compared(formula, ">=", spec)
+    if _is_earlier(formula):
+        return "this is not the first sample"
     if isinstance(formula, Bounded):
         return _timed(formula, spec, level, always=False)
     if isinstance(formula, Join):
@@ -51,11 +58,16 @@ def _said(formula: Formula, spec: Specification, level: int) -> str:
     one = formula.phi
     if isinstance(one, Reaches) and not _is_truth(one, spec):
         return _compared(one, "<", spec)
-    if isinstance(one, Not):
-        return said(one.phi, spec, level)
+    if _is_earlier(one):
+        return "this is the first sample"
     if isinstance(one, Bounded) and one.phi == TRUE and isinstance(one.psi, Not):
         return _timed(one, spec, level, always=True)
     return f"not {_inner(one, spec, level)}"
+
+
+def _is_earlier(one: Formula) -> bool:
+    """There is a sample before, as FRET's import says it."""
+    return isinstance(one, Bounded) and same(one, once(TRUE, 1, MAX_TIME))
 
 
 def _inner(formula: Formula, spec: Specification, level: int) -> str:
@@ -80,6 +92,8 @@ def _window(one: Bounded, spec: Specification) -> str:
 
 
 def _time(time: int, spec: Specification) -> str:
+    if time == MAX_TIME:  # the bound of what has none
+        return "all time"
     if not spec.timed:
         return f"{time} samples"
     size, unit = next(((s, u) for s, u in UNITS if time and time % s == 0), UNITS[1])

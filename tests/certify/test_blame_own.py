@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import shutil
+import sqlite3
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -60,6 +63,21 @@ def test_the_parts_that_are_to_blame(formula: str, wanted: list[str], known_s: i
 
 
 @pytest.mark.parametrize(
+    ("sentence", "wanted"),
+    [
+        ("the a shall immediately satisfy x >= 3.0", ["this is the first sample", "x < 3 m"]),
+        (
+            "the a shall until on satisfy x >= 3.0",
+            ["historically within all time not on", "x < 3 m"],
+        ),
+    ],
+)
+def test_what_has_no_bound_in_fret_is_said_without_one(sentence: str, wanted: list[str]) -> None:
+    spec, one = seen(f'fretish "{sentence}"', [(2, 1, 0)])
+    assert facts(one.blamed, spec) == wanted
+
+
+@pytest.mark.parametrize(
     "text",
     ["x >= 3 m and (on or not on)", "on implies (x < y and y <= 2.5 m)", "once within 1500 us on",
      "always within 2 min (on until from 1 s to 3 s x >= 1 m)", "historically within 0 s not on",
@@ -70,6 +88,11 @@ def test_a_part_is_said_as_it_is_written(text: str) -> None:
     formula = spec.requirements[0].formula
     assert not isinstance(formula, Exception)
     assert said(formula, spec) == text
+
+
+def test_any_number_of_negations_is_said() -> None:
+    spec, one = seen(f"once within 1 s {'not ' * 5001}x >= 0 m", [(2, 1, 0)])
+    assert facts(one.blamed, spec) == ["historically within 1 s x >= 0 m"]
 
 
 LEAVES = st.builds(Reaches, st.sampled_from("xy"), st.sampled_from([1.0, 2.0]))
@@ -118,6 +141,17 @@ def test_they_are_as_said_and_violate_the_whole_alone(formula: Formula, rows: An
     assert _with(formula, dict(evaluation.blamed)) == FALSE
 
 
+def test_what_is_known_of_parts_is_kept_until_the_whole_is_decided() -> None:
+    spec = language.read(f"{HEAD}requirement OWN: on implies eventually within 3 s y >= 2 m")
+    formula = spec.requirements[0].formula
+    assert not isinstance(formula, Exception)
+    evaluation = Evaluation(formula, blames=True)
+    for n in range(100):  # decided at once, and its second part 3 s later
+        evaluation.sample(n * 10**9, {"on": 0.0, "y": 1.0})
+    assert evaluation.parts
+    assert max(len(known) for known in evaluation.parts.kept if known is not None) < 5
+
+
 def test_who_had_the_vehicle_that_a_signal_names_and_what_broke_by_then() -> None:
     spec, one = seen(
         "x >= 1 m implies always within 2 s x >= 1 m", [(2, 1, 0), (2, 1, 0), (0, 1, 0)]
@@ -143,6 +177,18 @@ def test_who_had_the_vehicle_that_a_signal_names_and_what_broke_by_then() -> Non
     ]
 
 
+def test_of_a_vehicle_without_a_gate_that_is_said_and_no_theorem_is_on_ones_own() -> None:
+    text = f"{HEAD}signal z: m from AirVehicleState[ID=3].Location.Altitude\nrequirement G1: z >= x"
+    spec = language.read(text)
+    watching = Watch(spec)
+    watching.sample(0, {"x": 2.0, "z": 1.0})
+    broken = {"name": "tracking", "state": "broken", "since_ms": 0, "vehicle": 1}
+    (row,) = own_rows(watching.result().outcomes, spec, HAD, [{**broken, "guarantees": ["G1"]}])
+    assert [one["vehicle"] for one in row["command"]] == [1]
+    assert "; vehicle 3 has no gate, which would tell who had it; " in next(lines([row]))
+    assert "bears" not in row["broken_first"], "G1 is here the name of a requirement of one's own"
+
+
 def test_of_a_trace_that_is_no_mission_it_is_said_that_nobody_knows(tmp_path: Path) -> None:
     spec, one = seen("x >= 3 m", [(2, 1, 0)])
     (tmp_path / "t.csv").write_text("time_s,x\n0,2\n")
@@ -157,6 +203,46 @@ def test_of_a_trace_that_is_no_mission_it_is_said_that_nobody_knows(tmp_path: Pa
 @pytest.fixture(scope="module")
 def crossing(fly_once: Callable[[Path], Path]) -> Path:
     return fly_once(ROOT / "examples" / "crossing" / "mission.yaml")
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("signal r: bool\nrequirement A: r", "nothing says where a log has this signal"),
+        ('signal r: bool\nfret "e.json"', "by when"),
+    ],
+)
+def test_what_no_log_can_be_held_against_is_refused_before_the_flight(
+    text: str, why: str, tmp_path: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = {"reqid": "A", "fulltext": "the a shall eventually satisfy r"}
+    (tmp_path / "e.json").write_text(json.dumps([asked]))
+    (tmp_path / "own.req").write_text(text)
+    flown: list[object] = []
+    monkeypatch.setattr(command, "run_one", lambda *_: flown.append(1))
+    code, _, err = run("run", "mission.yaml", "--requirements", tmp_path / "own.req")
+    assert (code, flown) == (2, [])
+    assert why in err
+
+
+@pytest.mark.parametrize(
+    ("change", "why"),
+    [
+        ("insert into meta values ('selected', 'true')", "not have all messages"),
+        ("delete from messages where seq = 9; delete from closing", "not have all messages"),
+        ("update meta set value = '{}' where key = 'plan'", "mission of the log is not read"),
+    ],
+)
+def test_of_what_is_no_whole_log_nobody_is_said_to_be_in_command(
+    crossing: Path, tmp_path: Path, change: str, why: str
+) -> None:
+    file = Path(shutil.copy(crossing / "log.sqlite", tmp_path))
+    with closing(sqlite3.connect(file)) as log:
+        log.executescript(change)
+    spec, one = seen("x >= 3 m", [(2, 1, 0)])
+    (row,) = own_blame([one], spec, file)
+    assert (row["command"], row["broken_first"]) == ([], None)
+    assert why in row["why_unknown"]
 
 
 def test_over_a_flight_the_gate_tells_who_had_it(

@@ -14,6 +14,7 @@ from cratous.core.authority.gate import ICAROUS, Gate
 from cratous.core.avoidance.prediction import Intruder
 from cratous.core.avoidance.resolution import Choice, resolve
 from cratous.services.icarous import instance, proposal
+from cratous.services.icarous.asking import Asking
 from cratous.services.icarous.foresight import scene_of, way_back_is_free
 from cratous.services.icarous.inbox import Told
 from cratous.services.icarous.instance import Instance
@@ -130,17 +131,51 @@ def later_free(state: State, now: Sensed, turn_deg: float, step: int, lasting: b
     return way_back_is_free(CONFIG, state, then, frozenset(), lasting)
 
 
+@pytest.mark.parametrize(
+    ("free", "turn_deg"),
+    [
+        ({(60, 6, True), (75, 2, True)}, 75),
+        ({(60, 6, True), (75, 3, True)}, 60),  # not so much sooner
+        ({(60, 1, False), (75, 10, True)}, 75),
+        ({(60, 6, False), (75, 1, False)}, 60),  # not for good
+        ({(75, 1, False)}, None),
+    ],
+)
+def test_a_wide_turn_is_flown_only_for_a_way_back_for_good(
+    monkeypatch: pytest.MonkeyPatch, free: set[tuple[int, int, bool]], turn_deg: int | None
+) -> None:
+    """free: after which turn [deg] the way back is free, at which instant, and whether for good."""
+    step_s = CONFIG.daa.lookahead_s / STEPS
+
+    def then(_: Sensed, choice: Choice, t_s: float) -> tuple[int, int]:
+        return round(math.degrees(choice.heading_rad)), round(t_s / step_s)
+
+    def is_free(_: Any, __: Any, at: tuple[int, int], ___: Any, lasting: bool = False) -> bool:
+        return (*at, lasting) in free
+
+    monkeypatch.setattr(proposal, "_later", then)
+    monkeypatch.setattr(proposal, "way_back_is_free", is_free)
+    state, choice = manoeuvre(CONFIG, flying(), sensed(0), frozenset(), False)
+    assert (state.search.until_ms > 0) is (turn_deg is not None)
+    assert round(math.degrees(choice.heading_rad)) == (turn_deg or 0)
+
+
+@pytest.mark.parametrize("of_uxas", [True, False])
 @pytest.mark.parametrize("lasting", [True, False])
 def test_control_waits_for_the_way_that_was_looked_for_and_no_longer(
-    monkeypatch: pytest.MonkeyPatch, lasting: bool
+    monkeypatch: pytest.MonkeyPatch, lasting: bool, of_uxas: bool
 ) -> None:
-    """Until its instant has come a way that is free for the look-ahead alone is not taken."""
-    monkeypatch.setattr(instance, "way_back_is_free", lambda *args: not args[4])
+    """Until its instant has come a way that is free for the look-ahead alone is not taken; of_uxas: one that UxAS's
+    planner proposes."""
+    monkeypatch.setattr(instance, "way_back_is_free", lambda *args: not (of_uxas or args[4]))
+    monkeypatch.setattr(instance, "way_is_free", lambda *args: not args[5])
     turn = Choice("heading", 1.0, 22.0, 0.0, 0.0, True, None)
     cycle = Cycle(AVOID, 0, False, 0, True, 0)
+    asking = Asking(allowed=of_uxas, number=7, next_ms=9000, proposal=WAY, answered=7)
     for now_ms in (4500, 5000):
         told = replace(flying().told, heard_ms=now_ms)
-        state = State(told=told, cycle=cycle, held=turn, search=Search(0, 5000, lasting))
+        search = Search(0, 5000, lasting)
+        state = State(told=told, cycle=cycle, held=turn, search=search, asking=asking)
         _, said = Instance(CONFIG).handle(state, sensed(now_ms))
         offers = [one.act for one in said if isinstance(one, Wish)]
         assert offers == [OFFER] * (not lasting or now_ms == 5000)

@@ -15,8 +15,9 @@ from cratous.services.cli.monitor_requirements import read as monitored
 from cratous.services.requirements import fret, language
 from cratous.services.requirements.evaluation import Evaluation
 from cratous.services.requirements.formula import Formula
+from cratous.services.requirements.fret_terms import Names, Unread
 from cratous.services.requirements.fretish import sentence
-from cratous.services.requirements.specification import NotRead, Requirement
+from cratous.services.requirements.specification import NotRead, Requirement, Signal
 from cratous.services.requirements.watch import watch
 from cratous.spec.errors import BadInput
 
@@ -136,6 +137,13 @@ def test_our_own_sentences_read_back_give_the_same_verdicts(form, rows) -> None:
     )
 
 
+@pytest.mark.parametrize("timing", ["within 2000 ticks", "for 1 ticks", "immediately"])
+def test_a_sentence_of_an_export_is_said_with_its_ticks(timing) -> None:
+    text = f"Whenever c the system shall {timing} satisfy r"
+    spec = fret.read(_export(fulltext=text))
+    assert sentence(_formula(spec.requirements[0]), spec) == text
+
+
 @pytest.mark.parametrize(
     ("text", "why", "place"),
     [
@@ -196,11 +204,42 @@ def test_files_that_are_no_export(text) -> None:
         fret.read(text)
 
 
-def test_a_time_is_not_taken_for_ticks() -> None:
-    text = "whenever c the a shall within 5 Seconds satisfy r"
+@pytest.mark.parametrize("time", ["5 Seconds", "5seconds"])
+def test_a_time_is_not_taken_for_ticks(time) -> None:
+    text = f"whenever c the a shall within {time} satisfy r"
     no = _one(fulltext=text, semantics={"ftInfAUExpanded": "(G (c -> (F[0,5] r)))"}).formula
     assert isinstance(no, NotRead)
     assert "fulltext, column 31: samples are counted" in str(no)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        {"fulltext": "the a shall with probability < 0.1 always satisfy r"},
+        {"semantics": {"ptExpanded": "(H r)", "probability": "bound"}},
+    ],
+)
+def test_a_probability_is_not_left_out(said) -> None:
+    row = {"reqid": "A", "semantics": {"ptExpanded": "(H r)"}, **said}
+    export = fret.read_export(json.dumps([row]), "e.json")
+    names = Names({"r": Signal("bool")}, {})
+    for timed in (False, True):
+        no = fret.requirement(export.requirements[0], names, "e.json", timed=timed).formula
+        assert isinstance(no, NotRead)
+        assert "probabilities are not read" in str(no)
+
+
+def test_an_input_is_not_what_it_was_defined_as_before() -> None:
+    row = {"variable_name": "alt", "idType": "Input", "dataType": "double", "assignment": "90.0"}
+    export = fret.read_export(json.dumps({"requirements": [], "variables": [row]}), "e.json")
+    assert (set(export.variables), export.defined) == ({"alt"}, {})
+
+
+@pytest.mark.parametrize("text", ["1/0", "1/3", "1_0", "a + 1", "1" * 301])
+def test_what_is_no_number_defines_none(text) -> None:
+    row = {"variable_name": "k", "idType": "Internal", "dataType": "double", "assignment": text}
+    export = fret.read_export(json.dumps({"requirements": [], "variables": [row]}), "e.json")
+    assert isinstance(export.defined["k"], Unread)
 
 
 def test_a_variable_that_is_declared_in_two_ways_is_refused() -> None:
