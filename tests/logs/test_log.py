@@ -154,6 +154,15 @@ def test_not_a_number_has_no_canonical_text() -> None:
         canonical([math.nan])
 
 
+def test_a_record_is_read_as_no_kind_of_it_that_has_the_same_fields() -> None:
+    class Named(Thing):
+        pass
+
+    data = to_data(Thing(Colour.RED, Pair(1, 2.0)))
+    assert type(from_data(Thing, data)) is Thing
+    assert type(from_data(Named, data)) is Named
+
+
 def test_a_mission_comes_back() -> None:
     mission = plain_mission(
         (plain_vehicle(1, Position(0.0, 1.0, 2.0)),),

@@ -32,7 +32,15 @@ def _reference(record: type, found: dict[str, Any]) -> dict[str, Any]:
 
 
 def _subclasses(record: type) -> list[type]:
-    return record.__subclasses__() if dataclasses.is_dataclass(record) else []
+    if not dataclasses.is_dataclass(record):
+        return []
+    # one that adds no field looks the same in a file
+    own = {field.name for field in dataclasses.fields(record)}
+    return [
+        one
+        for one in record.__subclasses__()
+        if {field.name for field in dataclasses.fields(one)} != own
+    ]
 
 
 def _record(record: type, found: dict[str, Any]) -> dict[str, Any]:
