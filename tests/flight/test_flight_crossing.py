@@ -135,6 +135,7 @@ VARIANTS = [
     (sign * angle, speed_1, speed_2)
     for angle in (30, 60, 90, 120, 150, 180)
     for sign in (1, -1)
+    if angle != 180 or sign == 1  # -180 is the same
     for speed_1, speed_2 in ((18, 28), (22, 22), (28, 18))
 ]
 

@@ -105,14 +105,16 @@ def test_a_vehicle_with_nothing_left_under_icarous_circles_where_it_is() -> None
     assert all(near < 1.0 and far < 250.0 for near, far in told.values())
 
 
-def blocked(*, plans_change: bool) -> tuple[int, str]:
+def blocked(*, plans_change: bool, plans: int = 20) -> tuple[int, str]:
     """When the task of vehicle 1 failed behind which a drone hovers, and why. plans_change: every 20 s there is
-    another plan in flight, for a task of a vehicle that is far away."""
+    another plan in flight, so many in all, for a task of a vehicle that is far away."""
     mission = load(MISSION)
     (drone,) = mission.traffic
     (one,) = mission.vehicles
     two = replace(one, id=2, position=Position(0.0, 20_000.0, 300.0))
-    tasks = [must_fly(2 + k, (2000.0, 20_000.0 + 40 * k, 300.0), eligible=(2,)) for k in range(20)]
+    tasks = [
+        must_fly(2 + k, (2000.0, 20_000.0 + 40 * k, 300.0), eligible=(2,)) for k in range(plans)
+    ]
     changes = [Change(20_000 * (1 + k), TASK_ADDED, task=t.id) for k, t in enumerate(tasks)]
     mission = replace(
         mission,
@@ -120,7 +122,7 @@ def blocked(*, plans_change: bool) -> tuple[int, str]:
         tasks=(replace(mission.tasks[0], eligible=(1,)), *(tasks if plans_change else ())),
         traffic=(replace(drone, position=Position(1500.0 + 350.0, 0.0, 300.0)),),
         changes=tuple(changes if plans_change else ()),
-        simulation=replace(mission.simulation, limit_ms=420_000),
+        simulation=replace(mission.simulation, limit_ms=20_000 * (plans + 1)),
     )
     result, log = flown(mission)
     assert result.replans == len(changes if plans_change else ())
@@ -128,7 +130,15 @@ def blocked(*, plans_change: bool) -> tuple[int, str]:
     return failed.Time, result.failed[1]
 
 
-@pytest.mark.slow
+def test_other_plans_in_flight_do_not_begin_a_leg_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With another plan every 20 s, a leg on which ICAROUS flies for a look-ahead of 60 s is given up."""
+    monkeypatch.setattr(legs, "LONGEST_LOOKAHEADS", 1)
+    at_ms, why = blocked(plans_change=True, plans=6)
+    assert why.startswith("blocked: ICAROUS took vehicle 1 over ")
+    assert at_ms < 20_000 * 6
+
+
+@pytest.mark.long
 def test_another_plan_in_flight_does_not_free_a_leg_that_is_blocked() -> None:
     """What ICAROUS did on a leg counts on where the vehicle makes for the same task by another plan."""
     at_ms, why = blocked(plans_change=False)

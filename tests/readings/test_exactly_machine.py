@@ -91,7 +91,10 @@ def test_expansions_alone_and_behind_pairs_are_right(name: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("count", ["sum_left_out(ar, br", "product_left_out(ar, br"])
+@pytest.mark.parametrize(
+    "count",
+    ["sum_left_out(ar, br", pytest.param("product_left_out(ar, br", marks=pytest.mark.long)],
+)
 def test_rationals_catch_pairs_that_forget_what_they_left_out(count: str) -> None:
     columns = wide_tangent(300)
     wanted = on_rationals(horizontal_violation, columns)
@@ -108,7 +111,12 @@ def _nearly_even(a: float, b: float, c: float, d: float, e: float) -> bool:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "careless",
-    [("e + 126", "e + 400"), (" + (ONE if low < al else ZERO)", ""), (" + (middle >> HALF)", "")],
+    [
+        ("e + 126", "e + 400"),
+        # each of these compiles all of it anew
+        pytest.param((" + (ONE if low < al else ZERO)", ""), marks=pytest.mark.long),
+        pytest.param((" + (middle >> HALF)", ""), marks=pytest.mark.long),
+    ],
 )
 def test_rationals_catch_careless_residues(careless: tuple[str, str]) -> None:
     rng = np.random.default_rng(9)
