@@ -30,7 +30,7 @@ bridge: {uxas_route_planner: true}
 """Along the edge of a zone, head-on with somebody who does not give way."""
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_each_request_is_answered_and_the_mission_ends(tmp_path: Path) -> None:
     mission, out = tmp_path / "mission.yaml", tmp_path / "out"
     mission.write_text(MISSION)
