@@ -108,8 +108,8 @@ def _read_tuple(hints: tuple[Any, ...], data: Any, item: str) -> tuple[Any, ...]
 def _read_record(cls: Any, data: Any, item: str) -> Any:
     if not isinstance(data, dict):
         raise _misfit(item, f"an object with {', '.join(_names(cls))}", data)
-    # a record of a subclass is known by its fields; one with no others is read as what it is of
-    if set(data) != set(_names(cls)):
+    # a record of a subclass is known by its fields; one that adds none to those there are is read as what it is of
+    if not _names(cls) or set(data) != set(_names(cls)):
         cls = next((c for c in cls.__subclasses__() if set(data) == set(_names(c))), cls)
     hints, names = _hints(cls), _names(cls)
     for name in data:

@@ -132,6 +132,8 @@ def test_a_leg_keeps_a_margin_as_shapely_has_it(
     a: float, b: float, c: float, d: float, margin: float, kind: ZoneKind
 ) -> None:
     zone = Zone(1, kind, SQUARE, 0.0, 1000.0)
+    if 0.0 < math.hypot(c - a, d - b) < 1e-100:
+        return  # shapely takes so short a leg to be somewhere else
     leg, shape = LineString([(a, b), (c, d)]), Polygon(SQUARE)
     off = shape.exterior.distance(leg)
     if abs(off - margin) < 1e-6:
