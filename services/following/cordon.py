@@ -13,7 +13,7 @@ from typing import Any
 from cratous.bridge import lmcp
 from cratous.core.authority.timeliness import lasted
 from cratous.core.kernel import Vec2
-from cratous.core.tasks.stations import Kept, in_ring
+from cratous.core.tasks.stations import in_ring
 from cratous.services.bus import Envelope
 from cratous.services.following.asked import (
     DURATION,
@@ -39,7 +39,6 @@ from cratous.services.pipeline.tasks import (
     ACTIVE,
     LISTED,
     ROUTES_KNOWN,
-    UNLISTED,
     State,
 )
 from cratous.services.planning.flyers import MOMENT_MS
@@ -182,18 +181,6 @@ class CordonTaskService(FollowingTaskService):
             return False, str(error)
         return in_ring(Vec2(*at[:2]), Vec2(*here[:2]), 0.0, PLACE_M), ""
 
-    def _over(self, state: Following, body: Any, out: list[Any]) -> Step:
-        """Complete; the vehicles stay where they are, as their plans end there, or go on in these."""
-        involved = sorted(part.vehicle for part in state.parts)
-        out.append(
-            lmcp.new(
-                "TaskComplete",
-                TaskID=self._task_id,
-                EntitiesInvolved=involved,
-                TimeTaskCompleted=body.Time,
-            )
-        )
-        for part in state.parts:
-            _, more = self._advance(part.state, UNLISTED, 0, body)
-            out += [one for one in more if type(one).__name__ != "TaskComplete"]
-        return state._replace(parts=(), kept=Kept(-1, False)), out
+    def _let_go(self, state: Following, part: Part) -> list[Any]:
+        """Nothing: it stays where it is, as its plan ends there, or goes on in this by itself."""
+        return []

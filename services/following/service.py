@@ -320,7 +320,7 @@ class FollowingTaskService(TaskService):
         return state._replace(kept=kept_at(state, asked.needed, state.now_ms, asked.least_ms)), out
 
     def _over(self, state: Following, body: Any, out: list[Any]) -> Step:
-        """Complete: the vehicles are sent on to what comes next in their plans."""
+        """Complete: the vehicles are let go."""
         involved = sorted(part.vehicle for part in state.parts)
         out.append(
             lmcp.new(
@@ -333,8 +333,12 @@ class FollowingTaskService(TaskService):
         for part in state.parts:
             _, more = self._advance(part.state, UNLISTED, 0, body)
             out += [one for one in more if type(one).__name__ != "TaskComplete"]
-            out.append(self._sent_on(state, part))
+            out += self._let_go(state, part)
         return state._replace(parts=(), kept=Kept(-1, False)), out
+
+    def _let_go(self, state: Following, part: Part) -> list[Any]:
+        """What sends a vehicle on to what comes next in its plan when the task is complete."""
+        return [self._sent_on(state, part)]
 
     def _removed(self, state: Following, body: Any) -> Step:
         """The task is no more: who does it ends it undone, and is sent on in its plan."""
