@@ -9,6 +9,7 @@ as is asked; then each is sent on in its plan.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from math import isfinite
 from typing import Any
 
 from cratous.bridge import lmcp
@@ -16,7 +17,7 @@ from cratous.core.authority.timeliness import lasted
 from cratous.core.geofence.mission_legs import first_bad_leg
 from cratous.core.kernel import Vec2
 from cratous.core.routing.visibility import name_of
-from cratous.core.tasks.stations import in_ring
+from cratous.core.tasks.stations import in_ring, outruns
 from cratous.services.bus import Envelope
 from cratous.services.following.asked import (
     DURATION,
@@ -50,8 +51,8 @@ from cratous.services.planning.options import Dropped, Option
 from cratous.spec.errors import BadInput, NoPlan
 
 EGRESS = "uxas.messages.route.EgressRouteResponse"
-PLACE_M = 20.0
-"""Who is no farther from its place blocks the road there."""
+PLACE_M, STANDS_M_S = 20.0, 0.5
+"""Who is no farther from its place, and slower, blocks the road there."""
 
 
 AWAITS_PLACES = 3
@@ -212,13 +213,16 @@ class CordonTaskService(FollowingTaskService):
         return state, out
 
     def _stands(self, part: Part, body: Any) -> tuple[bool, str]:
-        """Whether a vehicle is at its place by its state; why that says nothing."""
+        """Whether a vehicle stands at its place by its state; why that says nothing."""
         where, at = f"state of vehicle {body.ID}", part.option.path[0]
         try:
             here = part.context.places.pose(body.Location, 0.0, where, "Location")
         except BadInput as error:
             return False, str(error)
-        return in_ring(Vec2(*at[:2]), Vec2(*here[:2]), 0.0, PLACE_M), ""
+        if not isfinite(body.Groundspeed):
+            return False, "its Groundspeed is no number"
+        stands = outruns(Vec2(body.Groundspeed, 0.0), STANDS_M_S)
+        return stands and in_ring(Vec2(*at[:2]), Vec2(*here[:2]), 0.0, PLACE_M), ""
 
     def _let_go(self, state: Following, part: Part) -> list[Any]:
         """On to what comes next in its plan, if something does."""

@@ -151,6 +151,18 @@ def test_who_is_silent_or_tells_no_place_is_not_there(tmp_path: Path) -> None:
     assert "vehicle 4 is not at its place: " in rig.reasons("Warning")[0]
 
 
+def test_who_passes_its_place_does_not_stand_there(tmp_path: Path) -> None:
+    rig = asked(tmp_path, cordon())
+    for time_ms in (1000, 2000, 3000):
+        rig.tell(*(standing(rig, n, time_ms) for n in (1, 2, 3)))
+        rig.tell(standing(rig, 4, time_ms, Groundspeed=3.0))
+    assert not rig.got("TaskComplete")
+    rig.tell(standing(rig, 4, 4000, Groundspeed=math.nan))
+    assert "vehicle 4 is not at its place: its Groundspeed" in rig.reasons("Warning")[0]
+    rig.tell(*(standing(rig, n, time_ms) for time_ms in (4500, 5500) for n in range(1, 5)))
+    assert rig.got("TaskComplete")[0].TimeTaskCompleted == 5500
+
+
 def test_one_alone_does_not_count_while_it_is_silent(tmp_path: Path) -> None:
     out = map_text({1: MIDDLE, 2: (MIDDLE[0] + 0.01, MIDDLE[1])}, [1, 2])
     rig = driven(tmp_path, roads=out)
