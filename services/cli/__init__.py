@@ -50,6 +50,7 @@ COMMANDS = {
     "uxas": "Run a UxAS configuration: services and bridges.",
     "icarous": "Avoid for one vehicle, over the CRATOUS bridge to UxAS.",
     "sim": "Simulate the aircraft of an AMASE scenario, and be its AMASE on the network.",
+    "params": "List what ICAROUS and detect-and-avoid are set to for a mission.",
     "export": "Write a mission as AMASE scenario, UxAS messages, GeoJSON or KML.",
     "check": "Check mission files, algebra texts and requirements.",
     "serve": "Fly a mission, or replay one or two runs or a message log, in the browser.",
