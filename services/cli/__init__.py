@@ -13,6 +13,7 @@ import gc
 import importlib
 import io
 import json
+import keyword
 import sys
 import traceback
 from contextlib import nullcontext
@@ -51,6 +52,7 @@ COMMANDS = {
     "icarous": "Avoid for one vehicle, over the CRATOUS bridge to UxAS.",
     "sim": "Simulate the aircraft of an AMASE scenario, and be its AMASE on the network.",
     "params": "List what ICAROUS and detect-and-avoid are set to for a mission.",
+    "import": "Make a mission of flight plans, fences, traffic and parameters of ICAROUS.",
     "export": "Write a mission as AMASE scenario, UxAS messages, GeoJSON or KML.",
     "check": "Check mission files, algebra texts and requirements.",
     "serve": "Fly a mission, or replay one or two runs or a message log, in the browser.",
@@ -70,6 +72,7 @@ class LazyGroup(click.Group):
         if cmd_name not in COMMANDS:
             return None
         name = cmd_name.replace("-", "_")
+        name += "_" * keyword.iskeyword(name)
         module = importlib.import_module(f"cratous.services.cli.{name}")
         command: click.Command = getattr(module, name)
         return command
