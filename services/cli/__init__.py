@@ -53,7 +53,7 @@ COMMANDS = {
     "sim": "Simulate the aircraft of an AMASE scenario, and be its AMASE on the network.",
     "params": "List what ICAROUS and detect-and-avoid are set to for a mission.",
     "import": "Make a mission of flight plans, fences, traffic and parameters of ICAROUS.",
-    "export": "Write a mission as AMASE scenario, UxAS messages, GeoJSON or KML.",
+    "export": "Write a mission for other tools: AMASE, UxAS, GeoJSON, KML, ICAROUS.",
     "check": "Check mission files, algebra texts and requirements.",
     "serve": "Fly a mission, or replay one or two runs or a message log, in the browser.",
     "algebra": "Check, draw or enumerate a process-algebra text.",

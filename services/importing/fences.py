@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from cratous.bridge.lmcp.xml_text import parse
-from cratous.services.importing.parts import Fence, Parts, altitude, latitude, longitude, number
+from cratous.services.importing.parts import Fence, Parts, latitude, longitude, number
 from cratous.services.loading.document import Document
 from cratous.spec.errors import BadInput
 
@@ -22,6 +22,8 @@ TYPES = {
 """Words, and the numbers of older files: whether it is to be kept out of."""
 MOST = 1000
 """Corners of a fence."""
+HIGH_M = 200_000.0
+"""Floors and roofs that stand for none; what a zone may have, the mission says."""
 
 
 def read_fence_xml(text: bytes, file: str) -> Parts:
@@ -73,7 +75,9 @@ def _made(
             "corners are missing, or too many", where=where, item=name,
             expected=f"{max(3, int(said))} vertices", got=str(len(corners)),
         )  # fmt: skip
-    floor_m, roof_m = (altitude(told[tag], where, f"{name}: {tag}") for tag in ("floor", "roof"))
+    floor_m, roof_m = (
+        number(told[tag], where, f"{name}: {tag}", -HIGH_M, HIGH_M) for tag in ("floor", "roof")
+    )
     if corners[0] == corners[-1]:
         corners = corners[:-1]
     return Fence(name, kind, tuple(corners), floor_m, roof_m, True, where)
