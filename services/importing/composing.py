@@ -10,7 +10,7 @@ from cratous.services.importing.parts import Fence, Intruder, Parts, Place, Way
 from cratous.services.loading.yaml_mission import DEFAULT_WELL_CLEAR
 from cratous.services.mission.frames import Projection
 from cratous.services.parameters.mapping import Setting, settings_of
-from cratous.services.parameters.parameter_file import VOLUME
+from cratous.services.parameters.parameter_file import default_of
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Frame
 
@@ -47,7 +47,8 @@ def composed(parts: Parts, asked: Asked) -> Composed:
     settings = settings_of(given, 1.0)
     vehicles, tasks, relations = [], [], []
     whole = sum(len(way.places) - 1 for way in ways) <= TASKS_MOST
-    for k, way in enumerate(ways, 1):
+    numbers = _free(len(ways), parts.intruders)
+    for k, way in zip(numbers, ways, strict=True):
         speed = _speed_of(way, asked, settings)
         vehicle = _vehicle(k, way, plane, asked, (speed, settings_of(given, speed)))
         mine = _waypoints(k, way, asked) if whole else [_line(k, way, vehicle, asked, notes)]
@@ -71,9 +72,15 @@ def composed(parts: Parts, asked: Asked) -> Composed:
             _zone(k, fence, asked, settings) for k, fence in enumerate(parts.fences, 1)
         ]
     if parts.intruders:
-        data["traffic"] = _traffic(parts.intruders, len(ways), asked, notes)
+        data["traffic"] = _traffic(parts.intruders, numbers, asked, notes)
     data.update(_rest(settings, parts, notes))
     return Composed(data, tuple(dict.fromkeys(notes)))
+
+
+def _free(count: int, intruders: Sequence[Intruder]) -> list[int]:
+    """The first numbers that no intruder has: those keep theirs."""
+    taken = {one.id for one in intruders}
+    return [k for k in range(1, count + len(taken) + 1) if k not in taken][:count]
 
 
 def _without_repeats(way: Way, notes: list[str]) -> Way:
@@ -182,9 +189,9 @@ def _zone(k: int, fence: Fence, asked: Asked, settings: dict[str, Setting]) -> d
 
 
 def _traffic(
-    intruders: Sequence[Intruder], vehicles: int, asked: Asked, notes: list[str]
+    intruders: Sequence[Intruder], vehicles: Sequence[int], asked: Asked, notes: list[str]
 ) -> list[dict[str, Any]]:
-    taken, rows = set(range(1, vehicles + 1)), []
+    taken, rows = set(vehicles), []
     for one in intruders:
         number = one.id
         while number in taken:
@@ -235,8 +242,10 @@ def _rest(settings: dict[str, Setting], parts: Parts, notes: list[str]) -> dict[
     unused = [
         one.name.name
         for one in (parts.parameters or {}).values()
-        if not one.name.item and one.name.name != VOLUME
+        if not one.name.item and one.value != default_of(one.name)
     ]
     if unused:
-        notes.append(f"parameters that are not used here: {', '.join(unused)}")
+        notes.append(
+            f"not the default of ICAROUS, and not used here: {', '.join(unused)} (`cratous params --icarous FILE` says why)"
+        )
     return found

@@ -33,7 +33,10 @@ def gathered(paths: Sequence[Path], how: Reading) -> Parts:
         notes=tuple(one for parts in found for one in parts.notes),
     )
     if not whole.ways:
-        raise BadInput("no flight plan", where=", ".join(map(str, paths))[:200], expected=KNOWN)
+        left = "; ".join(note for note in whole.notes if "not read" in note)
+        raise BadInput(
+            "no flight plan", where=", ".join(map(str, paths))[:200], expected=KNOWN, got=left[:400]
+        )
     return whole
 
 

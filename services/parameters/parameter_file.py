@@ -63,6 +63,12 @@ def parse(text: str, file: str) -> dict[str, Given]:
     return found
 
 
+def default_of(name: Name) -> float | bool | str:
+    """What ICAROUS takes where a file does not say it, in SI."""
+    text = f"{name.default} [{name.unit}]" if name.unit else name.default
+    return _value(name, Entry("", name.name, text, ""))
+
+
 def nearest_name(name: str) -> str:
     """The known names that look like one; a few words if none does."""
     text = nearest(name, NAMES)

@@ -16,6 +16,8 @@ from cratous.services.exporting.exported import exported
 from cratous.services.importing.composing import Asked, composed
 from cratous.services.importing.fences import read_fence_xml
 from cratous.services.importing.gathering import gathered
+from cratous.services.importing.geojson import read_geojson
+from cratous.services.importing.kml import read_kml
 from cratous.services.importing.mission_text import mission_text
 from cratous.services.importing.parts import Reading
 from cratous.services.importing.qgc import read_qgc
@@ -138,6 +140,12 @@ def test_a_planned_route_is_written_without_what_lies_on_its_legs() -> None:
     found = [plane.to_local(p.latitude_deg, p.longitude_deg) for p in way.places]
     assert np.array(found) == pytest.approx(np.array([(0, 0), (200, 0), (200, 20)]), abs=1e-3)
     assert way.speed_m_s == 11
+    for form, read in (("geojson", read_geojson), ("kml", read_kml)):
+        (text,) = exported(made, form, plan).files.values()
+        told = text if form == "geojson" else text.encode()
+        (mapped,) = read(told, form, Reading()).ways  # type: ignore[operator]
+        assert [place.alt_m for place in mapped.places] == [50.0] * len(mapped.places)
+        assert mapped.speed_m_s == 11
 
 
 @pytest.mark.parametrize(

@@ -12,8 +12,9 @@ import yaml
 from cratous.services.exporting.exported import GEOJSON, KML, exported
 from cratous.services.importing.composing import Asked, composed
 from cratous.services.importing.gathering import gathered
-from cratous.services.importing.parts import Parts, Place, Reading, Way
+from cratous.services.importing.parts import Intruder, Parts, Place, Reading, Way
 from cratous.services.loading import load
+from cratous.services.parameters.parameter_file import parse
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import Mission, ZoneKind
 
@@ -26,7 +27,7 @@ def taken(run: Run, root: Path, tmp_path: Path) -> Path:
     """The mission made of the example's files."""
     code, out, err = run("import", root / FILES, "-o", tmp_path / "mission.yaml")
     assert (code, out) == (0, "")
-    assert "not used here: daa_resolution_type, fence_action" in err
+    assert "not used here: daa_resolution_type, fence_action (" in err
     return tmp_path / "mission.yaml"
 
 
@@ -97,6 +98,17 @@ def test_a_long_plan_is_a_line_and_many_plans_are_many_vehicles() -> None:
     assert any("one task: a line" in note for note in long.notes)
     with pytest.raises(BadInput, match="changes its altitude"):
         composed(Parts(ways=(way("a", 66, float),)), Asked("long"))
+
+
+def test_traffic_keeps_its_ids_and_defaults_are_not_noted() -> None:
+    """ICAROUS counts traffic from 1, so the vehicle takes the next number that is free."""
+    spots = [Intruder(k, None, 900.0, 0.0, 9.0, (0.0, 0.0, 0.0), 0.0, "") for k in (1, 2, 2)]
+    plain = parse("fence_action = 0\nalt_bins = 2\nstale_threshold = 10 [s]\n", "p")
+    made = composed(Parts((way("a", 3),), (), tuple(spots), plain), Asked("ids"))
+    assert [v["id"] for v in made.data["vehicles"]] == [3]
+    assert [t["id"] for t in made.data["traffic"]] == [1, 2, 1002]
+    assert made.data["relations"] == ".(p301 p302)"
+    assert any("not used here: alt_bins (" in note for note in made.notes)
 
 
 def test_what_a_mission_lacks_is_asked_for(run: Run, tmp_path: Path) -> None:
