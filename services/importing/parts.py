@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from typing import NamedTuple
 
 from cratous.services.parameters.parameter_file import Given
 from cratous.spec.errors import BadInput
 
+_PLAIN = re.compile(r"[-+]?[0-9]*\.?[0-9]*([eE][-+]?[0-9]+)?")
 ALT_M, LEAST_ALT_M = 30_000.0, -500.0
 """Altitudes that a mission file may have."""
 
@@ -78,8 +80,10 @@ class Reading(NamedTuple):
 
 def number(text: object, where: str, item: str, low: float, high: float) -> float:
     """A finite number in a range. Raises BadInput."""
+    # Python also takes 1_0, and digits of other scripts
+    odd = isinstance(text, bool) or (isinstance(text, str) and not _PLAIN.fullmatch(text.strip()))
     try:
-        value = math.nan if isinstance(text, bool) else float(text)  # type: ignore[arg-type]
+        value = math.nan if odd else float(text)  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
         value = math.nan
     if not low <= value <= high:
@@ -87,6 +91,14 @@ def number(text: object, where: str, item: str, low: float, high: float) -> floa
         got = str(text)[:60]
         raise BadInput(what, where=where, item=item, expected=f"{low:g} to {high:g}", got=got)
     return value
+
+
+def whole(text: object, where: str, item: str, high: int) -> int:
+    """A whole number from 0. Raises BadInput."""
+    value = number(text, where, item, 0, high)
+    if value != int(value):
+        raise BadInput("not a whole number", where=where, item=item, got=str(text)[:60])
+    return int(value)
 
 
 def latitude(text: object, where: str, item: str = "latitude") -> float:

@@ -17,6 +17,7 @@ from cratous.services.importing.parts import (
     latitude,
     longitude,
     number,
+    whole,
 )
 from cratous.spec.errors import BadInput
 from cratous.spec.files.limits import at_most
@@ -98,8 +99,9 @@ def _line(raw: str, where: str) -> _Line:
             expected=f"{FIELDS} fields",
             got=str(len(texts)),
         )
-    frame = number(texts[2], where, "frame", 0, 255)
-    command = int(number(texts[3], where, "command", 0, 65535))
+    whole(texts[0], where, "index", 2 * MOST)
+    frame = whole(texts[2], where, "frame", 255)
+    command = whole(texts[3], where, "command", 65535)
     if command not in COMMANDS:
         known = ", ".join(f"{k} ({name})" for k, name in COMMANDS.items())
         raise BadInput(
@@ -107,7 +109,7 @@ def _line(raw: str, where: str) -> _Line:
         )
     names = [f"parameter {k}" for k in range(1, 5)]
     parameters = [number(t, where, n, -1e9, 1e9) for t, n in zip(texts[4:8], names, strict=True)]
-    return _Line(where, int(frame), command, tuple(parameters), texts)
+    return _Line(where, frame, command, tuple(parameters), texts)
 
 
 def _place(line: _Line, before: list[Place]) -> Place:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import random
 from collections.abc import Callable
 from pathlib import Path
 
@@ -150,6 +151,10 @@ def test_zones_and_ways_of_maps(read: Callable[..., Parts]) -> None:
         ("p.txt", PLAN.replace(" 16 ", " 19 "), 3, "command", "16 (waypoint)"),
         ("p.txt", PLAN.replace(" 3 16", " 1 16"), 3, "frame", "above sea level"),
         ("p.txt", PLAN.replace("52.001", "95"), 3, "latitude", "-89 to 89"),
+        ("p.txt", PLAN.replace(" 3 16", " 3.5 16"), 3, "frame", ""),
+        ("p.txt", PLAN.replace("1 0 3", "one 0 3"), 3, "index", "0 to 4000"),
+        ("p.txt", PLAN.replace("52.001", "5_2"), 3, "latitude", "-89 to 89"),
+        ("p.txt", PLAN.replace("52.001", "٣"), 3, "latitude", "-89 to 89"),
         ("p.txt", PLAN.replace("52.001", "nan"), 3, "latitude", "-89 to 89"),
         ("p.txt", PLAN.replace("52.001 8.5", "0 0"), 3, "latitude", "its latitude"),
         ("p.txt", f"QGC WPL 110\n{HOME}", 0, "", "two waypoints or more"),
@@ -186,3 +191,44 @@ def test_what_cannot_be_read_is_refused(
     error = caught.value
     assert (error.item, expected in error.expected) == (item, True), str(error)
     assert error.where.endswith(f"{name}:{line}" if line else name)
+
+
+FORMS = {
+    "p.txt": PLAN, "f.xml": FENCE, "p.eutl": EUTL, "p.daa": DAA, "m.kml": KML.format(mode="absolute"),
+    "t.yaml": "- [4, 100, 90, 5, 2, 270, 1]\n- [5, 10, 0, 5, 2, 0, 0, 30, FLARM]\n",
+    "m.json": features((AREA, {"kind": "keep_in"}), (ROUTE, {"speed_m_s": 7})),
+}  # fmt: skip
+RUBBISH = [
+    "nan",
+    "1e999",
+    "9" * 400,
+    "",
+    "<",
+    "]",
+    "{",
+    "null",
+    "-",
+    "\x00",
+    ":",
+    "#",
+    "=",
+    "\n",
+    "0x1",
+]
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_rubbish_is_read_or_refused(read: Callable[..., Parts], name: str) -> None:
+    """Never an error of another kind: sixty changes of each form, the same in each run."""
+    rng, refused = random.Random(25), list[str]()
+    for _ in range(60):
+        text = FORMS[name]
+        for _ in range(rng.randint(1, 3)):
+            at = rng.randrange(len(text))
+            text = text[:at] + rng.choice(RUBBISH) + text[at + rng.choice((0, 1, 4)) :]
+        try:
+            read(name, text, Reading(origin=(52.0, 8.0)))
+        except BadInput as error:
+            refused.append(error.where)
+    assert len(refused) > 20
+    assert all(name in where for where in refused)
