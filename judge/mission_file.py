@@ -17,6 +17,8 @@ from cratous.judge.earth import to_local
 from cratous.judge.fields import Node
 from cratous.spec.errors import BadInput
 
+LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+"""The first is libyaml: ten times faster."""
 LARGEST = 20_000_000
 CORNERS = 64
 """A circle of an area stands for a polygon around it with so many corners."""
@@ -27,7 +29,7 @@ def read(path: Path) -> m.Mission:
     try:
         if path.stat().st_size > LARGEST:
             raise BadInput("too large", where=str(path), expected=f"at most {LARGEST} bytes")
-        data = yaml.safe_load(path.read_text(encoding="utf-8"))
+        data = yaml.load(path.read_text(encoding="utf-8"), Loader=LOADER)
     except (OSError, UnicodeDecodeError, ValueError, yaml.YAMLError, RecursionError) as error:
         text = " ".join(str(error).split())[:200]
         raise BadInput(f"not a mission file ({text})", where=str(path)) from None
