@@ -38,7 +38,10 @@ class Node:
 
     def wrong(self, expected: str) -> BadInput:
         """The error that this value is."""
-        got = repr(self.data) if not isinstance(self.data, int) else _digits(self.data)
+        try:
+            got = repr(self.data) if not isinstance(self.data, int) else _digits(self.data)
+        except RecursionError:
+            got = "what is nested too deeply to be shown"
         return BadInput(
             "does not fit", where=self.where, item=self.item, expected=expected, got=got[:80]
         )
