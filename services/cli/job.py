@@ -20,6 +20,7 @@ from cratous.spec.mission.plan import (
     in_part_of,
     left_out_of,
 )
+from cratous.spec.mission.sensing import EXACT_STATES, words
 
 if TYPE_CHECKING:
     from cratous.services.certify.report import Flown
@@ -211,8 +212,16 @@ def tell_plan(mission: Mission, plan: Plan, checks: list[Verdict], tell: Tell) -
         plan_line(mission, plan, checks),
         *left_out_lines(plan),
         *absent_lines(mission),
+        *states_lines(mission),
     ):
         tell(line)
+
+
+def states_lines(mission: Mission) -> list[str]:
+    """A line that says what ICAROUS is given to see, if anybody has one."""
+    if not mission.instances:
+        return []
+    return [EXACT_STATES if mission.sensing is None else words(mission.sensing)]
 
 
 def accept_plan(
