@@ -26,17 +26,19 @@ if TYPE_CHECKING:
     from cratous.services.certify.report import Flown
     from cratous.services.logs.log import LogWriter
     from cratous.services.monitor import Monitor
+    from cratous.services.requirements.own_files import OwnFile
 
 Tell = Callable[[str], None]
 
 
 @dataclass(frozen=True)
 class Settings:
-    """How a mission is run; `command` is what reproduces it."""
+    """How a mission is run; `command` is what reproduces it, own: requirements of the user's own."""
 
     daa: bool = True
     allow_unproved: bool = False
     command: str = ""
+    own: tuple[OwnFile, ...] = ()
 
 
 class InProcesses(NamedTuple):
@@ -166,7 +168,8 @@ def fly_mission(
         mission = replace(mission, instances=())
     bus = new_bus()
     log = folder / LOG_NAME
-    flown = Flown(settings.command, settings.daa, inventory(standing, None), environment())
+    proofs = inventory(standing, None)
+    flown = Flown(settings.command, settings.daa, proofs, environment(), settings.own)
     with LogWriter(log, **log_meta(mission, flown)) as writer:
         bus.tap(writer.tap)
         if onlooker is not None:
