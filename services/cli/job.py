@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
+from cratous.services.loading.fitness import warnings_of
 from cratous.services.mission.availability import absent
 from cratous.services.mission.wind import known_at
 from cratous.spec.errors import NoPlan
@@ -207,8 +208,9 @@ def log_meta(mission: Mission, flown: Flown) -> dict[str, Any]:
 
 
 def tell_plan(mission: Mission, plan: Plan, checks: list[Verdict], tell: Tell) -> None:
-    """Say what is planned, what is left out, and who takes no part at the start."""
+    """Say which parameters do not fit, what is planned, what is left out, and who takes no part at the start."""
     for line in (
+        *(f"note: {text}" for text in warnings_of(mission)),
         plan_line(mission, plan, checks),
         *left_out_lines(plan),
         *absent_lines(mission),
