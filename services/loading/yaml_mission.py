@@ -28,6 +28,7 @@ from cratous.services.loading.problems import refuse
 from cratous.services.loading.schema import schema_problems
 from cratous.services.loading.start_distances import close_starts
 from cratous.services.loading.yaml_bridge_faults import yaml_bridge_faults
+from cratous.services.loading.yaml_sensing import yaml_sensing
 from cratous.services.loading.yaml_task import yaml_task
 from cratous.spec.errors import BadInput
 from cratous.spec.mission import (
@@ -38,6 +39,7 @@ from cratous.spec.mission import (
     Frame,
     LivePlanningMission,
     Mission,
+    SensedDaa,
     Simulation,
     Traffic,
     Vehicle,
@@ -49,6 +51,8 @@ from cratous.spec.mission import (
 )
 from cratous.spec.mission.bridge_faults import words
 from cratous.spec.mission.changes import WIND, ZONE_ENDS, WindChange, ZoneEnd
+from cratous.spec.mission.sensing import Sensing
+from cratous.spec.mission.sensing import words as sensing_words
 
 DEFAULT_WELL_CLEAR = WellClear(dthr_m=150.0, zthr_m=30.0, tthr_s=15.0, tcoa_s=0.0)
 MAX_BANK_DEG, MAX_CLIMB_M_S = 30.0, 5.0
@@ -115,6 +119,8 @@ def finish(mission: Mission, where: Any) -> Mission:
     refuse(problems)
     if isinstance(mission.simulation, FaultySimulation):
         notes.append(words(mission.simulation.bridge_faults))
+    if mission.sensing is not None:
+        notes.append(sensing_words(mission.sensing))
     mission = replace(mission, zones=zones, changes=known)
     refuse(list(start_problems(mission, where)))
     said = [*mission.notes, *notes, *warnings_of(mission)]
@@ -137,6 +143,8 @@ def _mission(document: Document, seed: int) -> Mission:
     places = Places(frame)
     vehicles = tuple(_vehicle(entry, places) for entry in data["vehicles"])
     live = bool(data.get("bridge", {}).get("uxas_route_planner", False))
+    instances, simulation = _instances(document, vehicles), _simulation(document)
+    sensing = yaml_sensing(document, simulation, len(instances))
     kind = LivePlanningMission if live else Mission
     return kind(
         name=data["name"],
@@ -146,14 +154,14 @@ def _mission(document: Document, seed: int) -> Mission:
         tasks=tuple(
             yaml_task(entry, places, document.where, k) for k, entry in enumerate(data["tasks"])
         ),
-        daa=_daa(data.get("daa", {})),
+        daa=_daa(data.get("daa", {}), sensing),
         zones=tuple(_zone(entry, places) for entry in data.get("zones", [])),
         traffic=tuple(_traffic(entry, places) for entry in data.get("traffic", [])),
         relations=data.get("relations", "").strip(),
         cost=data.get("cost", "MINMAX"),
         order=data.get("order", "time"),
-        instances=_instances(document, vehicles),
-        simulation=_simulation(document, data.get("simulation", {})),
+        instances=instances,
+        simulation=simulation,
         changes=tuple(_change(entry, places) for entry in data.get("changes", [])),
         seed=seed,
         node_limit=_nodes(data.get("search", {})),
@@ -254,14 +262,18 @@ def _traffic(data: dict[str, Any], places: Places) -> Traffic:
     )
 
 
-def _daa(data: dict[str, Any]) -> Daa:
+def _daa(data: dict[str, Any], sensing: Sensing | None) -> Daa:
     volume = {name: float(value) for name, value in data.get("well_clear", {}).items()}
     rest = {name: float(data[name]) for name in ("lookahead_s", "buffer") if name in data}
     close = bool(data.get("close_starts", False))
-    return Daa(replace(DEFAULT_WELL_CLEAR, **volume), **rest, close_starts=close)
+    volume_kept = replace(DEFAULT_WELL_CLEAR, **volume)
+    if sensing is None:
+        return Daa(volume_kept, **rest, close_starts=close)
+    return SensedDaa(volume_kept, **rest, close_starts=close, sensing=sensing)
 
 
-def _simulation(document: Document, data: dict[str, Any]) -> Simulation:
+def _simulation(document: Document) -> Simulation:
+    data = document.data.get("simulation", {})
     found: dict[str, int] = {
         name: int(data[name]) for name in ("step_ms", "heartbeat_ms") if name in data
     }
