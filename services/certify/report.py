@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from cratous import __version__
 from cratous.core.files.whole_file import write_atomically
 from cratous.services.certify.blame import Commands, blame_rows
-from cratous.services.certify.limits import LIMITS
+from cratous.services.certify.limits import LIMITS, of_states
 from cratous.services.certify.running_code import running_code
 from cratous.services.certify.timeline import Flight, bars, read_flight
 from cratous.services.certify.verdicts import requirement_rows, with_promised, without_ground
@@ -156,7 +156,7 @@ def build_report(
             "by_topic": dict(sorted(flight.counts.items())),
         },
         "proofs": flown.proofs,
-        "limits": [*LIMITS, _scale(mission)],
+        "limits": [*LIMITS, *of_states(mission), _scale(mission)],
         "environment": flown.environment,
     }
 

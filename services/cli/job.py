@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
+from cratous.services.loading.fitness import warnings_of
 from cratous.services.mission.availability import absent
 from cratous.services.mission.wind import known_at
 from cratous.spec.errors import NoPlan
@@ -20,6 +21,7 @@ from cratous.spec.mission.plan import (
     in_part_of,
     left_out_of,
 )
+from cratous.spec.mission.sensing import EXACT_STATES, words
 
 if TYPE_CHECKING:
     from cratous.services.certify.report import Flown
@@ -206,13 +208,22 @@ def log_meta(mission: Mission, flown: Flown) -> dict[str, Any]:
 
 
 def tell_plan(mission: Mission, plan: Plan, checks: list[Verdict], tell: Tell) -> None:
-    """Say what is planned, what is left out, and who takes no part at the start."""
+    """Say which parameters do not fit, what is planned, what is left out, and who takes no part at the start."""
     for line in (
+        *(f"note: {text}" for text in warnings_of(mission)),
         plan_line(mission, plan, checks),
         *left_out_lines(plan),
         *absent_lines(mission),
+        *states_lines(mission),
     ):
         tell(line)
+
+
+def states_lines(mission: Mission) -> list[str]:
+    """A line that says what ICAROUS is given to see, if anybody has one."""
+    if not mission.instances:
+        return []
+    return [EXACT_STATES if mission.sensing is None else words(mission.sensing)]
 
 
 def accept_plan(
