@@ -14,9 +14,9 @@ from cratous.services.certify.blame import Commands, told_of
 from cratous.services.certify.own_blame import blame_rows_of
 from cratous.services.certify.rejudge import watch
 from cratous.services.logs.log import read_meta
+from cratous.services.requirements.outcome import Outcome
 from cratous.services.requirements.specification import Specification
 from cratous.services.requirements.traces import doubts
-from cratous.services.requirements.watch import Outcome
 from cratous.services.results.names import LOG_NAME
 from cratous.spec.errors import BadInput
 

@@ -17,10 +17,11 @@ from cratous.services.certify.own_blame import Told, blame_rows_of
 from cratous.services.certify.own_margins import least_margin, margins
 from cratous.services.logs.source import open_log
 from cratous.services.requirements.formula import Bounded, Formula, Join, Not, Reaches, parts
+from cratous.services.requirements.outcome import Outcome
 from cratous.services.requirements.own_files import OwnFile, line_of
 from cratous.services.requirements.specification import NotRead, Requirement, Specification
 from cratous.services.requirements.traces import doubts, rows_of_messages, wanted_of
-from cratous.services.requirements.watch import Outcome, Watch, Watched
+from cratous.services.requirements.watch import Watch, Watched
 from cratous.spec.errors import BadInput
 
 Data = dict[str, Any]
@@ -72,8 +73,7 @@ def _watched(spec: Specification, log: Path) -> Watched:
         watching.sampling.find(doubt)
     wanted = wanted_of(spec, watching.needed)
     with open_log(log) as source:
-        for _ in watching.rows(rows_of_messages(source.entries(), wanted)):
-            pass
+        watching.all(watching.sampling.samples(rows_of_messages(source.entries(), wanted)))
     return watching.result()
 
 

@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 from cratous.services.requirements.formula import signals
+from cratous.services.requirements.outcome import Outcome
 from cratous.services.requirements.said import facts
 from cratous.services.requirements.specification import NotRead, Requirement, Specification
-from cratous.services.requirements.watch import Outcome
 
 Data = dict[str, Any]
 MS = 10**6

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from cratous.services.requirements.formula import Formula, Join, Not, Reaches
+from cratous.services.requirements.outcome import Margin, Outcome
 from cratous.services.requirements.specification import NotRead
-from cratous.services.requirements.watch import Margin, Outcome
 
 Data = dict[str, Any]
 

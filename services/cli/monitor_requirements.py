@@ -12,8 +12,9 @@ import click
 if TYPE_CHECKING:
     from cratous.core.ledger import Standing
     from cratous.services.requirements.lint import Remark
+    from cratous.services.requirements.outcome import Margin, Outcome
     from cratous.services.requirements.specification import Specification
-    from cratous.services.requirements.watch import Margin, Outcome, Watched
+    from cratous.services.requirements.watch import Watched
 
 
 class Judged(NamedTuple):

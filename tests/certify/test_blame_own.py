@@ -22,9 +22,10 @@ from cratous.services.cli import run as command
 from cratous.services.requirements import language
 from cratous.services.requirements.evaluation import FALSE, UNKNOWN, Evaluation
 from cratous.services.requirements.formula import Bounded, Formula, Join, Not, Reaches
+from cratous.services.requirements.outcome import Outcome
 from cratous.services.requirements.said import facts, said
 from cratous.services.requirements.specification import Specification
-from cratous.services.requirements.watch import Outcome, Watch, watch
+from cratous.services.requirements.watch import Watch, watch
 
 HEAD = """trace every 1 s
 signal x, y: m from AirVehicleState[ID=1].Location.Altitude hold 1 s
