@@ -224,7 +224,7 @@ LISTING = (
         ("G2",),
         "that what ICAROUS keeps clear of holds the true places",
         SAMPLED,
-        "each state that was sensed, at each heartbeat: how far from it the true one is",
+        "each state that was sensed, at each heartbeat: how far from it the true one is, as a share of the bound",
     ),
 )
 """All of them, in the order in which they are shown."""

@@ -31,7 +31,7 @@ class SensedWatch:
         if mission.instances and mission.sensing is None:
             none = EXACT_STATES
         waits = "nothing was sensed"
-        self._record = Record("of its bound", 1.0, (disc_within,), none, waits=waits)
+        self._record = Record("", 1.0, (disc_within,), none, waits=waits)
 
     def message(self, message: Message) -> None:
         """What was sensed waits for the true state of its instant."""
