@@ -89,7 +89,7 @@ def result(found: Judged) -> dict[str, Any]:
 
 def told(found: Judged) -> Iterator[str]:
     """The same for people."""
-    from cratous.services.certify.blame_own import lines
+    from cratous.services.certify.own_said import lines
 
     for remark in found.remarks:
         yield f"lint: {remark.text}"

@@ -21,6 +21,7 @@ from cratous.services.loading.checks import (
     zone_end_problems,
 )
 from cratous.services.loading.document import Document, item_key, read_document
+from cratous.services.loading.fitness import warnings_of
 from cratous.services.loading.places import Places
 from cratous.services.loading.polygons import padded
 from cratous.services.loading.problems import refuse
@@ -54,6 +55,8 @@ from cratous.spec.mission.sensing import Sensing
 from cratous.spec.mission.sensing import words as sensing_words
 
 DEFAULT_WELL_CLEAR = WellClear(dthr_m=150.0, zthr_m=30.0, tthr_s=15.0, tcoa_s=0.0)
+MAX_BANK_DEG, MAX_CLIMB_M_S = 30.0, 5.0
+"""Of a vehicle that does not say them."""
 
 
 def load(path: Path, seed: int = 0) -> Mission:
@@ -118,9 +121,10 @@ def finish(mission: Mission, where: Any) -> Mission:
         notes.append(words(mission.simulation.bridge_faults))
     if mission.sensing is not None:
         notes.append(sensing_words(mission.sensing))
-    mission = replace(mission, zones=zones, changes=known, notes=(*mission.notes, *notes))
+    mission = replace(mission, zones=zones, changes=known)
     refuse(list(start_problems(mission, where)))
-    return mission
+    said = [*mission.notes, *notes, *warnings_of(mission)]
+    return replace(mission, notes=tuple(dict.fromkeys(said)))
 
 
 def expectations(path: Path) -> dict[str, Any]:
@@ -193,8 +197,8 @@ def _vehicle(data: dict[str, Any], places: Places) -> Vehicle:
         speed_m_s=speed,
         min_speed_m_s=float(data.get("min_speed_m_s", speed)),
         max_speed_m_s=float(data.get("max_speed_m_s", speed)),
-        max_bank_rad=radians(float(data.get("max_bank_deg", 30.0))),
-        max_climb_m_s=float(data.get("max_climb_m_s", 5.0)),
+        max_bank_rad=radians(float(data.get("max_bank_deg", MAX_BANK_DEG))),
+        max_climb_m_s=float(data.get("max_climb_m_s", MAX_CLIMB_M_S)),
         protected=data.get("protected", True),
         cameras=tuple(_camera(entry) for entry in data.get("cameras", [])),
         cruise_m=float(data["cruise_m"]) if "cruise_m" in data else None,
