@@ -30,7 +30,9 @@ def read_traffic(document: Document) -> Parts:
     found = tuple(_intruders(document))
     notes = []
     if any(len(one) == max(LENGTHS) and any(one[9:]) for one in document.data):
-        notes.append(f"{document.path}: covariances are not used: traffic is seen as it is")
+        notes.append(
+            f"{document.path}: covariances are not used: errors of sensors are for the section `sensing` to say"
+        )
     return Parts(intruders=found, notes=tuple(notes))
 
 

@@ -80,7 +80,7 @@ GROUPS = (
     Group("", "which side to take is decided by the right of way and by ways that are told", (
         ("conflict_crit", "false", ""), ("recovery_crit", "false", ""),
     )),
-    Group("", "traffic is seen as it is: no sensor, no uncertainty", (
+    Group("", "how far off a track may be is `sigmas` of the section `sensing`", (
         ("h_pos_z_score", "0.0", ""), ("h_vel_z_score_min", "0.0", ""),
         ("h_vel_z_score_max", "0.0", ""), ("h_vel_z_distance", "0.0", "nmi"),
         ("v_pos_z_score", "0.0", ""), ("v_vel_z_score", "0.0", ""),
@@ -150,7 +150,7 @@ GROUPS = (
     Group("", "all traffic of the mission counts", (
         ("traffic_source", "0", ""),
     )),
-    Group("", "traffic is seen at every heartbeat", (
+    Group("", "how long a track lasts is `coast_s` of the section `sensing`", (
         ("stale_threshold", "10", "s"), ("track_timeout", "5", "s"),
     )),
     Group("zones[].padding_m", "of keep-outs", (
@@ -175,7 +175,7 @@ GROUPS = (
         ("Priority_FlightPlanDeviation", "1", ""), ("Priority_Ditching", "5", ""),
         ("Priority_TODReached", "1", ""),
     )),
-    Group("", "no tracker: traffic is seen as it is", (
+    Group("", "tracks are made as the section `sensing` says, by a model of its own", (
         ("pos_model_uncertainty_xx", "10.0", "m^2"), ("pos_model_uncertainty_yy", "10.0", "m^2"),
         ("pos_model_uncertainty_zz", "10.0", "m^2"), ("pos_model_uncertainty_xy", "0.0", "m^2"),
         ("pos_model_uncertainty_yz", "0.0", "m^2"), ("pos_model_uncertainty_xz", "0.0", "m^2"),

@@ -27,9 +27,18 @@ from cratous.services.loading.document import read_document
 from cratous.services.loading.schema import mission_schema
 from cratous.services.loading.yaml_mission import MAX_BANK_DEG, MAX_CLIMB_M_S
 from cratous.services.parameters.parameter import DEFAULT, DERIVED, FIXED, GIVEN, Parameter
+from cratous.services.parameters.sensed import SECTION, rows_of
 from cratous.spec.mission import LivePlanningMission, Mission, Vehicle
 
-UNITS = {"_m_s": "m/s", "_deg": "deg", "_ms": "ms", "_m": "m", "_s": "s", "_w": "W"}
+UNITS = {
+    "_m_s2": "m/s^2",
+    "_m_s": "m/s",
+    "_deg": "deg",
+    "_ms": "ms",
+    "_m": "m",
+    "_s": "s",
+    "_w": "W",
+}
 VEHICLE = ("speed_m_s", "min_speed_m_s", "max_speed_m_s", "max_bank_deg", "max_climb_m_s")
 CRUISE = "the vehicle's speed_m_s"
 EXCUSE = "whether there was a way out (G2) is looked for so among"
@@ -39,7 +48,7 @@ def parameters_of(mission: Mission, path: Path) -> tuple[Parameter, ...]:
     """All of a mission that was read from a path, those of the mission first. Raises BadInput if it cannot be
     read again."""
     written = _written(path)
-    rows = [*_of_mission(mission, written)]
+    rows = [*_of_mission(mission, written), *_of_sensing(mission, written)]
     for k, vehicle in enumerate(mission.vehicles):
         rows += _of_vehicle(vehicle, _at(written, ("vehicles", k)))
         if vehicle.id in mission.instances:
@@ -96,6 +105,16 @@ def _of_mission(mission: Mission, written: Any) -> Iterator[Parameter]:
         facts = mission_schema()["$defs"]["zone"]["properties"]["padding_m"]
         value, name = zone.get("padding_m"), f"zones[{zone['id']}].padding_m"
         yield _may_be_given(name, 0, value or 0.0, 0.0, facts, value is not None)
+
+
+def _of_sensing(mission: Mission, written: Any) -> Iterator[Parameter]:
+    if mission.sensing is None:
+        return
+    for row in rows_of(mission.sensing, mission_schema()["properties"][SECTION]):
+        name = str(row.path[-1])
+        said = written is None or _at(written, row.path) is not None
+        made = _may_be_given(name, 0, row.value, row.facts.get("default"), row.facts, said)
+        yield made._replace(name=row.name)
 
 
 def _of_vehicle(vehicle: Vehicle, written: Any) -> Iterator[Parameter]:

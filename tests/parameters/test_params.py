@@ -49,6 +49,16 @@ def test_a_speed_that_is_left_out_is_derived(run: Run, root: Path, tmp_path: Pat
     assert mine[0]["value"] == 22
 
 
+def test_what_is_sensed_has_parameters_too(run: Run, root: Path) -> None:
+    rows = json.loads(run("params", root / "examples/sensed", "--json")[1])["parameters"]
+    found = {row["name"]: row for row in rows if row["name"].startswith("sensing.")}
+    assert found["sensing.sigmas"]["low"] == 1
+    assert {row["origin"] for row in found.values()} == {"given", "default"}
+    assert any("(adsb)" in name or "(radar)" in name for name in found)
+    plain = json.loads(run("params", root / "examples/crossing", "--json")[1])["parameters"]
+    assert not [row for row in plain if row["name"].startswith("sensing.")]
+
+
 def test_what_does_not_fit_is_said(run: Run, root: Path, tmp_path: Path) -> None:
     text = (root / "examples/crossing/mission.yaml").read_text(encoding="utf-8")
     short = text.replace("lookahead_s: 60", "lookahead_s: 3").partition("variation:")[0]
