@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from cratous.core.files.whole_file import write_atomically
 from cratous.services.parameters.icarous_names import NAMES
 
 PAGE = Path(__file__).resolve().parents[1] / "reference" / "parameters.md"
@@ -18,7 +19,7 @@ def main() -> None:
         why = f": {name.why}" if name.why else ""
         rows.append(f"| `{name.name}` | {f'{name.default} {name.unit}'.strip()} | {used}{why} |\n")
     text = PAGE.read_text(encoding="utf-8").partition(HEAD)[0]
-    PAGE.write_text(text + HEAD + "".join(rows), encoding="utf-8")
+    write_atomically(PAGE, text + HEAD + "".join(rows))
 
 
 if __name__ == "__main__":

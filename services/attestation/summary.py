@@ -9,7 +9,7 @@ from typing import Any
 from cratous.services.attestation.findings import Data
 from cratous.services.attestation.names import STATEMENT_NAME
 from cratous.services.attestation.statement import claim
-from cratous.services.certify.limits import LIMITS
+from cratous.services.certify.limits import LIMITS, said_of_states
 from cratous.services.certify.report_schema import departures
 from cratous.services.results.names import FORMER, OWN, REPORT_NAME
 from cratous.spec.mission.guarantees import REQUIREMENTS, Outcome, exit_code, worst
@@ -61,7 +61,9 @@ def _rows(report: Data) -> list[str]:
         if number > 1:
             found.append(f"{number} rows of {name} on the same: {item}")
     *limits, of_frame = report["limits"] or [""]
-    if tuple(limits) != LIMITS or not OF_FRAME.fullmatch(of_frame):
+    mission = report["mission"]
+    of_states = said_of_states(bool(mission["instances"]), "sensing" in mission["daa"])
+    if limits != [*LIMITS, *of_states] or not OF_FRAME.fullmatch(of_frame):
         found.append("its limits are not those that every report has")
     return found
 

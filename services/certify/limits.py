@@ -19,10 +19,15 @@ LIMITS = (
 
 
 def of_states(mission: Mission) -> list[str]:
-    """What ICAROUS was given to see, where nobody is to take it for sensed, or the errors for those of real sensors."""
-    if not mission.instances:
+    """What ICAROUS was given to see, so that nobody takes it for sensed, or its errors for those of real sensors."""
+    return said_of_states(bool(mission.instances), mission.sensing is not None)
+
+
+def said_of_states(avoids: bool, sensed: bool) -> list[str]:
+    """The same where some vehicle avoids or none does, by what sensors see or by the true states."""
+    if not avoids:
         return []
-    if mission.sensing is None:
+    if not sensed:
         return [f"{EXACT_STATES}."]
     return [
         "The sensors' errors are normal, independent of each other and known; those of real ones are not. "

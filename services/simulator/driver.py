@@ -95,10 +95,20 @@ class Drivers:
         for held in (self.there, self._chassis, self._mounted):
             held.pop(key, None)
 
+    def takes(self, body: Any) -> bool:
+        """Whether an object is a FollowPathCommand for one that is there."""
+        return type(body).__name__ == "FollowPathCommand" and body.VehicleID in self.there
+
     def command(self, body: Any) -> None:
-        """Take a MissionCommand or VehicleActionCommand for one that is there."""
+        """Take a MissionCommand, VehicleActionCommand or FollowPathCommand for one that is there."""
         key = body.VehicleID
         one = self.there[key]
+        if type(body).__name__ == "FollowPathCommand":
+            if body.StartTime or body.StopTime or body.RepeatMode.name == "ReverseCourse":
+                what = "a FollowPathCommand with StartTime, StopTime or ReverseCourse"
+                self._say(key, f"does not do {what}: it is left out")
+                return
+            body = course.along_path(body)
         take = course.mission if type(body).__name__ == "MissionCommand" else course.command
         self._warn(body)
         self.there[key] = one._replace(course=take(one.course, body, one.motion, one.chassis))

@@ -155,7 +155,7 @@ class World:
             before = self.aircraft.get(body.ID)
             self.aircraft[body.ID] = aircraft_of(body, airframe, before, where)
             self._mounted[body.ID] = payload.placed(self._mounted[body.ID], body)
-        elif kind in ("MissionCommand", "VehicleActionCommand"):
+        elif kind in ("MissionCommand", "VehicleActionCommand") or self.drivers.takes(body):
             self._command(body, where)
         elif kind == "AutomationResponse":
             commands = (*body.MissionCommandList, *body.VehicleCommandList)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +12,7 @@ import pytest
 from flight_tools import meeting, of_type
 
 from cratous.bridge import lmcp
+from cratous.services.assumptions.watch import AssumptionWatch
 from cratous.services.bus import Bus, Envelope
 from cratous.services.certify.limits import of_states
 from cratous.services.flight.loop import fly
@@ -83,6 +85,69 @@ def test_what_is_sensed_is_not_the_truth_and_within_its_bounds(
     assert max(apart) > 3
     # 4 standard deviations, once some measurements have come
     assert max(b.HorizontalBound for b in seen[100:]) < 20
+
+
+NAME = "sensed within its bound"
+
+
+def watched(mission: Mission, log: list[Envelope]) -> dict[str, Any]:
+    """The row of the assumption."""
+    watch = AssumptionWatch(mission)
+    for one in log:
+        watch.tap(one.topic.rpartition(".")[2], one)
+    (row,) = [row for row in watch.rows(log[-1].time_ms, True) if row["name"] == NAME]
+    return row
+
+
+def test_the_bounds_are_watched(
+    sensed: Mission, flight: tuple[list[Envelope], Monitor, int]
+) -> None:
+    log = flight[0]
+    row = watched(sensed, log)
+    assert (row["state"], row["bound"], row["note"]) == ("held", 1.0, "")
+    assert row["checks"] == len(of(log, "SensedState"))
+    assert 0.2 < row["observed"] < 1
+    (k,) = [
+        k
+        for k, one in enumerate(log)
+        if type(one.body).__name__ == "SensedState"
+        and (one.body.Time, one.body.VehicleID) == (60_000, 101)
+    ]
+    for field, value in (
+        ("North", 1e4),
+        ("Altitude", 0.0),
+        ("HorizontalBound", -1.0),
+        ("VerticalBound", math.inf),
+    ):
+        body = copy.copy(log[k].body)
+        setattr(body, field, value)
+        row = watched(sensed, [*log[:k], replace(log[k], body=body), *log[k + 1 :]])
+        assert (row["state"], row["since_ms"], row["vehicle"]) == ("broken", 60_000, 1)
+        assert "what 1 sensed of aircraft 101 is" in row["note"]
+    unseen = [
+        one
+        for one in log
+        if type(one.body).__name__ != "TruthState"
+        or (one.body.Time, one.body.VehicleID) != (60_000, 101)
+    ]
+    row = watched(sensed, unseen)
+    assert (row["state"], row["since_ms"]) == ("not observed", None)
+    assert row["note"].startswith("no true state of aircraft 101 of 60.00 s came by")
+
+
+def test_an_intruder_that_radar_alone_sees_is_known_by_its_track(sensed: Mission) -> None:
+    adsb = sensed.sensing.of_traffic[0] if sensed.sensing else None
+    assert isinstance(sensed.daa, SensedDaa)
+    assert adsb is not None
+    sensors = tuple(one for one in sensed.daa.sensing.sensors if one != adsb)
+    daa = replace(sensed.daa, sensing=replace(sensed.daa.sensing, sensors=sensors))
+    short = replace(sensed.simulation, limit_ms=75_000)
+    log, monitor, takeovers = flown(replace(sensed, daa=daa, simulation=short))
+    assert takeovers == 1
+    assert {b.TrackID for b in of(log, "SensedState")} == {1, -1}
+    assert -1 in {b.IntruderID for b in of(log, "AuthorityChange")}
+    rows = {row["name"]: row["state"] for row in monitor.assumptions()}
+    assert (rows["intruder in its tube"], rows[NAME]) == ("held", "held")
 
 
 def test_without_sensors_the_exact_states_are_given_and_that_is_said(sensed: Mission) -> None:
