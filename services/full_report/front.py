@@ -37,7 +37,7 @@ def _verdict(report: Data) -> Iterator[Part]:
     counts, flight = report["counts"], report["flight"]
     yield Words(
         f"{report['verdict'].upper()}: {WORDS[report['verdict']]}. {counts['holds']} constraints hold, "
-        f"{counts['violated']} violated, {counts['unknown']} unknown, {counts['excused']} excused.\n"
+        f"{counts['violated']} violated, {counts['unknown']} unknown, {counts['excused']} excused.{_own(report)}\n"
         f"{flight['outcome']}, {seconds(flight['end_ms'])} of flight, takeovers: {len(flight['takeovers'])}; "
         f"exit code {report['exit_code']}",
         report["verdict"],
@@ -54,6 +54,15 @@ def _verdict(report: Data) -> Iterator[Part]:
         f"{report['proofs']['seal'] or 'none'}. Not signed here: a signed statement stands beside it, if any.",
         "soft",
     )
+
+
+def _own(report: Data) -> str:
+    """How many requirements of the user's own hold, violated, unknown; nothing where there are none."""
+    words = [one["verdict"] for one in own_requirements(report)]
+    said = ", ".join(
+        f"{words.count(w)} {'hold' if w == 'holds' else w}" for w in WORDS if w in words
+    )
+    return f" Requirements of one's own: {said}." if words else ""
 
 
 def alarms(report: Data) -> Iterator[Words]:

@@ -229,5 +229,6 @@ def test_the_full_report_has_source_lint_margins_and_what_nothing_tested(views: 
     assert "GONE" in untested
     assert "FLOOR" not in untested
     assert "manual 2.1" in page
+    assert "1 violated, 1 unknown" in page[page.index("Requirements of one") :][:80]
     assert "z_1 - 90 m: least" in page
     assert "until_decided -&gt; requirements_until_of_any_sample_is_its_definition" in page
