@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from cratous.services.certify.html import losses, margin, repeats, seconds
+from cratous.services.certify.own_views import own_requirements
 from cratous.services.full_report.document import DASH, Head, Part, Section, Table, Words
 from cratous.services.full_report.pictures import flight_pictures, time_line
 
@@ -75,7 +76,7 @@ def alarms(report: Data) -> Iterator[Words]:
 
 
 def requirement_table(report: Data) -> Table:
-    """The five requirements with their verdicts, and where the margin is least."""
+    """The requirements with their verdicts, the user's own among them, and where the margin is least."""
     rows: list[tuple[str, ...]] = []
     for one in report["requirements"]:
         place = one["item"] or DASH
@@ -84,6 +85,13 @@ def requirement_table(report: Data) -> Table:
         rows.append(
             (f"{one['requirement']} {one['title']}\n{one['text']}", one["verdict"], margin(one),
              f"{place}\n{of}{one['note']}")
+        )  # fmt: skip
+    for one in own_requirements(report):
+        at = "" if one["time_ms"] is None else f" at {seconds(one['time_ms'])}"
+        title = f"{one['requirement']} {one['title']}".strip()
+        rows.append(
+            (f"{title}\n{one['text']}", one["verdict"], margin(one),
+             f"{one['file']}{at}\nof one's own; {one['note']}")
         )  # fmt: skip
     head = ("Requirement", "Verdict", "Least margin", "Where it is least")
     return Table(head, tuple(rows), (40, 10, 14, 36), (2,))
