@@ -217,5 +217,14 @@ LISTING = (
         "how far it is, up to the next heartbeat, from the path that its last command gives (the path beyond is "
         "not in the log)",
     ),
+    Assumption(
+        "sensed within its bound",
+        "an aircraft is no farther from what was sensed of it than the bound that its track declares",
+        PERMIT,
+        ("G2",),
+        "that what ICAROUS keeps clear of holds the true places",
+        SAMPLED,
+        "each state that was sensed, at each heartbeat: how far from it the true one is, as a share of the bound",
+    ),
 )
 """All of them, in the order in which they are shown."""

@@ -20,6 +20,7 @@ from cratous.services.assumptions.observed import (
     Record,
     Watch,
 )
+from cratous.services.assumptions.sensed import SensedWatch
 from cratous.spec.mission import Mission
 
 
@@ -38,6 +39,7 @@ class AssumptionWatch:
             SettledWatch(),
             IntruderWatch(mission),
             TrackingWatch(mission),
+            SensedWatch(mission),
         )
         self._records: dict[str, Record] = {}
         for watch in self._watches:

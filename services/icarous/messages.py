@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from cratous.bridge.text_protocol import Message
 from cratous.core.authority.gate import Gate
+from cratous.core.avoidance.drift import NONE, Off
 from cratous.core.avoidance.manoeuvre import Ability, Motion
 from cratous.core.avoidance.prediction import Intruder
 from cratous.spec.mission import Velocity
@@ -26,13 +27,15 @@ class Line(NamedTuple):
 
 class Sensed(NamedTuple):
     """A heartbeat is due. motion, ability: of the vehicle itself; intruders: everybody else, as its
-    surveillance sees them; gate: how its actuator gate stands."""
+    surveillance sees them; gate: how its actuator gate stands; here: how far the vehicle may be from where it is
+    taken to be."""
 
     now_ms: int
     motion: Motion
     ability: Ability
     intruders: tuple[Intruder, ...]
     gate: Gate
+    here: Off = NONE.here
 
 
 # from the instance ------------------------------------------------------------------------------
