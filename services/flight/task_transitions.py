@@ -25,7 +25,7 @@ from cratous.services.flight.timing import closed_by
 from cratous.spec.algebra.partial import waits_for
 from cratous.spec.constraint_rows import Row
 from cratous.spec.executive import FAIL_TASK, GO_ON, LAP, LAST_LAP, START
-from cratous.spec.mission import Vehicle
+from cratous.spec.mission import TaskKind, Vehicle
 from cratous.spec.mission.plan import PlanItem, in_part_of
 from cratous.spec.records import replace
 
@@ -94,7 +94,20 @@ def _measure(config: Config, state: State, vehicle_id: int) -> tuple[State, int 
     """With the progress of a vehicle; and the instant at which the end of a track was passed, if it was."""
     air = state.air(vehicle_id)
     chain, at_ms = state.chain(vehicle_id).measure(air, state.now_ms, config.dt_s)
-    return state.put(chain), at_ms
+    return state.put(chain), None if at_ms is None else _at_its_end(state, chain, at_ms)
+
+
+def _at_its_end(state: State, chain: Chain, at_ms: int) -> int:
+    """When the end of a track counts as passed. A circle is flown a little inside, so its end comes a little
+    early: a loiter that is over in this step lasts its duration."""
+    item = chain.item
+    if item is None or chain.phase is not Phase.TASK:
+        return at_ms
+    task = state.mission.task(item.task_id)
+    if task.kind is not TaskKind.LOITER:
+        return at_ms
+    until_ms = dict(state.starts)[task.id] + task.duration_ms
+    return at_ms if too_early(state.now_ms, until_ms, 0) else max(at_ms, until_ms)
 
 
 def _on_end(config: Config, state: State, chain: Chain, at_ms: int, out: Out) -> State:

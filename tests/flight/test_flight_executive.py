@@ -93,6 +93,17 @@ def test_vehicle_loiters_while_its_predecessor_is_not_done(in_order: Flown) -> N
     assert max(abs(r - hold.radius_m) for r in on_hold) < 5.0
 
 
+def test_a_loiter_lasts_its_duration() -> None:
+    """Flown a little inside its circle, the way would be over some milliseconds before."""
+    around = Task(
+        1, TaskKind.LOITER, "circle", (Position(0, 0, 300),), (1,), duration_ms=60_000, radius_m=250
+    )
+    m = mission_within(1_200_000, (vehicle(1, 0, 0),), (around,), name="circle", relations="p1")
+    result, _ = flown(m, make_plan(m))
+    assert result.outcome == "complete"
+    assert 60_000 <= result.ends[1] - result.starts[1] <= 60_000 + m.simulation.step_ms
+
+
 def delayed() -> Mission:
     """Traffic meets vehicle 1 on its line, so it gives way, goes back and ends late."""
     return mission(".(p1 p2)", traffic=(traffic(2800.0, -2800.0),))
