@@ -12,10 +12,11 @@ from cratous.services.mission.frames import Projection
 from cratous.services.parameters.mapping import Setting, settings_of
 from cratous.services.parameters.parameter_file import default_of
 from cratous.spec.errors import BadInput
-from cratous.spec.mission import Frame
+from cratous.spec.mission import Daa, Frame
 
 TASKS_MOST, FIRST = 64, 100
 """Tasks of a mission; the tasks of vehicle k count from FIRST * k + 1."""
+VOLUME = ("dthr_m", "zthr_m", "tthr_s", "tcoa_s")
 LOWEST_M, HIGHEST_M = -1000.0, 100_000.0
 """Of a zone that says no altitudes."""
 
@@ -224,7 +225,7 @@ def _rest(settings: dict[str, Setting], parts: Parts, notes: list[str]) -> dict[
     found: dict[str, Any] = {}
     thresholds = {
         name: settings[f"daa.well_clear.{name}"].value
-        for name in ("dthr_m", "zthr_m", "tthr_s", "tcoa_s")
+        for name in VOLUME
         if f"daa.well_clear.{name}" in settings
     }
     if thresholds:
@@ -233,12 +234,19 @@ def _rest(settings: dict[str, Setting], parts: Parts, notes: list[str]) -> dict[
         found.setdefault("daa", {})["lookahead_s"] = settings["daa.lookahead_s"].value
     if "bridge.instances" in settings:
         found["bridge"] = {"instances": settings["bridge.instances"].value}
-    if parts.parameters is None:
-        v = DEFAULT_WELL_CLEAR
-        notes.append(
-            f"no parameter file: DTHR {v.dthr_m:g} m, ZTHR {v.zthr_m:g} m, TTHR {v.tthr_s:g} s, TCOA "
-            f"{v.tcoa_s:g} s (our default)"
-        )
+    if found.get("bridge"):
+        notes.append("passive_mode: no vehicle has an ICAROUS, so nobody avoids anybody")
+    ours = Daa(DEFAULT_WELL_CLEAR)
+    left = [
+        f"{name.partition('_')[0].upper()} {getattr(ours.well_clear, name):g} {name[-1]}"
+        for name in VOLUME
+        if name not in thresholds
+    ]
+    if "daa.lookahead_s" not in settings:
+        left.append(f"look-ahead {ours.lookahead_s:g} s")
+    if left:
+        why = "no" if parts.parameters is None else "not in the"
+        notes.append(f"{why} parameter file: {', '.join(left)} (our default)")
     unused = [
         one.name.name
         for one in (parts.parameters or {}).values()

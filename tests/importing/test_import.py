@@ -103,12 +103,19 @@ def test_a_long_plan_is_a_line_and_many_plans_are_many_vehicles() -> None:
 def test_traffic_keeps_its_ids_and_defaults_are_not_noted() -> None:
     """ICAROUS counts traffic from 1, so the vehicle takes the next number that is free."""
     spots = [Intruder(k, None, 900.0, 0.0, 9.0, (0.0, 0.0, 0.0), 0.0, "") for k in (1, 2, 2)]
-    plain = parse("fence_action = 0\nalt_bins = 2\nstale_threshold = 10 [s]\n", "p")
+    lines = ["fence_action = 0", "alt_bins = 2", "stale_threshold = 10 [s]", "passive_mode = true",
+             "default_det_1_WCV_TTHR = 5 [s]"]  # fmt: skip
+    plain = parse("\n".join(lines), "p")
     made = composed(Parts((way("a", 3),), (), tuple(spots), plain), Asked("ids"))
     assert [v["id"] for v in made.data["vehicles"]] == [3]
     assert [t["id"] for t in made.data["traffic"]] == [1, 2, 1002]
     assert made.data["relations"] == ".(p301 p302)"
     assert any("not used here: alt_bins (" in note for note in made.notes)
+    left = (
+        "not in the parameter file: DTHR 150 m, ZTHR 30 m, TCOA 0 s, look-ahead 60 s (our default)"
+    )
+    assert left in made.notes
+    assert any("passive_mode: no vehicle has an ICAROUS" in note for note in made.notes)
 
 
 def test_what_a_mission_lacks_is_asked_for(run: Run, tmp_path: Path) -> None:
