@@ -42,6 +42,13 @@ def composed(parts: Parts, asked: Asked) -> Composed:
     that a mission needs; whether it can be flown is the reader's of mission files to say."""
     notes = list(parts.notes)
     ways = [_without_repeats(way, notes) for way in parts.ways]
+    for way in ways if not asked.terrain_m else ():
+        start = way.places[0]
+        if not start.above_ground and any(place.above_ground for place in way.places):
+            notes.append(
+                f"{way.where}: altitudes above home count from the ground at 0 m (--terrain), and it starts at "
+                f"{start.alt_m:g} m above sea level"
+            )
     home = ways[0].places[0]
     plane = Projection(Frame(home.latitude_deg, home.longitude_deg, asked.terrain_m))
     given = parts.parameters or {}

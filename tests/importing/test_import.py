@@ -28,6 +28,7 @@ def taken(run: Run, root: Path, tmp_path: Path) -> Path:
     code, out, err = run("import", root / FILES, "-o", tmp_path / "mission.yaml")
     assert (code, out) == (0, "")
     assert "not used here: daa_resolution_type, fence_action (" in err
+    assert "from the ground at 0 m (--terrain), and it starts at 40 m above sea level" in err
     return tmp_path / "mission.yaml"
 
 
