@@ -1,12 +1,15 @@
 """The certificate in hand of one vehicle, as transition kernels: what is offered, and what becomes known.
 
-The hand lives behind the actuator gate: where the link is lost it is flown on. Definitions:
-`spec.permit.hand`.
+The hand lives behind the actuator gate: where nothing is commanded any more it is flown on. Definitions:
+`spec.permit.hand`. `hand_step` is what a vehicle does, event by event;
 """
 
 from typing import NamedTuple
 
 from cratous.core.kernel import kernel
+
+OFFERED, KNOWN, LEFT = 0, 1, 2
+"""What happens to a hand: an offer comes; a track or zone becomes known; another trajectory is flown."""
 
 
 class Hand(NamedTuple):
@@ -56,3 +59,30 @@ def hand_told(hand: Hand, permitted: bool, now: int) -> Hand:
     if permitted:
         return Hand(hand.id, hand.knowledge + 1, hand.expiry_ms, hand.surprises)
     return Hand(hand.id, hand.knowledge + 1, min(hand.expiry_ms, now), hand.surprises + 1)
+
+
+@kernel(implements="permit.hand.is_after_time")
+def hand_passed(hand: Hand, now: int) -> Hand:
+    """The hand at a later instant [ms]: one that has expired holds nothing, and an offer may begin on it."""
+    return Hand(hand.id, hand.knowledge, max(hand.expiry_ms, now), hand.surprises)
+
+
+@kernel(implements="permit.hand.is_after_leaving")
+def hand_left(hand: Hand, now: int) -> Hand:
+    """Another trajectory is flown from now on [ms]: nothing is certain any more, and no offer that begins on
+    the one that was in hand is accepted."""
+    return Hand(hand.id + 1, hand.knowledge, min(hand.expiry_ms, now), hand.surprises)
+
+
+@kernel(implements="permit.hand.is_after_event", nonnegative=("reserve",))
+def hand_step(hand: Hand, kind: int, offer: Offer, permitted: bool, now: int, reserve: int) -> Hand:
+    """The hand after an event: OFFERED, KNOWN or LEFT, else time has passed alone. offer, permitted: of an
+    event of these kinds; now: [ms]; reserve: as for `accepts`."""
+    present = hand_passed(hand, now)
+    if kind == 0:
+        return hand_offered(present, offer, now, reserve)
+    if kind == 1:
+        return hand_told(present, permitted, now)
+    if kind == 2:
+        return hand_left(present, now)
+    return present
