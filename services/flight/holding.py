@@ -153,7 +153,8 @@ def _told(
     held: InHand, permitted: bool, now_ms: int, ground: Ground, who: int, reason: str
 ) -> tuple[InHand, Change]:
     before = held.hand
-    after = hand_step(before, KNOWN, NO_OFFER, permitted, now_ms, ground.reserve_ms)
+    asked = Offer(before.id, before.id, now_ms, before.knowledge + 1, before.expiry_ms)
+    after = hand_step(before, KNOWN, asked, permitted, now_ms, ground.reserve_ms)
     change = Change("Known", before, after, NO_OFFER, permitted, who, reason)
     return held._replace(hand=after), change
 

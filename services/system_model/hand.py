@@ -10,7 +10,7 @@ from typing import Any
 
 from cratous.core.authority.timeliness import in_time, lasted
 from cratous.core.permit.hand import KNOWN, LEFT, OFFERED, Offer, accepts, hand_passed, hand_step
-from cratous.services.flight.holding import BEATS, NO_OFFER, RESERVE_BEATS
+from cratous.services.flight.holding import BEATS, RESERVE_BEATS
 from cratous.services.icarous.messages import EMPTY
 from cratous.services.system_model.finding import Misfit
 
@@ -54,7 +54,10 @@ class HandModel:
             event = KNOWN if kind == "Known" else LEFT
             if not self.certificate:
                 raise Misfit(what, "a certificate that is in hand", "none")
-            self.hand = hand_step(before, event, NO_OFFER, body.Permitted, now_ms, self.reserve_ms)
+            until_ms = body.Expiry if body.Permitted else before.expiry_ms
+            asked = Offer(body.ID, body.Base, now_ms, body.Knowledge, until_ms)
+            permitted = body.Permitted
+            self.hand = hand_step(before, event, asked, permitted, now_ms, self.reserve_ms)
             self.certificate = kind == "Known"
         elif kind in ("Flown", "Expired"):
             silent = not in_time(self.heard_ms, now_ms, BEATS * self._heartbeat_ms)

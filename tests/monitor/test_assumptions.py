@@ -206,6 +206,10 @@ BREAKS: dict[str, tuple[Change, str]] = {
         lambda log: aside(1, taken_ms() + 3000, Altitude=5.0)(log),
         "m beside and 5 m above or below the path",
     ),
+    "offers begin at once": (
+        lambda log: alter({"Sigma": 0}, "HandState", ID=3)(log),
+        "certificate 3 begins at 0.00 s",
+    ),
 }
 
 

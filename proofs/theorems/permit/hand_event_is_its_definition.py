@@ -10,6 +10,8 @@ from cratous.core.permit.hand import (
     hand_left,
     hand_passed,
     hand_step,
+    news_for,
+    worn,
 )
 from cratous.proofs.claim import Claim
 from cratous.spec.permit import hand as permit
@@ -34,11 +36,16 @@ def claim(c: Claim) -> None:
     late = c.use(accepts, left, offer, now, reserve)
     on_it = offer.base <= hand.id
     c.show(c.implies(on_it, c.negation(late)), "nothing begins on what was left")
+    asked = c.use(news_for, hand, offer)
+    c.show(c.same(asked, c.define(permit.is_news_for, hand, offer)), "what was asked about")
+    often = c.use(worn, hand)
+    c.show(c.same(often, c.define(permit.is_worn, hand)), "changed too often")
     after = c.use(hand_step, hand, kind, offer, permitted, now, reserve)
     meant = c.define(permit.is_after_event, hand, kind, offer, permitted, now, reserve, after)
     c.show(meant, "each event")
     other = Hand(*[c.integer(f"other_{name}") for name in ("id", "know", "expiry", "surprises")])
     another = c.define(permit.is_after_event, hand, kind, offer, permitted, now, reserve, other)
     # where nothing is certain any more the definition leaves open since when
-    apart = c.all_of(kind != LEFT, c.any_of(kind != KNOWN, permitted))
+    now_asked = c.use(news_for, passed, offer)
+    apart = c.all_of(kind != LEFT, c.any_of(kind != KNOWN, c.all_of(permitted, now_asked)))
     c.show(c.implies(c.all_of(another, apart), c.same(other, after)), "and no other")
